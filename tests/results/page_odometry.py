@@ -34,6 +34,14 @@ CALIBRATED = [
     ("os1-64", "field", 512, 10, 50, 120, []),
 ]
 FAULTS = {"--every-beam": "half the beams", "--gap": "1 s gap", "--lost-scans": "10 % lost", "--every-scan": "2 Hz"}
+# Corners on hills, and bumps. Scene, speed [m/s], seed.
+BUMPY = [
+    ("town", 12, 3),
+    ("town", 15, 4),
+    ("town", 15, 5),
+    ("field", 12, 3),
+    ("field", 15, 4),
+]
 STARTS = range(100, 140)  # seeds
 
 
@@ -78,6 +86,17 @@ def starts():
     return common.table(["speed", "drives", "starts lost", "end after 40 scans, worst"], body)
 
 
+def gyroscope():
+    """A second is missing after 10 s."""
+    body = []
+    for scene, speed, seed in BUMPY:
+        def ate(*options):
+            return slam("os0-32", scene, 512, speed, seed, 160, *options)["error"]["ate_rmse_m"]
+        whole, gap, measured = ate(), ate("--gap", 1), ate("--gap", 1, "--gyroscope")
+        body.append([f"os0-32, {scene}", f"{speed} m/s", seed, *(f"{m:.3f} m" for m in (whole, gap, measured))])
+    return common.table(["sensor, scene", "speed", "seed", "ATE of all scans", "with a gap", "with gap and gyroscope"], body)
+
+
 def drives():
     body = []
     for model, scene, columns, speed, seed, scans in DRIVES:
@@ -92,4 +111,4 @@ def drives():
     return common.table(head, body)
 
 
-TABLES = {"drives": drives, "starts": starts, "confidence": confidence}
+TABLES = {"drives": drives, "gyroscope": gyroscope, "starts": starts, "confidence": confidence}

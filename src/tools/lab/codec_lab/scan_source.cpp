@@ -171,6 +171,9 @@ class SyntheticDrive final : public ScanStream {
     timed.scan.intensity.assign(returns.reflectivity.begin(), returns.reflectivity.end());
     return timed;
   }
+  std::optional<synth::Pose> TruthAt(Time t) const override {
+    return scanner_.trajectory().At(t.time_since_epoch());
+  }
 
  private:
   std::uint32_t columns_;

@@ -35,6 +35,8 @@ class ScanStream {
   virtual ~ScanStream() = default;
   /// Returns nothing at the end. Throws std::runtime_error with a message for the user.
   virtual std::optional<TimedScan> Next() = 0;
+  /// The pose of the sensor at any time, if the source has it.
+  virtual std::optional<synth::Pose> TruthAt(Time) const { return std::nullopt; }
   double scans_per_second() const { return scans_per_second_; }
 
  protected:

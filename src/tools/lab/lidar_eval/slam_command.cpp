@@ -166,6 +166,7 @@ void RunSlamCommand(const SlamArguments& a) {
                                 {"tracked", CountOf(r, Tracking::kTracking)},
                                 {"degenerate", CountOf(r, Tracking::kDegenerate)},
                                 {"lost", CountOf(r, Tracking::kLost)},
+                                {"with_gyroscope", r.with_gyroscope},
                                 {"maps", r.maps},
                                 {"lost_at_start", r.lost_at_start},
                                 {"cpu_ms_median", r.cpu_ms[(r.cpu_ms.size() - 1) / 2]},
@@ -220,6 +221,9 @@ void AddSlamCommand(CLI::App* app) {
       ->check(CLI::Range(0.05, 20.0));
   command->add_option("--max-range", a->slam.odometry.max_range_m, "Of points, and of the map [m]")
       ->check(CLI::Range(1.0, 1000.0));
+  command->add_flag("--gyroscope", a->slam.gyroscope,
+                    "Give the odometry a gyroscope, with the bias and noise of a data sheet; of "
+                    "synthetic drives");
   command->add_flag("--loop-closure", a->slam.close_loops,
                     "Find places that were seen before, and take out the drift between");
   command

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <random>
+#include <stdexcept>
 
 #include "src/cloud/range_grid.h"
 #include "src/slam/loop_closer.h"
@@ -68,13 +70,40 @@ struct PointErrors {
   }
 };
 
-}  // namespace
-
-odometry::Pose TrueMiddle(const TimedScan& scan) {
-  const synth::Pose& pose = *scan.truth;
+odometry::Pose ToPose(const synth::Pose& pose) {
   const auto [x, y, z, w] = pose.ToQuaternion();
   return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
 }
+
+/// A gyroscope of the kind that sensors have: bias and noise are those of a data sheet of
+/// IAM-20680HT.
+class Gyroscope {
+ public:
+  /// Gives the samples since the last call, up to `end`.
+  void Measure(const ScanStream& scans, Time begin, Time end, odometry::Odometry* odometry) {
+    if (!next_) next_ = begin;
+    for (; *next_ < end; *next_ += kStep) {
+      const auto before = scans.TruthAt(*next_ - kStep / 2);
+      const auto after = scans.TruthAt(*next_ + kStep / 2);
+      if (!before || !after) throw std::runtime_error("only synthetic drives have a gyroscope");
+      const odometry::Pose turn = ToPose(*before).Inverse() * ToPose(*after);
+      Eigen::Vector3d rate = odometry::Log(turn).tail<3>() / Seconds(kStep) + kBias;
+      for (double& r : rate) r += noise_(random_);
+      odometry->OnTurn(*next_, rate);
+    }
+  }
+
+ private:
+  static constexpr Duration kStep = std::chrono::milliseconds(10);
+  const Eigen::Vector3d kBias{0.017, -0.017, 0.017};  // 1 degree/s
+  std::optional<Time> next_;
+  std::minstd_rand random_{7};
+  std::normal_distribution<double> noise_{0, 0.001};
+};
+
+}  // namespace
+
+odometry::Pose TrueMiddle(const TimedScan& scan) { return ToPose(*scan.truth); }
 
 std::vector<odometry::Twist> ErrorsOf(const SlamResult& r, const odometry::Trajectory& truth) {
   if (truth.empty() || truth.front().time > r.estimate.front().time ||
@@ -141,6 +170,7 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
   slam::LoopSettings loop_settings;
   loop_settings.most_maps = options.most_local_maps;
   slam::LoopCloser closer(loop_settings);
+  Gyroscope gyroscope;
   PointErrors errors;
   const bool lossy = options.loss.range_step_m > 0 || options.loss.xyz_bits > 0;
   for (std::size_t done = 0; options.max_scans == 0 || done < options.max_scans; ++done) {
@@ -148,6 +178,8 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     if (!timed) break;
     const odometry::TimedPoints points = PointsOf(timed->scan, options.loss);
     if (lossy) errors.Add(PointsOf(timed->scan, {}).points, points.points);
+    if (options.gyroscope)
+      gyroscope.Measure(*scans, timed->start, timed->start + timed->duration, &odometry);
     const std::clock_t begin = std::clock();
     const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
@@ -156,6 +188,7 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
       closer.AddScan(result.estimate.back(), odometry.last_scan());
     result.covariance.push_back(e.covariance);
     result.states.push_back(e.tracking);
+    result.with_gyroscope += e.turn_measured ? 1U : 0U;
     if (done < kStart && e.tracking == odometry::Tracking::kLost) ++result.lost_at_start;
     if (e.map_restarted || e.tracking == odometry::Tracking::kStarted) ++result.maps;
     if (timed->truth) result.truth.push_back({e.time, TrueMiddle(*timed)});

@@ -19,6 +19,7 @@ struct SlamOptions {
   odometry::OdometrySettings odometry;
   CodingLoss loss;
   std::size_t max_scans = 0;  // 0: all
+  bool gyroscope = false;     // of sources whose truth is known at any time
   bool close_loops = false;
   std::size_t most_local_maps = 1000;  // with close_loops
 };
@@ -28,6 +29,7 @@ struct SlamResult {
   odometry::Trajectory truth;                 // empty if the source has no truth
   std::vector<odometry::Matrix6> covariance;  // of each estimate, as the odometry has it
   std::vector<odometry::Tracking> states;
+  std::size_t with_gyroscope = 0;
   std::size_t lost_at_start = 0;  // of the first twenty scans
   std::vector<double> cpu_ms;     // of each scan, ascending
   std::size_t map_voxels = 0;     // at the end
