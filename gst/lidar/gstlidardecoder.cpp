@@ -165,19 +165,19 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   return FALSE;
 }
 
-/// Pushes caps when the data of a slice give the cloud's size.
-static bool PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
+/// Pushes caps when the data of a slice give the cloud's size. If they do not arrive, the next
+/// buffer brings them, and its flow says why they did not.
+static void PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;
-  if (stream.has_size && slice.width == cloud.width && slice.height == cloud.height) return true;
+  if (stream.has_size && slice.width == cloud.width && slice.height == cloud.height) return;
   cloud.width = slice.width;
   cloud.height = slice.height;
   const CapsPtr caps(cloud.ToCaps());
   GST_DEBUG_OBJECT(self, "giving %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
-  if (!gst_pad_push_event(self->state->pads.src(), gst_event_new_caps(caps.get()))) return false;
+  gst_pad_push_event(self->state->pads.src(), gst_event_new_caps(caps.get()));
   stream.has_size = true;
   stream.held.PushTo(self->state->pads.src());
-  return true;
 }
 
 static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -301,9 +301,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   stream.load.Spend(ThreadTime() - before);
   stream.stats_timer.Post(GST_ELEMENT(self), settings.stats_interval, Stats);
   if (!output) return DropSlice(self, buffer, slice.lacks_reference != FALSE);
-  if (!PushCaps(self, slice))
-    return GST_PAD_IS_FLUSHING(self->state->pads.src()) ? GST_FLOW_FLUSHING
-                                                        : GST_FLOW_NOT_NEGOTIATED;
+  PushCaps(self, slice);
   return self->state->pads.Push(std::move(output), buffer);
 }
 

@@ -179,14 +179,14 @@ static bool MakePlan(GstLidarPointCloudFilter* self) {
   return state.plan != nullptr;
 }
 
-static bool PushCaps(GstLidarPointCloudFilter* self) {
+/// If caps do not arrive, the next buffer brings them, and its flow says why they did not.
+static void PushCaps(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   GstCaps* caps = state.plan->caps();
-  if (state.pushed && gst_caps_is_equal(state.pushed.get(), caps)) return true;
+  if (state.pushed && gst_caps_is_equal(state.pushed.get(), caps)) return;
   state.pushed.reset(gst_caps_ref(caps));
-  const bool taken = gst_pad_push_event(self->srcpad, gst_event_new_caps(caps)) != FALSE;
+  gst_pad_push_event(self->srcpad, gst_event_new_caps(caps));
   state.held.PushTo(self->srcpad);
-  return taken;
 }
 
 static void Count(State* state) {
@@ -228,8 +228,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
     PushGap(self, raw);
     return GST_FLOW_OK;
   }
-  if (!PushCaps(self))
-    return GST_PAD_IS_FLUSHING(self->srcpad) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
+  PushCaps(self);
   return gst_pad_push(self->srcpad, out.release());
 }
 

@@ -107,5 +107,17 @@ TEST_P(DriverFields, MayChangeWhileTheStreamRuns) {
 INSTANTIATE_TEST_SUITE_P(All, DriverFields, ::testing::ValuesIn(XyzCoders()),
                          [](const auto& c) { return std::string(c.param.name); });
 
+class StoppedSink : public ::testing::TestWithParam<CoderCase> {};
+
+// The pads of a pipeline that stops flush one after the other, from its end on.
+TEST_P(StoppedSink, IsNoError) {
+  const Harness h = Codec(GetParam(), "max-error=0.02");
+  SetCaps(h.get(), XyzInfo(500));
+  gst_pad_set_active(h->sinkpad, FALSE);
+  EXPECT_EQ(gst_harness_push(h.get(), PlainBuffer(RandomPoints(500, 40))), GST_FLOW_FLUSHING);
+}
+INSTANTIATE_TEST_SUITE_P(All, StoppedSink, ::testing::ValuesIn(XyzCoders()),
+                         [](const auto& c) { return std::string(c.param.name); });
+
 }  // namespace
 }  // namespace lidar::gst

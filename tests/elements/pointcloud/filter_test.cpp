@@ -79,6 +79,13 @@ TEST_F(Filter, SendsCapsOnceWhileTheyStayTheSame) {
   EXPECT_EQ(caps, 1);
 }
 
+// The pads of a pipeline that stops flush one after the other, from its end on.
+TEST_F(Filter, ASinkThatStopsIsNoError) {
+  Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1));
+  gst_pad_set_active(h_->sinkpad, FALSE);
+  EXPECT_EQ(Push(std::vector<std::uint8_t>(12)), GST_FLOW_FLUSHING);
+}
+
 TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
   Start("invalid=remove max-range=1", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
   std::vector<std::uint8_t> near_and_far;
