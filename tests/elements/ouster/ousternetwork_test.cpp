@@ -136,8 +136,8 @@ class OusterOnePort : public ::testing::Test {
   const Receiver::Ports ports_{FreePort(), FreePort()};
 };
 
-/// Takes buffers, which have gaps only where the kernel's buffer was full, or reordered packets of a
-/// sensor that changed its processor.
+/// Takes buffers, which have gaps only where the kernel's buffer was full, or reordered packets of
+/// a sensor that changed its processor.
 void ExpectWholeScans(Receiver* receiver, int buffers) {
   int gaps = 0;
   for (int i = 0; i < buffers; ++i) {
