@@ -16,7 +16,7 @@ COLUMNS, BEAMS, TOP, BOTTOM = 512, 16, 15.0, -15.0
 
 
 def direction(beam, column):
-    azimuth = 2 * math.pi * (1 - column / COLUMNS)
+    azimuth = 2 * math.pi * (0.5 - column / COLUMNS)  # a turn begins behind, as Ouster's and KITTI's do
     altitude = math.radians(TOP - (TOP - BOTTOM) * beam / (BEAMS - 1))
     return (math.cos(azimuth) * math.cos(altitude), math.sin(azimuth) * math.cos(altitude),
             math.sin(altitude))
@@ -62,6 +62,8 @@ def main():
         with open(f"{folder}/out.json", encoding="utf-8") as file:
             metadata = json.load(file)
         packets = list(read_packets(f"{folder}/out.pcap"))
+    turned = [-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+    assert metadata["lidar_intrinsics"]["lidar_to_sensor_transform"] == turned
     layout = metadata["lidar_data_format"]
     assert (layout["columns_per_frame"], layout["pixels_per_column"]) == (COLUMNS, BEAMS)
     assert layout["udp_profile_lidar"] == "RNG19_RFL8_SIG16_NIR16"

@@ -64,6 +64,7 @@ std::vector<Beam> ParseBeams(const std::string& text) {
 SensorModel ModelOfCloud(const std::vector<Beam>& beams, std::uint32_t columns) {
   SensorModel model;
   model.columns_per_scan = columns;
+  model.lidar_to_sensor = {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   model.beams = beams;
   return model;
 }
@@ -83,8 +84,8 @@ Scan ToRangeImage(const Scan& scan, const std::shared_ptr<const ScanGeometry>& g
     const double range_mm = std::round(1e3 * std::sqrt(x * x + y * y + z * z));
     const int beam = NearestBeam(model.beams, std::atan2(z, std::hypot(x, y)) * kDegreesPerRadian);
     if (beam < 0 || range_mm < 1 || range_mm > kMaxRangeMm) continue;
-    // Columns count against the azimuth.
-    const double turn = 1 - std::atan2(y, x) / (2 * kPi);
+    // Columns count against the azimuth, from behind.
+    const double turn = 0.5 - std::atan2(y, x) / (2 * kPi);
     const auto column = static_cast<std::uint32_t>(std::lround(turn * columns)) % columns;
     const std::size_t at = static_cast<std::size_t>(beam) * columns + column;
     const auto range = static_cast<std::uint32_t>(range_mm);

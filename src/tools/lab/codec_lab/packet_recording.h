@@ -13,8 +13,8 @@ namespace lidar::tools {
 /// degrees above the horizon. Throws std::runtime_error.
 std::vector<Beam> ParseBeams(const std::string& text);
 
-/// A sensor whose frame is that of the cloud, with the origin of the beams at its origin. `columns`
-/// is a multiple of 16.
+/// A sensor whose frame is that of the cloud, with the origin of the beams at its origin. A turn
+/// begins at -x, as those of Ouster's sensors and of KITTI's do. `columns` is a multiple of 16.
 SensorModel ModelOfCloud(const std::vector<Beam>& beams, std::uint32_t columns);
 
 /// Puts a cloud into the pixels of `geometry`, the nearest point of each; an organised scan stays
