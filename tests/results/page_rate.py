@@ -12,8 +12,8 @@ SYNTHETIC = {
     "OS1-64 field": "synth:os1-64:field",
 }
 SCENES = ("tunnel", "street", "field")
-MODES = ("range-adaptive", "xyz-sequential", "xyz-kd6")
-BITS = (3, 4, 5, 6, 7, 8)
+MODES = ("range-adaptive", "xyz-sequential")
+BITS = (3, 5, 8)
 
 
 def distortion():

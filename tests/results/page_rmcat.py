@@ -11,7 +11,6 @@ COLUMNS = {
     "own loss [%]": ("loss %", 2),
     "frames dropped [%]": ("dropped %", 1),
     "Jain's index": ("Jain", 2),
-    "variation of the rate": ("variation", 2),
     "others [Mbit/s]": ("others' Mbit/s", 2),
 }
 

@@ -10,13 +10,17 @@ import controller
 PEERS = common.HERE / "peers"
 QUEUE = ["queue p95 [ms]", "queue p99 [ms]", "queue max [ms]"]
 FRAME = ["frame p95 [ms]", "frame p99 [ms]"]
-ALONE = ("frames", "slices", "two_flows", "event_")
+ALONE = ("frames", "slices", "two_flows")
 BESIDE = ("cubic_", "reno_", "prague_", "draft_")
 
 
 def ours_and_draft(prefixes):
     """Case, figures of ours, figures of the draft alone."""
-    ours = {case: of for case, of in controller.figures().items() if case.startswith(prefixes)}
+    ours = {
+        case: of
+        for case, of in controller.figures().items()
+        if case.startswith(prefixes) and not case.endswith("_ect1")  # A FIFO that drops marks nothing.
+    }
     draft = controller.figures("--draft", *ours)
     return [(case, of, draft[case]) for case, of in ours.items()]
 
@@ -29,10 +33,9 @@ def alone():
             bold = of is ours
             row.append(controller.cell(of, ["utilisation [%]"], 1, bold))
             row.append(controller.cell(of, QUEUE, 1, bold))
-            row.append(controller.cell(of, FRAME, 0, bold))
+        row[3:3] = [controller.cell(ours, FRAME, 0)]
         body.append(row)
-    columns = ["util %", "queue [ms]", "frame [ms]"]
-    return common.table(["scenario", *columns, *(f"draft: {name}" for name in columns)], body)
+    return common.table(["scenario", "util %", "queue [ms]", "frame [ms]", "draft: util %", "draft: queue [ms]"], body)
 
 
 def beside():
@@ -42,10 +45,12 @@ def beside():
         for of in (ours, draft):
             shares = [controller.cell(of, [name], 1, False) for name in ("ours [Mbit/s]", "theirs [Mbit/s]")]
             row.append(" : ".join(shares))
-            row.append(controller.cell(of, ["Jain's index"], 3, of is ours))
-        row[3:3] = [controller.cell(ours, ["own loss [%]", "their loss [%]"], 2, False)]
+        row[2:2] = [
+            controller.cell(ours, ["Jain's index"], 3),
+            controller.cell(ours, ["own loss [%]", "their loss [%]"], 2, False),
+        ]
         body.append(row)
-    return common.table(["scenario", "ours : other [Mbit/s]", "Jain", "own/other's loss %", "the draft : other", "Jain"], body)
+    return common.table(["scenario", "ours : other [Mbit/s]", "Jain", "own/other's loss %", "the draft : other"], body)
 
 
 def gaps():
@@ -89,11 +94,10 @@ def over_sockets():
             f"{100 * m['utilisation']:.1f}",
             "/".join(f"{v:.1f}" for v in m["queue_ms"]),
             "/".join(f"{v:.0f}" for v in m["frame_ms"]) if m["frame_ms"] else "–",
-            f"{100 * m['own_loss']:.2f}",
-            *(theirs.get(name) or "–" for name in ("utilisation", "queue_ms", "frame_ms")),
+            *(theirs.get(name) or "–" for name in ("utilisation", "queue_ms")),
         ])
-    columns = ["util %", "queue [ms]", "frame [ms]"]
-    return common.table(["scenario", *columns, "own loss %", *(f"reference: {name}" for name in columns)], body)
+    head = ["scenario", "util %", "queue [ms]", "frame [ms]", "reference: util %", "reference: queue [ms]"]
+    return common.table(head, body)
 
 
 def beside_over_sockets():
