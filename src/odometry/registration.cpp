@@ -103,13 +103,13 @@ Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSe
   return unobserved;
 }
 
-/// What the neighbours without a surface count.
-double WeighPoints(const NormalEquations& surfaces, const RegistrationSettings& settings) {
-  if (surfaces.pairs < kLeastPairs) return settings.point_weight;
+/// Whether the surfaces alone hold each direction. There the prediction only pulls back: a car in a
+/// curve is always beside it.
+bool AreEnough(const NormalEquations& surfaces, const RegistrationSettings& settings) {
+  if (surfaces.pairs < kLeastPairs) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surfaces.Constraint(),
                                                               Eigen::EigenvaluesOnly);
-  const bool held = solver.eigenvalues()(0) >= settings.held_by_surfaces;
-  return held ? settings.spare_point_weight : settings.point_weight;
+  return solver.eigenvalues()(0) >= settings.held_by_surfaces;
 }
 
 /// Of `count` points: those that no surface of the best held direction explains.
@@ -136,12 +136,12 @@ Alignment Align(const Points& points, LocalMap* map, const Prediction& predictio
   Alignment result;
   result.pose = guess;
   if (points.empty() || map->empty()) return result;
-  double point_weight = 1;
+  bool enough = false;
   while (result.iterations++ < settings.max_iterations) {
     const Neighbours found = Linearise(points, map, result.pose, reach_m, kernel_m, settings);
-    if (result.iterations == 1) point_weight = WeighPoints(found.surfaces, settings);
+    if (result.iterations == 1) enough = AreEnough(found.surfaces, settings);
     NormalEquations sums = found.surfaces;
-    sums.Add(point_weight, found.points);
+    sums.Add(enough ? settings.spare_point_weight : settings.point_weight, found.points);
     result.inlier_share = static_cast<double>(found.fitting) / static_cast<double>(points.size());
     result.standing_share = StandingShare(found, points.size());
     if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, 0, result.iterations};
@@ -151,9 +151,11 @@ Alignment Align(const Points& points, LocalMap* map, const Prediction& predictio
     }
     const double variance = VarianceOf(sums);
     result.information = sums.lhs / variance;
-    const Matrix6 hold = variance * Confidence::kPointsOfOne * prediction.information;
-    sums.lhs += hold;
-    sums.rhs -= hold * Log(guess.Inverse() * result.pose);
+    if (!enough) {
+      const Matrix6 hold = variance * Confidence::kPointsOfOne * prediction.information;
+      sums.lhs += hold;
+      sums.rhs -= hold * Log(guess.Inverse() * result.pose);
+    }
     sums.lhs.topLeftCorner<3, 3>() += kHold * sums.weights * result.unobserved;
     const Twist step = sums.lhs.ldlt().solve(sums.rhs);
     if (!step.allFinite()) return {guess, 0, 0, result.iterations};

@@ -76,6 +76,13 @@ TEST(Align, KeepsTheGuessWhereTheSceneDoesNotShowTheMotion) {
   EXPECT_NEAR(found.pose.position.z(), 0, 0.01);
 }
 
+TEST(Align, APredictionDoesNotPullWhereSurfacesHoldEveryDirection) {
+  LocalMap map = MapOf(Corner());
+  const Prediction sure{Moved(0.2, 0, 0), Matrix6::Identity() * 1e4};
+  const Alignment found = Align(Corner(), &map, sure, kReach_m, kKernel_m, {});
+  EXPECT_LT(found.pose.position.norm(), 0.001);
+}
+
 TEST(Align, InATunnelOnlyTheMotionAlongItIsUnknown) {
   Points tunnel;
   for (double a = 0.05; a < 16; a += 0.25)
