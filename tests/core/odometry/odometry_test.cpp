@@ -5,16 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <random>
 
 #include "src/odometry/trajectory_error.h"
 #include "tests/core/odometry/true_drive.h"
 
 namespace lidar::odometry {
 namespace {
-
-using std::chrono::milliseconds;
 
 /// Poses of `scans` scans, of which those in `missing` do not come.
 struct Followed {
@@ -218,20 +214,6 @@ TEST(Odometry, LosesNoStartInOpenCountry) {
   }
 }
 
-TEST(Odometry, StartsAfreshBesideAMapToWhichNothingHasFitted) {
-  Drive street(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  TimedPoints elsewhere = street.Scan(0);
-  for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
-  odometry.OnScan(street.StartOf(0), kPeriod, elsewhere);
-  const Estimate fresh = odometry.OnScan(street.StartOf(1), kPeriod, street.Scan(1));
-  EXPECT_EQ(fresh.tracking, Tracking::kStarted);
-  EXPECT_TRUE(fresh.map_restarted);
-  const Estimate next = odometry.OnScan(street.StartOf(2), kPeriod, street.Scan(2));
-  EXPECT_EQ(next.tracking, Tracking::kTracking);
-  EXPECT_NEAR((next.pose.position - fresh.pose.position).norm(), 1, 0.1);
-}
-
 TEST(Odometry, SaysHowFarItMayBeOff) {
   for (const auto scene :
        {synth::SceneKind::kStreet, synth::SceneKind::kField, synth::SceneKind::kTunnel}) {
@@ -261,191 +243,12 @@ TEST(Odometry, TellsItsErrorInTheAxesOfTheMap) {
   EXPECT_GT(estimate.covariance(1, 1), 10 * estimate.covariance(0, 0)) << "along the tunnel";
 }
 
-TEST(Odometry, IsLostWhereAVehicleCannotHaveMovedLikeThat) {
-  Drive street(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  for (std::uint64_t i = 0; i < 10; ++i)
-    odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
-  const Pose before = odometry.PredictAt(street.StartOf(10) + kPeriod / 2);
-  TimedPoints aside = street.Scan(10);
-  for (Eigen::Vector3d& point : aside.points) point.y() += 1;
-  const Estimate lost = odometry.OnScan(street.StartOf(10), kPeriod, aside);
-  EXPECT_EQ(lost.tracking, Tracking::kLost);
-  EXPECT_LT((lost.pose.position - before.position).norm(), 1e-9);
-}
-
-TEST(Odometry, KnowsWhenAScanDoesNotFit) {
-  Drive street(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  for (std::uint64_t i = 0; i < 10; ++i)
-    odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
-  const Pose before = odometry.PredictAt(street.StartOf(10));
-  TimedPoints elsewhere = street.Scan(10);
-  for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
-  const Estimate lost = odometry.OnScan(street.StartOf(10), kPeriod, elsewhere);
-  EXPECT_EQ(lost.tracking, Tracking::kLost);
-  EXPECT_LT((lost.pose.position - before.position).norm(), 1.0);
-  const Estimate later = odometry.OnScan(street.StartOf(11), kPeriod, elsewhere);
-  EXPECT_GT(later.covariance(0, 0), 1.5 * lost.covariance(0, 0));
-  const Estimate found = odometry.OnScan(street.StartOf(12), kPeriod, street.Scan(12));
-  EXPECT_EQ(found.tracking, Tracking::kTracking);
-}
-
-/// To another place that looks alike.
-struct Jump {
-  synth::SceneKind scene;
-  const char* sensor;
-};
-class OdometryJumps : public testing::TestWithParam<Jump> {};
-
-TEST_P(OdometryJumps, AreSeenWithinASecond) {
-  Drive before(Drive::Config(GetParam().scene, 10, 7, GetParam().sensor));
-  Drive after(Drive::Config(GetParam().scene, 10, 9, GetParam().sensor));
-  Odometry odometry({});
-  bool seen = false;
-  for (std::uint64_t i = 0; i < 40; ++i) {
-    Drive& drive = i < 30 ? before : after;
-    const Estimate e = odometry.OnScan(before.StartOf(i), kPeriod, drive.Scan(i));
-    if (i < 30)
-      EXPECT_NE(e.tracking, Tracking::kLost) << i;
-    else
-      seen |= e.tracking == Tracking::kLost;
-  }
-  EXPECT_TRUE(seen);
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, OdometryJumps,
-                         testing::Values(Jump{synth::SceneKind::kStreet, "os0-32"},
-                                         Jump{synth::SceneKind::kTown, "os0-32"},
-                                         Jump{synth::SceneKind::kStreet, "os1-64"},
-                                         Jump{synth::SceneKind::kTown, "os1-64"},
-                                         Jump{synth::SceneKind::kField, "os1-64"}));
-
-TEST(Odometry, FindsItsWayAfterTwoScansOfTheSameTime) {
-  Drive street(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  for (std::uint64_t i = 0; i < 5; ++i) odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
-  odometry.OnScan(street.StartOf(4) + std::chrono::nanoseconds(1), kPeriod, street.Scan(5));
-  const Estimate next = odometry.OnScan(street.StartOf(6), kPeriod, street.Scan(6));
-  EXPECT_EQ(next.tracking, Tracking::kTracking);
-  EXPECT_NEAR(next.pose.position.norm(), 6, 0.5);
-}
-
-TEST(Odometry, BeginsANewMapWhereItIsLostForGood) {
-  Drive street(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  std::uint64_t i = 0;
-  for (; i < 5; ++i) odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
-  TimedPoints elsewhere = street.Scan(5);
-  for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
-  Estimate e;
-  for (; i < 16; ++i) e = odometry.OnScan(street.StartOf(i), kPeriod, elsewhere);
-  EXPECT_TRUE(e.map_restarted || e.tracking == Tracking::kTracking);
-  e = odometry.OnScan(street.StartOf(i), kPeriod, elsewhere);
-  EXPECT_EQ(e.tracking, Tracking::kTracking);
-  EXPECT_LT(odometry.PredictAt(street.StartOf(i + 1)).position.norm(), 20);
-}
-
-TEST(Odometry, BeginsANewMapAfterALongGap) {
-  Drive street(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  for (std::uint64_t i = 0; i < 5; ++i) odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
-  const Estimate later = odometry.OnScan(street.StartOf(100), kPeriod, street.Scan(100));
-  EXPECT_EQ(later.tracking, Tracking::kStarted);
-  EXPECT_TRUE(later.map_restarted);
-  const Estimate earlier = odometry.OnScan(street.StartOf(2), kPeriod, street.Scan(2));
-  EXPECT_TRUE(earlier.map_restarted);
-}
-
-TEST(Odometry, TakesAnyPoints) {
-  Odometry odometry({});
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  const TimedPoints bad = {{{nan, 0, 0}, {inf, 1, 1}, {1e300, 1e300, 0}, {0, 0, 0}},
-                           {0.0F, 2.0F, -1.0F, 0.5F},
-                           {0, 65535, 1, 0}};
-  for (int i = 0; i < 3; ++i) {
-    const Estimate e = odometry.OnScan(Time{} + i * kPeriod, kPeriod, bad);
-    EXPECT_TRUE(e.pose.position.allFinite());
-    odometry.OnScan(Time{} + i * kPeriod + milliseconds(50), kPeriod, {});
-  }
-  EXPECT_TRUE(odometry.map().empty());
-}
-
-TEST(Odometry, TakesTenMillionPoints) {
-  constexpr std::size_t kPoints = 10'000'000;
-  TimedPoints room;
-  room.points.reserve(kPoints);
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    const double along = 1e-3 * static_cast<double>(i % 20'000) - 10;
-    const double across = 0.02 * static_cast<double>(i / 20'000) - 5;
-    room.points.emplace_back(along, i % 3 == 0 ? 5 : across, i % 3 == 0 ? across : -2);
-  }
-  room.phases.assign(kPoints, 0.5F);
-  Odometry odometry({});
-  for (int i = 0; i < 2; ++i)
-    EXPECT_TRUE(odometry.OnScan(Time{} + i * kPeriod, kPeriod, room).pose.position.norm() < 0.01);
-  EXPECT_LT(odometry.map().voxels(), 2'000U);
-}
-
-TEST(Odometry, FollowsADriveOfWhichSomeScansAreThinnedOut) {
-  Drive drive(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  Pose pose;
-  for (std::uint64_t i = 0; i < 30; ++i) {
-    const TimedPoints whole = drive.Scan(i);
-    TimedPoints thinned;
-    for (std::size_t n = 0; n < whole.points.size(); ++n) {
-      if (whole.rings[n] % (i / 5 % 3 + 1) != 0) continue;  // each beam, each second, each third
-      thinned.points.push_back(whole.points[n]);
-      thinned.phases.push_back(whole.phases[n]);
-      thinned.rings.push_back(whole.rings[n]);
-    }
-    pose = odometry.OnScan(drive.StartOf(i), kPeriod, thinned).pose;
-  }
-  const Pose way = drive.WayTo(29);
-  EXPECT_LT((pose.position - way.position).norm(), 0.2);
-}
-
-TEST(Odometry, FollowsWhateverTheRateOfTheScans) {
-  for (const std::uint64_t every : {2U, 3U}) {  // of ten scans a second
-    Drive drive(synth::SceneKind::kStreet, 8);
-    Odometry odometry({});
-    Pose pose;
-    for (std::uint64_t i = 0; i < 30; i += every)
-      pose = odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i)).pose;
-    const std::uint64_t last = 29 / every * every;
-    const Pose way = drive.WayTo(last);
-    EXPECT_LT((pose.position - way.position).norm(), 0.9) << every;
-  }
-}
-
-TEST(Odometry, BeginsAgainWhereScansComeInTheWrongOrder) {
-  Drive drive(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  for (const std::uint64_t i : {0U, 1U, 2U, 3U, 2U, 3U, 4U, 5U}) {
-    const Estimate e = odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
-    EXPECT_TRUE(e.pose.position.allFinite());
-    EXPECT_LT(e.pose.position.norm(), 10);
-  }
-}
-
 TEST(Odometry, FollowsThroughATownOfHillsAndCorners) {
   Drive drive(synth::SceneKind::kTown, 12);
   const Followed run = Follow(&drive, 40, {});
   const auto error = Compare(run.truth, run.estimate);
   ASSERT_TRUE(error);
   EXPECT_LT(error->ate_rmse_m, 0.2);
-}
-
-TEST(Odometry, ReachesFartherAfterAGapInWhichTheCarBraked) {
-  Drive drive(synth::SceneKind::kTown, 10);
-  Odometry odometry({});
-  for (std::uint64_t i = 0; i < 20; ++i) odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
-  // Half a second later it has come as far as in 0.4 s before.
-  const Pose found = odometry.OnScan(drive.StartOf(24), kPeriod, drive.Scan(23)).pose;
-  const Pose way = drive.WayTo(23);
-  EXPECT_LT((found.position - way.position).norm(), 0.6);
 }
 
 TEST(Odometry, KeepsItsMapBounded) {
