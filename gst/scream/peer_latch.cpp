@@ -23,6 +23,7 @@ bool GoesOn(std::uint16_t seq, std::uint16_t next_seq, int max_gap) {
 }  // namespace
 
 void PeerLatch::Peer::Add(Time now, const Packet& packet) {
+  if (sources.empty()) since = now;
   at = now;
   const auto found = sources.find(packet.ssrc);
   const bool goes_on =
@@ -140,7 +141,9 @@ bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
 bool PeerLatch::Wins(const Peer& candidate, Time now) const {
   if (candidate.went_on < kProbation) return false;
   const Standing shown = candidate.standing(now);
-  if (!IsSilent(now)) return shown > peer_.standing(now);
+  // Which of a sender's links has shown a stream first is chance.
+  const Standing least = now - peer_.since < kStart ? Standing::kStream : Standing::kNothing;
+  if (!IsSilent(now)) return shown > std::max(peer_.standing(now), least);
   const bool needs_slices = peer_.has_slices && now - LastHeard() < kLongSilence;
   return shown >= (needs_slices ? Standing::kSlices : Standing::kStream);
 }

@@ -48,6 +48,8 @@ class PeerLatch {
   static constexpr int kProbation = 4;
   /// ...within this time.
   static constexpr Duration kStreamTime = 1s;
+  /// For so long after its first packet a peer counts as a stream.
+  static constexpr Duration kStart = 200ms;
   /// An accepted peer without packets for this long is silent.
   static constexpr Duration kPeerSilence = 500ms;
   /// Silence after which a stream is enough to follow a peer that had shown slices.
@@ -111,6 +113,7 @@ class PeerLatch {
     Sources sources;
     std::array<Time, kProbation> last{};  // when the latest packets that went on came
     int went_on = 0;                      // packets, up to kProbation
+    Time since{};
     Time at{};
     bool has_slices = false;
     bool is_known = false;

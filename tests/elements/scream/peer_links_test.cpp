@@ -53,6 +53,18 @@ TEST_F(PeerLinks, CopiesThatComeBeforeTheirOriginalsCountToo) {
   EXPECT_EQ(latch.links(), 2U);
 }
 
+// The first link's packets have no digests while nobody else sends.
+TEST_F(PeerLinks, ALinkThatRunsAheadAtTheStartIsNoRival) {
+  for (std::uint16_t n = 0; n < PeerLatch::kProbation; ++n)
+    latch.OnPacket(now, {first.get(), 1, static_cast<std::uint16_t>(seq + n), {}});
+  for (int i = 0; i <= PeerLatch::kProbation; ++i)
+    EXPECT_EQ(Send(second, seq++), Verdict::kForeign) << i;
+  Send(first, static_cast<std::uint16_t>(seq - 1));
+  SendBoth(first, second, PeerLatch::kCopies - 1);
+  EXPECT_EQ(latch.links(), 2U);
+  EXPECT_TRUE(gst::SameAddress(latch.peer(), first.get()));
+}
+
 TEST_F(PeerLinks, AStrangerWithTheSameSsrcAndNumbersStaysOne) {
   for (int i = 0; i < 1000; ++i, ++seq, now += 10ms) {
     EXPECT_EQ(Send(first, seq), Verdict::kAccepted);
