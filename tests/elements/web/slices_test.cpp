@@ -17,10 +17,11 @@ gst::CapsPtr CapsOf(GstHarness* harness) {
   return gst::CapsPtr(gst_pad_get_current_caps(harness->sinkpad));
 }
 
-/// A sensor that stands still, and a coder that hears that each slice arrives: it refers to them.
+/// A sensor that stands still, and a coder that hears that each slice arrives: it refers to them,
+/// however long a slow machine takes.
 class Robot {
  public:
-  explicit Robot(const char* coder = "lidarenc effort=2") {
+  explicit Robot(const char* coder = "lidarenc effort=2 key-interval=0") {
     clouds_.reset(gst_harness_new_parse(
         "lidartestsrc model=os0-32 mode=512x10 slices-per-scan=4 speed=0 num-buffers=400"));
     gst_harness_play(clouds_.get());
