@@ -2,19 +2,21 @@
 // Bounds the end of a program, if a server, disk or client hangs.
 #pragma once
 #include <errno.h>
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstring>
 
 namespace lidar::tools {
 
-/// The end of the program begins with this object: after `seconds` the process ends with a message
+/// The end of the program begins with this object: after `most` the process ends with a message
 /// and with 0. The exit of the process itself is not bounded: a sanitizer looks for leaks there,
 /// which takes long on a busy machine.
 class BoundedEnd {
  public:
-  explicit BoundedEnd(unsigned seconds) {
+  explicit BoundedEnd(std::chrono::milliseconds most) {
     std::signal(SIGALRM, [](int) {
       constexpr char kText[] = ": not all has ended in time; ending all the same\n";
       const char* const name = program_invocation_short_name;
@@ -22,11 +24,19 @@ class BoundedEnd {
       written = write(STDERR_FILENO, kText, sizeof kText - 1);
       _exit(0);
     });
-    alarm(seconds);
+    SetAlarm(most);
   }
-  ~BoundedEnd() { alarm(0); }
+  ~BoundedEnd() { SetAlarm({}); }
   BoundedEnd(const BoundedEnd&) = delete;
   BoundedEnd& operator=(const BoundedEnd&) = delete;
+
+ private:
+  static void SetAlarm(std::chrono::microseconds in) {
+    itimerval timer{};
+    timer.it_value.tv_sec = in.count() / 1'000'000;
+    timer.it_value.tv_usec = in.count() % 1'000'000;
+    setitimer(ITIMER_REAL, &timer, nullptr);
+  }
 };
 
 }  // namespace lidar::tools

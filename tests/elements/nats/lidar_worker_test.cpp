@@ -12,6 +12,7 @@
 #include "src/tools/apps/worker/lease_store.h"
 #include "src/tools/apps/worker/robot_pipeline.h"
 #include "src/tools/apps/worker/worker.h"
+#include "src/tools/common/event_loop.h"
 #include "tests/elements/nats/http_get.h"
 #include "tests/elements/nats/worker_process.h"
 
@@ -183,6 +184,18 @@ TEST_F(LidarWorker, GivesUpWithoutAServerAndGoesOnWithIt) {
   const std::size_t before = consumer.count();
   ASSERT_TRUE(consumer.WaitForBuffers(before + 10));
   EXPECT_GT(DistanceOf(consumer.buffers().back()), 10);
+}
+
+TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
+  const auto robot = Robot();
+  auto worker = Worker();
+  ASSERT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
+  server_.Freeze();
+  const Time begin = tools::Now();
+  EXPECT_EQ(worker->Stop(), 0);
+  // A busy machine may take as long to let it run.
+  EXPECT_LT(Seconds(tools::Now() - begin), 2);
+  server_.Thaw();
 }
 
 TEST_F(LidarWorker, GoesOnFromThePoseAloneInAnotherStream) {

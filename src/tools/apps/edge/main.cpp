@@ -25,7 +25,7 @@ namespace lidar::edge {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{50};
-constexpr unsigned kEndSeconds = 6;  // for the end, if a server, disk or client hangs
+constexpr std::chrono::seconds kEnd{6};  // if a server, disk or client hangs
 
 std::atomic<bool> stopping{false};
 
@@ -100,7 +100,7 @@ int Main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopping = true; });
   std::optional<Edge> edge(std::in_place, config);
   edge->Run();
-  const tools::BoundedEnd bounded(kEndSeconds);
+  const tools::BoundedEnd bounded(kEnd);
   edge.reset();
   return 0;
 }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <string>
 
@@ -17,7 +18,7 @@
 namespace lidar::worker {
 namespace {
 
-constexpr unsigned kEndSeconds = 6;  // whatever servers do
+constexpr std::chrono::milliseconds kEnd{900};  // whatever servers do
 
 std::atomic<bool> stopping{false};
 
@@ -145,7 +146,7 @@ int Main(int argc, char** argv) {
     worker->Step();
     statistics->Poll([&](auto* exposition, auto* reports) { worker->Tell(exposition, reports); });
   }
-  const tools::BoundedEnd bounded(kEndSeconds);
+  const tools::BoundedEnd bounded(kEnd);
   worker->HandOver();
   statistics.reset();
   worker.reset();

@@ -19,8 +19,9 @@ using tools::Now;
 
 constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
-constexpr std::chrono::seconds kStopTimeout{1};
-constexpr std::chrono::seconds kAnswerTimeout{1};
+// Together they stay below a second.
+constexpr milliseconds kStopTimeout{400};
+constexpr milliseconds kAnswerTimeout{300};
 constexpr std::size_t kShownLetters = 300;  // letters of a record that is damaged
 
 std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
