@@ -11,6 +11,7 @@
 #include "src/tools/apps/edge/pipeline.h"
 #include "src/tools/apps/edge/shared_port.h"
 #include "src/tools/common/elements.h"
+#include "src/tools/common/event_loop.h"
 
 namespace lidar::edge {
 namespace {
@@ -24,8 +25,6 @@ constexpr std::chrono::milliseconds kPoll{100};
 constexpr seconds kFirstPause{2};  // after a failure
 constexpr seconds kLongestPause{64};
 constexpr seconds kHealthySession{10};  // a session of this age has not failed at once
-constexpr seconds kRobotTimeout{10};    // silence after which a robot is gone
-constexpr double kCredit = 3;           // seconds at its limit that a robot may be ahead of it
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
 }  // namespace
@@ -35,6 +34,7 @@ Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* 
       robot_(robot),
       socket_(socket),
       pipeline_(MakePipeline(config, robot, socket)),
+      robot_watch_(robot.max_mbps),
       failures_(kFirstPause, kLongestPause),
       record_failures_(kFirstPause, kLongestPause) {
   if (!robot.record.empty()) {  // throws if that is impossible
@@ -59,7 +59,7 @@ void Receiver::Run() {
   std::unique_lock lock(mutex_);
   while (!ending_) {
     lock.unlock();
-    Poll(Clock::now());
+    Poll(tools::Now());
     lock.lock();
     wake_.wait_for(lock, kPoll, [this] { return ending_; });
   }
@@ -83,12 +83,12 @@ void Receiver::Say(const std::string& what) const {
   std::fprintf(stderr, "%s: %s\n", GST_OBJECT_NAME(pipeline_.get()), what.c_str());
 }
 
-void Receiver::Begin(Clock::time_point now) {
+void Receiver::Begin(Time now) {
   state_ = State::kWaiting;
   Update([](Account* a) { ++a->sessions; });
   began_at_ = now;
   watch_at_.reset();
-  bytes_ = 0;
+  robot_watch_.Begin();
   if (socket_ != nullptr) ShutSocket(socket_, false);
   // An error is read from the bus.
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
@@ -105,11 +105,11 @@ void Receiver::End() {
 void Receiver::Finish() {
   if (state_ != State::kResting && BytesReceived() > 0)
     Drain(pipeline_.get(), kFinish,
-          [this](GstMessage* message) { NoteError(Clock::now(), message); });
+          [this](GstMessage* message) { NoteError(tools::Now(), message); });
   End();
 }
 
-void Receiver::Rest(Clock::time_point now, Duration pause, const std::string& why) {
+void Receiver::Rest(Time now, Duration pause, const std::string& why) {
   End();
   state_ = State::kResting;
   begin_at_ = now + pause;
@@ -118,7 +118,7 @@ void Receiver::Rest(Clock::time_point now, Duration pause, const std::string& wh
 }
 
 /// If the recorder has failed, another one is tried later, and the stream goes on meanwhile.
-void Receiver::Record(Clock::time_point now) {
+void Receiver::Record(Time now) {
   if (robot_.record.empty() || recording_ || now < record_at_) return;
   recording_ = true;
   record_at_ = now;
@@ -129,7 +129,7 @@ void Receiver::Record(Clock::time_point now) {
   }
 }
 
-void Receiver::NoteRecordFailure(Clock::time_point now, const std::string& why) {
+void Receiver::NoteRecordFailure(Time now, const std::string& why) {
   RemoveRecorder(pipeline_.get());
   recording_ = false;
   if (now - record_at_ > kHealthySession) record_failures_.Reset();
@@ -142,7 +142,7 @@ void Receiver::NoteRecordFailure(Clock::time_point now, const std::string& why) 
 }
 
 /// Returns false if the session is over.
-bool Receiver::NoteError(Clock::time_point now, GstMessage* message) {
+bool Receiver::NoteError(Time now, GstMessage* message) {
   const std::string text = tools::MessageText(message);
   if (IsFromRecorder(message)) {
     if (recording_) NoteRecordFailure(now, text);  // the first of its errors
@@ -158,7 +158,7 @@ bool Receiver::NoteError(Clock::time_point now, GstMessage* message) {
 }
 
 /// Returns false if the session is over.
-bool Receiver::ReadBus(Clock::time_point now) {
+bool Receiver::ReadBus(Time now) {
   GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
   while (const MessagePtr message{gst_bus_pop(bus)}) {
     switch (GST_MESSAGE_TYPE(message.get())) {
@@ -188,40 +188,27 @@ guint64 Receiver::BytesReceived() const {
   return bytes;
 }
 
-/// Shuts out a robot that is too far ahead of `max-mbps` until it is not ahead any more, so that in
-/// the long run it stays below the limit.
-void Receiver::Charge(Clock::time_point now, double bytes) {
-  const double limit = robot_.max_mbps * 125'000;  // bytes a second
-  const auto passed = std::chrono::duration<double>(now - std::exchange(charged_at_, now));
-  ahead_ = std::max(0.0, ahead_ - limit * passed.count()) + bytes;
-  if (ahead_ <= kCredit * limit) return;
-  Update([](Account* a) { ++a->penalties; });
-  const std::chrono::duration<double> pause(ahead_ / limit);
-  char why[96];
-  std::snprintf(why, sizeof why, "the robot sends more than max-mbps, and is shut out for %.0f s",
-                std::ceil(pause.count()));
-  Rest(now, std::chrono::duration_cast<Duration>(pause), why);
-}
-
 /// Once a second: is the robot there, and does it keep to its limit?
-void Receiver::Watch(Clock::time_point now) {
+void Receiver::Watch(Time now) {
   if (watch_at_ && now < *watch_at_) return;
   watch_at_ = now + seconds(1);
-  const guint64 bytes = BytesReceived();
-  const guint64 more = bytes - std::min(bytes_, bytes);
-  bytes_ = bytes;
-  if (more > 0) {
-    if (state_ == State::kWaiting) Say("the robot is here");
+  robot_watch_.Note(now, BytesReceived());
+  if (state_ == State::kWaiting && robot_watch_.is_there()) {
+    Say("the robot is here");
     state_ = State::kReceiving;
     Update([](Account*) {});
-    heard_at_ = now;
-  } else if (state_ == State::kReceiving && now - heard_at_ > kRobotTimeout) {
-    return Rest(now, seconds(0), "the robot is gone");
   }
-  if (robot_.max_mbps > 0) Charge(now, static_cast<double>(more));
+  if (robot_watch_.IsGone()) return Rest(now, seconds(0), "the robot is gone");
+  const Duration pause = robot_watch_.ToShutOut();
+  if (pause == Duration{}) return;
+  Update([](Account* a) { ++a->penalties; });
+  char why[96];
+  std::snprintf(why, sizeof why, "the robot sends more than max-mbps, and is shut out for %.0f s",
+                std::ceil(Seconds(pause)));
+  Rest(now, pause, why);
 }
 
-void Receiver::Poll(Clock::time_point now) {
+void Receiver::Poll(Time now) {
   if (state_ == State::kResting) {
     if (now < begin_at_) return;
     Begin(now);

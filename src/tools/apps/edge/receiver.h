@@ -4,7 +4,6 @@
 #include <gio/gio.h>
 #include <gst/gst.h>
 
-#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -15,6 +14,7 @@
 #include "gst/common/refs.h"
 #include "src/base/backoff.h"
 #include "src/tools/apps/edge/edge_config.h"
+#include "src/tools/apps/edge/robot_watch.h"
 #include "src/tools/apps/fleet/exposition.h"
 
 namespace lidar::edge {
@@ -38,7 +38,6 @@ class Receiver {
   nlohmann::json Tell(fleet::Exposition* exposition) const;
 
  private:
-  using Clock = std::chrono::steady_clock;
   enum class State { kWaiting, kReceiving, kResting };
   /// The figures of the robot.
   struct Account {
@@ -51,18 +50,17 @@ class Receiver {
   };
 
   void Run();
-  void Poll(Clock::time_point now);
-  void Begin(Clock::time_point now);
+  void Poll(Time now);
+  void Begin(Time now);
   void End();
   void Finish();
   /// The robot is shut out for as long.
-  void Rest(Clock::time_point now, Duration pause, const std::string& why);
-  void Record(Clock::time_point now);
-  bool ReadBus(Clock::time_point now);
-  bool NoteError(Clock::time_point now, GstMessage* message);
-  void NoteRecordFailure(Clock::time_point now, const std::string& why);
-  void Watch(Clock::time_point now);
-  void Charge(Clock::time_point now, double bytes);
+  void Rest(Time now, Duration pause, const std::string& why);
+  void Record(Time now);
+  bool ReadBus(Time now);
+  bool NoteError(Time now, GstMessage* message);
+  void NoteRecordFailure(Time now, const std::string& why);
+  void Watch(Time now);
   guint64 BytesReceived() const;
   Account account() const;
   template <class Change>
@@ -76,15 +74,12 @@ class Receiver {
 
   // The thread's alone.
   State state_ = State::kResting;
-  Clock::time_point begin_at_{};  // of a rest's end
-  Clock::time_point began_at_{};
-  std::optional<Clock::time_point> watch_at_;  // the rate is taken then
-  Clock::time_point heard_at_{};
+  Time begin_at_{};  // of a rest's end
+  Time began_at_{};
+  std::optional<Time> watch_at_;  // the rate is taken then
+  RobotWatch robot_watch_;
   bool recording_ = false;
-  Clock::time_point record_at_{};  // when it began, or is to begin
-  guint64 bytes_ = 0;              // when the rate was last taken
-  double ahead_ = 0;               // bytes above max-mbps, over all sessions
-  Clock::time_point charged_at_{};
+  Time record_at_{};  // when it began, or is to begin
   Backoff failures_;
   Backoff record_failures_;
 

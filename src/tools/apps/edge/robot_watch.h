@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Whether a robot is there, and how far it is ahead of its limit, by the bytes that came from it.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "src/base/time.h"
+
+namespace lidar::edge {
+
+class RobotWatch {
+ public:
+  static constexpr Duration kTimeout = std::chrono::seconds(10);  // a silent robot is gone then
+  static constexpr double kCredit = 3;  // seconds at its limit that it may be ahead
+
+  /// 0: no limit.
+  explicit RobotWatch(double max_mbps) : limit_(max_mbps * 125'000) {}
+
+  /// A session begins, and its count of bytes with it. What the robot is ahead stays.
+  void Begin() {
+    bytes_ = 0;
+    is_there_ = false;
+  }
+  /// `bytes` came since the session began.
+  void Note(Time now, std::uint64_t bytes) {
+    const auto more = bytes - std::min(std::exchange(bytes_, bytes), bytes);
+    if (more > 0) {
+      is_there_ = true;
+      heard_at_ = now;
+    }
+    const Duration passed = now - std::exchange(noted_at_, now);
+    ahead_ = std::max(0.0, ahead_ - limit_ * Seconds(passed)) + static_cast<double>(more);
+  }
+
+  bool is_there() const { return is_there_; }
+  bool IsGone() const { return is_there_ && noted_at_ - heard_at_ > kTimeout; }
+  /// The time until a robot that is too far ahead of its limit is not ahead any more, so that in
+  /// the long run it stays below the limit; 0 for others.
+  Duration ToShutOut() const {
+    const bool is_ahead = limit_ > 0 && ahead_ > kCredit * limit_;
+    return is_ahead ? FromSeconds(ahead_ / limit_) : Duration{};
+  }
+
+ private:
+  double limit_;  // bytes a second
+  double ahead_ = 0;
+  std::uint64_t bytes_ = 0;
+  bool is_there_ = false;
+  Time heard_at_{};
+  Time noted_at_{};
+};
+
+}  // namespace lidar::edge
