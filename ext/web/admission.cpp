@@ -8,8 +8,6 @@
 namespace lidar::web {
 namespace {
 
-constexpr std::size_t kMostAddresses = 1024;
-
 std::string_view HeaderOf(SoupServerMessage* request, const char* name) {
   const char* text =
       soup_message_headers_get_one(soup_server_message_get_request_headers(request), name);
@@ -25,21 +23,11 @@ std::string_view TokenOf(SoupServerMessage* request, GHashTable* query) {
   return text.substr(0, kBearer.size()) == kBearer ? text.substr(kBearer.size()) : "";
 }
 
-/// The peer, or the address that a proxy on this machine forwards for.
-std::string AddressOf(SoupServerMessage* request) {
+std::string PeerOf(SoupServerMessage* request) {
   auto* peer = soup_server_message_get_remote_address(request);
   if (peer == nullptr || !G_IS_INET_SOCKET_ADDRESS(peer)) return "";
-  GInetAddress* address = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer));
-  const std::string_view forwarded = HeaderOf(request, "X-Forwarded-For");
-  if (g_inet_address_get_is_loopback(address) && !forwarded.empty()) {
-    const auto comma = forwarded.rfind(',');
-    const auto begin = comma == std::string_view::npos ? 0 : comma + 1;
-    return std::string(forwarded.substr(begin, 64));
-  }
-  gchar* text = g_inet_address_to_string(address);
-  std::string copy = text;
-  g_free(text);
-  return copy;
+  return AddressOf(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer)),
+                   HeaderOf(request, "X-Forwarded-For"));
 }
 
 /// "robot:8765" of "https://robot:8765".
@@ -81,6 +69,18 @@ bool IsOwnPage(SoupServerMessage* request, const std::string& allowed) {
 
 }  // namespace
 
+std::string AddressOf(GInetAddress* peer, std::string_view forwarded) {
+  if (g_inet_address_get_is_loopback(peer) && !forwarded.empty()) {
+    const auto comma = forwarded.rfind(',');
+    const auto begin = comma == std::string_view::npos ? 0 : comma + 1;
+    return std::string(forwarded.substr(begin, 64));
+  }
+  gchar* text = g_inet_address_to_string(peer);
+  std::string copy = text;
+  g_free(text);
+  return copy;
+}
+
 /// A token that is right opens for pages of any origin: no browser adds it by itself.
 std::optional<Grant> Admission::Check(SoupServerMessage* request, GHashTable* query,
                                       Refusal* refusal) {
@@ -91,16 +91,16 @@ std::optional<Grant> Admission::Check(SoupServerMessage* request, GHashTable* qu
                 "allowed-origins.\n"};
     return std::nullopt;
   }
-  const std::string address = AddressOf(request);
+  const std::string address = PeerOf(request);
   const gint64 now_us = g_get_monotonic_time();
-  if (WrongOf(address, now_us) + 1 > kWrongTokens) {
+  if (!wrong_.MayTry(address, now_us)) {
     *refusal = {429, "Too many wrong tokens came from this address: wait a minute.\n"};
     return std::nullopt;
   }
   const std::string_view token = TokenOf(request, query);
   auto grant = GrantFor(token);
   if (grant) return grant;
-  if (!token.empty()) NoteWrong(address, now_us);
+  if (!token.empty()) wrong_.Note(address, now_us);
   *refusal = {SOUP_STATUS_UNAUTHORIZED,
               token.empty() ? "A token is needed.\n" : "The token is wrong, or has run out.\n"};
   return std::nullopt;
@@ -112,7 +112,7 @@ std::optional<Grant> Admission::GrantFor(std::string_view token) const {
   return ReadSignedToken(token, config_.token_secret, g_get_real_time() / G_USEC_PER_SEC);
 }
 
-double Admission::WrongOf(const std::string& address, gint64 now_us) const {
+double WrongTokens::CountOf(const std::string& address, gint64 now_us) const {
   const auto found = wrong_.find(address);
   if (found == wrong_.end()) return 0;
   const double forgiven =
@@ -120,9 +120,8 @@ double Admission::WrongOf(const std::string& address, gint64 now_us) const {
   return std::max(found->second.count - forgiven, 0.0);
 }
 
-/// The address that was wrong longest ago gives way.
-void Admission::NoteWrong(const std::string& address, gint64 now_us) {
-  const double count = WrongOf(address, now_us) + 1;
+void WrongTokens::Note(const std::string& address, gint64 now_us) {
+  const double count = CountOf(address, now_us) + 1;
   wrong_[address] = {count, now_us};
   if (wrong_.size() <= kMostAddresses) return;
   wrong_.erase(std::min_element(wrong_.begin(), wrong_.end(), [](const auto& a, const auto& b) {

@@ -13,6 +13,35 @@
 
 namespace lidar::web {
 
+/// The address of a client: the peer, or the last that a proxy on this machine forwards for.
+std::string AddressOf(GInetAddress* peer, std::string_view forwarded);
+
+/// Counts wrong tokens by address, and forgives them one by one.
+class WrongTokens {
+ public:
+  /// Wrong tokens that an address may name at once, and the time in which it wins one back.
+  static constexpr double kMost = 10;
+  static constexpr gint64 kForgive_us = 6 * gint64{G_USEC_PER_SEC};
+  static constexpr std::size_t kMostAddresses = 1024;
+
+  /// False for an address that has named too many.
+  bool MayTry(const std::string& address, gint64 now_us) const {
+    return CountOf(address, now_us) + 1 <= kMost;
+  }
+  /// The address that was wrong longest ago gives way.
+  void Note(const std::string& address, gint64 now_us);
+
+ private:
+  struct Wrong {
+    double count = 0;
+    gint64 at_us = 0;
+  };
+  /// Wrong tokens that are not forgiven yet.
+  double CountOf(const std::string& address, gint64 now_us) const;
+
+  std::map<std::string, Wrong> wrong_;
+};
+
 /// For the server's thread.
 class Admission {
  public:
@@ -25,23 +54,12 @@ class Admission {
   /// The grant of the request, or the refusal that answers it.
   std::optional<Grant> Check(SoupServerMessage* request, GHashTable* query, Refusal* refusal);
 
-  /// Wrong tokens that an address may name at once, and the time in which it wins one back.
-  static constexpr double kWrongTokens = 10;
-  static constexpr gint64 kForgive_us = 6 * gint64{G_USEC_PER_SEC};
-
  private:
-  struct Wrong {
-    double count = 0;
-    gint64 at_us = 0;
-  };
   std::optional<Grant> GrantFor(std::string_view token) const;
   bool HasToken() const { return !config_.token.empty() || !config_.token_secret.empty(); }
-  /// Wrong tokens of the address that are not forgiven yet.
-  double WrongOf(const std::string& address, gint64 now_us) const;
-  void NoteWrong(const std::string& address, gint64 now_us);
 
   const ServerConfig& config_;
-  std::map<std::string, Wrong> wrong_;  // by address
+  WrongTokens wrong_;
 };
 
 }  // namespace lidar::web

@@ -2,6 +2,7 @@
 // Who reaches foxglovesink: its page, its token, its port.
 #include <gtest/gtest.h>
 
+#include "ext/web/admission.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/ipv6.h"
 
@@ -114,6 +115,37 @@ TEST(FoxgloveSink, StopsListeningToAnAddressThatGuessesTokens) {
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=no")).status, 429U);
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 429U);
   EXPECT_EQ(HttpGet(sink.Url("http")).status, 200U);
+}
+
+TEST(WrongTokens, AreForgivenOneByOneAndRememberedOfTheNewestAddresses) {
+  web::WrongTokens wrong;
+  gint64 now_us = 0;
+  for (std::size_t i = 0; i < web::WrongTokens::kMostAddresses; ++i)
+    wrong.Note(std::to_string(i), ++now_us);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(wrong.MayTry("a", now_us)) << i;
+    wrong.Note("a", ++now_us);
+  }
+  EXPECT_FALSE(wrong.MayTry("a", now_us)) << "it is the newest";
+  EXPECT_FALSE(wrong.MayTry("a", now_us + web::WrongTokens::kForgive_us - 100));
+  now_us += web::WrongTokens::kForgive_us;
+  EXPECT_TRUE(wrong.MayTry("a", now_us));
+  wrong.Note("a", now_us);
+  EXPECT_FALSE(wrong.MayTry("a", now_us));
+}
+
+TEST(ClientAddress, IsTheLastThatAProxyOfThisMachineNames) {
+  const auto address = [](const char* peer, const char* forwarded) {
+    GInetAddress* inet = g_inet_address_new_from_string(peer);
+    const std::string text = web::AddressOf(inet, forwarded);
+    g_object_unref(inet);
+    return text;
+  };
+  EXPECT_EQ(address("127.0.0.1", ""), "127.0.0.1");
+  EXPECT_EQ(address("127.0.0.1", "10.0.0.7"), "10.0.0.7");
+  EXPECT_EQ(address("::1", "10.0.0.6,10.0.0.7"), "10.0.0.7");
+  EXPECT_EQ(address("127.0.0.1", std::string(100, 'x').c_str()), std::string(64, 'x'));
+  EXPECT_EQ(address("10.0.0.5", "10.0.0.7"), "10.0.0.5") << "anyone may write that";
 }
 
 TEST(FoxgloveSink, SaysThatItsPortIsInUse) {
