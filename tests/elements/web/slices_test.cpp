@@ -21,11 +21,11 @@ gst::CapsPtr CapsOf(GstHarness* harness) {
 /// however long a slow machine takes.
 class Robot {
  public:
-  explicit Robot(const char* coder = "lidarenc effort=2 key-interval=0") {
+  explicit Robot(const std::string& options = "effort=2") {
     clouds_.reset(gst_harness_new_parse(
         "lidartestsrc model=os0-32 mode=512x10 slices-per-scan=4 speed=0 num-buffers=400"));
     gst_harness_play(clouds_.get());
-    coder_.reset(gst_harness_new_parse(coder));
+    coder_.reset(gst_harness_new_parse(("lidarenc key-interval=0 " + options).c_str()));
   }
   gst::BufferPtr Next() {
     GstBuffer* cloud = gst_harness_pull(clouds_.get());
@@ -109,10 +109,10 @@ class Viewer {
   }
   /// Returns when the server has taken it: else the next scan would come while this one is on its
   /// way, and a slow machine's viewer would be left out of it.
-  void Acknowledge(std::uint32_t scan, std::uint32_t index) {
-    peer.SendText(
-        nlohmann::json{{"op", "drawn"}, {"subscriptionId", 9}, {"scan", scan}, {"slice", index}}
-            .dump());
+  void Acknowledge(std::uint32_t scan, std::uint32_t index, unsigned subscription = 9) {
+    peer.SendText(nlohmann::json{
+        {"op", "drawn"}, {"subscriptionId", subscription}, {"scan", scan}, {"slice", index}}
+                      .dump());
     peer.Sync();
   }
 
@@ -132,7 +132,8 @@ struct Edge {
   Sink sink;
   bool has_caps = false;
 
-  explicit Edge(const std::string& properties = "") : sink(properties) {}
+  explicit Edge(const std::string& properties = "", const std::string& options = "effort=2")
+      : robot(options), sink(properties) {}
   std::string Push() {
     gst::BufferPtr buffer = robot.Next();
     if (!has_caps) gst_harness_set_src_caps(sink.harness(), robot.caps().release());
@@ -225,6 +226,18 @@ TEST(Slices, WhoseReferenceNeverCameAreNotDamaged) {
   EXPECT_EQ(edge.sink.Stat("malformed"), 0U);
 }
 
+TEST(Slices, ThatNobodyWantsAreDecodedBeforeTooManyWait) {
+  Edge edge("", "geometry=xyz");
+  edge.Push();
+  EXPECT_EQ(edge.sink.Stat("malformed"), 0U);
+  for (int i = 0; i < 4; ++i) {
+    GstBuffer* large = edge.robot.Next().release();
+    gst_buffer_append(large, gst_buffer_new_memdup(std::string(3U << 20, 'x').data(), 3U << 20));
+    EXPECT_EQ(gst_harness_push(edge.sink.harness(), large), GST_FLOW_OK);
+  }
+  EXPECT_TRUE(WaitUntil([&] { return edge.sink.Stat("malformed") > 0; }));
+}
+
 TEST(Slices, OfNewestScansGoToAViewerThatFallsBehind) {
   Edge edge;
   edge.Push();
@@ -233,6 +246,7 @@ TEST(Slices, OfNewestScansGoToAViewerThatFallsBehind) {
     edge.Push();
     viewer.Draw(false);
   }
+  viewer.Acknowledge(1, kScanSlices - 1, 8);  // of another topic
   edge.PushScans(19);
   const std::uint32_t newest = 20;
   viewer.peer.Sync();
