@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "src/tools/lab/codec_lab/cloud_file.h"
+#include "src/tools/lab/codec_lab/kitti_sequence.h"
 #include "src/tools/lab/codec_lab/measure.h"
 #include "src/tools/lab/codec_lab/model_option.h"
 #include "src/tools/lab/codec_lab/scan_source.h"
@@ -55,6 +56,22 @@ TEST_F(Files, KittiCloudsOfOddLengthAreRefused) {
   EXPECT_THROW(ReadCloud(Write("a.bin", "123")), std::runtime_error);
   EXPECT_THROW(ReadCloud(Write("b.bin", "")), std::runtime_error);
   EXPECT_THROW(ReadCloud(folder_ + "/none.bin"), std::runtime_error);
+}
+
+TEST_F(Files, KittiSequencesHaveABeamForEachRiseOfPhasesAndTheMedianPeriod) {
+  KittiScan scan;
+  scan.phases = {0.1F, 0.1F, 0.5F, 0.1F, 0.2F, 0.2F};  // the second of two equal ones is a return
+  for (std::size_t i = 0; i < scan.phases.size(); ++i)
+    scan.points.insert(scan.points.end(), {static_cast<float>(i) + 1, 2, 3, 0.5F});
+  for (std::size_t number = 0; number < 4; ++number) WriteKittiScan(folder_, number, scan);
+  Write("times.txt", "0\n0.5\n0.6\n0.7\n");
+  const auto timed = OpenKittiSequence(folder_)->Next();
+  ASSERT_TRUE(timed);
+  EXPECT_EQ(timed->scan.rings, (std::vector<std::uint16_t>{0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(timed->scan.phases, scan.phases);
+  EXPECT_EQ(timed->scan.intensity, std::vector<float>(6, 0.5F));
+  EXPECT_NEAR(Seconds(timed->duration), 0.1, 1e-6);
+  EXPECT_NEAR(Seconds(timed->start - Time{}), -0.05, 1e-6) << "times are those of the middle";
 }
 
 const char* const kPcdHeader =

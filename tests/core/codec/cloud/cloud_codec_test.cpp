@@ -12,6 +12,7 @@
 #include "src/cloud/cloud_files.h"
 #include "src/cloud/nearest_point.h"
 #include "src/codec/cloud/beam_columns.h"
+#include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
 
@@ -351,6 +352,16 @@ TEST(CloudCodec, FindsTheBeamsOfASensorThatTakesTheOthersPlace) {
   EXPECT_LE(bits[2], 1.01 * bits[0]);
 }
 
+// Each change of the sensor is a new beginning, however many there were.
+TEST(CloudCodec, FindsTheBeamsOfSensorsThatTakeTurns) {
+  const PlainPoints first = SpinningScan(0);
+  const PlainPoints second = UnevenScan({"", 0.1, 0.026, 0.2, 0, 0, 7});
+  std::vector<PlainPoints> clouds;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < 2; ++k) clouds.push_back(i % 2 == 0 ? first : second);
+  for (const double bits : BitsOfStream(clouds)) EXPECT_LE(bits, 4);
+}
+
 TEST(BeamTable, FindsNoneInACloudWithoutBeams) {
   std::mt19937 random(4);
   std::vector<Sighting> sightings;
@@ -433,6 +444,30 @@ TEST(CloudCodec, RefusesFarPointsWithoutAPlaceAndBytesBehindTheEnd) {
   EXPECT_FALSE(decodes(std::numeric_limits<float>::quiet_NaN(), {}));
   EXPECT_TRUE(decodes(1e30F, {0, 0}));
   EXPECT_FALSE(decodes(1e30F, {0, 1}));
+}
+
+TEST(BeamSection, IsRefusedWithAnImageThatReachesPastItsTable) {
+  const auto decodes = [](std::uint32_t first_column) {
+    BeamTable table;
+    table.turn = 8 * BeamTable::kParts;
+    table.beams.resize(2);
+    table.beams[1].elevation = -1'000;
+    PixelList list;
+    list.image.beams = 2;
+    list.image.columns = 4;
+    list.image.first_column = first_column;
+    list.image.ranges.assign(list.image.size(), 5'000);
+    list.residuals.assign(list.image.size(), 0);
+    std::vector<std::uint8_t> bytes;
+    EXPECT_TRUE(EncodeBeamSection(table, {0.02, 0.02, 0, 0}, {}, 1, &list, &bytes));
+    ByteReader reader(bytes.data(), bytes.size());
+    XyzCloud cloud;
+    return DecodeBeamSection(&reader, 8, {}, &cloud);
+  };
+  EXPECT_TRUE(decodes(0));
+  EXPECT_TRUE(decodes(4));
+  EXPECT_FALSE(decodes(5));
+  EXPECT_FALSE(decodes(7));
 }
 
 TEST(CloudHeader, IsRefusedWithADepthThatNoEncoderWrites) {
