@@ -7,18 +7,18 @@
 namespace lidar::odometry {
 namespace {
 
-/// Standard deviations of a vehicle's motion: of its velocity before it is known, and of its
-/// acceleration. Translation [m/s, m/s^2], then rotation [rad/s, rad/s^2].
+/// Standard deviations for a vehicle: of its velocity while that is unknown, and of its
+/// acceleration. Each has a translation [m/s, m/s^2] and a rotation [rad/s, rad/s^2].
 constexpr double kSpeed = 15;
 constexpr double kTurn = 0.5;
 constexpr double kAcceleration = 2;
 constexpr double kTurnAcceleration = 1;
-/// A gyroscope's error, noise and scale together, as such an acceleration [rad/s^2].
+/// Error, noise and scale of a gyroscope together, as an angular acceleration [rad/s^2].
 constexpr double kTurnDrift = 0.2;
-/// Of a pose [m^2, rad^2]: two scans of the same time shall not divide by zero.
+/// A pose's least variance [m^2, rad^2]. It keeps a division finite between scans of the same time.
 constexpr double kLeastVariance = 1e-8;
 
-// Where the parts of the joint error begin.
+// Indices of the parts of the joint error.
 constexpr Eigen::Index kMap = 0;
 constexpr Eigen::Index kPose = 6;
 constexpr Eigen::Index kVelocity = 12;
@@ -64,7 +64,7 @@ void Confidence::Predict(const Pose& motion, Duration gap, bool turn_measured) {
   Joint step = Joint::Identity();
   step.block<6, 6>(kMap, kMap) = step.block<6, 6>(kPose, kPose) = Adjoint(motion.Inverse());
   step.block<6, 6>(kPose, kVelocity) = t * Matrix6::Identity();
-  // A pose tells the mean velocity since the one before, so that is what changes.
+  // A new pose measures the mean velocity since the last pose, so its error enters the velocity's.
   joint_.diagonal().segment<6>(kVelocity) +=
       Spread(kAcceleration, turn_measured ? kTurnDrift : kTurnAcceleration) * (t * t);
   joint_ = step * joint_ * step.transpose();
@@ -77,7 +77,7 @@ Twist Confidence::Observe(const Matrix6& information, const Eigen::Matrix3d& uno
   const Twist accelerated = joint_.block<6, 6>(kVelocity, kPose) * (PoseInformation() * correction);
   Eigen::Matrix<double, 18, 6> gain =
       joint_.middleCols<6>(kPose) * (Matrix6::Identity() + told * pose).inverse();
-  // An alignment corrects neither the map nor what it does not see, so Joseph's form is needed.
+  // An alignment corrects only the observed directions of the pose, so Joseph's form is needed.
   const Eigen::Matrix3d observed = Eigen::Matrix3d::Identity() - unobserved;
   gain.middleRows<6>(kMap).setZero();
   gain.middleRows<3>(kPose) = observed * gain.middleRows<3>(kPose).eval();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How far a pose may be off: a Kalman filter of the errors of pose and velocity.
+// Estimates how far a pose may be off, by a Kalman filter of the errors of pose and velocity.
 #pragma once
 #include "src/base/time.h"
 #include "src/odometry/pose.h"
@@ -8,41 +8,44 @@ namespace lidar::odometry {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Errors are twists in the sensor's frame. A scan is aligned to the map, so its own error does not
-/// add up; that of a scan which enters the map does.
+/// Errors are twists in the sensor's frame. Errors add up only over scans that enter the map: all
+/// scans are aligned to the map.
 class Confidence {
  public:
   Confidence();
 
-  /// The velocity is not known; what the pose is off stays.
+  /// Makes the velocity unknown, and keeps the error of the pose.
   void ForgetVelocity();
   void SetVelocityKnown();
-  /// The sensor went on by `motion` as its velocity has it, or a gyroscope the turn of it.
+  /// Moves the sensor by `motion`, which the velocity predicts; with `turn_measured` a gyroscope
+  /// measured its rotation.
   void Predict(const Pose& motion, Duration gap, bool turn_measured = false);
-  /// A scan was aligned. `information`: what it says of the pose if errors of its points are
-  /// independent. `unobserved`: the projection on the directions along which the prediction stays.
-  /// `correction`: from the predicted pose to the one found. Returns what it makes of the velocity.
+  /// Takes an alignment. `information` is that of the pose if the errors of its points are
+  /// independent. `unobserved` projects on the directions along which the prediction stays.
+  /// `correction` leads from the predicted pose to the found one. Returns the change of the
+  /// velocity.
   Twist Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
                 const Twist& correction);
-  /// The map grows from the present pose on.
+  /// Begins to map from the present pose.
   void EnterMap();
 
-  /// Of the pose against the map.
+  /// Information of the pose relative to the map.
   Matrix6 PoseInformation() const;
-  /// Points next to each other see the same bump: so many say as much as one whose error is
-  /// independent of the others'.
+  /// Errors of neighbouring points depend on each other: so many points say as much as one
+  /// independent point.
   static constexpr double kPointsOfOne = 12;
-  /// Of the pose since the first one, in the sensor's frame.
+  /// Covariance of the pose since the first scan, in the sensor's frame.
   Matrix6 covariance() const;
 
  private:
-  /// The map here, the pose against the map, the velocity: six numbers each.
+  /// The errors of the map here, of the pose relative to the map, and of the velocity: six numbers
+  /// each.
   using Joint = Eigen::Matrix<double, 18, 18>;
 
   Joint joint_ = Joint::Zero();
 };
 
-/// What a motion of the sensor makes of an error before it.
+/// Returns the matrix that carries an error across a motion of the sensor.
 Matrix6 Adjoint(const Pose& pose);
 
 }  // namespace lidar::odometry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The surroundings as a sparse grid of points: what new scans are aligned to.
+// The surroundings as a sparse grid of points, to which new scans are aligned.
 #pragma once
 #include <tsl/robin_map.h>
 
@@ -14,48 +14,48 @@ namespace lidar::odometry {
 
 struct LocalMapSettings {
   double voxel_size_m = 1;
-  double radius_m = 100;  // what is farther from the sensor is forgotten
+  double radius_m = 100;  // points farther from the sensor are dropped
 };
 
 /// Memory is bounded by the radius: each cube holds kMaxPoints points at most, of 24 bytes.
 /// Add() and FindNearest() take constant time a point, Forget() a time linear in the cubes.
 class LocalMap {
  public:
-  static constexpr std::size_t kMaxPoints = 20;  // in a cube
+  static constexpr std::size_t kMaxPoints = 20;  // per cube
 
   explicit LocalMap(const LocalMapSettings& settings);
 
   bool empty() const { return index_.empty(); }
   std::size_t voxels() const { return index_.size(); }
   std::size_t CountPoints() const;
-  /// All points, in no order.
+  /// Returns all points, in any order.
   Points Collect() const;
 
-  /// Adds the points that are not close to one that is there.
+  /// Adds the points that are not close to a point of the map.
   void Add(const Points& points) { Add(points, {}); }
-  /// `normals`, of unit length, are those of the first points; the others have none.
+  /// `normals`, of unit length, belong to the first points; the other points have no normal.
   void Add(const Points& points, const Points& normals);
-  /// Drops the cubes that are farther than the radius from `center`.
+  /// Drops the cubes beyond the radius around `center`.
   void Forget(const Eigen::Vector3d& center);
 
-  /// What of the map is nearest to a point.
+  /// The point of the map that is nearest to a given point.
   struct Neighbour {
     Eigen::Vector3d point;
     bool has_normal = false;
-    /// Has unit length. It came with the point, or is that of the surface on which the points of
-    /// its cube lie.
+    /// Has unit length. It was added with the point, or computed from the surface of its cube.
     Eigen::Vector3d normal;
   };
-  /// The nearest point within `reach_m` of `point`; cubes next to the point's own are searched, so
-  /// a reach beyond one cube finds most neighbours, not all. Normals are kept until a cube changes.
+  /// Finds the nearest point within `reach_m` of `point`. The search covers the point's cube and
+  /// the adjacent ones, so that a longer `reach_m` misses some neighbours. A cube's normal is
+  /// computed once until the cube changes.
   std::optional<Neighbour> FindNearest(const Eigen::Vector3d& point, double reach_m);
 
  private:
   struct Block {
     std::array<Eigen::Vector3f, kMaxPoints> points;   // relative to the corner of the cube
-    std::array<Eigen::Vector3f, kMaxPoints> normals;  // that came with them; zero: none
+    std::array<Eigen::Vector3f, kMaxPoints> normals;  // as added with the points; zero: no normal
     std::uint32_t count = 0;
-    std::uint32_t counted = 0;  // as the normal was computed
+    std::uint32_t counted = 0;  // number of points when the normal was computed
     bool has_normal = false;
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   };
@@ -65,7 +65,7 @@ class LocalMap {
   void UpdateNormal(const Voxel& voxel, Block* block);
 
   LocalMapSettings settings_;
-  double spacing_m_;  // between points of one cube, at least
+  double spacing_m_;  // least distance between points of one cube
   tsl::robin_map<Voxel, std::uint32_t, VoxelHash> index_;
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> free_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How far a prediction by constant velocity is usually off: the reach of the search for neighbours.
+// Estimates the usual error of a constant-velocity prediction. It sets the reach of the search.
 #pragma once
 #include <cmath>
 
@@ -7,12 +7,12 @@
 
 namespace lidar::odometry {
 
-/// KISS-ICP, section III-C: the standard deviation of how much registration moved the prediction.
+/// The standard deviation of the corrections by registration: KISS-ICP, section III-C.
 class MotionThreshold {
  public:
   explicit MotionThreshold(double max_range_m) : max_range_m_(max_range_m) {}
 
-  /// `correction`: from the predicted pose to the one found, in the sensor's frame.
+  /// `correction` leads from the predicted pose to the found one, in the sensor's frame.
   void Add(const Pose& correction) {
     // A rotation moves the farthest points most.
     const double moved =
@@ -24,12 +24,12 @@ class MotionThreshold {
   double sigma_m() const { return sigma_m_; }
 
  private:
-  static constexpr double kLeastMotion = 0.1;  // [m]: a sensor that stands still teaches nothing
+  static constexpr double kLeastMotion = 0.1;  // [m]: smaller steps are no motion
 
   double max_range_m_;
   double sum_of_squares_ = 0;
   int count_ = 0;
-  double sigma_m_ = 2;  // before anything is known of the motion
+  double sigma_m_ = 2;  // until a correction is there
 };
 
 }  // namespace lidar::odometry

@@ -11,67 +11,65 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Edges of the cubes, as parts of the map's: for the points that enter the map, and for those that
-/// are aligned. KISS-ICP, section III-B.
+/// Edges of the cubes that thin out the map's points and the aligned points, relative to the map's
+/// cubes. KISS-ICP, section III-B.
 constexpr double kMapGrid = 0.5;
 constexpr double kAlignedGrid = 1.5;
-/// The cubes in which the first motion is searched, as parts of the map's.
+/// Edge of the cubes for the search of the first motion, relative to the map's cubes.
 constexpr double kFirstGrid = 4;
-/// Reach and kernel, in standard deviations of the motion's error. Section III-D.
+/// Reach and kernel in standard deviations of the motion's error. KISS-ICP, section III-D.
 constexpr double kReach = 3;
 constexpr double kKernel = 1.0 / 3;
-/// Grass and gravel are as rough as that, as a part of the map's cubes: a narrower kernel sees
-/// noise.
+/// Roughness of grass and gravel, relative to the map's cubes: a narrower kernel fits noise.
 constexpr double kLeastKernel = 0.08;
-/// More points than that make a pose no better, only later.
+/// More points cost time and do not improve the pose.
 constexpr std::size_t kMostAligned = 4000;
-/// A scan of which fewer points have a neighbour does not fit.
+/// A scan does not fit if a smaller share of its points has a neighbour.
 constexpr double kLeastInliers = 0.3;
-/// Nor does one of which so much less of what stands on the ground fits than usual: it is another
-/// place. A sensor that moved by kNewView cubes sees nothing that it has seen.
+/// A scan is of another place if its share of fitting upright surfaces is less than this part of
+/// the usual share. The rule ends after kNewView cubes of motion: the view is new then.
 constexpr double kLeastOfUsual = 0.65;
 constexpr double kNewView = 30;
-constexpr int kUsualScans = 10;  // that say what is usual
-/// How often the motion between the first two scans is computed anew.
+constexpr int kUsualScans = 10;  // number of scans that set the usual share
+/// Number of times that the motion between the first two scans is refined.
 constexpr int kFirstRounds = 4;
-/// Times within a sweep at which the motion is computed.
+/// Number of steps of a sweep at which the motion is computed.
 constexpr int kPhases = 1024;
-/// A turn is steady for so long, where its course is known.
+/// A turn counts as steady within such a step, if the gyroscope shows its course.
 constexpr Duration kTurnStep = milliseconds(100);
 constexpr int kLostForGood = 10;  // scans
-/// A map to which fewer scans have fitted may stand on a wrong first motion: it is not held on to.
+/// A map with fewer fitting scans may have a wrong first motion: it is replaced soon.
 constexpr int kTrustedMap = 3;
-/// Of the search where nothing is known of the motion [m].
+/// Deviation for the search without a known motion [m].
 constexpr double kWidestSigma = 2;
-/// No vehicle changes its velocity faster [m/s^2, rad/s^2]; the first motion and an alignment may
-/// be off by so many cubes.
+/// Greatest acceleration of a vehicle [m/s^2, rad/s^2]. The first motion and an alignment may be
+/// off by kSlack cubes.
 constexpr double kMostAcceleration = 30;
 constexpr double kMostTurnAcceleration = 30;
 constexpr double kSlack = 0.3;
-/// A point that fits, as a part of the map's cubes.
+/// Greatest distance of a fitting point, relative to the map's cubes.
 constexpr double kFit = 0.2;
-/// Beyond this the velocity may have changed: the search reaches farther in proportion.
+/// The velocity may change over a longer period: the reach grows in proportion.
 constexpr Duration kUsualPeriod = milliseconds(150);
 constexpr double kWidestSearch = 3;
-/// Where the scans themselves show surfaces, neighbours without one are of little use. A direction
-/// that no surface holds is then known to be open.
+/// Weight of neighbours without a surface, if scans show surfaces. With so small a weight an open
+/// direction, which no surface holds, is found.
 constexpr double kSparePointWeight = 0.05;
 constexpr double kPointTurn = 0.3;
 constexpr double kLeastConstraint = 0.002;
 constexpr double kLeastBalance = 0.02;
-/// How far the sensor has moved or turned, before a scan enters the map anew: as a part of the
-/// map's cubes, and [rad].
+/// The motion of the sensor after which a scan enters the map: relative to the map's cubes, and
+/// [rad].
 constexpr double kMapStep = 1;
 constexpr double kMapTurn = 0.09;
-/// Where the ground is far off, beams meet it so far apart that its surface is not what a nearer
-/// look shows, and a map of it tilts the sensor. Such points enter the map only where a scan has
-/// few others.
+/// Distant ground meets few beams. A map of it has wrong surfaces and tilts the sensor, so points
+/// beyond kMapReach enter the map only if less than kLeastNear of the scan is nearer.
 constexpr double kMapReach = 40;  // cubes
 constexpr double kLeastNear = 0.25;
-/// Closer than this part of a cube to where a scan entered, its beams draw the same lines again.
+/// A scan nearer than that to an earlier one repeats its lines. Relative to the map's cubes.
 constexpr double kSameLines = 0.5;
 
-/// At most `most` of them, evenly over all.
+/// Picks at most `most` of the points, evenly.
 Points PickEvenly(const Points& points, std::size_t most) {
   if (points.size() <= most) return points;
   Points kept;
@@ -80,10 +78,10 @@ Points PickEvenly(const Points& points, std::size_t most) {
   return kept;
 }
 
-/// How the sensor moved from when each point of a scan was sampled to the middle of the scan.
+/// Moves each point of a scan by the sensor's motion from its sample to the middle of the scan.
 class Sweep {
  public:
-  /// `moved`: at kPhases + 1 times of the sweep; empty: the scan is straight.
+  /// `moved` has the motion at kPhases + 1 times of the sweep; it is empty for a scan without skew.
   Sweep(const TimedPoints& scan, std::vector<Pose> moved) : scan_(scan), moved_(std::move(moved)) {
     if (scan.phases.size() != scan.points.size()) moved_.clear();
   }
@@ -152,7 +150,7 @@ std::vector<Pose> Odometry::SweepAround(Time middle, Duration duration) const {
   return moved;
 }
 
-/// Sensors that tell their beams show surfaces in a single scan.
+/// Chooses the settings. Scans with beam numbers show surfaces by themselves.
 RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& guess) const {
   RegistrationSettings settings = settings_.registration;
   settings.fit_m = kFit * settings_.voxel_size_m;
@@ -166,7 +164,7 @@ RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& 
   return settings;
 }
 
-/// What is aligned of a scan.
+/// Returns the points to align.
 Points Odometry::ThinOut(const Points& fine) const {
   return PickEvenly(Downsample(fine, kAlignedGrid * settings_.voxel_size_m), kMostAligned);
 }
@@ -177,12 +175,12 @@ Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Time middle,
   const double farthest = settings_.max_range_m * settings_.max_range_m;
   const Sweep sweep(scan, SweepAround(middle, duration));
   Points selected;
-  std::vector<std::size_t> origins;  // in the scan
+  std::vector<std::size_t> origins;  // indices of the points in the scan
   selected.reserve(scan.points.size());
   origins.reserve(scan.points.size());
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const double square = scan.points[i].squaredNorm();
-    if (!(square >= nearest && square <= farthest)) continue;  // NaN is neither
+    if (!(square >= nearest && square <= farthest)) continue;  // also drops NaN
     selected.push_back(sweep.MotionOf(i) * scan.points[i]);
     origins.push_back(i);
   }
@@ -221,8 +219,8 @@ void Odometry::AddToMap(const Surface& fine) {
   confidence_.EnterMap();
 }
 
-/// If each scan entered the map, its lines would move along with the sensor and hold it back, and
-/// every error of a pose would enter as well.
+/// Scans between two map steps stay out of the map. Each would add the error of its pose, and lines
+/// that move with the sensor hold it back.
 bool Odometry::IsFarFromTheLastInMap() const {
   const Pose moved = entered_.Inverse() * pose_;
   return moved.position.norm() >= kMapStep * settings_.voxel_size_m || Angle(moved) >= kMapTurn;
@@ -235,7 +233,7 @@ void Odometry::StartMap(const Surface& fine) {
   lost_for_ = Duration{0};
 }
 
-/// Nothing is known of the motion yet: a car may have gone farther than the fine map's cubes reach.
+/// The motion is unknown, so a car may have left the reach of the fine map's cubes.
 Pose Odometry::GuessFirstMotion(const Points& points) const {
   const double size = kFirstGrid * settings_.voxel_size_m;
   LocalMap coarse({size, settings_.max_range_m});
@@ -244,14 +242,14 @@ Pose Odometry::GuessFirstMotion(const Points& points) const {
       .pose;
 }
 
-/// A scan that was skewed by an unknown motion would bend the map for good.
+/// Straightens the first scan again: skewed by an unknown motion it would bend the map for ever.
 void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle) {
   const Duration gap = middle - *last_time_;
   Pose found = GuessFirstMotion(SelectPoints(second, middle, duration).points);
   for (int round = 0; round < kFirstRounds; ++round) {
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
     StartMap(SelectPoints(*first_scan_, *last_time_, duration));
-    // Both are straightened by the same velocity now, which makes the next one better.
+    // The same velocity straightens both scans, which improves the next estimate of it.
     const Points points = ThinOut(SelectPoints(second, middle, duration).points);
     found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
                   settings_.registration)
@@ -284,7 +282,7 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
   estimate.map_restarted = last_time_.has_value();
   StartMap(fine);
   confidence_.ForgetVelocity();
-  // With its velocity known it is straight already.
+  // A known velocity has already straightened the scan.
   const bool known = !last_time_ && settings_.start_velocity;
   if (known) {
     confidence_.SetVelocityKnown();
@@ -294,7 +292,7 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
   return estimate;
 }
 
-/// A scan that does not fit within the usual reach is searched as far as at the start.
+/// Searches with the widest reach if the scan does not fit within the usual one.
 Alignment Odometry::AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
                               const Surface& fine) {
   const Points aligned = ThinOut(fine.points);
@@ -318,10 +316,10 @@ bool Odometry::ShowsThePlace(const Alignment& found, const Pose& guess) const {
   return found.standing_share >= kLeastOfUsual * known_view * usual_standing_share_;
 }
 
-/// A scan fits if its points do, and if a vehicle can have moved like that.
+/// A scan fits if enough of its points do and a vehicle can move like that.
 bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) const {
   if (found.inlier_share < kLeastInliers) return false;
-  if (fitting_scans_ == 0) return true;  // the first motion may be anything
+  if (fitting_scans_ == 0) return true;  // the first motion has no limit
   if (!ShowsThePlace(found, guess)) return false;
   const Pose correction = guess.Inverse() * found.pose;
   const double square = std::pow(Seconds(gap + lost_for_), 2);
@@ -371,12 +369,12 @@ void Odometry::Follow(const Alignment& found, const Pose& guess, Time middle, co
   map_.Forget(pose_.position);
 }
 
-/// A new map begins where the old one is of no use any more.
+/// Begins a new map after too many lost scans.
 void Odometry::Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate) {
   ++lost_scans_;
   const bool untried = fitting_scans_ < kTrustedMap;
   if ((!untried && lost_scans_ < kLostForGood) || fine.points.empty()) return;
-  velocity_.setZero();  // it led here
+  velocity_.setZero();  // it has led to the loss
   if (untried) estimate->tracking = Tracking::kStarted;
   estimate->map_restarted = true;
   StartMap(fine);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSmallAngle = 1e-6;  // [rad]: below it the series of sine and cosine are exact
 
-/// Left Jacobian of SO(3): turns a constant body velocity into the way that it covers.
+/// Left Jacobian of SO(3). It turns a constant body velocity into the covered way.
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& rotation) {
   const double angle = rotation.norm();
   const Eigen::Matrix3d skew = Skew(rotation);
@@ -42,7 +42,7 @@ Pose Exp(const Twist& twist) {
 }
 
 Twist Log(const Pose& pose) {
-  // A rotation has two quaternions: this takes the one that turns the shorter way.
+  // Two quaternions have the same rotation; the sign picks the shorter turn.
   const double sign = pose.rotation.w() < 0 ? -1 : 1;
   const Eigen::Vector3d axis = sign * pose.rotation.vec();
   const double sine = axis.norm();

@@ -9,10 +9,10 @@ namespace lidar::odometry {
 
 using Points = std::vector<Eigen::Vector3d>;  // [m]
 
-/// A translation [m] and, in the last three, a rotation vector [rad].
+/// A translation [m], then a rotation vector [rad].
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-/// Takes points of a body's frame to the frame that the body is seen from.
+/// Maps points of a body's frame to the frame in which the body is seen.
 struct Pose {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
@@ -31,11 +31,11 @@ struct Pose {
 
 /// The motion at constant velocity for one unit of time; Sola et al., "A micro Lie theory", (172).
 Pose Exp(const Twist& twist);
-/// Its inverse, for rotations below half a turn.
+/// Inverse of Exp(), for rotations below half a turn.
 Twist Log(const Pose& pose);
 /// Angle of the rotation [rad], 0 to pi.
 double Angle(const Pose& pose);
-/// v with Skew(v) * w = v x w.
+/// Returns the matrix with Skew(v) * w = v x w.
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v);
 
 }  // namespace lidar::odometry

@@ -8,10 +8,11 @@
 namespace lidar::odometry {
 namespace {
 
-constexpr std::size_t kLeastPairs = 20;  // fewer than that say nothing
-/// Holds the guess along a direction that the scene does not show, against all points of a scan.
+constexpr std::size_t kLeastPairs = 20;  // fewer pairs give no pose
+/// Weight of the guess along a direction that the scene does not show. It exceeds that of all
+/// points.
 constexpr double kHold = 1e6;
-/// No map is more exact than that, whatever its points say [m].
+/// Least error of a map [m], however small the residuals are.
 constexpr double kLeastSpread = 0.01;
 
 /// The sums of one Gauss-Newton step, for a motion of the sensor in its own frame.
@@ -19,7 +20,7 @@ struct NormalEquations {
   Matrix6 lhs = Matrix6::Zero();
   Twist rhs = Twist::Zero();
   double weights = 0;
-  double squares = 0;  // of the residuals, weighted
+  double squares = 0;  // of the weighted residuals
   std::size_t pairs = 0;
 
   template <class Jacobian, class Residual>
@@ -37,17 +38,17 @@ struct NormalEquations {
     squares += weight * other.squares;
     pairs += other.pairs;
   }
-  /// How much they hold each direction of a translation: the sum is 1 where all are of surfaces.
+  /// Share of each direction of a translation. The trace is 1 if all points lie on surfaces.
   Eigen::Matrix3d Constraint() const { return lhs.topLeftCorner<3, 3>() / weights; }
 };
 
-/// Neighbours whose surface is known, and the others.
+/// Neighbours with a surface, and neighbours without one.
 struct Neighbours {
   NormalEquations surfaces;
   NormalEquations points;
   std::size_t fitting = 0;
-  std::size_t fitting_points = 0;  // of these
-  /// Sums of n n' over the normals of the surfaces, and of those that fit.
+  std::size_t fitting_points = 0;  // number of points in `points` that fit
+  /// Sums of n n' over the normals of the surfaces, and over those that fit.
   Eigen::Matrix3d facing = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d fitting_facing = Eigen::Matrix3d::Zero();
 };
@@ -68,7 +69,7 @@ Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, doub
     const auto nearest = map->FindNearest(there, reach_m);
     if (!nearest) continue;
     const Eigen::Vector3d residual = rotation.transpose() * (there - nearest->point);
-    // The residual moves with [I, -p^] in the frame of the sensor.
+    // The residual's derivative is [I, -p^] in the sensor's frame.
     jacobian.rightCols<3>() = -Skew(point);
     if (nearest->has_normal) {
       const Eigen::Vector3d normal = rotation.transpose() * nearest->normal;
@@ -90,7 +91,7 @@ Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, doub
   return sums;
 }
 
-/// The directions, in the sensor's frame, that the scene does not hold, as the projection on them.
+/// Returns the projection on the directions that the scene does not hold, in the sensor's frame.
 Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSettings& settings) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sums.Constraint());
   const Eigen::Vector3d& held = solver.eigenvalues();  // ascending
@@ -103,8 +104,8 @@ Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSe
   return unobserved;
 }
 
-/// Whether the surfaces alone hold each direction. There the prediction only pulls back: a car in a
-/// curve is always beside it.
+/// Returns true if surfaces hold each direction. The prediction then has little weight: a turning
+/// car always leaves its predicted line.
 bool AreEnough(const NormalEquations& surfaces, const RegistrationSettings& settings) {
   if (surfaces.pairs < kLeastPairs) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surfaces.Constraint(),
@@ -112,7 +113,8 @@ bool AreEnough(const NormalEquations& surfaces, const RegistrationSettings& sett
   return solver.eigenvalues()(0) >= settings.held_by_surfaces;
 }
 
-/// Of `count` points: those that no surface of the best held direction explains.
+/// Returns the fitting share of the `count` points outside of the surfaces that face the best held
+/// direction.
 double StandingShare(const Neighbours& found, std::size_t count) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(found.facing);
   const Eigen::Vector3d best = solver.eigenvectors().col(2);
@@ -123,7 +125,7 @@ double StandingShare(const Neighbours& found, std::size_t count) {
   return all > 0 ? fitting / all : 0;
 }
 
-/// Of the residuals.
+/// Returns the variance of the residuals.
 double VarianceOf(const NormalEquations& sums) {
   return std::max(sums.squares / sums.weights, kLeastSpread * kLeastSpread);
 }

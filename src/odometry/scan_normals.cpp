@@ -8,23 +8,23 @@ namespace lidar::odometry {
 namespace {
 
 constexpr int kBins = 1024;  // of azimuth, a power of two
-/// To each side: as far as the noise of grass needs, but not less than two degrees.
+/// Baseline to each side: long enough for the noise of grass, and at least two degrees.
 constexpr float kSide_m = 0.6F;
 constexpr float kLeastBins = 6;
 constexpr float kMostBins = 24;
 constexpr std::size_t kSums = kBins + 1;  // of a ring
 constexpr float kBinsPerRadian = kBins / 6.2831853F;
-/// Rings whose elevations differ by less give a normal of noise; by more, they see other things.
+/// Range of the elevation between rings: closer ones give noise, distant ones see other things.
 constexpr double kLeastStep = 0.02;
 constexpr double kLargestStep = 0.14;
 constexpr float kFarthest_m = 1e4F;
-/// How far from the plane points may lie: noise and grass, and what bends over the baseline.
+/// Greatest distance from the plane: noise, grass, and curvature over the baseline.
 constexpr float kRoughness_m = 0.05F;
 constexpr float kBend = 0.03F;
 constexpr float kMostRough_m = 0.2F;
-constexpr float kLeastSine = 0.3F;  // between the two directions that span the plane
+constexpr float kLeastSine = 0.3F;  // between the two directions of the plane
 
-/// Not what a sensor gives for nothing: NaN, the origin, or infinity.
+/// Returns false for a missing return: NaN, the origin, or infinity.
 bool IsReturn(const Eigen::Vector3f& p) {
   const float range = p.norm();
   return range > 0 && range < kFarthest_m;
@@ -89,7 +89,7 @@ void ScanNormals::SumUp(const std::vector<Eigen::Vector3f>& image) {
   }
 }
 
-/// Averages the returns of a ring in some bins, which may run over the end of the turn.
+/// Averages a ring's returns over some bins, which may wrap around the turn's end.
 ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
   const Eigen::Vector4d* sums = &sums_[static_cast<std::size_t>(ring) * kSums];
   const int first = first_bin & (kBins - 1);
@@ -100,7 +100,7 @@ ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
   return {(sum.head<3>() / sum.w()).cast<float>(), true};
 }
 
-/// The plane of what three rings, from below, saw left and right of `bin`.
+/// Fits a plane to what three rings, from below, saw left and right of `bin`.
 bool ScanNormals::FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f& point,
                            Eigen::Vector3f* normal) const {
   const int bins =

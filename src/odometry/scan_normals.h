@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The surfaces that a single scan shows: a normal for each point, from the beams around it.
+// Computes the normals that a single scan shows, from the beams around each point.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,25 +8,25 @@
 
 namespace lidar::odometry {
 
-/// A map of points alone takes the circle that one beam draws on the ground for an edge, and the
-/// circle moves with the sensor. The beams above and below tell that there is a plane.
+/// A beam draws a circle on the ground that moves with the sensor. A map of points alone takes it
+/// for an edge; the beams above and below show that it lies on a plane.
 class ScanNormals {
  public:
-  /// `rings`: which beam each of `points` is of, in any order of the beams. Both are only read
-  /// here. Points that are not finite have no normal, nor does any if there are no rings.
+  /// `rings` has the beam of each point, in any order of the beams. The constructor alone reads
+  /// both. Points that are not finite have no normal; without rings no point has one.
   ScanNormals(const Points& points, const std::vector<std::uint16_t>& rings);
 
-  /// The normal has unit length and points to the sensor. It is zero where the neighbours of the
-  /// point lie on no plane.
+  /// Returns a normal of unit length that points to the sensor. It is zero if the point's
+  /// neighbours lie on no plane.
   Eigen::Vector3d At(const Eigen::Vector3d& point, std::uint16_t ring) const;
 
-  static constexpr std::size_t kMaxRings = 1024;  // points of others are left out
+  static constexpr std::size_t kMaxRings = 1024;  // points of further rings are left out
 
  private:
   struct Ring {
     bool seen = false;
     double height = 0;  // sine of the elevation
-    int above = -1;     // the next ring that is far enough for a baseline; -1: none
+    int above = -1;     // next ring above with enough baseline; -1: none
     int below = -1;
   };
   struct Side {
@@ -40,7 +40,7 @@ class ScanNormals {
                 Eigen::Vector3f* normal) const;
 
   std::vector<Ring> rings_;
-  /// Ring by ring: the sum and, in the last number, the count of the returns before each bin.
+  /// Per ring and bin: the sum of the returns before the bin, and in the last number their count.
   std::vector<Eigen::Vector4d> sums_;
 };
 

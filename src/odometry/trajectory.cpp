@@ -21,7 +21,8 @@ struct Row {
   std::size_t count = 0;
 };
 
-/// The numbers of a line; none where a word is no finite number, or there are too many.
+/// Reads the numbers of a line. Returns false for a word that is no finite number, and for too
+/// many.
 bool ParseRow(const std::string& line, Row* row) {
   const char* at = line.data();
   const char* const end = at + line.size();
@@ -36,7 +37,7 @@ bool ParseRow(const std::string& line, Row* row) {
   }
 }
 
-/// A double does not hold the nanoseconds of a Unix time, so they are read apart.
+/// Reads seconds and nanoseconds apart: a double cannot hold a Unix time in nanoseconds.
 bool ParseTime(const std::string& line, Time* time) {
   const auto begin = line.find_first_not_of(" \t");
   const auto end = line.find_first_of(" \t", begin);
@@ -50,7 +51,7 @@ bool ParseTime(const std::string& line, Time* time) {
     const std::string digits = "0" + std::string(next);
     std::from_chars(digits.data(), digits.data() + digits.size(), fraction);
   } else if (*next != '\0') {
-    double whole = 0;  // 1.7e9, as NumPy writes it
+    double whole = 0;  // NumPy writes 1.7e9
     std::from_chars(word.data(), word.data() + word.size(), whole);
     if (std::abs(whole) > 9e9) return false;
     *time = Time{} + FromSeconds(whole);
@@ -62,7 +63,7 @@ bool ParseTime(const std::string& line, Time* time) {
   return true;
 }
 
-/// Seven columns of a TUM file, from tx on.
+/// Reads the columns of a TUM file from tx on.
 bool ToPose(const double* v, Pose* pose) {
   pose->position = {v[0], v[1], v[2]};
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
@@ -80,8 +81,8 @@ bool ToPose(const Row& row, Pose* pose) {
   return (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 0.01;
 }
 
-/// A file stream that has written must not be given a locale: where the disk is full it is of no
-/// use afterwards, not even to be closed.
+/// Sets the C locale. This must precede all output: after a full disk the stream cannot even be
+/// closed.
 void WriteAsInC(std::ostream& out) {
   if (out.getloc() != std::locale::classic()) out.imbue(std::locale::classic());
 }
@@ -125,7 +126,7 @@ std::optional<Twist> ParseTwist(const std::string& text) {
   for (Eigen::Index i = 0; i < twist.size(); ++i)
     twist[i] = row.values[static_cast<std::size_t>(i)];
   const auto within = [&twist](Eigen::Index begin, double limit) {
-    return (twist.segment<3>(begin).array().abs() <= limit).all();  // NaN is not
+    return (twist.segment<3>(begin).array().abs() <= limit).all();  // also false for NaN
   };
   const bool good = within(0, kMaxSpeedMps) && within(3, kMaxTurnRadPerS);
   return good ? std::optional(twist) : std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Poses over time, and the text files that the field keeps them in.
+// Poses over time, and the text files for them.
 #pragma once
 #include <istream>
 #include <optional>
@@ -18,23 +18,24 @@ struct StampedPose {
 };
 using Trajectory = std::vector<StampedPose>;  // ascending in time
 
-/// One line of a TUM file: "seconds tx ty tz qx qy qz qw".
+/// Writes a line of a TUM file: "seconds tx ty tz qx qy qz qw".
 void WriteTumLine(std::ostream& out, const StampedPose& pose);
-/// One line of a KITTI file: the first three rows of the 4x4 matrix. It has no time.
+/// Writes a line of a KITTI file: the first three rows of the 4x4 matrix, without a time.
 void WriteKittiLine(std::ostream& out, const Pose& pose);
 
-/// Reads "tx ty tz qx qy qz qw"; none for any other text.
+/// Reads "tx ty tz qx qy qz qw"; returns nothing for other text.
 std::optional<Pose> ParsePose(const std::string& text);
-/// Reads "vx vy vz wx wy wz"; none for any other text.
+/// Reads "vx vy vz wx wy wz"; returns nothing for other text.
 std::optional<Twist> ParseTwist(const std::string& text);
 
-/// Reads a TUM file (eight columns) or a KITTI file (twelve; its poses are `kitti_period` apart).
-/// Lines that begin with # are comments. On an error the result is empty and `error` says which
-/// line is wrong. A last line without its end is left out: a writer may have been stopped there.
+/// Reads a TUM file (eight columns) or a KITTI file (twelve columns, poses `kitti_period` apart).
+/// Lines that begin with # are comments. After an error the result is empty and `error` names the
+/// wrong line. A last line without a line end is dropped: its writer may have stopped in the
+/// middle.
 Trajectory ReadTrajectory(std::istream& in, Duration kitti_period, std::string* error);
 
-/// The pose at `t` between the two around it; the first or last one outside of them. The trajectory
-/// must not be empty.
+/// Interpolates the pose at `t`. Before the first pose and after the last it returns that one. The
+/// trajectory must not be empty.
 Pose InterpolateAt(const Trajectory& trajectory, Time t);
 
 }  // namespace lidar::odometry

@@ -14,7 +14,7 @@ constexpr double kLongestStretch = 800;
 
 struct Pairs {
   Trajectory truth;
-  Trajectory estimate;  // same length and times
+  Trajectory estimate;  // both have the same length and times
 };
 
 Pairs Match(const Trajectory& truth, const Trajectory& estimate) {
@@ -43,7 +43,7 @@ void MeasureAte(const Pairs& pairs, TrajectoryError* error) {
   error->ate_max_m = std::sqrt(off.colwise().squaredNorm().maxCoeff());
 }
 
-/// What `estimate` gets wrong of the motion from i to j.
+/// Returns the error of `estimate` in the motion from i to j.
 Pose MotionError(const Pairs& pairs, std::size_t i, std::size_t j) {
   const Pose was = pairs.truth[i].pose.Inverse() * pairs.truth[j].pose;
   const Pose seen = pairs.estimate[i].pose.Inverse() * pairs.estimate[j].pose;
@@ -87,8 +87,8 @@ void MeasureDrift(const Pairs& pairs, TrajectoryError* error) {
   if (count > 0) error->drift = sum / static_cast<double>(count);
 }
 
-/// Where the estimate ends, with its first second laid over the truth's: one pose alone would not
-/// tell the direction of a long way.
+/// Returns the error of the last position after the first second of both is aligned. A single pose
+/// would not fix the direction well enough for a long way.
 double EndError(const Pairs& pairs) {
   Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
   Eigen::Vector3d truth = Eigen::Vector3d::Zero();

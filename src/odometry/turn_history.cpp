@@ -7,16 +7,16 @@
 namespace lidar::odometry {
 namespace {
 
-/// A longer time without a sample hides how the sensor turned. An IMU has 100 samples a second or
-/// more, and those of the last slice may still be on their way.
+/// A longer pause between samples hides how the sensor turned. IMUs give at least 100 samples a
+/// second, and samples of the last slice may still be under way.
 constexpr Duration kLongestStep = std::chrono::milliseconds(50);
 constexpr Duration kNewClock = std::chrono::seconds(1);
-constexpr double kMostRate = 50;  // [rad/s]: no vehicle turns like that
+constexpr double kMostRate = 50;  // [rad/s]: vehicles turn slower
 constexpr double kMostBias = 0.2;
-/// Part of an error of a scan that becomes bias.
+/// Part of a scan's error that enters the bias.
 constexpr double kBiasShare = 0.05;
 constexpr double kMemory = 0.9;
-/// Alignments are off by so much themselves [rad].
+/// Error of an alignment itself [rad].
 constexpr double kNoise = 0.003;
 constexpr int kLeastTaught = 5;  // scans
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How the sensor turned, by its gyroscope.
+// The turns of the sensor, from its gyroscope.
 #pragma once
 #include <deque>
 #include <optional>
@@ -10,17 +10,18 @@
 namespace lidar::odometry {
 
 /// Angular velocities of the last seconds, without their bias, which the odometry teaches. They are
-/// of use while they foretell the turns of the sensor at least as well as a steady turn does: so
-/// turned axes, wrong units and a stuck sensor do no harm for longer than a few scans.
+/// used while they predict turns at least as well as a steady turn does. So turned axes, wrong
+/// units and a stuck sensor do harm for a few scans at most.
 class TurnHistory {
  public:
-  /// Takes an angular velocity in the sensor's frame [rad/s]. A sample that is not finite, or not
-  /// later than the one before, is dropped; a clock that went back by a second begins anew.
+  /// Takes an angular velocity in the sensor's frame [rad/s]. Drops a sample that is not finite or
+  /// not later than the one before. A clock that goes back by a second clears the history.
   void Add(Time time, const Eigen::Vector3d& rate);
-  /// The turn from `from` to `to`, which is not earlier. None where samples are missing between.
+  /// Returns the turn from `from` to `to`, which is not earlier, or nothing if samples are missing
+  /// between them.
   std::optional<Eigen::Quaterniond> Between(Time from, Time to) const;
-  /// The sensor turned by `found` from `from` to `to`; at its last angular velocity it would have
-  /// turned by `steady`.
+  /// Compares the samples with the turn `found` from `from` to `to`, and with `steady`, the turn at
+  /// the last angular velocity.
   void Teach(Time from, Time to, const Eigen::Quaterniond& found, const Eigen::Quaterniond& steady);
   bool trusted() const;
   const Eigen::Vector3d& bias() const { return bias_; }
@@ -33,12 +34,12 @@ class TurnHistory {
     Time time{};
     Eigen::Vector3d rate;
   };
-  /// Interpolated, and that of the first or last sample outside of them.
+  /// Interpolates between samples. Before the first and after the last it returns that one.
   Eigen::Vector3d RateAt(Time t) const;
 
   std::deque<Sample> samples_;
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
-  // Squares of the errors [rad^2]; old ones fade.
+  // Decaying sums of squared errors [rad^2].
   double own_squares_ = 0;
   double steady_squares_ = 0;
   int taught_ = 0;

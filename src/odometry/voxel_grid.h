@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Space cut into cubes: which cube a point is in, and one point a cube.
+// Cubes of space: finds the cube of a point, and thins out points to one a cube.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ struct VoxelHash {
   }
 };
 
-/// The cube of edge `size_m` that holds `point`. What is farther than 2^31 cubes is in the last
-/// one.
+/// Returns the cube of edge `size_m` that holds `point`. Points beyond 2^31 cubes are in the last
+/// cube.
 inline Voxel VoxelOf(const Eigen::Vector3d& point, double size_m) {
   const auto index = [size_m](double c) {
     return static_cast<std::int32_t>(
@@ -37,9 +37,9 @@ inline Voxel VoxelOf(const Eigen::Vector3d& point, double size_m) {
   return {index(point.x()), index(point.y()), index(point.z())};
 }
 
-/// The first point of each cube, in the order of `points`.
+/// Returns the first point of each cube, in the order of `points`.
 Points Downsample(const Points& points, double size_m);
-/// Their indices.
+/// Returns the indices of those points.
 std::vector<std::size_t> FirstOfEachCube(const Points& points, double size_m);
 
 }  // namespace lidar::odometry
