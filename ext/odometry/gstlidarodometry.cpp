@@ -80,12 +80,12 @@ const std::array<Stat<Counters>, 12> kStats = {{
     {"inlier-share", &Counters::inlier_share},
 }};
 
-/// Belongs to the streaming thread.
+/// The state of a stream. Only the streaming thread uses it.
 struct Stream {
   std::optional<CloudInfo> info;
   ScanCollector collector;
   std::unique_ptr<Odometry> odometry;
-  std::unique_ptr<LoopThread> loops;  // none: loops are not closed
+  std::unique_ptr<LoopThread> loops;  // null: no loops are closed
   std::size_t loops_taken = 0;
   Pose map_from_odometry;
   Estimate last;
@@ -152,7 +152,7 @@ static const std::array<Property<Settings>, 10> kProperties = {{
      ReadStats},
 }};
 
-/// When the first column of `buffer` was sampled: its capture time, or else its timestamp.
+/// Returns when the first column of `buffer` was sampled: its capture time, or else its timestamp.
 static std::optional<Time> SampledAt(GstBuffer* buffer) {
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   const GstClockTime at = GST_CLOCK_TIME_IS_VALID(captured) ? captured : GST_BUFFER_PTS(buffer);
@@ -174,7 +174,7 @@ static void CountScan(State* state, const Estimate& estimate, GstClockTime time)
   c.inlier_share = estimate.inlier_share;
 }
 
-/// A warning where tracking begins to fail: once, until it works again.
+/// Warns when tracking begins to fail, once until tracking works again.
 static void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   Stream& stream = self->state->stream;
   const bool lost = estimate.tracking == Tracking::kLost;
@@ -203,7 +203,7 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
                       (nullptr));
 }
 
-/// The pads of poses may be unlinked, and that of the map may not be there.
+/// Pushes the pose to the pads that are linked. The pad of the map is on request.
 static void PushPoses(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
   if (gst_pad_is_linked(self->poses)) gst_pad_push(self->poses, PoseBuffer(estimate, pts));
 }
@@ -213,7 +213,7 @@ static void PushMap(GstLidarOdometry* self, const Estimate& estimate, GstClockTi
     gst_pad_push(map.get(), MapBuffer(self->state->stream.map_from_odometry, estimate.time, pts));
 }
 
-/// Takes what the loops say of the drift by now.
+/// Reads the drift that the loops have shown so far.
 static void TakeLoops(GstLidarOdometry* self) {
   State& state = *self->state;
   const LoopThread::Progress progress = state.stream.loops->progress();
@@ -238,7 +238,7 @@ static void SearchLoops(GstLidarOdometry* self, const Estimate& estimate) {
   TakeLoops(self);
 }
 
-/// Aligns the scan that is open, if there is one. `pts` is that of its last buffer.
+/// Aligns the open scan, if there is one. `pts` is the timestamp of its last buffer.
 static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   State& state = *self->state;
   Stream& stream = state.stream;
@@ -263,7 +263,7 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   stream.last = estimate;
 }
 
-/// Waits for the loops of the scans until now, and pushes what they make of the last one.
+/// Waits until all scans were searched for loops, and pushes the corrected pose of the last scan.
 static void FinishLoops(GstLidarOdometry* self) {
   Stream& stream = self->state->stream;
   if (!stream.loops) return;
@@ -272,7 +272,7 @@ static void FinishLoops(GstLidarOdometry* self) {
   PushMap(self, stream.last, GST_CLOCK_TIME_NONE);
 }
 
-/// Pushes an event to the pads of poses that are there; a stream begins with their own caps.
+/// Pushes an event to the pads of poses that exist. Their streams begin with their own caps.
 static void PushToPoses(GstLidarOdometry* self, GstEvent* event) {
   const auto push = [event](GstPad* pad, const CapsPtr& caps) {
     gst_pad_push_event(pad, gst_event_ref(event));
@@ -284,7 +284,7 @@ static void PushToPoses(GstLidarOdometry* self, GstEvent* event) {
   if (map) push(map.get(), MapCaps());
 }
 
-/// Returns true if the buffer could be added to a scan.
+/// Returns true if a scan took the buffer.
 static bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice,
                       Time at) {
   Stream& stream = self->state->stream;
@@ -313,7 +313,8 @@ static GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
     GST_WARNING_OBJECT(self, "a buffer of another size than its caps say");
     return GST_FLOW_OK;
   }
-  // A slice leaves with a prediction: its scan is aligned when its last slice is there.
+  // The scan is aligned only when its last slice is there: earlier slices leave with a predicted
+  // pose.
   if (stream.collector.complete()) FinishScan(self, GST_BUFFER_PTS(buffer));
   const GstLidarPose pose = ToMeta(stream.odometry->PredictAt(*at), stream.tracking);
   gst_lidar_buffer_set_pose(buffer, &pose);
@@ -336,7 +337,7 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   Stream& stream = self->state->stream;
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_CAPS:
-      break;  // the pad of the poses has its own
+      break;  // the pad of poses has its own segment and caps
     case GST_EVENT_EOS:
       FinishScan(self, GST_CLOCK_TIME_NONE);
       FinishLoops(self);
@@ -411,7 +412,7 @@ static GstFlowReturn ImuChain(GstPad* pad, GstObject* parent, GstBuffer* buffer)
   return GST_FLOW_OK;
 }
 
-/// The samples go no farther, nor do their events.
+/// Drops the events of the samples: this element is their sink.
 static gboolean ImuEvent(GstPad*, GstObject* parent, GstEvent* event) {
   const EventPtr owned(event);
   if (GST_EVENT_TYPE(event) != GST_EVENT_CAPS) return TRUE;
@@ -425,7 +426,7 @@ static gboolean ImuEvent(GstPad*, GstObject* parent, GstEvent* event) {
   return FALSE;
 }
 
-/// Gives the pad of the map, which may come late, what the pad of the odometry had so far.
+/// Copies a sticky event of the odometry's pad to the pad of the map, which may be requested later.
 static gboolean CopyToMap(GstPad*, GstEvent** event, gpointer map) {
   const bool caps = GST_EVENT_TYPE(*event) == GST_EVENT_CAPS;
   const EventPtr copy(caps ? gst_event_new_caps(MapCaps().get()) : gst_event_ref(*event));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Angular velocities between the thread of an IMU and that of the scans.
+// Passes angular velocities from the thread of an IMU to the thread of the scans.
 #pragma once
 #include <gst/gst.h>
 
@@ -17,19 +17,19 @@ struct TurnSample {
   Eigen::Vector3d rate;  // in the sensor's frame [rad/s]
 };
 
-/// Safe for the threads of both streams.
+/// The streams of the IMU and of the scans may call it at the same time.
 class ImuInput {
  public:
-  /// The layout of the samples that follow, and how the IMU stands in the sensor. Returns false if
-  /// they are not laid out as ouster_src has them.
+  /// Sets the layout of the samples that follow, and the rotation from the IMU to the sensor.
+  /// Returns false if the layout is not that of ouster_src.
   bool SetCaps(const GstCaps* caps);
-  /// Returns false if the bytes are no whole samples, or there are no caps yet.
+  /// Returns false if `samples` ends within a sample, or if there are no caps yet.
   bool Add(ByteView samples);
-  /// The samples since the last call.
+  /// Returns the samples since the last call.
   std::vector<TurnSample> Take();
   void Clear();
 
-  static constexpr std::size_t kMostSamples = 8192;  // samples that wait; older ones are dropped
+  static constexpr std::size_t kMostSamples = 8192;  // the oldest samples beyond it are dropped
 
  private:
   std::mutex mutex_;

@@ -41,7 +41,7 @@ LoopThread::Progress LoopThread::progress() const {
   return progress_;
 }
 
-/// Needs the mutex.
+/// The caller holds the mutex.
 void LoopThread::Publish() {
   progress_.map_from_odometry = closer_.MapFromOdometry();
   progress_.solved = closer_.solved();

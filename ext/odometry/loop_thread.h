@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Looks for loops beside the streaming thread.
+// Searches scans for loops in a thread of its own.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// Safe for any thread.
+/// All threads may call it.
 class LoopThread {
  public:
   explicit LoopThread(const slam::LoopSettings& settings);
@@ -18,16 +18,16 @@ class LoopThread {
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
 
-  /// Takes a scan of the sensor's frame, and its pose by the odometry. Returns at once. A scan that
-  /// finds kMostWaiting others is dropped.
+  /// Queues a scan, in the sensor's frame, with its pose from the odometry. Returns at once. Drops
+  /// the scan if kMostWaiting others wait.
   void AddScan(const odometry::StampedPose& pose, const odometry::Points& points);
-  /// Returns when all scans were looked at, and the last local map was ended.
+  /// Returns when all scans were searched and the last local map has ended.
   void Finish();
 
   struct Progress {
     odometry::Pose map_from_odometry;
-    std::size_t solved = 0;  // how often loops were closed
-    std::size_t loops = 0;   // between the local maps that are kept
+    std::size_t solved = 0;  // number of times that the pose graph was solved
+    std::size_t loops = 0;   // number of loops between the local maps that are kept
     std::size_t local_maps = 0;
     std::size_t scans_dropped = 0;
   };
@@ -43,13 +43,13 @@ class LoopThread {
   void Run();
   void Publish();
 
-  mutable std::mutex mutex_;  // guards all but the closer
+  mutable std::mutex mutex_;  // guards all members but closer_
   std::condition_variable changed_;
   std::deque<WaitingScan> waiting_;
   bool busy_ = false;
   bool stop_ = false;
   Progress progress_;
-  slam::LoopCloser closer_;  // of the thread; of Finish() while the thread has nothing to do
+  slam::LoopCloser closer_;  // used by the thread; by Finish() while the thread is idle
   std::thread thread_;
 };
 

@@ -10,11 +10,11 @@
 namespace lidar::gst {
 namespace {
 
-// The least of a unit is above the most of the next, a thousandth of it.
-constexpr double kShortestPart = 0.01;  // of a sweep
+// The samples last between these parts of a sweep. Units differ by 1000, so only one unit can fit.
+constexpr double kShortestPart = 0.01;
 constexpr double kLongestPart = 4;
 
-/// 0: the samples last as long in no unit.
+/// Returns the unit of time, or 0 if `span` fits a sweep in no unit.
 double UnitFor(double span, double sweep_s) {
   for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
     const double part = span * unit / sweep_s;
@@ -39,7 +39,7 @@ std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& poin
   for (std::size_t i = 0; i < points.count; ++i) {
     const std::uint8_t* point = points.bytes + i * points.step;
     times[i] = ReadNumber(point + field.offset, field.type, false);
-    // A missing return often has no time, either.
+    // Missing returns often have no valid time.
     if (!IsReturn(PositionAt(point + points.xyz_offset))) continue;
     first = std::min(first, times[i]);
     last = std::max(last, times[i]);
@@ -48,7 +48,7 @@ std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& poin
   if (!(unit > 0)) return {};
   std::vector<float> seconds(points.count);
   std::transform(times.begin(), times.end(), seconds.begin(), [&](double time) {
-    // A point that is no return may have anything.
+    // The time of a missing return may be anything.
     return time > first ? static_cast<float>((std::min(time, last) - first) * unit) : 0.0F;
   });
   return seconds;

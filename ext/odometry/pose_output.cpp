@@ -15,7 +15,7 @@ using odometry::Estimate;
 using odometry::Pose;
 using odometry::Tracking;
 
-/// The typical length of a vector with that covariance.
+/// Returns the typical length of a vector with that covariance.
 gdouble Deviation(const Eigen::Matrix3d& covariance) { return std::sqrt(covariance.trace()); }
 
 GstStructure* PoseMessage(const char* name, const Pose& pose) {
@@ -73,7 +73,7 @@ GstBuffer* PoseBuffer(const Estimate& e, GstClockTime pts) {
   for (Eigen::Index i = 0; i < 36; ++i)
     told.pose_covariance[static_cast<std::size_t>(i)] = e.covariance(i / 6, i % 6);
   auto bytes = cdr::WritePose(told, static_cast<std::uint64_t>(e.tracking));
-  bytes.resize(kPoseSizeWithCovariance);  // that of the first scan is 0
+  bytes.resize(kPoseSizeWithCovariance);  // the first scan's covariance is 0
   return ToBuffer(bytes, e.time, pts);
 }
 

@@ -11,7 +11,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr Duration kUsualScan = std::chrono::milliseconds(100);
-/// No sensor's scan has more: a stream of endless slices shall not fill the memory.
+/// Bounds the memory for a stream of endless slices. Scans of real sensors are smaller.
 constexpr std::size_t kMaxPoints = std::size_t{1} << 22;
 
 }  // namespace
@@ -38,7 +38,7 @@ void ScanCollector::Open(const GstLidarSlice& slice, Time time) {
   scan_.points = {};
   scan_.duration =
       GST_CLOCK_TIME_IS_VALID(period) ? Duration{static_cast<std::int64_t>(period)} : kUsualScan;
-  // A scan whose first slices are missing began before.
+  // The first slices of the scan are missing: it began before this one.
   scan_.start = time - scan_.duration * slice.slice_index / slice.slice_count;
   scan_id_ = slice.scan_id;
   open_ = true;
@@ -57,7 +57,7 @@ void ScanCollector::Add(const GstLidarSlice& slice, Time time, const guint8* poi
   for (gsize i = 0; i < memory.count; ++i) {
     const guint8* point = points + i * memory.step;
     const std::array<float, 3> p = PositionAt(point + memory.xyz_offset);
-    if (p[0] == 0 && p[1] == 0 && p[2] == 0) continue;  // no return
+    if (p[0] == 0 && p[1] == 0 && p[2] == 0) continue;  // a missing return
     scan_.points.points.push_back(Eigen::Vector3f(p[0], p[1], p[2]).cast<double>());
     if (organised)
       scan_.points.rings.push_back(static_cast<std::uint16_t>(i / width));
@@ -68,8 +68,8 @@ void ScanCollector::Add(const GstLidarSlice& slice, Time time, const guint8* poi
   }
 }
 
-/// The phases of all points in the scan. A time field says more than the column, and that more than
-/// the slice; empty if there is none of them.
+/// Returns the phases of all points in the scan, from the time field, else from the column, else
+/// from the slice. The result is empty if all three are missing.
 std::vector<float> ScanCollector::PhasesOf(const GstLidarSlice& slice,
                                            const PointsInMemory& points) const {
   const auto slices = static_cast<float>(slice.slice_count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Gathers the points of a scan from its slices, with their phases in the sweep.
+// Collects the points of a scan from its slices, with their phases in the sweep.
 #pragma once
 #include <optional>
 #include <vector>
@@ -11,21 +11,21 @@
 
 namespace lidar::gst {
 
-/// A scan, of which slices may be missing.
+/// A scan; some of its slices may be missing.
 struct CollectedScan {
   odometry::TimedPoints points;
   Time start{};
   Duration duration{};
 };
 
-/// For one thread at a time.
+/// Used by one thread at a time.
 class ScanCollector {
  public:
-  /// The layout of the buffers that follow. Returns false if it has no x, y and z as packed F32.
+  /// Sets the layout of the buffers that follow. Returns false if x, y and z are no packed F32.
   bool SetInfo(const CloudInfo& info);
 
-  /// Returns true if a scan is open that `slice` is no further part of, or that has too many
-  /// points.
+  /// Returns true if the open scan cannot take `slice`: the slice is of another scan, or the open
+  /// one has too many points.
   bool BeginsNewScan(const GstLidarSlice& slice) const;
   /// Adds a slice, whose first column was sampled at `time`, to the open scan or to a new one.
   /// `size` bytes at `points` are whole points, and whole columns where the cloud is organised.
