@@ -31,7 +31,7 @@ void LinkLedger::Trim(Source* source) {
   source->waiting = std::max(source->waiting, source->first);
 }
 
-/// Returns false if the report names packets that were never sent here.
+/// Returns false if the report names packets that this link never sent.
 bool LinkLedger::Translate(const Source& source, const scream::SsrcReport& block,
                            scream::SsrcReport* own) {
   std::vector<std::pair<std::int64_t, const scream::PacketMetric*>> arrived;
@@ -53,7 +53,7 @@ bool LinkLedger::Translate(const Source& source, const scream::SsrcReport& block
 
 void LinkLedger::Settle(const scream::SsrcReport& own, Source* source, Report* report) {
   if (own.metrics.empty()) return;
-  // Numbers of this block lie within one turn of 16 bit, as kMaxPackets is less.
+  // The block's numbers lie within one turn of 16 bit, as kMaxPackets is less than a turn.
   const std::int64_t begin =
       source->end() - static_cast<std::uint16_t>(source->end() - own.begin_seq);
   for (std::size_t i = 0; i < own.metrics.size(); ++i) {
@@ -78,7 +78,7 @@ std::optional<LinkLedger::Report> LinkLedger::OnFeedback(
     const auto source = sources_.find(block.ssrc);
     scream::SsrcReport own;
     if (source == sources_.end()) {
-      report.feedback.blocks.push_back(block);  // the controller counts foreign blocks
+      report.feedback.blocks.push_back(block);  // the controller counts unknown blocks
       continue;
     }
     if (!Translate(source->second, block, &own)) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What left over one link, in that order, and what its receiver's reports say of it.
+// The packets that left over one link, and what its receiver reported of them.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -15,27 +15,27 @@
 namespace lidar::bonding {
 
 /// A link carries some of the packets, and copies of old ones behind newer ones. A controller that
-/// counted by RTP sequence numbers would see losses and repetitions, so each SSRC gets numbers of
-/// its own on each link, without gaps, in the order in which the packets leave. Reports are
-/// converted from RTP sequence numbers to those of the link.
+/// counted by RTP sequence numbers would see losses and repetitions. So each SSRC has its own
+/// numbers on each link, without gaps, in the order in which packets leave. Reports are converted
+/// from RTP sequence numbers to these.
 class LinkLedger {
  public:
-  /// A report about packets before these is implausible.
+  /// Reports of packets before these are implausible.
   static constexpr std::size_t kMaxPackets = 8192;
   static constexpr std::size_t kMaxSources = 64;
 
   struct Report {
-    scream::CongestionFeedback feedback;  // in the link's numbers
-    std::vector<PacketId> arrived;        // for the first time
-    std::vector<PacketId> missing;        // packets that arrived ones overtook; each is listed once
+    scream::CongestionFeedback feedback;  // with the numbers of this link
+    std::vector<PacketId> arrived;        // reported for the first time
+    std::vector<PacketId> missing;        // overtaken by packets that arrived; each is listed once
   };
 
-  /// The packet's number on this link. The receiver reports at once what `ends_slice`.
+  /// Returns the packet's number on this link. The receiver reports at once after `ends_slice`.
   std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
-  /// Returns nothing where a packet arrived that never left over this link.
+  /// Returns nothing if the report has packets that never left over this link.
   std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
-  /// When the report of the oldest packet was due to leave the receiver, among packets for which no
-  /// report of them or a later one came. The receiver reports at a slice's end, but within
+  /// Returns when the oldest due report should have left the receiver. Packets count if neither
+  /// they nor later ones were reported. The receiver reports at a slice's end, at the latest after
   /// kReportEvery.
   std::optional<Time> waiting_since() const;
   static constexpr Duration kReportEvery = std::chrono::milliseconds(40);
@@ -45,12 +45,12 @@ class LinkLedger {
     std::uint16_t seq = 0;
     Time sent{};
     bool ends_slice = false;
-    bool settled = false;  // arrived, or missing
+    bool settled = false;  // arrived or missing
   };
   struct Source {
-    std::deque<Packet> packets;                               // of first, first + 1, ...
+    std::deque<Packet> packets;                               // numbered first, first + 1, ...
     std::int64_t first = 0;                                   // number of packets.front()
-    std::int64_t waiting = 0;                                 // of the first that may still arrive
+    std::int64_t waiting = 0;                                 // first packet that may still arrive
     std::unordered_map<std::uint16_t, std::int64_t> numbers;  // by RTP sequence number
 
     std::int64_t end() const { return first + static_cast<std::int64_t>(packets.size()); }

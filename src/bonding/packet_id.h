@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Names of links and packets.
+// Identifiers of links and packets.
 #pragma once
 #include <bitset>
 #include <cstddef>

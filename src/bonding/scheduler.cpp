@@ -8,21 +8,21 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A round trip before one was measured.
+/// Assumed round trip until one is measured.
 constexpr Duration kUnknownRtt = 100ms;
-/// A report that is later than the round trip by so much met a gap: a machine is a little late.
+/// A report that is later than the round trip plus this shows a gap. Machines may be a little late.
 constexpr Duration kReportMargin = 20ms;
-/// A slice changes to another link only if that is better by this, to avoid needless swaps.
+/// Least advantage for which a slice changes to another link.
 constexpr Duration kWorthLeaving = 5ms;
-/// A link has room for copies while its FIFO is gone in this time.
+/// A link has room for copies if its FIFO empties within this time.
 constexpr Duration kRoomForCopies = 25ms;
-/// The encoder's target leaves a link that has been in a gap for so long.
+/// The encoder's target ignores a link after such a gap.
 constexpr Duration kLongestGap = 100ms;
-/// Round trips that differ by so much are alike.
+/// Round trips count as alike up to this difference.
 constexpr Duration kSimilarRtts = 50ms;
-/// The share before a rate is known.
+/// Assumed rate of a link until one is known.
 constexpr DataRate kUnknownRate = DataRate::BitsPerSecond(1e6);
-/// Entries are kept for receipts that come late.
+/// Time for which packets are remembered for late acknowledgements.
 constexpr Duration kReceiptMemory = 2s;
 
 }  // namespace
@@ -95,7 +95,7 @@ bool Scheduler::AwaitsArrivals(Time now) const {
   });
 }
 
-/// The links beside the best one that the next slice goes to.
+/// Returns the links beside the best one that get a copy of the next slice.
 LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
   LinkSet links;
   const bool probe = since_probe_ == 0;
@@ -131,7 +131,7 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
     since_probe_ = (since_probe_ + 1) % kProbeEvery;
   }
   slice_size_ += packet.size;
-  if (packets_.count(packet.id.key()) > 0) return slice_links_;  // sent again by the payloader
+  if (packets_.count(packet.id.key()) > 0) return slice_links_;  // the payloader sent it again
   Entry entry;
   entry.size = packet.size;
   entry.ends_slice = packet.ends_slice;
@@ -172,7 +172,7 @@ void Scheduler::LookAtGaps(Time now) {
   }
 }
 
-/// Returns true if the packet is overdue on every link that has it.
+/// Returns true if the packet is overdue on each link that has it.
 bool Scheduler::Overdue(Time now, const Entry& entry) const {
   if (entry.missing || now > entry.expected) return true;
   for (std::size_t i = 0; i < links_.size(); ++i)
@@ -180,8 +180,8 @@ bool Scheduler::Overdue(Time now, const Entry& entry) const {
   return true;
 }
 
-/// The further links that a waiting packet joins: the best link out of a gap, else each link that
-/// may be the first out of its gap.
+/// Returns the further links for a waiting packet: the best link out of a gap, else each link that
+/// may leave its gap first.
 LinkSet Scheduler::OthersFor(Time now, const Entry& entry) const {
   LinkSet others, alive;
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -212,7 +212,7 @@ std::vector<Scheduler::Copy> Scheduler::TakeCopies(Time now) {
     entry.missing = false;
     entry.expected = now + WholeIn(best, now, entry.size) + Rtt(links_[best]) / 2 + kReportMargin;
   }
-  std::reverse(copies.begin(), copies.end());  // the oldest first
+  std::reverse(copies.begin(), copies.end());  // oldest first
   return copies;
 }
 

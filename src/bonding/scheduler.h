@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sends one stream over several links: which packet goes where, and what goes twice.
+// Sends one stream over several links: decides by which links each packet leaves.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,51 +16,52 @@
 namespace lidar::bonding {
 
 enum class Method {
-  /// Copies what waits, and while links are not settled all that has room; with summed targets only
-  /// what waits.
+  /// Copies waiting packets, and all that has room while links are not settled. With summed targets
+  /// it copies waiting packets only.
   kAdaptive,
-  kBroadcast,  ///< a copy on every link
-  kBackup,     ///< copies of what waits only
+  kBroadcast,  ///< copies each packet to each link
+  kBackup,     ///< copies waiting packets only
 };
-/// What the encoder is asked for.
+/// How the targets of the links make the encoder's target.
 enum class TargetRule {
-  /// The rate of the better working link, without links whose packets take much longer than the
-  /// nearest one's.
+  /// The rate of the better working link. Links do not count if their packets take much longer than
+  /// those of the nearest link.
   kBetter,
   kSum,
 };
 
-/// The path as a link's congestion control measures it.
+/// The path as the link's congestion control measures it.
 struct PathView {
-  DataRate rate;   // of the packets that it lets out
+  DataRate rate;   // at which the congestion control lets packets out
   Duration rtt{};  // smoothed; 0: not known yet
 };
 
 struct LinkCounters {
-  std::uint64_t packets = 0;  // that were assigned to it first
+  std::uint64_t packets = 0;  // assigned to this link first
   std::uint64_t copies = 0;
-  std::uint64_t cancelled = 0;  // that were not sent, as another link had brought them
-  std::uint64_t saved = 0;      // that arrived by it only, or first, though they left by another
+  std::uint64_t cancelled = 0;  // not sent, because another link delivered them
+  std::uint64_t saved = 0;      // assigned to another link, but delivered here first or here only
   std::uint64_t gaps = 0;
 };
 
-/// Distributes the packets of a stream over links, each with a congestion control and a FIFO at the
-/// caller. Packets stay there in the order in which OnPacket() and TakeCopies() assign them; before
-/// a packet leaves, the caller asks Wants(). Events with their time in, decisions out: no clock, no
-/// lock.
+/// Distributes the packets of a stream over links. Each link has a congestion control, and a FIFO
+/// that the caller keeps in the order in which OnPacket() and TakeCopies() assign packets. Before a
+/// packet leaves, the caller asks Wants(). Events come with their time; the class has no clock and
+/// no lock.
 ///
-///  - A slice goes where it will be whole first: queue and size over rate, and half a round trip.
-///  - A link is in a gap if reports of what left are overdue. What was assigned to it and has not
-///    arrived is copied to the best other link at once, or to all others if each is in a gap; so
-///    are lost packets, and packets that take longer than was foreseen.
-///  - While a link is not settled (it started, or was in a gap, within kUnsettled), every slice is
-///    copied to each link that has room. Otherwise one slice in kProbeEvery is, so that all links
-///    stay measured.
-///  - A link is unproven until its first report after it was first used, or became usable: the
-///    receiver finds a link by its copies only. For kProving it gets a copy of every packet, and no
-///    packet of its own if another link has reported.
-///  - A packet that arrived on one link is not sent on another, nor is a copy older than kMaxAge:
-///    the newest slices are the first behind a gap.
+///  - A slice goes to the link that will deliver it first: its delay is the size of queue and slice
+///    over the rate, and half a round trip.
+///  - A link is in a gap if reports of its packets are overdue. Its packets that have not arrived
+///    are copied at once to the best other link, or to all others if each is in a gap. Lost
+///    packets are copied, too, and packets that take longer than expected.
+///  - A link is unsettled for kUnsettled after its start and after each gap. While a link is
+///    unsettled, each slice is copied to each link that has room. Otherwise one slice in
+///    kProbeEvery is copied, so that all links stay measured.
+///  - A link is unproven from its first use, or from its return, to its first report: only copies
+///    show the receiver that it belongs to the sender. For kProving it gets a copy of each packet,
+///    and no packet of its own if another link has reported.
+///  - A packet that arrived on one link is not sent on another. Copies older than kMaxAge are not
+///    sent: after a gap the newest slices come first.
 class Scheduler {
  public:
   static constexpr Duration kMaxAge = std::chrono::milliseconds(200);
@@ -74,39 +75,38 @@ class Scheduler {
   struct Packet {
     PacketId id;
     DataSize size;
-    std::uint32_t slice = 0;  // packets of one access unit share it, as their RTP timestamp
-    bool ends_slice = true;   // the last of them
+    std::uint32_t slice = 0;  // shared by the packets of an access unit, as is their RTP timestamp
+    bool ends_slice = true;   // the last packet of its access unit
   };
-  /// Chooses the links of a new packet; the best link is always one of them.
+  /// Chooses the links of a new packet, among them always the best one.
   LinkSet OnPacket(Time now, const Packet& packet);
   struct Copy {
     PacketId id;
     std::size_t link;
   };
-  /// Returns what is to be queued once more; call it at least each kTick while packets are under
-  /// way.
+  /// Returns the copies to queue now. Call it at least each kTick while packets are under way.
   std::vector<Copy> TakeCopies(Time now);
   static constexpr Duration kTick = std::chrono::milliseconds(10);
 
   // Returns true if the packet at the head of the link's FIFO is still of use there.
   bool Wants(Time now, std::size_t link, PacketId id) const;
-  /// Notes that the packet leaves; returns its number for the link's congestion control.
+  /// Notes that the packet leaves. Returns its number for the link's congestion control.
   std::uint16_t OnSent(Time now, std::size_t link, PacketId id);
-  /// Notes that the caller dropped the packet: it is late, or Wants() was false.
+  /// Notes that the caller dropped the packet, because it is late or Wants() was false.
   void OnDropped(Time now, std::size_t link, PacketId id);
 
-  /// Converts a report of the link's receiver into the link's numbers; nothing if that is
-  /// impossible.
+  /// Converts a report of the link's receiver to the link's numbers. Returns nothing if the report
+  /// is impossible.
   std::optional<scream::CongestionFeedback> OnFeedback(Time now, std::size_t link,
                                                        const scream::CongestionFeedback& feedback);
   void OnPath(std::size_t link, const PathView& path) { links_[link].path = path; }
-  /// Packets cannot leave by the link at all, or can again.
+  /// Sets whether packets can leave by the link at all.
   void SetUsable(Time now, std::size_t link, bool usable);
 
   bool InGap(Time now, std::size_t link) const;
-  /// Returns true if a packet that has not arrived still may.
+  /// Returns true if packets may still arrive.
   bool AwaitsArrivals(Time now) const;
-  /// The bitrate for the encoder, from what each link may send.
+  /// Returns the bitrate for the encoder. `targets` has what each link may send.
   DataRate Target(Time now, const std::vector<DataRate>& targets) const;
   std::size_t links() const { return links_.size(); }
   bool usable(std::size_t link) const { return links_[link].usable; }
@@ -117,12 +117,12 @@ class Scheduler {
   struct Link {
     LinkLedger ledger;
     PathView path;
-    DataSize queued;  // assigned, and neither sent nor dropped
+    DataSize queued;  // assigned, not yet sent or dropped
     bool usable = true;
     bool was_in_gap = false;
-    bool has_reported = false;            // since it is usable
-    std::optional<Time> usable_since;     // with the first packet, and with each return
-    std::optional<Time> unsettled_since;  // with the first packet, and with each gap
+    bool has_reported = false;            // since the link became usable
+    std::optional<Time> usable_since;     // first packet, or the return of the link
+    std::optional<Time> unsettled_since;  // first packet, or the last gap
     LinkCounters counters;
   };
   struct Entry {
@@ -130,7 +130,7 @@ class Scheduler {
     Time made{};
     Time expected{};  // when its acknowledgement is due
     std::size_t first = 0;
-    LinkSet assigned, waits;  // waits: in the FIFO
+    LinkSet assigned, waits;  // `waits`: in these links' FIFOs
     bool ends_slice = true;
     bool arrived = false;
     bool missing = false;
@@ -156,7 +156,7 @@ class Scheduler {
   std::vector<Link> links_;
   std::deque<PacketId> order_;
   std::unordered_map<std::uint64_t, Entry> packets_;
-  // The slice that comes now.
+  // The present slice.
   std::optional<std::uint32_t> slice_;
   DataSize slice_size_, last_slice_size_;
   LinkSet slice_links_;

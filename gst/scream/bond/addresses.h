@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The property bonding-addresses: which links a stream has.
+// Parses the property bonding-addresses, which names the links of a stream.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace lidar::gst {
 
-/// A peer, and what its packets leave by: an interface, or a local address; empty for any.
+/// A peer, and the interface or local address from which packets go to it; empty for any.
 struct BondAddress {
   UdpTarget target;
   std::string interface;
-  std::string text;  // as it was given
+  std::string text;  // as the property has it
 };
 
-/// HOST:PORT or HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, with commas between; an IPv6 host
-/// in brackets. Returns nothing and sets the error for other text, more than kMaxLinks, or a
-/// repeated link.
+/// Parses HOST:PORT, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, separated by commas; an IPv6
+/// host stands in brackets. Returns nothing and sets the error for other text, more than kMaxLinks,
+/// or a repeated link.
 std::optional<std::vector<BondAddress>> ParseBondAddresses(const std::string& text,
                                                            std::string* error);
 

@@ -23,18 +23,19 @@ using bonding::PacketId;
 using bonding::Scheduler;
 
 constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
-constexpr double kWorthTelling = 0.02;              // of a target
-// A link's own interval between key units is longer.
+// Least change of a target that is sent to the encoder, relative to the target.
+constexpr double kWorthTelling = 0.02;
+// Least interval between key units. The interval of a single link is longer.
 constexpr Duration kKeyUnitInterval = std::chrono::milliseconds(400);
 constexpr Duration kWatchEvery = std::chrono::milliseconds(100);
 
 struct BondStream {
   GstPad* sink = nullptr;
-  std::vector<GstPad*> srcs;                   // by link
+  std::vector<GstPad*> srcs;                   // one per link
   std::vector<GstLidarTargetBitrate> targets;  // as the links report them
-  std::vector<std::string> reasons;            // of these
-  guint told = 0;                              // to the encoder [bit/s]
-  std::optional<Time> key_unit_at;             // when the encoder was asked for one
+  std::vector<std::string> reasons;            // of `targets`
+  guint told = 0;                              // last target sent to the encoder [bit/s]
+  std::optional<Time> key_unit_at;             // last request for a key unit
 };
 
 struct Kept {
@@ -42,7 +43,7 @@ struct Kept {
   BondStream* stream;
 };
 
-/// Shared with the links, which may outlive the element by a call.
+/// Shared with the links, whose calls may still run when the element is finalized.
 struct BondShared {
   BondShared(std::size_t links, lidar::bonding::Method method, lidar::bonding::TargetRule rule)
       : scheduler(links, method, rule) {}
@@ -51,7 +52,7 @@ struct BondShared {
   Time Now() const { return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(clock))}}; }
 
   std::mutex mutex;
-  GstClock* clock = gst_system_clock_obtain();  // as of the links
+  GstClock* clock = gst_system_clock_obtain();  // the links use the same one
   std::shared_ptr<SrtpLayer> srtp;              // set below READY
   Scheduler scheduler;
   std::unordered_map<std::uint64_t, Kept> kept;
@@ -96,7 +97,7 @@ struct BondState {
   std::shared_ptr<BondShared> shared;
   std::vector<GstLidarScreamTx*> links;
   std::vector<std::unique_ptr<BondStream>> streams;  // guarded by shared->mutex
-  std::vector<std::unique_ptr<BondStream>> removed;  // a link may still be telling a target
+  std::vector<std::unique_ptr<BondStream>> removed;  // kept, as a link's call may still use them
   guint next_pad = 0;
   std::function<void()> watch;
   std::condition_variable wake;
@@ -130,7 +131,7 @@ static BondStream& StreamOf(GstPad* pad) {
 
 static BondState& BondOf(gpointer self) { return *GST_LIDAR_SCREAM_BOND(self)->state; }
 
-/// Keeps a packet for as long as a copy of it may be of use.
+/// Keeps a packet while it may be copied.
 static void Keep(BondShared& shared, Time now, PacketId id, GstBuffer* buffer, BondStream* stream) {
   while (!shared.order.empty() && (now - shared.order.front().first > Scheduler::kMaxAge ||
                                    shared.order.size() >= Scheduler::kMaxPackets)) {
@@ -145,7 +146,7 @@ static void Keep(BondShared& shared, Time now, PacketId id, GstBuffer* buffer, B
 
 static lidar::bonding::LinkSet Schedule(BondShared& shared, GstBuffer* buffer, BondStream* stream) {
   const auto header = ReadRtpHeader(buffer);
-  if (!header) return 1;  // for the first link to count
+  if (!header) return 1;  // another buffer counts as sent by the first link
   const Time now = shared.Now();
   const PacketId id{header->ssrc, header->seq};
   const auto size = static_cast<std::int64_t>(gst_buffer_get_size(buffer));
@@ -156,7 +157,7 @@ static lidar::bonding::LinkSet Schedule(BondShared& shared, GstBuffer* buffer, B
                                    {id, DataSize::Bytes(size) + kHeaders, slice, header->marker});
 }
 
-/// A link that fails stops the stream where no other takes the packet.
+/// A failing link stops the stream only if no other link takes the packet.
 static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
   BufferPtr packet(buffer);
   BondStream& stream = StreamOf(pad);
@@ -170,7 +171,7 @@ static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer
   return best;
 }
 
-/// The first goodbye ends the receiver, so it waits for what may still arrive by another link.
+/// Waits for packets that another link may still deliver: the first goodbye ends the receiver.
 static void AwaitArrivals(BondState& state) {
   BondShared& shared = *state.shared;
   std::unique_lock lock(shared.mutex);
@@ -187,7 +188,8 @@ static gboolean BondSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return taken;
 }
 
-/// The combined target of a stream, if the encoder does not have it yet. The lock is held.
+/// Returns an event with the stream's combined target if the encoder does not have it yet. The
+/// caller holds the lock.
 static EventPtr DueTarget(BondShared& shared, BondStream& stream) {
   std::vector<DataRate> rates;
   for (const GstLidarTargetBitrate& t : stream.targets)
@@ -208,7 +210,7 @@ static EventPtr DueTarget(BondShared& shared, BondStream& stream) {
   return EventPtr(gst_lidar_event_new_target_bitrate(&target));
 }
 
-/// Receivers ask for a key unit over each link; the encoder gets one request.
+/// Returns true if another link has brought the same request for a key unit.
 static bool IsRepeatedRequest(BondShared& shared, BondStream& stream, GstEvent* event) {
   if (!gst_video_event_is_force_key_unit(event)) return false;
   const Time now = shared.Now();
@@ -218,7 +220,7 @@ static bool IsRepeatedRequest(BondShared& shared, BondStream& stream, GstEvent* 
   return false;
 }
 
-/// Targets are combined; all else goes on as it is.
+/// Combines targets, drops repeated requests, and passes other events on.
 static gboolean BondSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   BondStream& stream = StreamOf(pad);
   if (IsRepeatedRequest(*BondOf(parent).shared, stream, event)) {
@@ -253,7 +255,7 @@ struct BondWork {
   std::vector<std::pair<PadPtr, EventPtr>> targets;
 };
 
-/// The lock is held.
+/// The caller holds the lock.
 static BondWork TakeWork(BondState& state) {
   BondShared& shared = *state.shared;
   BondWork work;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The inside of screamsink where a stream goes over several links.
+// The inside of a screamsink that sends a stream over several links.
 //
 //     sink_%u ── Scheduler ──▶ src_0 ── screamtx ── ecnudpsink
 //                        └───▶ src_1 ── screamtx ── ecnudpsink
 //
-// Threads: streaming threads push packets where the scheduler says; a thread of its own pushes
-// copies, and sends encoders the target. One mutex guards the scheduler and what is kept for
-// copies; no thread holds it while pushing. The screamtx call in with their own lock held.
+// Threads: streaming threads push packets to the links that the scheduler chooses. The bond's own
+// thread pushes copies, and sends targets to encoders. One mutex guards the scheduler and the
+// packets kept for copies; no thread pushes with it held. The screamtx call in with their own lock.
 #pragma once
 #include <gst/gst.h>
 
@@ -27,24 +27,26 @@ G_END_DECLS
 
 namespace lidar::gst {
 
-/// A bond above `links`, one screamtx each; floating. It stays in charge of them until
-/// BondRelease().
+/// Creates a bond above `links`, one screamtx each, which it uses until BondRelease(). The
+/// reference is floating.
 GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding::Method method,
                             bonding::TargetRule rule);
-/// Protects RTP before it goes to a link, so that all links send the same bytes. Below READY.
+/// Protects RTP before it goes to a link, so that all links send the same bytes. Call it below
+/// READY.
 void BondProtect(GstLidarScreamBond* bond, std::shared_ptr<SrtpLayer> layer);
-/// Separates the links again. Below READY.
+/// Separates the links again. Call it below READY.
 void BondRelease(GstLidarScreamBond* bond);
-/// A sink pad, linked to a pad of each link: `tx_pads` in the order of the links.
+/// Adds a sink pad that leads to a pad of each link: `tx_pads`, in the order of the links.
 GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_pads);
-/// Takes it away; the pads of the links remain.
+/// Removes a sink pad; the pads of the links remain.
 void BondRemoveStream(GstLidarScreamBond* bond, GstPad* sink);
-/// The pads of the links behind a sink pad of a bond.
+/// Returns the pads of the links behind a sink pad of a bond.
 std::vector<PadPtr> BondedPads(GstPad* sink);
 
-/// Packets cannot leave by a link at all, or can again.
+/// Sets whether packets can leave by the link at all.
 void BondSetUsable(GstLidarScreamBond* bond, std::size_t link, bool usable);
-/// Sets what the bond's thread calls each 0.1 s while it runs, without a lock. Below READY.
+/// Sets a function that the bond's thread calls each 0.1 s while it runs, without a lock. Call it
+/// below READY.
 void BondSetWatch(GstLidarScreamBond* bond, std::function<void()> watch);
 
 struct BondLinkStats {

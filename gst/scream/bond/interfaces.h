@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The machine's interfaces and addresses now, and what a link lacks of them.
+// The machine's interfaces and addresses, and what a link lacks of them.
 #pragma once
 #include <gio/gio.h>
 
@@ -14,12 +14,13 @@ namespace lidar::gst {
 class Interfaces {
  public:
   static Interfaces Now();
-  /// Why no packet can leave by the link for a peer of that family; empty if one can.
+  /// Returns why the link cannot carry packets for a peer of that family, or an empty text if it
+  /// can.
   std::string Lacks(const BondAddress& link, GSocketFamily family) const;
 
   struct Interface {
     bool up = false;
-    std::set<GSocketFamily> families;  // that it has an address of
+    std::set<GSocketFamily> families;  // of its addresses
   };
   std::map<std::string, Interface> by_name;
   std::set<std::string> addresses;

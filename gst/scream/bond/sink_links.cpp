@@ -33,10 +33,11 @@ GType BondTargetType() {
   return type;
 }
 
-// A link whose packets failed is tried again after so long.
+// Time after which a link whose packets failed is tried again.
 constexpr gint64 kRetryUs = 1 * G_USEC_PER_SEC;
 
-/// Returns no socket, and the reason, if the name is not found or no socket opens.
+/// Opens the link's socket. Returns none, and the reason, if its name is not found or no socket
+/// opens.
 OpenLink Open(const BondAddress& address, std::string* why) {
   OpenLink link{address, nullptr, nullptr, true};
   GError* error = nullptr;
@@ -56,7 +57,7 @@ GSocketFamily FamilyOf(const OpenLink& link) {
   return g_socket_address_get_family(link.peer.get());
 }
 
-/// Takes feedback from the link's peer only.
+/// Drops feedback that is not from the link's peer.
 GstPadProbeReturn DropStrangers(GstPad*, GstPadProbeInfo* info, gpointer peer) {
   const auto is_peer = [peer](GstBuffer* buffer) {
     GSocketAddress* from = SourceOf(buffer);
@@ -71,7 +72,7 @@ GstPadProbeReturn DropStrangers(GstPad*, GstPadProbeInfo* info, gpointer peer) {
   return gst_buffer_list_length(list) > 0 ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
 }
 
-/// Gives `to` what was set of `from`, an object of the same class.
+/// Copies the properties that were set on `from` to `to`, an object of the same class.
 void CopyProperties(GObject* from, GObject* to) {
   guint n = 0;
   GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(from), &n);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The links of a screamsink that sends over several.
+// The links of a screamsink that sends over several links.
 #pragma once
 #include <gst/gst.h>
 
@@ -29,11 +29,11 @@ struct OpenLink {
   SharedSocketAddress peer;
   bool usable = true;
 };
-/// The links of `addresses` whose names are found and whose sockets open; a warning names each that
-/// cannot carry packets now. Empty after an element error, where none can or the text is wrong.
+/// Opens the links of `addresses`; a warning names each link that cannot carry packets now. Posts
+/// an element error and returns nothing if none can or the text is wrong.
 std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses);
 
-/// The elements between the pads of a bin and the network: the bond, and the elements of each link.
+/// The elements between the pads of a bin and the network: the bond, and each link's own elements.
 class SinkLinks {
  public:
   struct Chain {
@@ -48,39 +48,39 @@ class SinkLinks {
   SinkLinks(const SinkLinks&) = delete;
   SinkLinks& operator=(const SinkLinks&) = delete;
 
-  /// Adds a stream; returns its pad for the packets of `tx_pad`, a pad of the first link.
+  /// Adds a stream. `tx_pad` is a pad of the first link; returns the pad that takes its packets.
   GstPad* Add(GstPad* tx_pad);
-  /// Takes it away; the first link's pad remains, and is returned.
+  /// Removes a stream. Returns the first link's pad, which remains.
   PadPtr Remove(GstPad* sink);
-  /// The chains by link.
+  /// The elements of each link, in the order of the links.
   const std::vector<Chain>& chains() const { return chains_; }
-  /// True for a warning that adds nothing: scream-link-changed reports what cannot be sent, and a
-  /// silent link does not matter if another one works.
+  /// Returns true for a redundant warning: scream-link-changed already reports packets that cannot
+  /// be sent, and a silent link does not matter while another one works.
   bool IsNoNews(GstObject* warns) const;
-  /// Packets are protected before they come to the links.
+  /// Sets the layer that protects packets before they come to the links.
   void Protect(std::shared_ptr<SrtpLayer> layer) { BondProtect(bond_, std::move(layer)); }
-  /// The array `links` of `stats`.
+  /// Adds the array `links` to `stats`.
   void AddStats(GstStructure* stats) const;
 
  private:
-  /// Counts of packets that a link's socket sent and failed to send.
+  /// Numbers of packets that a link's socket sent and failed to send.
   struct Health {
     guint64 sent = 0;
     guint64 errors = 0;
-    gint64 failed_us = 0;  // monotonic time
+    gint64 failed_us = 0;  // monotonic time of the last failure
   };
   void AddLink(const OpenLink& link);
   /// Looks for links that vanished or came back.
   void Watch();
-  /// Whether packets failed, and none left, since the last look, or lately.
+  /// Returns true if packets failed and none left, since the last call or shortly before it.
   bool Fails(std::size_t link);
   void Change(std::size_t link, const std::string& trouble);
 
   GstElement* bin_;
-  GstLidarScreamBond* bond_ = nullptr;  // the bin's
+  GstLidarScreamBond* bond_ = nullptr;  // owned by the bin
   std::vector<Chain> chains_;
   std::vector<OpenLink> links_;
-  std::vector<Health> health_;  // of the bond's thread
+  std::vector<Health> health_;  // used by the bond's thread only
 };
 
 }  // namespace lidar::gst
