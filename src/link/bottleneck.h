@@ -20,19 +20,19 @@ namespace lidar::link {
 struct AqmConfig {
   enum class Kind { kNone, kStep, kRamp, kPi2, kDualPi2 };
   Kind kind = Kind::kNone;
-  Duration low = std::chrono::milliseconds{2};    // ramp: no mark below
-  Duration high = std::chrono::milliseconds{10};  // ramp: every packet above; step: the threshold
-  Pi2Config pi2;  // of kPi2 and kDualPi2, which do not use the fields above
+  Duration low = std::chrono::milliseconds{2};    // ramp: no marks below this delay
+  Duration high = std::chrono::milliseconds{10};  // ramp: all marked above; step: threshold
+  Pi2Config pi2;  // for kPi2 and kDualPi2, which ignore the fields above
 };
 
-/// Either limit, or both; the time is turned into bytes at the capacity of the moment.
+/// A limit in bytes, in time or in both. The present capacity turns the time into bytes.
 struct QueueLimit {
   DataSize bytes = DataSize::Infinite();
   Duration time = Duration::max();
 };
 
 struct BottleneckConfig {
-  Time origin;  // when the capacity's time is 0
+  Time origin;  // start of `capacity`
   Capacity capacity = Capacity::Constant(DataRate::Infinite());
   QueueLimit limit;
   AqmConfig aqm;
@@ -50,7 +50,7 @@ struct BottleneckStats {
   std::uint64_t aqm_dropped = 0;
   std::uint64_t marked = 0;
   std::uint64_t duplicated = 0;
-  DataSize delivered_size;  // duplicates not counted
+  DataSize delivered_size;  // without duplicates
 };
 
 /// Times passed to calls must not decrease.
@@ -59,13 +59,13 @@ class Bottleneck {
   explicit Bottleneck(const BottleneckConfig& config);
 
   void Enqueue(Time now, const Packet& packet);
-  /// When to call Deliver next; Time::max() where nothing is on the way.
+  /// Returns when to call Deliver() next; Time::max() if no packet is under way.
   Time NextEventTime() const;
-  /// What has arrived or has been dropped up to `now`, in that order of time.
+  /// Returns the packets that arrived or were dropped up to `now`, in the order of these times.
   std::vector<Outcome> Deliver(Time now);
 
   DataSize queued() const { return queue_->size(); }
-  /// Counted as it happens in Deliver.
+  /// Deliver() updates the counts.
   const BottleneckStats& stats() const { return stats_; }
 
  private:
@@ -88,7 +88,7 @@ class Bottleneck {
   std::unique_ptr<Queue> queue_;
   Path path_;
   DataSize limit_ = DataSize::Infinite();
-  Time free_at_;  // the transmitter's
+  Time free_at_;  // when the transmitter becomes free
   std::priority_queue<Pending, std::vector<Pending>, Later> pending_;
   std::uint64_t order_ = 0;
   BottleneckStats stats_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How much a link can carry, over time.
+// The capacity of a link over time.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -12,31 +12,32 @@
 
 namespace lidar::link {
 
-/// A rate that is constant between changes. It starts with the link, at 0, and either repeats or
-/// keeps its last rate for ever. A rate of zero is a gap: no packet moves until it ends.
+/// A rate that is constant between changes, from time 0 of the link. It repeats, or keeps its last
+/// rate for ever. A rate of zero is a gap: no packet moves until its end.
 class Capacity {
  public:
   static Capacity Constant(DataRate rate);
-  /// Each rate for `each`; afterwards the last one stays, or all of them come again.
+  /// Has each rate for the time `each`. Afterwards it repeats all rates, or keeps the last one.
   static Capacity Steps(const std::vector<DataRate>& rates, Duration each, bool repeat = false);
-  /// Parses a `time_s rate_mbps` a line, times rising, `#` starts a comment. The first rate holds
-  /// from 0. If it repeats, the last rate lasts as long as the one before it. Returns nothing for
-  /// other text; `error` then says where and why.
+  /// Parses a line `time_s rate_mbps` for each change, with ascending times; `#` starts a comment.
+  /// The first rate holds from 0. In a repeating trace the last rate lasts as long as the rate
+  /// before it. Returns nothing for other text; `error` then has the place and the reason.
   static std::optional<Capacity> ParseTrace(std::string_view text, bool repeat, std::string* error);
 
-  /// The same link from `start` on. If it repeats, the part before `start` comes at the end.
+  /// Returns the same capacity from `start` on. In a repeating one the part before `start` comes
+  /// last.
   Capacity StartingAt(Duration start) const;
 
-  /// A link that is down from `from` to `until`, whatever the rate said; absolute, not repeated.
+  /// Sets the rate to 0 from `from` to `until`, which are link times and do not repeat.
   Capacity& AddOutage(Duration from, Duration until);
 
   DataRate RateAt(Duration t) const;
-  /// The first time after `t` at which the rate may be another one; Duration::max() for never.
+  /// Returns the first time after `t` at which the rate may change, or Duration::max() for never.
   Duration NextChange(Duration t) const;
-  /// When the last bit of `size` leaves, the first being sent at `start`; Duration::max() for
-  /// never.
+  /// Returns when the last bit of `size` leaves if the first leaves at `start`, or Duration::max()
+  /// for never.
   Duration Finish(Duration start, DataSize size) const;
-  /// Bytes that can be carried from `from` to `until`.
+  /// Returns the bytes that the link carries from `from` to `until`.
   DataSize Between(Duration from, Duration until) const;
 
   static constexpr std::size_t kMaxChanges = 1000000;
@@ -59,8 +60,8 @@ class Capacity {
   Segment ScheduledAt(Duration t) const;
   void RepeatEvery(Duration period);
 
-  std::vector<Change> changes_;  // the first at 0
-  Duration period_{0};           // 0: does not repeat
+  std::vector<Change> changes_;  // the first one is at 0
+  Duration period_{0};           // 0: the rates do not repeat
   double bits_per_period_ = 0;
   std::vector<Outage> outages_;
   Duration last_outage_{0};

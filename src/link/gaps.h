@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Gaps of a link's capacity, and how soon a sender is back after them.
+// Gaps of a link's capacity, and how fast a sender recovers from them.
 #pragma once
 #include <vector>
 
@@ -9,7 +9,7 @@
 
 namespace lidar::link {
 
-/// Times at which a gap ends: the capacity had been nearly nothing.
+/// Returns the times at which the capacity rises again from nearly nothing.
 std::vector<Duration> EndsOfGaps(const Capacity& capacity, Duration duration);
 
 /// A packet as it enters the link.
@@ -19,8 +19,8 @@ struct SentPacket {
 };
 
 struct RecoveryConfig {
-  Duration duration{0};  // of the run
-  /// What the source can use at most.
+  Duration duration{0};  // of the measured run
+  /// The highest rate of the source.
   DataRate source_max = DataRate::Infinite();
   double share = 0.8;
 };

@@ -60,7 +60,7 @@ class Sender {
     bool dropped = false;
   };
 
-  /// The decision falls when a scan's first bit would leave; a scan that has begun is finished.
+  /// Decides when a scan's first bit would leave. A scan that has begun is finished.
   bool IsWanted(const Slice& slice, double now) {
     Scan& scan = scans_[slice.scan];
     const bool begins = slice.first && slice.bits_left >= bits_;
@@ -86,13 +86,14 @@ class Sender {
   OracleResult result_;
 };
 
-/// When each link is free again.
+/// The times at which links become free.
 class FreeLinks {
  public:
   explicit FreeLinks(const std::vector<Capacity>& links)
       : links_(links), free_(links.size(), Duration{0}), ends_(links.size()) {}
 
-  /// Arrival of the slice made at `now`, if a link delivers it by `deadline`.
+  /// Sends a slice that is made at `now`. Returns when it arrives, if a link delivers it by
+  /// `deadline`.
   std::optional<Duration> Send(Duration now, Duration deadline, DataSize size, Bonding bonding) {
     for (std::size_t i = 0; i < links_.size(); ++i)
       ends_[i] = links_[i].Finish(std::max(now, free_[i]), size);
@@ -107,7 +108,7 @@ class FreeLinks {
  private:
   const std::vector<Capacity>& links_;
   std::vector<Duration> free_;
-  std::vector<Duration> ends_;  // of the slice, on each link
+  std::vector<Duration> ends_;  // end of the slice on each link
 };
 
 bool IsEmpty(const OracleConfig& c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a sender that knew a link in advance could deliver over it: the bound for every real one.
+// The upper bound for real senders: what a sender that knows a link in advance delivers.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,7 +15,7 @@ struct OracleConfig {
   DataRate rate;  // of all slices, headers included
   Duration duration = std::chrono::seconds{60};
   double share = 1;  // of the capacity
-  /// A scan whose first slice has waited longer is dropped whole, but for the newest one.
+  /// A scan whose first slice has waited longer is dropped whole, except for the newest scan.
   Duration max_age = std::chrono::milliseconds{200};
   Duration rtt = std::chrono::milliseconds{40};
   std::uint32_t slices_per_scan = 8;
@@ -25,7 +25,7 @@ struct OracleConfig {
 struct OracleResult {
   std::uint64_t scans = 0;
   std::uint64_t complete = 0;
-  std::vector<double> latency_ms;  // of the slices that arrive, sorted; propagation included
+  std::vector<double> latency_ms;  // of the slices that arrive, with propagation, sorted
 
   double Latency(double percent) const;
 };
@@ -35,11 +35,11 @@ OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config);
 /// The links that carry a slice, if the sender knows several in advance.
 enum class Bonding {
   kWhereWholeFirst,
-  kOnEach,  // on each link that delivers it in time
+  kOnEach,  // on each link that can deliver it in time
 };
-/// The same over several links at once: slices that no link delivers within `max_age` are dropped,
-/// and a scan counts if all its slices arrive. The results of a single link differ from
-/// AskOracle(), which finishes a scan that has begun.
+/// The same over several links: a slice that no link delivers within `max_age` is dropped, and a
+/// scan counts if all its slices arrive. AskOracle() differs for a single link: it finishes each
+/// scan that has begun.
 OracleResult AskOracleOfLinks(const std::vector<Capacity>& links, const OracleConfig& config,
                               Bonding bonding = Bonding::kWhereWholeFirst);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the link model sees of a packet, and what became of it.
+// Packets as the link model sees them, and their fates.
 #pragma once
 #include <cstdint>
 
@@ -12,27 +12,27 @@ namespace lidar::link {
 enum class Ecn : std::uint8_t { kNotEct = 0, kEct1 = 1, kEct0 = 2, kCe = 3 };
 
 struct Packet {
-  DataSize size;  // on the wire, IP header included
+  DataSize size;  // with IP header
   Ecn ecn = Ecn::kNotEct;
-  std::uint64_t id = 0;  // the caller's: the model hands it back untouched
+  std::uint64_t id = 0;  // of the caller; the model does not use it
 };
 
 enum class Fate : std::uint8_t {
   kDelivered,
   kLost,       // random loss
   kQueueFull,  // tail drop
-  kAqmDropped  // an AQM that signals packets without ECN by dropping them
+  kAqmDropped  // an AQM dropped it, as it could not mark it
 };
 
-/// A packet at the end of its way. `sojourn` runs from the arrival in the queue to the start of
-/// transmission; where the packet was dropped, to the drop.
+/// A packet that arrived or was dropped. `sojourn` runs from its arrival in the queue to its
+/// transmission or drop.
 struct Outcome {
-  Packet packet;  // with the ECN bits it left with
+  Packet packet;  // with its final ECN bits
   Fate fate = Fate::kDelivered;
-  Time sent;     // entered the link
-  Time arrival;  // left it; of a dropped packet, the time of the drop
+  Time sent;     // when it entered the link
+  Time arrival;  // when it left the link or was dropped
   Duration sojourn{0};
-  bool duplicate = false;  // a second copy, right behind the first
+  bool duplicate = false;  // a second copy that follows the first
 
   bool delivered() const { return fate == Fate::kDelivered; }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What happens to packets behind the bottleneck: jitter, bursts, reordering, duplication.
+// Effects on packets behind the bottleneck: jitter, bursts, reordering, duplication.
 #pragma once
 #include <algorithm>
 
@@ -10,18 +10,19 @@ namespace lidar::link {
 
 struct PathConfig {
   Duration jitter{0};          // extra delay between 0 and this; keeps the order
-  Duration burst_interval{0};  // packets come out only at multiples of this; 0: at once
-  double reorder = 0;          // probability to be held back by reorder_delay, past later ones
+  Duration burst_interval{0};  // packets leave only at multiples of this; 0: at once
+  double reorder = 0;          // probability to be held back by reorder_delay
   Duration reorder_delay = std::chrono::milliseconds{5};
   double duplicate = 0;  // probability to arrive twice
-  int jitter_draws = 1;  // of which `jitter` is the mean: 1 is uniform, 3 nearly a Gaussian
+  int jitter_draws = 1;  // uniform draws that are averaged: 3 are nearly a Gaussian
 };
 
 class Path {
  public:
   Path(const PathConfig& config, std::uint64_t seed) : config_(config), random_(seed) {}
 
-  /// Arrival of a packet that would arrive at `t` on an ideal path; `t` not decreasing.
+  /// Returns when a packet arrives that would arrive at `t` on an ideal path. `t` must not
+  /// decrease.
   Time Arrival(Time t) {
     if (config_.jitter > Duration{0})
       for (int i = 0; i < config_.jitter_draws; ++i)

@@ -6,7 +6,7 @@
 namespace lidar::link {
 namespace {
 
-/// A link that has been idle for this long starts with a fresh controller.
+/// The controller restarts after a link was idle for this time.
 constexpr Duration kForget = std::chrono::seconds{1};
 
 bool IsL4s(Ecn ecn) { return ecn == Ecn::kEct1 || ecn == Ecn::kCe; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The PI2 controller of RFC 9332 (DualQ Coupled AQM), for one queue or for a coupled pair.
+// The PI2 controller of RFC 9332 (DualQ Coupled AQM), for one queue or two coupled queues.
 #pragma once
 #include <memory>
 
@@ -11,22 +11,22 @@
 namespace lidar::link {
 
 struct Pi2Config {
-  Duration target = std::chrono::milliseconds{15};  // of the classic queue's delay
+  Duration target = std::chrono::milliseconds{15};  // delay of the classic queue
   Duration t_update = std::chrono::milliseconds{16};
   double alpha_per_s = 0.16;  // integral gain
   double beta_per_s = 3.2;    // proportional gain
-  double k = 2;               // coupling of the L4S signal to the classic one
-  Duration t_shift = std::chrono::milliseconds{50};  // how far L4S goes ahead in a pair of queues
-  Duration low = std::chrono::microseconds{475};     // L4S's own ramp
+  double k = 2;               // factor from the classic signal to the L4S signal
+  Duration t_shift = std::chrono::milliseconds{50};  // advantage of L4S over classic
+  Duration low = std::chrono::microseconds{475};     // ramp of the L4S queue
   Duration high = std::chrono::microseconds{1000};
-  bool knows_l4s = true;  // false, in one queue: ECT(1) is marked as rarely as ECT(0)
+  bool knows_l4s = true;  // false: a single queue marks ECT(1) as rarely as ECT(0)
 };
 
-/// The base probability p', in steps of t_update however seldom it is asked.
+/// The base probability p', in steps of t_update.
 class PiController {
  public:
   explicit PiController(const Pi2Config& config) : config_(config) {}
-  /// `qdelay`: the classic queue's delay at `now`, taken for every step since the last call.
+  /// Updates p' for each step since the last call. `qdelay` is the classic queue's delay at `now`.
   void Update(Time now, Duration qdelay);
   double p() const { return p_; }
 
@@ -38,12 +38,13 @@ class PiController {
   bool started_ = false;
 };
 
-/// A single queue. Classic packets are marked (ECT(0)) or dropped with p'^2. ECT(1) is marked with
-/// k p', or with p'^2 without L4S.
+/// Returns a single queue. Classic packets are marked (ECT(0)) or dropped with p'^2. ECT(1) packets
+/// are marked with k p', or with p'^2 if `knows_l4s` is false.
 std::unique_ptr<Aqm> Pi2Aqm(const Pi2Config& config, Random random);
 
-/// Two queues: L4S (ECT(1), CE) with its own ramp and the coupled signal, and classic. The one
-/// whose head waits longer goes first, L4S ahead by t_shift.
+/// Returns two queues. The L4S queue (ECT(1), CE) has a ramp and the coupled signal, the other
+/// queue is classic. The queue whose head has waited longer is served first; t_shift is added for
+/// L4S.
 std::unique_ptr<Queue> DualPi2Queue(const Pi2Config& config, Random random);
 
 }  // namespace lidar::link

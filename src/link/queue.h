@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What waits before a link, and which packet goes next.
+// Packets that wait for a link, and the order in which they leave.
 #pragma once
 #include <cstddef>
 #include <deque>
@@ -26,9 +26,9 @@ class Queue {
  public:
   virtual ~Queue() = default;
   virtual void Push(const Waiting& waiting) = 0;
-  /// The next packet for a transmitter that is free at `now`. Not to be called when empty.
+  /// Returns the next packet for a transmitter that is free at `now`. The queue must not be empty.
   virtual Leaving Pop(Time now) = 0;
-  /// When the first of what waits arrived; Time::max() where nothing does.
+  /// Arrival time of the oldest waiting packet; Time::max() for an empty queue.
   virtual Time Oldest() const = 0;
   virtual std::size_t packets() const = 0;
   virtual DataSize size() const = 0;
@@ -36,7 +36,7 @@ class Queue {
   bool empty() const { return packets() == 0; }
 };
 
-/// First in, first out.
+/// A queue that is first in, first out.
 class FifoQueue final : public Queue {
  public:
   explicit FifoQueue(std::unique_ptr<Aqm> aqm) : aqm_(std::move(aqm)) {}

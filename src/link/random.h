@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Random numbers that are the same on every machine, which the standard distributions are not.
+// Random numbers that are the same on every machine, unlike the standard distributions.
 #pragma once
 #include <cstdint>
 #include <random>
@@ -12,8 +12,8 @@ class Random {
 
   /// Uniform in [0, 1).
   double Uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  /// True with `probability`; draws nothing for 0, so that a switched-off feature leaves the
-  /// sequence of the others alone.
+  /// Returns true with `probability`. Draws no number for 0, so that a switched-off feature does
+  /// not shift the sequence of others.
   bool Chance(double probability) { return probability > 0 && Uniform() < probability; }
 
  private:

@@ -16,15 +16,15 @@ constexpr Duration kStep = std::chrono::milliseconds{100};
 constexpr double kGapsPerSecond = 0.28;
 constexpr double kEdgesPerSecond = 1.0 / 30;
 constexpr double kEdgeGapsPerSecond = 1.2;
-constexpr double kEdgeShare = 0.35;  // of the rate, at the edge of a cell
+constexpr double kEdgeShare = 0.35;  // lowest rate at the edge of a cell, relative to the rate
 constexpr double kShortestEdge_s = 2;
 constexpr double kLongestEdge_s = 6;
-constexpr double kRateCorrelation = 0.87;  // of the rate's logarithm, from step to step
+constexpr double kRateCorrelation = 0.87;  // of the logarithm of the rate, from step to step
 constexpr double kDeviation = 0.5;
 
 struct GapLength {
   double probability;
-  int shortest, longest;  // steps
+  int shortest, longest;  // length in steps
 };
 constexpr std::array<GapLength, 4> kGapLengths = {
     {{0.5, 1, 1}, {0.25, 2, 3}, {0.17, 4, 6}, {0.08, 7, 20}}};
@@ -33,7 +33,7 @@ class Drive {
  public:
   explicit Drive(std::uint64_t seed) : random_(seed) {}
 
-  /// Relative rate of the next step; 0 in a gap.
+  /// Returns the rate of the next step, relative to the mean; 0 in a gap.
   double Next() {
     fading_ = kRateCorrelation * fading_ +
               std::sqrt(1 - kRateCorrelation * kRateCorrelation) * kDeviation * Normal();
@@ -53,7 +53,7 @@ class Drive {
  private:
   static int Steps(double seconds) { return static_cast<int>(seconds / Seconds(kStep)); }
 
-  /// The sum of twelve uniform numbers is near enough, and the same on every machine.
+  /// Returns the sum of twelve uniform numbers: nearly Gaussian, and the same on every machine.
   double Normal() {
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += random_.Uniform();

@@ -9,23 +9,24 @@
 
 namespace lidar::link {
 
-/// A drive as measured uplinks of 5G are: the rate wanders by a factor of two or three within
-/// seconds, cells are handed over in gaps of 0.1 to 2 s, and at the edge of a cell the rate fades
-/// and gaps come close together.
+/// A drive like measured 5G uplinks. The rate changes by a factor of two or three within seconds,
+/// handovers are gaps of 0.1 to 2 s, and at the edge of a cell the rate fades and gaps come close
+/// together.
 struct DriveTraceConfig {
   std::uint64_t seed = 1;
   Duration duration = std::chrono::seconds{180};
-  DataRate mean = DataRate::BitsPerSecond(8e6);     // about; gaps included
+  DataRate mean = DataRate::BitsPerSecond(8e6);     // approximate, with gaps
   DataRate in_gaps = DataRate::BitsPerSecond(2e5);  // nearly nothing
 };
-/// Text for Capacity::ParseTrace: the rate of each tenth of a second. The same on every machine.
+/// Returns text for Capacity::ParseTrace(): the rate of each tenth of a second, the same on every
+/// machine.
 std::string MakeDriveTrace(const DriveTraceConfig& config);
 
 struct GapTraceConfig {
   DataRate rate = DataRate::BitsPerSecond(8e6);
   DataRate in_gaps = DataRate::BitsPerSecond(2e5);
   Duration gap = std::chrono::milliseconds{100};
-  Duration every = std::chrono::seconds{2};  // each period ends with its gap
+  Duration every = std::chrono::seconds{2};  // period; each ends with its gap
   Duration duration = std::chrono::seconds{180};
 };
 std::string MakeGapTrace(const GapTraceConfig& config);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scenarios of one link with flows of others.
+// Scenarios of a link that is shared with other flows.
 #include <utility>
 
 #include "src/sim/scenarios.h"
@@ -46,7 +46,7 @@ Scenario BesideWithAqm(const std::string& name, TcpKind other, AqmConfig::Kind a
   return s;
 }
 
-/// The draft alone is what the reference sends, with as many frames a second as ours.
+/// The other flow is the draft alone, with the reference's frame rate equal to ours.
 Scenario BesideDraft(Duration phase, const Parameters& p) {
   Scenario s = BesideWithAqm("draft_ramp_20M_phase_" + std::to_string(phase / 1ms) + "ms",
                              TcpKind::kCubic, AqmConfig::Kind::kRamp, p);
@@ -59,7 +59,7 @@ Scenario BesideDraft(Duration phase, const Parameters& p) {
   return s;
 }
 
-/// Two of ours, whose frames never meet.
+/// Two of our flows, whose frames are `phase` apart.
 Scenario AtPhase(Duration phase, const Parameters& p) {
   Scenario s =
       Beside("two_flows_phase_" + std::to_string(phase / 1ms) + "ms", 20, TcpKind::kCubic, p);
@@ -75,7 +75,7 @@ Scenario AtPhase(Duration phase, const Parameters& p) {
 
 std::vector<Scenario> BesideScenarios(const Parameters& p) {
   std::vector<Scenario> all;
-  // Shorter ones at 8 and 20 Mbit/s would have less than ten packets.
+  // Shorter queues at 8 and 20 Mbit/s would hold less than ten packets.
   const std::pair<Duration, double> fifos[] = {{15ms, 8}, {5ms, 20},  {10ms, 20}, {2ms, 50},
                                                {5ms, 50}, {10ms, 50}, {20ms, 20}, {100ms, 20}};
   for (const auto& [length, mbps] : fifos)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scenarios with something that happens: what is measured begins with it, or just behind it.
+// Scenarios with an event. Measurement begins with it or shortly after it.
 #include "src/sim/scenarios.h"
 #include "src/sim/simulated_time.h"
 
@@ -21,14 +21,14 @@ Scenario Event(const std::string& name, double mbps, const Parameters& p) {
   return s;
 }
 
-/// A queue of 1 ms drops what is above the link's rate, as a policer does.
+/// A queue of 1 ms drops all packets above the link's rate, as a policer does.
 Scenario Policed(Scenario s) {
   s.config.forward.limit.time = 1ms;
   s.config.forward.aqm.kind = link::AqmConfig::Kind::kNone;
   return s;
 }
 
-/// A burst of losses looks like a policer; the link then becomes faster.
+/// A burst of losses looks like a policer. Then the link becomes faster.
 Scenario PolicerLifted(const Parameters& p) {
   Scenario s = Event("policer_lifted", 10, p);
   s.config.forward.capacity = *link::Capacity::ParseTrace("0 10\n20 80\n", false, nullptr);
@@ -62,7 +62,7 @@ Scenario ClockSet(const std::string& name, Duration sender, Duration receiver,
   return s;
 }
 
-/// 200 ppm are 12 ms a minute.
+/// A drift of 200 ppm is 12 ms a minute.
 Scenario ClockDrift(const std::string& name, link::AqmConfig::Kind aqm, const Parameters& p) {
   Scenario s = Event(name, 8, p);
   s.config.forward.aqm.kind = aqm;
@@ -72,7 +72,7 @@ Scenario ClockDrift(const std::string& name, link::AqmConfig::Kind aqm, const Pa
   return s;
 }
 
-/// An encoder that needs a fifth of its target, and later all.
+/// An encoder that first needs a fifth of its target, and later all of it.
 Scenario LimitedThenFree(const Parameters& p) {
   Scenario s = Event("limited_then_free", 20, p);
   s.config.flows.front().sources[0].obedience = [](Duration t) { return t < 15s ? 0.2 : 1.0; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Figures of simulated runs by name, and the goals that they are to reach.
+// Named figures of simulated runs, and their goals.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace lidar::scream::test {
 struct FigureKind {
   const char* name;
   bool more_is_better = false;
-  /// Differences up to `absolute` plus `relative` of the value do not count.
+  /// Differences up to `absolute` plus `relative` of the value are ignored.
   double absolute = 0, relative = 0;
 };
 
@@ -23,14 +23,15 @@ struct Figure {
   std::optional<double> goal{};
 
   bool reached() const { return !goal || (kind->more_is_better ? value >= *goal : value <= *goal); }
-  /// The number of such differences by which it is better than `base`; negative for worse.
+  /// Returns the difference from `base` as a multiple of the ignored one: above 0 if better, below
+  /// 0 if worse.
   double BetterThan(const Figure& base) const;
 };
 
-/// What each scenario of the matrix is to reach, and the other figures that are compared.
+/// Returns the figures of a matrix scenario, with their goals.
 std::vector<Figure> Figures(const Scenario& scenario, const ScenarioMetrics& metrics);
 std::vector<Figure> Figures(const RmcatCase& rmcat, const RmcatMetrics& metrics);
-/// Scenarios that have a goal.
+/// Names of the scenarios that have a goal.
 std::vector<std::string> ScenariosWithGoals();
 
 }  // namespace lidar::scream::test

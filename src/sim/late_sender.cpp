@@ -14,7 +14,7 @@ namespace {
 
 constexpr Duration kTick = std::chrono::microseconds{500};
 constexpr double kPacketBits = 9600;
-/// The queue leaves a little faster than the link is known to carry it.
+/// Speed at which the queue leaves, relative to the known capacity.
 constexpr double kPacing = 1.25;
 
 /// Times are in seconds, sizes in bits.
@@ -59,7 +59,7 @@ class LateSender {
     double bits = 0;
     double bits_left = 0;
     double sent = 0;
-    Slice slice;  // as it was when this packet had left
+    Slice slice;  // copy of the slice when this packet left
   };
   struct Ack {
     double at = 0;
@@ -121,7 +121,7 @@ class LateSender {
   }
 
   const LateSenderConfig c_;
-  const double period_;  // of the slices
+  const double period_;  // period of the slices
   std::vector<Scan> scans_;
   std::deque<Slice> waiting_;
   std::deque<Packet> network_;
@@ -129,7 +129,7 @@ class LateSender {
   std::vector<double> queue_ms_;
   std::uint64_t made_ = 0;
   double in_flight_ = 0;
-  double allowed_ = 0;  // to leave now
+  double allowed_ = 0;  // bits that may leave now
   double carried_ = 0, usable_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The yardstick for adaptive senders: a sender that knows all of a link, one round trip late.
+// The yardstick for adaptive senders: it knows the link's capacity one round trip late.
 #pragma once
 #include <cstdint>
 
@@ -9,10 +9,10 @@
 
 namespace lidar::loop {
 
-/// Slices as large as a share of the known capacity, within the source's limits.
+/// Each slice is a share of the known capacity, within the source's limits.
 struct LateSenderConfig {
-  double share = 0.8;  ///< 0: never adapts, each slice has the lowest rate
-  DataRate min;        // of the source
+  double share = 0.8;  ///< 0: does not adapt, all slices have the lowest rate
+  DataRate min;        // rates of the source
   DataRate max;
   Duration duration = std::chrono::seconds{60};
   Duration rtt = std::chrono::milliseconds{40};
@@ -27,12 +27,12 @@ struct LateSenderConfig {
 struct LateSenderReport {
   std::uint64_t complete = 0;
   std::uint64_t in_time = 0;
-  double utilisation = 0;   // of what the link can carry and the source can use
-  double queue_p95_ms = 0;  // in the network
+  double utilisation = 0;   // relative to what the link carries and the source uses at most
+  double queue_p95_ms = 0;  // of the network's queue
 };
 
-/// Its window is the product of the known rate and the round trip, so at a gap no more is under way
-/// than fills the link.
+/// The window is the known rate times the round trip, so that at a gap only a link's fill is under
+/// way.
 LateSenderReport SendLate(const link::Capacity& capacity, const LateSenderConfig& config);
 
 }  // namespace lidar::loop

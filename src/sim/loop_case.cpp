@@ -58,13 +58,13 @@ scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
   return config;
 }
 
-/// What the source can use, the camera included.
+/// Returns the highest rate of the source, with the camera.
 DataRate SourceMax(const LoopCase& c, const LoopReport& report) {
   if (c.frames) return DataRate::Infinite();
   return DataRate::BitsPerSecond(report.max_mbps * 1e6) + (c.camera ? kCameraMax : DataRate());
 }
 
-/// What the link can carry and the source can use [bit] in a time of the run.
+/// Returns the bits that the link carries and the source can use, from `from` to `until`.
 double Usable(const LoopCase& c, const LoopReport& report, Duration from, Duration length) {
   const double link = c.capacity.Between(from, from + length).bits();
   return std::min(link, SourceMax(c, report).bits_per_second() * Seconds(length));
@@ -112,7 +112,7 @@ void AskOracles(const LoopCase& c, LoopReport* report) {
   report->oracle_at_mean = AskOracle(c.capacity, oracle);
 }
 
-/// Delivered bits over the usable ones, in tenths of a second.
+/// Returns delivered bits relative to usable bits, in steps of a tenth of a second.
 double Utilisation(const LoopCase& c, const SimulationResult& result, const LoopReport& report) {
   double used = 0, usable = 0;
   for (Duration t = kSettle; t + kBin <= c.duration; t += kBin)

@@ -19,9 +19,9 @@ struct LoopCase {
   std::string name;
   link::Capacity capacity = link::Capacity::Constant(DataRate::BitsPerSecond(8e6));
   SourceOptions source;
-  /// Sends frames instead, which obey the target exactly and can use any rate, 50 a second.
+  /// Sends frames, 50 a second, which obey each target exactly.
   bool frames = false;
-  /// Adds frames that obey the target exactly, at half of the priority of the LiDAR.
+  /// Adds frames that obey each target exactly, with half of the LiDAR's priority.
   bool camera = false;
   Duration duration = std::chrono::seconds(60);
   Duration rtt = std::chrono::milliseconds(40);
@@ -31,23 +31,23 @@ struct LoopCase {
 };
 
 struct LoopReport {
-  // Scans
+  // Scans:
   std::uint64_t captured = 0;
   std::uint64_t skipped = 0;  // by the encoder
   std::uint64_t complete = 0;
-  std::uint64_t in_time = 0;          ///< of these: each slice within the oracle's age
-  link::OracleResult oracle_at_min;   // for scans of the lowest bitrate that keeps the bound
-  link::OracleResult oracle_at_mean;  // for scans of the bitrate that the encoder put out
-  // Slices
+  std::uint64_t in_time = 0;          ///< of `complete`: each slice within the oracle's age
+  link::OracleResult oracle_at_min;   // for scans of the lowest bitrate that keeps the error bound
+  link::OracleResult oracle_at_mean;  // for scans of the bitrate that the encoder sent
+  // Slices:
   scream::test::Percentiles capture_to_cloud_ms;
-  // Rates, on the wire
+  // Rates on the wire:
   double min_mbps = 0, max_mbps = 0;  // of the source
   double encoded_mbps = 0;
-  double utilisation = 0;  // of what the link can carry and the source can use
-  // The network
+  double utilisation = 0;  // relative to what the link carries and the source can use
+  // The network:
   scream::test::Percentiles queue_ms;
   double own_loss = 0;
-  /// Time from a gap's end until the sender first fills 80 % of what is usable for 100 ms [s].
+  /// Time [s] from a gap's end until the sender fills 80 % of the usable rate for 100 ms.
   scream::test::Percentiles recovery_s;
   std::size_t gaps = 0;
 
@@ -64,17 +64,17 @@ struct LoopRun {
 
 LoopRun RunLoop(const LoopCase& loop_case);
 
-/// The same case from another place of its trace on, `n` times 7.33 s later, and of another scene.
-/// Runs over drives are chaotic: only the mean of several is meaningful.
+/// Returns the same case with another scene, `n` times 7.33 s later in its trace. Runs over drives
+/// are chaotic, so only the mean of several runs says something.
 LoopCase Later(LoopCase loop_case, int n);
 
 struct NamedTrace {
   std::string name;
   link::Capacity capacity;
 };
-/// Regular gaps, and drives that are generated.
+/// Returns the traces with regular gaps, and generated drives.
 std::vector<NamedTrace> BuiltInTraces();
-/// Reads a file of `time_s rate_mbps`. Returns nothing and sets `error` if it is anything else.
+/// Reads a file of `time_s rate_mbps`. For any other file it returns nothing and sets `error`.
 std::optional<NamedTrace> ReadTrace(const std::string& path, std::string* error);
 
 }  // namespace lidar::loop

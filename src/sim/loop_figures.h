@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Figures of runs over links with gaps, as means over several starts.
+// Figures of runs over links with gaps, averaged over several starts.
 #pragma once
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace lidar::loop {
 
-/// Each of `starts` runs begins elsewhere in the trace; see Later().
+/// Runs the case from `starts` places of its trace; see Later().
 std::vector<scream::test::Figure> LoopFigures(const LoopCase& loop_case, int starts);
 
 }  // namespace lidar::loop

@@ -6,13 +6,13 @@
 namespace lidar::loop {
 namespace {
 
-constexpr double kCompleteOverDrives = 0.97;  // of the oracle's count
+constexpr double kCompleteOverDrives = 0.97;  // relative to the oracle's count
 constexpr double kCompleteOverGaps = 0.98;
 constexpr double kLatencyOverOracle_ms = 40;
 constexpr double kUtilisation = 0.70;
 constexpr double kRecovery_s = 0.3;
 constexpr double kFramesUtilisation = 0.80;
-// A sender that knows a link of such gaps one round trip late has a queue of 94 ms.
+// A sender that knows such a link one round trip late has a queue of 94 ms.
 constexpr double kFramesQueueFrequentGaps_ms = 99;
 constexpr double kFramesQueueLongGaps_ms = 15;
 constexpr double kFramesQueue_ms = 6;

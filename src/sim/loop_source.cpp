@@ -17,7 +17,7 @@ rate::SyntheticCodec::Parameters CodecOf(const SourceOptions& options) {
 rate::ControllerParameters ControllerOf(const SourceOptions& options) {
   rate::ControllerParameters p;
   p.limits.finest_step_m = 0.001;
-  p.limits.coarsest_step_m = 2 * options.max_error_m;  // of ranges
+  p.limits.coarsest_step_m = 2 * options.max_error_m;  // of range values
   p.limits.intensity_bits = options.intensity_bits;
   p.degradation = options.degradation;
   return p;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An encoder in simulation: the real rate controller over slices whose sizes follow a law.
+// A simulated encoder: the real rate controller, with slices whose sizes follow a formula.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -15,13 +15,13 @@ struct SourceOptions {
   double scans_per_second = 10;
   double max_error_m = 0.05;
   unsigned intensity_bits = 0;
-  double bits_per_return = 7.1;  // geometry at 1 cm; r_min is 1.4 Mbit/s at max_error_m
+  double bits_per_return = 7.1;  // at 1 cm; the lowest rate is then 1.4 Mbit/s
   rate::DegradationPreference degradation = rate::DegradationPreference::kMaintainAccuracy;
-  bool adapts = true;  // false: always the coarsest step, whatever the target
+  bool adapts = true;  // false: always uses the coarsest step
   unsigned seed = 1;
 };
 
-/// Codes slices to a target as dracoenc does; sizes and bounds are those on the wire.
+/// Codes slices for a target as dracoenc does. Sizes and bounds are those on the wire.
 class LoopSource {
  public:
   explicit LoopSource(const SourceOptions& options);
@@ -33,7 +33,7 @@ class LoopSource {
 
  private:
   static DataRate Wire(DataRate media) { return media / kPayloadShare; }
-  static constexpr double kPayloadShare = 0.96;  // of a packet; the rest is headers
+  static constexpr double kPayloadShare = 0.96;  // share of a packet that is no header
 
   rate::EncodedSize Encode(const rate::SliceFeatures& features, const rate::Decision& decision);
 

@@ -16,12 +16,12 @@ struct WirePacket {
   int source = 0;
   std::uint32_t ssrc = 0;
   std::uint16_t seq = 0;
-  std::size_t frame = 0;  // of the flow
+  std::size_t frame = 0;  // index of the frame in its flow
   bool marker = false;
   DataSize size;
-  std::vector<std::uint8_t> report{};  // of a receiver; empty for media
+  std::vector<std::uint8_t> report{};  // bytes of a receiver's report; empty for media
   const Route* route = nullptr;        // outlives the packet
-  std::size_t hop = 0;                 // in it
+  std::size_t hop = 0;                 // index in `route`
   Time sent{};
   Duration sojourn{0};  // in the queues so far
 };
@@ -46,7 +46,7 @@ class Network {
     return next;
   }
 
-  /// What has left its last link, or was lost, up to `now`.
+  /// Returns the packets that left their last link or were lost, up to `now`.
   std::vector<link::Outcome> Deliver(Time now) {
     std::vector<link::Outcome> out;
     for (link::Bottleneck& link : links_) {

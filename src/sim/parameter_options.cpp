@@ -9,7 +9,7 @@
 namespace lidar::scream::test {
 namespace {
 
-/// NAME=VALUE
+/// Takes NAME=VALUE.
 bool Set(const std::string& text, Parameters* parameters) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return false;

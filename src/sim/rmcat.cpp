@@ -11,7 +11,7 @@ constexpr Duration kRateBin = std::chrono::milliseconds(200);  // RFC 8868, 3
 
 double MegabitsPerSecond(double bytes, Duration time) { return bytes * 8 / 1e6 / Seconds(time); }
 
-/// What each bin of the measured time has of a flow [bytes].
+/// Returns the bytes of a flow in each bin of the measured time.
 std::vector<double> Bins(const RmcatCase& c, const SimulationResult& result, int flow) {
   const Time from = c.config.forward.origin + c.from;
   std::vector<double> bins(static_cast<std::size_t>((c.until - c.from) / kRateBin));
@@ -46,7 +46,7 @@ bool OthersOnLink0(const RmcatCase& c, int flow) {
   return flow >= ours && c.config.others[static_cast<std::size_t>(flow - ours)].route.front() == 0;
 }
 
-/// Bytes that link 0 can carry of what its flows can use, others being greedy.
+/// Bytes that link 0 carries of what its flows can use. Other flows can use all.
 double Usable(const RmcatCase& c) {
   double most = 0;
   for (const int flow : c.forward)

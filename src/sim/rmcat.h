@@ -14,9 +14,9 @@ struct RmcatCase {
   std::string section;  ///< "RFC 8867, 5.1"
   std::string description;
   SimulationConfig config;
-  /// What is measured; before it flows may still join.
+  /// The measured time. Flows may join before it.
   Duration from{0}, until{0};
-  /// The flows of ours that pass link 0 forward, whose shares are compared.
+  /// Our flows on the way there over link 0. Their shares are compared.
   std::vector<int> forward = {0};
 };
 
@@ -26,18 +26,18 @@ std::vector<RmcatCase> WiredCases(const Parameters& parameters);
 std::vector<RmcatCase> WirelessCases(const Parameters& parameters);
 
 struct RmcatMetrics {
-  double utilisation = 0;  ///< of what link 0 carries and its flows can use
+  double utilisation = 0;  ///< relative to what link 0 carries and its flows can use
   double media_mbps = 0;   ///< mean of the forward flows
-  double variation = 0;    ///< standard deviation over mean of their rates in 200 ms, on average
+  double variation = 0;    ///< standard deviation of their rates in 200 ms over the mean, averaged
   double jain = 1;         ///< of the forward flows
   Percentiles queue_ms;    ///< of their packets
   Percentiles frame_ms;    ///< creation to last packet
   double loss = 0;         ///< of all media packets
-  double dropped = 0;      ///< of all frames, by senders
-  double feedback = 0;     ///< bytes of reports over bytes of media
-  double others_mbps = 0;  ///< mean of the flows of others, while they run
-  double file_s = 0;       ///< mean time that a file of theirs took
-  /// Delivered of two streams of one sender.
+  double dropped = 0;      ///< part of all frames that senders dropped
+  double feedback = 0;     ///< size of reports relative to media
+  double others_mbps = 0;  ///< mean of the other flows while they run
+  double file_s = 0;       ///< mean time of a file of the other flows
+  /// Delivered bytes of a sender's first stream, relative to its second.
   std::optional<double> stream_ratio;
 };
 

@@ -12,7 +12,7 @@ constexpr Duration kOneWay = std::chrono::milliseconds(50);
 constexpr Duration kFifo = std::chrono::milliseconds(300);
 constexpr Duration kJitter = std::chrono::milliseconds(30);
 
-/// The capacity from `at` on.
+/// The capacity from time `at`.
 struct CapacityStep {
   double at_s = 0;
   double mbps = 0;
@@ -137,7 +137,7 @@ RmcatCase ShortTcp(const Parameters& p) {
   return c;
 }
 
-/// The three flows of RFC 8867, 5.8, measured once the first has resumed.
+/// The three flows of RFC 8867, 5.8. Measurement begins when the first flow has resumed.
 RmcatCase PauseAndResume(const Parameters& p) {
   RmcatCase c =
       ThreeFlows("5.8", "pause_resume", "three flows, the first pauses from 40 to 60 s", p);
@@ -157,7 +157,7 @@ RmcatCase Priorities(const Parameters& p) {
   return c;
 }
 
-/// The first flow passes both links, each of the others one.
+/// The first flow passes both links, each other flow passes one.
 RmcatCase TwoBottlenecks(const Parameters& p) {
   RmcatCase c =
       Case("6.3", "two_bottlenecks", "one flow over two links, each with a flow of its own",

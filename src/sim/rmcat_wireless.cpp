@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RFC 8869. Its radios are system simulators; here a cell is a capacity over time, and Wi-Fi one
-// air that both directions share and whose packets come out in aggregates.
+// Test cases of RFC 8869. Its radios are system simulators; here a cell is a capacity over time.
+// Wi-Fi is a channel that both directions share, with packets in aggregates.
 #include <cmath>
 
 #include "src/link/random.h"
@@ -55,7 +55,7 @@ RmcatCase Wireless(const char* section, const std::string& name, const std::stri
   return c;
 }
 
-/// Users come and go; the cell serves those that are there alike.
+/// Users come and go, and the cell serves all of them equally.
 link::Capacity SharedCell(double mbps, double mean_users) {
   link::Random random(7);
   std::string text, error;
@@ -71,7 +71,7 @@ link::Capacity SharedCell(double mbps, double mean_users) {
 RmcatCase Cellular(const char* section, const char* name, const std::string& description,
                    link::Capacity capacity, const Parameters& p) {
   RmcatCase c = Wireless(section, name, description, std::move(capacity));
-  c.config.forward.path.jitter = 8ms;  // retransmissions of the radio
+  c.config.forward.path.jitter = 8ms;  // a radio retransmits
   c.config.forward.limit = {Mbps(2) * kWirelessFifo, Duration::max()};
   c.config.flows.push_back(WirelessVideo(p, 5, 0s));
   c.forward = {0};
@@ -87,7 +87,7 @@ link::Capacity Drive(double mbps) {
   return *link::Capacity::ParseTrace(MakeDriveTrace(drive), true, &error);
 }
 
-/// A wired bottleneck of 1 Mbit/s each way; what passes behind it is no bottleneck.
+/// A wired bottleneck of 1 Mbit/s each way. The link behind it is faster.
 RmcatCase WiredBottleneck(const std::string& name, const std::string& description,
                           const Parameters& p) {
   RmcatCase c = Wireless("4.1", name, description, link::Capacity::Constant(Mbps(1)));
@@ -103,7 +103,7 @@ RmcatCase WiredBottleneck(const std::string& name, const std::string& descriptio
   return c;
 }
 
-/// The same with a background flow from 40 to 80 s, on the way of link `on`.
+/// The same with a background flow from 40 to 80 s on link `on`.
 RmcatCase BesideBackground(bool tcp, std::size_t on, const Parameters& p) {
   const std::string way = on == 0 ? "same_way" : "other_way";
   RmcatCase c =
@@ -119,7 +119,7 @@ RmcatCase BesideBackground(bool tcp, std::size_t on, const Parameters& p) {
     c.config.others.push_back(other);
     return c;
   }
-  // What CBR takes of a FIFO is gone.
+  // Constant-rate flows leave this capacity.
   std::string error;
   const auto less = *link::Capacity::ParseTrace("0 1\n40 0.7\n80 1\n", false, &error);
   (on == 0 ? c.config.forward : c.config.more_links[0]).capacity = less;
@@ -132,7 +132,7 @@ struct Air {
   double cbr_mbps = 0;
 };
 
-/// All share queue and airtime, whichever way they go, and so do their reports.
+/// All flows share queue and airtime in both directions, and so do their reports.
 RmcatCase WirelessBottleneck(const std::string& name, const std::string& description,
                              const Air& air, const Parameters& p) {
   RmcatCase c = Wireless("4.2", name, description, link::Capacity::Constant(Mbps(kAirMbps)));

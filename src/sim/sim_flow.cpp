@@ -11,7 +11,7 @@ constexpr std::int64_t kMinPacket = 60;
 constexpr std::int64_t kIpUdp = 28;
 constexpr std::uint32_t kEpochOfRestart = 0x89ABCDEF;
 
-/// The stream as screamtx configures it for an encoder's bounds.
+/// Configures the stream for an encoder's bounds as screamtx does.
 StreamConfig WithBounds(StreamConfig stream, const EncoderBounds& bounds) {
   if (bounds.max > DataRate{}) stream.max_bitrate = std::min(stream.max_bitrate, bounds.max);
   stream.min_bitrate = std::min(stream.min_bitrate, stream.max_bitrate);
@@ -21,7 +21,7 @@ StreamConfig WithBounds(StreamConfig stream, const EncoderBounds& bounds) {
   return stream;
 }
 
-/// True once, from `at` on.
+/// Returns true once, from `at` on.
 bool Due(Duration since_start, Duration* at) {
   if (since_start <= *at) return false;
   *at = kNever;
@@ -166,7 +166,7 @@ std::vector<DataRate> Flow::targets() const {
   return targets;
 }
 
-/// When the pacing thread, asked to wake at the next packet's time, really does.
+/// Returns when the pacing thread wakes up for the next packet.
 std::optional<Time> Flow::Wake(Time now) {
   const auto d = controller_->NextSend(ToSender(now));
   if (!d) return std::nullopt;
@@ -210,7 +210,7 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   result_.frames.push_back(frame);
 }
 
-/// Size of the next frame of a source on the wire; 0: left out.
+/// Returns the size of the next frame on the wire; 0 if the encoder leaves it out.
 EncodedFrame Flow::Encode(Time now, std::size_t index) {
   SourceConfig& config = config_.sources[index];
   SourceState& source = sources_[index];
@@ -248,7 +248,7 @@ void Flow::Packetize(Time now, SourceState* source, const EncodedFrame& encoded,
   }
 }
 
-/// Sends the target to encoders as often as the element does.
+/// Sends targets to encoders as often as screamtx does.
 void Flow::TellEncoders(Time now) {
   for (SourceState& source : sources_) {
     const DataRate target = controller_->target_bitrate(source.stream);
@@ -256,7 +256,7 @@ void Flow::TellEncoders(Time now) {
   }
 }
 
-/// The rest of a frame that has begun to leave, where it waited too long.
+/// Counts the remaining packets of a frame that began to leave and has waited too long.
 std::size_t Flow::StuckPackets(const SourceState& source, Time now) const {
   if (source.queue.empty() || now - source.queued.front() < config_.longest_stay) return 0;
   const std::size_t frame = source.queue.front().frame;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What tests in simulated time share.
+// Constants of tests in simulated time.
 #pragma once
 #include "src/base/units.h"
 

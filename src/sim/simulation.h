@@ -15,16 +15,16 @@ namespace lidar::scream::test {
 
 constexpr Duration kNever = Duration::max();
 
-/// Bitrates that an encoder says it needs and can use, on the wire.
+/// The least and the highest useful bitrate of an encoder, on the wire.
 struct EncoderBounds {
   DataRate min;
   DataRate max;
 };
 
 struct EncodedFrame {
-  DataSize size;                        ///< on the wire; 0: left out
-  std::optional<EncoderBounds> bounds;  ///< where they have changed
-  /// Frames that are of use together share it.
+  DataSize size;                        ///< on the wire; 0: the encoder leaves the frame out
+  std::optional<EncoderBounds> bounds;  ///< set if they have changed
+  /// Frames of one group are useful only together.
   std::optional<std::uint32_t> group = std::nullopt;
 };
 
@@ -33,86 +33,86 @@ struct SourceConfig {
   StreamConfig stream;
   double frames_per_second = 50;
   Duration stop_at = kNever;
-  /// No frame within this time of the flow.
+  /// No frames between these times of the flow.
   Duration pause_from = kNever, pause_until = kNever;
-  double frame_jitter = 0;  ///< frame sizes vary evenly by up to this fraction
-  /// Scales what the encoder puts out against its target, over time since the flow's start.
+  double frame_jitter = 0;  ///< frame sizes vary by up to this fraction, uniformly
+  /// Factor of the encoder's output relative to its target, over the flow's time.
   std::function<double(Duration)> obedience;
-  /// Replaces both: makes the next frame for the target that it has.
+  /// Replaces both: makes the next frame for the present target.
   std::function<EncodedFrame(DataRate)> encoder;
 };
 
-/// Links of a simulation that packets pass one after the other, by index.
+/// Indices of the links that packets pass, in order.
 using Route = std::vector<std::size_t>;
 
-/// Times are since the flow's start.
+/// A sender and its receiver. Times are relative to the flow's start.
 struct FlowConfig {
   Parameters parameters;
   Route route{0};
-  /// Links that the reports pass; without any they need `return_delay`.
+  /// Links that reports pass. Without links reports take `return_delay`.
   Route return_route;
-  /// Delay in addition to that of the links, each way.
+  /// Delay each way, in addition to that of the links.
   Duration access_delay{0};
   std::vector<SourceConfig> sources{1};
   FeedbackConfig feedback;
   Time start{};
   Duration stop_after = kNever;
   bool drop_late = true;
-  /// The rest of a frame that began to leave is dropped once its head has waited for so long.
+  /// A frame that began to leave is dropped after its first waiting packet waited so long.
   Duration longest_stay = std::chrono::milliseconds(1000);
-  /// The receiver forgets everything, and its clock has another epoch.
+  /// The receiver restarts without state, and with another clock epoch.
   Duration receiver_restart = kNever;
-  /// A new sender with other SSRCs takes over.
+  /// Another sender, with new SSRCs, continues the flow.
   Duration sender_restart = kNever;
-  /// Sequence numbers go back by so much, or on by the rest of their range.
+  /// Sequence numbers jump by so much, backwards or through the rest of their range.
   Duration sequence_jump = kNever;
   std::uint16_t jump_back = 0;
-  /// Reports hold no arrival times (RFC 8888 allows it).
+  /// false: reports hold no arrival times, as RFC 8888 allows.
   bool arrival_times = true;
-  /// Time at which the sender gets route-changed.
+  /// Time of the event route-changed at the sender.
   Duration route_change = kNever;
-  /// Clocks are set by so much.
+  /// Step of the clocks.
   Duration clock_jump = kNever;
   Duration sender_jump{0}, receiver_jump{0};
-  double receiver_drift = 0;  ///< its clock is too fast by this part
-  /// The machine stops for up to this, on average so often; packets still arrive.
+  double receiver_drift = 0;  ///< part by which the receiver's clock is too fast
+  /// The machine stops for up to this time, at this mean interval; packets still arrive.
   Duration stall{0};
   Duration stall_every = std::chrono::seconds(1);
-  Duration wakeup_delay{0};  ///< the pacing thread wakes up late by up to this
+  Duration wakeup_delay{0};  ///< greatest delay of the pacing thread's wake-ups
 };
 
-/// Files that a flow sends one after the other, each over a new connection.
+/// Files that a flow sends in sequence, each over a new connection.
 struct FileConfig {
-  DataSize shortest, longest;  ///< any size between them is as likely
+  DataSize shortest, longest;  ///< sizes are uniform between these
   Duration mean_pause{0};      ///< exponentially distributed
 };
 
-/// A greedy background flow, from `start` of the run on.
+/// A greedy background flow that begins at `start` of the run.
 struct TcpConfig {
   TcpKind kind = TcpKind::kCubic;
   Duration start{0};
-  link::Ecn ecn = link::Ecn::kNotEct;  ///< of Reno and Cubic; Prague sends ECT(1)
+  link::Ecn ecn = link::Ecn::kNotEct;  ///< of Reno and Cubic; Prague always uses ECT(1)
   double slow_start_threshold = 1e9;   ///< [packets]
   Duration stop = kNever;
   Route route = {0};
-  std::optional<FileConfig> files = std::nullopt;  ///< instead of one transfer without an end
+  std::optional<FileConfig> files = std::nullopt;  ///< set: files instead of an endless transfer
 };
 
 struct SimulationConfig {
-  link::BottleneckConfig forward;                  ///< link 0; its delay is the way there
-  std::vector<link::BottleneckConfig> more_links;  ///< 1, 2, ...
+  link::BottleneckConfig forward;                  ///< link 0; its delay is that of the way there
+  std::vector<link::BottleneckConfig> more_links;  ///< links 1, 2, ...
   Duration return_delay{0};
   double return_loss = 0;
-  /// Two of three packets sent within this time of the run are lost.
+  /// Two of three packets sent between these times are lost.
   Duration loss_from = kNever, loss_until = kNever;
-  /// The way back carries no packet within this time of the run.
+  /// The way back carries no packet between these times.
   Duration return_outage_from = kNever, return_outage_until = kNever;
-  /// A change of route: the way there is longer from then on.
+  /// A change of route: the way there becomes longer by this.
   Duration longer_by{0};
   Duration longer_from = kNever;
   Duration duration = std::chrono::seconds(40);
   std::vector<FlowConfig> flows{1};
-  std::vector<TcpConfig> others;  ///< in the packets' log their flows come after ours
+  std::vector<TcpConfig> others;  ///< their flows follow ours in the packets' log
   Duration sample_interval = std::chrono::milliseconds(10);
 };
 
@@ -123,7 +123,7 @@ Percentiles Summarise(std::vector<double> values);
 
 struct PacketLog {
   Time sent{}, arrival{};
-  double sojourn_ms = 0;  ///< in all queues
+  double sojourn_ms = 0;  ///< over all queues
   int flow = 0;
   int source = 0;
   std::int64_t bytes = 0;
@@ -138,14 +138,14 @@ struct Sample {
   std::vector<DataRate> targets;  ///< of the sources
 };
 
-/// The life of one frame.
+/// A frame from its encoder to its arrival.
 struct FrameLog {
   Time created{};
   int source = 0;
-  std::int64_t bytes = 0;  ///< 0: the encoder left it out
+  std::int64_t bytes = 0;  ///< 0: the encoder left the frame out
   int packets = 0;
-  int delivered = 0;  ///< of these
-  Time arrival{};     ///< of the last one delivered
+  int delivered = 0;  ///< number of `packets` that arrived
+  Time arrival{};     ///< of the last packet that arrived
 
   bool complete() const { return packets > 0 && delivered == packets; }
 };
@@ -162,9 +162,9 @@ struct FlowResult {
 
 struct TcpResult {
   std::int64_t delivered_bytes = 0;
-  std::vector<double> file_s;  ///< what each file took
+  std::vector<double> file_s;  ///< duration of each file
   std::uint64_t packets_sent = 0, packets_lost = 0;
-  double mean_window = 0;  ///< [packets], of a transfer without an end
+  double mean_window = 0;  ///< [packets], of an endless transfer
 };
 
 struct SimulationResult {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A codec's response without a codec: sizes that fall with the step, differ by sector, drift from
-// scan to scan and never agree with the model's coefficients.
+// A simulated codec response: sizes fall with the step, differ by sector, drift from scan to scan
+// and never match the model's coefficients.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ class SyntheticCodec {
  public:
   struct Parameters {
     std::uint32_t slices = 8;
-    double noise = 0.005;  // of each slice's size, scan to scan
-    double drift = 0.007;  // of the scene's complexity a scan
+    double noise = 0.005;  // of each slice's size
+    double drift = 0.007;  // of the scene's complexity, per scan
     double returns_per_scan = 60000;
     double scans_per_second = 10;
     double bits_per_return = 6;  // geometry at a step of 1 cm
@@ -36,7 +36,7 @@ class SyntheticCodec {
     f.extent_m = 80;
     f.mode = "synthetic";
     const double slices = p_.slices;
-    log_complexity_ *= 1 - 0.02 / slices;  // never far from where it began
+    log_complexity_ *= 1 - 0.02 / slices;  // returns slowly to the start value
     log_complexity_ += Normal() * p_.drift / std::sqrt(slices);
     slice_noise_ = std::exp(Normal() * p_.noise);
     return f;
@@ -49,9 +49,9 @@ class SyntheticCodec {
     const double returns = f.returns * std::pow(keep, 0.85);
     const double geometry =
         20 + returns * std::exp2(log2) * sector * std::exp(log_complexity_) * slice_noise_ / 8;
-    // Four bits a return for 8-bit intensities, 1.2 for 5-bit ones, as on real captures.
+    // Real captures have four bits a return for 8-bit intensities, 1.2 for 5-bit ones.
     const double intensity = returns * 4 * std::pow(s.intensity_bits / 8.0, 2.5) / 8;
-    // Features that are NaN give an empty slice.
+    // NaN features give an empty slice.
     const auto bytes = [](double b) {
       return DataSize::Bytes(
           static_cast<std::int64_t>(std::isfinite(b) ? std::clamp(b, 0., 1e12) : 0));

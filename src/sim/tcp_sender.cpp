@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint64_t kReordering = 3;  // packets
-constexpr Duration kMinTimeout = 200ms;   // as Linux has it
+constexpr Duration kMinTimeout = 200ms;   // Linux's value
 constexpr Duration kFirstTimeout = 1s;
 
 }  // namespace
@@ -73,7 +73,7 @@ void TcpSender::OnAck(Time now, std::uint64_t id, bool ce) {
 void TcpSender::Grow(Time now, Duration rtt, std::uint64_t id, bool ce) {
   const bool prague = kind_ == TcpKind::kPrague;
   if (ce && !prague) {
-    if (id < recover_) return;  // RFC 3168: once a round trip
+    if (id < recover_) return;  // RFC 3168: at most once a round trip
     recover_ = next_id_;
     slow_start_ = false;
     control_->OnLoss();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sender of a greedy flow: what TCP does as far as a queue sees it, without a clock or a
-// socket.
+// The sender of a greedy flow: TCP as a queue sees it, without clock and socket.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -11,24 +10,24 @@
 
 namespace lidar::scream::test {
 
-/// Each packet is acknowledged by itself, and a hole is lost once three later ones were. What was
-/// lost is not sent again: there is always more to send.
+/// Each packet has its own acknowledgement. A packet is lost after acknowledgements of three later
+/// ones. Lost packets are not sent again: new data take their place.
 class TcpSender {
  public:
   TcpSender(TcpKind kind, Time start, double slow_start_threshold);
 
-  /// When OnTimer() or SendPacket() has something to do; Time::max() where an acknowledgement must
-  /// come first.
+  /// Returns when to call OnTimer() or SendPacket() next; Time::max() while only an acknowledgement
+  /// can help.
   Time NextEvent() const;
   bool MaySend(Time now) const;
-  /// Accounts for a packet that is sent now, and gives it its number.
+  /// Accounts for a packet that leaves now. Returns its number.
   std::uint64_t SendPacket(Time now);
   void OnAck(Time now, std::uint64_t id, bool ce);
   void OnTimer(Time now);
 
   double window() const { return control_->window; }
   std::size_t outstanding() const { return outstanding_; }
-  /// Time at which the acknowledgements are overdue.
+  /// Time at which acknowledgements become overdue.
   Time Timeout() const;
 
  private:
@@ -49,7 +48,7 @@ class TcpSender {
   std::deque<InFlight> in_flight_;
   std::size_t outstanding_ = 0;
   std::uint64_t next_id_ = 0;
-  std::uint64_t recover_ = 0;  // losses before this one were answered
+  std::uint64_t recover_ = 0;  // earlier losses were answered
   Duration s_rtt_{0}, rtt_var_{0};
   Time last_progress_;
   Time next_paced_;

@@ -17,7 +17,7 @@ class Reno final : public TcpWindow {
   void OnTimeout() override { window = kMinWindow; }
 };
 
-/// RFC 9438, with its names.
+/// Cubic with the names of RFC 9438.
 class Cubic final : public TcpWindow {
  public:
   void OnAck(Time now, Duration rtt, bool) override {
@@ -59,7 +59,7 @@ class Cubic final : public TcpWindow {
   double w_max_ = 0, k_ = 0, w_est_ = 0, cwnd_prior_ = 0;
 };
 
-/// The increase is that of a flow of at least the virtual RTT, the decrease the marked fraction.
+/// Grows as a flow with at least the virtual RTT, and decreases by the marked fraction.
 class Prague final : public TcpWindow {
  public:
   void OnAck(Time now, Duration rtt, bool ce) override {

@@ -13,17 +13,17 @@ enum class TcpKind {
   kPrague  ///< draft-briscoe-iccrg-prague-congestion-control
 };
 
-/// A congestion window in packets. Slow start is the same for all and stands in TcpFlow.
+/// A congestion window in packets. Slow start is in TcpFlow for all of them.
 class TcpWindow {
  public:
   virtual ~TcpWindow() = default;
   /// A packet was acknowledged in congestion avoidance.
   virtual void OnAck(Time now, Duration rtt, bool ce) = 0;
-  /// Packets were lost; once a round trip.
+  /// Packets were lost; called at most once a round trip.
   virtual void OnLoss() = 0;
-  /// No acknowledgement came for long.
+  /// Acknowledgements are overdue.
   virtual void OnTimeout() = 0;
-  /// A packet was marked in slow start, which ends.
+  /// The first mark ends slow start.
   virtual void OnFirstMark() { OnLoss(); }
   double window = 10;  ///< RFC 6928
 };
