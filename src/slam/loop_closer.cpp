@@ -14,28 +14,28 @@ namespace {
 using odometry::Points;
 using odometry::Pose;
 
-/// Standard deviations of the motion from scan to scan, and of closures.
+/// Standard deviations of the motion between scans, and of closures.
 constexpr double kStep_m = 0.02;
 constexpr double kStep_rad = 0.002;
 constexpr double kClosure_m = 0.05;
 constexpr double kClosure_rad = 0.002;
-/// A closure that misses the solved poses by more is wrong.
+/// A closure is wrong if the solved poses contradict it by more.
 constexpr double kContradiction_m = 1.5;
 constexpr double kContradiction_rad = 0.05;
-/// Largest distance of points of two maps that are the same; beyond kOverlap one map is empty
-/// there.
+/// Greatest distance between the same point of two maps. A map counts as empty there beyond
+/// kOverlap.
 constexpr double kSame_m = 0.4;
 constexpr double kOverlap_m = 2;
 constexpr double kMapVoxel_m = 1;
 constexpr double kAlignedGrid_m = 1.2;
-constexpr std::size_t kThinAt = 400'000;  // points of the open map
-/// Where the sensor moved less, a scan shows nothing new.
+constexpr std::size_t kThinAt = 400'000;  // number of points of the open map that start thinning
+/// A scan after less motion shows nothing new.
 constexpr double kLeastStep_m = 0.5;
-/// Loops are searched in so many maps, the nearest ones.
+/// Number of nearest maps that are searched for loops.
 constexpr std::size_t kMostCandidates = 8;
-constexpr std::size_t kFewestMaps = 3;  // the first, the last, and one to forget
+constexpr std::size_t kFewestMaps = 3;  // the first, the last, and one that can be forgotten
 
-/// The surroundings of a point of one map in the other.
+/// Shares of one map's points that are near the other map.
 struct Shares {
   double overlap = 0;
   double fit = 0;
@@ -94,7 +94,7 @@ void LoopCloser::AddScan(const odometry::StampedPose& pose, const Points& points
 
 void LoopCloser::Finish() {
   if (open_.empty()) return;
-  // The scan at half the way is near both ends of the map.
+  // The middle scan is near both ends of the map.
   const double half = (open_.front().driven_m + open_.back().driven_m) / 2;
   const auto middle = std::lower_bound(open_.begin(), open_.end(), half,
                                        [](const Step& s, double at) { return s.driven_m < at; });
@@ -119,8 +119,7 @@ void LoopCloser::Finish() {
   while (maps_.size() > std::max(settings_.most_maps, kFewestMaps)) Forget(FindNearestToAnother());
 }
 
-/// Returns true if the odometry's drift may hide a loop here, and the map is none of those just
-/// before.
+/// Returns true if the odometry's drift allows a loop here, and `a` is not just before `b`.
 bool LoopCloser::MayBeTheSame(const LocalMap& a, const LocalMap& b) const {
   const double between = b.driven_m - a.driven_m;
   if (between < 3 * settings_.local_map_m) return false;
@@ -162,7 +161,7 @@ bool LoopCloser::TryToClose(std::size_t from, std::size_t to) {
   return true;
 }
 
-/// Solves for all local maps, until no closure is left that the others contradict.
+/// Solves for all local maps, and drops closures that contradict the others.
 void LoopCloser::Solve() {
   std::vector<Pose> poses;
   for (;;) {
@@ -185,8 +184,8 @@ void LoopCloser::Solve() {
   ++solved_;
 }
 
-/// The later one of the pair that lies nearest. The first map is where the way begins, and the
-/// last one is where it goes on.
+/// Returns the later map of the nearest pair. The first map stays, as it holds the way's beginning;
+/// so does the last, as the way continues from it.
 std::size_t LoopCloser::FindNearestToAnother() const {
   double least = std::numeric_limits<double>::max();
   std::size_t found = 1;
@@ -200,7 +199,7 @@ std::size_t LoopCloser::FindNearestToAnother() const {
   return found;
 }
 
-/// What closures say of the map goes over to the one before it.
+/// Moves the map's closures to the map before it.
 void LoopCloser::Forget(std::size_t forgotten) {
   const Pose to_previous = maps_[forgotten].solved.Inverse() * maps_[forgotten - 1].solved;
   maps_[forgotten + 1].scans += maps_[forgotten].scans;
@@ -210,7 +209,7 @@ void LoopCloser::Forget(std::size_t forgotten) {
     if (c.to >= forgotten) --c.to;
     if (c.from >= forgotten) --c.from;
   }
-  // The last one between two maps stays.
+  // Keeps the last closure between two maps.
   std::vector<Closure> kept;
   for (auto c = closures_.rbegin(); c != closures_.rend(); ++c) {
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Closure& k) {

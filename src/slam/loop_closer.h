@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Takes the drift out of a drive that comes back to where it was: KISS-SLAM (Guadagnino et al.,
+// Removes the drift of a drive that returns to an earlier place: KISS-SLAM (Guadagnino et al.,
 // 2025).
 #pragma once
 #include <cstddef>
@@ -13,61 +13,62 @@
 namespace lidar::slam {
 
 struct LoopSettings {
-  double local_map_m = 40;    // length of way in one local map
-  double voxel_size_m = 0.5;  // distance of its points
+  double local_map_m = 40;    // length of the way in a local map
+  double voxel_size_m = 0.5;  // distance between a map's points
   std::size_t most_maps = 100;
-  /// Largest drift of the odometry, within which loops are searched.
+  /// Loops are searched within this drift of the odometry: a constant,
   double drift_m = 10;
-  double drift_share = 0.04;  // of the way between
+  double drift_share = 0.04;  // and a part of the way between the maps
   double heading_range_rad = 0.25;
   double least_score = 0.3;
   double least_distinct = 1.3;
-  double least_overlap = 0.35;  // part of the points in both maps
-  double least_fit = 0.6;       // part of those that lie on each other
+  double least_overlap = 0.35;  // least share of the points that are in both maps
+  double least_fit = 0.6;       // least share of those that coincide
 };
 
 /// Two local maps of the same place.
 struct Closure {
-  std::size_t from = 0;  // local maps, in the order of the way
+  std::size_t from = 0;  // indices of local maps, in the order of the way
   std::size_t to = 0;
-  odometry::Pose pose;  // of the frame of `to` in that of `from`
+  odometry::Pose pose;  // of the frame of `to` in the frame of `from`
 };
 
-/// Index of the closure that `poses` contradict most; closures.size() if all are within bounds.
+/// Returns the index of the closure that `poses` contradict most, or closures.size() if none is
+/// beyond its bounds.
 std::size_t FindWorst(const std::vector<Closure>& closures,
                       const std::vector<odometry::Pose>& poses);
 
-/// Keeps local maps, two megabytes each. Beyond LoopSettings::most_maps it forgets the one that
-/// lies nearest to another: memory grows with the area, not with the way. Deterministic.
+/// Keeps local maps of two megabytes each. Beyond LoopSettings::most_maps it forgets the map that
+/// lies nearest to another one: memory grows with the area, not with the way. Deterministic.
 class LoopCloser {
  public:
   explicit LoopCloser(const LoopSettings& settings) : settings_(settings) {}
 
-  /// Takes a scan in the sensor's frame, and its pose by the odometry. Where a local map ends it
-  /// looks for loops, which takes a second at most; other scans take a millisecond.
+  /// Takes a scan in the sensor's frame, with its pose from the odometry. A scan that ends a local
+  /// map starts a search for loops and takes up to a second; other scans take a millisecond.
   void AddScan(const odometry::StampedPose& pose, const odometry::Points& points);
   /// Ends the open local map.
   void Finish();
-  /// The pose of the odometry's frame in the map, which has no drift between loops. It jumps where
-  /// a loop is closed.
+  /// Returns the pose of the odometry's frame in the map. It has no drift, and jumps when a loop is
+  /// closed.
   odometry::Pose MapFromOdometry() const;
-  /// A way by the odometry, without the drift between loops.
+  /// Returns the odometry's way without its drift.
   odometry::Trajectory Correct(const odometry::Trajectory& way) const;
 
   const std::vector<Closure>& closures() const { return closures_; }
-  std::size_t solved() const { return solved_; }  // how often poses were moved
+  std::size_t solved() const { return solved_; }  // Number of times that poses were moved.
   std::size_t local_maps() const { return maps_.size(); }
 
  private:
   struct Step {
-    odometry::StampedPose pose;  // by the odometry
+    odometry::StampedPose pose;  // from the odometry
     double driven_m = 0;
   };
   struct LocalMap {
-    odometry::StampedPose key;  // by the odometry; the points are in its frame
-    odometry::Pose solved;      // in the map
-    double driven_m = 0;        // length of way before it
-    std::size_t scans = 0;      // between its key and the one before
+    odometry::StampedPose key;  // pose from the odometry; the points are in its frame
+    odometry::Pose solved;      // pose in the map
+    double driven_m = 0;        // length of the way before it
+    std::size_t scans = 0;      // number of scans between its key and the key before
     odometry::Points points;
     std::unique_ptr<Place> place;
 
@@ -82,9 +83,9 @@ class LoopCloser {
 
   LoopSettings settings_;
   std::optional<Step> last_;
-  std::vector<Step> open_;        // of the open map
-  odometry::Points open_points_;  // in the frame of the odometry
-  std::vector<LocalMap> maps_;    // the first is where the way begins
+  std::vector<Step> open_;        // steps of the open map
+  odometry::Points open_points_;  // in the odometry's frame
+  std::vector<LocalMap> maps_;    // the first map has the way's beginning
   std::vector<Closure> closures_;
   std::size_t solved_ = 0;
   std::size_t scans_after_key_ = 0;  // of the last map

@@ -15,16 +15,16 @@ using odometry::Points;
 using odometry::Pose;
 
 constexpr double kGroundCell = 2;     // [m]
-constexpr int kGroundCells = 64;      // along each side
-constexpr double kAboveGround = 0.7;  // height of ground at most [m]
-constexpr float kMostDense = 8;       // bound of a cell, for walls
+constexpr int kGroundCells = 64;      // number of cells along each side
+constexpr double kAboveGround = 0.7;  // greatest height of ground [m]
+constexpr float kMostDense = 8;       // limit of a cell's count; walls exceed it
 constexpr double kYawStep = 0.035;    // two degrees
-constexpr int kElsewhere = 6;         // least distance of another peak [cells]
+constexpr int kElsewhere = 6;         // least distance of a second peak [cells]
 constexpr std::size_t kLeastGround = 30;
 
 using Density = Place::Density;
 
-/// Works in place, along rows and then along columns.
+/// Transforms rows, then columns, in place.
 void Transform(Density* map, bool forward) {
   Eigen::FFT<float> fft;
   Eigen::VectorXcf in(Place::kCells);
@@ -53,7 +53,7 @@ void Transform(Density* map, bool forward) {
 int CellOf(double c) { return static_cast<int>(std::floor(c)) + Place::kCells / 2; }
 bool IsCell(int i) { return i >= 0 && i < Place::kCells; }
 
-/// Counts the points above ground in each cell, turned by `yaw`.
+/// Counts the points above ground in each cell after a turn by `yaw`.
 Density Count(const Points& standing, double yaw) {
   Eigen::ArrayXXf counts = Eigen::ArrayXXf::Zero(Place::kCells, Place::kCells);
   const double c = std::cos(yaw);
@@ -78,7 +78,7 @@ int Signed(Eigen::Index i) {
   return static_cast<int>(i < Place::kCells / 2 ? i : i - Place::kCells);
 }
 
-/// The best peak of a correlation, and the best value kElsewhere from it.
+/// Returns the best peak of a correlation, and the best value at least kElsewhere from it.
 std::pair<Peak, float> FindPeak(const Density& correlation) {
   Eigen::ArrayXXf real = correlation.real();
   Peak peak;
@@ -94,7 +94,7 @@ std::pair<Peak, float> FindPeak(const Density& correlation) {
   return {peak, real.maxCoeff()};
 }
 
-/// Raises and tilts b so that its ground meets a's. Returns false if they share none.
+/// Raises and tilts b so that its ground meets that of a. Returns false if they share no ground.
 bool MeetGround(const Place& a, const Place& b, Pose* pose) {
   for (int round = 0; round < 3; ++round) {
     Eigen::Matrix3d lhs = 1e-3 * Eigen::Matrix3d::Identity();
@@ -110,7 +110,7 @@ bool MeetGround(const Place& a, const Place& b, Pose* pose) {
     std::nth_element(gaps.begin(), middle, gaps.end(),
                      [](const auto& x, const auto& y) { return x.second < y.second; });
     const double median = middle->second;
-    // Cars and walls are no ground: only what is near the middle counts.
+    // Cars and walls are outliers: only residuals near the middle count.
     const double reach = round == 0 ? 3 : 1;
     for (const auto& [p, gap] : gaps) {
       if (std::abs(gap - median) > reach) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the poses that fit relative poses best.
+// Finds the poses that fit given relative poses best.
 #pragma once
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace lidar::slam {
 
-/// `b` seen from `a` should be `pose`.
+/// `pose` is the measured pose of `b` in the frame of `a`.
 struct Edge {
   std::size_t a = 0;
   std::size_t b = 0;
@@ -16,8 +16,8 @@ struct Edge {
   double sigma_rad = 0.005;
 };
 
-/// Changes all poses but the first, by Levenberg and Marquardt's method. Edges must join all poses.
-/// Returns false if they do not.
+/// Changes all poses but the first, by the method of Levenberg and Marquardt. Returns false if
+/// edges do not connect all poses.
 bool Optimise(const std::vector<Edge>& edges, std::vector<odometry::Pose>* poses);
 
 }  // namespace lidar::slam
