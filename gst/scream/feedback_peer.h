@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The address of the sender's feedback; a new address means a new path.
+// The address from which the peer's feedback comes. A new address means a new path.
 #pragma once
 #include <gio/gio.h>
 
@@ -12,11 +12,10 @@ namespace lidar::gst {
 
 class FeedbackPeer {
  public:
-  /// Silence of the old address after which another one is the peer's.
+  /// A new address becomes the peer's after such a silence of the old one.
   static constexpr Duration kOldPeerSilence = std::chrono::milliseconds(500);
 
-  /// Takes the source of feedback that was accepted; it may be NULL. Returns true if the peer has
-  /// moved.
+  /// Takes the source of accepted feedback, which may be NULL. Returns true if the peer has moved.
   bool OnFeedback(Time now, GSocketAddress* from) {
     if (from == nullptr) return false;
     if (peer_ && SameAddress(from, peer_.get())) {
@@ -24,7 +23,7 @@ class FeedbackPeer {
       return false;
     }
     const bool known = peer_ != nullptr;
-    const Duration silence = now - last_;  // negative where the clock was set back
+    const Duration silence = now - last_;  // negative if the clock was set back
     if (known && silence >= Duration{0} && silence < kOldPeerSilence) return false;
     peer_.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
     last_ = now;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint8_t kVersionAndFormat = 0x81;  // version 2, no padding, PLI
 constexpr std::uint8_t kPayloadFeedback = 206;
-constexpr std::uint16_t kWords = 2;  // less one
+constexpr std::uint16_t kWords = 2;  // length in 32-bit words, minus one
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Picture Loss Indication (RFC 4585, 6.3.1): a receiver's wish for something that stands alone.
+// Picture Loss Indication (RFC 4585, 6.3.1): the receiver asks for a slice that stands alone.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 namespace lidar::gst {
 
 std::vector<std::uint8_t> BuildKeyRequest(std::uint32_t sender_ssrc, std::uint32_t media_ssrc);
-/// The SSRC of the media that an RTCP packet asks for; nothing for other packets.
+/// Returns the SSRC of the media that an RTCP packet asks for, or nothing for other packets.
 std::optional<std::uint32_t> ParseKeyRequest(ByteView rtcp_packet);
 
 }  // namespace lidar::gst

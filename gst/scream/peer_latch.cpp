@@ -9,9 +9,9 @@
 namespace lidar::gst {
 namespace {
 
-// A sender that gets no feedback any more drops most of what it has: few packets come, with gaps.
+// Greatest step of a new peer's sequence numbers. A sender without feedback drops most packets.
 constexpr int kMaxGap = 500;
-// A sender that moved may have lost much on the way.
+// Greatest step of a known peer's sequence numbers. A sender that moved may have lost many packets.
 constexpr int kMaxKnownGap = 1 << 14;
 constexpr std::size_t kMostSources = 64;
 
@@ -33,7 +33,7 @@ void PeerLatch::Peer::Add(Time now, const Packet& packet) {
     last.back() = now;
     went_on = std::min(went_on + 1, kProbation);
   }
-  // An SSRC that went back stays where it was for a while, or a repeated packet would be a stream.
+  // An SSRC that went back keeps its state for a while: else a repeated packet would be a stream.
   if (goes_on || found == sources.end() || now - found->second.at > kStreamTime) {
     if (found == sources.end() && sources.size() >= kMostSources) sources.erase(sources.begin());
     sources[packet.ssrc] = {static_cast<std::uint16_t>(packet.seq + 1), now};
@@ -67,7 +67,8 @@ Time PeerLatch::LastHeard() const {
   return last;
 }
 
-/// If the first link is silent, the sending one takes its place: strangers find no silent peer.
+/// A silent first link gives its place to the link that sends, so that a stranger finds no silent
+/// peer.
 PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link* link) {
   link->at = now;
   if (now - peer_.at >= kPeerSilence) {
@@ -79,7 +80,7 @@ PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link*
   return Verdict::kAccepted;
 }
 
-/// A packet of the peer: candidates that sent it before have sent a copy.
+/// Looks for candidates that have sent a copy of this packet.
 void PeerLatch::NoteCopies(const Packet& packet) {
   if (packet.digest == 0) return;
   digests_.Add(packet.digest);
@@ -87,7 +88,8 @@ void PeerLatch::NoteCopies(const Packet& packet) {
     if (c.digests.Take(packet.digest)) ++c.copies;
 }
 
-/// Takes a place among the links; that of one which is silent where all are taken.
+/// Gives the candidate a place among the links. If all places are taken, a silent link loses its
+/// own.
 bool PeerLatch::Join(Time now, Peer* candidate) {
   if (links_.size() + 1 >= kMaxLinks) {
     const auto oldest = std::min_element(links_.begin(), links_.end(),
@@ -102,7 +104,8 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
   return true;
 }
 
-/// If all places are taken, the candidate goes that has shown least and was silent for longest.
+/// Finds or adds a candidate. If there are too many, it replaces the one with the least standing
+/// that was silent longest.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;
@@ -127,8 +130,8 @@ void PeerLatch::Restart() {
   *this = std::move(next);
 }
 
-/// Returns true if the packet continues an SSRC of a silent peer. While the accepted peer sends,
-/// its SSRCs are its own.
+/// Returns true if the packet continues an SSRC of a silent peer. Nothing can continue the SSRCs of
+/// a peer that sends.
 bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
   const auto goes_on = [&](const Sources& sources) {
     const auto found = sources.find(packet.ssrc);
@@ -141,14 +144,14 @@ bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
 bool PeerLatch::Wins(const Peer& candidate, Time now) const {
   if (candidate.went_on < kProbation) return false;
   const Standing shown = candidate.standing(now);
-  // Which of a sender's links has shown a stream first is chance.
+  // A sender has several links, and chance decides which of them shows a stream first.
   const Standing least = now - peer_.since < kStart ? Standing::kStream : Standing::kNothing;
   if (!IsSilent(now)) return shown > std::max(peer_.standing(now), least);
   const bool needs_slices = peer_.has_slices && now - LastHeard() < kLongSilence;
   return shown >= (needs_slices ? Standing::kSlices : Standing::kStream);
 }
 
-/// A silent peer stays known; a peer that was outweighed while it sent is forgotten.
+/// A peer that fell silent stays known; a peer that lost its place while it sent is forgotten.
 void PeerLatch::Promote(Time now, Peer candidate) {
   if (IsSilent(now)) Remember(peer_);
   for (auto it = known_.begin(); it != known_.end();) {
@@ -174,7 +177,7 @@ PeerLatch::Verdict PeerLatch::OnPacket(Time now, const Packet& packet) {
       peer_.is_known = peer_.has_slices = true;
       known_.erase(packet.ssrc);
     }
-    // The next packet then compares by pointer.
+    // Compares by pointer with the next packet's address.
     if (packet.from != nullptr && packet.from != peer_.address.get())
       peer_.address = RefAddress(packet.from);
     peer_.Add(now, packet);

@@ -16,7 +16,8 @@ constexpr guint8 kReceiverReport = 201;
 constexpr guint8 kBye = 203;
 constexpr std::size_t kMaxSources = 31;
 
-/// Length of the header extension behind the CSRCs, or none where the buffer ends before it.
+/// Returns the length of the header extension behind the CSRCs, or nothing if the buffer is too
+/// short.
 std::optional<gsize> ExtensionSize(GstBuffer* buffer, gsize offset) {
   guint8 raw[4];
   if (gst_buffer_extract(buffer, offset, raw, sizeof raw) != sizeof raw) return std::nullopt;

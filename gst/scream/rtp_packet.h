@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The few fields of RTP and RTCP that congestion control needs, and the RTCP BYE.
+// The fields of RTP and RTCP that congestion control needs, and the RTCP BYE.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -18,25 +18,26 @@ struct RtpHeader {
   guint16 seq = 0;
   guint8 payload_type = 0;
   bool marker = false;
-  gsize header_size = 12;  // CSRCs and extension included
+  gsize header_size = 12;  // with CSRCs and extension
 };
 
 /// Returns nothing if `buffer` is too short or of another version.
 std::optional<RtpHeader> ReadRtpHeader(GstBuffer* buffer);
 
-/// True for a datagram on an RTP port that is RTCP (RFC 5761: packet types 192 to 223).
+/// Returns true if a datagram on an RTP port is RTCP (RFC 5761: packet types 192 to 223).
 bool IsRtcp(ByteView datagram);
 bool IsRtcp(GstBuffer* datagram);
 
-/// A compound of an empty receiver report and a BYE for `ssrcs` (at most 31 of them).
+/// Builds an empty receiver report and a BYE for `ssrcs`, at most 31 of them.
 std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);
-/// The SSRCs that say goodbye in a compound RTCP datagram.
+/// Returns the SSRCs of all BYEs in a compound RTCP datagram.
 std::vector<guint32> ParseBye(ByteView datagram);
 
-/// Never 0. A sender that cannot see a packet cannot make another of the same digest.
+/// Returns a digest, never 0. A sender that cannot see a packet cannot make another with its
+/// digest.
 std::uint64_t DigestOf(ByteView packet);
 
-/// Sender of the buffer, or NULL; the buffer owns it.
+/// Returns the sender of the buffer, owned by the buffer, or NULL.
 GSocketAddress* SourceOf(GstBuffer* buffer);
 
 }  // namespace lidar::gst
