@@ -33,7 +33,7 @@ FAULTS = {
     "1 s gap": ["--gap", "1"],
 }
 START = 20  # scans
-HEAD = ["drive", "odometry", "ATE", "drift", "RPE", "start", "CPU of a scan", "memory"]
+HEAD = ["ATE [m]", "drift [%]", "RPE [m]", "CPU of a scan [ms]", "memory [MB]", "start lost"]
 
 
 def measure(command):
@@ -62,28 +62,29 @@ class Bench:
     def error(self, truth, estimate):
         return json.loads(measure([self.lidar_eval, "ate", truth, estimate, "--json"])[0])
 
-    def row(self, drive, name, truth, estimate, cpu_s, memory_mb, scans):
+    def figures(self, truth, estimate, cpu_s, memory_mb, scans):
+        """Those of HEAD, the last one as a truth value."""
         error, start = self.error(truth, estimate), self.error(truth, head_of(estimate, START))
-        lost = start["end_error_m"] > 0.1 * start["length_m"]
-        drift = f"{100 * error['drift']:.2f} %" if "drift" in error else "–"
-        return [drive, name, f"{error['ate_rmse_m']:.3f} m", drift, f"{error['rpe_rmse_m']:.3f} m",
-                "lost" if lost else "kept", f"{1000 * cpu_s / scans:.0f} ms", f"{memory_mb:.0f} MB"]
+        drift = f"{100 * error['drift']:.2f}" if "drift" in error else "–"
+        return [f"{error['ate_rmse_m']:.3f}", drift, f"{error['rpe_rmse_m']:.3f}", f"{1000 * cpu_s / scans:.0f}",
+                f"{memory_mb:.0f}", start["end_error_m"] > 0.1 * start["length_m"]]
 
-    def rows(self, source, options, label):
-        """Ours first. All read the same folder, so that their times and memory compare."""
+    def row(self, source, options, label):
+        """A cell has the figures of all odometries, ours first. They read one folder, so that times and memory compare."""
         with tempfile.TemporaryDirectory() as temporary:
             folder = pathlib.Path(temporary) / "scans"
             measure([self.lidar_eval, "to-kitti", source, *options, "-o", folder])
             truth = f"kitti:{folder}"
             scans = len((folder / "times.txt").read_text().split())
-            ours = pathlib.Path(temporary) / "ours.tum"
-            _, cpu, memory = measure([self.lidar_eval, "slam", f"kitti:{folder}", "--out", ours, "--json"])
-            found = [self.row(label, "lidarodometry", truth, ours, cpu, memory, scans)]
-            for name, program in self.peers.items():
-                poses = pathlib.Path(temporary) / "peer.tum"
-                _, cpu, memory = measure([program, folder, poses])
-                found.append(self.row("", name, truth, poses, cpu, memory, scans))
-            return found
+            poses = pathlib.Path(temporary) / "poses.tum"
+            ours = [self.lidar_eval, "slam", f"kitti:{folder}", "--out", poses, "--json"]
+            commands = {"lidarodometry": ours, **{name: [program, folder, poses] for name, program in self.peers.items()}}
+            found = {}
+            for name, command in commands.items():
+                _, cpu, memory = measure(command)
+                found[name] = self.figures(truth, poses, cpu, memory, scans)
+        lost = ", ".join(name for name, figures in found.items() if figures[-1])
+        return [label, *("/".join(cells) for cells in list(zip(*found.values()))[:-1]), lost or "–"]
 
 
 def main():
@@ -97,11 +98,10 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one drive as it is")
     arguments = parser.parse_args()
     bench = Bench(arguments.lidar_eval, dict(pair.split("=", 1) for pair in arguments.peer), arguments.scans)
-    print("| " + " | ".join(HEAD) + " |\n|" + "---|" * len(HEAD))
+    print(f"| drive | {' | '.join(HEAD)} |\n|" + "---|" * (1 + len(HEAD)))
 
     def show(source, options, label):
-        for row in bench.rows(source, options, label):
-            print("| " + " | ".join(row) + " |", flush=True)
+        print(f"| {' | '.join(bench.row(source, options, label))} |", flush=True)
 
     for pair in arguments.set:
         name, source = pair.split("=", 1)

@@ -92,3 +92,27 @@ def provenance():
     model = cpu[1].strip() if cpu else os.uname().machine
     today = datetime.date.today().isoformat()
     return f"Commit {commit}, {today}, {os.cpu_count()} cores of {model}, load {os.getloadavg()[1]:.0f}"
+
+
+UNITS = ("%", "m", "mm", "cm", "m/s", "s", "ms", "µs", "MB", "Mbit/s", "scans/s", "frames/s", "cores")
+
+
+def lift_units(text):
+    """Moves the unit that all cells of a column share to the column's head."""
+    lines = text.split("\n")
+    head = next((i for i, line in enumerate(lines) if re.fullmatch(r"\|( ?-+ ?\|)+", line)), 0) - 1
+    if head < 0:
+        return text
+    end = head + 2
+    while end < len(lines) and lines[end].startswith("|"):
+        end += 1
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in [lines[head], *lines[head + 2:end]]]
+    for column, name in enumerate(rows[0]):
+        cells = [row[column].rsplit(" ", 1) for row in rows[1:] if row[column] not in ("", "–")]
+        units = {cell[1] if len(cell) == 2 and re.fullmatch(r"-?[\d.]+", cell[0]) and cell[1] in UNITS else None for cell in cells}
+        if len(units) == 1 and (unit := units.pop()):
+            rows[0][column] = f"{name} [{unit}]"
+            for row in rows[1:]:
+                row[column] = row[column].removesuffix(f" {unit}")
+    made = table(rows[0], rows[1:]).split("\n")
+    return "\n".join([*lines[:head], *made, lift_units("\n".join(lines[end:]))])

@@ -60,7 +60,7 @@ def main():
             parser.error(f"there is no table {wanted}: --list names them")
         for table, measure in known[page].items():
             if only in ("", table):
-                text = measure()
+                text = common.lift_units(measure())
                 print(text) if arguments.print else write(page, table, text)
 
 
