@@ -13,18 +13,20 @@ namespace lidar::scream {
 namespace {
 
 constexpr Duration kHousekeeping = 50ms;
-/// A caller that comes so much too late stood still, or its clock was set.
+/// A caller that is this much late has stood still, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// So long after a sign of congestion the window is about what the link carries.
+/// Time after a sign of congestion in which the window is about what the link carries.
 constexpr Duration kCongestedLately = 300ms;
 
 }  // namespace
 
-/// What was on the way while the caller stood still tells nothing about the path.
+/// Feedback on packets that were under way while the caller stood still says nothing about the
+/// path.
 Time Controller::Advance(Time caller_now) {
   const Time now = clock_.From(caller_now);
-  const Duration silence = now - now_;  // of the caller: with data in flight it has to come often
+  // The caller must call often while data are in flight.
+  const Duration silence = now - now_;
   now_ = std::max(now_, now);
   if (p_.extensions.evidence && silence > kHousekeeping + kStandstill &&
       history_.bytes_in_flight().bytes() > 0) {
@@ -107,7 +109,7 @@ void Controller::TakeOutageRestart(Time now) {
   if (!restart) return;
   window_.Set(std::max(window_.ref_wnd(), *restart));
   window_.ForgetSigns();
-  // What the path held back comes first: marks behind it are answered with the restart.
+  // Delayed packets arrive first. Their marks are already answered by the restart.
   path_.evidence().BeginAt(now + path_.rtt().smoothed());
   fast_increase_.Restart();
 }
@@ -168,7 +170,7 @@ bool Controller::RespondToDrop(Time now) {
 
 void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   const CongestionSignals signals = Signals(now, acks);
-  // A backlog behind fresh congestion has to leave first.
+  // A backlog behind recent congestion must leave first.
   if (streams_.media_qdelay(now) <= streams_.frame_period() || !CongestedLately())
     fast_increase_.Update(now, Round());
   const Reaction reaction = window_.Update(now, signals);
@@ -261,7 +263,7 @@ void Controller::UpdatePacer(Time now) {
 }
 
 DataRate Controller::WindowRate(Time now, double queue_compensation) const {
-  // Through an outage the round trip is as long as nothing has come back.
+  // The round trip during an outage is at least the time without feedback.
   const Duration s_rtt = std::max(path_.rtt().smoothed(), outage_.Silence(now));
   return TargetBitrate(p_, {window_.ref_wnd(), window_.ref_wnd_ratio(), s_rtt, queue_compensation});
 }
@@ -272,8 +274,8 @@ DataRate Controller::WindowTarget(Time now) const {
   return now < path_.half_rate_until() ? target * kDriftRateScale : target;
 }
 
-/// What encoders are asked for. It is less than the window allows while their output would wait,
-/// but never less than they need, as long as the path lives.
+/// Returns the target for encoders. It is below the window's rate while their output would wait,
+/// but not below their need while the path lives.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
   if (p_.extensions.gaps && started_ && liveness_.Stalled(now)) asked = asked * p_.stall_share;
@@ -299,7 +301,7 @@ std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
                       path_.ecn().codepoint()};
 }
 
-/// Nothing is begun into a link that stands still: it would wait where it cannot be dropped.
+/// Starts no frame on a link that stands still: its packets could not be dropped there.
 bool Controller::Holds(const Stream& stream, Time now) const {
   const bool stalled =
       p_.extensions.gaps && started_ && liveness_.Overdue(now) && liveness_.Stalled(now);
@@ -310,8 +312,8 @@ bool Controller::CongestedLately() const {
   return now_ - window_.last_congestion_detected_time() < kCongestedLately;
 }
 
-/// How fast a stream's queue may leave at best. A window without a queue in the network, and a gap,
-/// tell nothing about what the link could carry.
+/// Returns the highest rate at which a stream's queue may leave. The window says nothing about the
+/// link's capacity without a queue in the network, or in a gap.
 DataRate Controller::QueueRate(const Stream& stream) const {
   if (gap_recovery_.in_gap() || outage_.active() || !CongestedLately()) return DataRate::Infinite();
   const DataRate known = std::max({window_target_, path_.acked_rate(now_), path_.train_capacity()});

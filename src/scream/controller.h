@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// SCReAM v2, the sender's side: events with their time in, decisions out.
+// The sender's side of SCReAM v2. Events come with their time, and decisions are returned.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -25,16 +25,16 @@
 namespace lidar::scream {
 
 struct SendDecision {
-  Time time{};  ///< not before this; in the past or now: at once
+  Time time{};  ///< not before this time; a past time means at once
   StreamId stream = 0;
-  Ecn ecn = Ecn::kNotEct;  ///< the codepoint to put on it
+  Ecn ecn = Ecn::kNotEct;  ///< ECN codepoint for the packet
 };
 
 enum class FeedbackResult {
-  kAccepted,     ///< counted, decisions may have changed
-  kImplausible,  ///< ignored whole: acknowledges what was never sent, absurd times, a flood
-  kNotOurs,      ///< no block of our SSRCs
-  kStale,        ///< nothing new, older than what we know, or long settled
+  kAccepted,     ///< counted; decisions may have changed
+  kImplausible,  ///< ignored as a whole: unknown packets, absurd times, or a flood
+  kNotOurs,      ///< has no block for our SSRCs
+  kStale,        ///< has nothing new
 };
 
 /// Congestion control of one 5-tuple with any number of streams, each with any number of SSRCs.
@@ -73,40 +73,40 @@ class Controller {
   // Streams. All may be called at any time.
   StreamId AddStream(const StreamConfig& config);
   void ConfigureStream(StreamId stream, const StreamConfig& config);
-  /// Its queued packets are forgotten; what is in flight still counts.
+  /// Forgets the stream's queued packets; its packets in flight still count.
   void RemoveStream(StreamId stream) { streams_.Remove(stream); }
 
-  // Events
+  // Events:
   void OnQueued(Time now, StreamId stream, const QueuedPacket& packet);
   void OnSent(Time now, StreamId stream, const SentPacket& packet);
-  /// The first `packets` of the stream's queue were thrown away.
+  /// The caller dropped the first `packets` of the stream's queue.
   void OnDropped(Time now, StreamId stream, std::size_t packets);
-  /// Parsed feedback of the peer. The caller has checked its source address.
+  /// Takes parsed feedback of the peer. The caller has checked its source address.
   FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback);
-  /// Call at NextTimer() or later; calling more often does no harm.
+  /// Call it at NextTimer() or later; more calls do no harm.
   void OnTimer(Time now);
-  /// The peer's address changed: forgets base delay and RTT, probes ECN anew, and starts again from
-  /// the streams' start bitrates.
+  /// The peer's address changed. Forgets base delay and RTT, probes ECN anew, and restarts from the
+  /// streams' start bitrates.
   void OnRouteChange(Time now);
 
-  // Decisions
-  /// Which stream may send next and when: later while the window is closed, nothing while queues
-  /// are empty.
+  // Decisions:
+  // Returns which stream may send next, and when: later while the window is closed, and nothing
+  // while all queues are empty.
   std::optional<SendDecision> NextSend(Time now) const;
-  /// How many packets at the head of the queue are too late to be of use. An access unit that has
-  /// not begun to leave is late as a whole, beyond `max_queue_delay`; late ones behind it count as
-  /// well. The rest of one that has begun is late at five times that age. While packets in flight
-  /// are overdue the time that they need is added, half of `max_queue_delay` at most.
+  /// Returns how many packets at the head of the queue are too late. An access unit that has not
+  /// begun to leave is late as a whole after `max_queue_delay`; late units behind it count, too.
+  /// The rest of a unit that has begun is late at five times that age. While packets in flight are
+  /// overdue, their further delay is added, up to half of `max_queue_delay`.
   std::size_t LatePackets(Time now, StreamId stream) const;
-  /// The next time at which OnTimer() has something to do.
+  /// Returns when to call OnTimer() next.
   Time NextTimer() const;
-  /// What one stream may send, and what all may. IP, UDP and RTP are included.
+  /// Bitrates that one stream and all streams may send, with IP, UDP and RTP.
   DataRate target_bitrate(StreamId stream) const;
   DataRate target_bitrate() const { return streams_.target_bitrate(); }
-  /// Stream that owns `ssrc` (it was queued or sent there), for events that travel by SSRC.
+  /// Returns the stream that queued or sent `ssrc`, for events that name an SSRC.
   std::optional<StreamId> FindStream(std::uint32_t ssrc) const { return streams_.Owner(ssrc); }
 
-  // Observation
+  // Observation:
   Statistics statistics(Time now) const;
   StreamStatistics stream_statistics(Time now, StreamId stream) const;
   EcnState ecn_state() const { return path_.ecn().state(); }
@@ -137,7 +137,7 @@ class Controller {
   Duration Round() const;
 
   const Parameters p_;
-  SteadyTime clock_;  // of the caller; all times within are its steady ones
+  SteadyTime clock_;  // the caller's clock; all times inside are steady
   Time now_{};
   Streams streams_{p_};
   SentHistory history_;
@@ -150,8 +150,8 @@ class Controller {
   const Liveness liveness_{history_, path_, outage_, gap_recovery_};
   SendWindow send_window_{p_};
   Pacer pacer_{p_};
-  bool started_ = false;    // a round trip is known
-  DataRate window_target_;  // what the window allows; the streams' may be higher
+  bool started_ = false;    // a round trip was measured
+  DataRate window_target_;  // from the window; the sum of the streams' targets may be higher
   Time last_housekeeping_{};
   Statistics counters_;
 };

@@ -5,7 +5,7 @@
 
 namespace lidar::scream {
 
-/// The values are the bits on the wire, in IP and in RFC 8888.
+/// The values are the bits of the IP header and of RFC 8888.
 enum class Ecn : std::uint8_t { kNotEct = 0, kEct1 = 1, kEct0 = 2, kCe = 3 };
 
 }  // namespace lidar::scream

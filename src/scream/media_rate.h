@@ -15,7 +15,7 @@ struct MediaRateInput {
   double queue_compensation = 0;
 };
 
-/// Not yet limited to TARGET_BITRATE_MIN and TARGET_BITRATE_MAX.
+/// Returns the bitrate without the limits TARGET_BITRATE_MIN and TARGET_BITRATE_MAX.
 inline DataRate TargetBitrate(const Parameters& p, const MediaRateInput& in) {
   double scale = 1 - std::clamp(in.ref_wnd_ratio - 0.1, 0.0, 0.2);
   scale *= p.mss / (p.mss + p.packet_overhead);
@@ -23,7 +23,7 @@ inline DataRate TargetBitrate(const Parameters& p, const MediaRateInput& in) {
   return in.ref_wnd / in.s_rtt * scale;
 }
 
-/// The window whose target is `rate`: the draft leaves the start open.
+/// Returns the window whose target is `rate`, for the start that the draft leaves open.
 inline DataSize WindowFor(const Parameters& p, DataRate rate, Duration s_rtt) {
   return rate * s_rtt * p.target_rate_divisor * ((p.mss + p.packet_overhead) / p.mss);
 }

@@ -13,14 +13,14 @@ class Pacer {
  public:
   explicit Pacer(const Parameters& parameters) : p_(parameters) {}
 
-  /// `headroom` is PACKET_PACING_HEADROOM or what an extension makes of it. Near the maximum
-  /// pacing is relaxed, up to `relaxed_max`.
+  /// `headroom` is PACKET_PACING_HEADROOM or its extension. Pacing is relaxed near the maximum
+  /// bitrate, up to `relaxed_max`.
   void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom,
               DataRate relaxed_max = DataRate::Infinite());
-  /// Gaps between packets are longer and shorter by up to so much, which shows what others send.
+  /// Makes gaps between packets longer and shorter by this, to show other flows' packets.
   void set_ripple(Duration ripple) { ripple_ = ripple; }
-  /// Packets leave so that a link of rate `link` would queue them for `longest` at most: a large
-  /// frame waits here, until a small one has left room for it.
+  /// Packets leave so that a link of rate `link` would queue them for at most `longest`. A large
+  /// frame waits here until a small one has left room for it.
   void LimitQueue(DataRate link, Duration longest) {
     link_ = link;
     longest_queue_ = longest;
@@ -31,16 +31,16 @@ class Pacer {
   }
   /// A packet comes into an empty queue: the time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
-  /// A gap is over: the next packet waits no longer at the gap's rate.
+  /// A gap is over: the next packet does not wait at the gap's rate.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
-  /// The pace goes on from when the packet was due, not from a late wake-up, up to a bound.
+  /// The next packet is timed from when this one was due, not from a late wake-up, within a bound.
   void OnSent(Time now, DataSize size);
-  /// Not before this.
+  /// Earliest time for the next packet.
   Time next() const { return next_; }
   DataRate pace_bitrate() const { return pace_bitrate_; }
 
  private:
-  /// One of each two, but in an order that has no period (Thue and Morse's).
+  /// Returns true for one gap of each two, in an order without a period (Thue and Morse).
   bool LongerGap() {
     bool odd = false;
     for (std::uint32_t bits = gaps_++; bits != 0; bits &= bits - 1) odd = !odd;
@@ -53,7 +53,7 @@ class Pacer {
   std::uint32_t gaps_ = 0;
   DataRate link_ = DataRate::Infinite();
   Duration longest_queue_{0};
-  DataSize queue_;  // that a link of rate link_ would have
+  DataSize queue_;  // queue of a link with rate link_
   Time last_sent_{};
   Time next_{};
 };

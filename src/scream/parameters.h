@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The constants of SCReAM v2 under the draft's names, and a switch for each part beyond the draft.
+// The constants of SCReAM v2 by the draft's names, and a switch for each extension of the draft.
 #pragma once
 #include "src/base/time.h"
 #include "src/base/units.h"
@@ -8,29 +8,27 @@
 namespace lidar::scream {
 using namespace std::chrono_literals;
 
-/// What the draft does not have, in four parts. `docs/scream.md` argues each; all off is the pure
-/// draft.
+/// The parts beyond the draft, which `docs/scream.md` explains. All off is the pure draft.
 struct Extensions {
-  /// The window grows up to what the link is measured to carry, frames leave no faster, and a fall
-  /// of the capacity is answered at once.
+  /// Limits window and frames to the measured capacity, and reacts to its fall at once.
   bool capacity = true;
-  /// A sign of congestion is answered once, a lone loss is no sign, and clocks that are set and
-  /// callers that stand still are noticed.
+  /// Reacts to congestion once, ignores isolated losses, and handles set clocks and stalled
+  /// callers.
   bool evidence = true;
-  /// A gap of the link is sat out, and left with the window that it was met with.
+  /// Waits through a gap of the link, and continues with the window from before it.
   bool gaps = true;
-  /// Beside other flows the window is as bold as theirs.
+  /// Makes the window as bold as those of other flows.
   bool company = true;
 };
 
 struct Parameters {
-  /// Exactly the draft's constants, its optional parts off and no extension.
+  /// Returns exactly the draft's constants, without its optional parts and extensions.
   static Parameters Draft();
 
-  /// Codepoint of sent packets; ECT(1) also selects the L4S reaction (the draft's IS_L4S).
+  /// Codepoint of sent packets. ECT(1) also selects the L4S reaction (IS_L4S of the draft).
   Ecn ecn = Ecn::kEct1;
 
-  // Network congestion control
+  // Network congestion control:
   Duration qdelay_target_lo = 60ms;
   DataSize min_ref_wnd = DataSize::Bytes(3000);
   double bytes_in_flight_head_room = 1.5;
@@ -44,13 +42,13 @@ struct Parameters {
   double l4s_avg_g_down = 1.0 / 128;
   double qdelay_avg_g = 1.0 / 4;
 
-  // Optional: jitter scale
+  // Optional, jitter scale:
   bool reduce_jitter = true;
   double qdelay_min_max_avg_g = 1.0 / 16;
   double qdelay_dev_avg_g = 1.0 / 32;
   Duration qdelay_dev_threshold = 10ms;
 
-  // Sender transmission control
+  // Sender transmission control:
   double ref_wnd_overhead_min = 1.5;
   double ref_wnd_overhead_max = 3.0;
   DataRate rate_pace_min = DataRate::BitsPerSecond(50e3);
@@ -58,101 +56,100 @@ struct Parameters {
   double max_relaxed_pacing_factor = 4.0;
   double relaxed_pacing_limit_low = 0.8;
 
-  // Media rate control
+  // Media rate control:
   DataSize packet_overhead = DataSize::Bytes(20);
   double rate_adjust_gain = 1.0 / 16;
   double frame_size_dev_alpha = 1.0 / 64;
-  /// The fixed divisor of the target bitrate.
+  /// Fixed divisor of the target bitrate.
   double target_rate_divisor = 1.2;
 
-  // Optional: clock drift
+  // Optional, clock drift:
   bool clock_drift = true;
   double qdelay_min_avg_alpha = 1.0 / 256;
 
-  // Optional: link-layer losses
+  // Optional, link-layer losses:
   bool link_layer_loss = true;
   double loss_rate_threshold = 0.01;
 
-  // Optional: undershoot
+  // Optional, undershoot:
   bool undershoot_remedy = true;
   double acked_bitrate_margin = 0.8;
   double backoff_scale_low_target_rate = 0.25;
 
-  // Extensions
-  /// Growth beyond the draft's is by this fraction of the acknowledged bytes at most...
+  // Extensions:
+  // Growth beyond the draft's is at most this fraction of the acknowledged bytes. It increases
   double fast_increase_max = 0.5;
-  /// ...reached by steps of this, one for each round without congestion...
+  /// by this for each round without congestion,
   double fast_increase_step = 0.03;
-  /// ...where marks give an early warning, else of this...
+  /// or by this if no marks give an early warning,
   double fast_increase_step_unmarked = 0.02;
-  /// ...after so many rounds; a queue of this length stops it.
+  /// after so many rounds. A queue of this length stops it.
   int fast_increase_rounds = 3;
   Duration fast_increase_qdelay = 5ms;
-  /// Slope of the growth above the inflection point (the draft's is 8).
+  /// Slope of the growth above the inflection point (8 in the draft).
   double fast_increase_slope = 3;
-  /// A fall of the capacity: a target above this part of the measured capacity shows a drop...
+  /// The capacity has fallen if the target is above this part of its measured value,
   double drop_threshold = 0.9;
-  /// ...or above this, where it was measured over less than a frame period and VIRTUAL_RTT, with
-  /// fewer than half of the packets marked, or just after another reaction...
+  /// or above this part after a measurement over less than a frame period and VIRTUAL_RTT, with
+  /// fewer than half of the packets marked, or shortly after another reaction.
   double drop_threshold_unsure = 1.5;
-  /// ...where marks work, only if the wait grew by so many gaps between packets meanwhile...
+  /// The wait must also have grown by so many gaps between packets, on a path with marks.
   double drop_growth = 3;
-  /// ...after which the target is this fraction of it.
+  /// The target is then this part of the capacity.
   double drop_beta = 0.9;
-  /// A packet behind this much queue shows that the link is busy; without marks, this fraction of
-  /// qdelay_target.
+  /// Queue that shows a busy link; without marks, this part of qdelay_target.
   Duration busy_qdelay = 5ms;
   double busy_qdelay_unmarked = 0.45;
-  /// Bytes in flight over ref_wnd while most packets come back marked.
+  /// Bytes in flight relative to ref_wnd while most packets are marked,
   double bounded_overhead = 1.0;
-  /// ...and while they do not.
+  /// and while they are not.
   double open_overhead = 1.2;
-  /// Tolerated loss rate where the path carries ECT(1)...
+  /// Tolerated loss rate if the path carries ECT(1),
   double isolated_loss_threshold = 0.05;
-  /// ...unless the packets around the loss waited as long as this.
+  /// unless the packets around the loss waited as long as this.
   Duration isolated_loss_qdelay = 6ms;
-  /// The factor of l4s_alpha's filter. Alpha attacks as the draft's does once two rounds in a row
-  /// have this fraction; one is enough where it takes long_frame_period or more.
+  /// Factor of l4s_alpha's filter. Alpha has the draft's attack after two rounds in a row with this
+  /// fraction, or one round of at least long_frame_period.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
-  /// Pacing: a frame leaves so much sooner than its period ends, but within these
-  /// fractions of it. As much queue comes and goes with each frame where the link is full.
+  /// Pacing: a frame has left this long before its period ends, within these fractions of the
+  /// period. On a full link a queue of this length comes and goes with each frame.
   Duration pacing_reserve = 4ms;
-  /// Where marks work, this part of the queue at which marking begins, if that is less...
+  /// If marks work, it is this part of the queue at which marking starts, if that is less,
   double onset_reserve = 0.8;
   Duration shortest_pacing_reserve = 700us;
-  /// ...and less still for frames more often than this.
+  /// and less still for frames at shorter periods than this.
   Duration long_frame_period = 50ms;
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
 
-  /// Beside others: part of the draft's growth near the inflection point beside others that have
-  /// more, where nothing marks, which is a segment of 1500 bytes a round trip...
+  /// Company: part of the draft's growth near the inflection point, for a flow with less than its
+  /// share and without marks. The draft grows there by a segment of 1500 bytes a round trip.
   double classic_growth = 1.5;
-  /// ...where marking begins early...
+  /// The same part if marking starts early,
   double early_growth = 0.45;
-  /// ...and part of the draft's reaction to marks, in either case.
+  /// and part of the draft's reaction to marks in both cases.
   double prague_backoff = 0.1;
-  /// Packets leave so much sooner and later than evenly, which shows what others send.
+  /// Packets leave this much sooner or later than evenly, which shows other flows' packets.
   Duration pacing_ripple = 300us;
-  /// The part of its growth, where losses keep to a full queue that others fill, too.
+  /// Part of the multiplicative growth if losses occur at a full queue that other flows also fill.
   double fast_increase_beside = 0.2;
-  /// The target in a gap, as a part of what the window allows: what is queued then may be late.
+  /// Target in a gap, relative to the window's rate: data queued in a gap may be late.
   double stall_share = 0.6;
-  /// The time in which a backlog is to be gone, by a lower target.
+  /// Time in which a lower target removes a backlog.
   Duration backlog_drain = 200ms;
-  /// So much of a late wake-up is caught up (the draft's pacing has no such term).
+  /// Part of a late wake-up that is caught up. The draft's pacing has no such term.
   Duration pacing_catch_up = 4ms;
-  /// A little more than what is needed, as encoders round.
+  /// Margin on the needed bitrate, as encoders round.
   double needed_margin = 1.03;
 
-  /// All streams together get no more, but for their minima.
+  /// Limit for all streams together; minimum bitrates take precedence.
   DataRate max_total_bitrate = DataRate::Infinite();
-  /// Packets older than this in the sender's queue are late (see Controller::LatePackets).
+  /// Age at which packets in the sender's queue are late (see Controller::LatePackets()).
   Duration max_queue_delay = 200ms;
-  /// What would be late on a link so many times as fast as is known is given up at once.
+  /// Packets are dropped at once if they would be late even on a link this many times as fast.
   double link_may_be_faster = 1.5;
-  /// How seldom a healthy receiver may report. Above 0 it reports at the end of frames.
+  /// Longest interval of a healthy receiver's reports. Above 0 it reports at the end of frames.
   Duration feedback_interval{0};
 
   Extensions extensions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a controller tells about itself.
+// Statistics of a controller.
 #pragma once
 #include <cstdint>
 
@@ -11,20 +11,20 @@ namespace lidar::scream {
 
 /// How the path treats our ECN codepoint.
 enum class EcnState {
-  kOff,       ///< not asked for
-  kTesting,   ///< sent, nothing known yet
+  kOff,       ///< not requested
+  kTesting,   ///< sent, result unknown
   kCapable,   ///< arrives as sent, or CE
   kBleached,  ///< arrives as Not-ECT: fallen back to Not-ECT
   kSilent,    ///< nothing arrives when marked: fallen back to Not-ECT
 };
 const char* ToString(EcnState state);
 
-/// Why the target moved last, in words for the `reason` of an event.
+/// Reason for the target's last change, as a word for the `reason` of an event.
 enum class RateReason { kStart, kIncrease, kCe, kLoss, kDelay, kDrop, kTimeout };
 const char* ToString(RateReason reason);
 
 struct Statistics {
-  // Network congestion control
+  // Network congestion control:
   DataSize ref_wnd;
   DataSize ref_wnd_i;
   DataSize bytes_in_flight;
@@ -36,29 +36,30 @@ struct Statistics {
   double l4s_alpha = 0;
   double ref_wnd_delay_scale = 1;
   double loss_rate = 0;
-  double cross_traffic = 0;  ///< the part of the link that others use; 0: none was found
-  // Rates, IP included
+  double cross_traffic = 0;  ///< share of the link that others use; 0: none found
+  // Rates with IP headers:
   DataRate target_bitrate;  ///< of all streams
   DataRate pace_bitrate;
   DataRate sent_bitrate;
   DataRate acked_bitrate;
-  /// What the link carries, by the spacing of packets that it held back and by what arrived.
+  /// Capacity of the link, from the spacing of packets that it held back and from the acknowledged
+  /// rate.
   DataRate estimated_capacity;
-  // Sender's queue
+  // Sender's queue:
   DataSize queued;
   Duration media_qdelay{};
-  // Counters
+  // Counters:
   std::uint64_t packets_sent = 0;
   std::uint64_t packets_acked = 0;
   std::uint64_t packets_ce = 0;
-  std::uint64_t packets_lost = 0;     ///< declared lost, whether they came later or not
+  std::uint64_t packets_lost = 0;     ///< declared lost, even if they came later
   std::uint64_t packets_late = 0;     ///< declared lost, then acknowledged
-  std::uint64_t packets_dropped = 0;  ///< by the sender's queue
+  std::uint64_t packets_dropped = 0;  ///< dropped from the sender's queue
   DataSize bytes_sent;
   DataSize bytes_acked;
   std::uint64_t feedback_accepted = 0;
-  std::uint64_t feedback_ignored = 0;  ///< implausible, whole
-  std::uint64_t foreign_blocks = 0;    ///< of SSRCs that are not ours
+  std::uint64_t feedback_ignored = 0;  ///< implausible reports
+  std::uint64_t foreign_blocks = 0;    ///< of unknown SSRCs
   std::uint64_t feedback_timeouts = 0;
   std::uint64_t loss_events = 0;
   std::uint64_t ce_events = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The caller's clock, made one that nobody sets back.
+// Turns the caller's clock into a steady one.
 #pragma once
 #include <algorithm>
 
@@ -7,8 +7,8 @@
 
 namespace lidar::scream {
 
-/// Threads may hand their times in a little out of order. A time from long before the latest one
-/// means that the clock was set: what follows is counted on from there.
+/// Threads may pass their times slightly out of order. A time far before the latest one means that
+/// the clock was set: the steady time then continues from there.
 class SteadyTime {
  public:
   Time From(Time caller) {
@@ -20,9 +20,9 @@ class SteadyTime {
     latest_ = std::max(latest_, time);
     return time;
   }
-  /// Without learning anything.
+  /// Converts a time without a change of state.
   Time Peek(Time caller) const { return caller + shift_; }
-  /// On the caller's clock again.
+  /// Converts a steady time back to the caller's clock.
   Time ToCaller(Time time) const { return time == Time::max() ? time : time - shift_; }
 
  private:

@@ -8,18 +8,18 @@ namespace {
 
 constexpr double kMaxRateAdjustFactor = 0.5;
 constexpr double kMaxFrameSizeDev = 0.2;
-/// A rate_adjust_factor that is none any more.
+/// A rate_adjust_factor below this is no adjustment.
 constexpr double kNoAdjustment = 0.05;
 constexpr double kFramePeriodGain = 0.1;
 /// Longer gaps are pauses, not frame periods.
 constexpr Duration kMaxFramePeriod = 2s;
 constexpr Duration kMinFramePeriod = 1ms;
 constexpr Duration kLikelyFramePeriod = 200ms;
-/// Between the frames of film, 42 ms, and scans of 20 Hz.
+/// Lies between the frames of film, 42 ms, and scans of 20 Hz.
 constexpr Duration kScanPeriod = 45ms;
 /// The rest of a group that has begun to leave may wait this many times as long.
 constexpr int kBegunStay = 5;
-/// A stream without packets for so long leaves its share to the others.
+/// A stream without packets for this time leaves its share to others.
 constexpr Duration kInactive = 1s;
 
 }  // namespace
@@ -49,10 +49,11 @@ bool Stream::OnQueued(Time now, const QueuedPacket& packet) {
   return true;
 }
 
-/// Draft section "Media Rate Control": rate_adjust_factor and frame_size_dev, for each frame.
+/// Draft section "Media Rate Control": updates rate_adjust_factor and frame_size_dev for each
+/// frame.
 void Stream::OnFrame(Time now) {
   if (last_frame_ && now - *last_frame_ < kMaxFramePeriod) {
-    // The first interval tells all, unless it may be a pause.
+    // The first interval sets the period, unless it may be a pause.
     const bool first = !frame_period_known_ && now - *last_frame_ <= kLikelyFramePeriod;
     const double gain = first ? 1 : kFramePeriodGain;
     const double seconds = Seconds(frame_period_) * (1 - gain) + Seconds(now - *last_frame_) * gain;
@@ -63,7 +64,7 @@ void Stream::OnFrame(Time now) {
   const double error = Seconds(media_qdelay(now) - frame_period_ / 4) / Seconds(frame_period_);
   rate_adjust_factor_ =
       std::clamp(rate_adjust_factor_ + error * p_.rate_adjust_gain, 0.0, kMaxRateAdjustFactor);
-  // A whole scan at once is a backlog of its own.
+  // A whole scan is a backlog by itself.
   if (sudden_backlog_ && !sends_scans() && error < 0) {
     rate_adjust_factor_ /= 2;
     sudden_backlog_ = rate_adjust_factor_ > kNoAdjustment;
@@ -112,15 +113,16 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
   return static_cast<std::size_t>(unit - queue_.begin());
 }
 
-/// A frame that has begun to leave goes out to its end: half a frame helps nobody. Its rest is of
-/// no use either, once it has waited kBegunStay times as long as a frame may.
+/// Returns how many packets of a frame that has begun are stuck. A frame that has begun is sent to
+/// its end, as half a frame is useless, unless it has waited kBegunStay times as long as a frame
+/// may.
 std::size_t Stream::StuckPackets(Time now) const {
   const Duration age = now - queue_.front().queued;
   if (age < kBegunStay * p_.max_queue_delay) return 0;
   const auto next =
       std::find_if(queue_.begin(), queue_.end(), [](const Queued& q) { return q.starts_frame; });
   const auto rest = static_cast<std::size_t>(next - queue_.begin());
-  // A receiver that reports at the end of frames would wait for it for ever.
+  // Keeps the frame's last packet: a receiver that reports at frame ends waits for it.
   const bool keeps_last =
       p_.feedback_interval > Duration{0} && age < 2 * kBegunStay * p_.max_queue_delay;
   return keeps_last ? rest - 1 : rest;
@@ -132,7 +134,7 @@ Stream::Queue::const_iterator Stream::UnitEnd(Queue::const_iterator unit) const 
   });
 }
 
-/// The units of a group that are still to come are expected to be as in the group before.
+/// Expects the missing units of a group to be like those of the group before.
 bool Stream::Late(Time now, DataRate rate, Queue::const_iterator unit,
                   Queue::const_iterator next) const {
   DataSize size;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One media stream: the mirror of its RTP queue, its frames, and its share of the rate.
+// A media stream: the mirror of its RTP queue, its frames, and its share of the rate.
 #pragma once
 #include <deque>
 #include <optional>
@@ -17,27 +17,27 @@ class Stream {
   Stream(const Parameters& parameters, const StreamConfig& config);
 
   void Configure(const StreamConfig& config) { config_ = config; }
-  /// Returns true where the packet ends a frame.
+  /// Returns true if the packet ends a frame.
   bool OnQueued(Time now, const QueuedPacket& packet);
-  /// Takes the head of the queue.
+  /// Takes the packet at the head of the queue.
   void OnSent(Time now, std::uint32_t ssrc, DataSize size);
   void OnDropped(Time now, std::size_t packets);
-  /// Packets at the head that nobody can use any more. `rate`: at which the queue leaves.
-  /// An access unit, or a group of them as a whole, is late where its last packet would leave
-  /// max_queue_delay after the middle of its capture. The rest of one that has begun to leave may
-  /// take kBegunStay times as long.
+  /// Returns the number of useless packets at the head; the queue leaves at `rate`. An access unit,
+  /// or a whole group of them, is late if its last packet would leave later than max_queue_delay
+  /// after the middle of its capture. The rest of a unit that has begun to leave may take
+  /// kBegunStay times as long.
   std::size_t LatePackets(Time now, DataRate rate) const;
 
   bool empty() const { return queue_.empty(); }
   DataSize head_size() const { return queue_.front().size; }
-  /// Nothing of the access unit at the head, or of its group, has left yet.
+  /// Returns true if no packet of the first access unit, or of its group, has left.
   bool at_start() const { return queue_.front().starts_frame && !Begun(queue_.front()); }
   DataSize queued() const { return queued_; }
-  /// What is queued beyond what the target carries until the next frame is due. Frames that are not
+  /// Queued bytes beyond those that the target carries until the next frame. Frames that are not
   /// whole scans count as due a full period from now.
   DataSize backlog(Time now) const;
-  /// How much lower the target must be for the backlog to be gone: within backlog_drain, or for
-  /// whole scans within a period.
+  /// Reduction of the target that removes the backlog within backlog_drain, or for whole scans
+  /// within a period.
   DataRate backlog_rate(Time now) const;
   /// Age of the oldest packet.
   Duration media_qdelay(Time now) const;
@@ -48,14 +48,14 @@ class Stream {
   double frame_size_dev() const { return frame_size_dev_; }
   double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
-  /// The queue that stands here came from a gap or a drop of the capacity: once it is gone, it
-  /// lowers the target no more.
+  /// The present queue came from a gap or a drop of the capacity. Once it has left, it no longer
+  /// lowers the target.
   void OnSuddenBacklog() { sudden_backlog_ = !queue_.empty() || rate_adjust_factor_ > 0; }
-  /// Silence counts from here on, at the latest.
+  /// Starts to measure silence, if that has not begun.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }
-  /// Has packets, or had lately.
+  /// Returns true if the stream has packets, or had some recently.
   bool active(Time now) const;
-  /// It has a part in what the streams are together: the last Allocate() found it active.
+  /// Returns true if the last Allocate() found the stream active.
   bool counts() const { return counts_; }
   void set_counts(bool counts) { counts_ = counts; }
   DataRate target_bitrate() const { return target_bitrate_; }
@@ -63,11 +63,11 @@ class Stream {
   void OnAcked(bool ce) { counters_.packets_ce += ce ? 1 : 0; }
   void OnLost() { ++counters_.packets_lost; }
   StreamStatistics statistics(Time now) const;
-  /// For the scheduler: bytes sent by weight, see Streams.
+  /// Bytes sent by weight, for the scheduler; see Streams.
   double virtual_time = 0;
 
  private:
-  /// Frames seldom enough that each is a queue of its own.
+  /// Returns true if frames are so rare that each is a queue by itself.
   bool sends_scans() const;
   struct Queued {
     DataSize size;
@@ -75,7 +75,7 @@ class Stream {
     bool starts_frame = false;
     std::optional<std::uint32_t> group = std::nullopt;
   };
-  /// The last group that was queued whole, and the one that is being queued.
+  /// The last complete group in the queue, and the incomplete one.
   struct Group {
     DataSize size;
     Time first{}, last{};
@@ -86,7 +86,7 @@ class Stream {
   void NoteGroup(Time now, const QueuedPacket& packet);
   using Queue = std::deque<Queued>;
   bool Begun(const Queued& packet) const { return packet.group && packet.group == begun_group_; }
-  /// Behind the packets of an access unit, or of all those of a group.
+  /// Returns the position behind an access unit, or behind its group.
   Queue::const_iterator UnitEnd(Queue::const_iterator unit) const;
   bool Late(Time now, DataRate rate, Queue::const_iterator unit, Queue::const_iterator next) const;
 
@@ -98,13 +98,13 @@ class Stream {
   mutable RateMeter sent_rate_{1s};
   DataRate target_bitrate_;
   bool counts_ = true;
-  // Frames of the media SSRC: the one that sends markers.
+  // The SSRC that sends markers; its packets are the frames.
   std::optional<std::uint32_t> media_ssrc_;
   std::optional<std::uint32_t> frame_timestamp_;
   DataSize frame_size_;
   std::optional<std::uint32_t> queued_group_, begun_group_, dropped_group_;
   Group this_group_, last_group_;
-  Time frame_begin_{};  // when the first packet of the newest frame was queued
+  Time frame_begin_{};  // time of the newest frame's first packet
   std::optional<Time> last_frame_;
   std::optional<Time> last_active_;
   Duration frame_period_ = 20ms;

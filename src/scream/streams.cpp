@@ -39,7 +39,7 @@ std::optional<StreamId> Streams::Next() const {
   return next;
 }
 
-/// A stream that was idle gets no credit for the time it did not send.
+/// An idle stream gets no credit for the time without packets.
 void Streams::OnQueued(Stream* stream) {
   stream->virtual_time = std::max(stream->virtual_time, virtual_now_);
 }
@@ -48,7 +48,7 @@ void Streams::OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size) {
   Stream* stream = Find(id);
   if (stream == nullptr) return;
   stream->OnSent(now, ssrc, size);
-  // The time of the others' turns goes on with theirs alone.
+  // Strict streams do not advance the virtual time of the others.
   if (!stream->config().strict) virtual_now_ = stream->virtual_time;
   const double weight = std::max(1.0, stream->target_bitrate().bits_per_second());
   stream->virtual_time += size.bits() / weight;
@@ -60,7 +60,7 @@ bool Streams::AnyActive(Time now) const {
 }
 
 double Streams::NeedShare(Time now, DataRate total) const {
-  DataRate extra;  // of what is needed, above the minima
+  DataRate extra;  // needed bitrate above the minima
   const bool any_active = AnyActive(now);
   for (const auto& [id, stream] : streams_) {
     if (any_active && !stream.active(now)) continue;
@@ -81,7 +81,7 @@ void Streams::OnReport(const AckSummary& acks) {
 void Streams::Allocate(Time now, DataRate total) {
   std::vector<Share> open;
   DataRate left = total;
-  if (now != Time{})  // else there was no event yet
+  if (now != Time{})  // zero before the first event
     for (auto& [id, stream] : streams_) stream.NoteTime(now);
   const bool any_active = AnyActive(now);
   const double need_share = NeedShare(now, total);
@@ -96,7 +96,7 @@ void Streams::Allocate(Time now, DataRate total) {
     if (c.needed_bitrate > floor) floor = floor + (c.needed_bitrate - floor) * need_share;
     stream.set_target_bitrate(floor);
     left = left - floor;
-    // The target allows for the queues of all, so each stream bears its own.
+    // The target allows for all queues, so each stream bears its own.
     const double weight =
         std::max(1e-6, c.priority) / (p_.target_rate_divisor + stream.queue_compensation());
     open.push_back({&stream, weight, floor, std::max(c.min_bitrate, c.max_bitrate)});
@@ -107,12 +107,13 @@ void Streams::Allocate(Time now, DataRate total) {
   Fill({others, open.end()}, left);
 }
 
-/// Shares by weight. A stream at its maximum leaves the rest to the others. Returns what is left.
+/// Shares the rate by weight. A stream at its maximum leaves the rest to others. Returns the
+/// remainder.
 DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   while (left.bits_per_second() > 1 && !open.empty()) {
     double weights = 0;
     for (const Share& s : open) weights += s.weight;
-    double fraction = 1;  // of `left` that can be given before the first one is full
+    double fraction = 1;  // part of `left` until the first stream is full
     for (const Share& s : open)
       fraction = std::min(fraction, (s.max - s.rate) / (left * (s.weight / weights)));
     const DataRate given = left * fraction;
@@ -128,7 +129,8 @@ DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   return left;
 }
 
-/// A stream that waits for its turn behind the backlog of another one has done nothing wrong.
+/// Lowers targets of streams with a backlog of their own, and of no stream that waits for
+/// another's.
 void Streams::LeaveRoomForBacklogs(Time now) {
   const auto wait = [now](const Stream& s) {
     return s.backlog(now) / std::max(s.target_bitrate(), DataRate::BitsPerSecond(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All streams of a controller: who sends next, and who gets how much of the rate.
+// All streams of a controller: decides which one sends next, and shares the rate among them.
 #pragma once
 #include <map>
 #include <optional>
@@ -20,31 +20,30 @@ class Streams {
   const Stream* Find(StreamId id) const;
   std::optional<StreamId> Owner(std::uint32_t ssrc) const;
 
-  /// The stream whose turn it is: strict ones first, then weighted fair queueing by target
-  /// bitrates.
+  /// Returns the next stream: strict ones first, then weighted fair queueing by target bitrates.
   std::optional<StreamId> Next() const;
   void OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size);
   void OnQueued(Stream* stream);
-  /// Counts what became of their packets.
+  /// Counts acknowledged and lost packets by stream.
   void OnReport(const AckSummary& acks);
 
-  /// Minimum first, then by priority, none above its maximum; silent streams keep their minimum
-  /// (unless all are silent).
+  /// Gives each stream its minimum, then shares by priority up to its maximum. Silent streams keep
+  /// their minimum, unless all are silent.
   void Allocate(Time now, DataRate total);
-  /// Lowers the targets of the streams with the longest backlogs by Stream::backlog_rate(); not
-  /// below what they need.
+  /// Lowers the targets of the streams with the longest backlogs by Stream::backlog_rate(), but not
+  /// below their need.
   void LeaveRoomForBacklogs(Time now);
   void OnSuddenBacklog() {
     for (auto& [id, stream] : streams_) stream.OnSuddenBacklog();
   }
-  // These count the streams that are not silent, or all where all are.
+  // Sums over the streams that are not silent, or over all if all are silent.
   DataRate min_bitrate() const;
-  /// The larger of what each stream needs and its minimum.
+  /// For each stream the larger of its need and its minimum.
   DataRate needed_bitrate() const;
   DataRate max_bitrate() const;
   DataRate start_bitrate() const;
   DataRate target_bitrate() const;
-  /// The stream with the highest target says it.
+  /// Frame period of the stream with the highest target.
   Duration frame_period() const;
   /// rate_adjust_factor + frame_size_dev, weighted by target.
   double queue_compensation() const;
@@ -53,9 +52,9 @@ class Streams {
   bool empty() const;
 
  private:
-  /// How much of what streams need above their minima the path can carry, 0..1.
+  /// Share of the needed bitrates above the minima that the path can carry, 0 to 1.
   double NeedShare(Time now, DataRate total) const;
-  /// What a stream has got of the rate so far.
+  /// A stream's part of the rate so far.
   struct Share {
     Stream* stream;
     double weight;

@@ -10,8 +10,8 @@
 namespace lidar::scream {
 using namespace std::chrono_literals;
 
-/// One a stream. True when the target moved by more than `threshold` since the last true, or when
-/// `interval` has gone by.
+/// Serves one stream. Returns true if the target moved by more than `threshold` since the last
+/// true, or after `interval`.
 class TargetNotifier {
  public:
   bool ShouldNotify(Time now, DataRate target) {

@@ -37,7 +37,7 @@ double Number(T field) {
     return static_cast<double>(field);
 }
 
-/// The field of `p`, a Parameters or a const one, to which `member` points.
+/// Returns the field of `p`, a Parameters or a const one, to which `member` points.
 template <class P, class Owner, class T>
 auto& FieldOf(P& p, T Owner::*member) {
   if constexpr (std::is_same_v<Owner, Extensions>)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The constants and switches of Parameters by name, as users, programs and tests set them.
+// The constants and switches of Parameters by name, for users, programs and tests.
 #pragma once
 #include <string>
 #include <string_view>
@@ -10,30 +10,30 @@
 
 namespace lidar::scream {
 
-/// A constant or a switch. As numbers, times are nanoseconds, sizes bytes, rates bit/s, and a
-/// switch is 0 or 1.
+/// A constant or a switch. Its value is a number: times in nanoseconds, sizes in bytes, rates in
+/// bit/s, and 0 or 1 for a switch.
 struct Tunable {
   using Member =
       std::variant<bool Extensions::*, bool Parameters::*, double Parameters::*,
                    Duration Parameters::*, DataSize Parameters::*, DataRate Parameters::*>;
-  const char* name;  ///< the draft's or the extension's, with hyphens
+  const char* name;  ///< name of the draft or extension, with hyphens
   Member member;
   double min = 0;
   double max = 1;
 
   bool is_switch() const { return member.index() <= 1; }
-  /// An extension, not a part or a constant of the draft.
+  /// Returns true for an extension, as opposed to a part or constant of the draft.
   bool is_extension() const { return member.index() == 0; }
-  /// False, and no change, outside of min..max.
+  /// Returns false, without a change, for a value outside of min..max.
   bool Set(double value, Parameters* parameters) const;
   double Get(const Parameters& parameters) const;
 };
 
-/// All, in the order of the draft's sections.
+/// All tunables, in the order of the draft's sections.
 const std::vector<Tunable>& Tunables();
-/// NULL where nothing is called so. Underscores count as hyphens.
+/// Returns NULL for an unknown name. Underscores count as hyphens.
 const Tunable* FindTunable(std::string_view name);
-/// The names of all, with commas between, for messages.
+/// All names, separated by commas, for messages.
 std::string TunableNames();
 
 }  // namespace lidar::scream

@@ -20,14 +20,14 @@ constexpr std::uint16_t kOffsetMask = 0x1FFF;
 constexpr std::uint16_t kOffsetSaturated = 0x1FFE;
 constexpr double kOffsetUnitsPerSecond = 1024;
 
-/// Length of an RTCP packet by its header, or 0.
+/// Returns the length of an RTCP packet from its header, or 0.
 std::size_t RtcpLength(ByteView bytes) {
   if (bytes.size < 4 || (bytes.data[0] & kVersionMask) != kVersion2) return 0;
   ByteReader reader(bytes.Sub(2));
   return 4 * (std::size_t{reader.Be16()} + 1);
 }
 
-/// Without RTCP padding; empty where the padding is malformed.
+/// Returns the packet without RTCP padding, or nothing if the padding is malformed.
 ByteView WithoutPadding(ByteView packet) {
   if ((packet.data[0] & kPaddingBit) == 0) return packet;
   const std::size_t padding = packet.data[packet.size - 1];
@@ -60,7 +60,7 @@ struct ReadBlocks {
   bool padding_is_zero = true;
 };
 
-/// All blocks under one reading of num_reports, or nothing where they do not fill `bytes`.
+/// Reads all blocks under one reading of num_reports. Returns nothing if they do not fill `bytes`.
 std::optional<ReadBlocks> Read(ByteView bytes, NumReports reading) {
   ReadBlocks result;
   ByteReader reader(bytes);
@@ -109,8 +109,8 @@ std::optional<CongestionFeedback> CcfbParser::Parse(ByteView packet) {
   auto count = Read(blocks, NumReports::kCount);
   auto minus_one = Read(blocks, NumReports::kCountMinusOne);
   if (!count && !minus_one) return std::nullopt;
-  // Even counts differ in length between the readings. Odd ones do not, but then the reference puts
-  // a block where RFC 8888 puts padding.
+  // The two readings give different lengths for even counts only. For odd counts the reference has
+  // a block in place of RFC 8888's padding.
   if (!count || (minus_one && !count->padding_is_zero))
     reading_ = NumReports::kCountMinusOne;
   else if (!minus_one)
@@ -125,7 +125,7 @@ std::vector<std::uint8_t> BuildCcfb(const CongestionFeedback& feedback, NumRepor
   ByteWriter writer(&bytes);
   writer.U8(kVersion2 | kFormatCcfb);
   writer.U8(kTypeRtpfb);
-  writer.Be16(0);  // the length, once it is known
+  writer.Be16(0);  // the length, filled in at the end
   writer.Be32(feedback.sender_ssrc);
   for (const SsrcReport& block : feedback.blocks) {
     if (block.metrics.empty()) continue;

@@ -9,7 +9,7 @@ namespace lidar::scream {
 namespace {
 
 constexpr std::size_t kMaxSources = 64;
-/// A sequence number farther away than this is not of the same run of packets.
+/// A more distant sequence number belongs to another run of packets.
 constexpr int kMaxJump = 3000;
 constexpr std::int64_t kIpUdp = 28;
 constexpr std::int64_t kReportWithoutBlocks = 12;
@@ -71,7 +71,7 @@ void FeedbackGenerator::Start(Source* source, std::uint16_t seq) {
   source->first = source->next_report = source->lowest_new = extended;
 }
 
-/// The extended sequence number. A far jump is taken for a restart of the sender once a second
+/// Returns the extended sequence number. A far jump counts as a sender's restart after a second
 /// packet confirms it.
 std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint16_t seq) {
   const std::int64_t extended = source->unwrapper.Peek(seq);
@@ -84,12 +84,12 @@ std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint1
     return source->first;
   }
   source->restart.reset();
-  // A packet from before the very first one reaches back; one that was forgotten does not.
+  // The record grows backwards for a packet before the very first one, but not for a forgotten one.
   if (extended < source->first && source->next_report > source->first) return std::nullopt;
   return source->unwrapper.Unwrap(seq);
 }
 
-/// False for a packet that was there already.
+/// Returns false for a repeated packet.
 bool FeedbackGenerator::Store(Source* source, std::int64_t seq, Time arrival, Ecn ecn) {
   while (seq < source->first) {
     source->window.emplace_front();
@@ -105,7 +105,7 @@ bool FeedbackGenerator::Store(Source* source, std::int64_t seq, Time arrival, Ec
   }
   Arrival& a = source->window[static_cast<std::size_t>(seq - source->first)];
   if (a.received) {
-    // RFC 8888: the first copy's time, but CE of any copy.
+    // RFC 8888: the time of the first copy, but CE of any copy.
     if (ecn == Ecn::kCe) a.ecn = Ecn::kCe;
     return false;
   }
@@ -146,7 +146,7 @@ void FeedbackGenerator::Schedule(Time arrival, const ReceivedPacket& packet) {
   }
 }
 
-/// Bytes that the next RTCP packet may have: reports never outweigh what was received.
+/// Returns the most bytes of the next RTCP packet: reports stay below the received bytes.
 std::int64_t FeedbackGenerator::Allowance() const {
   return std::min(config_.max_report.bytes(), (stats_.received - stats_.sent).bytes() - kIpUdp);
 }
@@ -162,7 +162,7 @@ std::optional<CongestionFeedback> FeedbackGenerator::Take(Time at) {
   const std::int64_t allowance = Allowance();
   for (auto& [ssrc, source] : sources_)
     size += AppendBlock(now, ssrc, &source, allowance - size, &report);
-  if (report.blocks.empty()) return std::nullopt;  // due again with the next packet
+  if (report.blocks.empty()) return std::nullopt;  // the next packet makes it due again
   ++stats_.reports;
   stats_.sent += DataSize::Bytes(size + kIpUdp);
   last_report_ = now;
@@ -170,7 +170,7 @@ std::optional<CongestionFeedback> FeedbackGenerator::Take(Time at) {
   return report;
 }
 
-/// Overlap gives way to new packets, and to the oldest of those that arrived late.
+/// The overlap is reduced for new packets, and for the oldest of those that came late.
 std::int64_t FeedbackGenerator::FirstToReport(const Source& source,
                                               std::int64_t max_metrics) const {
   const std::int64_t fresh = std::min(source.next_report, source.lowest_new);
@@ -178,7 +178,7 @@ std::int64_t FeedbackGenerator::FirstToReport(const Source& source,
   return std::max({source.first, wanted, std::min(fresh, source.end() - max_metrics)});
 }
 
-/// Returns the bytes it took.
+/// Returns the number of bytes added.
 std::int64_t FeedbackGenerator::AppendBlock(Time now, std::uint32_t ssrc, Source* source,
                                             std::int64_t room, CongestionFeedback* report) {
   const std::int64_t max_metrics = (room - kBlockWithoutMetrics) / 4 * 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The receiver's side: remembers what arrived and decides when to report what.
+// The receiver's side: records arrivals, and decides what to report when.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -20,51 +20,51 @@ struct ReceivedPacket {
   std::uint16_t seq = 0;
   Ecn ecn = Ecn::kNotEct;
   bool marker = false;
-  DataSize size;  ///< as on the wire, IP included
+  DataSize size;  ///< on the wire, with IP header
 };
 
 struct FeedbackConfig {
-  std::uint32_t sender_ssrc = 1;  ///< the receiver's own SSRC, in the RTCP header
+  std::uint32_t sender_ssrc = 1;  ///< the receiver's own SSRC in the RTCP header
   NumReports num_reports = NumReports::kCount;
-  /// A report waits no longer than this after an unreported packet, and less at high rate.
+  /// Longest wait of a report after an unreported packet; at a high rate it is shorter.
   Duration feedback_interval = 40ms;
-  /// A report is due after this many unreported packets of all SSRCs.
+  /// Number of unreported packets of all SSRCs that make a report due.
   int packets_per_feedback = 16;
   bool report_on_marker = true;
-  /// A report is due at once when arriving packets change between CE and not CE...
+  /// A report is due at once if arriving packets change between CE and not CE,
   bool report_on_ce_change = true;
-  /// ...but no sooner than this after the report before.
+  /// but not earlier than this after the last report.
   Duration ce_change_interval = 5ms;
-  /// A report reaches back over this many packets of an SSRC that were reported already, so that a
-  /// lost report costs nothing.
+  /// Number of packets of an SSRC that are reported again, so that a lost report costs nothing.
   int overlap = 32;
-  /// Share of the received bytes that shortening the interval may spend on reports.
+  /// Share of the received bytes that reports may use in shorter intervals.
   double feedback_fraction = 0.02;
   Duration min_feedback_interval = 5ms;
-  /// Longest RTCP packet; what does not fit goes into the next report, due at once.
+  /// Longest RTCP packet. The remainder goes into the next report, which is due at once.
   DataSize max_report = DataSize::Bytes(1200);
-  /// Forgets an SSRC after this silence.
+  /// Silence after which an SSRC is forgotten.
   Duration ssrc_timeout = 30s;
 };
 
-/// No clock: OnPacket() and NextDue() tell when to call Take(). Not thread-safe.
+/// Decides when to report. The class has no clock: OnPacket() and NextDue() show when to call
+/// Take(). Not thread-safe.
 ///
 ///     generator.OnPacket(arrival, packet);
 ///     while (auto report = generator.Take(now)) Send(BuildCcfb(*report, config.num_reports));
 ///     wait until generator.NextDue() or the next packet
 ///
-/// Sent bytes never exceed received bytes (a spoofed sender cannot use the receiver to amplify).
+/// Sent bytes never exceed received bytes: a spoofed sender cannot use the receiver to amplify.
 class FeedbackGenerator {
  public:
   explicit FeedbackGenerator(const FeedbackConfig& config = {});
 
-  /// `at` is the kernel's time where known; it should not lie after the `now` of Take().
+  /// `at` is the kernel's time if known. It should not be after the `now` of Take().
   void OnPacket(Time at, const ReceivedPacket& packet);
-  /// When the next report is due (maybe in the past), Time::max() where nothing waits.
+  /// Returns when the next report is due, which may be in the past; Time::max() if no packet waits.
   Time NextDue() const { return clock_.ToCaller(due_); }
-  /// The report, if one is due.
+  /// Returns the report if one is due.
   std::optional<CongestionFeedback> Take(Time at);
-  /// Forgets everything, for a new peer.
+  /// Forgets all packets, for a new peer.
   void Reset();
   void set_config(const FeedbackConfig& config) { config_ = config; }
 
@@ -73,8 +73,8 @@ class FeedbackGenerator {
     std::uint64_t ce_packets = 0;
     std::uint64_t duplicates = 0;
     std::uint64_t reordered = 0;
-    std::uint64_t stale = 0;  ///< so old that no report covers them any more
-    std::uint64_t lost = 0;   ///< gaps so far (a late packet takes its loss back)
+    std::uint64_t stale = 0;  ///< too old for any report
+    std::uint64_t lost = 0;   ///< gaps so far; a late packet reduces the number
     std::uint64_t reports = 0;
     DataSize received;
     DataSize sent;
@@ -89,11 +89,11 @@ class FeedbackGenerator {
   };
   struct Source {
     SequenceUnwrapper<std::uint16_t> unwrapper;
-    std::deque<Arrival> window;  // of first, first + 1, ...
+    std::deque<Arrival> window;  // of packets first, first + 1, ...
     std::int64_t first = 0;
-    std::int64_t next_report = 0;          // lowest one not yet covered by any report
-    std::int64_t lowest_new = 0;           // lowest one that arrived since the last report
-    std::optional<std::uint16_t> restart;  // where the sender would go on, had it jumped
+    std::int64_t next_report = 0;          // lowest packet that no report has covered
+    std::int64_t lowest_new = 0;           // lowest packet that arrived since the last report
+    std::optional<std::uint16_t> restart;  // next number if the sender has restarted
     int unreported = 0;
     Time last_arrival{};
 
@@ -116,7 +116,7 @@ class FeedbackGenerator {
   FeedbackConfig config_;
   std::map<std::uint32_t, Source> sources_;
   Stats stats_;
-  SteadyTime clock_;  // of the caller; all times here are its steady ones
+  SteadyTime clock_;  // the caller's clock; all times here are steady
   Time due_ = Time::max();
   std::optional<Time> last_report_;
   std::optional<bool> last_was_ce_;

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::uint8_t kReceiverReport = 201;
 constexpr std::uint8_t kApp = 204;
-constexpr std::uint8_t kVersion = 1;         // the subtype of the packet
+constexpr std::uint8_t kVersion = 1;         // subtype of the packet
 constexpr std::uint32_t kName = 0x474c5352;  // "GLSR"
-constexpr std::uint16_t kWords = 15;         // behind the first
+constexpr std::uint16_t kWords = 15;         // after the first one
 
 std::uint32_t Saturate(double value) {
   constexpr double kMax = std::numeric_limits<std::uint32_t>::max();
@@ -26,10 +26,10 @@ std::uint32_t ToWire(Duration time) { return Saturate(static_cast<double>(time.c
 
 struct AppPacket {
   std::uint8_t version = 0;
-  ByteReader rest;  // from the SSRC on, the name left out
+  ByteReader rest;  // starts at the SSRC, without the name
 };
 
-/// Where `packet` is an APP packet with our name.
+/// Opens `packet` if it is an APP packet with our name.
 std::optional<AppPacket> OpenApp(ByteView packet, std::uint32_t* ssrc) {
   ByteReader in(packet);
   const std::uint8_t first = in.U8();
@@ -37,7 +37,7 @@ std::optional<AppPacket> OpenApp(ByteView packet, std::uint32_t* ssrc) {
   in.Be16();
   *ssrc = in.Be32();
   const bool is_ours = in.Be32() == kName;
-  // Nobody pads these.
+  // These packets have no padding.
   constexpr std::uint8_t kPadding = 0x20;
   if (!in.ok() || !is_app || !is_ours || (first & kPadding) != 0) return std::nullopt;
   return AppPacket{static_cast<std::uint8_t>(first & 0x1f), in};

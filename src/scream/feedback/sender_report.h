@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How the sender sees the path, told to the receiver among the media: RTCP APP (PT 204, name GLSR).
+// Reports of the sender's view of the path to the receiver: RTCP APP (PT 204, name GLSR).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,31 +11,31 @@
 
 namespace lidar::scream {
 
-/// On the wire everything is 32 bit: amounts saturate, counts wrap.
+/// All fields have 32 bits on the wire: amounts saturate, counts wrap.
 struct SenderReport {
   std::uint32_t ssrc = 0;
-  std::uint32_t time_ms = 0;  // of a clock that only goes forward; any epoch, wraps
+  std::uint32_t time_ms = 0;  // of a monotonic clock with any epoch; wraps
   DataRate target_bitrate;
   DataRate estimated_capacity;
   DataRate sent_bitrate;
   DataSize ref_wnd;
   DataSize bytes_in_flight;
-  Duration queue_delay{};         // of the path; to 1 us, as are the other two
+  Duration queue_delay{};         // of the path; this and the next two in steps of 1 us
   Duration rtt{};                 // smoothed
-  Duration sender_queue_delay{};  // until a packet leaves
+  Duration sender_queue_delay{};  // wait of packets before they leave
   std::uint32_t packets_sent = 0;
   std::uint32_t packets_lost = 0;
   std::uint32_t packets_ce = 0;
-  std::uint32_t packets_dropped = 0;  // by the sender
+  std::uint32_t packets_dropped = 0;  // dropped by the sender
 };
 
-/// A compound of an empty receiver report and the APP packet.
+/// Builds an empty receiver report and the APP packet.
 std::vector<std::uint8_t> BuildSenderReport(const SenderReport& report);
 
-/// True where a compound RTCP datagram holds such a packet, of whatever version.
+/// Returns true if a compound RTCP datagram has such a packet, of any version.
 bool HasSenderReport(ByteView datagram);
-/// The first of its reports whose version is known and that is whole; none otherwise. What follows
-/// the known fields is of newer senders, and passed over.
+/// Parses the first such report that has a known version and is whole. Fields of newer senders
+/// behind the known ones are ignored.
 std::optional<SenderReport> ParseSenderReport(ByteView datagram);
 
 }  // namespace lidar::scream

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Turns the numbers of transport-wide feedback (TWCC, draft-holmer-rmcat-transport-wide-cc-
-// extensions-01) back into packets of SSRCs, so that its reports reach a controller that counts by
-// SSRC. An rtpsession reads the packets themselves.
+// Maps the packet numbers of transport-wide feedback (TWCC,
+// draft-holmer-rmcat-transport-wide-cc-extensions-01) to SSRCs and sequence numbers, as the
+// controller counts. An rtpsession reads the feedback packets.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -14,26 +14,27 @@
 
 namespace lidar::scream {
 
-/// The URI of the RTP header extension that numbers the packets.
+/// URI of the RTP header extension with the packet numbers.
 constexpr const char* kTwccUri =
     "http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01";
-/// Arrival times repeat after this, 12 days.
+/// Period of arrival times, 12 days.
 constexpr Duration kTwccPeriod = std::chrono::milliseconds(64) * (1 << 24);
-/// Half of the numbers are the most that can be told apart.
+/// Number of packets that can be told apart: half of the numbers.
 constexpr std::size_t kMaxTwccPackets = 1 << 14;
 
 struct TwccFeedback {
   std::uint16_t base_number = 0;
-  /// When base_number, base_number + 1, ... arrived, by the receiver's clock; none: not received.
+  /// Arrival times of base_number, base_number + 1, ... on the receiver's clock; unset: not
+  /// received.
   std::vector<std::optional<Duration>> arrivals;
 };
 
-/// The sender's side. TWCC carries no ECN bits and no time of the report itself: a packet counts as
-/// Not-ECT, and the report as made when the last of its packets arrived.
+/// The sender's side. TWCC has no ECN bits and no report time: packets count as Not-ECT, and the
+/// report as made at the arrival of its last packet.
 class TwccMapper {
  public:
   void OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t seq);
-  /// Numbers that were never sent, or long ago, are left out; nothing where none remains.
+  /// Leaves out numbers that were never sent or too long ago. Returns nothing if no number remains.
   std::optional<CongestionFeedback> Map(const TwccFeedback& feedback);
 
  private:
@@ -48,9 +49,9 @@ class TwccMapper {
   Duration Unwrap(Duration arrival);
 
   SequenceUnwrapper<std::uint16_t> numbers_;
-  std::deque<Sent> sent_;  // of first_, first_ + 1, ...
+  std::deque<Sent> sent_;  // of packets first_, first_ + 1, ...
   std::int64_t first_ = 0;
-  std::optional<Duration> newest_;  // arrival, without wrapping around
+  std::optional<Duration> newest_;  // newest arrival, without wrap-around
 };
 
 }  // namespace lidar::scream

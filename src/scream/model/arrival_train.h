@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Packets that left the bottleneck's queue one behind the other, and the holes between them.
+// A train of packets that left the bottleneck's queue without pause, and the holes between trains.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -10,18 +10,18 @@
 
 namespace lidar::scream {
 
-/// A hole: the link stood still, or nearly so, while packets waited for it. The packets after a
-/// hole tell what the link carries now.
+/// A hole is a time in which the link stood nearly still while packets waited. The packets after it
+/// show the link's present capacity.
 class ArrivalTrain {
  public:
   struct Arrival {
     Time time{};
     DataSize size;
     Duration qdelay{0};
-    bool waited = false;  ///< in the bottleneck's queue
+    bool waited = false;  ///< it was in the bottleneck's queue
   };
 
-  /// Returns true where the packet came after a hole.
+  /// Returns true if the packet came after a hole.
   bool Add(const Arrival& a) {
     const bool hole = last_ && std::min(a.time - last_->time, a.qdelay) > kHole;
     if (hole || !a.waited || (last_ && a.time < last_->time)) train_.clear();
@@ -32,8 +32,8 @@ class ArrivalTrain {
   }
   void Reset() { *this = ArrivalTrain(); }
 
-  /// What the link carries, without the longest pause. None for a train too short against the
-  /// coarse arrival times of reports.
+  /// Returns the link's capacity without the train's longest pause. Returns nothing for a train
+  /// that is too short for the coarse arrival times of reports.
   std::optional<DataRate> rate() const {
     if (train_.size() < kShortest) return std::nullopt;
     DataSize bytes, after_pause;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beyond the draft: the capacity of a link that is visibly busy, from the spacing of arrivals.
+// Beyond the draft: measures the capacity of a busy link from the spacing of arrivals.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -10,15 +10,15 @@
 
 namespace lidar::scream {
 
-/// While each packet waited in the bottleneck's queue, the link was never idle between them: bytes
-/// over arrival time is its capacity, whatever the sender's rate.
+/// The link is never idle between packets that all waited in the bottleneck's queue. Their bytes
+/// over their arrival time are its capacity, at any rate of the sender.
 class BusyRun {
  public:
   struct Arrival {
     Time sent{};
     Time time{};
     DataSize size;
-    bool busy = false;  ///< it had to wait: marked, or behind a queue
+    bool busy = false;  ///< it waited: was marked, or had a queue before it
     bool marked = false;
   };
 
@@ -29,7 +29,7 @@ class BusyRun {
     }
     ++packets_;
     marked_ += a.marked ? 1 : 0;
-    // A packet of the report before may have overtaken it.
+    // A packet of the last report may have overtaken this one.
     const Time sent = last_ ? std::max(a.sent, last_->sent) : a.sent;
     if (last_) AddStep({a.time - last_->time, sent - last_->sent, a.size});
     last_ = a;
@@ -40,16 +40,16 @@ class BusyRun {
   int packets() const { return packets_; }
   int marked() const { return marked_; }
   Duration span() const { return all_.arrived; }
-  /// Without the longest pause: a link that stood still for a moment has not become slower. None
-  /// for a run too short against the coarse arrival times of reports.
+  /// Returns the capacity without the longest pause: a link that stood still for a moment is not
+  /// slower. Returns nothing for a run that is too short for the coarse arrival times of reports.
   std::optional<DataRate> capacity() const {
     const Duration busy = all_.arrived - pause_.arrived;
     if (packets_ < kMinPackets || busy < kMinBusy) return std::nullopt;
     return (all_.size - pause_.size) / busy;
   }
-  /// By how much longer the last packet waited than the first, in gaps between departures. A link
-  /// that is slower than the sender delivers packets further apart than they left. The longest
-  /// pause counts on neither side. Infinite where all left at once.
+  /// Returns the growth of the queueing delay from the first packet to the last, in gaps between
+  /// departures. A link that is slower than the sender spreads the packets. The longest pause does
+  /// not count. Infinite if all packets left at once.
   double growth() const {
     const Duration arrived = all_.arrived - pause_.arrived;
     const Duration left = all_.left - pause_.left;
@@ -59,7 +59,7 @@ class BusyRun {
   }
 
  private:
-  /// From one packet to the next: the times between arrivals and between departures.
+  /// Times between arrivals and between departures, from one packet to the next.
   struct Step {
     Duration arrived{0}, left{0};
     DataSize size;
@@ -72,8 +72,8 @@ class BusyRun {
   static constexpr int kMinPackets = 5;
   static constexpr Duration kMinBusy = std::chrono::milliseconds(7);
   std::optional<Arrival> last_;
-  Step all_;    // the sum
-  Step pause_;  // the longest
+  Step all_;    // sum of all steps
+  Step pause_;  // longest step
   int packets_ = 0;
   int marked_ = 0;
 };

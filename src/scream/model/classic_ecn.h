@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether the bottleneck marks as RFC 3168 says, ECT(1) like ECT(0) (RFC 9331, section 4.3).
+// Detects a bottleneck that marks ECT(1) like ECT(0), as RFC 3168 says (RFC 9331, section 4.3).
 #pragma once
 #include <algorithm>
 
@@ -7,9 +7,9 @@
 
 namespace lidar::scream {
 
-/// Behind a long queue an L4S bottleneck marks every packet, a classic one few. So the queue of
-/// unmarked packets, in rounds that saw marks, tells them apart. A route that became longer is no
-/// queue: what the shortest delay of the last seconds shows is taken off.
+/// An L4S bottleneck marks each packet behind a long queue, a classic one few packets. So the queue
+/// of unmarked packets, in rounds with marks, separates them. The shortest delay of the last
+/// seconds is subtracted, as a longer route is no queue.
 class ClassicEcn {
  public:
   void OnPacket(Time now, Duration qdelay, bool marked) {
@@ -23,7 +23,7 @@ class ClassicEcn {
     if (marked || now - last_mark_ > kMarksLately) return;
     const Duration queue = qdelay - std::min(lowest_, previous_lowest_);
     unmarked_ += FromSeconds(Seconds(queue - unmarked_) * kGain);
-    if (unmarked_ > kLong) found_ = true;
+    if (unmarked_ > kLongQueue) found_ = true;
     if (unmarked_ < kShort) found_ = false;
   }
   bool found() const { return found_; }
@@ -31,7 +31,7 @@ class ClassicEcn {
  private:
   static constexpr Duration kLowestWindow = std::chrono::seconds(1);
   static constexpr Duration kMarksLately = std::chrono::milliseconds(200);
-  static constexpr Duration kLong = std::chrono::milliseconds(5);
+  static constexpr Duration kLongQueue = std::chrono::milliseconds(5);
   static constexpr Duration kShort = std::chrono::microseconds(3500);
   static constexpr double kGain = 1.0 / 8192;
   Duration lowest_ = Duration::max();

@@ -4,9 +4,9 @@
 namespace lidar::scream {
 namespace {
 
-/// Not one packet of so many arrived with its codepoint: no accident.
+/// Number of packets without their codepoint that cannot be chance.
 constexpr int kBleachedPackets = 20;
-/// Unacknowledged packets, and time, before silence is blamed on ECN.
+/// Number of unacknowledged packets, and time, after which ECN may be the cause of silence.
 constexpr int kSilentPackets = 10;
 constexpr Duration kSilence = 2s;
 
@@ -34,7 +34,7 @@ void EcnMonitor::OnAcked(Ecn sent, Ecn arrived) {
   } else if (++bleached_ >= kBleachedPackets) {
     state_ = EcnState::kBleached;
   }
-  sent_ = 0;  // something came back: not silent
+  sent_ = 0;  // an acknowledgement ends the silence
 }
 
 void EcnMonitor::OnTimer(Time now) {

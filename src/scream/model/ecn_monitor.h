@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Watches what the path does to our ECN codepoint and falls back to Not-ECT where it is not kept.
+// Checks what the path does to our ECN codepoint. Falls back to Not-ECT if the path does not keep
+// it.
 #pragma once
 #include "src/scream/parameters.h"
 #include "src/scream/statistics.h"
 
 namespace lidar::scream {
 
-/// Bleached: packets sent with ECT arrive as Not-ECT. Silent: from the start nothing that carried
-/// ECT is acknowledged. Both last until Reset(), which a new route calls for.
+/// Bleached: packets sent as ECT arrive as Not-ECT. Silent: no ECT packet was ever acknowledged.
+/// Both states last until Reset() after a change of route.
 class EcnMonitor {
  public:
   explicit EcnMonitor(Ecn wanted) : wanted_(wanted) { Reset(); }
@@ -15,7 +16,7 @@ class EcnMonitor {
 
   void OnSent(Time now, Ecn sent);
   void OnAcked(Ecn sent, Ecn arrived);
-  /// Looks for silence.
+  /// Checks for silence.
   void OnTimer(Time now);
 
   Ecn codepoint() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The time before which nothing that was sent proves anything.
+// The time from which packets say something about the present path.
 #pragma once
 #include <algorithm>
 
@@ -7,16 +7,15 @@
 
 namespace lidar::scream {
 
-/// A packet that met a gap, an outage or another route says nothing about the path now: neither its
-/// marks, its loss, its delay nor its round trip count. A packet that was on the way at a reaction
-/// is no reason for another one.
+/// Packets that met a gap, an outage or another route do not count: neither marks, loss, delay nor
+/// round trip. Packets that were under way at a reaction cause no second one.
 class Evidence {
  public:
   void BeginAt(Time time) {
     begin_ = std::max(begin_, time);
     OnDropReaction(begin_);
   }
-  /// The window follows a fall of the capacity.
+  /// Called after the window has followed a fall of the capacity.
   void OnDropReaction(Time now) {
     marks_ = std::max(marks_, now);
     OnLossReaction(now);
@@ -25,7 +24,7 @@ class Evidence {
 
   bool Counts(Time sent) const { return sent >= begin_; }
   bool MarkCounts(Time sent) const { return sent >= marks_; }
-  /// The newest packet of the report counts, or it has none.
+  /// Returns true if the newest packet of the report counts, or if it has no time.
   bool Counts(const AckSummary& acks) const {
     return acks.acked.empty() || Counts(acks.acked.back().sent);
   }
@@ -43,7 +42,7 @@ class Evidence {
   }
 
  private:
-  // The later ones are never before the earlier ones.
+  // `marks_` and `losses_` are never before `begin_`.
   Time begin_{}, marks_{}, losses_{};
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// max_bytes_in_flight of this round trip, of the one before, and of the last few.
+// Greatest bytes in flight (max_bytes_in_flight) of this round trip, the last one, and the last
+// few.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -23,7 +24,7 @@ class MaxBytesInFlight {
   }
   DataSize current() const { return current_; }
   DataSize previous() const { return history_.empty() ? DataSize() : history_.front(); }
-  /// In this round trip and the one before.
+  /// Greatest value of this round trip and the last one.
   DataSize lately() const { return std::max(current_, previous()); }
   DataSize longest() const {
     DataSize max = current_;

@@ -7,15 +7,15 @@
 
 namespace lidar::scream {
 
-/// Fast attack, slow decay.
+/// Has a fast attack and a slow decay.
 class L4sAlpha {
  public:
   explicit L4sAlpha(const Parameters& p) : p_(p) {}
 
-  /// `round` is a round trip, or longer where frames come more seldom. With the extension
-  /// capacity the fraction is that of a whole round, and alpha rises as fast as it falls. A
-  /// fraction of few packets scatters. A step marks all packets of some rounds and none of others.
-  /// Fast attack with slow decay would turn either into a bias against the smaller of two flows.
+  /// `round` is a round trip, or a frame period if that is longer. With the extension capacity the
+  /// fraction is that of a whole round, and alpha rises as fast as it falls. Fractions of few
+  /// packets scatter, and a step marks all packets of some rounds and no packets of others. A fast
+  /// attack with slow decay would turn both into a bias against the smaller of two flows.
   void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
               Duration round) {
     delivered_ += data_units_acked;
@@ -39,13 +39,13 @@ class L4sAlpha {
     delivered_ = marked_ = 0;
   }
 
-  /// As before the first packet.
+  /// Returns to the state before the first packet.
   void Reset() {
     alpha_ = 0;
     delivered_ = marked_ = marked_rounds_ = 0;
     last_update_ = {};
   }
-  /// Goes on from a value that was known before.
+  /// Continues from an earlier value.
   void Restore(double alpha) {
     alpha_ = alpha;
     marked_rounds_ = 0;
@@ -54,8 +54,8 @@ class L4sAlpha {
   double value() const { return alpha_; }
 
  private:
-  /// Counts the round. A step fills one round with marks, a fall of the capacity two in a row. A
-  /// long round has packets enough to tell by itself.
+  /// Counts marked rounds. A step fills one round with marks, a fall of the capacity two in a row.
+  /// A long round has enough packets to show a fall alone.
   bool CountsAsFall(double fraction, Duration round) {
     marked_rounds_ = fraction < p_.even_alpha_max ? 0 : marked_rounds_ + 1;
     const int enough = round < p_.long_frame_period ? 2 : 1;
@@ -63,14 +63,14 @@ class L4sAlpha {
   }
 
   static constexpr Duration kUpdateInterval = 10ms;
-  /// Longer rounds, as of whole scans, count for more.
+  /// Longer rounds, as of whole scans, weigh more.
   static constexpr Duration kEvenRound = 40ms;
   const Parameters& p_;
   double alpha_ = 0;
   Time last_update_{};
   int delivered_ = 0;
   int marked_ = 0;
-  int marked_rounds_ = 0;  // in a row, with a fraction of even_alpha_max or more
+  int marked_rounds_ = 0;  // rounds in a row with a fraction of even_alpha_max or more
 };
 
 }  // namespace lidar::scream

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether packets are lost where the queue is long, or anywhere.
+// Decides whether packets are lost at a long queue, or independently of the queue.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -8,10 +8,9 @@
 
 namespace lidar::scream {
 
-/// A radio loses packets whatever the queue is; a queue that overflows loses those that meet it
-/// full. The rank of a loss is the part of recent pairs of packets that waited less than the two
-/// around it: one half on average for random loss, near one for a full queue, however short that
-/// is.
+/// A radio loses packets at any queue length; a full queue loses those that overflow it. The rank
+/// of a loss is the share of recent packet pairs that waited less than the two around it. The mean
+/// rank is one half for random loss, and nearly one for a full queue, however short.
 class LossContext {
  public:
   void OnAcked(Time sent, Duration qdelay) {
@@ -21,10 +20,10 @@ class LossContext {
   void OnLost(Time sent) {
     if (recent_.size() < kRecent / 4) return;
     rank_ += (Rank(QdelayAround(sent)) - rank_) * kGain;
-    losses_ = std::min(losses_ + 1, kEnough);
+    losses_ = std::min(losses_ + 1, kKnownLosses);
   }
-  /// Losses keep to a full queue.
-  bool AtFullQueue() const { return losses_ >= kEnough && rank_ > kFull; }
+  /// Returns true if losses occur at a full queue.
+  bool AtFullQueue() const { return losses_ >= kKnownLosses && rank_ > kFull; }
 
  private:
   struct Packet {
@@ -35,14 +34,15 @@ class LossContext {
   Duration LongerOfPair(std::size_t second) const {
     return std::max(recent_[second - 1].qdelay, recent_[second].qdelay);
   }
-  /// The longer delay of the packets before and after it; past either end, of the two nearest.
+  /// Returns the longer delay of the packets before and after the loss, or of the two nearest at
+  /// either end.
   Duration QdelayAround(Time sent) const {
     const auto after = std::find_if(recent_.begin(), recent_.end(),
                                     [sent](const Packet& p) { return p.sent >= sent; });
     const auto index = static_cast<std::size_t>(after - recent_.begin());
     return LongerOfPair(std::clamp<std::size_t>(index, 1, recent_.size() - 1));
   }
-  /// Among pairs, as the longer of two delays is above most single ones.
+  /// Ranks among pairs, as the longer of two delays exceeds most single delays.
   double Rank(Duration qdelay) const {
     double below = 0;
     for (std::size_t i = 1; i < recent_.size(); ++i) {
@@ -54,7 +54,7 @@ class LossContext {
 
   static constexpr std::size_t kRecent = 256;
   static constexpr double kGain = 1.0 / 16;
-  static constexpr int kEnough = 6;
+  static constexpr int kKnownLosses = 6;
   static constexpr double kFull = 0.7;
   std::deque<Packet> recent_;
   double rank_ = 0.5;

@@ -10,7 +10,7 @@ namespace lidar::scream {
 class LossRate {
  public:
   explicit LossRate(const Parameters& p) : p_(p) {}
-  /// One packet settled.
+  /// Adds a packet that was acknowledged or lost.
   void Add(bool lost, DataSize ref_wnd) {
     const double alpha = std::min(p_.loss_rate_threshold / 4, p_.mss / ref_wnd / 2);
     rate_ = (1 - alpha) * rate_ + (lost ? alpha : 0);

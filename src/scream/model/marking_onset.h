@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The queue delay at which the bottleneck begins to mark.
+// Estimates the queue delay at which the bottleneck starts to mark.
 #pragma once
 #include "src/base/time.h"
 
 namespace lidar::scream {
 
-/// A low quantile of the queue delays of marked packets. Arrival times of reports are coarse, and
-/// the base delay is the lowest of them, so it tells a millisecond from two and no more.
+/// Takes a low quantile of the queue delays of marked packets. Arrival times of reports are coarse
+/// and the base delay is their minimum, so the resolution is about a millisecond.
 class MarkingOnset {
  public:
   explicit MarkingOnset(Duration initial) : value_(initial) {}

@@ -7,18 +7,18 @@
 namespace lidar::scream {
 namespace {
 
-/// So long after a mark the next sign of congestion is expected to be one too.
+/// Time after a mark in which marks are the expected sign of congestion.
 constexpr Duration kMarksExpected = 30s;
-/// So long after a loss a queue that overflows may overflow again.
+/// Time after a loss in which a queue may overflow again.
 constexpr Duration kLossesExpected = 10s;
-/// Reports that are no further apart than this part of a round trip need no allowance...
+/// Reports need no allowance if they are closer than a round trip divided by this.
 constexpr int kCloseReports = 5;
-/// ...and no gap between reports counts as longer than this.
+/// Longest gap between reports that counts.
 constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
-/// Packets in a row behind a queue that are no accident.
+/// Number of packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
-/// The clock-drift remedy lasts five round trips, but not less than this.
+/// Least time of the clock-drift remedy, which lasts five round trips.
 constexpr Duration kShortestHalfRate = 200ms;
 
 }  // namespace
@@ -122,7 +122,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
   const bool congested = MarkedLately(now) || lossy;
   cross_traffic_.BeginReport();
   for (const AckedPacket& packet : acks.acked) {
-    if (!packet.arrival) {  // a hole in what is known of the link
+    if (!packet.arrival) {  // an unknown arrival is a hole
       busy_run_.Reset();
       continue;
     }
@@ -142,7 +142,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
   EstimateCapacity(now);
 }
 
-/// Trains show it whatever the source's rate; what arrives is never more.
+/// Trains show the capacity at any rate of the source. The acknowledged rate is a lower bound.
 void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = std::max(acked_peak_, acked_rate_.Rate(now));
   const auto rate = train_.rate();
@@ -152,7 +152,7 @@ void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = DataRate();
 }
 
-/// Weighted by what the report acknowledges: a pause of the source is no gap.
+/// Weights reports by what they acknowledge: a pause of the source is no gap.
 void PathModel::MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd) {
   const Duration gap = std::min(now - std::exchange(last_report_, now), kLongestInterval);
   const double weight = std::min(1.0, acks.bytes_newly_acked / ref_wnd);

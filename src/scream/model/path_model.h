@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What acknowledgements tell of the path: delays, marks, losses, rates and the link's capacity.
+// The path as acknowledgements show it: delays, marks, losses, rates and the link's capacity.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -25,31 +25,31 @@
 
 namespace lidar::scream {
 
-/// What the sender does while it measures.
+/// The sender's state during a measurement.
 struct SenderState {
   DataSize ref_wnd;
   Duration frame_period{0};
   Duration qdelay_target{0};
 };
 
-/// The estimators of one path. It decides nothing: the responses ask it.
+/// The estimators of one path. They measure; the responses decide.
 class PathModel {
  public:
   explicit PathModel(const Parameters& parameters);
 
   /// `in_flight` includes the packet.
   void OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight);
-  /// Comes before OnReport().
+  /// Call it before OnReport().
   void OnRoundTrip(Time now, const AckSummary& acks);
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
-  /// A gap is over: what was sent before `now` met it.
+  /// A gap is over. Packets sent before `now` met it and do not count.
   void OnGapEnd(Time now, Duration s_rtt, double l4s_alpha);
   void EndRoundTrip(Time now);
   void OnTimer(Time now) { ecn_.OnTimer(now); }
-  /// Another route: base delay, round trip, ECN, marks, losses and capacity are unknown again.
+  /// The route changed: makes base delay, round trip, ECN, marks, losses and capacity unknown.
   void Reset(Time now);
 
-  /// What was sent before some moment counts no more.
+  /// The times from which packets count.
   Evidence& evidence() { return evidence_; }
   const Evidence& evidence() const { return evidence_; }
   const RoundTripTime& rtt() const { return rtt_; }
@@ -62,41 +62,42 @@ class PathModel {
   const EcnMonitor& ecn() const { return ecn_; }
   const BusyRun& busy_run() const { return busy_run_; }
   const ArrivalTrain& train() const { return train_; }
-  /// The queue at which marking begins.
+  /// Queue delay at which marking starts.
   Duration marking_onset() const { return marking_onset_.value(); }
-  /// What the link carries, whatever the source sends: 0 while nothing is known.
+  /// The link's capacity at any rate of the source; 0 while unknown.
   DataRate estimated_capacity() const { return std::max(train_capacity_, acked_peak_); }
-  /// The same by the spacing of packets alone.
+  /// The capacity from the spacing of packets alone.
   DataRate train_capacity() const { return train_capacity_; }
-  /// The link stood still, or nearly so, before a packet of the last report.
+  /// The link stood nearly still before a packet of the last report.
   bool hole_in_report() const { return hole_in_report_; }
-  /// Within the last round trip.
+  /// Returns true after a mark within the last round trip.
   bool MarkedLately(Time now) const { return last_mark_ && now - *last_mark_ < rtt_.min(); }
-  /// The packet that was acknowledged last came marked.
+  /// The newest acknowledged packet was marked.
   bool newest_marked() const { return newest_marked_; }
   const MaxBytesInFlight& max_in_flight() const { return max_in_flight_; }
   DataRate sent_rate(Time now) const { return sent_rate_.Rate(now); }
-  /// Over a round trip, or two frame periods where those are longer.
+  /// Averaged over a round trip, or over two frame periods if those are longer.
   DataRate acked_rate(Time now) const { return acked_rate_.Rate(now); }
-  /// Over a second: read when packets arrive, a shorter average leaves out pauses between frames.
+  /// Averaged over a second and read at arrivals: a shorter average would ignore pauses between
+  /// frames.
   DataRate long_acked_rate(Time now) const { return long_acked_rate_.Rate(now); }
 
-  /// The path carries ECT(1), and its bottleneck has lately been one that marks it.
+  /// Returns true if the path carries ECT(1) and its bottleneck has recently marked it.
   bool L4sWorks(Time now) const;
-  /// A packet that waited so long came out of a queue. Without marks a queue is no sign of
-  /// congestion before the draft takes it for one.
+  /// Queueing delay of a packet that shows a busy link. Without marks a queue only counts as
+  /// congestion if the draft counts it.
   Duration BusyQdelay(Time now, Duration qdelay_target) const;
-  /// The queue is longer than `qdelay`, and packets keep coming back out of it. Where marks work
-  /// they have to be marked, too: delay alone may be a longer path.
+  /// Returns true if the queue exceeds `qdelay` and packets keep coming out of it. On a path with
+  /// marks they must be marked, too, as delay alone may be a longer route.
   bool Queueing(Time now, Duration qdelay) const;
-  /// Time between reports, on average.
+  /// Mean time between reports.
   Duration report_gap() const { return report_gap_; }
-  /// For how long what arrives has not been reported yet, and so still counts as in flight. 0
-  /// unless reports are far apart, as round trips go.
+  /// Time for which arrived packets are unreported and still count as in flight. It is 0 unless
+  /// reports are far apart relative to the round trip.
   Duration UnreportedTime() const;
-  /// The clocks drift apart: the draft sends at half the rate until then.
+  /// The clocks drift apart: until this time the draft sends at half the rate.
   Time half_rate_until() const { return half_rate_until_; }
-  /// Round trips, delays, marks and rates; the rest of `statistics` is left alone.
+  /// Fills in round trips, delays, marks and rates; leaves other statistics alone.
   void Describe(Time now, Statistics* statistics) const;
 
  private:
@@ -120,7 +121,7 @@ class PathModel {
   MarkingOnset marking_onset_{p_.pacing_reserve};
   bool hole_in_report_ = false;
   DataRate train_capacity_;
-  DataRate acked_peak_;  // of averages, since the last train
+  DataRate acked_peak_;  // highest average since the last train
   Evidence evidence_;
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};

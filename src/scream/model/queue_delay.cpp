@@ -7,14 +7,14 @@
 namespace lidar::scream {
 namespace {
 
-/// RFC 6817's ten minutes of base history...
+/// Base history: RFC 6817's ten minutes,
 constexpr Duration kBaseInterval = 10s;
 constexpr std::size_t kBaseHistory = 60;
-/// ...and a short one where marks keep the queue from standing for so long.
+/// and a short one if marks prevent a long-standing queue.
 constexpr std::size_t kBaseHistoryMarked = 3;
-/// Either way shorter by so much than it ever was: a clock jumped.
+/// A clock jumped if a delay is shorter than its minimum by this.
 constexpr Duration kJump = 100ms;
-/// Clocks drift: the way back is that of the last one to two of these.
+/// Clocks drift, so the minimum of the way back is over one to two of these times.
 constexpr Duration kBackWindow = 5min;
 
 Duration Scale(Duration d, double f) { return FromSeconds(Seconds(d) * f); }
@@ -42,8 +42,7 @@ void QueueDelay::ForgetBase() {
   min_this_rtt_ = Duration::max();
 }
 
-/// A queue on one way leaves the other way as it is. A clock that is set makes one of them shorter
-/// than it can be.
+/// A queue lengthens only one way. A clock that is set makes one way shorter than its minimum.
 bool QueueDelay::Jumped(Time now, Duration owd, Duration way_back) {
   if (!p_.extensions.evidence) return false;
   if (now - shortest_back_since_ >= kBackWindow) {
@@ -73,7 +72,7 @@ bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   const bool jumped = base_ && Jumped(now, owd, sample.way_back);
   if (jumped) {
     ForgetBase();
-    // A queue that stands across the jump shows in the round trip still.
+    // The round trip still shows a queue that exists during the jump.
     AddToBase(now, owd - sample.rtt_excess, short_history);
   }
   AddToBase(now, owd, short_history);

@@ -8,37 +8,38 @@
 
 namespace lidar::scream {
 
-/// A packet that was acknowledged.
+/// An acknowledged packet.
 struct DelaySample {
   Time sent{};
   Time arrival{};  ///< on the receiver's clock
-  /// How much the round trip is above its minimum: a queue cannot delay more than that.
+  /// Round trip above its minimum, an upper bound for a queue's delay.
   Duration rtt_excess{0};
-  /// From the report on the receiver's clock to its arrival on ours.
+  /// Time from the report, on the receiver's clock, to its arrival on ours.
   Duration way_back{0};
 };
 
-/// One-way delay above its base (RFC 6817). The two clocks share no epoch: only differences count.
+/// One-way delay above its base (RFC 6817). The clocks share no epoch, so only differences count.
 class QueueDelay {
  public:
   explicit QueueDelay(const Parameters& parameters);
 
-  /// Returns false where the clocks jumped against each other: the base has been taken anew.
-  /// `short_history`: the base is that of the last half minute.
+  /// Returns false if the clocks jumped relative to each other; the base is then taken anew. With
+  /// `short_history` the base is the minimum of the last half minute.
   bool Add(Time now, const DelaySample& sample, bool short_history = false);
-  /// After the packets of a report: averages, at most once every min(VIRTUAL_RTT, s_rtt).
+  /// Updates the averages after the packets of a report, at most once every min(VIRTUAL_RTT,
+  /// s_rtt).
   void Update(Time now, Duration s_rtt, Duration qdelay_target);
-  /// Takes no account any more of the queue that was.
+  /// Forgets the present queue.
   void ForgetQueue() { qdelay_avg_ = Duration{0}; }
-  /// As new.
+  /// Returns to the initial state.
   void Reset();
 
   Duration base() const { return base_.value_or(Duration{0}); }
   Duration qdelay() const { return qdelay_; }
   Duration qdelay_avg() const { return qdelay_avg_; }
-  /// 1: no jitter, 0: much. Always 1 without REDUCE_JITTER.
+  /// 1: no jitter, 0: much jitter. Always 1 without REDUCE_JITTER.
   double ref_wnd_delay_scale() const { return ref_wnd_delay_scale_; }
-  /// True once each time the clock-drift remedy gave the base up.
+  /// Returns true once after each new base by the clock-drift remedy.
   bool TakeDriftReset();
 
  private:
@@ -64,7 +65,7 @@ class QueueDelay {
   Duration qdelay_dev_avg_{0};
   double ref_wnd_delay_scale_ = 1;
   Time last_update_qdelay_avg_time_{};
-  // Clock drift
+  // Clock drift:
   Duration slow_min_avg_{0};
   Duration min_this_rtt_ = Duration::max();
   Time rtt_start_{};

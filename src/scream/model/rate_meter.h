@@ -19,7 +19,7 @@ class RateMeter {
     sum_ += size;
     Expire(now);
   }
-  /// Before a whole window has gone by: over what has.
+  /// Averages over the time that has passed, at most a window.
   DataRate Rate(Time now) {
     Expire(now);
     if (first_ == Time::max()) return DataRate();

@@ -19,13 +19,13 @@ class RoundTripTime {
     else
       smoothed_ = bounded;
   }
-  /// Goes on from a value that was known before.
+  /// Continues from an earlier value.
   void Restore(Duration smoothed) { smoothed_ = smoothed; }
   void Reset() { *this = RoundTripTime(); }
 
   bool known() const { return smoothed_.has_value(); }
   Duration smoothed() const { return smoothed_.value_or(kInitial); }
-  /// Looks back one to two kMinWindow: a path may become longer for good.
+  /// Minimum over one to two kMinWindow, as a path may become longer permanently.
   Duration min() const { return smoothed_ ? std::min(min_, previous_min_) : kInitial; }
   Duration last() const { return last_; }
 

@@ -8,30 +8,30 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Per SSRC; less than half of the sequence numbers, so that extension stays exact.
+/// Per SSRC. Extension of sequence numbers needs less than half of the numbers.
 constexpr std::size_t kMaxPackets = 32000;
-/// Settled packets are kept so that repeated reports find them, and late ones are told from lost
-/// ones. Beyond this number they are kept only while they are younger than this time.
+/// Settled packets are kept so that repeated reports are recognised, and late packets are told from
+/// lost ones. Beyond this number only those younger than kKeepSettled are kept.
 constexpr std::size_t kMaxSettled = 1024;
 constexpr Duration kKeepSettled = 1s;
-/// A packet whose number is at most so far behind the newest was overtaken before it was sent.
+/// Greatest distance of a packet that was overtaken before it was sent.
 constexpr std::int64_t kOvertaken = 64;
-/// Numbers further behind are a new count, once so many unknown or so many known ones came in a
-/// row. Receivers take less for reordering, so packets are not counted then until they are new
-/// again.
+/// Numbers further back start a new count after this many unknown numbers, or this many known ones,
+/// in a row. Receivers see smaller distances as reordering and do not count the packets until their
+/// numbers are new again.
 constexpr std::int64_t kFarBehind = 3000;
 constexpr int kUnknownBehind = 2;
 constexpr int kKnownBehind = 64;
-/// Reports of the numbers before a restart may still come for so long.
+/// Time after a restart in which reports of earlier numbers may come.
 constexpr Duration kReportsOfBefore = 2s;
-/// A packet sent so much sooner than one that was acknowledged is not waited for.
+/// A packet is lost if one that was sent this much later is acknowledged.
 constexpr Duration kTailWait = 1s;
-/// The reordering window is kept for so long, and then shrinks by this part each second.
+/// The reordering window is kept for this time, and then shrinks by this share each second.
 constexpr Duration kReorderingMemory = 5s;
 constexpr int kReorderingDecay = 8;
-/// SSRCs come and go with restarts; the one silent for longest is forgotten.
+/// SSRCs come and go with restarts; the one with the longest silence is forgotten.
 constexpr std::size_t kMostSources = 64;
-/// The report's fields are coarse: arrival offsets of 1/1024 s.
+/// Resolution of the report's times, as arrival offsets have 1/1024 s.
 constexpr Duration kTimeTolerance = 2ms;
 
 }  // namespace
@@ -49,7 +49,7 @@ void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord
   Insert(&source, packet);
 }
 
-/// A number sent before (a repeated packet) is accounted once: feedback cannot tell the copies.
+/// A number sent before (a repeated packet) counts once: feedback cannot tell the copies apart.
 void SentHistory::Insert(Source* source, const Packet& packet) {
   auto& packets = source->packets;
   if (packets.empty() || packets.back().seq < packet.seq) {
@@ -64,7 +64,7 @@ void SentHistory::Insert(Source* source, const Packet& packet) {
   Trim(source, &in_flight_);
 }
 
-/// Numbers run backwards: a payloader that was restarted, say.
+/// Detects numbers that run backwards, as of a restarted payloader.
 bool SentHistory::StartsAgain(Source* source, std::int64_t seq) {
   if (source->packets.empty() || seq > source->packets.back().seq) {
     source->behind = 0;
@@ -117,8 +117,8 @@ void SentHistory::ForgetSilentSource() {
   sources_.erase(silent);
 }
 
-/// How many packets are before a number. They ascend, and few numbers are left out between them, so
-/// it is mostly the distance to the first one's number, and never more.
+/// Returns how many packets precede a number. Numbers ascend with few gaps, so the result is near
+/// the distance to the first number, and never above it.
 std::ptrdiff_t SentHistory::FirstFrom(const std::deque<Packet>& packets, std::int64_t seq) {
   if (packets.empty() || seq <= packets.front().seq) return 0;
   const auto distance = static_cast<std::ptrdiff_t>(
@@ -135,7 +135,7 @@ SentHistory::Packet* SentHistory::Find(Source* source, std::int64_t seq) {
   return it != source->packets.end() && it->seq == seq ? &*it : nullptr;
 }
 
-/// Nothing received that was never sent, and nothing that came back before it went.
+/// Returns false if the report has packets that were never sent, or that arrived before they left.
 bool SentHistory::Plausible(Time now, Source* source, const SsrcReport& block) const {
   const std::int64_t newest = source->packets.back().seq;
   const std::int64_t oldest = source->packets.front().seq;
@@ -174,7 +174,7 @@ HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedba
     if (it == sources_.end() || it->second.packets.empty()) continue;
     if (!OfBefore(now, it->second, block)) Apply(now, block, &it->second, report, summary);
   }
-  // Reports tell one stream after the other; the link carried them as they were sent.
+  // Reports list one stream after the other; the link carried packets in the order of sending.
   std::stable_sort(summary->acked.begin(), summary->acked.end(),
                    [](const AckedPacket& a, const AckedPacket& b) { return a.sent < b.sent; });
   if (!arrivals_known_) summary->rtt = held_;
@@ -217,7 +217,7 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   static_cast<SentRecord&>(acked) = packet->record;
   acked.ssrc = ssrc;
   acked.arrived_ecn = metric.ecn;
-  // What the path held back through an outage says nothing about its delay now.
+  // The delay of packets from an outage says nothing about the present delay.
   const bool timed = metric.arrival_offset && packet->state != State::kExpired;
   if (timed) acked.arrival = report - *metric.arrival_offset;
   acked.was_lost = packet->state == State::kLost;
@@ -320,7 +320,7 @@ void SentHistory::Expire(Time before) {
   }
 }
 
-/// The lost tail of an SSRC that went quiet: nothing behind it will ever tell of it.
+/// Gives up the last packets of a silent SSRC: no later packet will show their loss.
 void SentHistory::ExpireTails() {
   for (auto& [ssrc, source] : sources_) {
     auto packet = source.packets.begin() + FirstFrom(source.packets, source.highest_acked + 1);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Status update when sending and on feedback: which packets are in flight, acknowledged, marked,
-// lost.
+// Records which packets are in flight, acknowledged, marked or lost.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -26,8 +25,8 @@ struct SentRecord {
 
 struct AckedPacket : SentRecord {
   std::uint32_t ssrc = 0;
-  /// On the receiver's clock, unwrapped; absent where the report does not tell,
-  /// and after Expire().
+  /// Arrival on the receiver's clock, unwrapped. Unset if the report has no time, and after
+  /// Expire().
   std::optional<Time> arrival;
   Ecn arrived_ecn = Ecn::kNotEct;
   bool was_lost = false;
@@ -37,39 +36,39 @@ struct LostPacket : SentRecord {
   std::uint32_t ssrc = 0;
 };
 
-/// What one report brought that no earlier one had.
+/// The news of a report.
 struct AckSummary {
-  std::vector<AckedPacket> acked;  ///< in the order in which they were sent
+  std::vector<AckedPacket> acked;  ///< in the order of sending
   std::vector<LostPacket> lost;
-  Time report{};  ///< when it was made, on the receiver's clock, unwrapped
-  /// When the packets were sent that an earlier report had acknowledged without their CE mark.
+  Time report{};  ///< time of the report on the receiver's clock, unwrapped
+  /// Sending times of packets that an earlier report acknowledged without their CE mark.
   std::vector<Time> late_ce;
-  /// The draft's: by how much the highest acknowledged sequence numbers moved on, lost ones
-  /// included.
+  /// The draft's bytes_newly_acked: the advance of the highest acknowledged numbers, with lost
+  /// packets.
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
-  /// The newly acknowledged packet that was sent last tells it. The receiver's holding time is not
-  /// in it, unless the receiver never tells that time.
+  /// Round trip of the newest acknowledged packet, without the receiver's holding time if the
+  /// receiver reports that.
   std::optional<Duration> rtt;
 };
 
 enum class HistoryResult { kApplied, kNothingNew, kImplausible, kNotOurs };
 
-/// Validates a report whole before it believes any of it.
+/// Validates the whole report before it changes its state.
 class SentHistory {
  public:
   void OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record);
   HistoryResult OnFeedback(Time now, const CongestionFeedback& feedback, AckSummary* summary);
-  /// Declares lost what is overdue.
+  /// Declares overdue packets lost.
   void DetectLoss(Time now, std::vector<LostPacket>* lost);
-  /// What was sent before `before` and is still unsettled no longer counts as in flight, nor ever
-  /// as lost; it may still be acknowledged.
+  /// Packets sent before `before` no longer count as in flight or as lost; they may still be
+  /// acknowledged.
   void Expire(Time before);
 
   DataSize bytes_in_flight() const { return in_flight_; }
-  /// When the packet was sent that has been in flight for longest.
+  /// Sending time of the packet that has been in flight longest.
   std::optional<Time> oldest_in_flight() const;
-  /// As many packets of one SSRC are unsettled as its numbers can tell apart.
+  /// An SSRC has as many unsettled packets as its numbers can tell apart.
   bool full() const;
   void set_max_reordering_window(Duration d) { max_reordering_window_ = d; }
   std::uint64_t foreign_blocks() const { return foreign_blocks_; }
@@ -86,11 +85,11 @@ class SentHistory {
   struct Source {
     SequenceUnwrapper<std::uint16_t> unwrapper;
     std::int64_t highest_acked = -1;
-    std::deque<Packet> packets;  // by seq
+    std::deque<Packet> packets;  // in the order of seq
     std::vector<std::int64_t> missing;
-    std::int64_t next_behind = -1;  // the successor of the last number that went backwards
-    int behind = 0;                 // so many came in a row
-    std::optional<Time> restarted;  // numbers began anew
+    std::int64_t next_behind = -1;  // successor of the last number that went backwards
+    int behind = 0;                 // such numbers in a row
+    std::optional<Time> restarted;  // time of the last restart of the numbers
   };
 
   void ForgetSilentSource();
@@ -113,10 +112,10 @@ class SentHistory {
   std::map<std::uint32_t, Source> sources_;
   ReportClock clock_;
   DataSize in_flight_;
-  Time newest_acked_{};               // when it was sent
-  bool arrivals_known_ = false;       // the peer tells arrival times
-  std::optional<Time> newest_timed_;  // of this report: when the newest packet with a time was sent
-  std::optional<Duration> held_;      // of this report: the shortest round trip with holding time
+  Time newest_acked_{};               // its sending time
+  bool arrivals_known_ = false;       // the peer reports arrival times
+  std::optional<Time> newest_timed_;  // in this report: sending time of the newest such packet
+  std::optional<Duration> held_;      // in this report: shortest round trip with holding time
   Duration reordering_window_{0};
   Time last_reordering_{};
   Duration max_reordering_window_ = std::chrono::milliseconds(100);

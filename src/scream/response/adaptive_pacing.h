@@ -8,15 +8,15 @@
 
 namespace lidar::scream {
 
-/// Where marks work, a frame may make as much queue as goes unmarked.
+/// Returns the reserve. If marks work, a frame may queue as long as packets stay unmarked.
 inline Duration PacingReserve(const Parameters& p, const PathModel& path, Time now) {
   if (!path.L4sWorks(now)) return p.pacing_reserve;
   return std::clamp(FromSeconds(Seconds(path.marking_onset()) * p.onset_reserve),
                     p.shortest_pacing_reserve, p.pacing_reserve);
 }
 
-/// PACKET_PACING_HEADROOM, or so much that a frame leaves `reserve` before its period ends: as
-/// much queue comes and goes with each frame where the link is full.
+/// Returns PACKET_PACING_HEADROOM, or the headroom with which a frame leaves `reserve` before its
+/// period ends: on a full link as much queue comes and goes with each frame.
 inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duration reserve) {
   if (!p.extensions.capacity) return p.packet_pacing_headroom;
   const double longest = std::min(1.0, Seconds(frame_period) / Seconds(p.long_frame_period));
@@ -24,8 +24,8 @@ inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duratio
                              longest * p.min_pacing_reserve, p.max_pacing_reserve));
 }
 
-/// Near their maximum streams could leave much faster than they come: no faster than the link is
-/// known to carry, as the start of each frame would be marked.
+/// Returns the pace near the streams' maximum. It stays within the known capacity, as otherwise the
+/// start of each frame would be marked.
 inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
   constexpr double kUnmarked = 0.9;
   const DataRate known = path.train_capacity();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension capacity: a link that turns out to carry much less gets no more at once.
+// Extension capacity: reduces the rate at once when the link carries much less.
 #pragma once
 #include <optional>
 
@@ -10,7 +10,7 @@ namespace lidar::scream {
 
 class CapacityDrop {
  public:
-  /// What is sent now, to be held against what the link carries.
+  /// The present sending rate, compared with the link's capacity.
   struct Load {
     DataRate target_bitrate;
     DataSize ref_wnd;
@@ -21,12 +21,12 @@ class CapacityDrop {
 
   explicit CapacityDrop(const Parameters& parameters) : p_(parameters) {}
 
-  /// After each report. Returns the window that fills the link, where the link carries much less
-  /// than the target; at most once a round trip.
+  /// Call it after each report. Returns the window that fills the link if it carries much less than
+  /// the target, at most once a round trip.
   std::optional<DataSize> Update(Time now, const PathModel& path, const Load& load);
 
  private:
-  /// The measurement is long, and no other explanation of it at hand.
+  /// Returns true if the measurement is long enough and has no other explanation.
   bool Sure(Time now, const PathModel& path, const Load& load) const;
 
   const Parameters& p_;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension capacity: multiplicative growth from the start, and again after rounds without
-// congestion.
+// Extension capacity: multiplicative growth at the start and after rounds without congestion.
 #pragma once
 #include <algorithm>
 
@@ -8,9 +7,8 @@
 
 namespace lidar::scream {
 
-/// A round is a round trip or a frame period, whichever is longer: marks of a frame source come
-/// once a frame. The growth sets in after a few rounds without congestion and gets bolder with
-/// each.
+/// A round is a round trip, or a frame period if that is longer: marks of a frame source come once
+/// a frame. Growth starts after a few rounds without congestion and increases with each.
 class FastIncrease {
  public:
   explicit FastIncrease(const Parameters& p) : p_(p) {}
@@ -25,14 +23,14 @@ class FastIncrease {
     round_start_ = now;
     ++rounds_;
   }
-  /// As at the start of a flow: after a gap or an outage.
+  /// Behaves as at the start of a flow, after a gap or an outage.
   void Restart() { starting_ = true; }
-  /// Fraction of the acknowledged bytes by which the window may grow; the less, the longer the
-  /// queue.
+  /// Returns the fraction of the acknowledged bytes by which the window may grow. It falls with the
+  /// queue's length.
   double growth(Duration qdelay, Duration round, bool l4s_works) const {
     const int bold = std::max(0, rounds_ - p_.fast_increase_rounds);
     const double step = l4s_works ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
-    // Rounds of seldom frames are long: what is too much stays in the queue for as long.
+    // Rounds of rare frames are long, and an excess stays in the queue as long.
     const double start =
         p_.fast_increase_max * std::clamp(Seconds(p_.long_frame_period) / Seconds(round), 0.5, 1.0);
     const double growth = starting_ ? start : std::min(p_.fast_increase_max, step * bold);

@@ -7,16 +7,16 @@
 namespace lidar::scream {
 namespace {
 
-/// A link that carries less than this part of what it did is in a gap...
+/// A link that carries less than this part of its earlier capacity is in a gap.
 constexpr double kGapPart = 0.25;
-/// After so long a gap is no gap any more, but what the link is now.
+/// A longer gap is the link's new capacity.
 constexpr Duration kLongestMemory = 3s;
 constexpr Duration kLongestGap = 10s;
-/// Delay at its base, but for a few packets that came together...
+/// Delay without a queue, apart from a few packets that came together.
 constexpr Duration kNoQueue = 5ms;
-/// ...without anything to measure the link by: each round trip this part of what is missing.
+/// Part of the missing window that is restored each round trip while nothing measures the link.
 constexpr double kUnprovenPart = 0.5;
-constexpr double kBack = 0.9;
+constexpr double kRestoredPart = 0.9;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathMode
   Restart restart = before_->state;
   restart.window = std::max(ref_wnd, std::min(*window, before_->state.window));
   unproven_ = rate ? std::nullopt : std::optional(restart.window);
-  if (rate || restart.window >= before_->state.window * kBack) last_sign_.reset();
+  if (rate || restart.window >= before_->state.window * kRestoredPart) last_sign_.reset();
   last_restart_ = now;
   return restart;
 }
@@ -48,7 +48,7 @@ bool GapRecovery::Slow(std::optional<DataRate> rate) const {
   return before_ && rate && *rate < before_->rate * kGapPart;
 }
 
-/// A step back into the old window ended behind a slow link: so much is not what it carries.
+/// A restored window ended behind a slow link: lowers the remembered rate.
 void GapRecovery::BelieveLess() {
   const auto tried = std::exchange(unproven_, std::nullopt);
   if (!tried || *tried >= before_->state.window) return;
@@ -74,7 +74,7 @@ std::optional<DataSize> GapRecovery::Measured(DataRate rate, const PathModel& pa
 
 std::optional<DataSize> GapRecovery::Unproven(Time now, const PathModel& path,
                                               DataSize ref_wnd) const {
-  // Packets before the newest may carry marks of the gap.
+  // Packets before the newest may have marks from the gap.
   const bool calm = path.queue_delay().qdelay() < kNoQueue && !path.newest_marked();
   if (!calm || now - last_restart_ < path.rtt().min()) return std::nullopt;
   return ref_wnd + (before_->state.window - ref_wnd) * kUnprovenPart;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension gaps: what the path was before a gap is what it is after it.
+// Extension gaps: restores the state from before a gap after it.
 #pragma once
 #include <optional>
 
@@ -8,8 +8,8 @@
 
 namespace lidar::scream {
 
-/// A gap is a time in which the link carries next to nothing: a handover, the edge of a cell. What
-/// the window loses then says nothing about the link after it.
+/// A gap is a time in which the link carries almost nothing, as at a handover or the edge of a
+/// cell. The window's losses in a gap say nothing about the link after it.
 class GapRecovery {
  public:
   struct Restart {
@@ -20,18 +20,18 @@ class GapRecovery {
 
   explicit GapRecovery(const Parameters& parameters) : p_(parameters) {}
 
-  /// After each report. Returns where to go on from, once the gap is over.
+  /// Call it after each report. Returns where to continue once the gap is over.
   std::optional<Restart> Update(Time now, const PathModel& path, DataSize ref_wnd,
                                 Duration qdelay_target);
-  /// Nothing comes back at all.
+  /// No acknowledgement comes back.
   void OnSilence(Time now) { NoteSign(now); }
-  /// What was before is of no use: another route, or time that nobody has seen.
+  /// Forgets the state before the gap, after another route or an unknown time.
   void Reset() {
     before_.reset();
     last_sign_.reset();
   }
 
-  /// The rate of the window that is remembered. None is at first.
+  /// Rate of the remembered window; unset at first.
   std::optional<DataRate> rate_before() const {
     return before_ ? std::optional(before_->rate) : std::nullopt;
   }
@@ -42,14 +42,14 @@ class GapRecovery {
     Restart state;
     DataRate rate;
   };
-  /// `rate`, of a train of arrivals, is next to nothing of what the link carried.
+  /// Returns true if `rate`, of a train of arrivals, is almost nothing of the earlier capacity.
   bool Slow(std::optional<DataRate> rate) const;
   void BelieveLess();
   void NoteSign(Time now);
   void Remember(const PathModel& path, DataSize ref_wnd);
-  /// The window that fits what the packets behind the gap show.
+  /// Returns the window that fits the packets behind the gap.
   std::optional<DataSize> Measured(DataRate rate, const PathModel& path) const;
-  /// The next step back where there is no queue to measure the link by.
+  /// Returns the next step back if no queue measures the link.
   std::optional<DataSize> Unproven(Time now, const PathModel& path, DataSize ref_wnd) const;
 
   const Parameters& p_;
@@ -57,7 +57,7 @@ class GapRecovery {
   std::optional<Time> last_sign_;  // of a gap
   Time first_sign_{};
   Time last_restart_{};
-  std::optional<DataSize> unproven_;  // the window of a step back that nothing has measured yet
+  std::optional<DataSize> unproven_;  // window of a step back that is not measured yet
 };
 
 }  // namespace lidar::scream

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension evidence: how much loss is taken for the radio's and not for congestion.
+// Extension evidence: separates losses of a radio from congestion.
 #pragma once
 #include <algorithm>
 
@@ -9,8 +9,8 @@
 namespace lidar::scream {
 
 struct LossTolerance {
-  double loss_rate_threshold = 0;  ///< the draft's LOSS_RATE_THRESHOLD, or more
-  bool queue_at_loss = false;      ///< packets around the loss had waited: congestion, always
+  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD of the draft, or more
+  bool queue_at_loss = false;      ///< packets around the loss had waited: congestion
 };
 
 inline LossTolerance TolerateLoss(const Parameters& p, const PathModel& path) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether the path carries what is sent: what is in flight, against what comes back.
+// Decides whether the path carries what is sent, from packets in flight and acknowledgements.
 #pragma once
 #include "src/scream/model/path_model.h"
 #include "src/scream/model/sent_history.h"
@@ -8,27 +8,26 @@
 
 namespace lidar::scream {
 
-/// Remembers nothing itself.
+/// Has no state of its own.
 class Liveness {
  public:
   Liveness(const SentHistory& history, const PathModel& path, const Outage& outage,
            const GapRecovery& gaps)
       : history_(history), path_(path), outage_(outage), gaps_(gaps) {}
 
-  /// The path gives a sign of life, or did so a moment ago.
+  /// Returns true if acknowledgements come, or came recently.
   bool Alive(Time now) const { return outage_.Silence(now) < kLongestSilence; }
-  /// What is in flight takes longer than it did: packets wait for the link.
+  /// Returns true if packets in flight take longer than before: they wait for the link.
   bool Overdue(Time now) const {
     const auto oldest = history_.oldest_in_flight();
     return oldest && now - *oldest > path_.rtt().smoothed() + Lateness();
   }
-  /// What was sent for a while does not come back at the rate that it did: a gap, or the start of
-  /// one.
+  /// Returns true if acknowledgements are slower than packets were sent: a gap, or its start.
   bool Stalled(Time now) const {
     return gaps_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
   }
-  /// While packets are overdue, as in a gap: what met the gap takes so long at the rate before it.
-  /// What of this has arrived by now still counts.
+  /// Returns the further delay of the packets that met a gap, at the rate from before it. Some of
+  /// them may have arrived by now; they still count.
   Duration WaitBehindGap(Time now) const {
     const auto rate = gaps_.rate_before();
     if (!rate || !Overdue(now)) return Duration{0};
@@ -36,12 +35,12 @@ class Liveness {
   }
 
  private:
-  /// Silence up to this is one of the gaps that links have.
+  /// Longest silence that may be a gap of the link.
   static constexpr Duration kLongestSilence = std::chrono::seconds(2);
-  /// A packet whose report is so late met a link that stands still.
+  /// A report this late shows a link that stands still.
   static constexpr Duration kOverdue = std::chrono::milliseconds(5);
 
-  /// One report may be lost.
+  /// Allows for one lost report.
   Duration Lateness() const { return 2 * path_.report_gap() + kOverdue; }
 
   const SentHistory& history_;

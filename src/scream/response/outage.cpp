@@ -7,7 +7,7 @@
 namespace lidar::scream {
 namespace {
 
-/// Silence of the receiver, beyond what round trips explain, that is taken for an outage.
+/// Silence of the receiver, beyond round trips, that is an outage.
 constexpr Duration kOutage = 200ms;
 constexpr double kBackoff = 0.5;
 constexpr double kRestart = 0.5;

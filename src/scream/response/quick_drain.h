@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension capacity: how fast a backlog of the sender's queue leaves.
+// Extension capacity: the rate at which a backlog of the sender's queue leaves.
 #pragma once
 #include <algorithm>
 
@@ -8,9 +8,9 @@
 
 namespace lidar::scream {
 
-/// The window's own rate, which the lowered target is below, but not much more than packets
-/// arrive at. After a drop of the capacity the last round trips tell of a queue that is gone: what
-/// is in flight takes as long as the link needs for it.
+/// Returns the window's own rate, which exceeds the lowered target, limited by the acknowledged
+/// rate. After a drop of the capacity the last round trips measured a queue that is gone, so the
+/// link's time for the bytes in flight is used.
 inline DataRate DrainRate(const Parameters& p, Time now, DataSize ref_wnd, DataSize in_flight,
                           const PathModel& path) {
   constexpr double kMargin = 1.25;

@@ -6,14 +6,13 @@
 namespace lidar::scream {
 namespace {
 
-/// How steeply the reaction grows with the distance to the inflection point, and its floors.
+/// Slope of the reaction with the distance to the inflection point, and its floors.
 constexpr double kInflectionSlope = 8;
 constexpr double kInflectionMin = 0.1;
 constexpr double kScaleMin = 0.25;
-constexpr double kMostBackoff = 0.5;  // alpha / 2, where every packet is marked
+constexpr double kMostBackoff = 0.5;  // alpha / 2 if each packet is marked
 constexpr double kJitterIncreaseMin = 0.1;
-/// Round trips without congestion after which the window may have lost touch with what is in
-/// flight.
+/// Round trips without congestion after which the window may exceed the bytes in flight by far.
 constexpr double kLongUncongestedRtts = 100;
 
 double Ratio(Duration a, Duration b) { return Seconds(a) / Seconds(b); }
@@ -57,7 +56,7 @@ Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
   return Reaction::kNone;
 }
 
-/// Draft section "Link layer losses and rate policers".
+/// See the draft's section "Link layer losses and rate policers".
 bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
   return !p_.link_layer_loss || s.loss_rate > s.loss_rate_threshold || s.queue_at_loss ||
          s.qdelay_avg > s.qdelay_target / 4;
@@ -107,14 +106,14 @@ double ReferenceWindow::VirtualBackoff(const CongestionSignals& s) const {
   return alpha / 2 / std::max(1.0, Ratio(s.s_rtt, p_.virtual_rtt)) * UndershootScale(s);
 }
 
-/// Draft section "Reference window undershoot at congestion".
+/// See the draft's section "Reference window undershoot at congestion".
 double ReferenceWindow::UndershootScale(const CongestionSignals& s) const {
   if (!p_.undershoot_remedy) return 1;
   const bool low = s.target_bitrate < s.acked_bitrate * p_.acked_bitrate_margin;
   return low ? p_.backoff_scale_low_target_rate : 1;
 }
 
-/// Beyond the draft: what lies above the last known maximum is unknown ground.
+/// Extension: the capacity above the last known maximum is unknown.
 double ReferenceWindow::FastIncrement(const CongestionSignals& s, double scl) const {
   const auto capacity = static_cast<double>(s.capacity_window.bytes());
   double scale = ref_wnd_ > ref_wnd_i_ ? InflectionScale(p_.fast_increase_slope) : scl;

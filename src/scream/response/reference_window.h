@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Draft section "Reference Window Update": reduction, increase, and its limits.
+// Draft section "Reference Window Update": reduction, increase, and limits.
 #pragma once
 #include <algorithm>
 #include <utility>
@@ -8,22 +8,23 @@
 
 namespace lidar::scream {
 
-/// Beyond the draft: floors of growth and reaction near the inflection point, as parts of its full
-/// ones; above 1 a flow gives way faster than it, though never by more than half of its window.
+/// Extension: least growth and reaction near the inflection point, relative to their full
+/// values. Above 1 a flow gives way faster than the draft, but never by more than half of its
+/// window.
 struct Boldness {
   double growth = 0.25;
   double backoff = 0.25;
-  /// Rate at which packets leave for long, over the window's. Alone a little more: a frame that is
-  /// as large as was asked for does not wait.
+  /// Mean rate of packets relative to the window's rate. Alone it is slightly above 1, so that a
+  /// frame of the requested size does not wait.
   double pace = 1.005;
 };
 
-/// What the detectors found in one report.
+/// The signs of congestion in a report.
 struct CongestionSignals {
   bool loss_detected = false;
   bool data_units_marked = false;
   double loss_rate = 0;
-  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD, or more
+  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD of the draft, or more
   bool queue_at_loss = false;      ///< packets around the loss had waited
   double l4s_alpha = 0;
   bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
@@ -32,19 +33,19 @@ struct CongestionSignals {
   Duration qdelay_target{0};
   double ref_wnd_delay_scale = 1;
   Boldness boldness;
-  /// Beyond the draft: so much sooner than due a reaction may come, as the next report is far.
+  /// Extension: a reaction may be this much early, as the next report is far away.
   Duration earliness{0};
   Duration s_rtt{0};
   DataSize max_bytes_in_flight;
   DataSize max_bytes_in_flight_prev;
-  /// The window that fills what the link is known to carry; 0: unknown.
+  /// Window that fills the known capacity; 0: unknown.
   DataSize capacity_window;
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
   DataRate target_bitrate;
   DataRate target_bitrate_max;
   DataRate acked_bitrate;
-  double fast_growth = 0;  ///< fraction of the acknowledged bytes to grow by
+  double fast_growth = 0;  ///< growth as a fraction of the acknowledged bytes
 };
 
 enum class Reaction { kNone, kLoss, kCe, kVirtualCe };
@@ -53,15 +54,15 @@ class ReferenceWindow {
  public:
   explicit ReferenceWindow(const Parameters& parameters);
 
-  /// One report: reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases.
+  /// Takes a report. Reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases.
   Reaction Update(Time now, const CongestionSignals& signals);
-  /// Counts a reaction that was made outside: the draft's own waits its turn.
+  /// Notes a reaction that was made elsewhere; the draft's own then waits.
   void NoteReaction(Time now);
-  /// Marks and losses that still wait for their reaction get none.
+  /// Drops marks and losses that still wait for a reaction.
   void ForgetSigns() { loss_detected_ = data_units_marked_ = false; }
-  /// Moves the window outside the draft's rules; never below MIN_REF_WND.
+  /// Sets the window outside of the draft's rules; never below MIN_REF_WND.
   void Set(DataSize window);
-  /// Where congestion is to be expected.
+  /// Sets the window at which congestion is expected.
   void SetInflection(DataSize window) { ref_wnd_i_ = static_cast<double>(window.bytes()); }
   void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The draft's send window, and what the extension capacity makes of it.
+// The draft's send window, and its limits by the extension capacity.
 #pragma once
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
@@ -11,14 +11,13 @@ class SendWindow {
   explicit SendWindow(const Parameters& parameters) : p_(parameters) {}
 
   void OnSent(Time now) { last_sent_ = now; }
-  /// Before the first packet.
+  /// Returns true before the first packet.
   bool unused() const { return last_sent_ == Time{}; }
-  /// Bytes in flight at most. With the extension these are few more than the window where marks
-  /// work, and none more while packets keep coming back out of a queue. What is unreported comes on
-  /// top.
+  /// Returns the most bytes in flight. With the extension they exceed the window slightly if marks
+  /// work, and not at all while packets keep coming out of a queue. Unreported bytes are added.
   DataSize Max(Time now, DataSize ref_wnd, const PathModel& path, Duration qdelay_target) const;
-  /// When a packet of `size` may leave. A closed window lets one go at RATE_PACE_MIN, so that it
-  /// does not wait for ever for feedback that was lost.
+  /// Returns when a packet of `size` may leave. A closed window passes one at RATE_PACE_MIN, so
+  /// that lost feedback cannot stop the sender.
   Time Opens(DataSize size, DataSize in_flight, DataSize max) const;
 
  private:

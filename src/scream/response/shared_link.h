@@ -10,14 +10,14 @@
 
 namespace lidar::scream {
 
-/// 1 where marking begins as late as a ramp's or without a sign of it, 0 where it begins so early
-/// that each packet of queue is marked.
+/// Returns 1 if marking starts as late as a ramp's or without a sign of it, and 0 if it starts so
+/// early that each queued packet is marked.
 inline double LateMarking(Duration onset) {
   constexpr Duration kEarly = 1250us, kLate = 2ms;
   return std::clamp(Seconds(onset - kEarly) / Seconds(kLate - kEarly), 0.0, 1.0);
 }
 
-/// 1 where marking begins so early that a bolder window adds no delay to speak of. Marks without a
+/// Returns 1 if marking starts so early that a bolder window adds little delay. Marks without a
 /// queue are a classic flow's (RFC 9332, section 2.1): the draft is bold enough beside it.
 inline double EarlyMarking(Duration onset) {
   constexpr Duration kCoupled = 700us, kOwn = 900us;
@@ -25,28 +25,28 @@ inline double EarlyMarking(Duration onset) {
   return std::min(own, 1 - LateMarking(onset));
 }
 
-/// Packets that leave unevenly show what others send, and make as much more queue.
+/// Uneven departures show other flows' packets, and add a queue of the same length.
 inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
   if (!p.extensions.company) return Duration{0};
   return FromSeconds(Seconds(p.pacing_ripple) * LateMarking(path.marking_onset()));
 }
 
-/// From -1, clearly less than half of the link, to 1, clearly more.
+/// Returns a value from -1, clearly less than half of the link, to 1, clearly more.
 inline double AboveHalf(DataRate own, DataRate link) {
-  // Less than one half: two of ours with half each lean to gentle, and a flow that leaves in bursts
-  // makes the link look faster than it is.
+  // Less than one half: two of our flows with half each would both be gentle, and a flow that
+  // leaves in bursts makes the link look faster than it is.
   constexpr double kHalf = 0.46;
   constexpr double kClearly = 0.03;
   return std::clamp((own / link - kHalf) / kClearly, -1.0, 1.0);
 }
 
-/// Beside others nobody needs more than half of the link. Who has less, or does not know, is about
-/// as bold as Prague or Cubic; who has more gives way like the gentlest. So it takes no knowledge
-/// of what the others are, or how many.
+/// Half of the link is enough beside other flows. A flow with less, or with an unknown share, is
+/// about as bold as Prague or Cubic; a flow with more gives way like the gentlest. So neither the
+/// kind nor the number of the others must be known.
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
-  constexpr double kGrowthOfLess = 1.3;  // more than Prague's, as whole scans leave pauses
+  constexpr double kGrowthOfLess = 1.3;  // above Prague's, as whole scans leave pauses
   constexpr double kGrowthOfMore = 1.0 / 3;
-  /// The draft's alpha is above ours for as many marks, as it attacks faster than it decays.
+  /// The draft's alpha exceeds ours for the same marks, as its attack is faster than its decay.
   constexpr double kGentlest = 2.5;
   Boldness b;
   if (!p.extensions.company) return b;
@@ -59,7 +59,7 @@ inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time no
   const auto link = others.link_rate();
   const double above = link ? AboveHalf(path.long_acked_rate(now), *link) : -1;
   const double below = (1 - above) / 2;  // 1: clearly less than half
-  // A queue that others fill is no reason to hold packets back.
+  // Packets need not be held back for a queue that others fill.
   b.pace = 1 + (p.target_rate_divisor - 1) * below;
   b.backoff = kGentlest * std::pow(p.prague_backoff / kGentlest, below);
   if (l4s)
