@@ -7,6 +7,7 @@
 
 #include "src/codec/cloud/beam_columns.h"
 #include "src/codec/cloud/beam_locator.h"
+#include "src/codec/cloud/beam_path.h"
 #include "src/codec/cloud/column_places.h"
 
 namespace lidar::codec::cloud {
@@ -71,9 +72,22 @@ void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
 
 }  // namespace
 
+/// Finds the path of the points. False where most are not on it.
+bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points, const BeamTable* last,
+                                std::vector<PlacedPoint>* placed) {
+  constexpr double kMost = 0.8;
+  auto table = FindPath(points, last, placed);
+  if (!table) return false;
+  fit_ = FitOf(points, *placed);
+  if (fit_ < kMost) return false;
+  table_ = std::move(table);
+  return true;
+}
+
 /// False where they do not fit as they did.
 bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed) {
   constexpr double kAlike = 0.97;
+  if (table_->has_path()) return PlaceOnNewPath(points, &*table_, placed);
   PlaceOnBeams(points, *table_, placed);
   PlaceInColumns(*table_, placed);
   if ((table_->grains == 0 || table_->bends) && FitOf(points, *placed) >= kAlike * fit_)
@@ -107,6 +121,7 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0)
     return table_ ? &*table_ : nullptr;
   table_ = FindBeams(points);
+  if (!table_ && PlaceOnNewPath(points, nullptr, placed)) return &*table_;
   if (!table_) return nullptr;
   PlaceOnBeams(points, *table_, placed);
   PlaceInColumns(*table_, placed);

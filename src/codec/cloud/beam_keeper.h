@@ -33,6 +33,9 @@ class BeamKeeper {
  private:
   bool PlaceByOld(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed);
 
+  bool PlaceOnNewPath(const std::vector<Sighting>& points, const BeamTable* last,
+                      std::vector<PlacedPoint>* placed);
+
   std::optional<BeamTable> table_;
   double fit_ = 0;      // part of the points that are near their pixels
   unsigned fails_ = 0;  // clouds in a row that did not fit

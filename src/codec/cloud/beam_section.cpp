@@ -231,8 +231,8 @@ bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t
       section.image.first_column + static_cast<std::uint32_t>(pixel % section.image.columns);
   const std::int32_t azimuth = section.table.AzimuthOf(beam, column) + section.residuals[pixel];
   const BeamTable::Slope slope =
-      section.table.bends
-          ? BeamTable::Slope(section.table.beams[beam].elevation + section.bends[pixel])
+      section.table.bends || section.table.has_path()
+          ? BeamTable::Slope(section.table.ElevationOf(beam, column) + section.bends[pixel])
           : section.slopes[beam];
   const Point point = section.table.At(beam, azimuth, slope, range_mm);
   cloud->xyz.insert(cloud->xyz.end(), point.begin(), point.end());

@@ -27,6 +27,7 @@ constexpr unsigned kGrainsFlag = 2;
 constexpr unsigned kReachesFlag = 4;
 constexpr unsigned kPeriodShift = 3;  // one less
 constexpr unsigned kBendsFlag = 32;
+constexpr unsigned kPathFlag = 64;
 
 }  // namespace
 
@@ -112,8 +113,13 @@ void BeamTable::Write(ByteWriter* writer) const {
   const bool reaches = has_reaches();
   writer->U8(static_cast<std::uint8_t>((offsets ? kOffsetsFlag : 0) | (reaches ? kReachesFlag : 0) |
                                        (grains == 0 ? 0 : kGrainsFlag) |
-                                       (period - 1) << kPeriodShift | (bends ? kBendsFlag : 0)));
+                                       (period - 1) << kPeriodShift | (bends ? kBendsFlag : 0) |
+                                       (has_path() ? kPathFlag : 0)));
   if (grains > 0) WriteVarint(grains, writer);
+  if (has_path()) {
+    WriteSigned(rate, writer);
+    WriteVarint(swing_rate, writer);
+  }
   std::int32_t above = kTurn / 4;
   std::int32_t left = 0;
   Beam last;
@@ -137,6 +143,7 @@ void BeamTable::Write(ByteWriter* writer) const {
     if (grains > 0 && !bends) WriteVarint(beam.delay, writer);
     for (std::uint32_t i = 0; i < period && period > 1; ++i)
       WriteSigned(beam.swings[i] / kSwingUnit, writer);
+    for (std::uint32_t i = 0; i < 2 && has_path(); ++i) WriteSigned(beam.rise[i], writer);
   }
 }
 
@@ -147,7 +154,7 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
   const std::uint32_t rows = ReadVarint(reader, &ok);
   const unsigned flags = reader->U8();
   table.bends = (flags & kBendsFlag) != 0;
-  table.period = ((flags & ~kBendsFlag) >> kPeriodShift) + 1;
+  table.period = ((flags & ~(kBendsFlag | kPathFlag)) >> kPeriodShift) + 1;
   if (!ok || table.turn < kParts || table.turn > kMostColumns * kParts || rows == 0 ||
       rows > kMostBeams || table.period > kMostPeriod) {
     return std::nullopt;
@@ -156,6 +163,11 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
     table.grains = ReadVarint(reader, &ok);
     if (table.grains == 0 || table.grains > kMostGrains) return std::nullopt;
     table.places.assign(table.columns(), 0);
+  }
+  if ((flags & kPathFlag) != 0) {
+    table.rate = ReadSigned(reader, &ok);
+    table.swing_rate = ReadVarint(reader, &ok);
+    if (!table.has_path() || table.grains > 0 || table.period > 1) return std::nullopt;
   }
   std::int64_t elevation = kTurn / 4;
   Beam beam;
@@ -181,6 +193,10 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
       const std::int32_t swing = ReadSigned(reader, &ok);
       fits = fits && std::abs(swing) <= kTurn / kSwingUnit;
       beam.swings[k] = fits ? swing * kSwingUnit : 0;
+    }
+    for (std::uint32_t k = 0; k < 2 && table.has_path(); ++k) {
+      beam.rise[k] = ReadSigned(reader, &ok);
+      fits = fits && std::abs(beam.rise[k]) <= kTurn / 4;
     }
     if (!ok || !reader->ok() || elevation < -kTurn / 4 || beam.offset >= kTurn || !fits)
       return std::nullopt;

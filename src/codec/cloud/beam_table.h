@@ -40,7 +40,8 @@ struct BeamTable {
     std::int32_t side_um = 0;                        // how far it passes the origin, to the left
     std::array<std::int32_t, kMostPeriod> swings{};  // of every `period` columns, in turn
     std::int32_t reach_um = 0;                       // of range 0 along the beam
-    std::uint32_t delay = 0;  // columns that the beam is late; below columns()
+    std::uint32_t delay = 0;             // columns that the beam is late; below columns()
+    std::array<std::int32_t, 2> rise{};  // of a path's swing: times cosine, times sine
   };
   static constexpr std::uint32_t kParts = 256;
   static constexpr std::uint32_t kMostBeams = 1'024;
@@ -59,11 +60,24 @@ struct BeamTable {
   std::uint32_t grains = 0;           // of a turn; 0: the columns are even
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
   bool bends = false;                 // each point has an elevation of its own
+  // Beams on a path turn by `rate` a column, on and on, and swing up and down once in 2^kSwingBits
+  // / swing_rate columns.
+  static constexpr unsigned kRateBits = 11;
+  static constexpr std::int32_t kMostRate = (1 << 27) - 1;
+  static constexpr unsigned kSwingBits = 28;
+  std::int32_t rate = 0;  // units in 1/2^kRateBits; 0: no path
+  std::uint32_t swing_rate = 0;
 
   std::uint32_t columns() const { return (turn + kParts - 1) / kParts; }
   std::uint32_t rows() const { return static_cast<std::uint32_t>(beams.size()); }
   bool has_offsets() const;
   bool has_reaches() const;
+  bool has_path() const { return rate != 0; }
+  /// From one column to the next, in units.
+  std::int32_t step() const {
+    return has_path() ? std::abs(rate) >> kRateBits
+                      : static_cast<std::int32_t>(std::uint64_t{kTurn} * kParts / turn);
+  }
   /// Index of the place that a beam has in a column.
   std::uint32_t FiringOf(std::uint32_t beam, std::uint32_t column) const {
     column += beams[beam].delay;
@@ -71,12 +85,24 @@ struct BeamTable {
   }
   /// The azimuth, which is not wrapped.
   std::int32_t AzimuthOf(std::uint32_t beam, std::uint32_t column) const {
+    if (has_path()) {
+      const std::int64_t angle = std::int64_t{rate} * column >> kRateBits;
+      return static_cast<std::int32_t>((beams[beam].offset + angle) & (kTurn - 1));
+    }
     column = FiringOf(beam, column);
     const std::uint64_t angle = places.empty() ? std::uint64_t{column} * kParts * kTurn / turn
                                                : std::uint64_t{places[column]} * kTurn / grains;
     std::int32_t azimuth = beams[beam].offset + static_cast<std::int32_t>(angle);
     if (period > 1) azimuth += beams[beam].swings[column % period];
     return azimuth;
+  }
+  std::int32_t ElevationOf(std::uint32_t beam, std::uint32_t column) const {
+    const Beam& b = beams[beam];
+    if (!has_path()) return b.elevation;
+    constexpr std::uint32_t kPart = (1U << kSwingBits) - 1;
+    const double phase = 2 * M_PI / (kPart + 1) * (swing_rate * column & kPart);
+    return b.elevation + static_cast<std::int32_t>(std::lround(b.rise[0] * std::cos(phase) +
+                                                               b.rise[1] * std::sin(phase)));
   }
   /// The direction of an elevation.
   struct Slope {

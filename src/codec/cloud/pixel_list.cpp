@@ -34,9 +34,7 @@ class PixelCheck {
         placed_(*cloud.placed),
         table_(*cloud.table),
         errors_(errors),
-        half_step_(
-            static_cast<std::int32_t>(std::uint64_t{kTurn} * BeamTable::kParts / table_.turn / 2) +
-            1) {}
+        half_step_(table_.step() / 2 + 1) {}
 
   /// As the first return of its pixel.
   bool Fits(std::size_t point) const {

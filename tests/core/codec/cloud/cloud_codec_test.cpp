@@ -12,6 +12,7 @@
 #include "src/cloud/cloud_files.h"
 #include "src/cloud/nearest_point.h"
 #include "src/codec/cloud/beam_columns.h"
+#include "src/codec/cloud/beam_path.h"
 #include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
@@ -333,6 +334,81 @@ TEST(CloudCodec, KeepsBeamsThatBendFromScanToScan) {
     EXPECT_LE(bits, 1.2);
 }
 
+/// What four lasers that fire in turn see of a room and its sky while they turn by 7.3 turns a scan
+/// and swing up and down.
+PlainPoints PathScan(unsigned scan) {
+  constexpr int kFirings = 8'000;
+  PlainPoints points;
+  for (int firing = 0; firing < kFirings; ++firing) {
+    const double scans = scan + 1.0 * firing / kFirings;
+    const double azimuth = -2 * M_PI * 7.3 * scans;
+    const double elevation = 0.005 * (firing % 4) + 0.1 + 0.5 * std::sin(2 * M_PI * 31.2 * scans);
+    if (elevation > 0.4) continue;
+    const double wall = std::min(10 / std::abs(std::cos(azimuth)), 6 / std::abs(std::sin(azimuth)));
+    const double range = 1e-3 * std::round(1e3 * wall / std::cos(elevation));
+    const double rho = range * std::cos(elevation);
+    points.push_back(
+        {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+         static_cast<float>(range * std::sin(elevation)), static_cast<float>(points.size() % 256)});
+  }
+  return points;
+}
+
+TEST(CloudCodec, FollowsAPathThatDoesNotRepeat) {
+  const auto bits = BitsOfStream({PathScan(0), PathScan(1), PathScan(2)});
+  for (const double b : bits) EXPECT_LE(b, 2.12);
+  const Coded coded = RoundTrip(PathScan(0), {0.02, 0, 8}, 3);
+  EXPECT_EQ(coded.cloud.size(), PathScan(0).size());
+  EXPECT_EQ(coded.cloud.intensity.size(), PathScan(0).size());
+}
+
+TEST(BeamTable, FindsThePathOfBeamsAndWritesIt) {
+  std::vector<Sighting> sightings;
+  for (const auto& p : PathScan(0)) sightings.emplace_back(Point{p[0], p[1], p[2]});
+  std::vector<PlacedPoint> placed;
+  const auto table = FindPath(sightings, nullptr, &placed);
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows(), 4U);
+  EXPECT_NEAR(table->columns(), 2'000, 8);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    EXPECT_NEAR(placed[i].above_m, 0, 0.002);
+    EXPECT_LE(std::abs(placed[i].residual), 4);
+  }
+  std::vector<std::uint8_t> bytes;
+  ByteWriter writer(&bytes);
+  table->Write(&writer);
+  ByteReader reader(bytes.data(), bytes.size());
+  const auto again = BeamTable::Read(&reader);
+  ASSERT_TRUE(again);
+  for (std::uint32_t beam = 0; beam < 4; ++beam) {
+    EXPECT_EQ(again->ElevationOf(beam, 999), table->ElevationOf(beam, 999));
+    EXPECT_EQ(again->AzimuthOf(beam, 999), table->AzimuthOf(beam, 999));
+  }
+}
+
+TEST(BeamTable, RefusesAPathThatDoesNotTurnOrSwingsPastTheZenith) {
+  // Columns, beams, flags, rate, swing; elevation, offset, cosine, sine.
+  const auto read = [](std::uint8_t rate, std::uint8_t rise) {
+    const std::vector<std::uint8_t> bytes = {0x80, 0x80, 1,    1,    64,   rate, 3,
+                                             0,    0,    0x80, 0x80, 0x80, rise, 0};
+    ByteReader reader(bytes.data(), bytes.size());
+    return BeamTable::Read(&reader).has_value();
+  };
+  EXPECT_TRUE(read(2, 1));
+  EXPECT_FALSE(read(0, 1));
+  EXPECT_FALSE(read(2, 2));
+}
+
+TEST(BeamTable, FindsNoPathInAnotherOrder) {
+  PlainPoints points = PathScan(0);
+  std::shuffle(points.begin(), points.end(), std::mt19937(5));
+  std::vector<Sighting> sightings;
+  for (const auto& p : points) sightings.emplace_back(Point{p[0], p[1], p[2]});
+  std::vector<PlacedPoint> placed;
+  EXPECT_FALSE(FindPath(sightings, nullptr, &placed));
+  EXPECT_EQ(RoundTrip(points, {0.02, 0, 0}, 1).cloud.size(), points.size());
+}
+
 TEST(CloudCodec, TakesNoMoreAtAHigherEffort) {
   for (const PlainPoints& points : {SpinningScan(0), SpinningScan(0.1), ScanOf("vlp16")}) {
     double last = 1e9;
@@ -514,9 +590,13 @@ TEST(LargeClouds, TakeTenMillionPoints) {
   EXPECT_EQ(decoder.cloud().size(), points.size());
 }
 
-class DamagedClouds : public ::testing::TestWithParam<bool> {};
+PlainPoints JitteringScan() { return SpinningScan(0.1); }
+PlainPoints BentScan() { return ScanOf("at128"); }
+PlainPoints FirstPathScan() { return PathScan(0); }
+
+class DamagedClouds : public ::testing::TestWithParam<PlainPoints (*)()> {};
 TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
-  PlainPoints points = GetParam() ? SpinningScan(0.1) : ScanOf("at128");
+  PlainPoints points = GetParam()();
   points.resize(4'000);
   points.push_back({1e30F, 1, 2, 3});
   const auto bytes = RoundTrip(points, {0.02, 0, 4}, 1).slice.bytes;
@@ -536,7 +616,8 @@ TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
   CloudDecoder strict(most - 1);
   EXPECT_FALSE(strict.Decode({bytes.data(), bytes.size()}));
 }
-INSTANTIATE_TEST_SUITE_P(All, DamagedClouds, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(All, DamagedClouds,
+                         ::testing::Values(JitteringScan, BentScan, FirstPathScan));
 
 }  // namespace
 }  // namespace lidar::codec::cloud
