@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The common part of screamsink and screamsrc: children by name, their shared socket, and SRTP.
+// The common part of screamsink and screamsrc: children, their shared socket, and SRTP.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -15,15 +15,15 @@
 
 namespace lidar::gst {
 
-/// Valid from READY to NULL. Guarded by `mutex`, which is free while a child works.
+/// Valid from READY to NULL. `mutex` guards it, and is free while a child works.
 struct BinState {
   std::mutex mutex;
   SocketInUse used;
   std::shared_ptr<SrtpLayer> srtp;
-  std::string srtp_key;  // the property as it was when the key was taken
+  std::string srtp_key;  // value of the property when the key was read
 };
 
-/// Makes a child called like its factory and adds it; NULL if the plugin is missing.
+/// Creates a child with its factory's name and adds it. Returns NULL if the plugin is missing.
 GstElement* AddChild(GstElement* bin, const char* factory);
 struct Child {
   GstElement* element;
@@ -33,19 +33,19 @@ struct Child {
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
 /// Gives `socket` to a child that does not own it.
 void GiveSocket(GstElement* child, GSocket* socket);
-/// Takes its elements out of the bin.
+/// Removes the layer's elements from the bin.
 void EndSrtp(BinState& state);
 /// Takes the socket from the children, ends SRTP and closes the socket. A socket of the user is
-/// closed only where the user asked for that.
+/// closed only if the user asked for it.
 void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given);
-/// The UDP and IP header bytes of a packet to `peer`.
+/// Bytes of the UDP and IP headers of a packet to `peer`.
 guint OverheadOf(GSocketAddress* peer);
-/// `stats` of the child; NULL without a child. Transfer full.
+/// Returns `stats` of the child, or NULL without a child. Transfer full.
 StructurePtr StatsOf(GstElement* child);
-/// Copies one field of the child's statistics, where it has it.
+/// Copies a field of the child's statistics, if there is one.
 void CopyStat(GstElement* child, const char* field, GstStructure* to);
 
-/// The child of a bin, for rows that are its.
+/// Table rows with it belong to a child of the bin.
 template <class Self, GstElement* Self::*child>
 GObject* ChildOf(GObject* bin) {
   GstElement* element = reinterpret_cast<Self*>(bin)->*child;

@@ -41,13 +41,13 @@ struct SinkSettings {
 struct State : BinState {
   SinkSettings settings;
   SharedSocketAddress peer;
-  std::shared_ptr<SinkLinks> links;  // where there are several
+  std::shared_ptr<SinkLinks> links;  // null for a single link
   std::atomic<guint64> foreign{0};
 };
 
 }  // namespace
 
-/// The ghost of a sink pad of screamtx, or of one on each link, with its properties.
+/// A ghost of a sink pad of screamtx, or of such pads on each link, with their properties.
 G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
                      GstGhostPad)
 struct _GstLidarScreamSinkPad {
@@ -117,7 +117,7 @@ static guint Estimate(GObject* object) {
   return bps;
 }
 
-/// The default is a receiver that ends with the sender and gets its reports.
+/// The defaults end the receiver with the sender, and send it reports.
 static const TxSettings& TxDefaults() {
   static const TxSettings defaults = [] {
     TxSettings s;
@@ -165,7 +165,7 @@ static const std::array<Property<SinkSettings>, 25> kProperties = {{
     Within<&SinkSettings::srtp>(SrtpRows(), "srtp-auth"),
 }};
 
-/// Whether `buffer` comes from whom we send to. The receivers of a multicast group are many.
+/// Returns true if `buffer` comes from the receiver. A multicast group has many receivers.
 static bool FromPeer(GstLidarScreamSink* self, GstBuffer* buffer) {
   State& state = *self->state;
   GSocketAddress* from = SourceOf(buffer);
@@ -198,7 +198,7 @@ static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer
   return GST_PAD_PROBE_DROP;
 }
 
-/// The pads of the bin, and those that they stand for.
+/// Calls a function for each pad of the bin and the pad it stands for.
 static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(GstPad*)>& retarget) {
   GST_OBJECT_LOCK(self);
   GList* pads = g_list_copy_deep(
@@ -216,7 +216,7 @@ static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(Gs
   g_list_free_full(pads, gst_object_unref);
 }
 
-/// Puts a bond between the pads and a screamtx for each link.
+/// Puts a bond between the pads and the screamtx of each link.
 static void Bond(GstLidarScreamSink* self, const std::vector<OpenLink>& open,
                  const BondSettings& settings) {
   auto links = std::make_shared<SinkLinks>(
@@ -234,8 +234,8 @@ static void Unbond(GstLidarScreamSink* self) {
   if (links) ForEachGhost(self, [&](GstPad* sink) { return links->Remove(sink); });
 }
 
-/// The only link, or the first of several, which `links` has then. No socket after an element
-/// error.
+/// Opens the only link, or the first of several, which are then in `links`. Returns no socket after
+/// an element error.
 static OpenLink OpenFirst(GstLidarScreamSink* self, const SinkSettings& s,
                           std::vector<OpenLink>* links) {
   OpenLink first;
@@ -280,7 +280,7 @@ static bool Open(GstLidarScreamSink* self) {
   SharedSocket socket = first.socket;
   if (!socket) return false;
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer.get()));
-  // As resolved here: a name may stand for several addresses.
+  // Resolved here, as a name may have several addresses.
   const StringPtr literal(g_inet_address_to_string(host));
   g_object_set(self->sink, "host", literal.get(), "port", first.address.target.port, "interface",
                first.address.interface.c_str(), nullptr);
@@ -327,7 +327,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   }
   GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_sink_parent_class)->change_state(element, change);
-  // The source of feedback is live; that says nothing about the media.
+  // The source of feedback is live, which says nothing about the media.
   if (result == GST_STATE_CHANGE_NO_PREROLL) result = GST_STATE_CHANGE_SUCCESS;
   if (change == GST_STATE_CHANGE_READY_TO_NULL) Close(self);
   return result;
@@ -359,7 +359,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_element_remove_pad(element, pad);
 }
 
-/// The pads are children behind the elements of the bin, so that sink_0::priority can be set.
+/// The child proxy lists pads after the elements of the bin, so that sink_0::priority can be set.
 static GstChildProxyInterface* BinChildProxy() {
   return static_cast<GstChildProxyInterface*>(
       g_type_interface_peek(gst_lidar_scream_sink_parent_class, GST_TYPE_CHILD_PROXY));
@@ -375,7 +375,7 @@ static void ChildProxyInit(gpointer iface, gpointer) {
     return index < elements ? BinChildProxy()->get_child_by_index(p, index)
                             : SinkPadAt(p, index - elements);
   };
-  // GstBin's own looks at its elements only.
+  // GstBin's own function finds elements only.
   proxy->get_child_by_name = [](GstChildProxy* p, const gchar* name) -> GObject* {
     if (GstPad* pad = gst_element_get_static_pad(GST_ELEMENT(p), name)) return G_OBJECT(pad);
     return BinChildProxy()->get_child_by_name(p, name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several streams behind screamrx: each SSRC leaves by a pad of its own, with caps from pt-map.
+// Several streams behind screamrx: each SSRC has its own pad, with caps from pt-map.
 #include <charconv>
 #include <string_view>
 #include <utility>
@@ -11,7 +11,7 @@
 namespace lidar::gst {
 namespace {
 
-// Each SSRC makes a pad, be it forged or of a sender that restarts.
+// Each SSRC creates a pad, even a forged one or that of a restarted sender.
 constexpr std::size_t kMaxRoutes = 1'024;
 
 bool IsLidar(const GstCaps* caps) {
@@ -28,7 +28,7 @@ CapsPtr CapsOfValue(const GValue* value) {
   return nullptr;
 }
 
-/// Payload types that read as RTCP with the marker bit (RFC 5761, section 4).
+/// Payload types that look like RTCP with the marker bit (RFC 5761, section 4).
 constexpr bool CollidesWithRtcp(unsigned type) { return type >= 64 && type <= 95; }
 
 /// Describes the fault of one field of pt-map; NULL without a fault.
@@ -42,7 +42,7 @@ const char* FaultOf(std::string_view name, const GValue* value) {
   return nullptr;
 }
 
-/// The caps of a payload type with the SSRC put in; NULL if pt-map has none.
+/// Returns the caps of a payload type with the SSRC; NULL if pt-map has none.
 GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
   if (CollidesWithRtcp(header.payload_type)) return nullptr;
@@ -83,7 +83,7 @@ GstPad* NewPad(GstLidarScreamRx* self, guint32 ssrc, GstCaps* caps) {
   return pad;
 }
 
-/// Gives `src` its caps, and then what has to come behind them.
+/// Gives `src` its caps, and then the events that must follow them.
 void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
   gst_pad_push_event(self->src, gst_event_new_caps(caps.get()));
   if (!self->state->src_started)
@@ -91,7 +91,7 @@ void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
   self->state->src_started = true;
 }
 
-/// Returns true if `pad` leads to an element; an unlinked ghost pad does not.
+/// Returns true if `pad` leads to an element. An unlinked ghost pad does not.
 bool LeadsToSomebody(GstPad* pad) {
   const PadPtr peer(gst_pad_get_peer(pad));
   if (!peer || !GST_IS_PROXY_PAD(peer.get())) return peer != nullptr;
@@ -100,8 +100,8 @@ bool LeadsToSomebody(GstPad* pad) {
   return ghost != nullptr && LeadsToSomebody(GST_PAD(ghost));
 }
 
-/// `src` takes the first stream that its peer can take; payload types outside of pt-map too
-/// (retransmission, FEC), which belong to whatever is there.
+/// Returns the packet's pad. `src` takes the first stream that its peer accepts; unknown payload
+/// types (retransmission, FEC) go to a pad that exists.
 GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
   const CapsPtr caps(CapsOf(self, header));
@@ -162,7 +162,7 @@ bool HasPtMap(GstLidarScreamRx* self) {
   return self->state->settings.pt_map != nullptr;
 }
 
-/// Drops a packet whose SSRC came when there was no pad left.
+/// Drops a packet whose SSRC came after the last pad was given away.
 static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   RxState& state = *self->state;
   gst_buffer_unref(buffer);
@@ -175,7 +175,7 @@ static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Warns once of a stream that no pad takes, and that is dropped as GStreamer drops data of
+/// Warns once of a stream that no pad takes. Its packets are dropped, as GStreamer does for
 /// unlinked pads.
 static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPad* pad) {
   if (std::exchange(self->state->warned_of_untaken, true)) return;
@@ -206,7 +206,7 @@ gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
     if (pad != self->src) gst_pad_push_event(pad, gst_event_ref(event));
   if (HasPtMap(self) && !self->state->src_started && GST_EVENT_IS_STICKY(event) &&
       GST_EVENT_TYPE(event) != GST_EVENT_EOS) {
-    gst_event_unref(event);  // it follows the caps, which the first packet brings
+    gst_event_unref(event);  // the segment follows the caps, which the first packet brings
     return TRUE;
   }
   return gst_pad_push_event(self->src, event);

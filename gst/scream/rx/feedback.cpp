@@ -40,7 +40,7 @@ void Wait(RxState& state, RxLock& lock, Time now) {
   gst_clock_id_unref(id);
 }
 
-/// RTCP as a buffer that names the address it goes to, for a sink that replies.
+/// Returns RTCP as a buffer with its destination, for a sink that replies.
 GstBuffer* ToBuffer(GSocketAddress* to, const std::vector<std::uint8_t>& bytes) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
   gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
@@ -48,7 +48,7 @@ GstBuffer* ToBuffer(GSocketAddress* to, const std::vector<std::uint8_t>& bytes) 
   return buffer;
 }
 
-/// The next packet to be sent, or null.
+/// Returns the next packet to send, or null.
 GstBuffer* NextPacket(GstLidarScreamRx* self, Time now) {
   RxState& state = *self->state;
   if (!state.key_requests.empty()) {
@@ -89,7 +89,7 @@ void Run(gpointer data) {
   const bool first = !std::exchange(state.rtcp_started, true);
   lock.unlock();
   if (first) StartStream(self);
-  // An unlinked feedback pad does not stop the media.
+  // The media continue even if the feedback pad is not linked.
   const GstFlowReturn flow = gst_pad_push(self->rtcp_src, buffer);
   if (flow == GST_FLOW_FLUSHING || flow == GST_FLOW_EOS) gst_pad_pause_task(self->rtcp_src);
 }
@@ -109,8 +109,8 @@ gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owner(event);
   RxState& state = *GST_LIDAR_SCREAM_RX(parent)->state;
   const RxLock lock(state.mutex);
-  // Only the streaming thread has the pad of an SSRC, so it asks for all. A link in a gap would
-  // lose the request.
+  // Requests all SSRCs, as only the streaming thread knows the pad's. Each link sends the request:
+  // a link in a gap would lose it.
   for (const auto& [ssrc, last] : state.ssrcs)
     for (std::size_t i = 0; i < std::max<std::size_t>(state.latch.links(), 1); ++i)
       state.key_requests.emplace(ssrc, i);

@@ -37,7 +37,7 @@ GType NumReportsType() {
   return type;
 }
 
-/// The values of `stats`.
+/// Values shown in `stats`.
 struct Shown {
   scream::FeedbackGenerator::Stats feedback;
   RxCounters own;
@@ -47,7 +47,7 @@ constexpr auto F = At<&Shown::feedback, field>;
 template <auto field>
 constexpr auto O = At<&Shown::own, field>;
 
-/// Adds the packets that came by each link of the peer.
+/// Adds the numbers of packets by link of the peer.
 static void AddLinkStats(const LinkReports& reports, GstStructure* stats) {
   using S = LinkReports::LinkStats;
   using G = scream::FeedbackGenerator::Stats;
@@ -151,12 +151,12 @@ static gboolean SinkEvent(GstPad*, GstObject* parent, GstEvent* event) {
   RxState& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_EOS:
-      if (state.eos) {  // said already, for the goodbyes
+      if (state.eos) {  // the goodbyes have already sent it
         gst_event_unref(event);
         return TRUE;
       }
       break;
-    case GST_EVENT_STREAM_START:  // the other pads have their own
+    case GST_EVENT_STREAM_START:  // the other pads have their own events
       return gst_pad_push_event(self->src, event);
     case GST_EVENT_FLUSH_STOP:
       state.eos = false;
@@ -168,7 +168,7 @@ static gboolean SinkEvent(GstPad*, GstObject* parent, GstEvent* event) {
         NoteCaps(state, caps);
         break;
       }
-      gst_event_unref(event);  // pt-map says what each stream is
+      gst_event_unref(event);  // pt-map has the caps of each stream
       return TRUE;
     default:
       break;

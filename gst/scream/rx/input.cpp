@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The input of screamrx: media, which is counted and passed on, and goodbyes.
+// The input of screamrx: counts media and passes them on, and handles goodbyes.
 #include <algorithm>
 
 #include "gst/common/buffer_map.h"
@@ -13,19 +13,20 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxSsrcs = 64;
-// A stream without packets for so long does not keep the others from ending.
+// A stream without packets for this time does not delay the end of the others.
 constexpr Duration kSsrcTimeout = std::chrono::seconds(5);
-// An older kernel time, or a future one, means that the system clock was set.
+// An older kernel time, or a future one, shows that the system clock was set.
 constexpr Duration kMaxAge = std::chrono::seconds(1);
 constexpr Duration kMaxApart = std::chrono::milliseconds(1);
 
-/// Now on the clock of the reports, and on that of kernel arrival times.
+/// The present on the reports' clock and on that of kernel arrival times.
 struct Clocks {
   Time now{};
   GstClockTime unix_now = 0;
 };
 
-/// Reads both clocks, again if the thread was stopped in between: all arrivals would seem earlier.
+/// Reads both clocks. Repeats it if the thread was stopped in between, as all arrivals would then
+/// seem earlier.
 Clocks ReadClocks(const RxState& state) {
   Clocks clocks;
   for (int tries = 0; tries < 3; ++tries) {
@@ -36,7 +37,7 @@ Clocks ReadClocks(const RxState& state) {
   return clocks;
 }
 
-/// The kernel's arrival time on the monotonic clock of the reports.
+/// Converts the kernel's arrival time to the monotonic clock of the reports.
 Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
   if (!GST_CLOCK_TIME_IS_VALID(arrival)) return clocks.now;
   const auto age = Duration{static_cast<std::int64_t>(clocks.unix_now - arrival)};
@@ -60,7 +61,8 @@ PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpH
   return state.latch.OnPacket(now, packet);
 }
 
-/// Returns true if a slice that begins here was captured too long ago; nothing if no slice begins.
+/// Returns true if a slice that begins here was captured too long ago, or nothing if no slice
+/// begins.
 std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteView payload) {
   std::optional<bool> old;
   for (const rtp::Unit& unit : rtp::ParsePayload(payload)) {
@@ -73,14 +75,14 @@ std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteV
   return old;
 }
 
-/// Returns true if the packet is of a recording, sent again. Only the first packet of a slice has
-/// its capture time; the following ones share its fate.
+/// Returns true if the packet is from a recording that is sent again. Only the first packet of a
+/// slice has its capture time; the following packets are treated like it.
 bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHeader& header) {
   if (state.settings.max_age == Duration{0} || !state.lidar_types[header.payload_type])
     return false;
   const BufferMap map(buffer, GST_MAP_READ);
   const auto begins_old = BeginsOld(state, unix_now, PayloadOf(map, header));
-  // The address counts, or a recording sent under the peer's SSRC would silence the peer.
+  // The address counts too: a recording under the peer's SSRC must not silence the peer.
   const std::pair stream(AddressToString(SourceOf(buffer)), header.ssrc);
   if (!begins_old) return state.old_streams.count(stream) > 0;
   if (!*begins_old) state.old_streams.erase(stream);
@@ -88,7 +90,7 @@ bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHe
   return *begins_old;
 }
 
-/// Counts a packet of media; returns false if it is to be dropped. The lock is held.
+/// Counts a media packet. Returns false if it is to be dropped. The caller holds the lock.
 bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
              const RtpHeader& header) {
   RxState& state = *self->state;
@@ -118,7 +120,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) +
                 state.settings.packet_overhead;
   state.reports.OnPacket(SourceOf(buffer), ArrivalTime(clocks, arrival), packet);
-  // A stream that is alive comes back with its next packet.
+  // A live stream comes back with its next packet.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
   state.ssrcs[header.ssrc] = clocks.now;
   const bool is_new = state.seen.Add(header.ssrc, header.seq);
@@ -130,14 +132,14 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
 
 enum class Fate { kPass, kDrop, kEnd };
 
-/// Whether a stream goes on. A sender that restarted said no goodbye for the SSRC it had before.
+/// Returns true if a stream continues. A restarted sender says no goodbye for its earlier SSRC.
 bool AnyAlive(const RxState& state, Time now) {
   return std::any_of(state.ssrcs.begin(), state.ssrcs.end(),
                      [now](const auto& s) { return now - s.second < kSsrcTimeout; });
 }
 
-/// Handles RTCP on the media's port: a goodbye ends streams, a sender's report is kept for `stats`,
-/// other RTCP passes unread. Lock held.
+/// Handles RTCP on the media's port: a goodbye ends streams, `stats` keeps a sender's report, and
+/// other RTCP passes unread. The caller holds the lock.
 Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
   if (goodbyes.empty() && !scream::HasSenderReport(map.view())) return Fate::kPass;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Feedback for each link of the peer, and what came by more than one of them.
+// Feedback for each link of the peer, and detection of packets that came by several links.
 #pragma once
 #include <gio/gio.h>
 
@@ -16,15 +16,15 @@
 
 namespace lidar::gst {
 
-/// A link's reports cover the packets that came by it. The first link may have no address.
+/// Reports of a link cover the packets that came by it. The first link may have no address.
 class LinkReports {
  public:
-  /// The oldest silent link gives its place to a new one.
+  /// A new link replaces the oldest silent one.
   static constexpr std::size_t kMaxLinks = 4;
 
   struct Report {
     scream::CongestionFeedback feedback;
-    GSocketAddress* to;  // not owned; NULL if it is not known
+    GSocketAddress* to;  // not owned; NULL if unknown
   };
 
   /// Forgets everything.
@@ -39,7 +39,7 @@ class LinkReports {
     scream::FeedbackGenerator::Stats feedback;
   };
   std::vector<LinkStats> stats() const;
-  /// The sum over all links.
+  /// Sums over all links.
   scream::FeedbackGenerator::Stats Sum() const;
 
  private:
@@ -54,13 +54,13 @@ class LinkReports {
   std::vector<Link> links_;
 };
 
-/// Packets that came already, over any link. A packet too old to be remembered passes.
+/// Packets that have arrived by any link. A packet too old to be remembered passes.
 class SeenPackets {
  public:
   static constexpr int kWindow = 4096;
   static constexpr std::size_t kMaxSources = 64;
 
-  /// False for one that was here before.
+  /// Returns false for a repeated packet.
   bool Add(std::uint32_t ssrc, std::uint16_t seq);
 
  private:

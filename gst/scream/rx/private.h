@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The inside of screamrx: its state, and the functions its files share.
+// The inside of screamrx: its state, and the functions that its files share.
 //
-// Threads: the sink pad's streaming thread looks at packets and passes them; the task on rtcp_src
-// sends reports when they are due. One mutex guards the state; no thread holds it while pushing
-// or waiting.
+// Threads: the sink pad's streaming thread examines and passes packets; the task on rtcp_src sends
+// reports when they are due. One mutex guards the state; no thread holds it while pushing or
+// waiting.
 #pragma once
 #include <gst/base/gstflowcombiner.h>
 #include <gst/gst.h>
@@ -33,13 +33,13 @@ enum NumReportsMode { kNumReportsCount, kNumReportsEricsson };
 GType NumReportsType();
 
 struct RxSettings {
-  scream::FeedbackConfig feedback;  // but for what is below
+  scream::FeedbackConfig feedback;  // without the settings below
   guint packets_per_feedback = static_cast<guint>(scream::FeedbackConfig{}.packets_per_feedback);
   guint ssrc = 0;
   gint num_reports = kNumReportsCount;
   bool eos_on_bye = true;
   DataSize packet_overhead = DataSize::Bytes(28);
-  Duration max_age{};  // 0: any
+  Duration max_age{};  // 0: no limit
   SharedStructure pt_map;
 };
 using RxProperties = std::array<Property<RxSettings>, 10>;
@@ -61,29 +61,29 @@ struct RxState {
   LinkReports reports;
   PeerLatch latch;
   SeenPackets seen;
-  std::bitset<128> lidar_types;                           // payload types that are LiDAR
-  std::set<std::pair<std::string, guint32>> old_streams;  // by address and SSRC: older than max-age
-  std::map<guint32, Time> ssrcs;                          // of the peer, and when each sent last
+  std::bitset<128> lidar_types;                           // payload types of LiDAR
+  std::set<std::pair<std::string, guint32>> old_streams;  // by address; older than max-age
+  std::map<guint32, Time> ssrcs;  // of the peer, with the time of the last packet
   bool running = false;
   RxCounters counters;
   SenderView sender;
   bool settings_changed = false;
   guint32 own_ssrc = 1;
 
-  // The task on rtcp_src
+  // The task on rtcp_src:
   GstClock* clock = nullptr;
   GstClockID timer = nullptr;  // not owned
   Time waits_until{};
   bool rtcp_started = false;
-  // SSRCs that need a key unit, and the links that have not asked yet.
+  // SSRCs that need a key unit, with the links that still have to send the request.
   std::set<std::pair<guint32, std::size_t>> key_requests;
 
-  // Only the streaming thread uses what follows
+  // Used by the streaming thread only:
   bool eos = false;
-  std::map<guint32, GstPad*> routes;  // SSRC to the pad it leaves by, where there is a pt-map
-  bool src_taken = false;             // by a stream of pt-map
-  bool src_started = false;           // it has had its caps
-  bool routes_full = false;           // and a warning said so
+  std::map<guint32, GstPad*> routes;  // pads by SSRC, with a pt-map
+  bool src_taken = false;             // a stream of pt-map uses it
+  bool src_started = false;           // its caps were sent
+  bool routes_full = false;           // the warning about it was posted
   bool warned_of_untaken = false;
   GstFlowCombiner* combiner = nullptr;
 };
@@ -109,24 +109,24 @@ scream::FeedbackConfig ToConfig(const RxSettings& settings, guint32 own_ssrc);
 GstFlowReturn RxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 GstFlowReturn RxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 
-// feedback.cpp
+// feedback.cpp:
 gboolean RxActivateRtcp(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active);
-/// Events that come from downstream.
+/// Handles events from downstream.
 gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
-/// Wakes the task if the next report is due sooner; with the lock held.
+/// Wakes the task if the next report is due sooner. The caller holds the lock.
 void WakeFeedback(RxState& state);
 
 // demux.cpp: streams by SSRC, with pt-map
 bool HasPtMap(GstLidarScreamRx* self);
-/// Warns of fields of the pt-map that cannot work.
+/// Warns of fields of pt-map that cannot work.
 void CheckPtMap(GstLidarScreamRx* self);
-/// Notes the payload types of pt-map that are LiDAR, with the lock held.
+/// Notes which payload types of pt-map are LiDAR. The caller holds the lock.
 void NoteLidarTypes(RxState& state);
-/// Notes those of the caps, if there is no pt-map.
+/// Notes the payload type of the caps, if there is no pt-map.
 void NoteCaps(RxState& state, const GstCaps* caps);
 /// Pushes on the pad of the packet's stream, which may be new. Takes the buffer.
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer);
-/// Sends a sink event to every pad of media; takes the event.
+/// Sends a sink event to each media pad. Takes the event.
 gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event);
 void RemoveRoutes(GstLidarScreamRx* self);
 

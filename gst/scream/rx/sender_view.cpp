@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// Silence after which another clock may count.
+// Silence after which reports of another clock are accepted.
 constexpr Duration kClockKept = std::chrono::seconds(10);
 
 struct Shown {

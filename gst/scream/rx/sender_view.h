@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sender's last report of itself and the path.
+// The sender's last report about itself and the path.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,7 +11,7 @@ namespace lidar::gst {
 
 class SenderView {
  public:
-  /// Takes what is newer than what it has.
+  /// Takes reports that are newer than the last one.
   void OnReport(Time now, const scream::SenderReport& report);
   /// Adds the fields sender-... to `stats`; all are 0 before the first report.
   void AddStats(Time now, GstStructure* stats) const;

@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-constexpr gsize kAll = G_MAXSIZE;  // of a buffer
+constexpr gsize kAll = G_MAXSIZE;  // size of a whole buffer
 
 std::uint64_t KeyOf(const RtpHeader& header) {
   return std::uint64_t{header.ssrc} << 16 | header.seq;

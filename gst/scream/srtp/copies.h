@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Copies of datagrams that passed, from the other links of a sender.
+// Copies of accepted datagrams that came by the sender's other links.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,20 +14,20 @@
 namespace lidar::gst {
 
 /// A sender protects a packet once and sends the same bytes over its links. SRTP refuses copies as
-/// replays, but the receiver needs each to judge the links. Bytes that passed pass again, once for
-/// each address.
+/// replays, but the receiver needs each copy to judge the links. So bytes that were accepted pass
+/// again, once for each address.
 class SrtpCopies {
  public:
   static constexpr std::size_t kMaxDatagrams = 1'024;
   static constexpr std::size_t kMaxBytes = 2 << 20;
-  static constexpr std::size_t kMaxAddresses = 4;  // of a datagram
+  static constexpr std::size_t kMaxAddresses = 4;  // for one datagram
 
-  /// Notes an RTP datagram. Keeps nothing until another address sends, too.
+  /// Notes an RTP datagram. Keeps nothing until a second address sends.
   void OnArrival(GstBuffer* datagram);
-  /// `datagram` passed as `decoded`.
+  /// `datagram` was accepted, and decoded to `decoded`.
   void OnPassed(GstBuffer* datagram, GstBuffer* decoded);
-  /// Returns the packet that a refused datagram is a copy of, with the copy's address, marks and
-  /// times; else NULL.
+  /// Returns the decoded packet of a refused copy, with the copy's address, marks and times; NULL
+  /// if `datagram` is no copy.
   BufferPtr Take(GstBuffer* datagram);
   void Clear();
 
@@ -38,7 +38,7 @@ class SrtpCopies {
     std::vector<SocketAddressPtr> addresses;
   };
 
-  SocketAddressPtr last_;  // sender of the last datagram
+  SocketAddressPtr last_;  // of the last datagram
   bool several_ = false;
   std::unordered_map<std::uint64_t, Passed> passed_;  // by SSRC and sequence number
   std::deque<std::uint64_t> order_;

@@ -5,7 +5,7 @@ namespace lidar::gst {
 
 namespace {
 
-// A sender's links take turns, and what waited behind a gap of one comes late.
+// The links of a sender alternate, and packets from behind a gap of one link come late.
 constexpr guint kReplayWindow = 4'096;  // packets
 
 }  // namespace
@@ -36,11 +36,11 @@ SrtpDecoder::SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy&
 
 SrtpDecoder::~SrtpDecoder() {
   gst_element_set_state(element_, GST_STATE_NULL);
-  gst_bin_remove(GST_BIN(bin_), element_);  // unlinks its pads
+  gst_bin_remove(GST_BIN(bin_), element_);  // also unlinks its pads
   for (GstPad* pad : {rtp_.get(), rtcp_.get()}) gst_pad_set_active(pad, FALSE);
 }
 
-/// Takes what the pad `source` gives. It ends the events there: the stream has its own.
+/// Takes the packets of the pad `source`. Events end here, as the stream has its own.
 PadPtr SrtpDecoder::NewRelay(const char* source) {
   PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK))));
   gst_pad_set_element_private(pad.get(), this);
@@ -69,7 +69,7 @@ void SrtpDecoder::Start() {
 
 BufferPtr SrtpDecoder::Decode(GstBuffer* datagram) {
   if (!gst_pad_has_current_caps(sink_.get())) Start();
-  // The decoder works in place, and frees a buffer that others hold too.
+  // The decoder works in place, and frees a buffer that others also hold.
   gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   return std::move(out_);
 }

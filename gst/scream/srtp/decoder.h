@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The stock srtpdec with one key: says of each datagram whether the key fits.
+// The stock srtpdec with one key: decodes a datagram, or refuses it if the key does not fit.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,9 +12,8 @@
 
 namespace lidar::gst {
 
-/// A child of the bin while it lives, and never stopped by it: srtpdec complains of a state change
-/// while it decodes. Everything but the making of it belongs to the one streaming thread that gives
-/// it datagrams.
+/// Is a child of the bin, which never stops it: srtpdec warns of a state change while it decodes.
+/// Only the streaming thread that gives it datagrams may use it, apart from creating it.
 class SrtpDecoder {
  public:
   /// Null if the srtp plugin is missing.
@@ -25,13 +24,13 @@ class SrtpDecoder {
   SrtpDecoder& operator=(const SrtpDecoder&) = delete;
 
   const SrtpKey& key() const { return key_; }
-  /// `datagram` decoded, where it is RTP or RTCP by this key and no replay; else NULL. Leaves
-  /// `datagram` alone.
+  /// Returns the decoded datagram if it is RTP or RTCP by this key and no replay, else NULL. Leaves
+  /// `datagram` unchanged.
   BufferPtr Decode(GstBuffer* datagram);
-  /// Forgets all of `ssrc` but this guess of its rollover counter.
+  /// Forgets the state of `ssrc` and starts from this rollover counter.
   void Restart(std::uint32_t ssrc, std::uint32_t rollover);
-  /// Forgets every stream. The only way to get memory back from srtpdec while it runs: in
-  /// GStreamer 1.22 what Restart removes stays in its session.
+  /// Forgets all streams. Only this frees memory of srtpdec while it runs: in GStreamer 1.22 its
+  /// session keeps what Restart() removes.
   void Clear();
 
  private:
@@ -41,14 +40,14 @@ class SrtpDecoder {
   GstCaps* CapsFor(std::uint32_t ssrc) const;
 
   GstElement* bin_;
-  GstElement* element_;  // of the bin
+  GstElement* element_;  // owned by the bin
   SrtpPolicy policy_;
   SrtpKey key_;
   PadPtr sink_;
-  PadPtr rtp_;  // take what comes out
+  PadPtr rtp_;  // take the decoded packets
   PadPtr rtcp_;
-  std::map<std::uint32_t, std::uint32_t> rollovers_;  // guesses past 0
-  BufferPtr out_;                                     // of the datagram in work
+  std::map<std::uint32_t, std::uint32_t> rollovers_;  // counters above 0 that were tried
+  BufferPtr out_;                                     // of the present datagram
 };
 
 }  // namespace lidar::gst

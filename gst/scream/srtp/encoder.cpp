@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// Links take turns, and a copy of an old packet may leave behind many new ones.
+// The links alternate, and a copy of an old packet may leave behind many new ones.
 constexpr guint kWindow = 4'096;  // packets
 
 }  // namespace
@@ -37,7 +37,7 @@ SrtpEncoder::SrtpEncoder(GstElement* bin, GstElement* element) : bin_(bin), elem
 
 SrtpEncoder::~SrtpEncoder() {
   gst_element_set_state(element_, GST_STATE_NULL);
-  gst_bin_remove(GST_BIN(bin_), element_);  // unlinks its pads
+  gst_bin_remove(GST_BIN(bin_), element_);  // also unlinks its pads
   for (const Way* way : {&rtp_, &rtcp_}) gst_pad_set_active(way->relay.get(), FALSE);
 }
 
@@ -55,7 +55,7 @@ SrtpEncoder::Way SrtpEncoder::NewWay(const std::string& kind) {
     gst_event_unref(event);
     return TRUE;
   });
-  GST_PAD_SET_ACCEPT_TEMPLATE(relay);  // caps change with the key
+  GST_PAD_SET_ACCEPT_TEMPLATE(relay);  // the caps change with the key
   gst_pad_set_active(relay, TRUE);
   const PadPtr source(gst_element_get_static_pad(element_, (kind + "_src_0").c_str()));
   gst_pad_link(source.get(), relay);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The stock srtpenc as a function: what all streams and links of a bin are protected with.
+// The stock srtpenc as a function that protects all streams and links of a bin.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,8 +11,8 @@
 
 namespace lidar::gst {
 
-/// A child of the bin while it lives. There is one for a key: two would use a packet index twice.
-/// Any thread may call.
+/// Is a child of the bin. Each key has one encoder, as two would use a packet index twice. All
+/// threads may call it.
 class SrtpEncoder {
  public:
   /// Null if the srtp plugin is missing.
@@ -23,7 +23,8 @@ class SrtpEncoder {
   SrtpEncoder& operator=(const SrtpEncoder&) = delete;
 
   void SetKey(const SrtpKey& key);
-  /// RTP or RTCP, protected, with its metas; NULL if srtpenc refuses it. Takes the buffer.
+  /// Returns the protected RTP or RTCP packet with its metas; NULL if srtpenc refuses it. Takes the
+  /// buffer.
   BufferPtr Protect(GstBuffer* packet);
 
  private:
@@ -31,15 +32,15 @@ class SrtpEncoder {
   /// A direction through the element: "rtp" or "rtcp".
   struct Way {
     PadPtr sink;
-    PadPtr relay;  // takes what comes out
+    PadPtr relay;  // takes the protected packets
   };
   Way NewWay(const std::string& kind);
 
   GstElement* bin_;
-  GstElement* element_;  // of the bin
+  GstElement* element_;  // owned by the bin
   Way rtp_;
   Way rtcp_;
-  std::mutex mutex_;  // held while the element works; it pushes into the relays only
+  std::mutex mutex_;  // held while the element works; it only pushes to the relays
   BufferPtr out_;
 };
 

@@ -8,19 +8,19 @@
 namespace lidar::gst {
 namespace {
 
-// The key in use, the one before and the one to come.
+// The present key, the last one and the next one.
 constexpr std::size_t kMaxKeys = 3;
 constexpr gint64 kStragglersUs = 10 * G_USEC_PER_SEC;
 constexpr std::size_t kMaxStreams = 2'048;
-// Losses long enough to lose count of a rollover look like this; a sender without feedback is slow.
+// Long losses hide rollovers and cause such failures. A sender without feedback is slow.
 constexpr unsigned kFailuresUntilLost = 20;
 constexpr gint64 kSilenceUntilLostUs = 2 * G_USEC_PER_SEC;
-constexpr std::uint32_t kMaxRollover = 100'000;  // months
+constexpr std::uint32_t kMaxRollover = 100'000;  // reached after months
 constexpr unsigned kFailuresUntilWarning = 20;
-// Each costs the derivation of its keys, 50 us or so.
+// Each trial derives keys, which takes about 50 us.
 constexpr double kTrialsPerSecond = 500;
 constexpr unsigned kTriedUntilCleared = 64;
-constexpr unsigned kMaxGuesses = 32;  // for one packet: 2 ms or so for each key
+constexpr unsigned kMaxGuesses = 32;  // for one packet: about 2 ms per key
 
 SrtpInput* InputOf(GstPad* pad) {
   return static_cast<SrtpInput*>(gst_pad_get_element_private(pad));
@@ -139,14 +139,14 @@ BufferPtr SrtpInput::Decode(GstBuffer* datagram, const Head& head) {
     if (BufferPtr decoded = DecodeKnown(datagram, head)) return decoded;
     ++found->second.failures;
   }
-  // RTCP is never lost, as it carries its index: what is behind is a recording.
+  // RTCP carries its index and is never lost, so a packet that fails is a recording.
   if (!known || (!head.rtcp && IsLost(found->second))) return TryStranger(datagram, head);
   return nullptr;
 }
 
 BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    // The key that the last packet had comes first; the others fail once for each packet.
+    // Tries the key of the last packet first, as the others fail once for each packet.
     const std::size_t n = (in_use_ + i) % keys_.size();
     BufferPtr decoded = keys_[n].DecoderOf(head).Decode(datagram);
     if (!decoded) continue;
@@ -156,8 +156,8 @@ BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   return nullptr;
 }
 
-/// RTP does not carry its rollover counter, so many values are tried for a packet if no other
-/// stranger asks: a sender without feedback sends few.
+/// RTP does not carry its rollover counter. If no other stranger asks, many values are tried for
+/// one packet, as a sender without feedback sends few.
 BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   if (!allowance_.Take(g_get_monotonic_time())) return nullptr;
   BufferPtr decoded = TryRollover(datagram, head, 0);
@@ -170,7 +170,7 @@ BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   return decoded;
 }
 
-/// A stream that was lost is ahead of its old place: anything before it is a recording.
+/// A lost stream is ahead of its old place: earlier packets are recordings.
 BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead) {
   const Stream& stream = StreamOf(head.stream());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -179,7 +179,7 @@ BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uin
     if (stream.known && keys_[n].serial < stream.key) continue;
     const std::uint32_t rollover = (behind ? stream.rollover + 1 : 0) + ahead;
     if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
-    // The decoder of the key's streams takes it, too, so that its replay is refused.
+    // The key's decoder takes the packet too, so that it refuses a replay.
     SrtpDecoder& decoder = keys_[n].DecoderOf(head);
     decoder.Restart(head.ssrc, rollover);
     BufferPtr decoded = decoder.Decode(datagram);
@@ -203,7 +203,7 @@ void SrtpInput::UpdateKeys() {
   std::size_t drop = 0;
   {
     std::lock_guard lock(mutex_);
-    // A stream whose key was missing may have any rollover count under the new one.
+    // A stream whose key was missing may have any rollover counter under the new key.
     if (!added_.empty())
       for (auto& [id, stream] : streams_) stream.search = {};
     for (Key& key : added_) keys_.push_back(std::move(key));
@@ -225,14 +225,14 @@ SrtpInput::Stream& SrtpInput::StreamOf(const StreamId& id) {
     for (auto it = streams_.begin(); it != streams_.end();)
       it = it->second.known || it->second.failures > failures ? std::next(it) : streams_.erase(it);
   };
-  // Garbage must not fill the memory with streams that do not exist, nor hide one that does.
+  // Garbage must neither fill the memory with invented streams nor replace a real one.
   if (streams_.size() >= kMaxStreams) forget(1);
   if (streams_.size() >= kMaxStreams) forget(UINT_MAX);
   if (streams_.size() >= kMaxStreams) streams_.clear();
   return streams_[id];
 }
 
-/// `rollover` is that of a stream or a key that was not known before.
+/// `rollover` is set for a new stream or key.
 void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollover) {
   in_use_ = key;
   Stream& stream = StreamOf(head.stream());
@@ -258,8 +258,8 @@ void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollov
   on_new_key_(keys_[key].media->key());
 }
 
-/// A stream is lost if no packet has passed for so long that it may have rolled over. A forger
-/// cannot make a stream lost whose packets pass.
+/// Returns true if no packet has passed for so long that the counter may have rolled over. While
+/// its packets pass, a forger cannot make a stream lost.
 bool SrtpInput::IsLost(const Stream& stream) {
   return stream.failures >= kFailuresUntilLost &&
          g_get_monotonic_time() - stream.passed_at >= kSilenceUntilLostUs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The way in from a socket: every datagram is tried with the keys that are valid now.
+// The way in from a socket: tries the valid keys on each datagram.
 #pragma once
 #include <gst/gst.h>
 
@@ -22,21 +22,20 @@ namespace lidar::gst {
 struct SrtpCounts {
   std::uint64_t received = 0;  // datagrams
   std::uint64_t refused = 0;   // wrong key, replayed, damaged or not protected
-  std::uint64_t copies = 0;    // by another link of the sender
+  std::uint64_t copies = 0;    // came by another link of the sender
   std::uint64_t key_changes = 0;
 };
 
-/// Takes the place of the link between `socket` and `target`: events and queries pass, datagrams
-/// pass decoded or not at all. A new key is valid beside the old one; once a packet fits it the old
-/// one is kept for stragglers and then forgotten. An unknown stream is first tried apart, at a
-/// bounded rate, so that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is
-/// a stream of its own: it carries its index, and says nothing of the rollover counter of the
-/// media.
+/// Replaces the link between `socket` and `target`: events and queries pass, and datagrams pass
+/// decoded or not at all. A new key is valid beside the old one; the old one is kept for a while
+/// after a packet fits the new one. An unknown stream is first tried apart, at a bounded rate, so
+/// that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is a stream of its
+/// own: it carries its index, and says nothing about the media's rollover counter.
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
 
-  /// `on_new_key` is called in the streaming thread once the other end uses a newer key.
+  /// The streaming thread calls `on_new_key` once the other end uses a newer key.
   SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_key);
   ~SrtpInput();
   SrtpInput(const SrtpInput&) = delete;
@@ -44,25 +43,25 @@ class SrtpInput {
 
   /// Links two pads that have no link. Returns false if they do not fit.
   bool Link(GstPad* socket, GstPad* target);
-  /// Callable from any thread. Returns false without the srtp plugin. A fifth key replaces the
+  /// All threads may call it. Returns false without the srtp plugin. A fifth key replaces the
   /// oldest.
   bool AddKey(const SrtpKey& key);
-  /// Keys that no packet has fitted yet, newer than the one in use.
+  /// Keys newer than the present one that no packet has fitted yet.
   std::size_t waiting_keys() const { return waiting_; }
   SrtpCounts counts() const;
 
  private:
-  using StreamId = std::pair<bool, std::uint32_t>;  // whether it is RTCP, and its SSRC
+  using StreamId = std::pair<bool, std::uint32_t>;  // true for RTCP, and the SSRC
   /// The header fields of a datagram.
   struct Head {
     StreamId stream() const { return {rtcp, ssrc}; }
     bool rtcp = false;
-    std::uint16_t sequence = 0;  // of RTP
+    std::uint16_t sequence = 0;  // RTP only
     std::uint32_t ssrc = 0;
   };
-  /// Numbers from 1 on, to be tried. Rounds grow in length and begin again with short ones, so
-  /// small numbers come up again and again. Each round begins at a random number: an attacker who
-  /// uses up some numbers cannot keep one of them from coming up.
+  /// Produces the numbers to try, from 1 on. Rounds become longer and restart with short ones, so
+  /// that small numbers recur often. Each round begins at a random number: an attacker who uses up
+  /// some numbers cannot block one of them.
   class Search {
    public:
     std::uint32_t Next();
@@ -73,28 +72,28 @@ class SrtpInput {
     std::uint32_t at_ = 0;
   };
   struct Stream {
-    bool known = false;     // a packet of it passed; then:
-    std::uint64_t key = 0;  // serial number of the newest key that fitted
+    bool known = false;     // a packet has passed; then the fields below are valid:
+    std::uint64_t key = 0;  // serial number of the newest key that has fitted
     std::uint32_t rollover = 0;
     std::uint16_t sequence = 0;
     unsigned failures = 0;  // since the last packet that passed
-    gint64 passed_at = 0;   // monotonic time [us]
+    gint64 passed_at = 0;   // monotonic time [us] of that packet
     Search search;
   };
   struct Key {
     std::uint64_t serial = 0;
-    // Tries of known media and RTCP, and of others. Media that is found starts its decoder
-    // again, which would forget what RTCP had passed.
+    // Decoder for trials of media, and of RTCP of known streams. A found media stream restarts its
+    // decoder, which would forget the RTCP that has passed.
     std::unique_ptr<SrtpDecoder> media;
     std::unique_ptr<SrtpDecoder> rtcp;
     std::unique_ptr<SrtpDecoder> trial;
     SrtpDecoder& DecoderOf(const Head& head) const { return head.rtcp ? *rtcp : *media; }
   };
-  /// The budget for tries on strangers.
+  /// Budget of the trials for strangers.
   class Allowance {
    public:
     bool Take(gint64 now_us);
-    /// Takes another try for the same packet, if more than half of the allowance is left.
+    /// Takes a further trial for the same packet, if more than half of the allowance is left.
     bool TakeSpare();
 
    private:
@@ -128,15 +127,15 @@ class SrtpInput {
   std::vector<Key> added_;
   std::uint64_t serial_ = 0;
 
-  // Only the streaming thread uses what follows.
+  // Used by the streaming thread only:
   std::vector<Key> keys_;   // oldest first
-  std::size_t in_use_ = 0;  // of the packet that passed last
+  std::size_t in_use_ = 0;  // key of the last packet that passed
   std::size_t newest_used_ = 0;
   gint64 forget_old_at_ = 0;  // monotonic time [us]
   std::map<StreamId, Stream> streams_;
   SrtpCopies copies_;
   Allowance allowance_;
-  unsigned tried_ = 0;  // strangers, since the trial decoders were cleared
+  unsigned tried_ = 0;  // strangers since the trial decoders were cleared
   bool warned_ = false;
 
   std::atomic<std::size_t> waiting_{0};

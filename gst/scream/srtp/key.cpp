@@ -11,7 +11,7 @@ namespace {
 struct Cipher {
   const char* name;
   std::size_t key_size;
-  bool authenticates;  // needs no HMAC beside it
+  bool authenticates;  // needs no HMAC
 };
 constexpr std::array<Cipher, 4> kCiphers = {{{"aes-128-icm", 30, false},
                                              {"aes-256-icm", 46, false},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The user's SRTP settings, and their master key and ciphers.
+// The user's SRTP settings: master key and ciphers.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -17,19 +17,19 @@ struct SrtpSettings {
 /// Master key and salt.
 using SrtpKey = std::vector<std::uint8_t>;
 
-/// The algorithms, by the names that srtpenc and srtpdec have for them.
+/// The algorithms, by the names of srtpenc and srtpdec.
 struct SrtpPolicy {
   std::string cipher;
   std::string auth;
   std::string rtcp_auth;
-  std::size_t key_size;  // of an SrtpKey
-  unsigned overhead;     // bytes that each RTP packet grows by
+  std::size_t key_size;  // bytes of an SrtpKey
+  unsigned overhead;     // bytes added to each RTP packet
 };
 
-/// Returns nothing and sets `error` if there are no such algorithms.
+/// Returns nothing and sets `error` for unknown algorithms.
 std::optional<SrtpPolicy> SrtpPolicyOf(const SrtpSettings& settings, std::string* error);
-/// Reads `source` as SrtpSettings::key says; returns nothing and sets `error` otherwise. No error
-/// shows the key.
+/// Reads the key from `source` as SrtpSettings::key describes. Returns nothing and sets `error` on
+/// failure. No error shows the key.
 std::optional<SrtpKey> ReadSrtpKey(const std::string& source, const SrtpPolicy& policy,
                                    std::string* error);
 

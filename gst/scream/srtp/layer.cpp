@@ -70,7 +70,7 @@ bool SrtpLayer::ChangeKey(const std::string& source, std::string* error) {
     const std::lock_guard lock(mutex_);
     const std::string digest = DigestOf(*key);
     if (digest == digests_.back()) return true;
-    // The packet index begins at 0 with every key: a repeated key would encrypt twice alike.
+    // The packet index begins at 0 with each key: a repeated key would encrypt two packets alike.
     if (std::find(digests_.begin(), digests_.end(), digest) != digests_.end()) {
       *error = "this key was in use before; a key must be new";
       return false;
@@ -107,7 +107,7 @@ bool SrtpLayer::IsDone(GstBuffer* packet) const {
   return places_.links.size() > 1 && !IsRtcp(packet);
 }
 
-/// A refused packet was sent before, or the key is used up: it must not leave.
+/// A refused packet was sent before, or the key is used up: the packet must not leave.
 GstPadProbeReturn SrtpLayer::OnOut(GstPad*, GstPadProbeInfo* info, gpointer data) {
   auto* self = static_cast<SrtpLayer*>(data);
   if ((GST_PAD_PROBE_INFO_TYPE(info) & GST_PAD_PROBE_TYPE_BUFFER) != 0) {

@@ -17,7 +17,7 @@
 
 namespace lidar::gst {
 
-/// Pads of the bin's children, linked plainly: where the layer goes.
+/// Linked pads of the bin's children between which the layer stands.
 struct SrtpPlace {
   GstElement* sender;         // screamtx or screamrx
   const char* out;            // its pad towards the socket
@@ -31,26 +31,25 @@ struct SrtpPlaces {
   std::vector<SrtpPlace> links;
 };
 
-/// Lives from READY to NULL of its bin. Every SSRC has the one key. Packets that leave by `out` are
-/// protected there, but RTP over several links is protected once for all of them, by Protect().
-/// Each link's input has replay windows of its own.
+/// Lives from READY to NULL of its bin. All SSRCs use the same key. The layer protects packets that
+/// leave by `out`; RTP over several links is protected once for all links, by Protect(). The input
+/// of each link has its own replay windows.
 class SrtpLayer {
  public:
-  /// Returns null and sets `error` if the key, the cipher or the srtp plugin is not usable.
+  /// Returns null and sets `error` if the key, the cipher or the srtp plugin is unusable.
   static std::unique_ptr<SrtpLayer> Create(const SrtpSettings& settings, const SrtpPlaces& places,
                                            std::string* error);
   ~SrtpLayer();
   SrtpLayer(const SrtpLayer&) = delete;
   SrtpLayer& operator=(const SrtpLayer&) = delete;
 
-  /// The sum over all inputs.
+  /// Sums over all inputs.
   SrtpCounts counts() const;
-  /// Bytes that it adds to each RTP packet.
+  /// Bytes added to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
   BufferPtr Protect(GstBuffer* packet) { return encoder_->Protect(packet); }
-  /// Takes the key that `source` names beside the one in use. The end that sends media uses it at
-  /// once; the end that answers does once the media does. Returns false and sets `error` if it is
-  /// no key or was used before.
+  /// Adds the key that `source` names. The end that sends media uses it at once; the other end uses
+  /// it after the media do. Returns false and sets `error` for no key, or one that was used before.
   bool ChangeKey(const std::string& source, std::string* error);
 
  private:
@@ -63,19 +62,19 @@ class SrtpLayer {
   SrtpPolicy policy_;
   SrtpPlaces places_;
   std::unique_ptr<SrtpEncoder> encoder_;
-  std::vector<std::unique_ptr<SrtpInput>> inputs_;  // by link
-  std::vector<gulong> probes_;                      // by link
+  std::vector<std::unique_ptr<SrtpInput>> inputs_;  // one per link
+  std::vector<gulong> probes_;                      // one per link
 
   std::mutex mutex_;                 // guards digests_
-  std::deque<std::string> digests_;  // of the keys so far
+  std::deque<std::string> digests_;  // of all keys so far
 };
 
 /// srtp-key (write-only), srtp-cipher and srtp-auth.
 const std::array<Property<SrtpSettings>, 3>& SrtpRows();
-/// Makes the layer if `settings` ask for it; false, and an error on the bus, if that fails.
+/// Creates the layer if `settings` ask for it. Returns false and posts an error if that fails.
 bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer);
-/// Gives a layer that runs its new key; a warning on the bus and false if it cannot.
+/// Gives a running layer its new key. Returns false and posts a warning if that fails.
 bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key);
 /// Adds srtp-received, srtp-refused and srtp-key-changes; nothing without a layer.
 void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats);

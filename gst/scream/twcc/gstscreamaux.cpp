@@ -32,7 +32,7 @@ using namespace lidar::gst;
 namespace {
 
 constexpr guint kIpUdpAndSrtpTag = 38;  // bytes
-/// The rtpsession of a stock receiver reports this seldom at low rates.
+/// A stock receiver's rtpsession reports this rarely at low rates.
 constexpr guint64 kFeedbackInterval = 500 * GST_MSECOND;
 
 struct AuxSettings {
@@ -64,7 +64,7 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
-// Replace these if `session` is set.
+// These pads are replaced if `session` is set.
 static GstStaticPadTemplate session_sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink_%u", GST_PAD_SINK, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
 static GstStaticPadTemplate session_src_template = GST_STATIC_PAD_TEMPLATE(
@@ -156,7 +156,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return GST_ELEMENT_CLASS(gst_lidar_scream_aux_parent_class)->change_state(element, change);
 }
 
-/// A ghost pad in place of `old`, which may be NULL.
+/// Adds a ghost pad in place of `old`, which may be NULL.
 static GstPad* ReplaceGhost(GstLidarScreamAux* self, GstPad* old, const PadPtr& target,
                             GstStaticPadTemplate* templ, gint session) {
   if (old != nullptr) gst_element_remove_pad(GST_ELEMENT(self), old);
@@ -169,7 +169,7 @@ static GstPad* ReplaceGhost(GstLidarScreamAux* self, GstPad* old, const PadPtr& 
   return pad;
 }
 
-/// Names the pads after the session that they belong to.
+/// Names the pads after their session.
 static void NamePads(GstLidarScreamAux* self) {
   if (self->tx == nullptr) return;
   const gint session = Snapshot(*self->state).session;

@@ -10,9 +10,9 @@ namespace lidar::gst {
 namespace {
 
 constexpr const char* kEvent = "RTPTWCCPackets";
-constexpr guint kMaxId = 14;  // of extensions with one-byte headers
+constexpr guint kMaxId = 14;  // greatest id of extensions with one-byte headers
 
-/// The URI of an extmap field: a string, or direction, URI and attributes.
+/// Returns the URI of an extmap field, which is a string or has direction, URI and attributes.
 const gchar* UriOf(const GValue* field) {
   if (field == nullptr) return nullptr;
   if (G_VALUE_HOLDS_STRING(field)) return g_value_get_string(field);
@@ -21,7 +21,7 @@ const gchar* UriOf(const GValue* field) {
   return G_VALUE_HOLDS_STRING(uri) ? g_value_get_string(uri) : nullptr;
 }
 
-/// The fields of a packet in rtpsession's event; empty if some are missing.
+/// The fields of a packet in rtpsession's event. Missing fields leave it empty.
 struct Reported {
   guint number = 0;
   std::optional<Duration> arrival;
@@ -34,20 +34,21 @@ std::optional<Reported> Read(const GstStructure* s) {
   if (!gst_structure_get_boolean(s, "lost", &lost)) return std::nullopt;
   if (!lost && gst_structure_get_uint64(s, "remote-ts", &remote) &&
       GST_CLOCK_TIME_IS_VALID(remote)) {
-    // A report's reference time is below one period, and its deltas add less than another.
+    // A report's reference time is below one period, and its deltas sum to less than another.
     if (remote > static_cast<guint64>((2 * scream::kTwccPeriod).count())) return std::nullopt;
     r.arrival = Duration{static_cast<std::int64_t>(remote)};
   }
   return r;
 }
 
-/// The packets of an event that is a report. It stops at as many as prove the report too long.
+/// Returns the packets of an event that is a report. Stops when their number shows that the report
+/// is too long.
 std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   std::vector<const GstStructure*> packets;
   const GstStructure* s = gst_event_get_structure(event);
   if (s == nullptr || !gst_structure_has_name(s, kEvent)) return packets;
   const GValue* list = gst_structure_get_value(s, "packets");
-  // Found by name: GLib calls the type deprecated, and rtpsession uses it.
+  // Found by its name: GLib deprecates the type, but rtpsession uses it.
   if (list == nullptr || !G_VALUE_HOLDS(list, g_type_from_name("GValueArray"))) return packets;
   const auto* array = static_cast<const GValueArray*>(g_value_get_boxed(list));
   for (guint i = 0; array != nullptr && i < array->n_values; ++i)
@@ -82,7 +83,7 @@ void SessionNumbers::OnPacket(GstBuffer* buffer) {
   gst_rtp_buffer_unmap(&rtp);
 }
 
-/// The session gives the size of each packet that it sent: another size means another packet.
+/// The event has the size of each packet: a different size shows a different packet.
 bool SessionNumbers::IsOurs(const GstStructure* packet) const {
   guint number = 0;
   guint size = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The transport-wide numbers that an rtpsession behind us gives to our packets, and its reports.
+// Transport-wide numbers that a downstream rtpsession gives to our packets, and its reports.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,30 +11,31 @@
 
 namespace lidar::gst {
 
-/// rtpsession numbers the packets that have the extension, from 0 on, in their order, and reports
-/// them in an upstream event with their sizes. Not thread-safe.
+/// rtpsession numbers packets that have the extension, in order from 0, and reports them with their
+/// sizes in an upstream event. Not thread-safe.
 class SessionNumbers {
  public:
   struct Stats {
     guint64 reports = 0;
     guint64 packets = 0;
-    guint64 mismatched = 0;  // reports about packets that were not ours
+    guint64 mismatched = 0;  // reports about packets of others
   };
 
-  /// Learns the id of the extension from the session's caps; packets of other caps have none.
+  /// Reads the extension's id from the session's caps. Packets of other caps have none.
   void OnCaps(const GstCaps* caps);
-  /// A packet goes into the session.
+  /// Notes a packet on its way to the session.
   void OnPacket(GstBuffer* buffer);
-  /// The report in an event of rtpsession; nothing for other events, or if no packet is ours.
+  /// Returns the report in an event of rtpsession. Returns nothing for other events, or if no
+  /// packet is ours.
   std::optional<scream::CongestionFeedback> OnEvent(GstEvent* event);
   const Stats& stats() const { return stats_; }
 
  private:
   bool IsOurs(const GstStructure* packet) const;
 
-  guint8 id_ = 0;  // 0: the caps have none
+  guint8 id_ = 0;  // 0: the caps have no id
   std::uint16_t next_ = 0;
-  std::deque<guint> sizes_;  // payload bytes of the packets before next_
+  std::deque<guint> sizes_;  // payload bytes of the packets up to next_
   scream::TwccMapper mapper_;
   Stats stats_;
 };

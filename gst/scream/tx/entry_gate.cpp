@@ -4,13 +4,13 @@
 namespace lidar::gst {
 namespace {
 
-/// `entry` as it is after a flush, if there was one.
+/// Shifts `entry` after a flush.
 GstClockTime Shifted(EntryShift* s, GstClockTime entry, GstClockTime base_time, GstClockTime now) {
   if (s->due) *s = {false, base_time, now > entry ? now - entry : 0};
   return s->base_time == base_time ? entry + s->shift : entry;
 }
 
-/// The time at which input that is not live may enter: as if a live source had made it.
+/// Returns when input that is not live may enter, as if a live source had made it.
 GstClockTime EntryTime(GstElement* element, const TxStream& stream, GstBuffer* buffer) {
   const GstClockTime pts = GST_BUFFER_PTS(buffer);
   if (!GST_CLOCK_TIME_IS_VALID(pts) || stream.segment.format != GST_FORMAT_TIME)
@@ -57,7 +57,7 @@ void EntryGate::Wait(TxLock& lock, GstElement* element, Duration max_age, TxStre
   WaitForTime(lock, element, stream, first);
 }
 
-/// There is room before PLAYING for what a sink needs to preroll.
+/// The queue has room before PLAYING, as a sink needs packets to preroll.
 void EntryGate::WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stream) {
   changed_.wait(lock, [&] {
     if (Check(stream) != GST_FLOW_OK) return true;
@@ -66,7 +66,7 @@ void EntryGate::WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stre
   });
 }
 
-/// Returns at once where the pipeline has no clock or does not play.
+/// Returns at once if the pipeline has no clock or does not play.
 void EntryGate::WaitForTime(TxLock& lock, GstElement* element, TxStream& stream, GstBuffer* first) {
   GstClockTime entry = EntryTime(element, stream, first);
   GstClock* clock = gst_element_get_clock(element);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The gate of screamtx's queues.
+// Delays input before the queues of screamtx.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,30 +12,30 @@ namespace lidar::gst {
 
 using TxLock = std::unique_lock<std::mutex>;
 
-/// Live input enters at once. Other input waits, each stream in its own thread, for its time on the
-/// pipeline's clock and for room in the queue. Every method needs the element's lock; the waits
-/// give it up.
+/// Live input enters at once. Other input waits for its time on the pipeline's clock and for room
+/// in the queue, each stream in its own thread. All methods need the element's lock; waits release
+/// it.
 class EntryGate {
  public:
   explicit EntryGate(GstClock* clock) : clock_(clock) {}
 
   /// Chain functions may queue.
   void Open() { Set(true, GST_FLOW_OK); }
-  /// Ends all waits and queues; chain functions return FLUSHING.
+  /// Ends all waits and closes the queues; chain functions return FLUSHING.
   void Close(const TxStreams& streams);
-  /// Chain functions return `flow`, that of what is downstream.
+  /// Chain functions return `flow`, which came from downstream.
   void set_flow(GstFlowReturn flow) { Set(open_, flow); }
   GstFlowReturn flow() const { return flow_; }
   bool open() const { return open_; }
   void set_playing(const TxStreams& streams, bool playing);
-  /// Packets have left.
+  /// Packets have left the queue.
   void OnRoom() { changed_.notify_all(); }
-  /// The thread of `stream` shall go, if it waits here.
+  /// Wakes the thread of `stream` if it waits here.
   void Release(TxStream& stream);
 
-  /// The result of the chain function of `stream` before it may queue.
+  /// Returns the result of the chain function of `stream`; OK if it may queue.
   GstFlowReturn Check(const TxStream& stream) const;
-  /// Returns once `first` may enter; the queue of `stream` is full while its head is older than
+  /// Waits until `first` may enter. The queue of `stream` is full while its head is older than
   /// `max_age`.
   void Wait(TxLock& lock, GstElement* element, Duration max_age, TxStream& stream,
             GstBuffer* first);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The input of screamtx on rtcp_sink: feedback for the controller, and RTCP that goes on.
+// The input of screamtx on rtcp_sink: gives feedback to the controller, and passes RTCP on.
 #include "gst/scream/tx/feedback.h"
 
 #include "gst/common/buffer_map.h"
@@ -25,7 +25,7 @@ const char* ToString(scream::FeedbackResult result) {
   return "?";
 }
 
-/// Keeps the arrived packets for payloaders. The lock is held.
+/// Keeps the arrived packets for payloaders. The caller holds the lock.
 void KeepReceipts(TxState& state, const scream::CongestionFeedback& report) {
   for (const scream::SsrcReport& block : report.blocks) {
     const auto id = state.controller->FindStream(block.ssrc);
@@ -36,7 +36,7 @@ void KeepReceipts(TxState& state, const scream::CongestionFeedback& report) {
 }
 
 /// Takes a receiver's request for a key unit of our streams. If RTCP goes on to another element,
-/// that element asks upstream.
+/// that element sends the request upstream.
 void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   const auto ssrc = ParseKeyRequest(packet);
   if (!ssrc || gst_pad_is_linked(self->rtcp_src)) return;
@@ -45,13 +45,13 @@ void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   if (!state.controller || !state.gate.open()) return;
   const auto id = state.controller->FindStream(*ssrc);
   TxStream* stream = id ? FindStream(state, *id) : nullptr;
-  // Encoders of video are asked by those who manage their RTP session.
+  // Elements that manage a video encoder's RTP session send its requests.
   if (stream == nullptr || !stream->wants_receipts) return;
   stream->key_unit_due = true;
   state.reporter.Evaluate(TxNow(state));
 }
 
-/// A link's controller counts by numbers of its own.
+/// Converts the report of a link to the controller's numbers, and gives it to the controller.
 scream::FeedbackResult GiveToController(TxState& state, Time now,
                                         const scream::CongestionFeedback& report) {
   if (!state.link) return state.controller->OnFeedback(now, report);
@@ -62,7 +62,7 @@ scream::FeedbackResult GiveToController(TxState& state, Time now,
   return result;
 }
 
-/// Returns false if the report is not about our packets. The lock is held.
+/// Returns false if the report is not about our packets. The caller holds the lock.
 bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSocketAddress* from) {
   TxState& state = *self->state;
   const Time now = TxNow(state);
@@ -75,7 +75,7 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
     state.controller->OnRouteChange(now);
   }
   if (result == scream::FeedbackResult::kAccepted) state.pacing.OnAccepted(now);
-  // Transport-wide feedback names no receiver, and its packets may still be dropped behind it.
+  // Transport-wide feedback names no receiver, and its packets may still be dropped downstream.
   if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
     KeepReceipts(state, report);
   state.reporter.Evaluate(now);
@@ -83,7 +83,7 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
   return true;
 }
 
-/// Hands one CCFB packet to the controller; false if it is not for us.
+/// Gives a CCFB packet to the controller. Returns false if it is not for us.
 bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);

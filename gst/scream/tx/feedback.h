@@ -6,7 +6,8 @@
 
 namespace lidar::gst {
 
-/// As if it had come in RTCP, but with the whole resolution of its times. For any thread.
+/// Handles a report as if it had come in RTCP, but with the full resolution of its times. All
+/// threads may call it.
 void TxTakeReport(GstLidarScreamTx* tx, const scream::CongestionFeedback& report);
 
 }  // namespace lidar::gst

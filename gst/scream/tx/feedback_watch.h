@@ -9,14 +9,14 @@ namespace lidar::gst {
 
 class FeedbackWatch {
  public:
-  /// Packets without an answer for this long mean that there is no receiver.
+  /// Packets unanswered for this time show that there is no receiver.
   static constexpr Duration kFeedbackTimeout = std::chrono::seconds(2);
 
   void OnSent(Time now) {
     if (!unanswered_since_) unanswered_since_ = now;
     OnInput(now);
   }
-  /// There is more to send: without that, silence means nothing.
+  /// Notes that there is more to send; otherwise silence means nothing.
   void OnInput(Time now) {
     if (unanswered_since_ && now - *unanswered_since_ >= kFeedbackTimeout) silent_ = true;
   }

@@ -88,7 +88,8 @@ static bool HasPad(const TxState& state, const std::string& name) {
                      [&](const auto& s) { return name == GST_PAD_NAME(s->pad); });
 }
 
-/// The name to give to a pad that was requested as `wanted`; empty if another has it.
+/// Returns the name for a pad that was requested as `wanted`, or an empty text if another pad has
+/// it.
 static std::string NewPadName(TxState& state, const gchar* wanted) {
   guint index = 0;
   if (wanted == nullptr || sscanf(wanted, "sink_%u", &index) != 1) index = state.next_pad;
@@ -146,7 +147,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
     stream->flushing = true;
     state.gate.Release(*stream);
   }
-  gst_pad_set_active(pad, FALSE);  // returns once the pad's thread has left
+  gst_pad_set_active(pad, FALSE);  // returns after the pad's thread has left
   gst_element_remove_pad(element, pad);
   {
     TxLock lock(state.mutex);
@@ -155,7 +156,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
 }
 
-/// False after an element error.
+/// Returns false after an element error.
 static bool TakesTuning(GstElement* element) {
   lidar::scream::Parameters parameters;
   const TxSettings settings = Snapshot(StateOf(element));
@@ -165,7 +166,7 @@ static bool TakesTuning(GstElement* element) {
   return false;
 }
 
-/// A new controller, and streams that have seen nothing.
+/// Creates a new controller, and resets the streams.
 static void Prepare(TxState& state) {
   TxLock lock(state.mutex);
   state.controller.emplace(ToParameters(state.settings));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sink pad of screamtx, with the share and the limits of its stream.
+// A sink pad of screamtx, with its stream's share and limits.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,7 +14,7 @@ namespace lidar::gst {
 struct TxStream;
 
 TxPadSettings PadSettings(GstPad* pad);
-/// The stream that screamtx keeps for `pad`; owned by screamtx.
+/// Returns the stream that screamtx keeps for `pad`. Owned by screamtx.
 TxStream* PadStream(GstPad* pad);
 void SetPadStream(GstPad* pad, TxStream* stream);
 }  // namespace lidar::gst

@@ -10,20 +10,20 @@ namespace {
 bool IsLive(GstPad* pad) {
   const QueryPtr query(gst_query_new_latency());
   gboolean live = TRUE;
-  // Upstream that does not answer counts as live: it is never held back.
+  // Upstream without an answer counts as live and is never delayed.
   if (gst_pad_peer_query(pad, query.get()))
     gst_query_parse_latency(query.get(), &live, nullptr, nullptr);
   return live != FALSE;
 }
 
-/// The scan that a packet is of, where the payloader said so.
+/// Returns the scan of a packet, if the payloader noted it.
 std::optional<std::uint32_t> ScanOf(GstBuffer* buffer) {
   GstLidarSlice slice;
   if (!gst_lidar_buffer_get_slice(buffer, &slice)) return std::nullopt;
   return slice.scan_id;
 }
 
-/// Takes one packet into the queue; with the lock held.
+/// Adds a packet to the queue. The caller holds the lock.
 void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   const auto header = ReadRtpHeader(buffer.get());
   if (!header) {
@@ -50,7 +50,7 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   state.reporter.notices().watch().OnInput(now);
 }
 
-/// Asks upstream once a stream.
+/// Queries upstream once per stream.
 bool KnownLive(TxState& state, TxStream& stream, GstPad* pad) {
   {
     TxLock lock(state.mutex);
@@ -128,7 +128,7 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   state.gate.set_flow(GST_FLOW_OK);
 }
 
-/// A flush of the only stream goes on downstream; a flush of one of several does not.
+/// A flush of the only stream goes downstream. A flush of one of several streams does not.
 gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
   const EventPtr owner(event);

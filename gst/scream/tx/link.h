@@ -12,26 +12,27 @@
 
 namespace lidar::gst {
 
-/// Called with the lock of screamtx held, from any of its threads.
+/// screamtx calls it with its lock held, from any of its threads.
 class TxLink {
  public:
   virtual ~TxLink() = default;
-  /// Whether a packet is still to be sent by this link.
+  /// Returns true if this link must still send the packet.
   virtual bool Wants(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// A packet leaves; under this number the controller counts it.
+  /// A packet leaves. Returns the number under which the controller counts it.
   virtual guint16 OnSent(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// A packet was thrown away.
+  /// A packet was dropped.
   virtual void OnDropped(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// Converts a report into these numbers; nothing if it names packets that this link never sent.
+  /// Converts a report to these numbers. Returns nothing if it names packets that this link never
+  /// sent.
   virtual std::optional<scream::CongestionFeedback> OnFeedback(
       Time now, const scream::CongestionFeedback& report) = 0;
-  /// Bytes at the end of each packet that are no media.
+  /// Bytes at the end of each packet that are not media.
   virtual gsize trailer() const = 0;
-  /// Gets the controller's view of the last report.
+  /// Takes the controller's statistics after each report.
   virtual void OnPath(const scream::Statistics& statistics) = 0;
 };
 
-/// Call below READY. Null: the only link.
+/// Call it below READY. Null means the only link.
 void TxSetLink(GstLidarScreamTx* tx, std::shared_ptr<TxLink> link);
 
 }  // namespace lidar::gst

@@ -8,10 +8,10 @@
 namespace lidar::gst {
 namespace {
 
-// A report may fall to an outage.
+// An outage may delay a report.
 constexpr guint64 kFramesUntilWarning = 20;
 
-/// Host and port of the sink behind `src`, where they are to be found.
+/// Returns host and port of the sink behind `src`, if they can be found.
 std::string Destination(GstPad* src) {
   PadPtr pad(GST_PAD(gst_object_ref(src)));
   for (int hops = 0; hops < 8 && pad; ++hops) {
@@ -58,7 +58,7 @@ void WarnOfUnheeded(GstElement* element) {
 }  // namespace
 
 void Notices::Reset(const scream::Controller& controller, Time now) {
-  // The property keeps its value until there is another.
+  // The property keeps its value until the next one.
   Notices fresh;
   fresh.estimated_bps_ = estimated_bps_;
   fresh.estimate_due_ = estimate_due_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reports of screamtx to the application: the estimate, changes of ECN and feedback, warnings.
+// Messages of screamtx to the application: the estimate, changes of ECN and feedback, warnings.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,10 +13,10 @@
 
 namespace lidar::gst {
 
-/// Called with the element's lock, but for Post().
+/// Call it with the element's lock, except for Post().
 class Notices {
  public:
-  /// Messages to post, without the lock.
+  /// Messages to post after the lock is released.
   struct Batch {
     std::vector<MessagePtr> messages;
     bool estimate = false;
@@ -25,25 +25,25 @@ class Notices {
     bool unheeded = false;
   };
 
-  /// For a new controller.
+  /// Starts with a new controller.
   void Reset(const scream::Controller& controller, Time now);
   FeedbackWatch& watch() { return watch_; }
-  /// A target reached no encoder.
+  /// No encoder took a target.
   void OnUnheeded() { unheeded_ = true; }
   guint estimated_bps() const { return estimated_bps_; }
 
-  /// Compares the state with what was posted last; true if something is due.
+  /// Compares the state with the last messages. Returns true if a message is due.
   bool Evaluate(const scream::Controller& controller, Duration stats_interval, Time now);
   bool due() const;
-  /// `most_dropped`: frames of the stream that lost most.
+  /// `most_dropped`: frames that the stream with most losses has lost.
   Batch Take(GstObject* element, guint64 most_dropped);
-  /// When Evaluate() finds statistics due.
+  /// Time at which Evaluate() finds statistics due.
   Time next_stats() const { return next_stats_; }
 
   static void Post(GstElement* element, GstPad* src, Batch batch);
 
  private:
-  /// A warning is posted once.
+  /// A warning that is posted once.
   class Once {
    public:
     bool operator()(bool wanted) { return wanted && !std::exchange(done_, true); }

@@ -11,8 +11,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxBatch = 64;
-constexpr Duration kReceiverTimeout = std::chrono::seconds(1);  // of a receiver that is gone
-constexpr int kByeCopies = 3;                                   // the network may lose one
+constexpr Duration kReceiverTimeout = std::chrono::seconds(1);  // then the receiver is gone
+constexpr int kByeCopies = 3;                                   // the network may lose some
 
 bool AllEnded(const TxState& state) {
   return !state.streams.empty() && std::all_of(state.streams.begin(), state.streams.end(),
@@ -35,7 +35,7 @@ GstFlowReturn PushRtcp(GstPad* src, const std::vector<std::uint8_t>& rtcp) {
   return gst_pad_push(src, gst_buffer_new_memdup(rtcp.data(), rtcp.size()));
 }
 
-/// Says goodbye for `ssrcs`, then ends the stream.
+/// Sends goodbyes for `ssrcs`, then ends the stream.
 void PushEnd(GstPad* src, const std::vector<guint32>& ssrcs) {
   const auto bye = BuildBye(ssrcs);
   for (int i = 0; i < kByeCopies && !bye.empty(); ++i) PushRtcp(src, bye);
@@ -117,7 +117,7 @@ PacingTask::Batch PacingTask::NextBatch(Time now) {
   return batch;
 }
 
-/// Live input that waited too long is of no use any more, and in the way of what comes next.
+/// Drops live input that waited too long: it is useless and delays newer input.
 void PacingTask::DropLate(TxStream& stream, Time now) {
   std::size_t late = state().controller->LatePackets(now, stream.id);
   if (late == 0) return;
@@ -138,7 +138,7 @@ void PacingTask::DropLate(TxStream& stream, Time now) {
   if (stream.is_video) stream.key_unit_due = true;
 }
 
-/// Drops packets that another link has brought meanwhile.
+/// Drops packets that another link has delivered meanwhile.
 void PacingTask::DropUnwanted(TxStream& stream, Time now) {
   TxState& s = state();
   while (!stream.queue.empty() && stream.queue.front().buffer) {
@@ -174,7 +174,7 @@ void PacingTask::CollectPackets(Time now, Batch* batch) {
     const auto decision = state().controller->NextSend(now);
     if (!decision || decision->time > now) return;
     TxStream* stream = FindStream(state(), decision->stream);
-    // An event in front goes first, next round.
+    // An earlier event goes first, in the next round.
     if (stream == nullptr || stream->queue.empty() || !stream->queue.front().buffer) return;
     batch->packets.push_back(TakePacket(*stream, decision->ecn, now));
   }
@@ -186,7 +186,7 @@ void PacingTask::OnAccepted(Time now) {
     end_deadline_ = now + std::max(kReceiverTimeout, 2 * state().settings.max_queue_delay);
 }
 
-/// True once everything has left, or after as long as a frame that has begun to leave may take.
+/// Returns true once all packets have left, or after the longest time that a frame may take.
 bool PacingTask::Drained(Time now) {
   TxState& s = state();
   if (!AllEnded(s) || end_sent_) return false;
@@ -197,7 +197,7 @@ bool PacingTask::Drained(Time now) {
   return true;
 }
 
-/// When the task has something to do again, whatever happens.
+/// Returns when the task must run again at the latest.
 Time PacingTask::NextWake(Time now) const {
   TxState& s = state();
   Time wake = std::min(s.reporter.NextLook(now), s.controller->NextTimer());
@@ -205,7 +205,8 @@ Time PacingTask::NextWake(Time now) const {
   for (const auto& stream : s.streams)
     if (!stream->queue.empty() && stream->live.value_or(true))
       wake = std::min(wake, now - stream->HeadAge(now) + s.settings.max_queue_delay);
-  // A late frame stays if it has begun to leave or waits behind a gap: look again, but not at once.
+  // A late frame stays if it has begun to leave or waits behind a gap: the task checks it again
+  // soon.
   return std::max(wake, now + std::chrono::milliseconds(1));
 }
 

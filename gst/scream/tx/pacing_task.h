@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The task on the src pad of screamtx: takes packets out of the queues when the controller says.
+// The task on the src pad of screamtx: takes packets out of the queues at the controller's times.
 #pragma once
 #include <gst/gst.h>
 
@@ -15,20 +15,20 @@ namespace lidar::gst {
 
 struct TxState;
 
-/// Start(), Stop() and Pause() are called without the element's lock, the rest with it. The task
-/// pushes without it.
+/// Call Start(), Stop() and Pause() without the element's lock, the rest with it. The task pushes
+/// without it.
 class PacingTask {
  public:
   explicit PacingTask(GstLidarScreamTx* self) : self_(self) {}
 
   bool Start();
   bool Stop();
-  /// Holds until the next Start(), after downstream's answer.
+  /// Stops until the next Start(), with downstream's result.
   void Pause(GstFlowReturn flow);
 
-  /// The task looks again at what it waits for.
+  /// Makes the task check its conditions again.
   void Wake();
-  /// A packet was queued. A task that waits for its pace looks at the queue soon enough.
+  /// A packet was queued. A task that waits for its pace checks the queue soon enough.
   void OnQueued() {
     if (!waits_for_pace_) Wake();
   }
@@ -36,16 +36,16 @@ class PacingTask {
     settings_changed_ = true;
     Wake();
   }
-  /// A receiver took packets: an end behind input that waits has time.
+  /// A receiver took packets: the end of a stream behind waiting input may take its time.
   void OnAccepted(Time now);
-  /// The stream begins anew: its end is to come.
+  /// The stream begins anew: its end has not been sent.
   void ForgetEnd();
 
  private:
-  /// The output of a round: packets, or one event.
+  /// The output of a round: packets, or an event.
   struct Batch {
     std::vector<BufferPtr> packets;
-    std::vector<std::uint8_t> report;  // RTCP that goes with the packets
+    std::vector<std::uint8_t> report;  // RTCP that leaves with the packets
     EventPtr event;
     bool end = false;
     std::vector<guint32> goodbyes;
@@ -66,7 +66,7 @@ class PacingTask {
   TxState& state() const;
 
   GstLidarScreamTx* self_;
-  GstClockID timer_ = nullptr;  // what the task waits for, not owned
+  GstClockID timer_ = nullptr;  // the present wait, not owned
   bool waits_for_pace_ = false;
   bool settings_changed_ = false;
   std::optional<Time> end_deadline_;

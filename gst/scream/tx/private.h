@@ -39,16 +39,16 @@ struct TxState {
   explicit TxState(GstLidarScreamTx* self) : pacing(self), reporter(self) {}
   ~TxState() { gst_object_unref(clock); }
 
-  std::mutex mutex;  // guards all but the clock
+  std::mutex mutex;  // guards all members but the clock
   GstClock* clock = gst_system_clock_obtain();
   TxSettings settings;
-  std::optional<scream::Controller> controller;  // from the first READY to PAUSED on
+  std::optional<scream::Controller> controller;  // from the first READY to PAUSED
   TxStreams streams;
   guint next_pad = 0;
   scream::CcfbParser parser;
   FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
-  std::shared_ptr<TxLink> link;  // where there are several
+  std::shared_ptr<TxLink> link;  // null for a single link
 
   EntryGate gate{clock};
   StreamMerger merger;
@@ -69,18 +69,18 @@ struct _GstLidarScreamTx {
 
 namespace lidar::gst {
 
-// Call these with the lock held, but for TxNow().
+// Call these with the lock held, except for TxNow():
 
-/// Monotonic; what the controller calls time.
+/// Monotonic time, as the controller takes it.
 Time TxNow(const TxState& state);
 TxStream* FindStream(TxState& state, scream::StreamId id);
-/// Gives the controller what has changed for `stream`.
+/// Gives the controller the changed settings of `stream`.
 void Configure(TxState& state, TxStream& stream);
-/// Forgets the packets and events of `stream`.
+/// Drops the packets and events of `stream`.
 void ClearQueue(TxState& state, TxStream& stream, Time now);
 StructurePtr StatsOf(TxState& state);
 
-/// Has settings of the element and the pads taken over soon. Call without the lock.
+/// Makes changed settings of the element and its pads take effect soon. Call it without the lock.
 void SettingsChanged(GstLidarScreamTx* self);
 
 // input.cpp: sink pads
@@ -90,8 +90,8 @@ gboolean TxSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 // feedback.cpp: the pad rtcp_sink
 GstFlowReturn TxRtcpChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 
-// pads.cpp: what pads answer
-/// RTP and RTCP do not mix: src belongs to the sink pads, rtcp_src to rtcp_sink.
+// pads.cpp: queries and links.
+// RTP and RTCP are separate: src is linked to the sink pads, rtcp_src to rtcp_sink.
 GstIterator* TxLinksOf(GstPad* pad, GstObject* parent);
 gboolean TxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 gboolean TxSrcQuery(GstPad* pad, GstObject* parent, GstQuery* query);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Received packets of a stream, until its payloader gets them.
+// Received packets of a stream, kept for its payloader.
 #pragma once
 #include <vector>
 
@@ -14,11 +14,11 @@ class PacketReceipts {
  public:
   void Add(guint receiver, const scream::SsrcReport& report);
   bool empty() const { return receipts_.empty(); }
-  /// Upstream events with all of it.
+  /// Returns upstream events with all receipts.
   std::vector<EventPtr> Take();
 
  private:
-  // A payloader that misses some takes slices for lost, which is harmless.
+  // A payloader that lacks some takes slices for lost, which does no harm.
   static constexpr std::size_t kMostReceipts = 16;
   std::vector<GstLidarPacketsReceived> receipts_;
 };

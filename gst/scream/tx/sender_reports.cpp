@@ -8,7 +8,8 @@
 namespace lidar::gst {
 namespace {
 
-// 72 bytes a report, whatever the property says: less than 10 kbit/s with all headers.
+// A report has 72 bytes, so the rate stays below 10 kbit/s with all headers, whatever the property
+// is.
 constexpr Duration kMinInterval = std::chrono::milliseconds(100);
 
 scream::SenderReport ReportOf(const scream::Statistics& s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The reports of screamtx to the receiver, and their times.
+// The reports of screamtx to the receiver, and their schedule.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,16 +13,16 @@
 
 namespace lidar::gst {
 
-/// Called with the element's lock.
+/// Call it with the element's lock.
 class SenderReports {
  public:
-  /// The next one as RTCP, where one is due. To be asked with media that leaves: a sender that has
-  /// nothing to send has nothing to report.
+  /// Returns the next report as RTCP if it is due. Call it when media leave: a sender without data
+  /// has nothing to report.
   std::vector<std::uint8_t> Take(Duration interval, const TxStreams& streams,
                                  const scream::Controller& controller, Time now);
 
  private:
-  std::optional<Time> last_;  // or when media left first
+  std::optional<Time> last_;  // of the last report, or of the first media
 };
 
 }  // namespace lidar::gst

@@ -25,7 +25,7 @@ scream::Ecn ToEcn(gint mode) {
   }
 }
 
-/// The value of a number or a boolean; nothing for another type.
+/// Returns the value of a number or a boolean, or nothing for another type.
 std::optional<gdouble> NumberOf(const GValue* v) {
   if (G_VALUE_HOLDS_BOOLEAN(v)) return g_value_get_boolean(v) != FALSE ? 1 : 0;
   GValue number = G_VALUE_INIT;

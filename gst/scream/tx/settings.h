@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The properties of screamtx, of its pads, and what they mean to the controller.
+// The properties of screamtx and its pads, and the controller's parameters that follow from them.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,7 +13,7 @@ namespace lidar::gst {
 enum EcnMode { kEcnOff, kEcnEct0, kEcnEct1 };
 GType EcnModeType();
 
-/// The settings of one sink pad. A bitrate of 0 stands for the element's.
+/// The settings of a sink pad. A bitrate of 0 means the element's.
 struct TxPadSettings {
   gdouble priority = 1;
   guint min_bps = 0;
@@ -28,7 +28,7 @@ struct TxSettings {
   guint min_bps = 100'000;
   guint start_bps = 1'000'000;
   guint max_bps = 50'000'000;
-  guint max_total_bps = 0;  // 0: no limit of its own
+  guint max_total_bps = 0;  // 0: no limit by the element
   gint ecn_mode = kEcnEct1;
   Duration stats_interval{};   // 0: no messages
   Duration report_interval{};  // to the receiver; 0: no reports
@@ -43,10 +43,10 @@ struct TxSettings {
 using TxProperties = std::array<Property<TxSettings>, 14>;
 const TxProperties& TxPropertyTable();
 
-/// Sets what `tuning` names, which may be NULL. Returns what is wrong with it; empty if nothing is.
+/// Applies `tuning`, which may be NULL. Returns the fault, or an empty text.
 std::string ReadTuning(const GstStructure* tuning, scream::Parameters* parameters);
 
-/// The parameters of the controller: `pure_draft` undoes `tuning`.
+/// Returns the controller's parameters. `pure_draft` overrides `tuning`.
 scream::Parameters ToParameters(const TxSettings& settings);
 
 }  // namespace lidar::gst

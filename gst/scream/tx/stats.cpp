@@ -7,7 +7,7 @@
 namespace lidar::gst {
 namespace {
 
-/// The statistics of a stream: the controller's and screamtx's.
+/// Statistics of a stream, from the controller and from screamtx.
 struct ShownStream {
   scream::StreamStatistics core;
   scream::StreamConfig config;

@@ -32,7 +32,7 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
     needed = stream.bounds->min_bitrate * wire;
     if (stream.bounds->max_bitrate > 0) max = std::min(max, stream.bounds->max_bitrate * wire);
   }
-  // The user's maximum is a promise to the network and wins over what the encoder would need.
+  // The user's maximum is a promise to the network and takes precedence over the encoder's need.
   min = std::min(min, max);
   needed = std::clamp(needed, min, max);
   scream::StreamConfig config;
@@ -41,8 +41,8 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
   config.min_bitrate = Bps(min);
   config.start_bitrate = Bps(std::clamp(start, needed, max));
   config.max_bitrate = Bps(max);
-  // This is no minimum. If the path cannot carry what the error bound needs, the encoder gets the
-  // lower target: it can leave out whole scans, while a queue here would only grow old.
+  // Is no minimum: if the path cannot carry what the error bound needs, the encoder gets a lower
+  // target. It can leave out scans, while a queue would only become older.
   config.needed_bitrate = Bps(needed);
   return config;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The state of a sink pad of screamtx: its queue and the measurements of its stream.
+// The state of a sink pad of screamtx: its queue, and measurements of its stream.
 #pragma once
 #include <gst/gst.h>
 
@@ -18,7 +18,7 @@
 
 namespace lidar::gst {
 
-/// A packet, or an event that keeps its place among the packets.
+/// A packet, or an event at its place among the packets.
 struct TxItem {
   BufferPtr buffer;
   EventPtr event;
@@ -27,8 +27,8 @@ struct TxItem {
   Time queued{};
 };
 
-/// Measures the share of the media's payload in the bytes on the wire, which also carry RTP, UDP
-/// and IP headers, retransmission and FEC.
+/// Measures the media payload's share of the bytes on the wire. The remainder is RTP, UDP and IP
+/// headers, retransmission and FEC.
 class OverheadMeter {
  public:
   void Add(gsize payload, DataSize wire) {
@@ -38,8 +38,8 @@ class OverheadMeter {
   double payload_share() const { return payload_ / wire_; }
 
  private:
-  static constexpr double kShareMemoryPerPacket = 1 - 1.0 / 128;  // packets
-  // Starts as packets of 1200 bytes are.
+  static constexpr double kShareMemoryPerPacket = 1 - 1.0 / 128;  // per packet
+  // Starts with the share of packets of 1200 bytes.
   double payload_ = 1188;
   double wire_ = 1228;
 };
@@ -50,10 +50,10 @@ struct StreamCounters {
   guint64 malformed = 0;
 };
 
-/// A flush begins the running time anew, but without a preroll the base time stays: the stream then
-/// enters so much later, until the pipeline has a new base time.
+/// A flush restarts the running time, but without a preroll the base time stays. Entry times are
+/// shifted until the pipeline has a new base time.
 struct EntryShift {
-  bool due = false;  // to be measured with the next buffer
+  bool due = false;  // measure the shift with the next buffer
   GstClockTime base_time = GST_CLOCK_TIME_NONE;
   GstClockTime shift = 0;
 };
@@ -65,20 +65,20 @@ struct TxStream {
   OverheadMeter overhead;
   scream::TargetNotifier notifier;
   std::optional<GstLidarBitrateBounds> bounds;
-  std::optional<guint32> ssrc;         // of the media: from caps, or the first seen
-  std::optional<guint8> payload_type;  // likewise
-  scream::StreamConfig config;         // as the controller has it
-  double configured_share = 1;         // payload share that `config` was made with
-  GstSegment segment{};                // of the pad, for the entry and for a merged output
+  std::optional<guint32> ssrc;         // from the caps, or of the first media packet
+  std::optional<guint8> payload_type;  // from the caps, or of the first media packet
+  scream::StreamConfig config;         // as given to the controller
+  double configured_share = 1;         // payload share in `config`
+  GstSegment segment{};                // of the pad, for entry times and merged output
   GstClockID entry_wait = nullptr;     // not owned
   EntryShift entry_shift;
-  std::optional<bool> live;  // not known before the first buffer
+  std::optional<bool> live;  // unknown before the first buffer
   bool has_caps = false;
   bool is_video = false;
-  bool wants_receipts = false;  // its payloader makes use of them
+  bool wants_receipts = false;  // its payloader uses receipts
   bool eos = false;
   bool flushing = false;
-  // Work for the control thread
+  // Work for the reporter's thread:
   bool target_due = false;
   bool key_unit_due = false;
   std::optional<Time> last_key_unit;
@@ -87,19 +87,19 @@ struct TxStream {
   PacketReceipts receipts;
   StreamCounters counters;
 
-  /// Age of the first packet in the queue.
+  /// Age of the oldest packet in the queue.
   Duration HeadAge(Time now) const;
 };
 
 using TxStreams = std::vector<std::unique_ptr<TxStream>>;
 
-/// The present on the system's clock, as the controller takes it.
+/// Present time on the system's clock, as the controller takes it.
 Time TimeOf(GstClock* clock);
-/// The controller's configuration of a stream: the pad's settings, else the element's, within the
-/// encoder's bounds, which are without overhead.
+/// Returns the controller's configuration: settings of the pad, else of the element, within the
+/// encoder's bounds, which exclude overhead.
 scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,
                                 const TxSettings& element);
-/// The encoder's part of `wire` [bit/s].
+/// Converts `wire` to the encoder's bitrate [bit/s].
 guint ToEncoder(const TxStream& stream, DataRate wire);
 
 }  // namespace lidar::gst

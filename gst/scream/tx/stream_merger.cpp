@@ -4,7 +4,7 @@
 namespace lidar::gst {
 namespace {
 
-/// The merged stream has an identity of its own.
+/// The merged stream has its own stream id.
 EventPtr NewStart() {
   const StringPtr id(g_strdup_printf("screamtx/%08x%08x", g_random_int(), g_random_int()));
   return EventPtr(gst_event_new_stream_start(id.get()));
@@ -12,7 +12,7 @@ EventPtr NewStart() {
 
 }  // namespace
 
-/// Takes the event at the head of the queue. A stream that begins with another event gets a start.
+/// Takes the event at the head of the queue. A stream without a start event gets one.
 EventPtr StreamMerger::TakeEvent(TxStream* stream) const {
   const GstEventType type = GST_EVENT_TYPE(stream->queue.front().event.get());
   if (type != GST_EVENT_STREAM_START && type != GST_EVENT_EOS && !sent_start_) return NewStart();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Makes one stream of those that screamtx sends: its events, its segment, its buffers' times.
+// Merges the streams of screamtx into one: its events, its segment, its buffers' times.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,16 +10,16 @@
 
 namespace lidar::gst {
 
-/// A single stream keeps its events. With several, the src pad has events of its own, which suit
-/// all. Only the pacing task uses it, with the element's lock.
+/// A single stream keeps its events. With several streams the src pad has its own events, which fit
+/// all of them. Only the pacing task uses it, with the element's lock.
 class StreamMerger {
  public:
   using Streams = std::vector<std::unique_ptr<TxStream>>;
 
   StreamMerger() { gst_segment_init(&segment_, GST_FORMAT_UNDEFINED); }
-  /// The next event that goes out before the packets behind it, or NULL.
+  /// Returns the next event before the packets behind it, or NULL.
   EventPtr NextEvent(const Streams& streams);
-  /// `buffer` with its times in the segment of the src pad.
+  /// Returns `buffer` with its times in the src pad's segment.
   BufferPtr ToOutput(const Streams& streams, const TxStream& stream, BufferPtr buffer) const;
 
  private:

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kKeyUnitInterval = 500ms;
 
-/// Key frames are large: asked for too often they are the congestion.
+/// Key frames are large and cause congestion if they are requested too often.
 bool MayAskForKeyUnit(const TxStream& stream, Time now) {
   return stream.key_unit_due &&
          (!stream.last_key_unit || now - *stream.last_key_unit >= kKeyUnitInterval);

@@ -18,14 +18,14 @@ struct PadEvent {
   bool is_target = false;
 };
 
-/// Compares `stream` with what its encoder was sent last; true if something is due.
+/// Compares `stream` with the last events to its encoder. Returns true if an event is due.
 bool EvaluateTargets(TxStream& stream, const scream::Controller& controller, bool key_unit_on_loss,
                      Time now);
 bool TargetsAreDue(const TxStream& stream, Time now);
 /// Appends the events that are due.
 void TakeTargets(TxStream& stream, const scream::Controller& controller, Time now,
                  std::vector<PadEvent>* events);
-/// The first target of `stream`; null after that.
+/// Returns the first target of `stream`; null afterwards.
 EventPtr FirstTarget(TxStream& stream, const scream::Controller& controller, Time now);
 
 }  // namespace lidar::gst

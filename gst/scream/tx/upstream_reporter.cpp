@@ -14,8 +14,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kPulse = 200ms;  // of target-bitrate
-// The wire share moves the encoder's bounds only where it changed by more than this.
+constexpr Duration kPulse = 200ms;  // interval of target-bitrate
+// Least change of the payload's share that changes the encoder's bounds.
 constexpr double kShareThreshold = 0.02;
 
 bool ShareHasChanged(const TxStream& stream) {
@@ -78,7 +78,7 @@ bool UpstreamReporter::HasWork() const {
                      [now](const auto& stream) { return TargetsAreDue(*stream, now); });
 }
 
-/// Takes what is due out of the state.
+/// Takes the due events and messages out of the state.
 UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
   TxState& s = state();
   Work work;
@@ -97,7 +97,7 @@ UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
 void UpstreamReporter::Run() {
   TxLock lock(state().mutex);
   for (;;) {
-    // A key unit that must wait for its interval is looked at with the next target.
+    // A key unit that waits for its interval is checked with the next target.
     due_.wait_for(lock, kPulse, [&] { return HasWork(); });
     if (stop_) return;
     Work work = TakeWork(TxNow(state()));

@@ -14,21 +14,21 @@ namespace lidar::gst {
 
 struct TxState;
 
-/// Evaluate() follows each change of the controller's state, and finds out what is due; a
-/// thread of its own sends it. Start() and Stop() are called without the element's lock, the rest
-/// with it. The thread sends without it.
+/// Call Evaluate() after each change of the controller's state; it finds the due events, which a
+/// thread sends. Call Start() and Stop() without the element's lock, the rest with it. The thread
+/// sends without it.
 class UpstreamReporter {
  public:
   explicit UpstreamReporter(GstLidarScreamTx* self) : self_(self) {}
 
-  /// False after an element error where the system has no thread for it.
+  /// Returns false after an element error, if the system has no thread for it.
   bool Start();
   void Stop();
 
   Notices& notices() { return notices_; }
-  /// Finds out what is due.
+  /// Finds the due events and messages.
   void Evaluate(Time now);
-  /// When to call Evaluate() again, whatever happens.
+  /// Returns when to call Evaluate() again at the latest.
   Time NextLook(Time now) const;
 
  private:
@@ -43,7 +43,7 @@ class UpstreamReporter {
   TxState& state() const;
 
   GstLidarScreamTx* self_;
-  GThread* thread_ = nullptr;  // of those who call Start() and Stop()
+  GThread* thread_ = nullptr;  // used by the callers of Start() and Stop()
   std::condition_variable due_;
   bool stop_ = false;
   Notices notices_;
