@@ -103,9 +103,12 @@ void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
   CodeResiduals(image, *settings, residuals, bits);
 }
 
-void WriteSettings(const ResidualSettings& settings, ByteWriter* writer) {
+/// Beside the guess of azimuths: further returns are coded by four neighbours.
+constexpr unsigned kByFourFlag = 4;
+
+void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* writer) {
   WriteVarint(settings.tangent_um, writer);
-  writer->U8(static_cast<std::uint8_t>(settings.guess));
+  writer->U8(static_cast<std::uint8_t>(static_cast<unsigned>(settings.guess) | flag));
 }
 
 }  // namespace
@@ -138,13 +141,14 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   EncodeResiduals(decoded, &azimuths, &list->residuals, &bits);
   EncodeResiduals(decoded, &elevations, &list->bends, &bits);
   if (!extras.empty())
-    CodeExtras(bins, image.columns, settings.intensity.bits(), extras.size(), &extras, &bits);
+    CodeExtras(bins, image.columns, {settings.intensity.bits(), true, extras.size()}, &extras,
+               &bits);
   bits.Finish();
 
   ByteWriter writer(out);
   table.Write(&writer);
-  WriteSettings(azimuths, &writer);
-  if (table.bends) WriteSettings(elevations, &writer);
+  WriteSettings(azimuths, extras.empty() ? 0 : kByFourFlag, &writer);
+  if (table.bends) WriteSettings(elevations, 0, &writer);
   writer.Bytes({block.data(), block.size()});
   WriteVarint(static_cast<std::uint32_t>(extras.size()), &writer);
   WriteVarint(static_cast<std::uint32_t>(stream.size()), &writer);
@@ -166,13 +170,17 @@ struct DecodedSection {
   std::vector<std::int32_t> bends;
   std::vector<BeamTable::Slope> slopes;  // of the beams
   std::vector<ExtraBin> extras;
+  bool by_four = false;  // what codes them
   std::size_t returns = 0;
 };
 
-bool ReadSettings(ByteReader* reader, ResidualSettings* settings) {
+/// Takes `flag` from the guess; `is_set` may be null where there is none.
+bool ReadSettings(ByteReader* reader, ResidualSettings* settings, unsigned flag, bool* is_set) {
   bool ok = true;
   settings->tangent_um = ReadVarint(reader, &ok);
-  const unsigned guess = reader->U8();
+  const unsigned byte = reader->U8();
+  const unsigned guess = byte & ~flag;
+  if (is_set != nullptr) *is_set = (byte & flag) != 0;
   settings->guess = static_cast<ResidualGuess>(guess);
   return ok && reader->ok() && guess < kResidualGuesses;
 }
@@ -186,8 +194,8 @@ bool DecodeResiduals(const RangeImage& image, const ResidualSettings& settings,
 
 bool DecodeImage(ByteReader* reader, DecodedSection* section) {
   auto table = BeamTable::Read(reader);
-  if (!table || !ReadSettings(reader, &section->azimuths) ||
-      (table->bends && !ReadSettings(reader, &section->elevations))) {
+  if (!table || !ReadSettings(reader, &section->azimuths, kByFourFlag, &section->by_four) ||
+      (table->bends && !ReadSettings(reader, &section->elevations, 0, nullptr))) {
     return false;
   }
   section->table = *std::move(table);
@@ -215,8 +223,9 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
       !DecodeResiduals(section->image, section->elevations, &section->bends, &bits)) {
     return false;
   }
+  const ExtraSettings settings{section->scale.bits(), section->by_four, extras};
   if (extras > 0 && !CodeExtras(BinsOf(section->image, section->grid), section->image.columns,
-                                section->scale.bits(), extras, &section->extras, &bits)) {
+                                settings, &section->extras, &bits)) {
     return false;
   }
   return section->extras.size() == extras && bits.AtEnd();

@@ -145,11 +145,12 @@ namespace {
 template <class Coder>
 class ExtraCoder {
  public:
-  ExtraCoder(const std::vector<std::int32_t>& bins, std::uint32_t columns, unsigned level_bits,
-             Coder* coder)
+  ExtraCoder(const std::vector<std::int32_t>& bins, std::uint32_t columns,
+             const ExtraSettings& settings, Coder* coder)
       : bins_(bins),
         columns_(columns),
-        level_bits_(level_bits),
+        level_bits_(settings.level_bits),
+        by_four_(settings.by_four),
         coder_(*coder),
         above_(columns, 0) {}
 
@@ -163,8 +164,7 @@ class ExtraCoder {
       for (; CodeMore(at < extras->size() && (*extras)[at].pixel == pixel, count); ++count, ++at) {
         if (at == limit) return false;
         if constexpr (Coder::kDecodes) extras->push_back({pixel, 0, 0});
-        CodeReturn(pixel, &(*extras)[at]);
-        if (coder_.overran() || last_ == Model::kTooLarge) return false;
+        if (!CodeReturn(pixel, &(*extras)[at]) || coder_.overran()) return false;
       }
       left_ = above_[pixel % columns_] = count > 0 ? 1 : 0;
       if (coder_.overran()) return false;
@@ -174,14 +174,17 @@ class ExtraCoder {
 
  private:
   using Model = NumberModel<3>;
+  static constexpr std::int32_t kNoReturn = INT32_MAX;
 
   static std::uint32_t LengthOf(std::int32_t v) {
     return static_cast<std::uint32_t>(BitLength(static_cast<std::uint32_t>(std::abs(v))));
   }
-  std::uint32_t JumpFrom(std::uint32_t pixel, std::uint32_t distance) const {
-    if (pixel < distance || bins_[pixel - distance] < 0) return 3;
-    const std::int32_t size = std::abs(bins_[pixel] - bins_[pixel - distance]);
-    return size < 3 ? 0 : size < 16 ? 1 : 2;
+  /// How much farther a neighbour is; kNoReturn if it has none.
+  std::int32_t StepTo(std::uint32_t pixel, std::int64_t distance) const {
+    const std::int64_t at = pixel + distance;
+    if (at < 0 || at >= static_cast<std::int64_t>(bins_.size())) return kNoReturn;
+    const std::int32_t bin = bins_[static_cast<std::size_t>(at)];
+    return bin < 0 ? kNoReturn : bin - bins_[pixel];
   }
   void StartPixel(std::uint32_t pixel) {
     const std::uint32_t column = pixel % columns_;
@@ -190,18 +193,48 @@ class ExtraCoder {
       left_ = above_[column] = 0;
       return;
     }
-    jumps_ = JumpFrom(pixel, 1) * 4 + JumpFrom(pixel, columns_);
+    const std::int64_t row = columns_;
+    const std::array<std::int64_t, 4> neighbours = {-1, -row, 1, row};
+    jumps_ = 0;
+    farthest_ = 0;
+    for (unsigned i = 0; i < (by_four_ ? 4 : 2); ++i) {
+      const std::int32_t step = StepTo(pixel, neighbours[i]);
+      const std::int32_t size = std::abs(step);
+      jumps_ = jumps_ * 4 + (step == kNoReturn ? 3U : size < 3 ? 0U : size < 16 ? 1U : 2U);
+      if (step != kNoReturn && size >= 3 && size > std::abs(farthest_)) farthest_ = step;
+    }
     nearby_ = left_ * 2 + above_[column];
+    if (by_four_) nearby_ = nearby_ * 2 + (column + 1 < columns_ ? above_[column + 1] : 0U);
+  }
+  std::uint32_t FarthestClass() const {
+    return LengthOf(farthest_) * 2 + (farthest_ < 0 ? 1U : 0U);
   }
   bool CodeMore(bool more, std::uint32_t count) {
-    return counts_->CodeBit(more, std::min(count, 3U), {nearby_ * 16 + jumps_, nearby_, jumps_},
-                            &coder_);
+    const typename Model::Contexts contexts =
+        by_four_ ? typename Model::Contexts{nearby_ * 16 + jumps_ / 16, jumps_,
+                                            nearby_ * 32 + std::min(FarthestClass(), 31U)}
+                 : typename Model::Contexts{nearby_ * 16 + jumps_, nearby_, jumps_};
+    return counts_->CodeBit(more, std::min(count, 3U), contexts, &coder_);
   }
-  void CodeReturn(std::uint32_t pixel, ExtraBin* extra) {
+  /// False for a damaged stream.
+  bool CodeReturn(std::uint32_t pixel, ExtraBin* extra) {
+    constexpr std::uint32_t kNearNode = 4;
+    constexpr std::uint32_t kNear = Model::kValues / 2;  // the first context
+    const std::uint32_t far = FarthestClass();
+    // A pulse that an edge cuts sees both sides of it.
+    const bool near =
+        by_four_ && farthest_ != 0 &&
+        counts_->CodeBit(
+            static_cast<std::uint32_t>(std::abs(extra->bin - farthest_)) <= LengthOf(farthest_),
+            kNearNode, {far, jumps_, 0}, &coder_);
     const std::uint32_t sign = last_ < 0 ? 1U : 0U;
-    const typename Model::Contexts contexts = {LengthOf(last_) * 2 + sign, LengthOf(bins_[pixel]),
-                                               jumps_};
-    extra->bin = last_ = distances_->Code(extra->bin, contexts, &coder_);
+    const typename Model::Contexts contexts =
+        near ? typename Model::Contexts{kNear + far, kNear, kNear + jumps_}
+             : typename Model::Contexts{LengthOf(last_) * 2 + sign, LengthOf(bins_[pixel]), jumps_};
+    const std::int32_t from = near ? farthest_ : 0;
+    const std::int32_t number = distances_->Code(extra->bin - from, contexts, &coder_);
+    if (number == Model::kTooLarge) return false;
+    extra->bin = last_ = from + number;
     std::uint32_t node = 1;
     for (unsigned bit = level_bits_; bit-- > 0;) {
       const bool is_set = levels_->CodeBit((extra->level >> bit & 1) != 0, node % Model::kNodes,
@@ -209,11 +242,13 @@ class ExtraCoder {
       node = node << 1 | (is_set ? 1U : 0U);
     }
     extra->level = static_cast<std::uint8_t>(node - (1U << level_bits_));
+    return true;
   }
 
   const std::vector<std::int32_t>& bins_;
   std::uint32_t columns_;
   unsigned level_bits_;
+  bool by_four_;
   Coder& coder_;
   std::unique_ptr<Model> counts_ = std::make_unique<Model>();
   std::unique_ptr<Model> distances_ = std::make_unique<Model>();
@@ -222,15 +257,16 @@ class ExtraCoder {
   std::uint32_t left_ = 0;
   std::uint32_t nearby_ = 0;
   std::uint32_t jumps_ = 0;
+  std::int32_t farthest_ = 0;  // step to a neighbour, of those that are no surface with the pixel
   std::int32_t last_ = 0;
 };
 
 }  // namespace
 
 template <class Coder>
-bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns, unsigned level_bits,
-                std::size_t limit, std::vector<ExtraBin>* extras, Coder* coder) {
-  return ExtraCoder<Coder>(bins, columns, level_bits, coder).Code(limit, extras);
+bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns,
+                const ExtraSettings& settings, std::vector<ExtraBin>* extras, Coder* coder) {
+  return ExtraCoder<Coder>(bins, columns, settings, coder).Code(settings.limit, extras);
 }
 
 using mixing::BinaryDecoder;
@@ -241,9 +277,9 @@ template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vec
                             BinaryEncoder*);
 template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vector<std::int32_t>*,
                             BinaryDecoder*);
-template bool CodeExtras(const std::vector<std::int32_t>&, std::uint32_t, unsigned, std::size_t,
+template bool CodeExtras(const std::vector<std::int32_t>&, std::uint32_t, const ExtraSettings&,
                          std::vector<ExtraBin>*, BinaryEncoder*);
-template bool CodeExtras(const std::vector<std::int32_t>&, std::uint32_t, unsigned, std::size_t,
+template bool CodeExtras(const std::vector<std::int32_t>&, std::uint32_t, const ExtraSettings&,
                          std::vector<ExtraBin>*, BinaryDecoder*);
 
 }  // namespace lidar::codec::cloud

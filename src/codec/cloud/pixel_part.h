@@ -35,10 +35,15 @@ struct ExtraBin {
   std::int32_t bin = 0;  // less that of the pixel's first return
   std::uint8_t level = 0;
 };
-/// Codes the further returns of `bins`, the bins of all pixels (-1: no return), of which there are
-/// as many as `limit` or fewer. False for a damaged stream.
+struct ExtraSettings {
+  unsigned level_bits = 0;
+  bool by_four = true;    // neighbours, else by the two of encoders of before
+  std::size_t limit = 0;  // further returns, at most
+};
+/// Codes the further returns of `bins`, the bins of all pixels (-1: no return). False for a damaged
+/// stream.
 template <class Coder>
-bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns, unsigned level_bits,
-                std::size_t limit, std::vector<ExtraBin>* extras, Coder* coder);
+bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns,
+                const ExtraSettings& settings, std::vector<ExtraBin>* extras, Coder* coder);
 
 }  // namespace lidar::codec::cloud

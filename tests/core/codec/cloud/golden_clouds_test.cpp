@@ -41,6 +41,7 @@ INSTANTIATE_TEST_SUITE_P(
                       GoldenCloud{"beams_sides", 6000, 0, {23805.19, 71168.90, 903.15}},
                       GoldenCloud{"beams_swings", 14384, 0, {-8010.21, 614.27, 0.02}},
                       GoldenCloud{"bends", 7200, 0, {79558.06, -145.63, 6181.37}},
+                      GoldenCloud{"extras", 2000, 2000, {11693.06, 10103.61, -42.61}},
                       GoldenCloud{"near", 700, 700, {841.18, 773.62, 169.34}},
                       GoldenCloud{"path", 5581, 0, {824.70, -1158.17, -3700.75}}),
     [](const auto& golden) { return std::string(golden.param.name); });
