@@ -158,7 +158,7 @@ bool Controller::RespondToDrop(Time now) {
                              p_.qdelay_target_lo, window_.last_reaction_to_congestion_time()});
   if (!window) return false;
   window_.SetInflection(*window);
-  window_.Set(*window * p_.drop_beta);
+  window_.Set(*window);
   window_.NoteReaction(now);
   if (p_.extensions.evidence) path_.evidence().OnDropReaction(now);
   streams_.OnSuddenBacklog();

@@ -95,8 +95,6 @@ struct Parameters {
   double drop_threshold_unsure = 1.5;
   /// The wait must also have grown by so many gaps between packets, on a path with marks.
   double drop_growth = 3;
-  /// The target is then this part of the capacity.
-  double drop_beta = 0.9;
   /// Queue that shows a busy link; without marks, this part of qdelay_target.
   Duration busy_qdelay = 5ms;
   double busy_qdelay_unmarked = 0.45;

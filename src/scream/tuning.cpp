@@ -98,7 +98,6 @@ const std::vector<Tunable>& Tunables() {
       {"fast-increase-beside", &P::fast_increase_beside},
       {"drop-threshold", &P::drop_threshold, 0.1, 10},
       {"drop-growth", &P::drop_growth, 0, 100},
-      {"drop-beta", &P::drop_beta, 0.1, 1},
       {"busy-qdelay-unmarked", &P::busy_qdelay_unmarked},
       {"bounded-overhead", &P::bounded_overhead, 0.5, 10},
       {"open-overhead", &P::open_overhead, 0.5, 10},
