@@ -11,6 +11,7 @@ namespace {
 using link::AqmConfig;
 
 constexpr Duration kRtt = std::chrono::milliseconds(40);
+constexpr Duration kOtherStart = 1s;  // after ours: what it knows of the link has to go
 constexpr DataSize kShortestFifo = DataSize::Bytes(10 * 1500);
 
 Scenario Beside(const std::string& name, double mbps, TcpKind other, const Parameters& p) {
@@ -24,7 +25,7 @@ Scenario Beside(const std::string& name, double mbps, TcpKind other, const Param
   s.config.flows.front().parameters = p;
   s.config.flows.front().start = kStart;
   s.config.flows.front().sources[0].stream.max_bitrate = DataRate::BitsPerSecond(100e6);
-  s.config.others = {{other}};
+  s.config.others = {{other, kOtherStart}};
   s.settle = 20s;
   return s;
 }

@@ -42,6 +42,7 @@ class CrossTraffic {
     const bool idle = waited_ms < std::max(sent_ms, kLongestGap * spacing_ms_) + kTickMs;
     const bool alone = share().value_or(1) < kShareToFind;
     unseen_ = alone ? 0 : std::min(unseen_ + Weight(sent_ms), kDecisionWeight);
+    Scale(1 - (idle ? Weight(sent_ms) : 1) / kPackets);
     if (idle || arrived_ms > kPauseMs) return;
     const int weight = Weight(Ms(packet.sent - std::exchange(counted_, packet.sent)));
     Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
@@ -88,8 +89,15 @@ class CrossTraffic {
     lately_sent_.Add(sent_ms, 1 / kLately);
     lately_arrived_.Add(arrived_ms, 1 / kLately);
     const double sent = sent_ms - lately_sent_.value;
-    sent_sent_ += sent * sent - sent_sent_ / kPackets;
-    sent_arrived_ += sent * (arrived_ms - lately_arrived_.value) - sent_arrived_ / kPackets;
+    sent_sent_ += sent * sent;
+    sent_arrived_ += sent * (arrived_ms - lately_arrived_.value);
+    if (sent_sent_ > kMostEvidence) Scale(kMostEvidence / sent_sent_);
+  }
+  /// Ages the evidence. A share without new evidence becomes unknown, and the evidence of a start
+  /// does not outweigh that of now.
+  void Scale(double factor) {
+    sent_sent_ *= factor;
+    sent_arrived_ *= factor;
   }
   /// The weight is the time since the last packet [ms]: if few packets say something, each counts
   /// more.
@@ -119,6 +127,7 @@ class CrossTraffic {
   static constexpr double kTickMs = 0.5;
   /// [ms^2]; arrival times of 1/1024 s then leave an error of 0.1 in the share.
   static constexpr double kEvidence = 30;
+  static constexpr double kMostEvidence = 2 * kEvidence;
   static constexpr double kShareToFind = 0.2;
   static constexpr double kShareToLose = 0.15;
   std::optional<Packet> last_;
