@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs scream-bench beside a greedy flow (tcp-flow) through lidar-link, over real sockets.
+"""Runs scream-bench beside another flow through lidar-link, over real sockets.
 
-Prints what each got of the link, and its loss, as rows of docs/results/scream.md. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M,
-reno_fifo_5ms_20M, prague_ramp_20M, prague_step_1ms_20M, cubic_dualpi2_20M, cubic_pi2_20M (a classic one).
+Prints what each got of the link, and its loss. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M, reno_fifo_5ms_20M,
+prague_ramp_20M, prague_step_1ms_20M, cubic_dualpi2_20M, cubic_pi2_20M (a classic one). cubic, reno and prague are greedy flows
+of tcp-flow, udpprague is the L4S team's program (--udp-prague FOLDER, where it was built), gcc a stream of pion's Google
+Congestion Control (Debian: golang-go golang-github-pion-interceptor-dev).
 """
 import argparse
 import csv
@@ -21,6 +23,8 @@ CASES = ["cubic_fifo_15ms_8M", "cubic_fifo_5ms_20M", "cubic_fifo_10ms_20M", "cub
          "prague_ramp_8M", "prague_ramp_20M", "prague_step_1ms_20M", "prague_step_3ms_20M", "prague_dualpi2_20M"]
 RTT_MS = 40
 SHORTEST_FIFO = 10 * 1500  # bytes
+PEER_CASES = ["udpprague_ramp_4M", "udpprague_ramp_8M", "udpprague_ramp_20M", "udpprague_step_1ms_20M",
+              "udpprague_dualpi2_20M", "gcc_fifo_100ms_8M", "gcc_fifo_100ms_20M", "gcc_dualpi2_20M"]
 START_S = 1.0  # of the other flow, after ours
 SETTLE_S = 10.0
 LINK_PORT, RX_PORT = 45204, 45304
@@ -43,6 +47,35 @@ def parse_case(name):
     return kind, options, rate * 1e6
 
 
+def build_gcc_flow(folder):
+    program = folder / "gcc_flow"
+    offline = {"GO111MODULE": "off", "GOPATH": "/usr/share/gocode", "GOCACHE": str(folder / "cache")}
+    subprocess.run(["go", "build", "-o", program, "."], cwd=pathlib.Path(__file__).parent / "gcc_flow",
+                   env=os.environ | offline, check=True)
+    return program
+
+
+class OtherFlow:
+    """Commands of the other flow's receiver and sender."""
+
+    def __init__(self, build, udp_prague, cases, folder):
+        self._tcp_flow = build / "tests/benchmarks/tcp-flow"
+        self._udp_prague = udp_prague
+        self._gcc_flow = build_gcc_flow(folder) if any(case.startswith("gcc_") for case in cases) else None
+
+    def receiver(self, kind, port):
+        if kind == "udpprague":
+            return [self._udp_prague / "udp_prague_receiver", "-q", "-a", "127.0.0.1", "-p", port]
+        return [self._gcc_flow if kind == "gcc" else self._tcp_flow, "rx", port]
+
+    def sender(self, kind, port):
+        if kind == "udpprague":
+            return [self._udp_prague / "udp_prague_sender", "-q", "-c", "-a", "127.0.0.1", "-p", port]
+        if kind == "gcc":
+            return [self._gcc_flow, "tx", f"127.0.0.1:{port}"]
+        return [self._tcp_flow, "tx", f"127.0.0.1:{port}", "--kind", kind]
+
+
 def start(command, log):
     with open(log, "w") as out:
         return subprocess.Popen([str(word) for word in command], stdout=out, stderr=out)
@@ -60,12 +93,11 @@ def stop(processes):
             process.wait()
 
 
-def run(build, name, seconds, folder):
+def run(build, other, name, seconds, folder):
     kind, options, _ = parse_case(name)
     bench, link = build / "src/tools/scream-bench", build / "src/tools/lidar-link"
-    other = build / "tests/benchmarks/tcp-flow"
     receivers = [start([bench, "rx", "--port", RX_PORT], folder / "rx.txt"),
-                 start([other, "rx", RX_PORT + 1], folder / "other_rx.txt")]
+                 start(other.receiver(kind, RX_PORT + 1), folder / "other_rx.txt")]
     command = [link, "--quiet", "--log", folder / "link.csv", "--summary", folder / "link.json"] + options
     for i in range(2):
         command += ["--listen", f"127.0.0.1:{LINK_PORT + i}", "--forward", f"127.0.0.1:{RX_PORT + i}"]
@@ -74,7 +106,7 @@ def run(build, name, seconds, folder):
     senders = [start([bench, "tx", "--host", "127.0.0.1", "--port", LINK_PORT, "--ecn", "ect1", "--fps", 50,
                       "--max-bitrate", "100M"], folder / "tx.txt")]
     time.sleep(START_S)
-    senders.append(start([other, "tx", f"127.0.0.1:{LINK_PORT + 1}", "--kind", kind], folder / "other_tx.txt"))
+    senders.append(start(other.sender(kind, LINK_PORT + 1), folder / "other_tx.txt"))
     time.sleep(seconds)
     stop(senders + receivers + [relay])
     return measure(folder, seconds)
@@ -115,20 +147,27 @@ def row(name, runs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("cases", nargs="*", help="by default: " + " ".join(CASES))
+    parser.add_argument("cases", nargs="*", help="by default: " + " ".join(CASES) + "; with peers: " + " ".join(PEER_CASES))
     parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2] / "build")
+    parser.add_argument("--udp-prague", type=pathlib.Path, metavar="FOLDER",
+                        help="of a built udp_prague_sender and udp_prague_receiver")
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("--runs", type=int, default=1, help="of each case")
     parser.add_argument("--json", help="write the figures there")
     args = parser.parse_args()
     os.environ["GST_PLUGIN_PATH_1_0"] = ":".join(str(p.parent) for p in (args.build / "gst").glob("*/libgst*.so"))
+    cases = args.cases or CASES
+    if args.udp_prague is None and any(case.startswith("udpprague_") for case in cases):
+        parser.error("udpprague needs --udp-prague FOLDER: build https://github.com/L4STeam/udp_prague there")
     results = {}
+    programs = tempfile.TemporaryDirectory(prefix="beside-")
+    other = OtherFlow(args.build, args.udp_prague, cases, pathlib.Path(programs.name))
     print("| case | ours / other [Mbit/s] | ratio | own / other's loss [%] | queue p95 [ms] |\n|---|---|---|---|---|")
-    for name in args.cases or CASES:
+    for name in cases:
         results[name] = []
         for _ in range(args.runs):
             with tempfile.TemporaryDirectory(prefix="beside-") as folder:
-                results[name].append(run(args.build, name, args.seconds, pathlib.Path(folder)))
+                results[name].append(run(args.build, other, name, args.seconds, pathlib.Path(folder)))
         print(row(name, results[name]), flush=True)
     if args.json:
         with open(args.json, "w") as out:
