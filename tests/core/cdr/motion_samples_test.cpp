@@ -67,6 +67,11 @@ TEST(Poses, BringTheirCovarianceWhereItIsKnown) {
   EXPECT_EQ(back->pose_covariance, o.pose_covariance);
   bytes.pop_back();
   EXPECT_FALSE(ReadPose(View(bytes), &tracking));
+  for (std::size_t i = 0; i < 36; ++i) {
+    Odometry one;
+    one.pose_covariance[i] = 1e-9;
+    EXPECT_EQ(WritePose(one, 1).size(), kPoseSizeWithCovariance) << i;
+  }
 }
 
 }  // namespace

@@ -185,6 +185,16 @@ TEST(PointConverter, RefusesDataOfAnotherLengthThanTheLayoutSays) {
   }
 }
 
+TEST(PointConverter, RefusesArraysThatEndPastTheirPoint) {
+  const auto is_taken = [](std::uint32_t count, std::uint32_t step) {
+    return PointConverter::Make({1, 1, {{"a", 4, kRosF64, count}}, false, step, step}).has_value();
+  };
+  EXPECT_TRUE(is_taken(1, 12));
+  EXPECT_FALSE(is_taken(1, 11));
+  EXPECT_TRUE(is_taken(3, 28));
+  EXPECT_FALSE(is_taken(3, 27));
+}
+
 TEST(PointConverter, SwapsBigEndianNumbersWhereTheyStand) {
   RosLayout layout = Velodyne(1, 1);
   layout.is_bigendian = true;

@@ -62,6 +62,12 @@ TEST(Pcd, TextIsRead) {
   ExpectTwoPoints(Pcd(PcdHeader("ascii") + "1 -2.5 2.5e-1 0 0 7\n 4 5\t6 0 0 65535"));
 }
 
+TEST(Pcd, OfVersion05IsRead) {
+  std::string file = PcdHeader("ascii") + "1 -2.5 2.5e-1 0 0 7\n 4 5\t6 0 0 65535";
+  file.replace(file.find("FIELDS"), 6, "COLUMNS");
+  ExpectTwoPoints(Pcd(file));
+}
+
 TEST(Pcd, BinaryIsRead) { ExpectTwoPoints(Pcd(PcdHeader("binary") + Text(TwoPoints()))); }
 
 TEST(Pcd, CompressedIsRead) {
@@ -170,6 +176,21 @@ TEST(Ply, TextIsRead) {
   EXPECT_EQ(cloud->points[16], 4);
   EXPECT_EQ(cloud->points[33], 8);
   EXPECT_EQ(cloud->capture_time, 1'764'000'000'000'000'123U);
+}
+
+TEST(Ply, NumbersHaveTheTypesThatTheirNamesSay) {
+  const std::vector<std::tuple<std::string, std::string, FieldType>> types = {
+      {"char", "int8", FieldType::kI8},      {"uchar", "uint8", FieldType::kU8},
+      {"short", "int16", FieldType::kI16},   {"ushort", "uint16", FieldType::kU16},
+      {"int", "int32", FieldType::kI32},     {"uint", "uint32", FieldType::kU32},
+      {"float", "float32", FieldType::kF32}, {"double", "float64", FieldType::kF64}};
+  for (const auto& [old_name, name, type] : types)
+    for (const std::string& text : {old_name, name}) {
+      const auto cloud =
+          Ply("ply\nformat ascii 1.0\nelement vertex 1\nproperty " + text + " a\nend_header\n1\n");
+      ASSERT_TRUE(cloud) << text;
+      EXPECT_EQ(cloud->fields[0].type, type) << text;
+    }
 }
 
 TEST(Ply, BinaryOfBothByteOrdersIsRead) {

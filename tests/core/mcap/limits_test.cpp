@@ -2,10 +2,13 @@
 // What the reader believes of files that others wrote, and where it stops believing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "src/mcap/chunk.h"
 #include "src/mcap/compression.h"
+#include "src/mcap/file_index.h"
+#include "src/mcap/record_input.h"
 #include "tests/core/mcap/memory_file.h"
 
 namespace lidar::mcap {
@@ -33,6 +36,36 @@ Bytes ChannelWithMessage(std::uint16_t id, std::uint64_t time) {
 
 void AppendChunk(const Bytes& records, std::uint64_t time, Bytes* file) {
   Append(ChunkHeader{time, time, records.size(), 0, "", records.size()}, ViewOf(records), file);
+}
+
+/// A file of zeros but for its begin and its footer.
+class HugeInput : public Input {
+ public:
+  explicit HugeInput(std::uint64_t summary_start) : begin_(Begin()) {
+    Append(Footer{summary_start, 0, 0}, &end_);
+    end_.insert(end_.end(), kMagic.begin(), kMagic.end());
+  }
+  std::uint64_t size() const override { return std::uint64_t{1} << 50; }
+  bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) override {
+    if (offset > size() || n > size() - offset) return false;
+    most_ = std::max(most_, n);
+    const std::uint64_t end = size() - end_.size();
+    for (std::size_t i = 0; i < n; ++i, ++offset)
+      to[i] = offset < begin_.size() ? begin_[offset] : offset >= end ? end_[offset - end] : 0;
+    return true;
+  }
+  std::size_t most() const { return most_; }
+
+ private:
+  Bytes begin_;
+  Bytes end_;
+  std::size_t most_ = 0;
+};
+
+TEST(McapLimits, ASummaryOfAPetabyteIsNotRead) {
+  HugeInput input(8);
+  EXPECT_TRUE(ReadFileIndex(&input).chunks.empty());
+  EXPECT_LE(input.most(), kMaxSummary);
 }
 
 /// The end of a file whose summary holds `records`, without a checksum.

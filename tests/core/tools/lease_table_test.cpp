@@ -66,6 +66,16 @@ TEST_F(Lease, IsOverWhereRenewalsHaveNoAnswer) {
   EXPECT_FALSE(Has("r", now + seconds(9))) << "though nobody looked meanwhile";
 }
 
+TEST_F(Lease, CountsFromWhenItWasAskedFor) {
+  table_.SetRobots({"r"}, At(0));
+  std::vector<LeaseTable::Write> writes;
+  int ms = 0;
+  while (writes.empty() && ms < 1'000) writes = table_.Poll(At(++ms));
+  Answer(writes, At(ms + 400));
+  EXPECT_TRUE(Has("r", At(ms + 999)));
+  EXPECT_FALSE(Has("r", At(ms + 1'001))) << "others take it then";
+}
+
 TEST_F(Lease, OfADeadWorkerIsTakenWithItsProgressOnceItIsOver) {
   table_.SetRobots({"r"}, At(0));
   table_.OnEntry("r", 5, LeaseRecord{"other", seconds(1), Scan(3)}, At(0));
@@ -116,6 +126,15 @@ TEST_F(Lease, OfARobotWithMadeUpSensorsLeavesPlacesToOthers) {
   const auto before = table_.HeldAt(now);
   EXPECT_EQ(before.size(), 4U);
   now = Pass(now, 10'000);
+  for (const auto& [name, held] : table_.HeldAt(now)) EXPECT_EQ(before.count(name), 1U) << name;
+}
+
+TEST_F(Lease, StaysWhereRobotsCannotAllHaveAsManyPlaces) {
+  table_.SetRobots({"a.1", "a.2", "a.3", "b.1", "b.2", "b.3", "c.1", "c.2", "c.3"}, At(0));
+  Time now = Pass(At(0), 3'000);
+  const auto before = table_.HeldAt(now);
+  EXPECT_EQ(before.size(), 4U);
+  now = Pass(now, 5'000);
   for (const auto& [name, held] : table_.HeldAt(now)) EXPECT_EQ(before.count(name), 1U) << name;
 }
 
