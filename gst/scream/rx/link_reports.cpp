@@ -91,7 +91,6 @@ bool SeenPackets::Add(std::uint32_t ssrc, std::uint16_t seq) {
   Source& source = found->second;
   const int ahead = SequenceDistance(seq, source.newest);
   if (ahead <= -kWindow) return true;
-  if (ahead >= kWindow) source.seen.reset();
   for (int i = 1; i <= std::min(ahead, kWindow); ++i)
     source.seen.reset(static_cast<std::uint16_t>(source.newest + i) % kWindow);
   if (ahead > 0) source.newest = seq;

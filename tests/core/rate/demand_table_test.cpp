@@ -39,9 +39,11 @@ TEST(DemandTable, LetsASliceThatItDoesNotKnowTakeAnything) {
 
 TEST(DemandTable, TakesASliceThatItDoesNotKnowForTheMeanOfTheOthersHoweverOftenTheseAreSet) {
   DemandTable table;
-  for (const double need : {100.0, 8.0}) table.Set(0, 3, {need, need, {}});
-  table.Set(1, 3, {4, 4, {}});
+  for (const double need : {100.0, 8.0}) table.Set(0, 3, {need, 10 * need, {0, 2 * need}});
+  table.Set(1, 3, {4, 40, {0, 8}});
   EXPECT_DOUBLE_EQ(table.Sum().coarsest, 8 + 4 + 6);
+  EXPECT_DOUBLE_EQ(table.Sum().finest, 80 + 40 + 60);
+  EXPECT_DOUBLE_EQ(table.Sum().intensity[1], 16 + 8 + 12);
 }
 
 }  // namespace

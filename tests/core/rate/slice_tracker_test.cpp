@@ -49,6 +49,13 @@ TEST(SliceTracker, TakesTheNoiseOfAScanOfOneSliceForNoDrift) {
   EXPECT_DOUBLE_EQ(tracker.Predict(0, 1)->residual, 0.4);
 }
 
+TEST(SliceTracker, ForgetsTheDriftOfAnotherNumberOfSlices) {
+  SliceTracker tracker = AfterOneScan(4);
+  tracker.Observe(0, 4, {1, 0.4}, 0.4);
+  tracker.Observe(0, 8, {1, 0.2}, 0);
+  EXPECT_DOUBLE_EQ(tracker.Predict(0, 8)->residual, 0.2);
+}
+
 TEST(SliceTracker, LearnsNoDriftFromASliceThatIsPutInPlaceOfAnother) {
   SliceTracker tracker = AfterOneScan(4);
   tracker.Observe(0, 4, {1, 0.4}, 0.4);

@@ -42,13 +42,16 @@ TEST_P(EitherCoder, ReportsTheDistancesThatATestMeasuresInRangeGeometry) {
   CheckedCodec codec(GetParam(), "error-check=1");
   codec.SetCaps(OrganisedInfo(model, 64));
   double largest = 0;
+  std::vector<double> all;
   for (guint i = 0; i < 8; ++i) {
     GstBuffer* input = OrganisedBuffer(model, 64, {3, i, 8, 64 * i});
     const auto before = PointsOf(input, 20);
     const BufferPtr output = codec.Push(input);
     const StructurePtr check = codec.PopCheck();
     ASSERT_TRUE(check);
-    ExpectErrors(check.get(), Distances(before, PointsOf(output.get(), 20)));
+    const auto distances = Distances(before, PointsOf(output.get(), 20));
+    ExpectErrors(check.get(), distances);
+    all.insert(all.end(), distances.begin(), distances.end());
     EXPECT_TRUE(Holds(check.get()));
     EXPECT_NEAR(Number(check.get(), "error-bound"), 0.02, 1e-9);
     guint slice = 99;
@@ -57,6 +60,8 @@ TEST_P(EitherCoder, ReportsTheDistancesThatATestMeasuresInRangeGeometry) {
     largest = std::max(largest, Number(check.get(), "largest-error"));
   }
   EXPECT_EQ(Number(codec.Stats().get(), "largest-error"), largest);
+  EXPECT_NEAR(Number(codec.Stats().get(), "mean-error"),
+              std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size()), 1e-9);
   EXPECT_GT(largest, 0.019);
   EXPECT_EQ(codec.Warnings(), 0U);
 }

@@ -89,7 +89,9 @@ TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   EXPECT_EQ(RunningTime(), 600 * GST_MSECOND);
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH, 0, GST_SEEK_TYPE_NONE));
   PushClouds(1);
-  EXPECT_EQ(GST_BUFFER_OFFSET(LastCloud().get()), 7U);
+  const BufferPtr last = LastCloud();
+  EXPECT_EQ(GST_BUFFER_OFFSET(last.get()), 7U);
+  EXPECT_EQ(GST_BUFFER_OFFSET_END(last.get()), 8U);
 }
 
 TEST_F(ParseUnderWay, BytesFromElsewhereGoOnWhereTheLastCloudEnded) {

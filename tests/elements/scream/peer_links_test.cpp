@@ -136,6 +136,32 @@ TEST(LinkReports, TellEachLinkWhatCameByIt) {
   EXPECT_EQ(reports.stats().size(), 2U);
 }
 
+TEST(LinkReports, SumUpEachCountOfAllLinks) {
+  const LinkAddress a(Address("10.0.0.1", 5000)), b(Address("10.1.0.1", 5000));
+  LinkReports reports;
+  reports.Reset({});
+  Time now{1s};
+  const auto send = [&](const LinkAddress& link, std::uint16_t seq) {
+    reports.OnPacket(link.get(), now,
+                     {7, seq, seq % 3 == 0 ? scream::Ecn::kCe : scream::Ecn::kEct1, true,
+                      DataSize::Bytes(1200)});
+    now += 1ms;
+    while (reports.Take(now)) continue;
+  };
+  for (const LinkAddress* link : {&a, &b}) {
+    for (std::uint16_t seq = 3'000; seq < 6'000; seq = static_cast<std::uint16_t>(seq + 2))
+      send(*link, seq);
+    for (const int late : {5'998, 5'997, 3'001}) send(*link, static_cast<std::uint16_t>(late));
+  }
+  using Stats = scream::FeedbackGenerator::Stats;
+  const auto all = reports.stats();
+  for (const auto count : {&Stats::packets, &Stats::ce_packets, &Stats::duplicates,
+                           &Stats::reordered, &Stats::stale, &Stats::lost, &Stats::reports}) {
+    EXPECT_GT(all[0].feedback.*count, 0U);
+    EXPECT_EQ(reports.Sum().*count, all[0].feedback.*count + all[1].feedback.*count);
+  }
+}
+
 TEST(LinkReports, KeepFewLinksWhereAddressesChangeAllTheTime) {
   LinkReports reports;
   reports.Reset({});
@@ -145,6 +171,20 @@ TEST(LinkReports, KeepFewLinksWhereAddressesChangeAllTheTime) {
     reports.OnPacket(a.get(), now, {7, 1, scream::Ecn::kEct1, true, DataSize::Bytes(1200)});
   }
   EXPECT_EQ(reports.stats().size(), LinkReports::kMaxLinks);
+}
+
+TEST(LinkReports, KeepTheLinkInUse) {
+  LinkReports reports;
+  reports.Reset({});
+  Time now{1s};
+  const LinkAddress in_use(Address("10.1.0.1", 5000));
+  for (int host = 1; host < 100; ++host) {
+    const LinkAddress other(Address(("10.0.0." + std::to_string(host)).c_str(), 5000));
+    for (const LinkAddress* from : {&in_use, &other})
+      reports.OnPacket(from->get(), now += 1s,
+                       {7, 1, scream::Ecn::kEct1, true, DataSize::Bytes(1200)});
+  }
+  EXPECT_EQ(reports.stats().at(0).feedback.packets, 99U);
 }
 
 TEST(SeenPackets, PassEachPacketOnceInWhateverOrder) {
