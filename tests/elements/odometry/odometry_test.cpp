@@ -208,6 +208,11 @@ TEST_F(Odometry, WritesTheTrajectory) {
   std::filesystem::remove(path);
 }
 
+/// Ends a pipeline where a test returns early, too.
+struct Stop {
+  void operator()(GstElement* pipeline) const { gst_element_set_state(pipeline, GST_STATE_NULL); }
+};
+
 TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
   GError* raw = nullptr;
   const ElementPtr pipeline(gst_parse_launch(
@@ -218,7 +223,8 @@ TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
       &raw));
   ASSERT_EQ(raw, nullptr);
   const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "poses"));
-  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline.get()));
+  const std::unique_ptr<GstElement, Stop> playing(pipeline.get());
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   unsigned count = 0;
   for (GstSample* sample = nullptr;; ++count) {
@@ -228,7 +234,7 @@ TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
     const BufferMap map(buffer, GST_MAP_READ);
     ASSERT_EQ(map.size(), 44 * 8U);
     MessagePtr message;
-    do message.reset(gst_bus_timed_pop_filtered(bus, GST_SECOND, GST_MESSAGE_ELEMENT));
+    do message.reset(gst_bus_timed_pop_filtered(bus.get(), GST_SECOND, GST_MESSAGE_ELEMENT));
     while (message && !gst_message_has_name(message.get(), "odometry"));
     ASSERT_TRUE(message);
     const GstStructure* told = gst_message_get_structure(message.get());
@@ -248,8 +254,6 @@ TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
     gst_sample_unref(sample);
   }
   EXPECT_EQ(count, 6U);
-  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
-  gst_object_unref(bus);
 }
 
 }  // namespace
