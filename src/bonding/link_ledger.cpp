@@ -60,7 +60,7 @@ void LinkLedger::Settle(const scream::SsrcReport& own, Source* source, Report* r
     Packet& packet = source->At(begin + static_cast<std::int64_t>(i));
     if (!own.metrics[i].received || packet.settled) continue;
     packet.settled = true;
-    report->arrived.push_back({own.ssrc, packet.seq});
+    report->arrived.push_back({{own.ssrc, packet.seq}, packet.sent, own.metrics[i].arrival_offset});
   }
   const std::int64_t end = begin + static_cast<std::int64_t>(own.metrics.size());
   for (; source->waiting < end; ++source->waiting) {

@@ -24,9 +24,14 @@ class LinkLedger {
   static constexpr std::size_t kMaxPackets = 8192;
   static constexpr std::size_t kMaxSources = 64;
 
+  struct Arrival {
+    PacketId id;
+    Time sent{};
+    std::optional<Duration> age;  // at the report's timestamp
+  };
   struct Report {
     scream::CongestionFeedback feedback;  // with the numbers of this link
-    std::vector<PacketId> arrived;        // reported for the first time
+    std::vector<Arrival> arrived;         // reported for the first time
     std::vector<PacketId> missing;        // overtaken by packets that arrived; each is listed once
   };
 

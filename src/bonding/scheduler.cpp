@@ -78,6 +78,19 @@ bool Scheduler::InGap(Time now, std::size_t link) const {
   return !l.usable || (since && now - *since > Rtt(l) + kReportMargin);
 }
 
+/// The links that pass another link's queue: all but the nearest one that works, or that of the
+/// slice before where they are alike.
+LinkSet Scheduler::Spare(Time now) const {
+  const auto far = [this](std::size_t link) {
+    return std::pair(Rtt(links_[link]) - (link == slice_first_ ? kSimilarRtts : Duration{0}), link);
+  };
+  LinkSet spare;
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    for (std::size_t k = 0; k < links_.size(); ++k)
+      if (shared_.Shared(i, k) && !IsDead(now, links_[k]) && far(k) < far(i)) spare.set(i);
+  return spare;
+}
+
 bool Scheduler::Settled(Time now) const {
   return std::all_of(links_.begin(), links_.end(), [now](const Link& l) {
     return l.unsettled_since && now - *l.unsettled_since > kUnsettled;
@@ -98,11 +111,11 @@ bool Scheduler::AwaitsArrivals(Time now) const {
 /// Returns the links beside the best one that get a copy of the next slice.
 LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
   LinkSet links;
-  const bool probe = since_probe_ == 0;
+  const bool probe = slices_ % kProbeEvery == 0;
   const bool all = method_ == Method::kAdaptive && rule_ == TargetRule::kBetter && !Settled(now);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& l = links_[i];
-    if (!l.usable) continue;
+    if (!l.usable || (spare_[i] && method_ != Method::kBroadcast)) continue;
     const DataRate rate = l.path.rate > DataRate{} ? l.path.rate : kUnknownRate;
     const bool room = (l.queued + slice) / rate < kRoomForCopies && !InGap(now, i);
     if (method_ == Method::kBroadcast || probe || Proves(now, l) || (all && room)) links.set(i);
@@ -123,15 +136,16 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
     slice_ = packet.slice;
     last_slice_size_ = std::max(slice_size_, packet.size);
     slice_size_ = {};
-    LinkSet all;
-    for (std::size_t i = 0; i < links_.size(); ++i) all.set(i);
-    slice_first_ = Best(now, last_slice_size_, all);
+    spare_ = Spare(now);
+    slice_first_ = Best(now, last_slice_size_, ~spare_);
     slice_links_ = CopiesOf(now, last_slice_size_);
     slice_links_.set(slice_first_);
-    since_probe_ = (since_probe_ + 1) % kProbeEvery;
+    ++slices_;
   }
   slice_size_ += packet.size;
-  if (packets_.count(packet.id.key()) > 0) return slice_links_;  // the payloader sent it again
+  LinkSet to = slice_links_;
+  if (packet.ends_slice && slices_ % kProbeSpareEvery == 0) to |= spare_;
+  if (packets_.count(packet.id.key()) > 0) return to;  // the payloader sent it again
   Entry entry;
   entry.size = packet.size;
   entry.ends_slice = packet.ends_slice;
@@ -140,7 +154,7 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
   entry.expected = now + WholeIn(slice_first_, now, last_slice_size_) +
                    Rtt(links_[slice_first_]) / 2 + kReportMargin;
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (!slice_links_[i]) continue;
+    if (!to[i]) continue;
     Assign(i, &entry);
     ++(i == slice_first_ ? links_[i].counters.packets : links_[i].counters.copies);
     if (!links_[i].unsettled_since) links_[i].unsettled_since = now;
@@ -148,7 +162,7 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
   }
   order_.push_back(packet.id);
   packets_.emplace(packet.id.key(), entry);
-  return slice_links_;
+  return to;
 }
 
 void Scheduler::Forget(Time now) {
@@ -183,9 +197,10 @@ bool Scheduler::Overdue(Time now, const Entry& entry) const {
 /// Returns the further links for a waiting packet: the best link out of a gap, else each link that
 /// may leave its gap first.
 LinkSet Scheduler::OthersFor(Time now, const Entry& entry) const {
+  const LinkSet spare = Spare(now);
   LinkSet others, alive;
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (entry.assigned[i] || !links_[i].usable) continue;
+    if (entry.assigned[i] || !links_[i].usable || spare[i]) continue;
     others.set(i);
     if (!InGap(now, i)) alive.set(i);
   }
@@ -230,6 +245,7 @@ std::uint16_t Scheduler::OnSent(Time now, std::size_t link, PacketId id) {
     entry->waits.reset(link);
     l.queued -= entry->size;
   }
+  if (entry != nullptr) shared_.OnSent(now, link, entry->size);
   return l.ledger.OnSent(now, id, entry == nullptr || entry->ends_slice);
 }
 
@@ -246,8 +262,10 @@ std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(
   auto report = links_[link].ledger.OnFeedback(feedback);
   if (!report) return std::nullopt;
   links_[link].has_reported = true;
-  for (const PacketId id : report->arrived) {
-    Entry* entry = Find(id);
+  for (const LinkLedger::Arrival& arrival : report->arrived) {
+    if (arrival.age)
+      shared_.OnArrival(link, {arrival.sent, feedback.report_timestamp, *arrival.age});
+    Entry* entry = Find(arrival.id);
     if (entry == nullptr || entry->arrived) continue;
     entry->arrived = true;
     if (entry->first != link) ++links_[link].counters.saved;
@@ -263,6 +281,7 @@ void Scheduler::SetUsable(Time now, std::size_t link, bool usable) {
     l.unsettled_since = l.usable_since = now;
     l.has_reported = false;
   }
+  if (usable != l.usable) shared_.Forget(link);
   l.usable = usable;
 }
 
@@ -277,9 +296,10 @@ DataRate Scheduler::Target(Time now, const std::vector<DataRate>& targets) const
   Duration nearest = Duration::max();
   for (const Link& l : links_)
     if (!any_works || !IsDead(now, l)) nearest = std::min(nearest, Rtt(l));
+  const LinkSet spare = Spare(now);
   DataRate sum, best;
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (any_works && IsDead(now, links_[i])) continue;
+    if (spare[i] || (any_works && IsDead(now, links_[i]))) continue;
     sum = sum + targets[i];
     if (Rtt(links_[i]) - nearest <= kSimilarRtts) best = std::max(best, targets[i]);
   }

@@ -12,6 +12,7 @@
 #include "src/base/units.h"
 #include "src/bonding/link_ledger.h"
 #include "src/bonding/packet_id.h"
+#include "src/bonding/shared_queues.h"
 
 namespace lidar::bonding {
 
@@ -60,6 +61,9 @@ struct LinkCounters {
 ///  - A link is unproven from its first use, or from its return, to its first report: only copies
 ///    show the receiver that it belongs to the sender. For kProving it gets a copy of each packet,
 ///    and no packet of its own if another link has reported.
+///  - Links that pass one queue count as one: the nearest of them carries all until its reports are
+///    overdue by kLongestGap, and the others a packet in each kProbeSpareEvery slices. Only
+///    broadcast copies go to all.
 ///  - A packet that arrived on one link is not sent on another. Copies older than kMaxAge are not
 ///    sent: after a gap the newest slices come first.
 class Scheduler {
@@ -67,7 +71,8 @@ class Scheduler {
   static constexpr Duration kMaxAge = std::chrono::milliseconds(200);
   static constexpr Duration kUnsettled = std::chrono::seconds(3);
   static constexpr Duration kProving = std::chrono::seconds(1);
-  static constexpr int kProbeEvery = 8;
+  static constexpr unsigned kProbeEvery = 8;
+  static constexpr unsigned kProbeSpareEvery = 32;
   static constexpr std::size_t kMaxPackets = 8192;
 
   Scheduler(std::size_t links, Method method, TargetRule rule = TargetRule::kBetter);
@@ -143,6 +148,7 @@ class Scheduler {
   void LookAtGaps(Time now);
   bool Overdue(Time now, const Entry& entry) const;
   LinkSet OthersFor(Time now, const Entry& entry) const;
+  LinkSet Spare(Time now) const;
   Duration WholeIn(std::size_t link, Time now, DataSize size) const;
   std::size_t Best(Time now, DataSize size, LinkSet among) const;
   LinkSet CopiesOf(Time now, DataSize slice) const;
@@ -154,14 +160,15 @@ class Scheduler {
   const Method method_;
   const TargetRule rule_;
   std::vector<Link> links_;
+  SharedQueues shared_;
   std::deque<PacketId> order_;
   std::unordered_map<std::uint64_t, Entry> packets_;
   // The present slice.
   std::optional<std::uint32_t> slice_;
   DataSize slice_size_, last_slice_size_;
-  LinkSet slice_links_;
+  LinkSet slice_links_, spare_;
   std::size_t slice_first_ = 0;
-  int since_probe_ = 0;
+  unsigned slices_ = 0;
 };
 
 }  // namespace lidar::bonding

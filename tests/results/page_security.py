@@ -30,7 +30,6 @@ def robot():
         ["slices of the 19 others: received", f"{without['received']:.0f}", f"{beside['received']:.0f}"],
         ["slices of the 19 others: lost", f"{without['lost']:.0f}", f"{beside['lost']:.0f}"],
         ["packets of theirs: lost", f"{without['packets_lost']:.0f}", f"{beside['packets_lost']:.0f}"],
-        ["of these: no room in the socket", f"{without['kernel_drops']}", f"{beside['kernel_drops']}"],
         ["slices of that robot: dropped, counted", "0", f"{beside['dropped']:.0f}"],
         ["time to stop", f"{without['stop_s']} s", f"{beside['stop_s']} s"],
     ]

@@ -70,9 +70,12 @@ class SimLink {
   void Step(Time now, Scheduler* scheduler) {
     while (auto report = generator_.Take(now + config_.receiver_clock))
       reports_.emplace(now + config_.rtt / 2, *report);
-    for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin()))
-      if (const auto own = scheduler->OnFeedback(now, index_, reports_.begin()->second))
+    for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin())) {
+      const auto bytes = scream::BuildCcfb(reports_.begin()->second);
+      const auto report = parser_.Parse({bytes.data(), bytes.size()});
+      if (const auto own = scheduler->OnFeedback(now, index_, *report))
         controller_.OnFeedback(now, *own);
+    }
     if (controller_.NextTimer() <= now) controller_.OnTimer(now);
     const scream::Statistics s = controller_.statistics(now);
     scheduler->OnPath(index_, {s.s_rtt > Duration{0} ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
@@ -115,6 +118,7 @@ class SimLink {
   scream::StreamConfig config_of_stream_;
   scream::StreamId stream_ = 0;
   scream::FeedbackGenerator generator_;
+  scream::CcfbParser parser_;
   std::deque<WirePacket> fifo_;
   std::multimap<Time, scream::CongestionFeedback> reports_;
   std::int64_t bytes_ = 0;

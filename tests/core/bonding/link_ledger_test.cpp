@@ -23,6 +23,12 @@ CongestionFeedback ReportOf(std::uint16_t seq, const std::vector<bool>& arrived,
   return feedback;
 }
 
+std::vector<PacketId> IdsOf(const LinkLedger::Report& report) {
+  std::vector<PacketId> ids;
+  for (const LinkLedger::Arrival& arrival : report.arrived) ids.push_back(arrival.id);
+  return ids;
+}
+
 TEST(LinkLedger, NumbersPacketsInTheOrderInWhichTheyLeave) {
   LinkLedger ledger;
   EXPECT_EQ(ledger.OnSent(kStart, {kSsrc, 65535}), 0);
@@ -54,7 +60,7 @@ TEST(LinkLedger, GivesReportsInItsNumbers) {
   EXPECT_TRUE(block.metrics[0].received);
   EXPECT_FALSE(block.metrics[1].received);
   EXPECT_TRUE(block.metrics[2].received);
-  EXPECT_EQ(report->arrived, (std::vector<PacketId>{{kSsrc, 100}, {kSsrc, 101}}));
+  EXPECT_EQ(IdsOf(*report), (std::vector<PacketId>{{kSsrc, 100}, {kSsrc, 101}}));
   EXPECT_EQ(report->missing, (std::vector<PacketId>{{kSsrc, 103}}));
   EXPECT_FALSE(ledger.waiting_since());
 }
@@ -68,7 +74,8 @@ TEST(LinkLedger, TellsOnceWhatArrivedAndWhatIsMissing) {
   EXPECT_TRUE(again->arrived.empty());
   EXPECT_TRUE(again->missing.empty());
   const auto late = ledger.OnFeedback(ReportOf(1, {true, true, true}));
-  EXPECT_EQ(late->arrived, (std::vector<PacketId>{{kSsrc, 2}}));
+  ASSERT_EQ(late->arrived.size(), 1U);
+  EXPECT_EQ(late->arrived[0].id, (PacketId{kSsrc, 2}));
 }
 
 TEST(LinkLedger, RefusesWholeWhatTellsOfAPacketThatWentAnotherWay) {

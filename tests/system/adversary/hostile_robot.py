@@ -67,12 +67,6 @@ class Edge:
         return time.monotonic() - begin
 
 
-def dropped_by_kernel(ports):
-    """Packets that came to the ports and found no room in their sockets."""
-    lines = [line.split() for name in ("udp", "udp6") for line in pathlib.Path("/proc/net", name).read_text().splitlines()[1:]]
-    return sum(int(words[-1]) for words in lines if int(words[1].rsplit(":", 1)[1], 16) in ports)
-
-
 def honest_robots(ports):
     """One sensor is coded once and sent as many robots, each with its own SCReAM."""
     source = "lidartestsrc is-live=true model=os0-32 mode=512x10 ! lidarenc effort=0 ! tee name=t"
@@ -103,7 +97,6 @@ def run(args, hostile):
             "memory_mb": round(edge.memory_mb()),
             "received": sum(edge.metric("lidar_rtplidardepay_slices_received", name) for name in names),
             "lost": sum(edge.metric("lidar_rtplidardepay_slices_lost", name) for name in names),
-            "kernel_drops": dropped_by_kernel(ports[1:]),
             "packets_lost": sum(edge.metric("lidar_screamsrc_packets_lost", name) for name in names),
             "dropped": edge.metric("lidar_rtplidardepay_slices_changing_format", "r0"),
         }

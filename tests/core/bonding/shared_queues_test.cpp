@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "src/bonding/shared_queues.h"
+
+#include <gtest/gtest.h>
+
+#include "src/link/random.h"
+#include "src/sim/simulated_time.h"
+
+namespace lidar::bonding {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Two links whose packets pass FIFOs of 8 Mbit/s.
+class TwoFifos : public testing::Test {
+ protected:
+  void Send(std::size_t link, std::size_t fifo, DataSize size) {
+    queues_.OnSent(now_, link, size);
+    Time& free = free_[fifo];
+    free = std::max(free, now_) + size / Mbps(8);
+    const auto ticks = static_cast<std::uint32_t>(Seconds(free - kStart) * 65536);
+    queues_.OnArrival(link, {now_, ticks, 0ms});
+  }
+  /// Bursts on both links; `copies` are sent at the same times.
+  void Run(std::size_t second_fifo, bool copies) {
+    for (int i = 0; i < 4000; ++i) {
+      now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());
+      const auto size = DataSize::Bytes(random_.Chance(0.5) ? 1200 : 600);
+      Send(0, 0, size);
+      if (!copies) now_ += 10us;
+      if (copies || random_.Chance(0.4)) Send(1, second_fifo, size);
+    }
+  }
+  SharedQueues queues_;
+  Time now_ = kStart;
+  std::array<Time, 2> free_{};
+  link::Random random_{1};
+};
+
+TEST_F(TwoFifos, FindsOneQueue) {
+  Run(0, false);
+  EXPECT_TRUE(queues_.Shared(0, 1));
+  EXPECT_TRUE(queues_.Shared(1, 0));
+  EXPECT_FALSE(queues_.Shared(0, 2));
+  queues_.Forget(1);
+  EXPECT_FALSE(queues_.Shared(0, 1));
+}
+
+TEST_F(TwoFifos, KeepsTwoQueuesApartThatCopiesFillAlike) {
+  Run(1, true);
+  EXPECT_FALSE(queues_.Shared(0, 1));
+}
+
+TEST_F(TwoFifos, LeavesAQueueThatIsNoLongerShared) {
+  Run(0, false);
+  ASSERT_TRUE(queues_.Shared(0, 1));
+  Run(1, false);
+  EXPECT_FALSE(queues_.Shared(0, 1));
+}
+
+}  // namespace
+}  // namespace lidar::bonding
