@@ -25,7 +25,7 @@ std::optional<std::uint8_t> Short(ByteReader* reader) {
   return number;
 }
 
-/// libdraco follows metadata within metadata as deep as they go.
+/// libdraco follows nested metadata to any depth.
 bool SkipMetadata(ByteReader* reader) {
   const auto of_attributes = Short(reader);
   const auto entries = Short(reader);
@@ -56,7 +56,7 @@ bool CheckAttributes(ByteReader* reader, std::uint32_t max_attributes) {
   return true;
 }
 
-/// The kd-tree repeats the count inside, and a large one there costs seconds without any memory.
+/// The kd-tree repeats the count, and a large one costs seconds without any memory.
 bool CheckKdTree(ByteReader* reader, std::uint32_t points) {
   const std::uint8_t level = reader->U8();
   const std::uint32_t bit_length = reader->Le32();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Looks at a Draco stream before libdraco does, which trusts the counts in it.
+// Checks a Draco stream before libdraco, which trusts the counts in it.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -29,8 +29,8 @@ struct FieldLayout {
 /// field ends past the point.
 bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::uint8_t>* out);
 
-/// Whole points of the layout, zero between the fields. Returns false if the stream is damaged, has
-/// more than `max_points`, or attributes that are not the layout's fields.
+/// Returns whole points of the layout, with zeros between the fields. Returns false if the stream
+/// is damaged, has more than `max_points`, or has attributes that are not the layout's fields.
 bool DecodeFields(ByteView stream, const FieldLayout& layout, std::uint32_t max_points,
                   std::vector<std::uint8_t>* points);
 

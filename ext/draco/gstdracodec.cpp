@@ -21,14 +21,14 @@ namespace {
 
 using lidar::Geometry;
 
-/// Belongs to the streaming thread.
+/// Used by the streaming thread.
 struct State {
   lidar::codec::CloudFormat format;
   Geometry geometry = Geometry::kXyz;
   std::optional<lidar::draco::SliceDecoder> decoder;
 };
 
-/// A plain Draco file needs no caps but its name.
+/// A plain Draco file needs no caps except its media type.
 std::optional<Geometry> GeometryOf(const GstCaps* caps) {
   const gchar* name = gst_structure_get_string(gst_caps_get_structure(caps, 0), "geometry");
   if (g_strcmp0(name, "range") == 0) return Geometry::kRange;

@@ -65,7 +65,7 @@ GType RangeCoderType() {
   return type;
 }
 
-/// Belongs to the streaming thread.
+/// Used by the streaming thread.
 struct Coder {
   lidar::codec::CloudFormat format;
   std::optional<lidar::draco::SliceEncoder> encoder;

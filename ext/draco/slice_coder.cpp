@@ -30,8 +30,8 @@ void XyzSliceEncoder::Thin(const std::vector<bool>& kept) {
   if (!cloud_.intensity.empty()) cloud_.intensity.resize(count);
 }
 
-/// Which of Draco's coders is smaller depends on the order of the points: that of a sensor suits
-/// the sequential one.
+/// The order of the points decides which of Draco's coders is smaller: a sensor's order suits the
+/// sequential one.
 bool XyzSliceEncoder::TryBothMethods(const XyzSettings& settings, codec::EncodedSlice* slice,
                                      XyzResult* result) {
   XyzSettings other = settings;
@@ -84,7 +84,7 @@ std::optional<SliceEncoder> SliceEncoder::Create(const codec::CloudFormat& forma
 
 std::string SliceEncoder::Mode(unsigned level) const {
   if (range_) return range_->Mode();
-  // Draco's kd-tree has four modes, whatever the level is called.
+  // Draco's kd-tree has four modes; other levels use the nearest of them.
   return level == 0 ? "xyz-sequential" : "xyz-kd" + std::to_string(std::min(level / 2 * 2, 6U));
 }
 

@@ -37,11 +37,12 @@ class XyzSliceEncoder {
   unsigned slices_ = 0;  // since both methods were tried
 };
 
-/// codec::SliceEncoder with another geometry and other coders. For one thread at a time.
+/// Encodes slices as codec::SliceEncoder does, with a further geometry and further coders. For one
+/// thread at a time.
 class SliceEncoder {
  public:
-  /// Returns nothing if `format` cannot be coded in that geometry; no geometry takes kRange where
-  /// it can be.
+  /// Returns nothing if `format` cannot be coded in that geometry. Without a geometry it takes
+  /// kRange if `format` allows it.
   static std::optional<SliceEncoder> Create(const codec::CloudFormat& format,
                                             std::optional<Geometry> geometry,
                                             codec::RangeCoder coder = codec::RangeCoder::kAdaptive);
@@ -66,7 +67,7 @@ class SliceEncoder {
   /// The number of beams or points that Thin() chooses from.
   std::size_t rows() const { return range_ ? range_->rows() : xyz_.cloud().size(); }
 
-  /// As in codec::SliceEncoder, and without effect in xyz geometry.
+  /// As in codec::SliceEncoder; has no effect in xyz geometry.
   void set_threads(unsigned threads);
   void set_effort(unsigned effort);
 

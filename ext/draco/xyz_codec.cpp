@@ -105,8 +105,8 @@ bool Encode(const ::draco::PointCloud& points, const Box& box, const Grid& grid,
   return encoder.EncodePointCloudToBuffer(points, buffer).ok();
 }
 
-/// Attributes come as the integers of their grid, with it. Draco would write the floats value by
-/// value, which is a fifth of its time.
+/// Keeps attributes as integers of their grid: Draco would convert the floats value by value, which
+/// is a fifth of its time.
 void LeaveQuantized(::draco::Decoder* decoder) {
   decoder->SetSkipAttributeTransform(GeometryAttribute::POSITION);
   decoder->SetSkipAttributeTransform(GeometryAttribute::GENERIC);
@@ -134,7 +134,7 @@ bool FromGrid(const ::draco::PointAttribute& attribute, const std::uint8_t* byte
   return true;
 }
 
-/// Draco's attribute of that type as floats, so many a point.
+/// Returns Draco's attribute of that type, if it is kComponents floats.
 template <std::size_t kComponents>
 bool GetAttribute(const ::draco::PointCloud& cloud, GeometryAttribute::Type type,
                   std::vector<float>* values) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Buffers of one stream as messages.
+// Converts buffers of a stream to messages.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,23 +12,23 @@
 
 namespace lidar::gst {
 
-/// A message that a buffer became.
+/// A message, and its times.
 struct NewMessage {
   GstClockTime after{};         // since the buffer's own time [ns]
-  GstClockTime publish_time{};  // when it was captured, as far as known [ns since 1970]
+  GstClockTime publish_time{};  // capture time, if known [ns since 1970]
   mcap::Bytes data;
 };
 
 class BufferWriter {
  public:
-  /// For buffers of `caps`. NULL if those cannot be recorded; `why` then says so in words for a
-  /// user.
+  /// Returns a writer for buffers of `caps`. Returns NULL if those cannot be recorded; `why` then
+  /// has the reason for a user.
   static std::unique_ptr<BufferWriter> Make(const GstCaps* caps, const std::string& frame_id,
                                             std::string* why);
   virtual ~BufferWriter() = default;
 
   MessageType type() const { return type_; }
-  /// Appends what `buffer`, logged at `log_time`, becomes. Returns false if it contradicts its
+  /// Appends the messages of `buffer`, logged at `log_time`. Returns false if it contradicts its
   /// caps.
   virtual bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) = 0;
 

@@ -10,8 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The digits and the length of a conversion like %d or %05d at the begin of `text`; no digits for
-/// any other.
+/// Digits and length of a conversion like %d or %05d at the beginning of `text`; no digits for any
+/// other.
 struct Conversion {
   std::size_t digits = 0;
   std::size_t length = 0;
@@ -87,7 +87,7 @@ std::vector<std::pair<std::uint32_t, std::string>> FileNames::Existing(
     const char* first = name.data() + prefix.size();
     const char* last = name.data() + name.size() - after_.size();
     const auto parsed = std::from_chars(first, last, number);
-    // The whole name must be one that we would give.
+    // The whole name must have our form.
     if (parsed.ec == std::errc() && parsed.ptr == last &&
         fs::path(Name(number)).filename().string() == name)
       files.emplace_back(number, Name(number));

@@ -20,12 +20,11 @@ class FileNames {
   std::string Name(std::uint32_t number) const;
   /// The folder that the files are in.
   std::string Folder() const;
-  /// The existing files by their numbers, or the file of that name. `failed`: the folder cannot be
-  /// read.
+  /// The existing files by number, or the only file. `failed`: the folder cannot be read.
   std::vector<std::pair<std::uint32_t, std::string>> Existing(std::error_code* failed) const;
 
  private:
-  std::string before_;  // what stands before and after the number
+  std::string before_;  // the parts before and after the number
   std::string after_;
   std::size_t digits_ = 0;
   bool is_numbered_ = false;

@@ -160,8 +160,8 @@ static void TellCounters(State* state) {
   state->counters = state->counted;
 }
 
-/// Runs `work` on the recorder under its lock. Posts what comes of it when the lock is free again.
-/// False if the recording is over.
+/// Runs `work` on the recorder under its lock. Posts its messages after the lock is released.
+/// Returns false if the recording is over.
 template <class Work>
 static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   State& state = *self->state;
@@ -181,7 +181,7 @@ static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   return !fault;
 }
 
-/// A recorder for the settings; NULL and a message where there can be none.
+/// Creates a recorder for the settings. Posts a message and returns false if there can be none.
 static bool Start(GstLidarMcapSink* self) {
   State& state = *self->state;
   std::string why = "there is no location";
@@ -268,7 +268,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_object_unref(stream);
 }
 
-/// The part of the caps that needs a channel of its own. A cloud's message has its width.
+/// Returns the part of the caps that needs a channel of its own. A cloud's width is in its
+/// messages.
 static std::string KindOf(lidar::ScalarCaps caps, MessageType type) {
   auto& fields = caps.fields;
   if (type == MessageType::kCloud)

@@ -21,7 +21,7 @@ namespace lidar::gst {
 struct RecordedStream {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
-  std::map<std::string, std::uint16_t> channels;  // by what each was made for
+  std::map<std::string, std::uint16_t> channels;  // by the caps of each channel
 };
 
 /// For the streams of the sink, from their threads. Errors are posted on the sink.
@@ -32,9 +32,9 @@ GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, Recorde
                            GstBuffer* buffer, GstClockTime running_time);
 /// A stream ended; with the last one the recording is complete.
 void McapSinkStreamEnded(GstLidarMcapSink* sink);
-/// Running times begin anew.
+/// Running times restart.
 void McapSinkFlushed(GstLidarMcapSink* sink);
-/// A topic that no other stream has.
+/// Returns a topic that no other stream has.
 std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted);
 
 }  // namespace lidar::gst

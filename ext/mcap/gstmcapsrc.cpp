@@ -56,7 +56,7 @@ const std::array<Stat<Counters>, 5> kStats = {{
     {"files-unreadable", &Counters::files_unreadable},
 }};
 
-/// Belongs to the streaming thread. While the task stands still, the holder of its lock has it.
+/// Used by the streaming thread. While the task is stopped, the holder of its lock may use it.
 struct Run {
   std::unique_ptr<Playback> playback;
   std::unique_ptr<StreamGroup> streams;
@@ -73,7 +73,7 @@ struct State {
   guint32 last_seek = GST_SEQNUM_INVALID;
 
   std::atomic<bool> end_wanted{false};
-  std::atomic<bool> stopping{false};  // a chunk that is being read is the last
+  std::atomic<bool> stopping{false};  // the chunk in work is the last
   PlayTask task;
   Run run;
 };
@@ -131,7 +131,7 @@ static GstPad* NewPad(const std::string& name) {
   return pad;
 }
 
-/// Returns true if there is something to play, as far as known before it is read.
+/// Returns true if there is something to play, before any message is read.
 static bool HasTopic(const Playback& playback, const Settings& settings) {
   return std::any_of(playback.topics().begin(), playback.topics().end(), [&](const auto& topic) {
     return IsWanted(settings, topic.channel.topic) &&
@@ -175,7 +175,7 @@ static bool Open(GstLidarMcapSrc* self) {
   return true;
 }
 
-/// A seek without a flush goes on from the end.
+/// A seek without a flush continues from the end.
 static void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   const guint32 seqnum = self->state->run.streams->seqnum();
   {
@@ -187,7 +187,7 @@ static void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   gst_element_post_message(GST_ELEMENT(self), message);
 }
 
-/// Says what of the recording did not come.
+/// Posts what part of the recording is missing.
 static void TellOfDamage(GstLidarMcapSrc* self) {
   State& state = *self->state;
   Counters counters;
@@ -263,7 +263,7 @@ static void Loop(gpointer user_data) {
   if (flow != GST_FLOW_OK) Stop(self, flow);
 }
 
-/// Takes the pads from the element: the streams, which have them too, are the task's.
+/// Takes the pads from the element, as the streams belong to the task.
 static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   GST_OBJECT_LOCK(self);
   GList* pads = g_list_copy_deep(
@@ -301,7 +301,7 @@ static bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
     std::lock_guard lock(state.mutex);
     if (state.is_open) segment = seek.AppliedTo(state.segment);
     if (!segment) return false;
-    // Each sink sends the same one upstream.
+    // A seek comes once from each sink.
     if (std::exchange(state.last_seek, seek.seqnum()) == seek.seqnum()) return true;
   }
   if (seek.flushes()) PushFlush(self, seek, gst_event_new_flush_start());
@@ -346,7 +346,7 @@ static void Close(GstLidarMcapSrc* self) {
   g_rec_mutex_lock(state.task.lock());
   Run run = std::exchange(state.run, Run());
   g_rec_mutex_unlock(state.task.lock());
-  run = {};  // its pads go without the lock
+  run = {};  // pads are removed without the lock
   state.end_wanted = false;
 }
 

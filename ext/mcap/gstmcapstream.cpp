@@ -91,7 +91,7 @@ static gboolean Event(GstBaseSink* base, GstEvent* event) {
   return GST_BASE_SINK_CLASS(gst_lidar_mcap_stream_parent_class)->event(base, event);
 }
 
-/// Each recording has channels of its own, also where the element was only READY in between.
+/// Each recording has its own channels, even if the element was only in READY between them.
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     State& state = StateOf(element);
@@ -120,7 +120,7 @@ static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
 }
 
 GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name) {
-  // A sparse stream must not hold up the start of the others, and disks have no clock.
+  // Does not preroll: a sparse stream must not delay the others, and disks have no clock.
   auto* stream = static_cast<GstElement*>(g_object_new(GST_TYPE_LIDAR_MCAP_STREAM, "name", name,
                                                        "async", FALSE, "sync", FALSE, nullptr));
   StateOf(stream).sink = sink;

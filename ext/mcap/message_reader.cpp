@@ -18,7 +18,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kMaxSlices = 4'096;
-/// Points of a byte become points of twelve and more, so the message alone bounds too little.
+/// A point of a byte becomes one of twelve or more, so the message's size alone is no bound.
 constexpr gsize kMaxCloud = gsize{256} << 20;  // bytes
 
 void SetCaptureTime(const cdr::Header& header, GstBuffer* buffer) {

@@ -31,7 +31,7 @@ bool OutputFile::WriteAll(ByteView bytes) {
   return !sync_ || fdatasync(fd_) == 0;
 }
 
-/// Only of regular files: a device is not ours to take away.
+/// Removes regular files only, as devices are not ours.
 void OutputFile::TakeBack() {
   struct stat status {};
   if (fstat(fd_, &status) != 0 || !S_ISREG(status.st_mode)) return;

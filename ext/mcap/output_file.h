@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file of whole pieces, which is made with the first piece.
+// A file that is written in whole pieces, and created with the first one.
 #pragma once
 #include <cstdint>
 #include <string>

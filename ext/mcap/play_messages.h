@@ -19,11 +19,11 @@ struct PlayedCounts {
 /// Error: no topic of the recording can be played, or not the one that is wanted.
 void PostNothingToPlay(GstElement* element, const Playback& playback, const std::string& location,
                        const std::string& topic);
-/// Warnings of files that break off or cannot be read; `why` is of the last one.
+/// Warns of files that break off or cannot be read; `why` belongs to the last one.
 void WarnOfFiles(GstElement* element, const Playback& playback, const std::string& why);
 /// Error where nothing could be read, a warning where parts are left out, else nothing.
 void PostDamage(GstElement* element, const PlayedCounts& counts);
-/// Error: the next element takes the caps of no pad.
+/// Posts an error: downstream takes the caps of no pad.
 void PostNotTaken(GstElement* element);
 
 }  // namespace lidar::gst

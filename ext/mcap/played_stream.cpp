@@ -15,7 +15,7 @@ GstEvent* WithSeqnum(const PlaybackGroup& group, GstEvent* event) {
 }  // namespace
 
 bool PlayedStream::Follow(const mcap::Schema& schema, const mcap::Channel& channel) {
-  // Another file has channels of its own, which usually say the same.
+  // Another file has its own channels, usually with the same content.
   if (reader_ && metadata_ == channel.metadata) return true;
   auto reader = MessageReader::Make(schema, channel);
   if (!reader) return false;
@@ -32,7 +32,7 @@ void PlayedStream::PushStreamStart(const PlaybackGroup& group) {
   gst_pad_push_event(pad_, WithSeqnum(group, event));
 }
 
-/// The events come before the pad: a handler that links it in its signal finds them there.
+/// The events precede the pad: a handler of its signal that links it finds them there.
 bool PlayedStream::Prepare(const PlaybackGroup& group) {
   GstCaps* caps = reader_->caps();
   if (caps == nullptr) return false;

@@ -37,9 +37,9 @@ class PlayedStream {
   /// Null if the message is damaged.
   BufferPtr Read(ByteView message, GstClockTime pts);
   GstFlowReturn Push(BufferPtr buffer);
-  /// Says that nothing comes before `time`, where the stream is far behind it.
+  /// Pushes a gap up to `time` if the stream is far behind it.
   void FillUpTo(GstClockTime time, const PlaybackGroup& group);
-  /// The source was sought, and plays from `position` on in a new segment.
+  /// A seek plays from `position` in a new segment.
   void Restart(GstClockTime position) {
     needs_segment_ = true;
     discont_ = true;

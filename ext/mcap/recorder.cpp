@@ -10,7 +10,7 @@ namespace lidar::gst {
 
 Recorder::Recorder(const RecorderSettings& settings, FileNames names)
     : settings_(settings), names_(std::move(names)) {
-  // A recording of yesterday stays: the pieces go on behind it.
+  // Files of an earlier recording stay: the numbers continue after them.
   const auto existing = names_.Existing(&listing_failed_);
   if (!names_.is_numbered() || existing.empty()) return;
   next_number_ = existing.back().first + 1;

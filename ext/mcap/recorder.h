@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages into the files of a recording.
+// Writes messages to the files of a recording.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -23,7 +23,7 @@ struct RecorderSettings {
   bool sync = false;
 };
 
-/// Why a recording cannot go on.
+/// The reason that ends a recording.
 struct RecorderFault {
   std::string path;
   int error = 0;  // errno

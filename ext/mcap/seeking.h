@@ -14,10 +14,10 @@ class Seek {
  public:
   explicit Seek(GstEvent* event);
 
-  /// The segment that it makes of the one that is played. Only forward, by time, and to where there
-  /// is something.
+  /// Returns the segment after the seek. Returns nothing unless the seek is forward, by time, and
+  /// to a place with data.
   std::optional<GstSegment> AppliedTo(GstSegment played) const;
-  /// `made`, that segment, once nothing moves any more: `played` went on meanwhile.
+  /// Returns the segment `made`, started once nothing moves: `played` went on meanwhile.
   GstSegment Begun(GstSegment made, const GstSegment& played) const;
   bool flushes() const { return (flags_ & GST_SEEK_FLAG_FLUSH) != 0; }
   guint32 seqnum() const { return gst_event_get_seqnum(event_.get()); }
@@ -30,7 +30,7 @@ class Seek {
   GstSeekType start_type_ = GST_SEEK_TYPE_NONE;
 };
 
-/// Duration, position, seeking and segment. Returns false if another one has to answer.
+/// Answers duration, position, seeking and segment. Returns false for other queries.
 bool AnswerBySegment(const GstSegment& segment, GstQuery* query);
 
 }  // namespace lidar::gst

@@ -23,7 +23,7 @@ bool StreamGroup::has_pads() const {
                      [](const auto& stream) { return stream->is_added(); });
 }
 
-/// The stream of `topic`, which is made where it is missing. Null if there are too many.
+/// Returns the stream of `topic`, creating it if necessary. Returns null if there are too many.
 PlayedStream* StreamGroup::StreamOf(const std::string& topic) {
   for (const auto& stream : streams_)
     if (stream->topic() == topic) return stream.get();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pads of an mcapsrc, a topic each, and what they have in common.
+// The pads of an mcapsrc, one per topic, and their common state.
 #pragma once
 #include <gst/base/gstflowcombiner.h>
 #include <gst/gst.h>
@@ -32,7 +32,7 @@ class StreamGroup {
   /// Adds the pads whose caps the channels have before the first buffer: those of `topic`, or all
   /// if it is empty.
   void ShowKnown(const Playback& playback, const std::string& topic);
-  /// Says once that there come no more.
+  /// Announces once that no more pads come.
   void EndPads();
   /// A message for its pad; no buffer where it is damaged, its caps are not known, or there are
   /// more topics than pads.
@@ -41,7 +41,7 @@ class StreamGroup {
     BufferPtr buffer;
   };
   Played Read(const Playback::Item& item, GstClockTime pts);
-  /// Returns what all pads together say.
+  /// Returns the combined flow of all pads.
   GstFlowReturn Push(Played played);
   /// The source was sought.
   void Restart(const GstSegment& segment, guint32 seqnum);

@@ -16,8 +16,8 @@ class Timeline {
     std::uint64_t now = 0;
   };
 
-  /// The first buffer says what running times are since 1970: its capture time, or now. So the
-  /// distances of buffers stay what they were.
+  /// The first buffer relates running times to 1970, by its capture time or the present. Later
+  /// buffers keep their distances.
   std::uint64_t LogTime(const Moment& at) {
     if (!at.running_time) return last_ > 0 ? last_ : at.capture_time.value_or(at.now);
     if (!origin_) {
@@ -32,7 +32,7 @@ class Timeline {
   void Restart() { origin_.reset(); }
 
  private:
-  std::optional<std::uint64_t> origin_;  // wraps, where a recording begins late
+  std::optional<std::uint64_t> origin_;  // wraps if a recording begins late
   std::uint64_t last_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Subjects that answers to our messages come back on, and the meaning of JetStream's answers.
+// Subjects on which answers to our messages arrive, and the meaning of JetStream's answers.
 #pragma once
 #include <cstdint>
 #include <optional>

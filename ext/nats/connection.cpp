@@ -48,8 +48,8 @@ natsStatus SetSecurity(natsOptions* o, const ConnectionSettings& s) {
     status = natsOptions_LoadCATrustedCertificates(o, s.tls_ca_file.c_str());
   if (status == NATS_OK && !s.tls_cert_file.empty())
     status = natsOptions_LoadCertificatesChain(o, s.tls_cert_file.c_str(), s.tls_key_file.c_str());
-  // An authority makes TLS mandatory: no byte goes to a server without it. libnats gives the scheme
-  // of the address no meaning, so it is read here.
+  // An authority makes TLS mandatory: nothing is sent to a server without it. libnats ignores the
+  // scheme of the address, so it is read here.
   const bool tls = s.url.find("tls://") != std::string::npos || !s.tls_ca_file.empty() ||
                    !s.tls_cert_file.empty();
   if (status == NATS_OK && tls) status = natsOptions_SetSecure(o, true);
@@ -78,7 +78,7 @@ struct Connection::Shared {
   std::mutex mutex;  // guards all but `changed`; never held while that runs
   std::condition_variable ended;
   ConnectionState state;
-  bool over = false;  // the last callback came
+  bool over = false;  // the last callback has come
   Changed changed;
 
   template <class Change>

@@ -70,10 +70,10 @@ class Connection {
 
 /// A server that is away for as long gives a warning.
 constexpr std::chrono::seconds kAbsence{2};
-/// The URLs without their secrets, for messages to users.
+/// Returns the URLs without their secrets, for messages to users.
 std::string WithoutUser(const std::string& urls);
 
-/// The text of libnats for `status`, and its last error.
+/// Returns libnats' text for `status`, and its last error.
 std::string ErrorText(natsStatus status);
 
 }  // namespace lidar::nats

@@ -12,7 +12,7 @@ namespace lidar::nats {
 
 class FormatBook {
  public:
-  /// Takes a format; `subject` ends with its id. Damaged ones are counted.
+  /// Takes a format; `subject` ends with its id. Counts damaged formats.
   void Note(std::string_view subject, std::string_view text);
   /// Returns null if the format is not known.
   StreamFormat::Ptr Find(const std::string& id) const;

@@ -63,7 +63,7 @@ struct State {
   std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
   NatsSinkSettings settings;
   std::shared_ptr<Publisher> publisher;  // exists from start to stop
-  PublisherCounters last;                // of the publisher before
+  PublisherCounters last;                // counters of the last publisher
   guint64 refused = 0;
 
   // Only start, stop and the streaming thread use what follows.

@@ -75,11 +75,11 @@ struct State {
   std::unique_ptr<Subscriber> subscriber;
   std::shared_ptr<ConnectionWatch> watch;
   StreamFormat::Ptr format;
-  std::string trouble;           // the one that was reported
-  Delivery delivery;             // of the buffer that was pushed last
+  std::string trouble;           // last trouble that was reported
+  Delivery delivery;             // place of the last pushed buffer
   std::optional<guint64> first;  // time at which JetStream stored the first message
   gint64 no_wait_until_us = 0;   // until then no message waits for its caps
-  gint64 here_at_us = 0;         // last time of a server, at first the start
+  gint64 here_at_us = 0;         // last time with a server, at first the start
   bool warned_damaged = false;
   bool warned_of_caps = false;
   bool warned_absent = false;
@@ -353,7 +353,7 @@ static void NoteAbsence(State& state) {
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_NATS_SRC(push);
   State& state = StateOf(self);
-  Acknowledge(state);  // of the buffer before, which downstream returned from
+  Acknowledge(state);  // the last buffer, from which downstream has returned
   if (state.at_end) return GST_FLOW_EOS;
   while (!state.flushing) {
     Delivery delivery;
@@ -393,7 +393,7 @@ static void gst_lidar_nats_src_class_init(GstLidarNatsSrcClass* klass) {
   src->unlock = Unlock;
   src->unlock_stop = UnlockStop;
   src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
-  // Caps are set with the first message, which says what they are.
+  // Caps are set with the first message, which carries them.
   src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
   GST_PUSH_SRC_CLASS(klass)->create = Create;
 }

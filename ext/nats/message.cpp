@@ -20,7 +20,7 @@ constexpr const char* kDuration = "Lidar-Duration";
 constexpr const char* kSlice = "Lidar-Slice";
 constexpr const char* kPose = "Lidar-Pose";
 constexpr const char* kDiscont = "Lidar-Discont";
-constexpr const char* kMessageId = "Nats-Msg-Id";  // JetStream stores a message of an id once
+constexpr const char* kMessageId = "Nats-Msg-Id";  // JetStream stores each id once
 
 constexpr guint kMaxSlices = 4'096;
 constexpr std::size_t kMaxHeader = 512;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Buffers as messages of NATS: their bytes, and their metas as headers.
+// Converts buffers to NATS messages: bytes, and metas as headers.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,7 +12,7 @@
 
 namespace lidar::nats {
 
-/// The place of a message in what one sink sends from start to stop.
+/// Position of a message in the output of one sink, from start to stop.
 struct Place {
   std::uint64_t run = 0;  // random, differs from start to start
   std::uint64_t number = 0;
@@ -24,7 +24,7 @@ struct ReadMessage {
   gst::BufferPtr buffer;  // without PTS
 };
 
-/// The two further subjects of a stream.
+/// Returns further subjects of a stream: for formats and for requests.
 std::string ConfigSubject(const std::string& subject, const std::string& format_id);
 std::string AskSubject(const std::string& subject);
 /// The fault of `subject`; empty if there is none.

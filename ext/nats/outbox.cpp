@@ -12,7 +12,7 @@ std::size_t Outbox::SizeOf(const Outgoing& item) {
   return gst_buffer_get_size(item.buffer.get()) + kOverhead;
 }
 
-/// A config counts, too: it may be larger than all its messages.
+/// A config counts, too: it may be larger than all its messages together.
 void Outbox::Count(const Outgoing& item) {
   bytes_ += SizeOf(item);
   if (item.format && ++formats_[item.format] == 1) bytes_ += item.format->memory();

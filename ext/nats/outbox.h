@@ -31,7 +31,7 @@ class Outbox {
   std::optional<Outgoing> Take(Clock::time_point now);
   /// Returns false if `number` is not in flight.
   bool Remove(std::uint64_t number);
-  /// Lets what is in flight wait again, before all others; returns how many.
+  /// Makes messages in flight wait again, before all others. Returns how many.
   std::size_t Retry(std::uint64_t number);
   std::size_t RetryAll();
   /// Forgets all; returns how many.
@@ -39,7 +39,7 @@ class Outbox {
 
   /// The format of the oldest message that waits, or null.
   StreamFormat::Ptr NextFormat() const;
-  /// The time since which the oldest is in flight.
+  /// Returns since when the oldest message is in flight.
   std::optional<Clock::time_point> OldestInFlight() const;
 
   std::size_t waiting() const { return waiting_.size(); }
@@ -59,7 +59,7 @@ class Outbox {
   const std::size_t max_bytes_;
   std::map<std::uint64_t, Outgoing> waiting_;
   std::map<std::uint64_t, Sent> in_flight_;
-  std::map<StreamFormat::Ptr, std::size_t> formats_;  // how many messages have each
+  std::map<StreamFormat::Ptr, std::size_t> formats_;  // number of messages by format
   std::size_t bytes_ = 0;                             // of messages and formats
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Remembers which messages of a stream came, so that each is taken once.
+// Remembers which messages of a stream arrived, so that each is used once.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -12,10 +12,10 @@ namespace lidar::nats {
 class PlaceBook {
  public:
   struct Verdict {
-    bool again = false;         // the same message came before
-    bool late = false;          // a later message came before
+    bool again = false;         // the same message has come before
+    bool late = false;          // a later message has come before
     bool fills_gap = false;     // an earlier `missing` counted it
-    std::uint64_t missing = 0;  // numbers between it and the newest before it
+    std::uint64_t missing = 0;  // numbers between it and the newest earlier one
   };
   /// Notes a message. Memory is bounded, so a very old one may seem new.
   Verdict Note(const Place& place);

@@ -10,11 +10,11 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::chrono::milliseconds kConfigInterval{1'000};
-constexpr std::chrono::milliseconds kAskedInterval{20};  // between answers to requests
-constexpr std::chrono::milliseconds kStreamRetry{500};   // the longest
+constexpr std::chrono::milliseconds kAskedInterval{20};  // interval between answers to requests
+constexpr std::chrono::milliseconds kStreamRetry{500};   // longest pause before a new try
 constexpr gint kMinStreamRetryMs = 50;
 constexpr std::chrono::milliseconds kAckTimeout{5'000};
-constexpr std::chrono::milliseconds kPatrol{500};  // between looks for unanswered messages
+constexpr std::chrono::milliseconds kPatrol{500};  // between checks for unanswered messages
 constexpr const char* kConfigReply = "config";     // in place of a message's number
 constexpr std::size_t kMaxInFlight = 256;          // messages
 
@@ -100,8 +100,8 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
     *why = ErrorText(s);
     return false;
   }
-  // The callback may still run when the subscription is gone; this one follows it. If the server
-  // has closed the connection, this one does not come.
+  // The callback may still run after the subscription; this one follows it. If the server has
+  // closed the connection, it does not come.
   const natsStatus told = natsSubscription_SetOnCompleteCB(
       raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.get());
   if (told != NATS_OK) untold_.push_back(std::move(target));
@@ -236,7 +236,7 @@ void Publisher::NoteConnection(const ConnectionState& state) {
   refusals_.Reset();
 }
 
-/// Sends what was on its way before what waits, so that all is stored in order.
+/// Sends messages in flight before waiting ones, so that all are stored in order.
 void Publisher::RetryAfterReconnect(Lock* lock) {
   lock->unlock();
   const std::uint64_t reconnects = connection_->reconnects();  // may wait for a write
@@ -245,7 +245,7 @@ void Publisher::RetryAfterReconnect(Lock* lock) {
   SendAllAgain();
 }
 
-/// libnats gives up a connection that the server has refused twice: this makes another one.
+/// libnats gives up a connection that the server has refused twice. Creates another one.
 void Publisher::OpenAgain(Lock* lock) {
   if (Clock::now() < open_at_) {
     wake_.wait_until(*lock, open_at_);
@@ -272,8 +272,8 @@ void Publisher::OpenAgain(Lock* lock) {
 void Publisher::SendAllAgain() {
   counters_.resent += outbox_.RetryAll();
   stream_ready_ = false;
-  sent_format_.reset();        // the caps go again as well
-  config_unanswered_ = false;  // and those before get no answer
+  sent_format_.reset();        // also sends the caps again
+  config_unanswered_ = false;  // earlier requests get no answer
 }
 
 void Publisher::RetryUnanswered(Clock::time_point now) {
@@ -303,7 +303,7 @@ void Publisher::PrepareStream(Lock* lock) {
   if (!ready) Tell(lock, "The stream " + settings_.stream.name + " cannot be made: " + why);
 }
 
-/// The caps of the next message, or of the last one.
+/// Returns the format of the next message, or of the last one.
 StreamFormat::Ptr Publisher::NextFormat() const {
   const StreamFormat::Ptr waiting = outbox_.NextFormat();
   return waiting ? waiting : format_;

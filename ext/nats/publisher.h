@@ -33,14 +33,14 @@ struct PublisherSettings {
 struct PublisherCounters {
   std::uint64_t messages = 0;      // handed to the server
   std::uint64_t bytes = 0;         // of buffers in them
-  std::uint64_t acknowledged = 0;  // JetStream has them
+  std::uint64_t acknowledged = 0;  // stored by JetStream
   std::uint64_t resent = 0;
-  std::uint64_t dropped = 0;    // for lack of room, and at stop
+  std::uint64_t dropped = 0;    // dropped for lack of room or at stop
   std::uint64_t too_large = 0;  // for the server
   std::uint64_t waiting = 0;    // to be sent or acknowledged
   std::uint64_t buffered = 0;   // bytes in those
   std::uint64_t server_errors = 0;
-  std::uint64_t refusals = 0;  // of the server, with keep_trying
+  std::uint64_t refusals = 0;  // by the server, with keep_trying
   unsigned reconnects = 0;
   bool connected = false;
 };
@@ -48,7 +48,7 @@ struct PublisherCounters {
 /// Called without a lock, by threads of libnats and of the publisher.
 struct PublisherEvents {
   Connection::Changed connection;
-  /// Messages cannot be sent or kept; called once a reason, until they can again.
+  /// Called once per reason while messages cannot be sent or kept.
   std::function<void(const std::string& why)> trouble;
 };
 
@@ -128,18 +128,18 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   PublisherCounters counters_;
   std::uint64_t next_number_ = 0;
   StreamFormat::Ptr format_;       // of the newest buffer
-  StreamFormat::Ptr sent_format_;  // published last
-  Clock::time_point config_at_{};  // time of that
+  StreamFormat::Ptr sent_format_;  // last published format
+  Clock::time_point config_at_{};  // time of its publication
   std::uint64_t bytes_since_config_ = 0;
   Clock::time_point retry_at_{};              // earliest next try to make the stream
   Clock::time_point open_at_{};               // earliest next connect after a refusal
-  Clock::time_point here_at_ = Clock::now();  // last time of a server, at first the start
+  Clock::time_point here_at_ = Clock::now();  // last time with a server, at first the start
   Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
   unsigned connections_before_ = 0;  // of earlier Connection objects
   std::uint64_t errors_before_ = 0;
-  unsigned connections_ = 0;      // of this one, as handled
-  std::uint64_t reconnects_ = 0;  // of this one, as handled
-  std::string told_;              // the trouble that was reported last
+  unsigned connections_ = 0;      // of the present Connection, as handled
+  std::uint64_t reconnects_ = 0;  // of the present Connection, as handled
+  std::string told_;              // last trouble that was reported
   bool asked_ = false;
   bool config_unanswered_ = false;
   bool stream_ready_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Counts what a source took of a stream, and what it missed.
+// Counts the messages that a source took and missed.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -37,7 +37,7 @@ class SourceAccount {
   void NoteStop();
 
   struct Verdict {
-    bool again = false;  // came before, and JetStream saw no acknowledgement
+    bool again = false;  // repeated, as JetStream saw no acknowledgement
     bool gap = false;    // messages before it are missing
   };
   /// `shared`: a queue group shares the stream, so what is missing here is not lost.

@@ -10,12 +10,12 @@
 
 namespace lidar::nats {
 
-/// Immutable, so threads share it.
+/// Immutable, so threads can share it.
 class StreamFormat {
  public:
   using Ptr = std::shared_ptr<const StreamFormat>;
 
-  /// Returns null, and `why` for a user, if streams of `caps` do not travel.
+  /// Returns null, and `why` for a user, if streams of `caps` cannot travel.
   static Ptr FromCaps(GstCaps* caps, std::string* why);
   /// Reads text of the network; returns null if FromCaps() cannot have sent it.
   static Ptr FromText(const std::string& text);
@@ -33,8 +33,8 @@ class StreamFormat {
   gst::CapsPtr caps_;
   std::string text_;
   std::string id_;
-  std::size_t size_ = 0;         // of a buffer [bytes]; 0: any
-  std::size_t longer_size_ = 0;  // of a pose with its covariance [bytes]; 0: no pose
+  std::size_t size_ = 0;         // size of a buffer [bytes]; 0: any
+  std::size_t longer_size_ = 0;  // size of a pose with covariance [bytes]; 0: no pose
   std::size_t multiple_ = 1;     // divides the size of a buffer [bytes]
 };
 

@@ -44,7 +44,7 @@ std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
     if (!self->js_) status = NATS_NO_MEMORY;
   } else {
     status = self->SubscribeLive();
-    // The subscription is at the server before a caller can publish.
+    // The server has the subscription before a caller can publish.
     if (self->connection_->state().connected())
       natsConnection_FlushTimeout(self->connection_->get(), Connection::kConnectTimeoutMs);
   }
@@ -54,7 +54,7 @@ std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
 }
 
 Subscriber::~Subscriber() {
-  // A socket that closes with unread messages loses what it sent.
+  // A socket that closes with unread messages loses the data that it sent.
   if (connection_ && acknowledges() && connection_->state().connected())
     natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
 }
@@ -202,7 +202,7 @@ Subscriber::Event Subscriber::Renew() {
   natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
   const ConsumerInfoPtr info(raw);
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
-  // The consumer may be made anew before a message came: it then begins here.
+  // The server may lose the consumer before the first message: the new one begins here.
   if (!acknowledges()) last_stored_ = info->Delivered.Stream;
   return info->NumPending == 0 ? Event::kEmpty : Event::kNothing;
 }

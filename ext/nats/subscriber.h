@@ -17,7 +17,7 @@ struct SubscriberSettings {
   ConnectionSettings connection;
   std::string subject;
   std::string queue_group;                  // empty: no sharing
-  std::string stream;                       // of JetStream; empty: live
+  std::string stream;                       // JetStream's stream; empty: live
   std::string durable;                      // consumer; empty: a temporary one
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
   std::uint64_t start_sequence = 0;         // replaces start_time; 0: does not
@@ -27,9 +27,9 @@ struct SubscriberSettings {
 /// A message and its place in JetStream.
 struct Delivery {
   MessagePtr message;
-  std::optional<std::uint64_t> stored;  // when [ns since 1970]
-  std::uint64_t sequence = 0;           // in the stream; 0: not stored
-  std::uint64_t to_come = 0;            // messages that are stored behind it
+  std::optional<std::uint64_t> stored;  // time of storage [ns since 1970]
+  std::uint64_t sequence = 0;           // number in the stream; 0: not stored
+  std::uint64_t to_come = 0;            // number of later messages in store
 };
 
 /// Used by one thread.
@@ -44,8 +44,8 @@ class Subscriber {
   enum class Event {
     kMessage,
     kNothing,  // no message in this time
-    kEmpty,    // JetStream has no message at the first request
-    kTrouble,  // trouble() says which; it goes on
+    kEmpty,    // JetStream had no message at the first request
+    kTrouble,  // trouble() describes it; the subscriber continues
     kClosed,   // the connection is gone for good
   };
   Event Next(std::chrono::milliseconds timeout, Delivery* delivery);
@@ -55,7 +55,8 @@ class Subscriber {
   void Acknowledge(natsMsg* message);
   bool acknowledges() const { return !settings_.durable.empty(); }
 
-  /// The format of that id. Asks the sender for an unknown one; returns null at a timeout.
+  /// Returns the format with that id. Requests an unknown one from the sender; returns null at a
+  /// timeout.
   StreamFormat::Ptr Format(const std::string& id, std::chrono::milliseconds timeout);
   /// Counts messages that came faster than they were taken.
   std::uint64_t overruns() const { return overruns_; }
@@ -86,14 +87,14 @@ class Subscriber {
   FormatBook book_;
   std::string trouble_;
   std::chrono::steady_clock::time_point renew_at_{};  // earliest next renewal
-  unsigned connections_ = 0;                          // at the last renewal
+  unsigned connections_ = 0;                          // number of connections at the last renewal
   unsigned missed_heartbeats_ = 0;
   bool stale_ = false;             // the consumer missed a message
   std::uint64_t last_stored_ = 0;  // number of the last message in the stream
   std::uint64_t last_number_ = 0;  // its number at the consumer
   bool began_ = false;
   std::uint64_t overruns_ = 0;
-  std::int64_t dropped_ = 0;  // by the present subscription
+  std::int64_t dropped_ = 0;  // messages that the present subscription dropped
 };
 
 }  // namespace lidar::nats

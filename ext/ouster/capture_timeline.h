@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The duration of a capture and the places in it, for the thread that asks and the one that reads.
+// The duration of a capture and places in it, for the thread that asks and the reading one.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,26 +12,26 @@
 
 namespace lidar::gst {
 
-/// The first question reads the file, as far as the answer needs it; later ones are free. Any
-/// thread may call all of it.
+/// The first call reads the file as far as it needs; later calls cost nothing. All threads may call
+/// it.
 class CaptureTimeline {
  public:
-  /// `packet_interval` is what the last packet lasts.
+  /// `packet_interval` is the duration of the last packet.
   CaptureTimeline(std::string path, Duration packet_interval)
       : path_(std::move(path)), packet_interval_(packet_interval) {}
 
-  /// Returns nothing if the file cannot be read, or Cancel() came first.
+  /// Returns nothing if the file cannot be read, or after Cancel().
   std::optional<GstClockTime> duration();
 
   struct Place {
     Time first{};                        // capture time of the file's first packet
     std::optional<std::int64_t> offset;  // empty: the front
   };
-  /// The place from which a reader finds all that was captured at `time` and later; nothing as
+  /// Returns the place from which a reader finds all data captured at `time` and later; nothing as
   /// above.
   std::optional<Place> Find(Duration time);
 
-  /// Ends a question under way, and every later one, until Allow().
+  /// Ends a running call, and each later one, until Allow().
   void Cancel() { cancelled_ = true; }
   void Allow() { cancelled_ = false; }
   bool cancelled() const { return cancelled_; }

@@ -46,11 +46,11 @@ void FileSession::Seek(const GstSegment& segment) {
   if (begun_ || segment.start > 0) target_ = ToTime(segment.start);
 }
 
-/// Moves to where the slice of the target begins.
+/// Moves to the beginning of the target's slice.
 GstFlowReturn FileSession::GoToTarget() {
-  // Margin by which the sensor's clock may run away from that of the capture.
+  // Greatest drift of the sensor's clock relative to that of the capture.
   constexpr Duration kLead = std::chrono::seconds(1);
-  // The scan before, too: its packets may be out of order.
+  // Includes the last scan: its packets may be out of order.
   skip_to_ = *target_ - 2 * stream()->metadata().scan_period();
   const auto place = timeline_->Find(skip_to_->time_since_epoch() - kLead);
   if (!place && timeline_->cancelled()) return GST_FLOW_FLUSHING;
@@ -118,7 +118,7 @@ GstFlowReturn FileSession::EndOfCapture() {
 }
 
 GstFlowReturn FileSession::Poll() {
-  // The first packets set the clock, whatever is played.
+  // The first packets set the clock, at any seek position.
   if (target_ && stream()->knows_time()) {
     const GstFlowReturn flow = GoToTarget();
     if (flow != GST_FLOW_OK) return flow;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A session on a capture file, as fast as it goes or at the pace of the capture.
+// A session on a capture file, at full speed or at the pace of the capture.
 #pragma once
 #include <memory>
 #include <mutex>
@@ -36,7 +36,7 @@ class FileSession : public Session {
   std::unique_ptr<PcapFeed> pcap_;
   std::optional<CaptureTimeline> timeline_;
   bool begun_ = false;           // a packet was read
-  std::optional<Time> target_;   // of a seek that is to be done
+  std::optional<Time> target_;   // time of a pending seek
   std::optional<Time> skip_to_;  // packets before it are left out
   bool restart_reported_ = false;
   bool cut_reported_ = false;

@@ -30,7 +30,7 @@ namespace {
 
 using namespace lidar::gst;
 
-// The guess until the sensor is known: a slice at 10 and at 20 scans/s.
+// Guess until the sensor is known: a slice at 10 or 20 scans/s.
 constexpr GstClockTime kUsualSlice = 12'500 * GST_USECOND;
 
 struct State {
@@ -152,7 +152,7 @@ static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
   {
     State& state = StateOf(base);
     const std::lock_guard lock(state.mutex);
-    // Each sink sends the same one upstream.
+    // A seek comes once from each sink.
     if (std::exchange(state.last_seek, seqnum) == seqnum) return TRUE;
   }
   if (start == GST_SEEK_TYPE_END || stop == GST_SEEK_TYPE_END) {
@@ -220,7 +220,7 @@ static void InstallVmethods(GstLidarOusterSrcClass* klass) {
   src->event = Event;
   src->is_seekable = IsSeekable;
   src->do_seek = DoSeek;
-  // Caps are set with the first slice: the sensor says what they are.
+  // Caps are set with the first slice, as they depend on the sensor.
   src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
   GST_PUSH_SRC_CLASS(klass)->create = Create;
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;

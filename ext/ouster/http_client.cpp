@@ -44,7 +44,7 @@ std::size_t TakeHeader(char*, std::size_t size, std::size_t n, void* to) {
   return answer.too_large ? 0 : size * n;
 }
 
-/// Whom the client may talk to, and for how long.
+/// Bounds the hosts and the time of a request.
 void SetBounds(CURL* curl) {
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
@@ -61,7 +61,7 @@ bool IsHostCharacter(char c) {
          c == ':' || c == '[' || c == ']' || c == '%';
 }
 
-/// "scheme://host[:port]", or empty for what is no host.
+/// Returns "scheme://host[:port]", or an empty text if `host` is invalid.
 std::string BaseUrl(std::string host) {
   std::string scheme = "http://";
   for (const char* known : {"http://", "https://"}) {
@@ -100,8 +100,8 @@ void HttpClient::Cancel() {
   if (multi_ != nullptr) curl_multi_wakeup(multi_);
 }
 
-/// Runs the request that was set up, until it ends or is cancelled; a CURLcode. curl_easy_perform()
-/// would look at cancelled_ once a second only.
+/// Runs the prepared request until it ends or is cancelled; returns a CURLcode. curl_easy_perform()
+/// would check cancelled_ only once a second.
 int HttpClient::Transfer() {
   constexpr int kLongestWaitMs = 500;
   CURLcode code = CURLE_ABORTED_BY_CALLBACK;

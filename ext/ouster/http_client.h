@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Asks one sensor things over HTTP, within bounds.
+// Sends HTTP requests to a sensor, within bounds.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -14,8 +14,8 @@ struct HttpResponse {
   std::string error;  // for a user, where not ok
 };
 
-/// Talks to its sensor only: no redirects, no proxies, http and https alone; answers are bounded in
-/// size and time. Used by one thread, except Cancel().
+/// Talks to its sensor only: no redirects, no proxies, and only http and https. Answers are bounded
+/// in size and time. One thread may use it, except for Cancel().
 class HttpClient {
  public:
   /// Returns nothing and sets `error` unless `host` is a name or address, with an optional port and
@@ -41,7 +41,7 @@ class HttpClient {
 
   std::string base_url_;
   void* curl_;   // CURL*
-  void* multi_;  // CURLM*: the way to wait that Cancel() ends at once
+  void* multi_;  // CURLM*: its wait ends at Cancel()
   std::atomic<bool> cancelled_{false};
 };
 

@@ -38,7 +38,7 @@ GstCaps* MakeCaps(const ouster::Metadata& metadata) {
   return caps;
 }
 
-/// The base class ends the clouds for reasons of its own (num-buffers, EOS sent to the element).
+/// The base class ends the clouds by itself (num-buffers, EOS sent to the element).
 GstPadProbeReturn EndWithClouds(GstPad*, GstPadProbeInfo* info, gpointer imu) {
   GstEvent* event = GST_PAD_PROBE_INFO_EVENT(info);
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS || GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT_DONE)
@@ -46,7 +46,7 @@ GstPadProbeReturn EndWithClouds(GstPad*, GstPadProbeInfo* info, gpointer imu) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Packets leave as they come. The pad src answers for the position in the recording.
+/// Packets leave as they come. The pad src answers position queries.
 gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
   switch (GST_QUERY_TYPE(query)) {
     case GST_QUERY_LATENCY:
@@ -63,7 +63,7 @@ gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
   }
 }
 
-/// A seek is of the clouds and the samples.
+/// A seek applies to clouds and samples.
 gboolean Event(GstPad* pad, GstObject* parent, GstEvent* event) {
   if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK) return gst_pad_event_default(pad, parent, event);
   return gst_pad_send_event(GST_BASE_SRC_PAD(parent), event);

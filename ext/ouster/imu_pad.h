@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sometimes pad `imu`: what a sensor's inertial measurement unit says. It ends with the pad
-// src.
+// The sometimes pad `imu` with the samples of a sensor's inertial measurement unit. It ends with
+// the pad src.
 #pragma once
 #include <gst/gst.h>
 
@@ -25,7 +25,7 @@ class ImuPad {
 
   /// Sets the segment of the next packets. Not while Push() runs.
   void SetSegment(const GstSegment& segment);
-  /// Around a flushing seek of the clouds; any thread may call them.
+  /// Call them around a flushing seek of the clouds, from any thread.
   void StartFlush(guint32 seqnum);
   void StopFlush(guint32 seqnum);
 

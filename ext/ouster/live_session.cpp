@@ -20,9 +20,9 @@ namespace {
 
 constexpr guint kDefaultLidarPort = 7502;
 constexpr guint kDefaultImuPort = 7503;
-constexpr gint64 kSilenceUs = 1'000'000;        // a sensor that says nothing that long is away
+constexpr gint64 kSilenceUs = 1'000'000;        // a sensor is away after such a silence
 constexpr gint64 kFirstSilenceUs = 3'000'000;   // before its first packet
-constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // how often the silence is looked at
+constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // interval between checks for silence
 constexpr gint64 kQuestionIntervalUs = 1'000'000;
 constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id
 constexpr guint kWrongSizesForQuestion = 4;
@@ -35,7 +35,7 @@ std::string Readable(const std::string& text) {
   return valid.get();
 }
 
-/// An IPv4 address as a mapped one, so that it is the same on every socket.
+/// Returns an IPv4 address as a mapped one, so that it is equal on all sockets.
 ouster::Sender SenderOf(const NativeAddress& from) {
   ouster::Sender sender{};
   if (from.storage.ss_family == AF_INET6) {
@@ -51,7 +51,8 @@ ouster::Sender SenderOf(const NativeAddress& from) {
   return sender;
 }
 
-/// Whether the process may open so many more files. GLib aborts where it finds none for itself.
+/// Returns true if the process may open so many more files. GLib aborts if it finds none for
+/// itself.
 bool CanOpenFiles(std::size_t count) {
   std::vector<int> files;
   while (files.size() < count) {
@@ -87,13 +88,13 @@ bool LiveSession::Open() {
   return OpenFeed() && OpenLink();
 }
 
-/// Sockets of a stream whose metadata is in a file need no answer of the sensor.
+/// Sockets of a stream with metadata from a file do not wait for the sensor.
 bool LiveSession::OpenFeed() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
     auto metadata = LoadMetadata();
     if (!metadata || !SetMetadata(*std::move(metadata)) || !OpenSockets(stream()->metadata()))
       return false;
-    // Only packets can show that metadata from a file is wrong, so they are waited for from now on.
+    // Only packets can show that metadata from a file are wrong, so they are awaited from now on.
     last_packet_us_ = g_get_monotonic_time();
   }
   return true;
@@ -208,7 +209,7 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
         ("is it powered, and is its name or address right?"));
     return false;
   }
-  // Packets count for more than the API: they may well go on while that is down.
+  // Packets count more than the API: they may continue while it is down.
   if (connected_) return true;
   SetConnected(false, why);
   if (!std::exchange(api_reported_, true))
@@ -255,12 +256,12 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
   return true;
 }
 
-/// The sensor restarted or was reconfigured. Its packets wait for its metadata, where that can be
-/// had; otherwise they are taken as they are.
+/// The sensor restarted or was reconfigured. Its packets wait for new metadata if these can be
+/// fetched; otherwise they are used with the old ones.
 void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
   const gint64 now = g_get_monotonic_time();
   if (new_init_id_us_ == 0) new_init_id_us_ = now;
-  // A sensor without a serial number may be another one on this port, while ours goes on.
+  // A sensor without a serial number may be another one on this port, while ours continues.
   const bool may_be_another = stream()->metadata().serial == 0;
   if ((link_ || may_be_another) && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
   new_init_id_us_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A session with a sensor on the network: finds it, follows it, and waits for it when it is away.
+// A session with a sensor on the network: finds the sensor, follows it, and waits while it is away.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -48,9 +48,9 @@ class LiveSession : public Session {
   guint receive_buffer_ = 0;
   bool connected_ = false;
   bool lost_once_ = false;
-  bool heard_ = false;  // a packet of the sensor, ever
+  bool heard_ = false;  // a packet of the sensor has come
   guint reconnects_ = 0;
-  std::string destination_;    // of the sensor's packets, as it says
+  std::string destination_;    // of the sensor's packets, by its configuration
   gint64 last_packet_us_ = 0;  // g_get_monotonic_time()
   gint64 new_init_id_us_ = 0;  // arrival of the first packet of an unknown init id
   gint64 last_question_us_ = 0;

@@ -27,7 +27,7 @@ bool PcapFeed::StartOver() {
 }
 
 std::optional<PcapFeed::Packet> PcapFeed::Next() {
-  constexpr std::size_t kMaxSizes = 64;  // to remember
+  constexpr std::size_t kMaxSizes = 64;  // number of payload sizes to remember
   auto captured = reader_->Next();
   if (!captured) {
     error_ = reader_->error();

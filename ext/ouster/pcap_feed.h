@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The packets of a capture file, looped on request, with the time each is due.
+// The packets of a capture file, looped on request, with their due times.
 #pragma once
 #include <map>
 #include <memory>
@@ -14,25 +14,25 @@ namespace lidar::gst {
 
 class PcapFeed {
  public:
-  /// Null and `error` for a file that is missing or no capture.
+  /// Returns null and `error` for a missing file or one that is no capture.
   static std::unique_ptr<PcapFeed> Open(const std::string& path, const ouster::Metadata& metadata,
                                         bool loop, std::string* error);
 
   struct Packet {
     std::vector<std::uint8_t> payload;
-    Duration due{};  // since the first packet, loops laid end to end
+    Duration due{};  // since the first packet, with loops joined
     Time captured;   // since the Unix epoch
     ouster::Sender sender{};
-    bool starts_over = false;  // the first one of another round
+    bool starts_over = false;  // first packet of another round
   };
-  /// Returns nothing at the end, or where the file is damaged: error() then says so.
+  /// Returns nothing at the end, or for a damaged file: error() then has the reason.
   std::optional<Packet> Next();
-  /// Next() goes on at `offset` of the file, or at its front, with times that count from `first`.
-  /// Returns false if the file is gone. Not while looping.
+  /// Makes Next() continue at `offset` of the file, or at its front, with times relative to
+  /// `first`. Returns false if the file is gone. Not for looping.
   bool Reposition(Time first, std::optional<std::int64_t> offset);
   const std::string& error() const { return error_; }
   bool found_lidar_packets() const { return found_; }
-  /// Describes the file's packets, of other sensors or none, for a user.
+  /// Describes the file's packets, which may be of other sensors, for a user.
   std::string DescribeContents() const;
 
  private:
@@ -48,7 +48,7 @@ class PcapFeed {
   Duration round_start_{};
   bool starts_over_ = false;
   bool found_ = false;
-  std::map<std::size_t, std::uint64_t> sizes_;  // bytes of a payload -> how many
+  std::map<std::size_t, std::uint64_t> sizes_;  // number of packets by payload size [bytes]
   std::string error_;
 };
 

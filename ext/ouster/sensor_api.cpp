@@ -59,7 +59,7 @@ std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
   return std::make_optional<json>(wanted);
 }
 
-/// The entries of `wanted` that the configuration `has` lacks or sets otherwise.
+/// Returns the entries of `wanted` that differ from the configuration `has`.
 json Missing(const json& wanted, const json& has) {
   json missing = json::object();
   for (const auto& [key, value] : wanted.items())
@@ -78,7 +78,7 @@ std::optional<ouster::Metadata> SensorApi::FetchMetadata(ApiError* error) {
   }
   std::string why;
   auto metadata = ouster::ParseMetadata(response.body, &why);
-  // A sensor that is starting up answers, but with parts missing.
+  // A sensor that starts up answers with parts missing.
   if (!metadata) *error = {"the sensor's metadata cannot be used: " + why, false};
   return metadata;
 }
@@ -94,7 +94,7 @@ std::optional<std::string> SensorApi::ReadConfig(bool staged, ApiError* error) {
   return std::nullopt;
 }
 
-/// Our address as the sensor sees it. To learn it, `@auto` is staged and read back, not activated.
+/// Returns our address as the sensor sees it: `@auto` is staged and read back, not activated.
 std::optional<std::string> SensorApi::ResolveAuto(ApiError* error) {
   HttpResponse response = client_.Post("sensor/config?staging=true&reinit=false&persist=false",
                                        R"({"udp_dest":"@auto"})");
@@ -132,7 +132,7 @@ bool SensorApi::WriteConfig(const std::string& text, ApiError* error) {
 }
 
 bool SensorApi::WaitUntilRunning(const std::function<bool()>& sleep, ApiError* error) {
-  constexpr int kAttempts = 90;  // a motor takes its time to spin up
+  constexpr int kAttempts = 90;  // time for a motor to spin up
   std::string last = "silent";
   for (int i = 0; i < kAttempts; ++i) {
     const HttpResponse response = client_.Get("sensor/metadata");

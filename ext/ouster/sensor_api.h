@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sensor's HTTP API: its metadata, and its configuration made what the user asked for.
+// The sensor's HTTP API: reads its metadata, and sets its configuration.
 #pragma once
 #include <functional>
 #include <optional>
@@ -24,11 +24,12 @@ class SensorApi {
 
   std::optional<ouster::Metadata> FetchMetadata(ApiError* error);
 
-  /// Sets what differs from what `settings` ask for, has the sensor take it and checks that it did.
-  /// Returns true if nothing (more) has to change. `sleep` waits about a second; false: stop.
+  /// Sets the differences from `settings`, makes the sensor apply them and checks the result.
+  /// Returns true if nothing has to change any more. `sleep` waits about a second; its false ends
+  /// the call.
   bool Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
                  ApiError* error);
-  /// Destination of the sensor's packets, "192.0.2.1:7502"; empty if it does not say.
+  /// Returns the destination of the sensor's packets, "192.0.2.1:7502"; empty if unknown.
   std::string Destination();
 
  private:

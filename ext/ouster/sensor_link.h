@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Asks the sensor over HTTP in a thread of its own, so that packets never wait for an answer.
+// Sends requests to the sensor in a thread of its own, so that packets never wait for an answer.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -18,7 +18,7 @@ class SensorLink {
   struct Result {
     std::optional<ouster::Metadata> metadata;  // empty: the request failed
     ApiError error;
-    std::string destination;  // where the sensor sends its packets, where it says so
+    std::string destination;  // destination of the sensor's packets, if known
   };
 
   /// Returns null and sets `error` for a malformed hostname, or if no thread can be made. The

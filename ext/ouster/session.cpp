@@ -17,11 +17,10 @@
 namespace lidar::gst {
 namespace {
 
-// 8 bit a pixel and a header: more than the largest scan has.
+// 8 bits per pixel and a header: more than the largest scan needs.
 constexpr std::size_t kMaxMaskSize = 32U << 20;
 
-/// Returns nothing for what cannot be read; only the start of a file that is larger than
-/// `max_size`.
+/// Returns nothing for a file that cannot be read, and the first `max_size` bytes of a larger file.
 std::optional<std::string> ReadFile(const std::string& path, std::size_t max_size) {
   constexpr std::size_t kPiece = 1U << 16;
   std::ifstream file(path, std::ios::binary);
@@ -179,7 +178,7 @@ GstClockTime Session::RunningTime() const {
   return now > base_time ? now - base_time : 0;
 }
 
-/// Counts of the streams so far.
+/// Counts of all streams so far.
 Counters Session::Total() const {
   Counters now;
   now.batcher = stream_->batcher().stats();
@@ -200,7 +199,7 @@ void Session::UpdateCounters() {
   PostLoss(now);
 }
 
-/// Says that packets were lost, once a second at most.
+/// Posts that packets were lost, at most once a second.
 void Session::PostLoss(const Counters& now) {
   const guint64 lost = now.batcher.lost_packets;
   if (lost == posted_losses_) return;

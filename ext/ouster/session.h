@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The state of ouster_src between start and stop: packets in from a sensor or a file, buffers out.
+// The state of ouster_src from start to stop: takes packets of a sensor or a file, makes buffers.
 #pragma once
 #include <gst/base/gstbasesrc.h>
 
@@ -40,12 +40,12 @@ class Session {
   /// Next() returns FLUSHING until UnlockStop(). Any thread may call both.
   virtual void Unlock() = 0;
   virtual void UnlockStop() = 0;
-  /// The pipeline plays, for the first time or again after a pause. Any thread may call this.
+  /// The pipeline plays, or plays again after a pause. All threads may call it.
   virtual void Resume() {}
 
-  /// Whether Seek() works.
+  /// Returns true if Seek() works.
   virtual bool seekable() const { return false; }
-  /// The next slices are those of `segment`. While Next() does not run.
+  /// Makes the next slices those of `segment`. Not while Next() runs.
   virtual void Seek(const GstSegment& segment) {
     start_ = segment.start;
     ended_ = false;
@@ -62,13 +62,13 @@ class Session {
  protected:
   Session(GstBaseSrc* element, OusterSettings settings);
 
-  /// Waits for packets and takes them in. OK: Next() looks for slices, then comes again.
+  /// Waits for packets and takes them. After OK, Next() looks for slices and calls it again.
   virtual GstFlowReturn Poll() = 0;
   virtual void AddCounters(Counters*) const {}
 
   /// Returns nothing after an error was posted.
   std::optional<ouster::Metadata> LoadMetadata();
-  /// Takes the sensor as described from now on; false after an error was posted.
+  /// Uses the described sensor from now on. Returns false after an error message.
   bool SetMetadata(ouster::Metadata metadata);
   ouster::PacketVerdict Push(ByteView payload, const ouster::Arrival& arrival);
   void UpdateCounters();
@@ -94,7 +94,7 @@ class Session {
   bool discont_ = false;
   bool ended_ = false;
   GstClockTime start_ = 0;  // slices that end before it are left out
-  Counters base_;           // of the streams before this one
+  Counters base_;           // of earlier streams
   guint64 posted_losses_ = 0;
   GstClockTime last_loss_post_ = GST_CLOCK_TIME_NONE;
 

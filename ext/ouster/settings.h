@@ -52,10 +52,10 @@ struct OusterSettings {
   gint invalid = kInvalidZero;
   bool destagger = false;
 
-  /// UDP is always live; a file is when the user says so.
+  /// UDP is always live; the user decides for files.
   bool live() const { return location.empty() || is_live; }
   bool from_file() const { return !location.empty(); }
-  /// Place of the metadata: beside the capture, unless the user says otherwise. Empty: not known.
+  /// Path of the metadata: beside the capture unless the user gives one. Empty: unknown.
   std::string MetadataPath() const;
 };
 
@@ -64,7 +64,7 @@ StructurePtr OusterStats(GObject* source);
 
 extern const std::array<Property<OusterSettings>, 31> kOusterProperties;
 
-/// Returns nothing and sets `error`, in words for a user, if a property makes no sense.
+/// Returns nothing and sets `error`, for a user, if properties contradict each other.
 std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& settings,
                                                      std::string* error);
 

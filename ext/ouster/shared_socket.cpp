@@ -14,7 +14,7 @@ namespace {
 
 constexpr gsize kSmallestQueue = 1U << 20;  // bytes
 
-/// Keeps out the groups that others on the machine joined.
+/// Ignores multicast groups that other programs joined.
 void OnlyJoinedGroups(GSocket* socket) {
   const int off = 0;
   const int fd = g_socket_get_fd(socket);
@@ -42,10 +42,10 @@ GSocket* OpenSocket(const SocketPlace& place, GError** error) {
 
 }  // namespace
 
-/// The sockets of the process: a port belongs to the process as a whole, whatever elements it has.
+/// The sockets of the process: all elements that use a port share its socket.
 class SharedSocket {
  public:
-  /// Opens the reader's place, or joins those who have it.
+  /// Opens the reader's socket, or joins those who use it.
   static bool Attach(SocketReader* reader, GError** error) {
     std::lock_guard lock(RegistryMutex());
     auto& slot = Registry()[reader->place_];
@@ -81,7 +81,7 @@ class SharedSocket {
 
   int fd() const { return g_socket_get_fd(socket_.get()); }
 
-  /// Fills the reader's taken_ and arrived_: what others left for it, then what is on the socket.
+  /// Fills the reader's taken_ and arrived_ from its queue, then from the socket.
   bool TakeFor(SocketReader* reader) {
     std::lock_guard lock(mutex_);
     reader->taken_.swap(reader->queue_);

@@ -35,23 +35,22 @@ class SharedSocket;
 /// needed and a lone reader copies nothing. For one thread.
 class SocketReader {
  public:
-  /// `queue_bytes` bounds what waits here while another reader empties the socket, and is asked of
-  /// the kernel for the socket; 0: the kernel's default. Null and `error` where the place cannot be
-  /// had.
+  /// `queue_bytes` bounds the reader's queue, and the kernel's buffer of the socket; 0: the
+  /// kernel's default. Returns null and `error` if the socket cannot be opened.
   static std::unique_ptr<SocketReader> Open(const SocketPlace& place, guint queue_bytes,
                                             GError** error);
   ~SocketReader();
   SocketReader(const SocketReader&) = delete;
   SocketReader& operator=(const SocketReader&) = delete;
 
-  /// Descriptor to wait for: readable while something may be there for Receive().
+  /// Returns a descriptor that is readable while Receive() may find datagrams.
   int socket_fd() const;
   int queue_fd() const { return queued_.fd(); }
-  /// Hands over what is there; false with errno where the socket failed.
+  /// Hands over the datagrams; returns false with errno set if the socket failed.
   bool Receive(const std::function<void(const ReceivedDatagram&)>& consume);
 
   guint granted_buffer() const { return granted_buffer_; }  // bytes
-  /// Datagrams that found the socket's buffer, or the queue here, full.
+  /// Number of datagrams lost because the socket's buffer, or the queue here, was full.
   guint64 drops() const { return kernel_drops_ + queue_drops_; }
 
  private:
@@ -72,7 +71,7 @@ class SocketReader {
   UdpBatchReceiver batch_;
   std::vector<Copy> taken_;
   std::vector<ReceivedDatagram> arrived_;
-  guint64 drops_before_ = 0;  // of the kernel, when this reader came
+  guint64 drops_before_ = 0;  // kernel's count when this reader came
   guint64 kernel_drops_ = 0;
   guint64 queue_drops_ = 0;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices as GStreamer carries them.
+// Converts slices to GStreamer buffers.
 #pragma once
 #include <gst/gst.h>
 

@@ -26,10 +26,10 @@ class UdpFeed {
   };
   struct Opened {
     guint granted_buffer = 0;  // bytes
-    std::string error;         // for a user; empty: all is well
-    std::string imu_error;     // the lidar's socket alone is open
+    std::string error;         // for a user; empty: success
+    std::string imu_error;     // for a user; only the lidar's socket is open
   };
-  /// Binds and joins, in place of what was open before.
+  /// Binds and joins, replacing open sockets.
   Opened Open(const OusterSettings& settings, const Ports& ports);
   bool IsOpen(const Ports& ports) const;
   void Close();
@@ -37,8 +37,8 @@ class UdpFeed {
   guint port() const { return lidar_ ? ports_.lidar : 0; }
 
   enum class Outcome { kPackets, kTimeout, kWoken, kError };
-  /// Waits for datagrams, or for Wake() alone while closed, and hands over what is there; their
-  /// bytes are valid during the call.
+  /// Waits for datagrams, or only for Wake() while closed, and hands them over. Their bytes are
+  /// valid during the call.
   Outcome Receive(gint64 timeout_ns, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Makes Receive() return kWoken until ClearWake().
   void Wake() { wake_.Wake(); }

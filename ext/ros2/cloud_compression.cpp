@@ -18,13 +18,13 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of a cloud, as of a message
 constexpr int kZstdLevel = 1;
 constexpr int kZlibLevel = 1;
-constexpr int kGzipWindow = 15 + 16;  // the plugin of zlib writes gzip
-constexpr int kAnyWindow = 15 + 32;   // and takes either
-// No byte of data gives more than so many.
+constexpr int kGzipWindow = 15 + 16;  // zlib's plugin writes gzip
+constexpr int kAnyWindow = 15 + 32;   // reads zlib and gzip
+// Greatest output of a byte of data.
 constexpr std::size_t kZlibMost = 1032;
 constexpr std::size_t kZstdMost = std::size_t{1} << 16;
 
-/// Bytes of the points, and what rows may add to them.
+/// Bytes of the points, and the most that rows may add.
 struct Bounds {
   std::size_t least, most;
 };
@@ -37,7 +37,7 @@ std::optional<Bounds> BoundsOf(const cdr::RosLayout& layout) {
   return Bounds{row * height, std::min<std::uint64_t>(most, kMostBytes)};
 }
 
-/// Sets `out` to what `data` may hold; false if that is less than the points.
+/// Resizes `out` for the content of `data`. Returns false if that is less than the points.
 bool MakeRoom(ByteView data, const Bounds& bounds, std::size_t most_per_byte, Bytes* out) {
   const std::size_t most = (data.size + 1) * most_per_byte;
   if (bounds.least > most) return false;
@@ -96,7 +96,8 @@ bool PackZstd(ByteView points, Bytes* out) {
 #ifdef WITH_DRACO
 constexpr bool kHasDraco = true;
 
-/// Draco has its numbers in the order of this machine; nothing for a layout that it cannot hold.
+/// Draco has numbers in this machine's byte order. Returns nothing for a layout that it cannot
+/// hold.
 std::optional<draco::FieldLayout> DracoLayoutOf(const cdr::RosLayout& layout) {
   if (layout.is_bigendian) return std::nullopt;
   draco::FieldLayout fields;
@@ -110,7 +111,7 @@ std::optional<draco::FieldLayout> DracoLayoutOf(const cdr::RosLayout& layout) {
   return fields;
 }
 
-/// The publisher leaves doubled points out, and not each version says so in the width.
+/// The publisher leaves doubled points out, and some versions do not correct the width.
 bool UnpackDraco(const cdr::RosLayout& layout, ByteView data, cdr::MadeCloud* made) {
   const auto fields = DracoLayoutOf(layout);
   const std::size_t points = std::size_t{layout.width} * std::max(layout.height, 1U);

@@ -14,8 +14,8 @@ enum class CloudCompression { kDraco, kZlib, kZstd };
 /// The compression's name in messages.
 const char* NameOf(CloudCompression compression);
 
-/// Returns nothing if the format is not known here or the data are damaged; `why` then says so. No
-/// more memory is taken than the layout's points need, at most 256 MiB.
+/// Returns nothing for an unknown format or damaged data; `why` has the reason. Takes no more
+/// memory than the layout's points need, at most 256 MiB.
 std::optional<cdr::MadeCloud> Decompress(const cdr::CompressedCloud& compressed, std::string* why);
 
 /// Packs the points without loss. Returns nothing if the compression is not built in, or takes no

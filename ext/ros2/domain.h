@@ -7,11 +7,11 @@
 
 namespace lidar::dds {
 
-/// Each owner of entities in it holds it.
+/// Each owner of entities in the domain holds one.
 class Domain {
  public:
-  /// Null if Cyclone refuses its configuration; `why` then says so. It may be the user's: ours has
-  /// only what large messages need, and the environment variable CYCLONEDDS_URI comes after it.
+  /// Returns null if Cyclone refuses its configuration; `why` has the reason. The fault may be the
+  /// user's: CYCLONEDDS_URI is read after ours, which only allows large messages.
   static std::unique_ptr<Domain> Join(std::uint32_t id, std::string* why);
   ~Domain();
   Domain(const Domain&) = delete;

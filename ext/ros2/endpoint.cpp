@@ -54,8 +54,8 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-/// The domain may let larger messages through, where another part of the process made it. A hundred
-/// messages that are no clouds may wait. Thousands of transforms are smaller than this.
+/// The domain may pass larger messages if another part of the process created it. A hundred
+/// messages without clouds may wait; thousands of transforms are smaller than this.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
   return cdr::IsCloud(type) ? Domain::kMaxMessage : kMaxSmall;
@@ -161,7 +161,7 @@ Reader::Event Reader::Wait() {
 
 void Reader::Wake(bool on) { dds_set_guardcondition(guard_, on); }
 
-/// Takes what is new among the publications of the domain.
+/// Looks for new publishers of the topic with another type.
 bool Reader::FindsOtherType() {
   void* sample = nullptr;
   dds_sample_info_t info{};

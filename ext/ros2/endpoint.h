@@ -19,7 +19,7 @@ struct EndpointOptions {
   std::string topic;  // as DDS has it
   cdr::RosType type = cdr::RosType::kPointCloud2;
   bool reliable = false;
-  bool transient = false;  // publishers keep messages for those who come later
+  bool transient = false;  // publishers keep messages for later subscribers
   unsigned depth = 5;      // messages kept
   std::size_t gid_size = 16;
   bool tells_type_hash = true;
@@ -52,16 +52,16 @@ class Reader : public Node {
   enum class Event {
     kMessage,
     kWoken,
-    kIncompatible,  // a publisher is there that this reliability does not fit
+    kIncompatible,  // a publisher's reliability is incompatible
     kOtherType,     // a publisher of this topic has another type: other_type()
     kFailed,
   };
-  /// Blocks until there is something to say. Only one thread may wait.
+  /// Blocks until an event. Only one thread may wait.
   Event Wait();
   /// Callable from any thread: Wait() returns at once until Wake(false).
   void Wake(bool on);
 
-  /// Valid after kMessage; null for a node that left, which is a message, too.
+  /// Valid after kMessage; null for the message of a node that left.
   MessagePtr Take();
   const std::string& other_type() const { return other_type_; }
   /// Counts of messages that DDS missed, and of present publishers.
@@ -78,7 +78,7 @@ class Reader : public Node {
   std::int32_t waitset_ = 0;
   std::int32_t guard_ = 0;
   std::int32_t messages_ = 0;      // a condition: there are some
-  std::int32_t publications_ = 0;  // reads what others write
+  std::int32_t publications_ = 0;  // reads the publications of others
 };
 
 class Writer : public Node {
@@ -89,7 +89,7 @@ class Writer : public Node {
   /// Waits for slow reliable subscribers, but no longer than kMaxBlocking.
   Result Publish(const std::vector<ByteView>& pieces);
   unsigned subscribers() const;
-  /// True once for each subscriber that this reliability does not fit.
+  /// Returns true once for each subscriber with an incompatible reliability.
   bool FoundIncompatible();
 
   static constexpr std::int64_t kMaxBlockingNs = 100'000'000;  // as ROS 2 has it

@@ -178,7 +178,7 @@ static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosT
   state.messages = std::make_unique<MessageWriter>(type);
   std::unique_lock lock(state.mutex);
   std::swap(state.writer, writer);
-  lock.unlock();  // the one before, if there was one, ends without the lock
+  lock.unlock();  // the last writer ends without the lock
   return true;
 }
 
@@ -224,7 +224,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   return FALSE;
 }
 
-/// A single warning, until a message gets through: a subscriber that hangs would make many.
+/// Warns once until a message gets through: a subscriber that hangs would cause many warnings.
 static void NoteResult(GstLidarRos2Sink* self, Writer::Result result, gsize bytes) {
   State& state = StateOf(self);
   const bool sent = result == Writer::Result::kSent;

@@ -57,7 +57,7 @@ struct Ros2SrcSettings {
 /// Each publisher of static transforms sends them once; tf2 keeps as many.
 constexpr guint kStaticDepth = 100;
 
-/// Returns true if the topic holds what does not change: by its name, as ROS has it.
+/// Returns true if the topic's content never changes: by its name, as in ROS.
 bool IsForGood(const Ros2SrcSettings& settings) {
   const std::string name = settings.ros.topic.substr(settings.ros.topic.rfind('/') + 1);
   return settings.type == RosType::kTransforms && name == "tf_static";
@@ -241,7 +241,7 @@ static void NoteDamaged(GstLidarRos2Src* self, const std::string& why) {
   state.warned_damaged = true;
 }
 
-/// OK where there is a buffer, CUSTOM_SUCCESS where the message has none.
+/// Returns OK for a buffer, CUSTOM_SUCCESS for a message without one.
 static GstFlowReturn Take(GstLidarRos2Src* self, const lidar::dds::MessagePtr& message) {
   State& state = StateOf(self);
   const lidar::ByteView bytes = lidar::dds::BytesOf(message.get());
@@ -329,7 +329,7 @@ static void InstallVmethods(GstLidarRos2SrcClass* klass) {
   src->unlock = Unlock;
   src->unlock_stop = UnlockStop;
   src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
-  // Caps are set with the first message, which says what they are.
+  // Caps are set with the first message, which determines them.
   src->negotiate = [](GstBaseSrc* base) -> gboolean {
     if (const auto& messages = StateOf(base).messages) messages->Renegotiate();
     return TRUE;

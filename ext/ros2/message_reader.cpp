@@ -21,7 +21,7 @@ std::string ToText(const std::string& name) {
   return valid.get();
 }
 
-/// The fields that `caps` fix, if they do.
+/// Returns the fields that `caps` fix, if any.
 std::optional<cdr::PointLayout> WantedPoints(const GstCaps* caps) {
   if (caps == nullptr || gst_caps_is_any(caps) || gst_caps_is_empty(caps)) return std::nullopt;
   const GstStructure* s = gst_caps_get_structure(caps, 0);
@@ -63,7 +63,7 @@ void MessageReader::SetStamp(Time stamp) {
   if (ns > 0) gst_lidar_buffer_set_capture_time(buffer_.get(), static_cast<GstClockTime>(ns));
 }
 
-/// Caps that downstream takes; `caps` are what the message alone says.
+/// Returns caps that downstream takes; `caps` follow from the message alone.
 MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   const CapsPtr wanted = wanted_();
   if (wanted)
@@ -93,7 +93,7 @@ MessageReader::Verdict MessageReader::Adapt(const cdr::PointCloud2& cloud) {
   info.fields = converter->points().fields;
   info.is_dense = cloud.is_dense;
   CapsPtr caps(info.ToCaps());
-  // Messages do not say how many a second there are: a filter downstream may.
+  // Messages have no rate: a filter downstream may set one.
   gst_structure_remove_field(gst_caps_get_structure(caps.get(), 0), "framerate");
   gst_caps_set_simple(caps.get(), GST_LIDAR_FRAME_ID, G_TYPE_STRING,
                       ToText(cloud.header.frame_id).c_str(), nullptr);
@@ -172,7 +172,7 @@ MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
   return SetCaps(std::move(caps));
 }
 
-/// The message as it is: each transform of it has frames and a time of its own.
+/// Passes the message unchanged: each of its transforms has its own frames and time.
 MessageReader::Verdict MessageReader::ReadTransforms(ByteView message) {
   const auto transforms = cdr::ReadTransforms(message);
   if (!transforms) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ROS 2 messages as buffers and caps.
+// Converts ROS 2 messages to buffers and caps.
 #pragma once
 #include <gst/gst.h>
 
@@ -19,23 +19,23 @@ class MessageReader {
  public:
   /// `wanted` gives what downstream takes; null: anything.
   using Wanted = std::function<CapsPtr()>;
-  /// `for_good`: what transforms say does not change with time.
+  /// `for_good`: transforms do not change with time.
   MessageReader(cdr::RosType type, Wanted wanted, bool for_good = false)
       : type_(type), wanted_(std::move(wanted)), for_good_(for_good) {}
 
   enum class Verdict {
     kBuffer,         // buffer()
-    kEmpty,          // a cloud of no points, a message of no transforms
+    kEmpty,          // a cloud without points, or a message without transforms
     kDamaged,        // why()
-    kNotNegotiated,  // no caps of this message are what downstream takes: why()
+    kNotNegotiated,  // downstream takes no caps of this message: why()
   };
   Verdict Read(ByteView message);
-  /// Downstream may take something else from now on: it is asked at the next cloud.
+  /// Queries downstream again at the next cloud.
   void Renegotiate() { converter_.reset(); }
 
   const std::string& why() const { return why_; }
   BufferPtr TakeBuffer() { return std::move(buffer_); }
-  /// The caps of the buffer, where they are not those of the one before.
+  /// Returns the caps of the buffer if they differ from the last ones.
   CapsPtr TakeNewCaps() { return std::move(new_caps_); }
 
  private:

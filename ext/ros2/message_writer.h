@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Buffers as ROS 2 messages.
+// Converts buffers to ROS 2 messages.
 #pragma once
 #include <gst/gst.h>
 
@@ -16,8 +16,8 @@
 
 namespace lidar::gst {
 
-/// The frame, and the child frame whose pose in it a message gives. An empty name stands for the
-/// caps' or the default one.
+/// The frame, and the child frame whose pose a message gives. An empty name means the caps' or the
+/// default one.
 struct Frames {
   std::string frame_id;
   std::string child_frame_id;
@@ -27,7 +27,7 @@ struct Frames {
 struct MessageSettings {
   Frames frames;
   CloudCompression compression = CloudCompression::kZstd;  // of CompressedPointCloud2
-  // Tracked poses have these; 0: not known.
+  // Variances of tracked poses; 0: unknown.
   double position_variance = 0;     // m^2
   double orientation_variance = 0;  // rad^2
 };
@@ -43,8 +43,8 @@ class MessageWriter {
   /// Returns false and sets why() if buffers of `caps` cannot be messages of the type.
   bool SetCaps(const GstCaps* caps);
 
-  /// Gives each message of `buffer` in pieces, which live until it returns. `now` is the time of
-  /// buffers that have no capture time. Returns false if the buffer is not as its caps say.
+  /// Gives the messages of `buffer` in pieces, which are valid until it returns. `now` is the time
+  /// of buffers without a capture time. Returns false if the buffer contradicts its caps.
   using Publish = std::function<void(const std::vector<ByteView>& pieces)>;
   bool Write(GstBuffer* buffer, const MessageSettings& settings, Time now, const Publish& publish);
 

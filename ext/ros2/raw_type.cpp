@@ -15,7 +15,7 @@ namespace lidar::dds {
 namespace {
 
 struct RawType : ddsi_sertype {
-  std::size_t max_size = 0;  // of a message that comes
+  std::size_t max_size = 0;  // of a received message
 };
 
 std::size_t Cut(const ddsi_sertype* type, std::size_t size) {
@@ -42,7 +42,7 @@ RawData* NewRaw(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t si
   return data.release();
 }
 
-/// Fragments may overlap; a gap between two would be a bug of the caller, and stays zero.
+/// Fragments may overlap. A gap between two would be a bug of the caller, and is filled with zeros.
 ddsi_serdata* FromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
                             const nn_rdata* fragment, std::size_t whole) {
   const std::size_t size = Cut(type, whole);
@@ -75,7 +75,7 @@ ddsi_serdata* FromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
   return data;
 }
 
-/// The data that stand for all messages of a topic without keys.
+/// Returns data that stand for all messages of a topic without keys.
 ddsi_serdata* Untyped(const ddsi_serdata* data) {
   RawData* key = NewRaw(data->type, SDK_KEY, 0);
   if (key != nullptr) key->type = nullptr;
@@ -91,7 +91,7 @@ ddsi_serdata_ops DataOps() {
   ops.from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) -> ddsi_serdata* {
     return NewRaw(type, SDK_KEY, 0);
   };
-  // Samples are of no use here: all that we write and take are bytes.
+  // Samples are not used: we write and take bytes only.
   ops.from_sample = [](const ddsi_sertype*, ddsi_serdata_kind, const void*) -> ddsi_serdata* {
     return nullptr;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages as Cyclone DDS carries them: unchecked bytes. So this plugin counts damaged messages and
-// bounds what is allocated for them.
+// Messages as Cyclone DDS carries them, as unchecked bytes. So this plugin can count damaged
+// messages and bound their memory.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,9 +12,9 @@ struct ddsi_sertype;
 
 namespace lidar::dds {
 
-/// A keyless type called `dds_name`, with no description of itself (peers of other makers take data
-/// without one). Owned by the topic that is made of it. Messages of others that are larger than
-/// `max_size` [bytes] are cut there, and so damaged.
+/// Creates a keyless type `dds_name` without a type description (peers of other makers accept
+/// that). The topic that uses it owns it. Received messages larger than `max_size` [bytes] are cut
+/// there, and so damaged.
 ddsi_sertype* NewRawType(const char* dds_name, std::size_t max_size);
 
 struct Release {
@@ -23,7 +23,7 @@ struct Release {
 /// A message with its encapsulation header. It may outlive the domain that it came from.
 using MessagePtr = std::unique_ptr<ddsi_serdata, Release>;
 
-/// The pieces of a message, one behind the other, as DDS takes them.
+/// Joins the pieces of a message in the form that DDS takes.
 MessagePtr NewMessage(const ddsi_sertype* type, const std::vector<ByteView>& pieces);
 ByteView BytesOf(const ddsi_serdata* message);
 

@@ -9,9 +9,9 @@
 namespace lidar::gst {
 namespace {
 
-constexpr gint kMaxDomain = 232;  // the last whose ports exist
+constexpr gint kMaxDomain = 232;  // highest number whose ports exist
 
-/// The environment's, or 0; nothing if it is no number of a domain.
+/// Returns the environment's domain, or 0; nothing if it is no valid number.
 std::optional<gint> DomainOfEnvironment() {
   const char* text = std::getenv("ROS_DOMAIN_ID");
   if (text == nullptr || *text == '\0') return 0;

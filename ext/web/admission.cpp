@@ -30,7 +30,7 @@ std::string PeerOf(SoupServerMessage* request) {
                    HeaderOf(request, "X-Forwarded-For"));
 }
 
-/// "robot:8765" of "https://robot:8765".
+/// Returns "robot:8765" of "https://robot:8765".
 std::string_view WithoutScheme(std::string_view origin) {
   const auto slashes = origin.find("://");
   return slashes == std::string_view::npos ? origin : origin.substr(slashes + 3);
@@ -51,7 +51,7 @@ bool Lists(std::string_view list, std::string_view item) {
   return false;
 }
 
-/// A name could be that of another site, which its owner lets point here.
+/// Any site can make its own name point here, so names are refused.
 bool IsNoName(std::string_view host) {
   if (host.size() > 2 && host.front() == '[') host = host.substr(1, host.size() - 2);
   return host.empty() || host == "localhost" || g_hostname_is_ip_address(std::string(host).c_str());
@@ -81,7 +81,7 @@ std::string AddressOf(GInetAddress* peer, std::string_view forwarded) {
   return copy;
 }
 
-/// A token that is right opens for pages of any origin: no browser adds it by itself.
+/// A right token admits pages of any origin: a browser never adds it by itself.
 std::optional<Grant> Admission::Check(SoupServerMessage* request, GHashTable* query,
                                       Refusal* refusal) {
   if (!HasToken()) {

@@ -13,22 +13,24 @@
 
 namespace lidar::web {
 
-/// The address of a client: the peer, or the last that a proxy on this machine forwards for.
+/// Returns the address of a client: that of the peer, or the last one forwarded by a proxy on this
+/// machine.
 std::string AddressOf(GInetAddress* peer, std::string_view forwarded);
 
 /// Counts wrong tokens by address, and forgives them one by one.
 class WrongTokens {
  public:
-  /// Wrong tokens that an address may name at once, and the time in which it wins one back.
+  /// Number of wrong tokens that an address may send at once, and the time after which it may send
+  /// one more.
   static constexpr double kMost = 10;
   static constexpr gint64 kForgive_us = 6 * gint64{G_USEC_PER_SEC};
   static constexpr std::size_t kMostAddresses = 1024;
 
-  /// False for an address that has named too many.
+  /// Returns false for an address with too many wrong tokens.
   bool MayTry(const std::string& address, gint64 now_us) const {
     return CountOf(address, now_us) + 1 <= kMost;
   }
-  /// The address that was wrong longest ago gives way.
+  /// A new address replaces the one whose wrong token is oldest.
   void Note(const std::string& address, gint64 now_us);
 
  private:
@@ -36,7 +38,7 @@ class WrongTokens {
     double count = 0;
     gint64 at_us = 0;
   };
-  /// Wrong tokens that are not forgiven yet.
+  /// Number of wrong tokens that still count.
   double CountOf(const std::string& address, gint64 now_us) const;
 
   std::map<std::string, Wrong> wrong_;
@@ -51,7 +53,7 @@ class Admission {
     guint status = SOUP_STATUS_UNAUTHORIZED;
     const char* text = "";
   };
-  /// The grant of the request, or the refusal that answers it.
+  /// Returns the grant of the request, or the refusal to answer with.
   std::optional<Grant> Check(SoupServerMessage* request, GHashTable* query, Refusal* refusal);
 
  private:

@@ -23,11 +23,11 @@ class Certificate {
   /// sets `why`, once.
   bool Renew(std::string* why);
   GTlsCertificate* get() const { return certificate_.get(); }
-  /// What a user should know of a certificate that has run out, once; else empty.
+  /// Returns a notice for the user once after the certificate has expired; else empty.
   std::string NoticeOfEnd(std::int64_t now_s);
 
  private:
-  /// Says which files those are.
+  /// Identifies the versions of the files.
   std::string Stamp() const;
 
   const std::string file_;

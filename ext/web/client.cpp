@@ -10,7 +10,7 @@ namespace {
 using foxglove::CloseCode;
 using foxglove::Opcode;
 
-/// A subscription is a hundred bytes.
+/// A subscription has about a hundred bytes.
 constexpr std::size_t kMaxClientMessage = 64 * 1024;
 constexpr std::size_t kMaxControls = 64;
 /// Two scans have no more: 1024 each.
@@ -39,7 +39,7 @@ Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers)
 Client::~Client() {
   readable_.reset();
   writable_.reset();
-  // TLS would wait until a peer that takes nothing has room for its goodbye.
+  // TLS would wait for a peer that takes no goodbye.
   if (G_IS_TLS_CONNECTION(stream_.get())) {
     GIOStream* base = nullptr;
     g_object_get(stream_.get(), "base-io-stream", &base, nullptr);
@@ -62,7 +62,7 @@ gboolean Client::OnWritable(GObject*, gpointer self) {
   return G_SOURCE_REMOVE;
 }
 
-/// Reads a bounded part a turn: a client that sends without end must not keep the thread.
+/// Reads a bounded amount each turn: a client that sends without end must not occupy the thread.
 void Client::Read() {
   std::array<std::uint8_t, 16 * 1024> buffer;
   auto* input = G_POLLABLE_INPUT_STREAM(g_io_stream_get_input_stream(stream_.get()));
@@ -98,7 +98,7 @@ void Client::Handle(const foxglove::ClientMessage& message) {
       return;
     case Opcode::kBinary:
     case Opcode::kContinuation:
-      return handlers_.on_garbage(this);  // we offer nothing that a client could publish
+      return handlers_.on_garbage(this);  // clients cannot publish here
   }
 }
 
@@ -152,7 +152,7 @@ void Client::End() {
 void Client::Tick(gint64 now_us) {
   if (closed_) return;
   const bool stalled = current_ && now_us - progress_us_ > kStalled_us;
-  // A client that takes a long frame can neither be asked nor answer before its end.
+  // A client can neither receive a ping nor answer while it takes a long frame.
   if (current_ && progress_us_ > heard_us_) heard_us_ = progress_us_;
   if (stalled || now_us - heard_us_ > kSilent_us) return Close(CloseCode::kGoingAway);
   if (asked_us_ != 0 || now_us - heard_us_ < kAskAfter_us) return;

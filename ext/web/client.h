@@ -13,12 +13,12 @@
 
 namespace lidar::web {
 
-/// Lives in the server's thread, whose context is its thread's default.
+/// Lives in the server's thread, whose default context it uses.
 class Client {
  public:
   struct Handlers {
     std::function<void(Client*, const std::vector<std::uint8_t>& text)> on_text;
-    std::function<void(Client*)> on_garbage;  // not what a client of this protocol sends
+    std::function<void(Client*)> on_garbage;  // bytes that are no message of the protocol
     std::function<void(Client*)> on_closed;   // the last call; the owner deletes the client later
   };
   struct Counters {
@@ -33,12 +33,12 @@ class Client {
 
   /// Control texts wait in order; a client that lets too many wait is closed.
   void SendText(const std::string& text);
-  /// How many messages gave way, this one included.
+  /// Returns the number of dropped messages, this one included.
   std::size_t Send(Outbox::Item item, std::size_t depth);
   /// The channel's next message does not come here.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
-  /// Slices wait in order. Their sender gives more only where earlier ones are drawn, so a client
-  /// that lets too many wait has lied, and is closed.
+  /// Slices are kept in order. Their sender waits for earlier ones to be drawn, so a client that
+  /// lets too many wait has lied and is closed.
   void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice);
   /// The channel's messages are no longer sent.
   void Forget(std::uint32_t channel);
@@ -46,7 +46,8 @@ class Client {
   void Close(foxglove::CloseCode code);
   bool closed() const { return closed_; }
 
-  /// Once a second: asks for a sign of life, and closes where none came or nothing was taken.
+  /// Call it once a second: sends a ping, and closes the connection after too long without an
+  /// answer or progress.
   void Tick(gint64 now_us);
 
   /// The grant of its token; kept by the owner.
@@ -58,7 +59,7 @@ class Client {
  private:
   struct Outgoing {
     std::vector<std::uint8_t> head;
-    std::shared_ptr<const std::vector<std::uint8_t>> body;  // null: a control frame
+    std::shared_ptr<const std::vector<std::uint8_t>> body;  // null for a control frame
     std::size_t sent = 0;
     std::size_t Size() const { return head.size() + (body ? body->size() : 0); }
   };

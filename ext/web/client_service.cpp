@@ -15,7 +15,7 @@ using foxglove::Request;
 constexpr std::uint32_t kStatisticsId = 0;
 constexpr guint kTick_ms = 1000;
 constexpr guint kStatistics_ms = 250;
-/// A request keeps under it what its client may have.
+/// Key under which a request stores its client's grant.
 constexpr const char* kGrant = "grant";
 
 void Answer(SoupServerMessage* request, guint status, const char* text) {
@@ -91,7 +91,7 @@ SourcePtr ClientService::Every(guint interval_ms, GSourceFunc function) {
 void ClientService::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
                               gpointer self) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(request), FALSE);
-  // Only trouble-makers ask for parts of files.
+  // Partial requests are only used in attacks.
   soup_message_headers_remove(soup_server_message_get_request_headers(request), "Range");
   const char* method = soup_server_message_get_method(request);
   if (method == SOUP_METHOD_GET || method == SOUP_METHOD_HEAD) return;
@@ -111,7 +111,7 @@ void ClientService::OnRequest(SoupServer*, SoupServerMessage* request, const cha
                            [](gpointer g) { delete static_cast<Grant*>(g); });
     self->Upgrade(request);
   } else if (strcmp(path, "/session") == 0) {
-    // A page cannot read why its WebSocket was refused: it asks here.
+    // A page cannot read why its WebSocket was refused: it requests the reason here.
     if (self->Admit(request, query)) Answer(request, SOUP_STATUS_OK, "welcome\n");
   } else if (!ServePageFile(request, path)) {
     Answer(request, SOUP_STATUS_NOT_FOUND, "There is no such file.\n");
@@ -176,7 +176,7 @@ void ClientService::AddClient(SoupServerMessage* request) {
   Advertise(client, channels);
 }
 
-/// The channels that it may have.
+/// Announces the channels that the client may have.
 void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> channels) {
   const auto barred = std::remove_if(
       channels.begin(), channels.end(),
@@ -185,7 +185,7 @@ void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> cha
   if (!channels.empty()) client->SendText(foxglove::Advertise(channels));
 }
 
-/// A call of the client itself may have ended it, so it is deleted after that call.
+/// The client may end during a call of its own, so it is deleted after that call.
 void ClientService::ForgetClient(Client* client) {
   for (const auto& [channel, subscription] : client->subscriptions) {
     const auto topic = topics_.find(channel);
@@ -295,7 +295,7 @@ void ClientService::Deliver(std::uint32_t channel, const SharedMessage& message)
   for (const auto& client : clients_) {
     const auto found = client->subscriptions.find(channel);
     if (found == client->subscriptions.end()) continue;
-    // Video would take the room of the slices that a slow link lacks.
+    // Video would use the room that the slices lack on a slow link.
     if (is_video && slices_.IsLate(client.get())) {
       client->Skip(channel);
       ++counters_.messages_dropped;
@@ -333,7 +333,7 @@ void ClientService::SendStatistics() {
   Deliver(kStatisticsId, std::make_shared<const Message>(std::move(message)));
 }
 
-/// Connections that come from now on have the new one.
+/// Later connections use the new certificate.
 void ClientService::RenewCertificate() {
   std::string why;
   if (!certificate_.is_wanted()) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The part of the server that lives in its thread: HTTP, handshakes, clients and what they asked
-// for.
+// The part of the server that runs in its thread: HTTP, handshakes, clients and their
+// subscriptions.
 #pragma once
 #include <libsoup/soup.h>
 
@@ -21,7 +21,7 @@
 
 namespace lidar::web {
 
-/// All calls come from one thread, whose default context runs it.
+/// All calls come from one thread, whose default context serves it.
 class ClientService {
  public:
   ClientService(const ServerConfig& config, ServerCounters* counters);
@@ -29,7 +29,7 @@ class ClientService {
   ClientService(const ClientService&) = delete;
   ClientService& operator=(const ClientService&) = delete;
 
-  /// The port, or 0 and why not.
+  /// Returns the port, or 0 and the error.
   std::uint16_t Listen(std::string* error);
   /// Announces new and removed topics to clients.
   void SetTopics(const std::vector<SharedTopic>& topics);
@@ -70,7 +70,7 @@ class ClientService {
   std::list<std::unique_ptr<Client>> clients_;
   Client::Counters gone_;  // of the clients that have left
   std::map<std::uint32_t, SharedTopic> topics_;
-  SharedTopic statistics_;  // always there
+  SharedTopic statistics_;  // always present
   SliceService slices_;
   SourcePtr reap_;
   SourcePtr tick_;

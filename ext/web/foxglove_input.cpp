@@ -32,7 +32,7 @@ constexpr const char* kPoses = "/pose";
 constexpr const char* kCamera = "/camera";
 /// Frames that may wait: a quarter of a second of most cameras.
 constexpr std::size_t kVideoDepth = 8;
-/// A scan has no more slices in our streams; each has a transform.
+/// Scans of our streams have no more slices; each has a transform.
 constexpr guint kMaxDepth = 64;
 
 enum class Kind { kNone, kCloud, kDraco, kOdometry, kSlices, kH264, kVp8 };
@@ -119,7 +119,7 @@ bool OpenPoses(GstBaseSink* sink, const std::string& name) {
   return true;
 }
 
-/// The kind of the caps, or kNone and why.
+/// Returns the kind of the caps, or kNone and the reason.
 Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   if (gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) return Kind::kDraco;
@@ -210,7 +210,7 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   return good;
 }
 
-/// How long ago the clock of the pipeline was at the buffer's timestamp; 0: not known.
+/// Time since the buffer's timestamp on the pipeline's clock; 0: unknown.
 guint64 AgeOf(GstBaseSink* sink, GstBuffer* buffer) {
   const guint64 running_time =
       gst_segment_to_running_time(&sink->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
@@ -245,7 +245,7 @@ void PublishPose(State* state, guint64 unix_ns, const std::string& frame_id, con
     server.Publish(state->poses, {unix_ns, lidar::foxglove::EncodePose(header, pose)});
 }
 
-/// The pose that odometry has put on a cloud goes before it.
+/// Publishes the pose on a cloud before the cloud.
 void PublishPoseOfCloud(GstBaseSink* sink, GstBuffer* buffer, const Header& header) {
   State& state = StateOf(sink);
   GstLidarPose meta;
@@ -300,7 +300,7 @@ bool RenderSlice(State* state, const Header& header, GstBuffer* buffer, const Bu
   return state->slices->Push(std::move(message));
 }
 
-/// A client whose link has room for no frame goes on with the next key frame.
+/// A client without room for a frame continues with the next key frame.
 bool RenderVideo(State* state, const Header& header, GstBuffer* buffer, const BufferMap& map) {
   const char* format = state->kind == Kind::kVp8 ? "vp8" : "h264";
   const bool is_delta = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DELTA_UNIT);
@@ -322,7 +322,7 @@ bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   return true;
 }
 
-/// Learns the number of messages in a scan: a slow client may miss whole scans, a fast one no
+/// Estimates the number of messages per scan: a slow client may miss whole scans, a fast one no
 /// slice.
 void LearnDepth(State* state, GstBuffer* buffer) {
   GstLidarSlice slice;

@@ -23,11 +23,11 @@ struct Hub {
   std::atomic<guint64> clouds{0};
   std::atomic<guint64> points{0};  // points sent to clients
   std::atomic<guint64> malformed{0};
-  std::atomic<guint64> scan_duration{0};  // of the newest caps; 0: they do not say
+  std::atomic<guint64> scan_duration{0};  // of the newest caps; 0: unknown
 };
 
 struct InputSettings {
-  std::string topic;  // empty: by what comes
+  std::string topic;  // empty: chosen by the data's kind
   std::string frame_id = "lidar";
   guint number = 0;  // of the pad; makes topics differ
 };

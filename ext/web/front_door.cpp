@@ -12,7 +12,7 @@ namespace {
 /// Long enough for the page over a poor link.
 constexpr gint64 kLongest_us = 60 * gint64{G_USEC_PER_SEC};
 constexpr int kBacklog = 128;
-/// The largest amount that the kernel may hold unsent: data there get old, and cannot give way.
+/// Most unsent data in the kernel: they become old and cannot be dropped.
 constexpr gint kUnsentBytes = 128 * 1024;
 
 std::string AddressOf(GSocketAddress* peer) {
@@ -91,7 +91,7 @@ void FrontDoor::Accept(GSocketConnection* connection) {
     Enter(connection, G_IO_STREAM(connection));
 }
 
-/// An address that opens many connections ends its own.
+/// An address with many connections loses its own first.
 void FrontDoor::MakeRoom(const std::string& address) {
   const auto is_his = [&address](const Visitor& v) { return v.address == address; };
   const auto his =

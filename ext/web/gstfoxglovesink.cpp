@@ -175,7 +175,7 @@ static StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
   Counters counters;
   {
-    // The server's thread asks, too, and must not hold the last reference to itself.
+    // Also called by the server's thread, which must not hold the last reference to itself.
     const std::lock_guard lock(state.mutex);
     if (state.hub) counters = CountersOf(*state.hub);
   }
@@ -212,7 +212,7 @@ static const std::array<Property<Settings>, 12> kProperties = {{
      ReadStats},
 }};
 
-/// False, with an element error, where the settings would let strangers in or make no sense.
+/// Returns false, with an element error, if the settings admit strangers or contradict each other.
 static bool CheckAddress(GstElement* element, const Settings& s) {
   const lidar::web::ObjectPtr<GInetAddress> address(
       g_inet_address_new_from_string(s.bind_address.c_str()));
@@ -231,7 +231,7 @@ static bool CheckAddress(GstElement* element, const Settings& s) {
   return false;
 }
 
-/// False, with an element error, where they could not protect anything.
+/// Returns false, with an element error, if the secrets are too weak.
 static bool CheckSecrets(GstElement* element, const Settings& s) {
   constexpr std::size_t kShortest = 32;  // RFC 7518, section 3.2
   const char* wrong = nullptr;
@@ -337,8 +337,8 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   lidar::web::SetHub(GST_LIDAR_FOXGLOVE_INPUT(input), HubOf(G_OBJECT(element)));
   {
     const std::lock_guard lock(self->state->mutex);
-    // A pipeline need not have data for each pad of its viewer before it plays. A viewer shows what
-    // comes late at once: to wait for a deadline would block a source without buffer.
+    // A pipeline may play before each pad of its viewer has data. A viewer shows late data at once:
+    // waiting for a deadline would block a source without buffers.
     g_object_set(input, "sync", self->state->settings.sync, "async", FALSE, "processing-deadline",
                  guint64{0}, nullptr);
   }
@@ -364,7 +364,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_element_remove_pad(element, pad);
 }
 
-/// Each input renders by the clock, or at once.
+/// Makes inputs render by the clock, or at once.
 static void PropertyChanged(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "sync") != 0) return;
   gboolean sync = FALSE;

@@ -7,11 +7,11 @@
 namespace lidar::web {
 namespace {
 
-/// GIO has ten threads at hand.
+/// GIO has ten threads.
 constexpr int kAtOnce = 8;
 constexpr int kOfAnAddress = 3;
 constexpr gint64 kLongestHandshake_us = 10 * gint64{G_USEC_PER_SEC};
-/// A round trip of a poor link.
+/// A round trip over a slow link.
 constexpr gint64 kLongestWhileOthersWait_us = gint64{G_USEC_PER_SEC};
 
 std::string AddressOf(GSocketConnection* connection) {
@@ -26,7 +26,7 @@ std::string AddressOf(GSocketConnection* connection) {
 
 }  // namespace
 
-/// A handshake that still runs ends without its owner.
+/// A running handshake ends without its owner.
 Handshakes::~Handshakes() {
   for (const EntryPtr& entry : entries_) {
     entry->owner = nullptr;
@@ -90,7 +90,7 @@ void Handshakes::Start(const EntryPtr& entry) {
   entry->secure.reset(g_tls_server_connection_new(G_IO_STREAM(entry->connection.get()),
                                                   entry->certificate.get(), nullptr));
   if (!entry->secure) return Finish(entry, false);
-  // A browser that leaves says so by ending the connection.
+  // A browser leaves by closing the connection, without a goodbye.
   g_tls_connection_set_require_close_notify(G_TLS_CONNECTION(entry->secure.get()), FALSE);
   g_tls_connection_handshake_async(G_TLS_CONNECTION(entry->secure.get()), G_PRIORITY_DEFAULT,
                                    entry->cancel.get(), OnShaken, new EntryPtr(entry));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// TLS handshakes, few at a time: each holds a thread of GIO while its peer is slow. The address
-// with the fewest connections has the next turn, so a thousand that stop half-way hold up their
-// own.
+// TLS handshakes, few at a time, as each occupies a thread of GIO while its peer is slow. The
+// address with the fewest connections is next, so a thousand stalled ones delay only their own
+// address.
 #pragma once
 #include <functional>
 #include <list>
@@ -24,7 +24,7 @@ class Handshakes {
 
   /// Waits for the first byte of the peer, and for its turn.
   void Begin(ObjectPtr<GSocketConnection> connection, GTlsCertificate* certificate);
-  /// The connection has been shut down.
+  /// The connection was closed.
   void Forget(GSocketConnection* connection);
   /// Once a second: ends those that take too long.
   void Tick(gint64 now_us);

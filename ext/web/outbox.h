@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The queue of a client: of each channel the newest messages, never more.
+// The queue of a client: holds the newest messages of each channel.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -19,8 +19,8 @@ class Outbox {
     SharedMessage message;
   };
 
-  /// How many messages of the channel gave way, this one included: `depth` of them are kept. What
-  /// continues a message that gave way does so, too.
+  /// Returns the number of dropped messages of the channel, this one included; `depth` are kept.
+  /// Messages that continue a dropped one are dropped, too.
   std::size_t Push(Item item, std::size_t depth) {
     const std::uint32_t channel = item.channel_id;
     if (!item.message->continues)
@@ -36,7 +36,7 @@ class Outbox {
     items_.pop_front();
     return item;
   }
-  /// A message of the channel goes elsewhere: what continues it gives way.
+  /// Notes that a message of the channel is sent elsewhere: messages that continue it are dropped.
   void Skip(std::uint32_t channel) { whole_.erase(channel); }
   void Forget(std::uint32_t channel) {
     Skip(channel);

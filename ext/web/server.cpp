@@ -11,7 +11,7 @@
 namespace lidar::web {
 namespace {
 
-/// Some scans of several streams, where the thread is held up.
+/// Some scans of several streams, for times when the thread is delayed.
 constexpr std::size_t kMostSlices = 1024;
 
 }  // namespace

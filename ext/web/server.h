@@ -18,7 +18,7 @@ namespace lidar::web {
 
 class ClientService;
 
-/// The public functions may be called from any thread, and wait for no client.
+/// All threads may call the public functions, which wait for no client.
 class Server {
  public:
   /// Returns nothing if the server cannot listen; `error` then says why, in words for a user.
@@ -31,8 +31,8 @@ class Server {
   std::uint16_t port() const { return port_; }
   const ServerCounters& counters() const { return counters_; }
 
-  /// Opens the channel `topic`, which several inputs may share, but for slices: `stream` describes
-  /// those. Returns nothing if it has another schema.
+  /// Opens the channel `topic`. Inputs may share it unless it has slices, which `stream` describes.
+  /// Returns nothing if the topic has another schema.
   SharedTopic Open(const std::string& topic, foxglove::Schema schema, std::string stream = {});
   /// The last pad that opened the channel closes it.
   void Close(const SharedTopic& topic);
@@ -47,7 +47,7 @@ class Server {
   };
   explicit Server(ServerConfig config);
   void Run(std::function<void(std::string)> listens);
-  /// Has the thread look at topics and inboxes.
+  /// Makes the thread check topics and inboxes.
   void WakeLocked();
   static gboolean OnWake(gpointer self);
   void Collect();
@@ -58,7 +58,7 @@ class Server {
   ContextPtr context_;
   LoopPtr loop_;
   std::thread thread_;
-  std::unique_ptr<ClientService> service_;  // of the thread
+  std::unique_ptr<ClientService> service_;  // used by the thread only
 
   std::mutex mutex_;  // guards what follows; never held while anything is called
   std::map<std::string, Entry> entries_;                             // by topic

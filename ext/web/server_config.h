@@ -16,15 +16,15 @@ inline constexpr const char* kStatisticsTopic = "/statistics";
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;    // 0: any free port
-  std::string token;         // empty, with `secret` empty, too: every client may come
-  std::string token_secret;  // of signed tokens; empty: there are none
+  std::string token;         // empty, with `secret` also empty: admits all clients
+  std::string token_secret;  // for signed tokens; empty: none
   std::string
       allowed_origins;      // of pages that need no token, beside the own: "https://a,https://b"
   std::string certificate;  // PEM file of it and its chain; empty: no TLS
   std::string private_key;  // PEM file
   std::function<void(std::string)> warn;  // warnings for a user; called in the server's thread
   unsigned max_clients = 8;
-  DataRate max_bitrate;                     // of the slices of a viewer; 0: no limit
+  DataRate max_bitrate;                     // for a viewer's slices; 0: no limit
   std::string name;                         // as clients show it
   std::function<std::string()> statistics;  // JSON; called in the server's thread
 };
@@ -34,13 +34,13 @@ struct ServerCounters {
   using Count = std::atomic<std::uint64_t>;
   Count clients{0};
   Count clients_accepted{0};
-  Count clients_refused{0};  // wrong token, or too many
+  Count clients_refused{0};  // wrong tokens, or too many of them
   Count messages_sent{0};
   Count messages_dropped{0};  // a slow client gets a newer one instead
   Count bytes_sent{0};
   Count scans_skipped{0};        // a slow viewer of slices gets a newer one instead
   Count malformed{0};            // requests and messages outside of the protocol
-  Count connections_evicted{0};  // were silent for long, or too many
+  Count connections_evicted{0};  // silent for too long, or too many
 };
 
 }  // namespace lidar::web

@@ -15,20 +15,20 @@ class SliceService {
 
   void Subscribe(Client* client, const SharedTopic& topic, std::uint32_t subscription);
   void Unsubscribe(Client* client, std::uint32_t channel);
-  /// The client has left, or the channel has gone.
+  /// The client has left, or the channel was removed.
   void Forget(const Client* client);
   void ForgetChannel(std::uint32_t channel) { streams_.erase(channel); }
 
   void Deliver(std::uint32_t channel, const SharedSliceMessage& slice);
   /// `request` is of the kind kDrawn or kLacksReference.
   void OnRequest(Client* client, const foxglove::Request& request);
-  /// Now and then: what waits for time to pass.
+  /// Call it regularly: sends what had to wait.
   void Tick();
 
-  /// The client has not drawn in time what it got: its link has no room.
+  /// Returns true if the client did not draw in time: its link has no room.
   bool IsLate(Client* client) const;
 
-  /// Scans that viewers were too slow for.
+  /// Scans that slow viewers missed.
   std::uint64_t scans_skipped() const { return scans_skipped_; }
 
  private:
@@ -45,7 +45,7 @@ class SliceService {
   void ServeAll(Stream* stream);
 
   const DataRate max_bitrate_;
-  std::map<std::uint32_t, Stream> streams_;  // that have viewers, by channel
+  std::map<std::uint32_t, Stream> streams_;  // by channel, with viewers
   std::uint64_t scans_skipped_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 /// 30 s of 4 Mbit/s.
 constexpr std::size_t kMostWaiting = 16U << 20;
-/// Slices are decoded on for so long after a viewer needed some: it will again.
+/// Decoding continues for this time after a viewer needed it, as it is often needed again.
 constexpr gint64 kLinger_us = 15 * gint64{G_USEC_PER_SEC};
 constexpr std::uint32_t kMostPoints = 1U << 20;
 
@@ -39,7 +39,7 @@ class SliceStream::Decoding {
     recoder_ = viewer::Recoder::Create(format_);
   }
 
-  /// False for what cannot be decoded.
+  /// Returns false for a slice that cannot be decoded.
   bool Decode(const SliceMessage& slice) {
     const ByteView bytes{slice.payload.data(), slice.payload.size()};
     if (cloud_) {
@@ -170,7 +170,7 @@ bool SliceStream::Push(SliceMessage slice) {
 }
 
 void SliceStream::Wake() {
-  // The lock is held so that the thread is not between its question and its sleep.
+  // The lock prevents a wake-up between the thread's check and its sleep.
   const std::lock_guard lock(mutex_);
   change_.notify_one();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A stream of coded slices: offered as it is, and decoded in a thread of its own if a client needs
+// Offers a stream of coded slices as it is, and decoded in a thread of its own if a client needs
 // that.
 #pragma once
 #include <condition_variable>
@@ -18,7 +18,7 @@ class SliceStream {
  public:
   struct Settings {
     std::string topic;     // of the decoded clouds; slices have it with kSlicesEnding
-    std::string frame_id;  // of both
+    std::string frame_id;  // of both channels
     guint max_points = 0;  // of a decoded message; 0: no limit
   };
   struct Counters {
@@ -61,8 +61,8 @@ class SliceStream {
   std::mutex mutex_;  // guards what follows
   std::condition_variable change_;
   viewer::Backlog backlog_;
-  gint64 recoded_wanted_us_ = 0;  // last time
-  bool recodes_ = false;          // the last recoding is not long ago
+  gint64 recoded_wanted_us_ = 0;  // last time that recoded slices were wanted
+  bool recodes_ = false;          // slices were recoded recently
   bool stopping_ = false;
   std::thread thread_;
 };

@@ -30,7 +30,7 @@ void Collect(GstElement* element, json* all);
 
 void CollectChildren(GstBin* bin, json* all) {
   GstIterator* children = gst_bin_iterate_elements(bin);
-  // The next message is whole again if children come and go meanwhile.
+  // Repeats the message if children come and go meanwhile.
   gst_iterator_foreach(
       children,
       [](const GValue* child, gpointer out) {
@@ -52,7 +52,7 @@ void Collect(GstElement* element, json* all) {
   }
 }
 
-/// A member of the message: what an element calls `from`, where it is one that has `beside`.
+/// A member of the message: the statistic `from` of an element that also has `beside`.
 struct Summary {
   const char* name;
   const char* from;
@@ -60,7 +60,7 @@ struct Summary {
   double scale = 1;
 };
 constexpr double kMs = 1e-6;  // of ns
-// If the sender is another pipeline, its reports count; later rows win.
+// Reports of a sender in another pipeline count, too; later rows win.
 constexpr std::array<Summary, 19> kSummaries = {{
     {"target_bitrate", "sender_target_bitrate", "sender_reports"},
     {"sent_bitrate", "sender_sent_bitrate", "sender_reports"},

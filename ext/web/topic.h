@@ -14,7 +14,7 @@
 
 namespace lidar::web {
 
-/// A message, as all clients get it.
+/// A message as all clients get it.
 struct Message {
   std::uint64_t unix_ns = 0;
   std::vector<std::uint8_t> payload;
@@ -34,10 +34,10 @@ class Topic {
  public:
   explicit Topic(foxglove::Channel channel) : channel_(std::move(channel)) {}
   const foxglove::Channel& channel() const { return channel_; }
-  /// The number of messages that may wait for a slow client; the oldest give way.
+  /// Number of messages that may wait for a slow client; older ones are dropped.
   std::size_t depth() const { return depth_; }
   void set_depth(std::size_t depth) { depth_ = depth > 0 ? depth : 1; }
-  /// Returns true if the topic has subscribers: else a message need not be made.
+  /// Returns true if the topic has subscribers.
   bool wanted() const { return subscribers_ > 0; }
   void AddSubscribers(int n) {
     subscribers_ += n;

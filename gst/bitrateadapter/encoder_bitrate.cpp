@@ -66,7 +66,7 @@ bool IsEncoder(GstElement* element) {
 PadPtr RealPeer(GstPad* pad) {
   PadPtr peer(gst_pad_get_peer(pad));
   while (peer && GST_IS_PROXY_PAD(peer.get())) {
-    if (GST_IS_GHOST_PAD(peer.get())) {  // out of a bin: what it shows
+    if (GST_IS_GHOST_PAD(peer.get())) {  // leads out of a bin, to the pad behind the ghost
       peer.reset(gst_ghost_pad_get_target(GST_GHOST_PAD(peer.get())));
     } else {  // the inner side of a bin's sink: what feeds the bin
       const PadPtr ghost(GST_PAD(gst_proxy_pad_get_internal(GST_PROXY_PAD(peer.get()))));
@@ -129,7 +129,7 @@ std::optional<BitrateControl> FindBitrateControl(const std::string& factory) {
 }
 
 ElementPtr FindEncoderUpstream(GstPad* pad) {
-  constexpr int kMaxElements = 64;  // a loop of links is no pipeline, but must not hang us
+  constexpr int kMaxElements = 64;  // bounds the search in a loop of links
   PadPtr sink(GST_PAD(gst_object_ref(pad)));
   for (int i = 0; sink && i < kMaxElements; ++i) {
     const PadPtr peer = RealPeer(sink.get());
@@ -153,7 +153,7 @@ std::optional<guint> SetEncoderBitrate(GstElement* encoder, const BitrateControl
   }
   const auto range = RangeOf(spec);
   if (!range) return std::nullopt;
-  // 0 means "automatic" to many encoders, never a rate.
+  // Many encoders take 0 for "automatic".
   const gdouble value = std::clamp(std::max(units, 1.0), range->first, range->second);
   GValue number = G_VALUE_INIT;
   g_value_init(&number, G_TYPE_DOUBLE);

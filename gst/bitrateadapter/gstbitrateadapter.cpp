@@ -92,7 +92,7 @@ static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) 
       gst_bin_get_by_name_recurse_up(GST_BIN(parent.get()), settings.encoder.c_str()));
 }
 
-/// The user's settings, over the defaults of the encoder.
+/// Returns the user's settings, with the encoder's defaults.
 static std::optional<BitrateControl> ControlOf(GstElement* encoder, const Settings& settings) {
   GstElementFactory* factory = gst_element_get_factory(encoder);
   auto control = factory == nullptr ? std::nullopt : FindBitrateControl(GST_OBJECT_NAME(factory));
@@ -154,7 +154,7 @@ static gboolean SrcEvent(GstBaseTransform* base, GstEvent* event) {
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_bitrate_adapter_parent_class)->src_event(base, event);
 }
 
-/// The limits as those of the whole target, of which the encoder gets its fraction.
+/// Scales the limits to the whole target, of which the encoder gets a fraction.
 static GstLidarBitrateBounds BoundsOf(const Settings& settings) {
   const auto whole = [&](guint bps) {
     return static_cast<guint>(std::min(bps / settings.fraction, kMaxBps));

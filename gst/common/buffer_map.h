@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A mapped buffer that unmaps itself, and what a buffer has beside its bytes.
+// A mapped buffer that unmaps itself, and the copy of flags, times and metas.
 #pragma once
 #include <gst/gst.h>
 

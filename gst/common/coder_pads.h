@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What encoders and decoders have in common: their two pads, and statistics at an interval.
+// Common parts of encoders and decoders: their two pads, and statistics at an interval.
 #pragma once
 #include <optional>
 #include <utility>
@@ -13,7 +13,7 @@ namespace lidar::gst {
 
 class CoderPads {
  public:
-  /// For constructed(): the pad templates are the subclass's.
+  /// Call it from constructed(), as the subclass has the pad templates.
   void Create(GObject* element, GstPadChainFunction chain, GstPadEventFunction sink_event) {
     sink_ = AddPad(element, "sink");
     gst_pad_set_chain_function(sink_, chain);
@@ -24,7 +24,7 @@ class CoderPads {
   GstPad* sink() const { return sink_; }
   GstPad* src() const { return src_; }
 
-  /// The next buffer does not go on where the last one ended.
+  /// The next buffer does not continue the last one.
   void set_discont(bool discont) { discont_ = discont; }
 
   GstFlowReturn Push(BufferPtr output, GstBuffer* input) {
@@ -33,7 +33,7 @@ class CoderPads {
     return gst_pad_push(src_, output.release());
   }
 
-  /// `input` gives no output: downstream should not wait for it.
+  /// `input` has no output: downstream must not wait for it.
   GstFlowReturn LeaveOut(GstBuffer* input) {
     discont_ = true;
     // A gap before the first caps means nothing downstream.
@@ -49,7 +49,7 @@ class CoderPads {
   bool discont_ = false;
 };
 
-/// Forgets the stream of a coder that goes to READY: for its base class, once its pads are
+/// Forgets the stream of a coder on its way to READY. The base class calls it once its pads are
 /// inactive.
 template <class Coder, class Class>
 void EndStream(Coder* coder, const Class* klass) {
@@ -61,8 +61,8 @@ void EndStream(Coder* coder, const Class* klass) {
 /// Statistics as element messages.
 class MessageTimer {
  public:
-  /// Posts `stats` where `interval` has passed since the last time, or since the first call. 0:
-  /// never.
+  /// Posts `stats` if `interval` has passed since the last call that posted, or since the first
+  /// one. 0: never.
   void Post(GstElement* element, Duration interval, StructurePtr (*stats)(GObject*)) {
     const gint64 now_us = g_get_monotonic_time();
     if (!last_us_) last_us_ = now_us;

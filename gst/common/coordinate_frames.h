@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What caps say of frames, and the media type of transforms between them.
+// Frames in caps, and the media type of transforms between them.
 #pragma once
 
 /// tf2_msgs/msg/TFMessage as ROS 2 has it, in CDR with its encapsulation header. `static`
@@ -7,7 +7,7 @@
 #define GST_LIDAR_TF_MEDIA_TYPE "application/x-tf"
 #define GST_LIDAR_TF_STATIC "static"
 
-// Fields of caps: the frame that data are in, and the frame whose pose odometry is.
+// Caps fields: the frame of the data, and the frame whose pose odometry gives.
 #define GST_LIDAR_FRAME_ID "frame-id"
 #define GST_LIDAR_CHILD_FRAME_ID "child-frame-id"
 

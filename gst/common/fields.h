@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Fields of a struct as GValues: what rows of properties and of statistics are made of.
+// Fields of a struct as GValues, for tables of properties and statistics.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,7 +14,7 @@
 
 namespace lidar::gst {
 
-/// What a property shows beside its value. A range of {0, 0} is all that the type holds.
+/// Further parameters of a property. A range of {0, 0} means that of the type.
 struct SpecArgs {
   const char* name;
   const char* blurb;
@@ -142,7 +142,7 @@ struct Kind<const char*> {
   static void Get(const char* value, GValue* v) { g_value_set_static_string(v, value); }
 };
 
-/// The GType of a boxed type or of an object, specialised for each type that rows hold.
+/// Gives the GType of a boxed type or object. Specialised for each type in rows.
 template <class T>
 GType GTypeOf();
 template <>
@@ -154,8 +154,8 @@ inline GType GTypeOf<GstStructure>() {
   return GST_TYPE_STRUCTURE;
 }
 
-/// Boxed types and objects: a shared_ptr is a field that can be set, a unique_ptr what a function
-/// gives away.
+/// Boxed types and objects. A shared_ptr is a field that can be set; a unique_ptr is a function's
+/// result.
 template <class Pointer>
 struct Kind<Pointer, std::void_t<typename Pointer::element_type, decltype(Pointer().get())>> {
   using T = typename Pointer::element_type;
@@ -196,8 +196,7 @@ struct EnumField {
   GType (*type)();
 };
 
-/// A field of `S`, a function that works a value out of an S or of the object that has it, or a
-/// property of the object's child.
+/// A field of `S`, a function of an S or of its object, or a property of the object's child.
 template <class S>
 class Field {
  public:
@@ -231,7 +230,7 @@ class Field {
         ops_(row->field.read_only() ? &kChildRead<Row> : &kChild<Row>) {}
 
   bool read_only() const { return ops_->set == nullptr; }
-  /// Get() and Set() use the object, not the struct.
+  /// Returns true if Get() and Set() use the object instead of the struct.
   bool of_object() const { return of_object_; }
 
   /// The GType of values in statistics.
@@ -249,13 +248,13 @@ class Field {
  private:
   using Member = char S::*;
   using Function = void (*)();
-  /// What differs by type. The pointers above are given their types back here.
+  /// Operations that differ by type. They cast the pointers above back to their types.
   struct Ops {
     GType (*type)(const Field&);
     GParamSpec* (*spec)(const Field&, const SpecArgs&, const S&);
     void (*set)(const Field&, S*, GObject*, const GValue*);  // NULL: read-only
     void (*get)(const Field&, const S*, GObject*, GValue*);
-    void (*add)(const Field&, const S& part, S* sum);  // NULL: no number
+    void (*add)(const Field&, const S& part, S* sum);  // NULL: not a number
   };
 
   template <class T>
@@ -309,7 +308,7 @@ class Field {
         Kind<T>::Get(Way::Read(f, s, object), v);
       },
       nullptr};
-  // A function sees what is declared later; the lambda of a constant does not.
+  // A function can use later declarations; the lambda of a constant cannot.
   static GType EnumType(const Field& f) { return f.type_(); }
   template <class E>
   static constexpr Ops kEnum = {EnumType,

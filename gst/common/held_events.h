@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// They go out behind the caps, in the order they came; a later one replaces one of its kind.
+/// Events leave after the caps, in order of arrival; a later one replaces one of its type.
 class HeldEvents {
  public:
   /// Takes events before the caps: `event` waits for the caps, or it is a gap, which has no meaning

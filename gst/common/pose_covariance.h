@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The covariances of nav_msgs/msg/Odometry, which also say whether a pose is tracked.
+// Covariances of nav_msgs/msg/Odometry, which also show whether a pose is tracked.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace lidar::gst {
 
 using Covariance = std::array<double, 36>;  // of x, y, z and the turns about them
 
-/// Variances so large that a weighted pose has no weight [m^2, rad^2].
+/// Variances with which a weighted pose has no effect [m^2, rad^2].
 inline constexpr double kDegenerateVariance = 1e3;
 inline constexpr double kUnknownVariance = 1e6;
 
@@ -37,7 +37,7 @@ inline GstLidarTracking TrackingOf(const Covariance& covariance) {
                                               : GST_LIDAR_TRACKING_OK;
 }
 
-/// The covariance of a velocity that is not known: its zeros are not taken for a standstill.
+/// Covariance of an unknown velocity, so that its zeros are not taken for a standstill.
 inline Covariance NoVelocity() {
   Covariance covariance{};
   SetVariances(kUnknownVariance, kUnknownVariance, &covariance);

@@ -49,8 +49,8 @@ const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table
   g_error("no property row is called \"%s\"", std::string(name).c_str());
 }
 
-/// The row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name"). gcc 12 lets
-/// the instances of two files be one, so structs of two files of a plugin need different names.
+/// Returns the row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name"). gcc 12
+/// may merge the instances of two files, so structs of two files of a plugin need different names.
 template <auto part, class Settings, class Part, std::size_t N>
 Property<Settings> WithinOf(Part Settings::*, const std::array<Property<Part>, N>& table,
                             std::string_view name) {
@@ -63,8 +63,8 @@ auto Within(const std::array<Property<Part>, N>& table, std::string_view name) {
   return WithinOf<part>(part, table, name);
 }
 
-/// The row `name` of the table of a child, as a row of its bin. `child` finds the child, or NULL.
-/// Its default is that of `defaults`, which live for ever.
+/// Returns the row `name` of a child's table as a row of its bin. `child` returns the child, or
+/// NULL. The default is that of `defaults`, which live for ever.
 template <class Settings, class ChildSettings, std::size_t N>
 Property<Settings> Proxy(const std::array<Property<ChildSettings>, N>& table, std::string_view name,
                          GObject* (*child)(GObject*), const ChildSettings* defaults = nullptr) {
@@ -103,7 +103,7 @@ void SetProperty(Settings& s, const Property<Settings>& p, const GValue* v) {
   p.field.Set(&s, nullptr, v);
 }
 
-/// `object` is needed by rows that are functions of it, which take the locks they need.
+/// Rows that are functions need `object`; they take the locks they need.
 template <class Settings>
 void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v,
                  GObject* object = nullptr) {
@@ -113,7 +113,7 @@ void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v,
 /// The default of ServeProperties(): does nothing after a change.
 inline void NothingMore(GObject*, GParamSpec*) {}
 
-/// A table that others share may be a function that returns it.
+/// A shared table may be a function that returns it.
 template <class Table>
 const auto& RowsOf(const Table& table) {
   if constexpr (std::is_function_v<Table>) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GStreamer offers refused caps again with each buffer; this posts one error.
+// Posts one error for refused caps, which GStreamer offers again with each buffer.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,7 +10,7 @@ namespace lidar::gst {
 /// Used by the streaming thread.
 class RefusedCaps {
  public:
-  /// Returns true if `caps` are not those that were refused last; they are from now on.
+  /// Notes refused caps. Returns true if they differ from the last ones.
   bool Note(GstCaps* caps) {
     if (last_ && gst_caps_is_equal(last_.get(), caps)) return false;
     last_.reset(gst_caps_ref(caps));

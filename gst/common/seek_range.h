@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Seeks by time, applied to a segment only where there is something to play.
+// Applies seeks by time to a segment, if there is something to play.
 #pragma once
 #include <gst/gst.h>
 
@@ -29,8 +29,8 @@ inline GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegme
   return static_cast<GstClockTime>(std::max<gint64>(end + std::min<gint64>(time, 0), 0));
 }
 
-/// Moves `segment`, which is of time, as the seek `event` asks. Returns false and changes nothing
-/// if that is no range: GStreamer takes such for a mistake of the caller.
+/// Moves `segment`, which is in time, by the seek `event`. Returns false and changes nothing for an
+/// empty range, which GStreamer treats as the caller's error.
 inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
   gdouble rate = 1;
   GstSeekFlags flags = GST_SEEK_FLAG_NONE;
@@ -41,15 +41,15 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
                        &stop);
   range.start = FromBeginning(&range.start_type, start, *segment);
   range.stop = FromBeginning(&range.stop_type, stop, *segment);
-  // As GStreamer has it.
+  // As in GStreamer.
   if (range.start_type == GST_SEEK_TYPE_SET && start == -1) range.start = 0;
   return range.IsSound(*segment) &&
          gst_segment_do_seek(segment, rate, GST_FORMAT_TIME, flags, range.start_type, range.start,
                              range.stop_type, range.stop, nullptr) != FALSE;
 }
 
-/// Serves a seek that names no start and does not flush. Playing went on meanwhile, so the segment
-/// goes on from where that ended.
+/// Serves a seek without start and flush. Playback continued meanwhile, so the segment continues
+/// from its end.
 inline void GoOnFrom(GstClockTime end, GstSegment* segment) {
   segment->position = std::min(std::max(end, segment->position), segment->stop);
   segment->offset = segment->position - segment->start;

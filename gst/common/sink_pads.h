@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pads: what belongs together, and sink pads as children with properties of their own.
+// Links of pads, and sink pads as children with properties.
 #pragma once
 #include "gst/common/refs.h"
 
 namespace lidar::gst {
 
-/// Iterates over the single pad that queries and events of another go on to. The caller owns the
-/// iterator.
+/// Returns an iterator over the one pad to which another pad's queries and events go. The caller
+/// owns it.
 inline GstIterator* LinkTo(GstPad* pad) {
   GValue value = G_VALUE_INIT;
   g_value_init(&value, GST_TYPE_PAD);

@@ -92,7 +92,7 @@ struct Marking {
   guint8 dscp_bits;
   guint8 ecn;
   bool reply;
-  std::optional<unsigned> interface;  // 0: as the routes say; empty: it is not there
+  std::optional<unsigned> interface;  // 0: by the routes; unset: the interface does not exist
 };
 
 }  // namespace
@@ -236,8 +236,7 @@ static Marking CurrentMarking(State& state) {
   return marking;
 }
 
-/// A single warning for each new kind of error: a path that is down for a while must not end the
-/// stream.
+/// Warns once for each new kind of error: a path that is down for a while must not end the stream.
 static void WarnOnce(GstLidarEcnUdpSink* self, const UdpBatchSender::Result& result) {
   State& state = StateOf(self);
   if (result.last_errno == 0) {

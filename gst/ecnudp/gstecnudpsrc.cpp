@@ -66,7 +66,7 @@ struct State {
   // Only the streaming thread uses what follows, between start and stop.
   WakeFd wake;
   UdpBatchReceiver batch;
-  std::deque<BufferPtr> received;  // of the last batch, to be given out
+  std::deque<BufferPtr> received;  // rest of the last batch
   NativeAddress last_from;
   SocketAddressPtr last_address;
   gint64 timeout_ns = -1;
@@ -155,7 +155,7 @@ static GstClockTime ArrivalRunningTime(GstLidarEcnUdpSrc* self, GstClockTime arr
   now = now > base_time ? now - base_time : 0;
   const auto unix_now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
   const bool plausible = GST_CLOCK_TIME_IS_VALID(arrival) && arrival < unix_now &&
-                         unix_now - arrival < GST_SECOND;  // else the system clock was set
+                         unix_now - arrival < GST_SECOND;  // otherwise the system clock was set
   const GstClockTime age = plausible ? unix_now - arrival : 0;
   return now > age ? now - age : 0;
 }
@@ -186,7 +186,7 @@ static void PostTimeout(GstLidarEcnUdpSrc* self) {
                                                                  G_TYPE_UINT64, timeout, nullptr)));
 }
 
-/// Waits until datagrams are there and takes them all, up to the capacity of a batch.
+/// Waits for datagrams and takes all, up to a batch.
 static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   State& state = StateOf(self);
   const int fd = g_socket_get_fd(state.used.socket.get());
@@ -218,8 +218,8 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   }
 }
 
-/// A single buffer at a time: GstBaseSrc 1.22 takes lists, but where it is stopped or ended while
-/// it holds one, it releases a buffer that is not there.
+/// Returns single buffers: GstBaseSrc 1.22 takes lists, but releases a wrong buffer if it is
+/// stopped with one.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(push);
   State& state = StateOf(self);
@@ -247,7 +247,7 @@ static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   return gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST);
 }
 
-/// A fixed form of what downstream takes, or none where it takes anything.
+/// Returns fixed caps that downstream takes, or null if it takes any.
 static GstCaps* FixateForPeer(const GstCaps* peer) {
   if (gst_caps_is_any(peer) || gst_caps_is_empty(peer)) return nullptr;
   GstCaps* caps = gst_caps_truncate(gst_caps_copy(peer));

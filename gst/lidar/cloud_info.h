@@ -14,7 +14,7 @@ namespace lidar::gst {
 
 /// `application/x-pointcloud2`. Organised: height beams of width columns, row-major.
 struct CloudInfo {
-  guint width = 0;  // 0: not fixed by the caps (files, before pointcloudparse)
+  guint width = 0;  // 0: the caps do not fix it (files before pointcloudparse)
   guint height = 1;
   guint point_step = 0;  // bytes
   PointFields fields;

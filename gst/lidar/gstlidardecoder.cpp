@@ -31,8 +31,8 @@ struct Settings {
 struct Counters {
   guint64 slices = 0;
   guint64 slices_dropped = 0;
-  guint64 slices_unreferenced = 0;  // of the dropped ones
-  guint64 slices_over_load = 0;     // of the dropped ones
+  guint64 slices_unreferenced = 0;  // among the dropped slices
+  guint64 slices_over_load = 0;     // among the dropped slices
   guint64 slices_thinned = 0;
   guint64 points = 0;  // includes missing returns
   guint64 bytes = 0;
@@ -43,7 +43,7 @@ struct Counters {
 };
 
 using LastSlice = GstLidarDecodedSlice;
-/// Age of the slice decoded last; both clocks must be UTC.
+/// Age of the last decoded slice; both clocks must be UTC.
 guint64 AgeOf(const Counters& c) {
   if (!GST_CLOCK_TIME_IS_VALID(c.last_capture_time)) return GST_CLOCK_TIME_NONE;
   const auto now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
@@ -70,7 +70,7 @@ const std::array<Stat<Counters>, 14> kStats = {{
 
 /// Belongs to the streaming thread.
 struct Stream {
-  std::optional<CloudInfo> cloud;  // of the output; its size is that of the last caps
+  std::optional<CloudInfo> cloud;  // of the output; its size is that of the last pushed caps
   guint max_points = 0;
   bool has_size = false;  // the caps of `cloud` have been pushed
   HeldEvents held;
@@ -165,8 +165,8 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   return FALSE;
 }
 
-/// Pushes caps when the data of a slice give the cloud's size. If they do not arrive, the next
-/// buffer brings them, and its flow says why they did not.
+/// Pushes caps when a slice gives the cloud's size. If that fails, the next buffer pushes them
+/// again, and its flow has the reason.
 static void PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;
@@ -269,7 +269,7 @@ static lidar::Duration ThreadTime() {
   return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec);
 }
 
-/// Returns false, and counts the slice, if earlier ones cost more than max-decode-load: a hostile
+/// Returns false, and counts the slice, if earlier slices cost more than max-decode-load: a hostile
 /// sender can make each byte cost microseconds.
 static bool MayDecode(GstLidarDecoder* self, gdouble max_load) {
   State& state = *self->state;

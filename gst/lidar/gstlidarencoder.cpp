@@ -250,8 +250,8 @@ static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
                                const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
   BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
-  // The output has its place in the scan even if the input has none: a receiver could not count
-  // what was left out, and would acknowledge another scan.
+  // The output has a place in the scan even if the input has none: otherwise a receiver could not
+  // count lost slices, and would acknowledge another scan.
   GstLidarSlice known{};
   if (!gst_lidar_buffer_get_slice(input, &known)) gst_lidar_buffer_set_slice(output.get(), &place);
   PushBounds(self);

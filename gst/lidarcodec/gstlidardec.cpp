@@ -22,9 +22,9 @@ namespace {
 /// Belongs to the streaming thread.
 struct State {
   lidar::codec::CloudFormat format;
-  bool has_points = false;                                 // in place of ranges
-  std::optional<lidar::codec::SliceDecoder> decoder;       // of ranges,
-  std::optional<lidar::codec::cloud::CloudDecoder> cloud;  // or of points
+  bool has_points = false;                                 // instead of ranges
+  std::optional<lidar::codec::SliceDecoder> decoder;       // for ranges
+  std::optional<lidar::codec::cloud::CloudDecoder> cloud;  // for points
 };
 
 }  // namespace

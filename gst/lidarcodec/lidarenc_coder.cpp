@@ -40,14 +40,14 @@ void LidarEncCoder::Load(const GstLidarRawSlice& raw, std::optional<unsigned> ef
            : cloud_->Load(points, with_intensity_);
 }
 
-/// The state after the last slice is known now; which of several encodings was sent is known only
-/// when the next slice comes.
+/// The state after the last slice is known now; which of several encodings was sent becomes known
+/// with the next slice.
 void LidarEncCoder::KeepBlocks() {
   keeper_.OnEncoded(std::move(slice_.blocks));
   slice_.blocks.clear();
 }
 
-/// Learns from the slice before, and chooses for the next one.
+/// Measures the last slice, and chooses the effort for the next one.
 void LidarEncCoder::ChooseEffort(const GstLidarRawSlice& raw, std::optional<unsigned> effort) {
   if (automatic_ && spent_ > Duration{0}) control_.OnSlice(sweep_, returns(), spent_);
   const double part = encoder_

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The coder of lidarenc: codes a slice at a time, as hard as there is time for, and keeps what it
-// may refer to.
+// The coder of lidarenc: codes slices with the effort that time allows, and keeps blocks for
+// references.
 #pragma once
 #include <optional>
 #include <string>
@@ -23,19 +23,19 @@ class LidarEncCoder {
   /// Returns false if it has neither ranges of a sensor nor points. The measured speed of the
   /// machine stays.
   bool SetFormat(const CloudInfo& info, bool with_intensity);
-  /// Takes the slice; without `effort` it has the one that there is time for.
+  /// Takes the slice. Without `effort` it chooses the effort that time allows.
   void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
-  /// Lets what is loaded refer to what the receiver has, where it `remembers`.
+  /// Lets the loaded slice refer to blocks that the receiver has, if it `remembers`.
   void Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval);
   /// Describes the loaded slice; good until the next one.
   void Describe(GstLidarLoadedSlice* loaded);
-  /// Whether slices are ranges of a sensor; else they are points in any order.
+  /// Returns true if slices are ranges of a sensor, and false if they are points in any order.
   bool codes_ranges() const { return encoder_.has_value(); }
   rate::ErrorBound Bound() const;
   void Thin(const std::vector<bool>& kept);
   GstLidarEncodeResult Encode(const GstLidarEncodeSettings& settings, GByteArray* bytes,
                               GstLidarCodedSlice* coded);
-  /// As a receiver would, for the check of the error: `points` are GstLidarPoint.
+  /// Decodes as a receiver would, for the check of the error: `points` are GstLidarPoint.
   bool Decode(ByteView stream, GArray* points);
   void OnAcknowledged(guint receiver, guint scan_id, guint slice_index);
   void OnKeyRequest();
@@ -58,7 +58,7 @@ class LidarEncCoder {
   codec::EffortControl control_;
   bool automatic_ = false;  // the loaded slice has the effort of `control_`
   Duration sweep_{};        // of the loaded slice
-  Duration spent_{};        // on it, with all tries
+  Duration spent_{};        // for the loaded slice, with all tries
 };
 
 }  // namespace lidar::gst

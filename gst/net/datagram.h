@@ -38,23 +38,23 @@ struct DatagramInfo {
 void AskForInfo(int fd);
 DatagramInfo ReadInfo(msghdr* received);
 
-/// Room for the control messages that SetControl() writes.
+/// Space for the control messages that SetControl() writes.
 struct SendControl {
   alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(in6_pktinfo))] = {};
 };
-/// `message` goes to `to` with `tos`, by the interface of that index (0: as the routes say), which
-/// needs no privileges. Both stand in `control` until it is sent.
+/// Sends `message` to `to` with `tos`, by the interface of that index (0: by the routes), which
+/// needs no privileges. `control` must live until the message is sent.
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message);
 
 /// Index of the interface of that name in the socket's network; 0 if it is not there.
 unsigned InterfaceIndex(int fd, const std::string& name);
 
-/// Multicast leaves by the interface of that name. False with errno set where that cannot be.
+/// Sends multicast by the interface of that name. Returns false with errno set on failure.
 bool SendMulticastFrom(int fd, const std::string& interface);
 
-/// The largest receive buffer up to `bytes` that the kernel grants (0: what it is); its size, or 0
-/// if it fails.
+/// Sets the largest receive buffer up to `bytes` that the kernel grants (0: leaves it). Returns its
+/// size, or 0 on failure.
 unsigned SetReceiveBuffer(int fd, unsigned bytes);
 
 }  // namespace lidar::net

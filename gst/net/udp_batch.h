@@ -23,7 +23,7 @@ class UdpBatchSender {
     guint64 bytes = 0;
     guint errors = 0;    // datagrams given up
     int last_errno = 0;  // of the last error
-    bool woken = false;  // the rest was given up because of WakeFd
+    bool woken = false;  // the remainder was given up because of WakeFd
   };
 
   UdpBatchSender();
@@ -35,7 +35,7 @@ class UdpBatchSender {
   /// `tos`: the DSCP and ECN bits of the IP header; `interface`: index of that to leave by, or 0.
   /// Returns false if the buffer cannot be mapped.
   bool Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to, unsigned interface = 0);
-  /// Sends all, waiting for the socket where it must, and forgets them.
+  /// Sends all datagrams, waits for the socket if necessary, and forgets them.
   Result Flush(int fd, const WakeFd& wake);
 
  private:
@@ -72,7 +72,7 @@ class UdpBatchReceiver {
   static constexpr std::size_t kMaxDatagram = 65536;
 
   UdpBatchReceiver();
-  /// Hands what is there to `consume`, without waiting; the number, or -1 with errno set. `fd` was
+  /// Gives waiting datagrams to `consume`. Returns their number, or -1 with errno set. `fd` was
   /// given to net::AskForInfo().
   int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Datagrams the kernel dropped because the socket's buffer was full, since it was opened.

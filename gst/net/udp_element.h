@@ -41,7 +41,7 @@ struct GivenSocket {
   SharedSocket socket;
   bool close = true;  // on stop
 };
-/// A socket in use. The application may have given another one since.
+/// A socket in use. The application may have set another one since.
 struct SocketInUse {
   SharedSocket socket;
   bool given = false;
@@ -50,7 +50,7 @@ struct SocketInUse {
   void Close(bool close_given);
 };
 
-/// The options that bins leave to the elements.
+/// Options of the elements that bins do not show.
 struct UdpOptions {
   gint dscp = -1;         // of a sink
   guint buffer_size = 0;  // bytes; the rest of a source
@@ -68,7 +68,7 @@ SharedSocket OpenListening(GstElement* element, const UdpListen& listen);
 SharedSocketAddress ResolveTarget(GstElement* element, const UdpTarget& target);
 SharedSocket OpenSending(GstElement* element, const UdpTarget& target, GSocketFamily family);
 
-/// The socket that is given, else that which `open` opens; NULL if it fails.
+/// Returns the given socket, or the one that `open` opens; NULL if that fails.
 template <class Open>
 SocketInUse TakeSocket(const GivenSocket& given, Open open) {
   if (given.socket) return {given.socket, true};

@@ -30,7 +30,7 @@ bool HasRouteTo(GInetAddress* address) {
   return socket && g_socket_connect(socket.get(), there.get(), nullptr, nullptr) != FALSE;
 }
 
-/// GLib has ::1 before 127.0.0.1 for localhost, also on a machine without IPv6.
+/// GLib lists ::1 before 127.0.0.1 for localhost, even on a machine without IPv6.
 GInetAddress* Resolve(const std::string& host, GError** error) {
   if (GInetAddress* literal = g_inet_address_new_from_string(host.c_str())) return literal;
   std::unique_ptr<GResolver, GObjectUnref> resolver(g_resolver_get_default());
@@ -160,7 +160,7 @@ WakeFd::~WakeFd() {
 }
 
 void WakeFd::Wake() {
-  // Fails only when the counter is full, and then it wakes already.
+  // Fails only if the counter is full, and then it wakes anyway.
   if (eventfd_write(fd_, 1) != 0) return;
 }
 

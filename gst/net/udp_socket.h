@@ -24,15 +24,15 @@ inline SocketAddressPtr RefAddress(GSocketAddress* address) {
   return SocketAddressPtr(address != nullptr ? G_SOCKET_ADDRESS(g_object_ref(address)) : nullptr);
 }
 
-/// For a socket of `family`: an IPv4 address becomes a mapped one on an IPv6 socket. Invalid where
-/// the address does not fit the family.
+/// Returns the address for a socket of `family`: an IPv4 address becomes a mapped one on an IPv6
+/// socket. Returns an invalid address if it does not fit.
 NativeAddress ToNative(GSocketAddress* address, GSocketFamily family);
 /// Transfer full; a mapped address comes out as IPv4. NULL if it is of no known family.
 GSocketAddress* FromNative(const NativeAddress& address);
 
-/// Equal as the network sees them: a mapped IPv4 address is that address. NULL equals NULL only.
+/// Compares as the network does: a mapped IPv4 address equals that address. NULL equals only NULL.
 bool SameAddress(GSocketAddress* a, GSocketAddress* b);
-/// The same, with any port.
+/// Compares without the port.
 bool SameHost(GSocketAddress* a, GSocketAddress* b);
 
 /// Looks `host` (a name or a literal, brackets allowed) up; may block. Transfer full, or NULL.
@@ -62,7 +62,7 @@ class WakeFd {
   WakeFd& operator=(const WakeFd&) = delete;
   void Wake();
   void Clear();
-  /// Readable until Clear(): for those who wait for more than one.
+  /// Readable until Clear(), for threads that wait for several descriptors.
   int fd() const { return fd_; }
 
   enum class Outcome { kReady, kWoken, kTimeout, kError };

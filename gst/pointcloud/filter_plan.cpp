@@ -22,8 +22,8 @@ std::optional<CloudInfo> ParseCaps(const GstCaps* caps, bool* big_endian, std::s
   return CloudInfo::FromFrameCaps(copy.get(), why);
 }
 
-/// "x,y,z,intensity" or, with types, "x:F32,intensity:U8", packed. Offsets, as caps have them, are
-/// passed over.
+/// Parses "x,y,z,intensity" or, with types, "x:F32,intensity:U8", packed. Offsets, as in caps, are
+/// ignored.
 std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const PointFields& given,
                                             std::string* why) {
   std::istringstream in(text);
@@ -36,7 +36,7 @@ std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const Point
       *why = "there is no field " + name + " among " + given.ToString();
       return std::nullopt;
     }
-    // All elements take coordinates as F32, unless another type is asked for.
+    // Coordinates are F32, unless another type is requested: all elements take F32.
     const bool is_axis = name == "x" || name == "y" || name == "z";
     FieldType type = is_axis ? FieldType::kF32 : field->type;
     if (colon != std::string::npos) {
@@ -92,7 +92,7 @@ std::optional<Transform> PoseOf(GstBuffer* buffer) {
   return FromPose({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]});
 }
 
-/// The frame of the clouds, by the settings or the caps.
+/// Returns the frame of the clouds from the settings or the caps.
 std::string FrameOf(const FilterSettings& settings, const GstCaps* caps) {
   if (!settings.frame_id.empty()) return settings.frame_id;
   const gchar* text = gst_structure_get_string(gst_caps_get_structure(caps, 0), GST_LIDAR_FRAME_ID);
@@ -105,7 +105,7 @@ void DropPose(GstBuffer* buffer) {
   if (meta != nullptr) gst_buffer_remove_meta(buffer, &meta->meta);
 }
 
-/// The model of the beams that stay, where it still says where the points are.
+/// Keeps the sensor model of the remaining beams if it still gives the points' positions.
 void KeepModel(const PointFilterSettings& s, CloudInfo* out) {
   if (!out->sensor_model) return;
   if (s.has_pose || s.transform || s.column_step > 1 || s.invalid == InvalidPoints::kRemove) {

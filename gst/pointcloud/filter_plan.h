@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The work of pointcloudfilter on clouds of certain caps.
+// The work of pointcloudfilter for given caps.
 #pragma once
 #include <gst/gst.h>
 
@@ -27,7 +27,7 @@ struct FilterSettings {
   guint column_step = 1;
   bool apply_pose = false;
   std::string frame_id;      // of the clouds; empty: as their caps say
-  std::string target_frame;  // where transforms put them
+  std::string target_frame;  // frame to which transforms move the clouds
   Duration tf_timeout = std::chrono::milliseconds(200);
   std::string transform;
   InvalidPoints invalid = InvalidPoints::kKeep;
@@ -35,22 +35,22 @@ struct FilterSettings {
 
 class FilterPlan {
  public:
-  /// Returns nothing if the settings are wrong, or not to be done with clouds of `caps`; `why` then
-  /// says so in words for a user.
+  /// Returns nothing if the settings are wrong or impossible for clouds of `caps`; `why` has the
+  /// reason for a user.
   static std::unique_ptr<FilterPlan> Make(const FilterSettings& settings, const GstCaps* caps,
                                           std::string* why);
 
-  /// The filtered cloud, without metas; null if `buffer` contradicts the caps. A cloud of which
-  /// nothing is left has no bytes. `placed` takes it to the target frame, where there is one.
+  /// Returns the filtered cloud without metas, or null if `buffer` contradicts the caps. An empty
+  /// cloud has no bytes. `placed` is the transform to the target frame, if there is one.
   BufferPtr Apply(GstBuffer* buffer, const Transform& placed = kIdentity);
-  /// The caps of the cloud that Apply() gave last.
+  /// Caps of the last cloud from Apply().
   GstCaps* caps() const { return caps_.get(); }
   /// The fields of that cloud, with their types and places.
   std::string fields() const { return out_.fields.ToString(); }
   std::uint64_t removed() const { return filter_->removed(); }
-  /// Clouds without the pose that they need: they are dropped.
+  /// Number of clouds dropped because they lack the pose that they need.
   std::uint64_t without_pose() const { return without_pose_; }
-  /// The frame that clouds come in.
+  /// Frame of incoming clouds.
   const std::string& frame() const { return frame_; }
 
  private:
@@ -63,7 +63,7 @@ class FilterPlan {
   std::optional<PointFilter> filter_;
   guint column_step_ = 1;
   bool apply_pose_ = false;
-  bool drops_pose_ = false;  // the points are in the frame of the pose then, or in another
+  bool drops_pose_ = false;  // points move out of the frame that the pose describes
   std::string frame_;
   std::string out_frame_;  // empty: not known
   std::uint64_t without_pose_ = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The decoder as WebAssembly: the slices of one stream to the points that the page draws. Any bytes
-// give points or a number below 0. Memory is bounded: by kMostSliceBytes, by the caller's number of
-// points, and by what the codec keeps for references.
+// The decoder as WebAssembly: converts the slices of a stream to points for the page. Any input
+// gives points or a negative number. Memory is bounded by kMostSliceBytes, the caller's number of
+// points, and the codec's memory for references.
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -39,12 +39,12 @@ struct Link {
   std::uint32_t has_needs = 0;
 };
 
-/// As fields.js has it.
+/// As in fields.js.
 struct Point {
   float x, y, z, intensity, beam, range_m;
 };
 
-/// As WriteRangeImage() and WriteXyz() give it.
+/// As WriteRangeImage() and WriteXyz() write it.
 struct RawPoint {
   float x, y, z, intensity;
   std::uint32_t range_mm;
@@ -83,7 +83,7 @@ class Decoder {
     return ranges_ ? DecodeRanges() : DecodeCloud();
   }
   const Slice& slice() const { return slice_; }
-  /// Reads how the input hangs together with other slices; how many links it has.
+  /// Reads the links of the input to other slices. Returns their number.
   std::uint32_t FindLinks() {
     links_.clear();
     const auto blocks = ranges_ ? codec::LinksOf({input_.data(), input_.size()}) : std::nullopt;

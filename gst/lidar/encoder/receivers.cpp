@@ -8,10 +8,10 @@
 namespace lidar::gst {
 namespace {
 
-// An index that no slice has: the event is of the receiver alone.
+// Index of no slice: the event is about the receiver alone.
 constexpr guint kNoSlice = G_MAXUINT;
 
-/// The linked pads by which data of `sink` may leave, at most two of them.
+/// Returns the linked pads by which data of `sink` may leave, at most two.
 std::vector<PadPtr> WaysOut(GstPad* sink) {
   std::vector<PadPtr> ways;
   GstIterator* it = gst_pad_iterate_internal_links(sink);
@@ -90,7 +90,7 @@ ReceiverEvents::News ReceiverEvents::Take(GstPad* src) {
   if (looked_at_us_ == 0 || now - looked_at_us_ >= kLookInterval) {
     looked_at_us_ = now;
     const bool had_one_way = std::exchange(one_way_, HasOneWay(src));
-    // A new receiver lacks what the other one has.
+    // A new receiver lacks the slices of the other one.
     news.key_requested = news.key_requested || (had_one_way && !one_way_);
   }
   if (!one_way_) news.received.clear();

@@ -10,8 +10,8 @@
 
 namespace lidar::gst {
 
-/// Returns true if data of `src` reach one place at most: no element downstream has two outputs for
-/// them. A second place would not report what it lacks.
+/// Returns true if data of `src` reach at most one place: no element downstream has two outputs for
+/// them. A second place would not report its losses.
 bool HasOneWay(GstPad* src);
 
 /// Events come in any thread; the streaming thread calls Take().

@@ -42,7 +42,7 @@ CodingResult VtableCoder::Encode(double max_error_m, const rate::Settings& setti
   const auto result = class_->encode(encoder_, &wanted, bytes_.get(), &coded);
   *slice = {bytes_->len, coded.returns, coded.step, coded.error_bound};
   if (result == GST_LIDAR_ENCODE_OUT_OF_REACH) return CodingResult::kOutOfReach;
-  // Receivers take a slice without bytes for a lost one.
+  // Receivers would take a slice without bytes for a lost one.
   return result == GST_LIDAR_ENCODE_OK && bytes_->len > 0 ? CodingResult::kEncoded
                                                           : CodingResult::kEmpty;
 }

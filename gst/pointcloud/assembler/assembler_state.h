@@ -26,8 +26,8 @@ struct AssemblerState {
   /// The property `stats`; takes the mutex.
   StructurePtr Stats();
 
-  // Guards all below. The streaming lock of the sink pad orders what is pushed: the chain function
-  // holds it, and the timer takes it; it is taken before this one.
+  // Guards all below. The sink pad's streaming lock orders the output: the chain function holds it,
+  // and the timer takes it before this mutex.
   std::mutex mutex;
   AssemblerSettings settings;
   ScanQueue queue;
@@ -36,7 +36,7 @@ struct AssemblerState {
   guint out_width = 0;  // in the caps sent last; 0: to be sent again
   bool caps_sent = false;
   EventPtr early_segment;           // waits for the caps
-  std::optional<Latency> upstream;  // once it was asked
+  std::optional<Latency> upstream;  // after the first query
   GstClockTime scan_latency = 0;    // latency of a scan in the latency query, without max-wait
   GstSegment segment;
   DeadlineTimer timer;

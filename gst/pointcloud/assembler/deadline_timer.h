@@ -12,9 +12,9 @@ namespace lidar::gst {
 /// Every call is made with the same mutex held, which guards the deadlines too.
 class DeadlineTimer {
  public:
-  /// Waits without the mutex until the earliest deadline, given by `next` in the element's running
-  /// time (NONE: no deadline). Returns true when it has passed; false if the thread was woken,
-  /// which then looks at flushing() and waits anew.
+  /// Waits without the mutex until the earliest deadline, which `next` has in the element's running
+  /// time (NONE: no deadline). Returns true when it has passed. Returns false if the thread was
+  /// woken: then the thread checks flushing() and waits again.
   bool Wait(std::unique_lock<std::mutex>* lock, GstElement* element,
             const std::function<GstClockTime()>& next);
   /// The deadlines have changed, or the element has a clock now; `next` is the earliest.
@@ -27,7 +27,7 @@ class DeadlineTimer {
   std::condition_variable changed_;
   bool flushing_ = true;
   GstClockID wait_ = nullptr;
-  GstClockTime deadline_ = GST_CLOCK_TIME_NONE;  // of the wait
+  GstClockTime deadline_ = GST_CLOCK_TIME_NONE;  // deadline of the present wait
 };
 
 }  // namespace lidar::gst

@@ -54,7 +54,7 @@ static const std::array<Property<Settings>, 2> kProperties = {{
     {"stats", "Counters: scans, incomplete, late-slices, duplicate-slices, invalid-slices", Stats},
 }};
 
-/// Caps of a scan: those of its slices with the width of the scan.
+/// Pushes the caps of a scan: those of its slices with the scan's width.
 static void PushCaps(GstLidarScanAssembler* self, guint width) {
   State& state = *self->state;
   CapsPtr caps;
@@ -113,7 +113,7 @@ static void LearnUpstreamLatency(GstLidarScanAssembler* self) {
   self->state->upstream = answered ? ReadLatency(query.get()) : Latency();
 }
 
-/// A buffer that is a scan by itself.
+/// Passes a buffer that is a whole scan.
 static GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer, guint width) {
   GstFlowReturn flow = PushAll(self);
   if (flow != GST_FLOW_OK) {
@@ -124,7 +124,7 @@ static GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer,
   return gst_pad_push(self->srcpad, buffer);
 }
 
-/// Slices that lost their meta on the way look like scans of few columns.
+/// Slices that lost their meta look like scans of few columns.
 static void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info) {
   State& state = *self->state;
   if (!info.sensor_model || info.width >= info.sensor_model->columns_per_scan) return;
@@ -169,7 +169,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     if (state.queue.counters().invalid != invalid)
       GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
                          slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
-    // Stamps may have begun anew, and the timer may still wait for a scan of before.
+    // Stamps may have restarted, and the timer may still wait for an earlier scan.
     state.timer.Update(state.queue.NextDeadline());
   }
   return PushScans(self, &finished);
@@ -185,7 +185,7 @@ static void FinishDue(GstLidarScanAssembler* self, ScanQueue::Finished* finished
   gst_object_unref(clock);
 }
 
-/// The task of the source pad: lets scans go whose time is over.
+/// The source pad's task: pushes scans whose time is over.
 static void TimerLoop(gpointer data) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(data);
   State& state = *self->state;
@@ -238,13 +238,13 @@ static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
     std::lock_guard lock(state.mutex);
     scan_changes = state.info && CannotMix(*state.info, *info);
   }
-  // Open scans were made of the old slices, so they leave with the old caps.
+  // Open scans have the old slices, so they leave with the old caps.
   if (scan_changes) PushAll(self);
   TakeCaps(self, caps, *std::move(info));
   return TRUE;
 }
 
-/// Caps must go before the segment. True: the event was taken, and waits for the caps.
+/// Holds the segment until the caps. Returns true if it took the event.
 static bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
   State& state = *self->state;
   const GstSegment* segment = nullptr;

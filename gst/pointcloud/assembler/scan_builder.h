@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An unfinished scan: takes slices in any order, and gives a whole cloud.
+// An unfinished scan: takes slices in any order, and makes a whole cloud.
 #pragma once
 #include <vector>
 
@@ -15,7 +15,7 @@ struct SliceView {
   GstLidarSlice meta{};
 };
 
-/// A cloud as it leaves.
+/// A finished cloud with its times.
 struct FinishedScan {
   BufferPtr buffer;
   guint width = 0;  // columns, or points of an unorganised cloud
@@ -24,20 +24,20 @@ struct FinishedScan {
 
 class ScanBuilder {
  public:
-  /// False for slices that no scan is made of: an index past the count, a size that does not fit
-  /// the caps, more columns than a sensor has.
+  /// Returns false for slices that cannot be part of a scan: an index past the count, a size that
+  /// does not fit the caps, or more columns than a sensor has.
   static bool IsSane(const SliceView& slice);
-  /// True for clouds whose points stand in columns, which keep their places in the scan. The points
-  /// of other clouds are strung together.
+  /// Returns true for clouds whose points stand in columns and keep their places in the scan.
+  /// Points of other clouds are joined in order.
   static bool IsOrganised(const CloudInfo& info) { return info.height > 1 || info.sensor_model; }
 
-  /// `slice` must be sane. It is not added by this.
+  /// `slice` must be sane. The constructor does not add it.
   explicit ScanBuilder(const SliceView& slice);
 
   guint scan_id() const { return scan_id_; }
   /// Returns true if the slice is of this scan and cut as the others were.
   bool Fits(const SliceView& slice) const;
-  /// False for a duplicate, or where memory cannot be mapped.
+  /// Returns false for a duplicate, or if memory cannot be mapped.
   bool Add(const SliceView& slice);
   bool complete() const { return present_count_ == present_.size(); }
   /// PTS of the scan's first column, known or counted back; NONE if no slice had one.

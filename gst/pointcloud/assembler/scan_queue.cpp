@@ -7,7 +7,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxOpen = 2;
-// No network reorders scans by that many, so the sender has started again.
+// No network reorders that many scans, so the sender has restarted.
 constexpr int kRestart = 16;
 
 }  // namespace
@@ -18,7 +18,7 @@ ScanQueue::Open* ScanQueue::Find(const SliceView& slice) {
   return nullptr;
 }
 
-/// Says how old a scan is that is not open, or not open in this cut.
+/// Compares a scan with the open ones and those that left.
 ScanQueue::Age ScanQueue::AgeOf(guint scan_id, Finished* finished) {
   const auto newest = open_.empty() ? newest_left_ : open_.back().builder.scan_id();
   if (!newest) return Age::kNew;
@@ -60,7 +60,7 @@ void ScanQueue::Add(const SliceView& slice, GstClockTime deadline, Finished* fin
   }
   if (!open->builder.complete()) return;
   const guint id = open->builder.scan_id();
-  // Older scans are not worth the wait once a whole scan is there.
+  // Older scans do not wait once a whole newer scan is there.
   while (newest_left_ != id) FinishFront(finished);
 }
 

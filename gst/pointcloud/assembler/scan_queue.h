@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which scans are in the making, and when each has to leave.
+// The scans that are being assembled, and their deadlines.
 #pragma once
 #include <deque>
 #include <optional>
@@ -10,8 +10,8 @@
 namespace lidar::gst {
 
 struct ScanCounters {
-  guint64 scans = 0;       // that left
-  guint64 incomplete = 0;  // of these
+  guint64 scans = 0;       // number that left
+  guint64 incomplete = 0;  // number of incomplete ones among them
   guint64 late = 0;        // slices that came after their scan had left
   guint64 duplicates = 0;
   guint64 invalid = 0;
@@ -23,8 +23,8 @@ class ScanQueue {
  public:
   using Finished = std::vector<FinishedScan>;
 
-  /// Takes a slice; appends the scans that it completes or pushes out. `deadline` is until when a
-  /// scan that begins with this slice may stay; NONE: until a slice of the next scan comes.
+  /// Takes a slice, and appends the scans that it completes or displaces. A scan that begins with
+  /// this slice may stay until `deadline`; NONE: until a slice of the next scan.
   void Add(const SliceView& slice, GstClockTime deadline, Finished* finished);
   /// Appends the scans whose deadline is not after `now`.
   void FinishDue(GstClockTime now, Finished* finished);

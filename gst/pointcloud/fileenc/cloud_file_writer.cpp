@@ -39,7 +39,7 @@ TypeText TextOf(FieldType type) {
   return {'F', "double"};
 }
 
-/// Names come from caps, so they may hold what would break a header.
+/// Names come from caps, so they may contain characters that would break a header.
 std::string SafeName(const std::string& name) {
   std::string safe = name;
   for (char& c : safe)
@@ -52,7 +52,7 @@ bool IsCoordinate(const PointField& field) {
          (field.name == "x" || field.name == "y" || field.name == "z");
 }
 
-/// Appends the shortest text that reads back as the same number, whatever the locale.
+/// Appends the shortest text that reads back as the same number in any locale.
 void AppendText(FieldType type, const std::uint8_t* at, std::string* out) {
   WithTypeOf(type, [&](auto value) {
     std::memcpy(&value, at, sizeof value);

@@ -20,11 +20,11 @@ class FramePlacer {
 
   // For the streaming thread.
 
-  /// Clouds go to the frame `target`, or stay in theirs where it is empty.
+  /// Sets the frame of output clouds; empty: clouds keep their frame.
   void SetTarget(std::string target, std::chrono::nanoseconds patience);
-  /// Finds the transform that takes a cloud of `frame` to the target. Without it returns nothing,
-  /// counts that, and warns for `element` once until there is one. Returns FLUSHING if a flush or
-  /// the end of the stream cut the wait short.
+  /// Finds the transform of a cloud of `frame` to the target. Without one it returns nothing,
+  /// counts that, and warns for `element` once. Returns FLUSHING if a flush or the end of the
+  /// stream ended the wait.
   GstFlowReturn Place(GstElement* element, GstBuffer* cloud, const std::string& frame,
                       std::optional<Transform>* transform);
   void Clear();

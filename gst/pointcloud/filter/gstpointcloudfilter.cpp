@@ -157,7 +157,7 @@ static void NoteChange(GObject* object, GParamSpec* spec) {
     gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
 }
 
-/// A plan for the caps and the settings of now; false and an error where there is none.
+/// Makes a plan for the present caps and settings. Returns false after an error.
 static bool MakePlan(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   FilterSettings settings;
@@ -179,7 +179,7 @@ static bool MakePlan(GstLidarPointCloudFilter* self) {
   return state.plan != nullptr;
 }
 
-/// If caps do not arrive, the next buffer brings them, and its flow says why they did not.
+/// Pushes caps. If that fails, the next buffer pushes them again, and its flow has the reason.
 static void PushCaps(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   GstCaps* caps = state.plan->caps();
@@ -255,7 +255,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-/// A cloud may come as much later as it waits for its transform.
+/// A cloud may be delayed by the wait for its transform.
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !ReadLatency(query).live) return TRUE;
@@ -278,7 +278,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
                           const GstCaps*) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
   GST_OBJECT_LOCK(self);
-  // A requested name is kept. A pad without one must never get a name that was given.
+  // Keeps a requested name. A pad without one must never get a name that was given.
   guint64 number = self->next_pad;
   if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT - 1, &number, nullptr);
   self->next_pad = std::max(self->next_pad, static_cast<guint>(number) + 1);

@@ -80,7 +80,7 @@ gboolean TransformInbox::Event(GstPad* pad, GstObject*, GstEvent* event) {
   return TRUE;
 }
 
-/// tf2_msgs/msg/TFMessage, as ros2src has it.
+/// Takes a tf2_msgs/msg/TFMessage from ros2src.
 void TransformInbox::TakeMessage(const GstStructure* caps, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   const auto transforms = map ? cdr::ReadTransforms(map.view()) : std::nullopt;
@@ -92,7 +92,7 @@ void TransformInbox::TakeMessage(const GstStructure* caps, GstBuffer* buffer) {
          for_good != FALSE);
 }
 
-/// A pose, as lidarodometry and ros2src have it.
+/// Takes a pose from lidarodometry or ros2src.
 void TransformInbox::TakePose(const GstStructure* caps, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   const auto at = CaptureTimeOf(buffer);

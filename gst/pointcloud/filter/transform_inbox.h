@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pads for transforms of an element, and the transforms that they have brought.
+// An element's pads for transforms, and the transforms that arrived.
 #pragma once
 #include <gst/gst.h>
 
@@ -17,11 +17,11 @@ namespace lidar::gst {
 /// Returns nothing if the buffer has none. Differences of these times do not overflow.
 std::optional<Time> CaptureTimeOf(GstBuffer* buffer);
 
-/// For any number of threads.
+/// All threads may call it.
 class TransformInbox {
  public:
-  /// A sink pad of `pad_template` that puts what comes in here; the inbox must outlive it. It takes
-  /// TFMessages and odometry. Adds it to the element.
+  /// Adds a sink pad of `pad_template` that takes TFMessages and odometry. The inbox must outlive
+  /// it.
   GstPad* AddPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name);
   void ReleasePad(GstElement* element, GstPad* pad);
 
@@ -29,14 +29,14 @@ class TransformInbox {
   /// not again for one that it has waited for in vain.
   TransformTree::Answer Find(const std::string& target, const std::string& source,
                              std::optional<Time> at, std::chrono::nanoseconds timeout);
-  /// Find() waits no longer, until Interrupt(false).
+  /// Ends waits of Find(), until Interrupt(false).
   void Interrupt(bool on);
   bool is_interrupted() const;
   void Clear();
 
   struct Counters {
     guint64 transforms = 0;
-    guint64 refused = 0;  // transforms and messages that are none
+    guint64 refused = 0;  // invalid transforms and messages
   };
   Counters counters() const;
 
@@ -57,7 +57,7 @@ class TransformInbox {
   Counters counters_;
   std::map<GstPad*, bool> pads_;  // true: ended
   bool interrupted_ = false;
-  std::optional<Time> waited_in_vain_;  // for what comes after this time
+  std::optional<Time> waited_in_vain_;  // waits for later times only
 };
 
 }  // namespace lidar::gst
