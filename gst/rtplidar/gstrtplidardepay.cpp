@@ -82,9 +82,9 @@ const std::array<Stat<Shown>, 20> kStats = {{
     {"outages", A<&ReceiverAccounts::outages>},
 }};
 
-// So many packets of another payload type, and none of ours, are no accident.
+// So many packets of another payload type without one of ours cannot be chance.
 constexpr guint64 kWrongTypePackets = 20;
-// Nor are so many that cannot be read, before the first that can.
+// So many unreadable packets before the first readable one cannot be chance.
 constexpr guint64 kUnreadablePackets = 20;
 
 lidar::Duration ReorderTime(const Settings& s) {
@@ -105,7 +105,7 @@ struct State {
   std::optional<gint> payload_type;  // of the caps
   bool warned_of_type = false;
   bool warned_of_rival = false;
-  bool readable = false;  // something was, or a warning said that nothing is
+  bool readable = false;  // a packet was readable, or the warning was posted
   lidar::Time now;
   GstPadChainFunction base_chain = nullptr;
 };
@@ -145,15 +145,15 @@ static const std::array<Property<Settings>, 2> kProperties = {{
      Stats},
 }};
 
-/// True once many packets had a wrong payload type and none the right one.
+/// Returns true once after many packets of a wrong payload type and none of the right one.
 static bool CountWrongType(State& state) {
   std::lock_guard lock(state.mutex);
   return ++state.wrong_payload_type >= kWrongTypePackets &&
          state.receiver.accounts().packets_received == 0;
 }
 
-/// False, and counted, for what is not RTP or of another payload type. The base class would post a
-/// warning for each, and a flood of garbage must not become a flood of messages.
+/// Returns false, and counts, for data that are not RTP or of another payload type. The base class
+/// would post a warning for each, and a flood of garbage must not become a flood of messages.
 static bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
   State& state = *self->state;
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
@@ -186,7 +186,7 @@ static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
                        ssrc));
 }
 
-/// True once if many packets came and no packet could be read. The caller holds the lock.
+/// Returns true once after many packets without a readable one. The caller holds the lock.
 static bool IsUnreadable(State& state) {
   if (state.readable) return false;
   const ReceiverAccounts all = state.receiver.accounts();
@@ -300,7 +300,7 @@ static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
   self->state->base_chain = GST_PAD_CHAINFUNC(sink);
   gst_pad_set_chain_function(sink, Chain);
   gst_pad_set_chain_list_function(sink, ChainList);
-  // We reorder by slice; the base class must hand over whatever comes.
+  // This element reorders slices, so the base class must pass packets in any order.
   g_object_set(self, "max-reorder", 0, nullptr);
 }
 

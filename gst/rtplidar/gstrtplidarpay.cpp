@@ -60,7 +60,7 @@ struct _GstLidarRtpPay {
 };
 
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
-// No rank: what looks for the payloader of a video would find that this one takes everything.
+// Has no rank: a search for a video's payloader would find that this one takes everything.
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_NONE, gst_lidar_rtp_pay_get_type())
 
 static StructurePtr Stats(GObject* object) {
@@ -91,7 +91,7 @@ static GstFlowReturn HandleBuffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   return flow;
 }
 
-/// "video" where nothing else is taken, as in WebRTC, which has no media of its own for LiDAR.
+/// Returns "video" if downstream takes nothing else, as WebRTC, which has no media type for LiDAR.
 static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   const CapsPtr allowed(gst_pad_get_allowed_caps(GST_RTP_BASE_PAYLOAD_SRCPAD(base)));
   const CapsPtr usual(
@@ -151,7 +151,7 @@ static gboolean SinkEvent(GstRTPBasePayload* base, GstEvent* event) {
   return GST_RTP_BASE_PAYLOAD_CLASS(gst_lidar_rtp_pay_parent_class)->sink_event(base, event);
 }
 
-/// The event as the encoder should see it: without what our headers take. Foreign fields stay.
+/// Returns the event for the encoder, without the share of our headers. Unknown fields stay.
 static GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
   GstStructure* s = gst_structure_copy(gst_event_get_structure(event));
   for (const char* name : {"bitrate", "min-bitrate", "max-bitrate"}) {
@@ -164,7 +164,7 @@ static GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
   return out;
 }
 
-/// A receiver asked for a start point, or the SSRC will change: it needs the config at once.
+/// A receiver needs a start point, or the SSRC will change: the config must be sent at once.
 static bool WantsConfig(GstEvent* event) {
   return GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM &&
          (gst_event_has_name(event, "GstForceKeyUnit") ||
@@ -191,7 +191,7 @@ static gboolean SrcEvent(GstRTPBasePayload* base, GstEvent* event) {
   return GST_RTP_BASE_PAYLOAD_CLASS(gst_lidar_rtp_pay_parent_class)->src_event(base, event);
 }
 
-/// The longest time that an aggregate may be held back; 0 without one.
+/// Returns the longest delay of an aggregate; 0 without aggregation.
 static GstClockTime HoldTime(GstRTPBasePayload* base) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   const CapsPtr caps(gst_pad_get_current_caps(GST_RTP_BASE_PAYLOAD_SINKPAD(base)));

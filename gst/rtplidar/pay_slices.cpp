@@ -34,7 +34,7 @@ GstBuffer* MakeBuffer(GstRTPBasePayload* base, const rtp::Packet& packet, GstBuf
   return out;
 }
 
-/// Appends `packets`; every one says which slice it is of, so that a sender can drop whole scans.
+/// Appends `packets`, each with the number of its scan, so that a sender can drop whole scans.
 void Append(GstRTPBasePayload* base, PayState& state, const std::vector<rtp::Packet>& packets,
             const PaySlice& slice, GstBuffer* body, GstBufferList* list) {
   for (const auto& packet : packets) {
@@ -117,7 +117,7 @@ void CountSlice(PayState& state, const PaySlice& slice, gsize size) {
   state.recent_payload_bytes *= kShareMemory;
 }
 
-/// Takes the slice into the packet that is being collected; false if it must go out alone.
+/// Adds the slice to the open aggregate. Returns false if it must be sent alone.
 bool Aggregate(GstRTPBasePayload* base, PayState& state, const PaySlice& slice, ByteView bytes,
                GstFlowReturn* flow) {
   const auto ticks = GST_CLOCK_TIME_IS_VALID(slice.pts)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The streaming side of rtplidarpay: slices in, lists of RTP buffers out.
+// The streaming side of rtplidarpay: converts slices to lists of RTP buffers.
 #pragma once
 #include <gst/rtp/gstrtpbasepayload.h>
 
@@ -55,20 +55,20 @@ struct PayState {
   rtp::Aggregator aggregator;
   PaySlice first_aggregated;
   std::optional<GstLidarBitrateBounds> bounds;  // the encoder's, without our headers
-  gdouble bounds_share = 1;                     // by which they were last scaled
+  gdouble bounds_share = 1;                     // share at the last scaling
 };
 
 /// Room for payload in one RTP packet [bytes].
 std::size_t MaxPayload(GstRTPBasePayload* base);
 /// Payloads and pushes one encoded slice; posts what is wrong with it.
 GstFlowReturn PaySliceBuffer(GstRTPBasePayload* base, PayState& state, GstBuffer* buffer);
-/// Pushes the slices that wait to be put together.
+/// Pushes the slices that wait for aggregation.
 GstFlowReturn PushAggregate(GstRTPBasePayload* base, PayState& state);
-/// The part of the RTP payload that is the encoder's, lately; a guess before anything was sent.
+/// Recent share of the encoder's bytes in the RTP payload; a guess before the first slice.
 gdouble SliceShare(GstRTPBasePayload* base, PayState& state);
-/// The encoder's bounds with what our headers take on top.
+/// Returns the encoder's bounds plus our headers.
 GstEvent* BoundsWithHeaders(GstRTPBasePayload* base, PayState& state);
-/// Sends the bounds again where the headers' share has moved by more than 2 %.
+/// Sends the bounds again if the headers' share has changed by more than 2 %.
 void UpdateBounds(GstRTPBasePayload* base, PayState& state);
 
 }  // namespace lidar::gst

@@ -32,7 +32,7 @@ GstBuffer* ToBuffer(rtp::ReceivedSlice* slice) {
   return buffer;
 }
 
-/// Says what the next element does not take.
+/// Warns of a coder that the next element does not take.
 void WarnOfCoder(GstRTPBaseDepayload* base, const GstCaps* caps) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   const std::string type = gst_structure_get_name(s);
@@ -82,7 +82,7 @@ void SliceOutput::Push(std::vector<rtp::ReceivedSlice> slices, Time now) {
       if (!MayChangeTo(slice.config, now)) continue;
       flush();
       asked_ = slice.config;
-      // Refused caps are asked again: a flush refuses, too.
+      // Refused caps are offered again, as a flush refuses them, too.
       config_ = SetCapsOf(*slice.config) ? slice.config : nullptr;
     }
     if (!config_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Gives received slices to the next element, in the caps of their stream config.
+// Pushes received slices downstream, with the caps of their stream config.
 #pragma once
 #include <gst/rtp/gstrtpbasedepayload.h>
 
@@ -17,10 +17,10 @@ class SliceOutput {
  public:
   explicit SliceOutput(GstRTPBaseDepayload* element) : element_(element) {}
 
-  /// Pushes the slices, those of one config as one list. Drops those of a coder that the next
-  /// element does not take, and of formats that change too often; each is a warning once.
+  /// Pushes the slices; those of one config form a list. Drops slices of a coder that the next
+  /// element does not take, and of formats that change too often, and warns once of each.
   void Push(std::vector<rtp::ReceivedSlice> slices, Time now);
-  /// Begins anew, counts included. The caller holds the element's lock.
+  /// Resets all state with the counts. The caller holds the element's lock.
   void Reset();
 
   guint64 not_accepted() const { return not_accepted_; }
@@ -32,8 +32,8 @@ class SliceOutput {
   bool MayChangeTo(const Config& config, Time now);
   bool SetCapsOf(const rtp::StreamConfig& config);
 
-  // Each change costs all that follows far more than the few bytes of a slice: new caps of up to
-  // 200 kB as text, an event in each queue, a channel of a recording, a message of NATS.
+  // A change of format costs downstream much more than the bytes of a slice: caps of up to 200 kB,
+  // an event per queue, a channel of a recording, a NATS message.
   static constexpr int kFormatChanges = 8;
   static constexpr Duration kFormatChangePeriod = std::chrono::seconds(1);
 

@@ -275,7 +275,7 @@ static gboolean Query(GstBaseSrc* base, GstQuery* query) {
   return GST_BASE_SRC_CLASS(gst_lidar_test_src_parent_class)->query(base, query);
 }
 
-/// A sensor does not wait: a reader that is late by more than a scan misses what was swept.
+/// A sensor does not wait: a reader that is late by more than a scan misses data.
 static bool SkipWhatIsLate(GstElement* element, State* state) {
   const Duration due = state->maker->NextEnd() + state->maker->period();
   const auto now = state->pacer.Now();
@@ -303,7 +303,7 @@ static GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
   const Duration begin = state.maker->NextTime();
   const Duration end = state.maker->NextEnd();
   const lidar::synth::Pose pose = state.maker->NextPose();
-  // Cast beforehand, so that the slice leaves when its last column is sampled and not later.
+  // Casts early, so that the slice leaves when its last column is sampled.
   BufferPtr buffer = state.maker->Make(state.pacer.ToUnixTime(begin));
   const GstFlowReturn flow = state.pacer.WaitUntil(end);
   if (flow != GST_FLOW_OK) return flow;

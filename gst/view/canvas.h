@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pixels with depth: what is nearer hides what is behind.
+// A picture with depth: near pixels hide far ones.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -27,9 +27,9 @@ class Canvas {
   void Splat(int x, int y, int size, float depth, Color color);
   /// The rectangle [x0, x1) x [y0, y1).
   void Fill(int x0, int y0, int x1, int y1, Color color);
-  /// A line of half-transparent pixels, under what is drawn already.
+  /// Draws a line of half-transparent pixels below what is drawn already.
   void Line(float x0, float y0, float x1, float y1, Color color);
-  /// A line of `size` pixels' width, from depth to depth; what is nearer hides it.
+  /// Draws a line `size` pixels wide between two depths; nearer pixels hide it.
   struct End {
     float x, y, depth;
   };

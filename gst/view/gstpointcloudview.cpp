@@ -154,7 +154,7 @@ GST_ELEMENT_REGISTER_DEFINE(pointcloudview, "pointcloudview", GST_RANK_NONE,
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_VIEW(self)->state; }
 
-/// The caps of the other pad, with the frame rate of this one.
+/// Returns the caps of the other pad, with this one's frame rate.
 static GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps* caps,
                               GstCaps* filter) {
   GstPad* other = direction == GST_PAD_SINK ? base->srcpad : base->sinkpad;
@@ -242,7 +242,7 @@ static void Paint(const Canvas& canvas, GstVideoFrame* frame) {
   }
 }
 
-/// Moves the map to where `in` was taken. Returns false if its points shall not enter the map.
+/// Moves the map to the pose of `in`. Returns false if its points must not enter the map.
 static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   if (!state.map) return false;
@@ -262,7 +262,7 @@ static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   return pose.tracking != GST_LIDAR_TRACKING_LOST;
 }
 
-/// The map lives as long as it is asked for with the same colours.
+/// Keeps the map while it is wanted with the same colours.
 static TrailMap* UpdateMap(State* state) {
   const Settings& settings = state->settings;
   const bool stale = state->map_colors != settings.color_by;
@@ -272,7 +272,7 @@ static TrailMap* UpdateMap(State* state) {
   return state->map ? &*state->map : nullptr;
 }
 
-/// Settings that changed while a picture was drawn show in the next one.
+/// Applies settings that changed while a picture was drawn to the next one.
 static void ApplySettings(State* state) {
   std::lock_guard lock(state->mutex);
   if (state->changed || !state->renderer)
@@ -304,7 +304,7 @@ static GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
   return GST_FLOW_OK;
 }
 
-/// A scan is a picture: slices are drawn as they come, and the last one lets it go.
+/// Draws slices as they come; the last slice of a scan completes the picture.
 static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   State& state = StateOf(base);
   const BufferMap bytes(in, GST_MAP_READ);
@@ -359,7 +359,7 @@ static gboolean Stop(GstBaseTransform* base) {
   return TRUE;
 }
 
-/// The next picture is drawn anew.
+/// Makes the next picture start from scratch.
 static void MarkChanged(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::lock_guard lock(state.mutex);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The part of the renderer that draws scans over the map of what was seen before.
+// The part of the renderer that draws scans over the map.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ constexpr float kMapShare = 0.7F;
 constexpr float kReach = 300;
 constexpr int kMetOften = 3;
 constexpr float kMargin = 25;  // around the way [m]
-/// Columns of a scan are placed in so many steps.
+/// Number of steps in which the columns of a scan are placed.
 constexpr std::size_t kPhases = 64;
 
 }  // namespace
@@ -82,7 +82,7 @@ void Renderer::DrawOverMap(const CloudInfo& info, const GstLidarSlice& slice,
 
 void Renderer::DrawMap() {
   const bool top = settings_.view == ViewKind::kTop;
-  // A cube fills its place in the picture.
+  // Draws a cube as large as its place in the picture.
   const float cube = map_->cube_m();
   for (const TrailMap::Point& point : map_->points()) {
     if (point.scans < kMetOften) continue;

@@ -73,7 +73,8 @@ void Renderer::LearnScale(const CloudInfo& info, const std::uint8_t* points) {
   low_ = scale.low;
   high_ = scale.high;
   if (settings_.color_by != ColorBy::kIntensity) return;
-  // Sensors disagree about the scale of intensity: what one point in fifty exceeds is bright.
+  // Sensors scale intensity differently: the value that one point in fifty exceeds counts as
+  // bright.
   std::vector<float> values;
   ForEachPoint(info, points, [&](const Point& p) { values.push_back(p.value); });
   if (values.empty()) return;
@@ -84,7 +85,7 @@ void Renderer::LearnScale(const CloudInfo& info, const std::uint8_t* points) {
 
 Color Renderer::ColorOf(float value) const {
   const float t = (value - low_) / (high_ - low_);
-  // Most things are dark: the square root opens them up.
+  // The square root brightens dark values, which are most.
   if (settings_.color_by == ColorBy::kIntensity) return Glow(t > 0 ? std::sqrt(t) : 0);
   return Spectrum(t);
 }
@@ -132,7 +133,7 @@ void Renderer::PlotPerspective(const Point& point) {
 void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
                               const std::uint8_t* points) {
   const auto* model = info.sensor_model ? &*info.sensor_model : nullptr;
-  // The meta is not to be trusted.
+  // The meta is untrusted.
   constexpr guint64 kMost = SensorModel::kMaxColumns * guint64{4096};
   const guint64 all = guint64{info.width} * slice.slice_count;
   const guint turn = model != nullptr ? model->columns_per_scan
@@ -152,7 +153,7 @@ void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
   });
 }
 
-/// Draws a cloud that has lost its order, by azimuth and elevation of its points.
+/// Draws an unorganised cloud by azimuth and elevation.
 void Renderer::DrawPanorama(const CloudInfo& info, const std::uint8_t* points) {
   float low = 1;
   float high = -1;
@@ -215,7 +216,7 @@ void Renderer::DrawRings() {
 const Canvas& Renderer::Finish() {
   if (settings_.view == ViewKind::kRange) return canvas_;
   if (map_ != nullptr) DrawMap();
-  // Seen from above, depth is height: a step of one metre is shaded like a tenth of the distance.
+  // Depth is height from above: a step of a metre is shaded like a tenth of the distance.
   canvas_.ShadeEdges(settings_.view == ViewKind::kTop ? 6.0F : 2.0F);
   if (map_ != nullptr) {
     DrawWay();

@@ -33,9 +33,9 @@ constexpr float kGround = -1.9F;  // below the sensor [m]
 /// Draws a picture at a time: Begin, Draw for each slice, Finish.
 class Renderer {
  public:
-  /// If there is a map, which has to have a pose, scans are drawn where they were taken, over what
-  /// was seen before. Seen from above, all of the way is in the picture. In perspective the view is
-  /// level, from behind the sensor. The map must outlive the renderer.
+  /// Scans with a map, and poses for it, are drawn where they were taken, over earlier ones. From
+  /// above the picture contains the whole way. In perspective the view is level, from behind the
+  /// sensor. The map must outlive the renderer.
   Renderer(const ViewSettings& settings, int width, int height, TrailMap* map);
 
   void Begin();

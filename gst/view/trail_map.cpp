@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLongestStep_s = 1;  // beyond this a velocity does not predict the present
 constexpr float kGrowth = 1.5F;
-constexpr float kNews = 0.3F;      // how much a scan counts: what was seen from afar may be wrong
+constexpr float kNews = 0.3F;      // weight of a scan: distant points may be wrong
 constexpr float kFarthest = 1e7F;  // [m]: beyond it floats cannot separate cubes
 
 using Cube = std::array<std::int32_t, 3>;
@@ -55,7 +55,7 @@ Rigid TrailMap::PoseAfter(double later_s) const {
   std::array<double, 4> q{};
   double dot = 0;
   for (std::size_t i = 0; i < 4; ++i) dot += pose_.orientation[i] * before_.orientation[i];
-  const double sign = dot < 0 ? -1 : 1;  // of the two quaternions of a rotation, the nearer one
+  const double sign = dot < 0 ? -1 : 1;  // takes the nearer of the two quaternions of a rotation
   double norm = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     q[i] = pose_.orientation[i] + part * (pose_.orientation[i] - sign * before_.orientation[i]);
@@ -102,7 +102,7 @@ std::size_t TrailMap::SlotOf(const std::array<float, 3>& at) const {
 }
 
 void TrailMap::Add(const std::array<float, 3>& at, float value) {
-  // NaN is not below, either.
+  // NaN fails, too
   if (!std::all_of(at.begin(), at.end(), [](float c) { return std::abs(c) < kFarthest; })) return;
   const std::size_t slot = SlotOf(at);
   if (slots_[slot] != 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The points that a moving sensor has seen, in one frame, and its way.
+// The points that a moving sensor has seen, in one frame, and the sensor's way.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,15 +23,15 @@ struct Rigid {
   float heading() const;  // [rad]
 };
 
-/// Keeps a point a cube. Memory is bounded: where there are too many cubes, they grow, and the way
-/// keeps every second place.
+/// Keeps one point per cube in bounded memory: with too many cubes they grow, and the way keeps
+/// every second place.
 class TrailMap {
  public:
   struct Point {
     std::array<float, 3> at;
     float value;  // value of its colour
     std::uint16_t last_scan = 0;
-    std::uint16_t scans = 0;  // that met it
+    std::uint16_t scans = 0;  // number of scans that saw it
   };
 
   explicit TrailMap(std::size_t most_points = kMostPoints);
@@ -69,7 +69,7 @@ class TrailMap {
   GstLidarPose pose_{};
   GstLidarPose before_{};
   double pose_s_ = 0;
-  double step_s_ = 0;  // from the pose before; 0: the velocity is not known
+  double step_s_ = 0;  // since the last pose; 0: the velocity is unknown
   std::uint64_t poses_ = 0;
 };
 

@@ -25,7 +25,7 @@ inline std::string Base64(const std::vector<std::uint8_t>& bytes) {
   return text;
 }
 
-/// The bytes of `text`; skips line breaks and padding.
+/// Returns the bytes of `text`; skips line breaks and padding.
 inline std::vector<std::uint8_t> FromBase64(std::string_view text) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(text.size() / 4 * 3);

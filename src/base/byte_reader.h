@@ -23,7 +23,7 @@ struct ByteView {
   }
 };
 
-/// Reads in order. A read past the end gives zero and makes ok() false for good, so that a parser
+/// Reads in order. A read past the end gives zero and makes ok() false from then on, so a parser
 /// may read a whole header and check ok() at its end.
 class ByteReader {
  public:

@@ -6,11 +6,11 @@
 
 namespace lidar {
 
-/// Rows that were written stay after a failure; a file without rows is removed.
+/// Written rows stay after a failure; a file without rows is removed.
 class RowFile {
  public:
   RowFile() = default;
-  /// Truncates or makes the file; ok() says whether that worked. Numbers are written as in C.
+  /// Truncates or creates the file; ok() shows whether that worked. Numbers have the C locale.
   explicit RowFile(const std::string& path);
   ~RowFile() { Close(); }
   RowFile(RowFile&& other) noexcept;

@@ -6,7 +6,7 @@
 
 namespace lidar {
 
-/// A clock without now(): the core gets every time from its caller.
+/// A clock without now(): callers pass each time.
 struct Clock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// gst_lidar_msgs/msg/CodedSlice: a slice as a coder makes it, a message of our own.
+// gst_lidar_msgs/msg/CodedSlice: our message for a coded slice.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -7,7 +7,7 @@
 namespace lidar::cdr {
 namespace {
 
-// A point without the padding behind it.
+// Size of a point without padding.
 constexpr std::size_t kSmallestPoint = 19;
 constexpr std::uint32_t kPointStep = 26;
 constexpr std::uint8_t kRosU8 = 2;
@@ -37,7 +37,7 @@ std::optional<MadeCloud> ReadLivox(ByteView message, std::string* why) {
   RosLayout& layout = made.cloud.layout;
   made.cloud.header = ReadHeader(&r);
   const std::uint64_t timebase = r.U64();
-  r.U32();     // number of points, which the sequence says, too
+  r.U32();     // number of points, which the sequence has, too
   r.Bytes(4);  // sensor, reserved
   layout.width = r.Count(kSmallestPoint);
   layout.fields = LivoxFields();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The ROS 2 messages about motion, and the parts that all messages share.
+// ROS 2 messages about motion, and the parts that all messages share.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,8 +16,7 @@ namespace lidar::cdr {
 using Vector3 = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;  // x, y, z, w
 
-/// std_msgs/msg/Header. A stamp holds seconds since 1970 to 2038; what lies outside becomes the
-/// nearest end.
+/// std_msgs/msg/Header. A stamp has seconds from 1970 to 2038; other times become the nearest end.
 struct Header {
   Time stamp{};
   std::string frame_id;

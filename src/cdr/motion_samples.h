@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Samples of an IMU and poses as GStreamer's buffers have them, little-endian, and as messages.
+// Converts IMU samples and poses between GStreamer's buffers (little-endian) and ROS messages.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -15,15 +15,15 @@ inline constexpr const char* kImuFields =
 inline constexpr std::size_t kImuSampleSize = 32;
 
 std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
-/// A message for each sample in `bytes`, without orientation and frame; no messages if a sample is
-/// cut.
+/// Returns a message for each sample in `bytes`, without orientation and frame, or no messages if
+/// the last sample is cut.
 std::vector<Imu> ReadImuSamples(ByteView bytes);
 
-/// Position [m], orientation x, y, z, w, how sure the pose is, which messages do not say, and the
+/// Writes position [m], orientation x, y, z, w, the tracking, which messages lack, and the
 /// covariance of the pose unless it is zero.
 std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t tracking);
-/// The pose, without time and frames, and its covariance, zeros if unknown; nothing if `bytes` are
-/// of another size.
+/// Returns the pose without time and frames, with its covariance (zeros if unknown). Returns
+/// nothing if `bytes` have another size.
 std::optional<Odometry> ReadPose(ByteView bytes, std::uint64_t* tracking);
 
 }  // namespace lidar::cdr

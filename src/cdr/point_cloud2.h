@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// sensor_msgs/msg/PointCloud2, and how its points become ours.
+// sensor_msgs/msg/PointCloud2, and the conversion of its points to ours.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -40,13 +40,13 @@ struct PointCloud2 {
   bool is_dense = false;
 };
 
-/// Returns nothing if `message` is no such message; `why` then says so in words for a user.
+/// Returns nothing for another message; `why` then has the reason for a user.
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
-/// A cloud with points of its own, outside of a message.
+/// A cloud that owns its points.
 struct MadeCloud {
-  PointCloud2 cloud;  // whose data are `points`
+  PointCloud2 cloud;  // its data are `points`
   std::vector<std::uint8_t> points;
 };
 /// livox_ros_driver2/msg/CustomMsg, as the PointCloud2 that the same driver publishes of it: x, y,
@@ -55,15 +55,15 @@ std::optional<MadeCloud> ReadLivox(ByteView message, std::string* why = nullptr)
 
 /// point_cloud_interfaces/msg/CompressedPointCloud2
 struct CompressedCloud {
-  PointCloud2 cloud;   // whose data are compressed
+  PointCloud2 cloud;   // its data are compressed
   std::string format;  // "draco", "zlib", "zstd"
 };
 std::optional<CompressedCloud> ReadCompressedCloud(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WriteCompressedCloud(const CompressedCloud& compressed);
 
-/// Bytes from one row of the data to the next; nothing if the length of the data contradicts width,
-/// height and steps. Many drivers leave row_step at 0 or at the size of all, so packed rows are
-/// recognised by the size alone.
+/// Returns the bytes between the beginnings of two rows. Returns nothing if the data's length
+/// contradicts width, height and steps. Many drivers set row_step to 0 or to the total size, so
+/// packed rows are recognised by the size alone.
 std::optional<std::size_t> RowStride(const PointCloud2& cloud);
 
 /// A message in pieces, for writers that gather: the points stand between `head` and `tail`.
@@ -80,11 +80,11 @@ struct PointLayout {
   std::uint32_t point_step = 0;  // bytes
 };
 
-/// The layout of packed rows of little-endian points. Fields a[0], a[1], ... of one type that stand
-/// side by side become one field of as many elements.
+/// Returns the layout of packed rows of little-endian points. Adjacent fields a[0], a[1], ... of
+/// one type become one field with as many elements.
 RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint32_t height);
 
-/// Turns the points of messages of one layout into little-endian points in packed rows.
+/// Converts points of messages of one layout to little-endian points in packed rows.
 class PointConverter {
  public:
   /// `wanted` selects fields, converted if a field's type is another. Without it all fields stay;
@@ -106,7 +106,7 @@ class PointConverter {
   /// `cloud` has layout(). Returns false if it has no RowStride(). `out` has size() bytes.
   bool Convert(const PointCloud2& cloud, std::uint8_t* out) const;
 
-  static constexpr std::size_t kMaxSize = std::size_t{1} << 30;  // as caps of clouds have it
+  static constexpr std::size_t kMaxSize = std::size_t{1} << 30;  // limit of clouds in caps
 
  private:
   /// Bytes that move together, or one number that changes its type or its byte order.

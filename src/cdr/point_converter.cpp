@@ -21,8 +21,8 @@ bool IsUsable(const RosField& f) {
          !f.name.empty() && std::none_of(f.name.begin(), f.name.end(), bad);
 }
 
-/// The fields that we keep, each element of an array a field of its own. Returns false if one ends
-/// past the point.
+/// Returns the fields that we keep, with a field for each element of an array. Returns false if one
+/// ends past the point.
 bool Expand(const RosLayout& layout, std::vector<PointField>* out, std::string* why) {
   for (const RosField& f : layout.fields) {
     if (!IsUsable(f)) continue;
@@ -53,7 +53,7 @@ bool HaveAxes(const std::vector<PointField>& fields) {
                      [&](const char* axis) { return FindField(fields, axis) != nullptr; });
 }
 
-/// The same fields at the same place, where our elements can use them so.
+/// Returns the same fields at the same places, if our elements can use them.
 std::optional<PointLayout> Same(const std::vector<PointField>& source, std::uint32_t step) {
   if (step > PointFields::kMaxPointStep) return std::nullopt;
   std::string text;
@@ -144,7 +144,7 @@ void PointConverter::ConvertPoint(const std::uint8_t* from, std::uint8_t* to) co
 bool PointConverter::Convert(const PointCloud2& cloud, std::uint8_t* out) const {
   const auto stride = RowStride(cloud);
   if (!stride) return false;
-  // Four billion rows of no points are no work.
+  // Rows without points need no work, even four billion of them.
   if (size() == 0) return true;
   const std::size_t row = std::size_t{from_.width} * from_.point_step;
   if (!copies()) std::fill_n(out, size(), std::uint8_t{0});

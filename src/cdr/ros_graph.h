@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ROS 2's discovery of nodes and names of topics in DDS.
+// ROS 2's discovery of nodes, and names of topics in DDS.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -31,7 +31,7 @@ constexpr std::array<RosTypeInfo, 6> kRosTypes = {{
      "RIHS01_4b38df4932a156a54c53e80a7f34e54e2966b20e54a4d14ded34a165a389c0c1"},
 }};
 
-/// Messages of these hold many points.
+/// Returns true for messages with points.
 constexpr bool IsCloud(RosType type) {
   return type == RosType::kPointCloud2 || type == RosType::kLivox ||
          type == RosType::kCompressedCloud;

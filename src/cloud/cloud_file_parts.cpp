@@ -101,7 +101,7 @@ bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cl
   for (const FileField& f : fields) numbers += f.count;
   const std::uint64_t points = std::uint64_t{cloud->width} * cloud->height;
   *why = "the file ends before its last point";
-  // A number takes two bytes, its space among them.
+  // A number takes at least two bytes, with its space.
   if (points * numbers > text.size / 2 + 1) return false;
   cloud->points.resize(*size);
   std::string_view left = View(text);

@@ -22,7 +22,7 @@ class Lines {
   std::optional<std::vector<std::string_view>> Next();
   /// What follows the last line.
   ByteView Rest() const { return file_.Sub(position_); }
-  /// The last line as it stands.
+  /// Text of the last line.
   std::string_view text() const { return text_; }
 
  private:
@@ -35,7 +35,7 @@ std::optional<std::uint64_t> ParseCount(std::string_view text);
 /// The time in a comment of our own writers.
 std::optional<std::uint64_t> ParseCaptureTime(std::string_view comment);
 
-/// Numbers of a point as the file has them, in the order of the file.
+/// Numbers of a point in the file's order.
 struct FileField {
   std::string name;  // empty: padding
   std::optional<FieldType> type;

@@ -14,17 +14,17 @@ namespace lidar {
 
 enum class CloudFileType { kPcd, kPly, kLas, kKitti };
 
-/// Judges by how `file` begins; a few hundred bytes of it are enough. A file of KITTI's has no
-/// header: plausible points are one.
+/// Detects the type from the beginning of `file`; a few hundred bytes suffice. KITTI's files have
+/// no header: plausible points identify them.
 std::optional<CloudFileType> TypeOfCloudFile(ByteView file);
 
 struct FileCloud {
-  std::vector<PointField> fields;  // as the file names them; what we cannot use is left out
+  std::vector<PointField> fields;  // with the file's names, without fields that we cannot use
   std::uint32_t point_step = 0;
   std::uint32_t width = 0;
   std::uint32_t height = 1;
   bool is_bigendian = false;
-  std::optional<std::uint64_t> capture_time;  // ns since 1970, where we wrote the file
+  std::optional<std::uint64_t> capture_time;  // [ns since 1970], if we wrote the file
   std::vector<std::uint8_t> points;
 };
 
@@ -32,11 +32,10 @@ struct FileCloud {
 /// Its claimed sizes are checked against its bytes.
 std::optional<FileCloud> ReadPcd(ByteView file, std::string* why);
 std::optional<FileCloud> ReadPly(ByteView file, std::string* why);
-/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. x, y and z are as the file has them, or,
-/// where a point lies more than 16 km off, relative to the least of each in whole metres: F32 has
-/// no millimetres beyond that.
+/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. If a point lies more than 16 km off, x, y
+/// and z are relative to the least of each in whole metres, as F32 has no millimetres beyond that.
 std::optional<FileCloud> ReadLas(ByteView file, std::string* why);
-/// x, y, z and intensity as F32, of KITTI's sequences and what was made after them.
+/// Reads x, y, z and intensity as F32, the format of KITTI's sequences and their successors.
 std::optional<FileCloud> ReadKitti(ByteView file, std::string* why);
 std::optional<FileCloud> ReadCloud(CloudFileType type, ByteView file, std::string* why);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The numbers of point fields, read and written whatever their type.
+// Reads and writes numbers of point fields of any type.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -103,7 +103,7 @@ Vector Position(const std::uint8_t* record, const LasHeader& h) {
   return p;
 }
 
-/// The offset that is taken off all positions.
+/// Returns the offset that is subtracted from all positions.
 Vector OriginOf(ByteView records, const LasHeader& h) {
   Vector least;
   least.fill(std::numeric_limits<double>::infinity());

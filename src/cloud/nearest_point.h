@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Distances from points to the nearest of a cloud.
+// Distances from points to the nearest point of a cloud.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ class NearestPoint {
   const float* At(std::size_t i) const { return xyz_ + 3 * std::size_t{order_[i]}; }
 
   const float* xyz_;
-  std::vector<std::uint32_t> order_;  // each range's middle divides it
+  std::vector<std::uint32_t> order_;  // the middle of each range divides it
 };
 
 }  // namespace lidar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// PCD 0.7 and before: text, binary, and binary by LZF.
+// PCD up to 0.7: text, binary, and binary compressed by LZF.
 #include <lzf.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::optional<FieldType> TypeOf(std::string_view type, std::uint64_t size) {
   return std::nullopt;
 }
 
-/// The lines of a header, as they stand.
+/// The lines of a header as text.
 struct PcdHeader {
   Words fields, sizes, types, counts;
   std::optional<std::uint64_t> width, height, points;
@@ -103,12 +103,12 @@ bool SetSize(const PcdHeader& h, FileCloud* cloud, std::string* why) {
   return true;
 }
 
-/// A back reference of three bytes gives 264: no data can give more than that.
+/// A back reference has three bytes and gives 264: no data can give more.
 constexpr std::size_t kMostPerByte = 88;
 
 /// Decompresses to exactly `size` bytes; nothing if the data are damaged or give another size.
 std::optional<std::vector<std::uint8_t>> DecompressLzf(ByteView data, std::size_t size) {
-  // The library reads a first byte without a look whether there is one.
+  // The library reads the first byte without a check that it exists.
   if (data.size == 0 || size / kMostPerByte > data.size) return std::nullopt;
   std::vector<std::uint8_t> out(size);
   if (lzf_decompress(data.data, static_cast<unsigned>(data.size), out.data(),
@@ -117,7 +117,7 @@ std::optional<std::vector<std::uint8_t>> DecompressLzf(ByteView data, std::size_
   return out;
 }
 
-/// Compressed files hold each number of all points before the next number of them.
+/// Compressed files hold the first number of all points, then the second, and so on.
 bool ReadCompressed(ByteView rest, const std::vector<FileField>& fields, FileCloud* cloud,
                     std::string* why) {
   ByteReader r(rest);

@@ -35,7 +35,7 @@ struct PlyHeader {
   std::vector<FileField> fields;
   std::optional<std::uint64_t> capture_time;
   bool in_vertices = false;
-  bool other_first = false;  // vertices do not begin right behind the header
+  bool other_first = false;  // other elements precede the vertices
 
   bool Take(const std::vector<std::string_view>& words, std::string_view line, std::string* why) {
     const std::string_view key = words.front();

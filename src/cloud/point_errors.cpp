@@ -21,11 +21,11 @@ class Distances {
     sum_ += metres;
     errors_.max_m = std::max(errors_.max_m, metres);
   }
-  /// Error of a decoded point that stands for no other one.
+  /// Adds the error of a decoded point without a raw point of its own.
   void AddBack(double metres) { errors_.max_m = std::max(errors_.max_m, metres); }
   void AddMissing(std::uint64_t points) { errors_.missing += points; }
   void OnCoordinate(double metres) { largest_ = std::max(largest_, std::abs(metres)); }
-  /// Both positions of a distance are rounded, and each in three coordinates.
+  /// Both positions of a distance are rounded, each in three coordinates.
   PointErrors Take() {
     if (errors_.points > 0) errors_.mean_m = sum_ / static_cast<double>(errors_.points);
     errors_.rounding_m = 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest_;
@@ -78,7 +78,7 @@ std::vector<float> ReturnsOf(ByteView raw, const PointFields& fields, std::uint3
   return returns;
 }
 
-/// `may_merge`: a point may stand for several.
+/// `may_merge`: a decoded point may stand for several raw ones.
 PointErrors CompareClouds(const std::vector<float>& before, const std::vector<float>& after,
                           bool in_order, bool may_merge) {
   Distances distances;
@@ -94,7 +94,7 @@ PointErrors CompareClouds(const std::vector<float>& before, const std::vector<fl
   const NearestPoint original(before);
   for (std::size_t i = 0; i < after.size(); i += 3) {
     const double distance = original.DistanceFrom(&after[i]);
-    // No decoded point stands for points that were left out.
+    // Removed points have no decoded point.
     missing > 0 ? distances.Add(distance) : distances.AddBack(distance);
   }
   if (missing > 0) return distances.Take();

@@ -13,7 +13,7 @@ namespace lidar {
 
 struct PointErrors {
   std::uint64_t points = 0;   // compared
-  std::uint64_t missing = 0;  // returns of the cloud that did not come back, or the other way round
+  std::uint64_t missing = 0;  // returns of one cloud without a partner in the other
   double max_m = 0;
   double mean_m = 0;
   double rounding_m = 0;  // rounding of the positions by 32-bit floats
@@ -25,17 +25,17 @@ struct DecodedPoint {
   std::uint32_t range_mm = 0;       // 0 if only positions were coded
 };
 
-/// Which point of the raw cloud a decoded point stands for.
+/// Rule that assigns a raw point to a decoded point.
 enum class PointOrder {
   kPixels,  // the point at the same place
-  kKept,    // the same one of the returns
-  kAny,     // the nearest one, also of several; errors are distances in both directions
+  kKept,    // the return with the same number
+  kAny,     // the nearest point, possibly shared; errors are distances in both directions
 };
 
-/// The distances between the points of `raw`, which is whole points, and their decoded points.
-/// Pixels without positions are compared by range. `thinned`: points were left out on purpose, so
-/// fewer points are missing, not merged. Returns nothing if pixels are not as many, or there are no
-/// points to compare.
+/// Measures the distances between `raw`, which has whole points, and its decoded points. Pixels
+/// without positions are compared by range. With `thinned` points were removed on purpose, so fewer
+/// points are missing, not merged. Returns nothing if the numbers of pixels differ, or without
+/// points.
 std::optional<PointErrors> MeasureErrors(ByteView raw, const PointFields& fields,
                                          std::uint32_t point_step,
                                          const std::vector<DecodedPoint>& decoded, PointOrder order,

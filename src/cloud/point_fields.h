@@ -38,8 +38,8 @@ class PointFields {
   bool Has(std::string_view name, FieldType type) const;
   /// Returns true if x, y and z are F32 and stand side by side, as all elements take them.
   bool HasPackedXyz() const;
-  /// Returns true if the fields, in any order, fill the point from 0 on without overlap or room
-  /// between them. Decoders give them so.
+  /// Returns true if the fields, in any order, fill the point from 0 without overlap or gaps, as
+  /// decoders produce it.
   bool ArePacked() const;
   /// Bytes up to the end of the last field.
   std::uint32_t MinimumStep() const;

@@ -104,7 +104,7 @@ std::optional<PointFilter> PointFilter::Make(const PointFilterSettings& settings
 bool PointFilter::IsFirstInVoxel(const std::array<float, 3>& xyz) {
   std::uint64_t key = 0;
   for (const float c : xyz) {
-    // 2^21 cubes along each axis; beyond them all are one.
+    // 2^21 cubes along each axis; further points share the last cube.
     const double index = std::floor(static_cast<double>(c) / settings_.voxel_size_m);
     const auto limited = static_cast<std::int64_t>(std::clamp(index, -1048576.0, 1048575.0));
     key = key << 21 | static_cast<std::uint64_t>(limited + 1048576);
@@ -112,7 +112,7 @@ bool PointFilter::IsFirstInVoxel(const std::array<float, 3>& xyz) {
   return voxels_.insert(key).second;
 }
 
-/// Moves the point, and says whether it stays.
+/// Moves the point. Returns true if it stays.
 bool PointFilter::Keeps(std::array<float, 3>* xyz) {
   const PointFilterSettings& s = settings_;
   const auto square = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Takes points out of clouds, thins them and moves them.
+// Removes, thins and moves points of clouds.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,20 +15,20 @@ namespace lidar {
 
 /// The treatment of points without a return, and of removed points.
 enum class InvalidPoints {
-  kKeep,    // the first stay as they are, the others become zero
+  kKeep,    // the first kind stays as it is, removed points become zero
   kZero,    // all fields zero
   kNan,     // x, y and z are NaN, the rest zero
-  kRemove,  // they are not in the cloud, which loses its rows
+  kRemove,  // removed from the cloud, which loses its rows
 };
 
-/// The steps, in the order in which they are done.
+/// The steps of the filter, in their order.
 struct PointFilterSettings {
   std::uint32_t beam_step = 1;    // every n-th row
-  std::uint32_t column_step = 1;  // every n-th column, as the scan counts them
+  std::uint32_t column_step = 1;  // every n-th column of the scan
   double min_range_m = 0;
   double max_range_m = 0;                         // 0: no limit
-  bool has_pose = false;                          // clouds come with one, which moves them
-  std::optional<Transform> transform;             // of the points, behind the pose
+  bool has_pose = false;                          // clouds have a pose that moves them
+  std::optional<Transform> transform;             // applied after the pose
   std::optional<std::array<double, 6>> crop_box;  // least and largest x, y, z, as transformed [m]
   bool crop_inside = false;                       // removes the inside of the box
   double voxel_size_m = 0;                        // one point in each cube stays; 0: all
@@ -42,19 +42,19 @@ struct PointFilterSettings {
 
 /// Parses numbers with spaces or commas between them; nothing for other text.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
-/// Sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: turned about x, then y,
-/// then z, then moved.
+/// Parses sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: a turn about x,
+/// then y, then z, then a translation.
 std::optional<Transform> ParseTransform(const std::string& text);
 /// `orientation` is a unit quaternion x, y, z, w.
 Transform FromPose(const std::array<double, 3>& position, const std::array<double, 4>& orientation);
 
-/// Rows of columns.
+/// Rows of a cloud, with their columns.
 struct CloudRows {
   const std::uint8_t* points = nullptr;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::uint32_t first_column = 0;  // of the scan
-  Transform pose{};                // of the sensor, where the settings have one
+  Transform pose{};                // of the sensor, if the settings need it
 };
 
 struct FilteredCloud {
@@ -66,12 +66,12 @@ struct FilteredCloud {
 
 class PointFilter {
  public:
-  /// Returns nothing if the settings need x, y and z as F32 side by side, and `fields` lack them.
+  /// Returns nothing if the settings need x, y and z as adjacent F32 and `fields` lack them.
   static std::optional<PointFilter> Make(const PointFilterSettings& settings,
                                          const PointFields& fields, std::uint32_t point_step);
 
   FilteredCloud Apply(const CloudRows& cloud);
-  /// Returns that the filter removed.
+  /// Number of returns that the filter removed.
   std::uint64_t removed() const { return removed_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The common part of judges of points.
+// Common functions on points.
 #pragma once
 #include <array>
 #include <cmath>

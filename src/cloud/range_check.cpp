@@ -48,7 +48,7 @@ std::optional<RangeCheck::Contradiction> RangeCheck::Find(ByteView raw,
     const double distance = std::hypot(static_cast<double>(found[0] - expected[0]),
                                        static_cast<double>(found[1] - expected[1]),
                                        static_cast<double>(found[2] - expected[2]));
-    // Written so that NaN is a contradiction, too.
+    // NaN counts as a contradiction, too.
     if (!(distance <= 1e-3 * unit_mm_ + kFloatRounding * 1e-3 * range_mm))
       return Contradiction{beam, column, distance};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Do points stand where their ranges and the sensor model put them?
+// Checks that points stand where their ranges and the sensor model put them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace lidar {
 
-/// If ranges alone are coded, points that were moved after the sensor come back unmoved.
+/// Detects points that were moved after the sensor: coding ranges alone would undo the motion.
 class RangeCheck {
  public:
-  /// Returns nothing if there is nothing to compare: no x, y and z beside the range.
+  /// Returns nothing if the fields lack x, y and z beside the range.
   static std::optional<RangeCheck> Create(const PointFields& fields, std::uint32_t point_step,
                                           const SensorModel& model);
 
@@ -23,7 +23,7 @@ class RangeCheck {
     std::uint32_t column = 0;  // measurement id
     double distance_m = 0;     // between the point and its range's
   };
-  /// Looks at kSamples returns of `raw`, which holds whole beams.
+  /// Checks kSamples returns of `raw`, which has whole beams.
   std::optional<Contradiction> Find(ByteView raw, std::uint32_t first_column) const;
 
   static constexpr std::size_t kSamples = 4;

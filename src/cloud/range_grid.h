@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The grid on which ranges are rounded: any step, and an error that is exact in the sensor's unit.
+// The grid for rounding ranges: any step, with an exact error in the sensor's unit.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,9 +16,9 @@ class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
   static constexpr std::uint32_t kMaxUnitMm = 1'000;
-  /// Up to here, sums and differences of bins fit an int32.
+  /// Greatest range for which sums and differences of bins fit an int32.
   static constexpr std::uint32_t kMaxRangeMm = (1U << 28) - 1;
-  /// Steps are multiples of a cell by this.
+  /// Number of parts of a cell; steps are multiples of a part.
   static constexpr std::uint32_t kParts = 256;
 
   constexpr RangeGrid() = default;
@@ -31,15 +31,17 @@ class RangeGrid {
     return grid;
   }
 
-  /// The coarsest grid whose error stays within `error_m`; lossless where none else does.
+  /// Returns the coarsest grid whose error stays within `error_m`, or the lossless grid if there is
+  /// none.
   static RangeGrid ForError(double error_m, std::uint32_t unit_mm) {
-    // The small term lets a bound such as 0.02 m, which is no exact double, hold 20 mm. Fractions
-    // of a millimetre are no use: errors are whole ones.
+    // The small term makes a bound such as 0.02 m, which is no exact double, 20 mm. Fractions of a
+    // millimetre do not matter: errors are whole millimetres.
     const double whole_mm = std::floor(1e3 * error_m + 1e-9);
     const double cells = std::floor(2 * whole_mm / unit_mm) + 1;
     return {unit_mm, static_cast<std::uint32_t>(std::clamp(cells, 1.0, double{kMaxCells}))};
   }
-  /// The coarsest grid whose step is at most `step_m`; lossless where none is.
+  /// Returns the coarsest grid whose step is at most `step_m`, or the lossless grid if there is
+  /// none.
   static RangeGrid ForStep(double step_m, std::uint32_t unit_mm) {
     const double parts = std::floor(1e3 * kParts * step_m / unit_mm + 1e-6);
     constexpr double kMost = double{kMaxCells} * kParts;
@@ -77,9 +79,9 @@ class RangeGrid {
   bool ToRanges(std::vector<std::int32_t>* bins) const {
     std::uint32_t last = 0;
     for (const std::int32_t bin : *bins) last |= static_cast<std::uint32_t>(bin);
-    // `last` is at least the largest bin, and less than twice as much.
+    // `last` is at least the largest bin, and less than twice that.
     const std::uint64_t parts = (last + std::uint64_t{1}) * parts_ + kParts;
-    // As a rule 32 bits are enough, and then a processor computes several at once.
+    // Usually 32 bits suffice, and a processor can compute several numbers at once.
     if (parts <= UINT32_MAX && 2 * unit_mm_ * (parts / kParts + 1) <= kMaxRangeMm) {
       for (std::int32_t& bin : *bins)
         bin = static_cast<std::int32_t>(Middle<std::uint32_t>(static_cast<std::uint32_t>(bin)));
@@ -94,7 +96,7 @@ class RangeGrid {
   }
 
  private:
-  /// The middle of the cells of a bin. Its first cell is the next whole one from its start on.
+  /// Returns the middle of a bin's cells. Its first cell is the first whole one after its start.
   template <class Wide>
   Wide Middle(Wide bin) const {
     const Wide first = (bin * parts_ + (kParts - 1)) / kParts;

@@ -19,7 +19,7 @@ std::array<float, 3> Apply(const std::array<float, 9>& m, const std::array<float
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
-// Four columns, in whatever vector registers the processor has.
+// Four columns, in the processor's vector registers.
 using Floats = float __attribute__((vector_size(16)));
 using Ints = std::int32_t __attribute__((vector_size(16)));
 
@@ -30,7 +30,7 @@ V Load(const T* from) {
   return v;
 }
 
-/// Puts points side by side: from x of four points, y, z and what is behind, all of each point.
+/// Interleaves the coordinates of four points, each with the four bytes behind it.
 void StorePoints(Floats x, Floats y, Floats z, Floats behind, std::size_t bytes, std::uint8_t* to,
                  std::size_t point_step) {
   const Floats xy_low = __builtin_shufflevector(x, y, 0, 4, 1, 5);
@@ -115,7 +115,7 @@ double RangeProjection::RangeOf(std::uint32_t beam, std::uint32_t column, const 
   return 1e3 * static_cast<double>(along + beam_origin_m_);
 }
 
-/// As Point() does it, four columns at a time.
+/// Computes four columns at a time as Point() does.
 template <bool kBehind>
 void RangeProjection::ProjectRun(const Run& run, const std::uint32_t* behind) const {
   constexpr std::uint32_t kAtOnce = 4;

@@ -32,8 +32,8 @@ class RangeProjection {
   /// ranges [mm], below 2^31, `ranges[beam * window.count + i]` of every beam.
   void Project(const std::uint32_t* ranges, ColumnWindow window, std::uint8_t* xyz,
                std::size_t point_step) const;
-  /// The same for one beam. `behind`, where it is not null, has the four bytes to write behind z in
-  /// each point, so that points of 16 bytes are written whole.
+  /// Projects one beam. If `behind` is not null it has the four bytes to write after z in each
+  /// point, so that points of 16 bytes are written at once.
   void ProjectBeam(std::uint32_t beam, const std::uint32_t* ranges, ColumnWindow window,
                    const std::uint32_t* behind, std::uint8_t* xyz, std::size_t point_step) const;
 
@@ -43,7 +43,7 @@ class RangeProjection {
  private:
   using Vector = std::array<float, 3>;
   struct Column {
-    std::array<float, 9> rotation;  // lidar_to_sensor after the turn of the encoder
+    std::array<float, 9> rotation;  // lidar_to_sensor after the encoder's turn
     Vector offset;                  // of the beams' origin, in metres
   };
 
@@ -53,8 +53,8 @@ class RangeProjection {
 
   std::vector<Vector> beams_;  // directions at encoder angle 0
   std::vector<Column> columns_;
-  /// columns_ once more, number by number (first the rotation's nine, then the offset's three), so
-  /// that neighbouring columns are computed at once.
+  /// columns_ transposed (the rotation's nine numbers, then the offset's three), so that
+  /// neighbouring columns are computed at once.
   std::array<std::vector<float>, 12> numbers_;
   float beam_origin_m_ = 0;  // |beam_to_lidar|
 };

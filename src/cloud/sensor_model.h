@@ -21,9 +21,9 @@ using Transform = std::array<double, 16>;
 constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 struct SensorModel {
-  std::uint32_t columns_per_scan = 0;  // of a full turn, whatever the azimuth window
+  std::uint32_t columns_per_scan = 0;  // of a full turn, for any azimuth window
   std::uint32_t range_unit_mm = 1;     // resolution of the ranges: 8 for RNG15 profiles
-  double beam_to_lidar_x_m = 0;        // origin of the beams against the lidar frame
+  double beam_to_lidar_x_m = 0;        // origin of the beams relative to the lidar frame
   double beam_to_lidar_z_m = 0;
   Transform lidar_to_sensor = kIdentity;
   std::vector<Beam> beams;  // top to bottom

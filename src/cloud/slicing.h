@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Into how many slices a source cuts a scan.
+// The number of slices into which a source cuts a scan.
 #pragma once
 #include <cstdint>
 
@@ -20,8 +20,8 @@ constexpr std::uint32_t SlicesDividing(std::uint32_t columns, std::uint32_t slic
   return 1;
 }
 
-/// The automatic rule: a sweep of about 12.5 ms, longer only where a slice would hold too few
-/// points to compress well.
+/// The automatic rule: a sweep of about 12.5 ms, or longer if a slice would have too few points to
+/// compress well.
 constexpr std::uint32_t AutomaticSlices(const ScanShape& scan) {
   constexpr Duration kSweep{12'500'000};
   constexpr std::uint64_t kPointsPerSlice = 2000;

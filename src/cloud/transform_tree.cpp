@@ -16,11 +16,11 @@ using Position = std::array<double, 3>;
 
 /// tf2's tolerance for a unit quaternion.
 constexpr double kUnitTolerance = 0.01;
-/// No robot is farther away than the moon; sums stay finite [m].
+/// No robot is farther away than the moon, so sums stay finite [m].
 constexpr double kFarthest = 1e9;
-/// Frames above each other; more are a circle.
+/// Greatest depth of frames; more form a circle.
 constexpr std::size_t kMaxDepth = 64;
-/// Orientations above this cosine are so near that a straight line between them will do.
+/// A straight line suffices between orientations above this cosine.
 constexpr double kNearlyParallel = 0.9995;
 
 /// ROS 1 wrote frames with a slash.
@@ -118,7 +118,7 @@ bool TransformTree::Set(std::string parent, std::string child, Time at, const Fr
     return true;
   }
   link.earlier.Add(parent, sample);
-  // The history may hold fewer of them: it drops what is far from the newest.
+  // The history may hold fewer poses, as it drops those far from the newest.
   if (++link.too_old < kRestart) return false;
   link.history = std::exchange(link.earlier, {});
   link.too_old = 0;
@@ -148,7 +148,7 @@ bool TransformTree::Knows(const std::string& frame) const {
                      [&](const auto& entry) { return entry.second.history.parent == frame; });
 }
 
-/// The frame, its parent, and so on.
+/// Returns the frame, its parent, and so on.
 std::vector<std::string> TransformTree::PathUp(const std::string& frame) const {
   std::vector<std::string> path = {frame};
   auto link = links_.find(frame);
@@ -157,7 +157,7 @@ std::vector<std::string> TransformTree::PathUp(const std::string& frame) const {
   return path;
 }
 
-/// Takes points of the first frame of `path` to the frame `steps` above it.
+/// Returns the pose that takes points of the first frame of `path` to the frame `steps` above it.
 std::optional<FramePose> TransformTree::Climb(const std::vector<std::string>& path,
                                               std::size_t steps, std::optional<Time> at,
                                               Answer* answer) const {

@@ -20,25 +20,25 @@ struct FramePose {
   std::array<double, 4> orientation = {0, 0, 0, 1};  // unit quaternion x, y, z, w
 };
 
-/// Frames, each below one parent. Memory is bounded, whatever comes.
+/// Frames, each below one parent, in bounded memory.
 class TransformTree {
  public:
   static constexpr std::size_t kMaxFrames = 512;
-  static constexpr std::size_t kMaxSamples = 2048;  // of a frame
+  static constexpr std::size_t kMaxSamples = 2048;  // per frame
   static constexpr Duration kHistory = std::chrono::seconds(10);
   static constexpr std::size_t kRestart = 10;  // poses
 
-  /// Says where `child` is in `parent`, at a time or for good. Returns false if this is no pose,
-  /// where frames are not named or the same, and where there are too many of them. A pose older
-  /// than kHistory is refused, too, as tf2 does. kRestart such old poses of a frame in a row mean
-  /// that the clock went back: as many as one history can hold then replace what was known.
+  /// Sets the pose of `child` in `parent`, at a time or permanently. Returns false for an invalid
+  /// pose, unnamed or equal frames, or too many frames. Like tf2, it refuses poses older than
+  /// kHistory. kRestart old poses of a frame in a row show that the clock went back: as many as a
+  /// history can hold then replace the old ones.
   bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
 
   struct Answer {
     std::optional<Transform> transform;  // takes points of the source to the target
     std::string why;                     // there is none, in words for a user
     bool may_come = false;               // a later pose can make one
-    Time newest{};                       // of the frame that the later pose is missing of
+    Time newest{};                       // newest pose of the frame that lacks a later one
   };
   /// Poses are interpolated between two times. Without a time the newest poses count.
   Answer Find(const std::string& target, const std::string& source, std::optional<Time> at) const;
@@ -59,8 +59,8 @@ class TransformTree {
   struct Link {
     bool for_good = false;
     History history;          // never empty
-    History earlier;          // of a clock that may have gone back
-    std::size_t too_old = 0;  // poses in a row
+    History earlier;          // from a clock that may have gone back
+    std::size_t too_old = 0;  // too old poses in a row
 
     bool IsTooOld(Time at) const;
   };

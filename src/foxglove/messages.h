@@ -11,7 +11,7 @@
 
 namespace lidar::foxglove {
 
-/// The place and time at which something was seen.
+/// Frame and time of an observation.
 struct Header {
   std::uint64_t unix_ns = 0;
   std::string frame_id;
@@ -27,7 +27,7 @@ struct PointsView {
   const PointFields& fields;
   std::uint32_t point_step = 0;  // bytes
   std::uint32_t width = 0;       // points of a row
-  std::uint32_t height = 1;      // rows: beams, where it is more than one
+  std::uint32_t height = 1;      // rows, which are beams if there are several
   ByteView data;                 // width * height points, row-major
 };
 
@@ -36,10 +36,10 @@ struct EncodedCloud {
   std::uint32_t points = 0;
 };
 
-/// Makes a foxglove.PointCloud of the points that are returns: not all zero, and finite. Of more
+/// Makes a foxglove.PointCloud of the returns: points that are finite and not all zero. Of more
 /// than `max_points` (0: no limit) it takes every n-th. Points of an organised cloud get a field
-/// `ring` with the number of their beam, unless they have one: their place no longer gives it.
-/// `points` has x, y and z as F32 side by side, and as many bytes as it says.
+/// `ring` with their beam's number, unless they have one, as their place no longer shows it.
+/// `points` has x, y and z as adjacent F32.
 EncodedCloud EncodePointCloud(const Header& header, const PointsView& points,
                               std::uint32_t max_points);
 /// foxglove.CompressedPointCloud of a Draco file.

@@ -23,15 +23,15 @@ struct Channel {
   std::string stream = {};  // of kSlice: what a decoder needs, DescribeSlices()
 };
 
-/// What a viewer needs of a stream before its first slice.
+/// Describes a stream to a viewer before the first slice.
 struct SliceStreamInfo {
-  bool has_ranges = false;  // else points without order
+  bool has_ranges = false;  // false: points without order
   std::string fields;       // of the decoded points, packed
   int framerate_n = 0;      // scans/s; 0/1: not known
   int framerate_d = 1;
   std::vector<std::uint8_t> sensor_model;  // docs/wire-format.md; empty without ranges
   std::string frame_id;
-  std::string clouds;  // topic of the same stream, decoded
+  std::string clouds;  // topic of the decoded stream
 };
 std::string DescribeSlices(const SliceStreamInfo& stream);
 
@@ -64,22 +64,22 @@ struct Request {
   };
   Kind kind = Kind::kMalformed;
   std::vector<Subscription> subscriptions;
-  std::vector<std::uint32_t> unsubscribed;  // ids of subscriptions
-  std::uint32_t subscription = 0;           // that `slice` came by
+  std::vector<std::uint32_t> unsubscribed;  // subscription ids
+  std::uint32_t subscription = 0;           // by which `slice` came
   SliceName slice;
   std::string error;
 };
 /// `text` may be anything.
 Request ParseRequest(std::string_view text);
 
-/// The bytes before the payload of a message: opcode, subscription and time [ns since 1970].
+/// The bytes before a message's payload: opcode, subscription and time [ns since 1970].
 using MessageHead = std::array<std::uint8_t, 13>;
 MessageHead HeadOf(std::uint32_t subscription_id, std::uint64_t unix_ns);
 
-/// The bytes between that and a slice.
+/// The bytes between the head and a slice.
 struct SliceInfo {
   SliceName name;
-  std::uint32_t count = 1;  // of the scan's slices
+  std::uint32_t count = 1;  // number of slices in the scan
   std::uint32_t first_column = 0;
   bool is_recoded = false;
 };

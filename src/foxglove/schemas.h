@@ -29,7 +29,7 @@ SchemaText TextOf(Schema schema);
 /// A serialised google.protobuf.FileDescriptorSet with all messages of protobuf that we send.
 std::vector<std::uint8_t> FileDescriptorSet();
 
-/// The members of a message of the channel of statistics, with what they are.
+/// The members of a statistics message, with descriptions.
 struct StatisticsField {
   const char* name;
   const char* description;  // with its unit

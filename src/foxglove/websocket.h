@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Frames of the WebSocket protocol (RFC 6455) as a server meets them.
+// Frames of the WebSocket protocol (RFC 6455), on the server's side.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -47,11 +47,11 @@ class MessageReader {
   /// Messages of more than `max_size` bytes are an error.
   explicit MessageReader(std::size_t max_size) : max_size_(max_size) {}
 
-  /// Keeps what no message was made of yet: take all messages before you append more.
+  /// Keeps the remainder behind the last message. Take all messages before you append more.
   void Append(ByteView bytes);
-  /// Returns nothing if more bytes are needed, and for ever after an error.
+  /// Returns nothing if more bytes are needed, and always after an error.
   std::optional<ClientMessage> Next();
-  /// Why the connection has to be closed.
+  /// The reason for which the connection must be closed.
   std::optional<CloseCode> error() const { return error_; }
 
  private:
@@ -69,8 +69,8 @@ class MessageReader {
 
   const std::size_t max_size_;
   std::vector<std::uint8_t> pending_;
-  std::size_t read_ = 0;                    // bytes of pending_ that are done with
-  std::optional<ClientMessage> fragments_;  // of a message that is not whole yet
+  std::size_t read_ = 0;                    // bytes of pending_ already used
+  std::optional<ClientMessage> fragments_;  // of an incomplete message
   std::optional<CloseCode> error_;
 };
 

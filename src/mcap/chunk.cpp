@@ -7,7 +7,7 @@
 namespace lidar::mcap {
 namespace {
 
-constexpr std::uint64_t kMaxChunkHeader = 64;  // with a short name of the compression
+constexpr std::uint64_t kMaxChunkHeader = 64;  // includes a short name of the compression
 
 struct PlacedHeader {
   ChunkHeader chunk;
@@ -44,7 +44,7 @@ std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& reco
 bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records) {
   if (chunk.is_run) return ReadRun(input, chunk, records);
   const auto record = RecordAt(input, chunk.offset);
-  // Chunks are identified by the size in the index, so that must be true.
+  // The index identifies chunks by their size, so it must be right.
   const bool fits = record && record->end() - chunk.offset <= chunk.size;
   const auto header = fits ? ReadHeader(input, *record) : std::nullopt;
   if (!header || header->chunk.records_size > 2 * kMaxChunk) return false;

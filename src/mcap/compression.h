@@ -9,11 +9,11 @@ namespace lidar::mcap {
 
 enum class Compression { kNone, kLz4, kZstd };
 
-/// As a chunk names it.
+/// Returns the name in chunks.
 std::string_view NameOf(Compression compression);
 
-/// Replaces `out` by `bytes` compressed. Returns false if this saves less than a twentieth: then
-/// they are better left as they are.
+/// Replaces `out` by the compressed `bytes`. Returns false if this saves less than a twentieth:
+/// then they are better stored uncompressed.
 bool Compress(Compression compression, ByteView bytes, Bytes* out);
 
 /// Replaces `out` by exactly `size` bytes; false if the data are damaged, give more or less, or are

@@ -51,7 +51,7 @@ void AddChunk(const Input& input, const Record& record, FileIndex* index) {
   index->chunks.push_back({chunk->start_time, chunk->end_time, chunk->offset, chunk->size, false});
 }
 
-/// Chunks that share bytes would let a small file ask for any amount of work.
+/// Overlapping chunks would let a small file cause any amount of work.
 void DropOverlaps(std::vector<ChunkPlace>* chunks) {
   std::stable_sort(chunks->begin(), chunks->end(),
                    [](const ChunkPlace& a, const ChunkPlace& b) { return a.offset < b.offset; });
@@ -105,7 +105,7 @@ FileIndex ReadFileIndex(Input* input) {
     else
       index.Learn(*record);
   }
-  // Others may leave the indexes out.
+  // Other writers may leave the indexes out.
   if (index.chunks.empty() || index.channels.empty()) index = ScanFile(input);
   index.complete = true;
   DropOverlaps(&index.chunks);

@@ -13,8 +13,8 @@ namespace lidar::mcap {
 struct ChunkPlace {
   std::uint64_t start_time = 0;  // log times [ns], as the file claims
   std::uint64_t end_time = 0;
-  std::uint64_t offset = 0;  // in the file; of a run, of its first record
-  std::uint64_t size = 0;    // records and all
+  std::uint64_t offset = 0;  // in the file; for a run, of its first record
+  std::uint64_t size = 0;    // with all records
   bool is_run = false;
 };
 
@@ -22,22 +22,22 @@ struct FileIndex {
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, Channel> channels;
   std::vector<ChunkPlace> chunks;  // by start time
-  bool complete = false;           // a file that was closed in order
+  bool complete = false;           // the file was closed in order
   std::uint64_t catalogue_size = 0;
 
   bool empty() const { return chunks.empty(); }
   std::uint64_t start_time() const;
   std::uint64_t end_time() const;
-  /// Takes a schema or a channel; false for other records and for damaged ones. Known ones stay,
-  /// and so does the memory within kMaxCatalogue.
+  /// Takes a schema or a channel; returns false for other records and for damaged ones. Known ones
+  /// stay unchanged. Memory stays within kMaxCatalogue.
   bool Learn(const Record& record);
 };
 
-/// Reads the index of `input`, which begins with the magic. Never fails: what cannot be read is
-/// not there.
+/// Reads the index of `input`, which begins with the magic. It never fails, but leaves unreadable
+/// parts out.
 FileIndex ReadFileIndex(Input* input);
 
-/// Looks through the records from the first on, up to the first that is cut off.
+/// Reads records from the first one to the first that is cut off.
 FileIndex ScanFile(Input* input);
 
 }  // namespace lidar::mcap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file without a summary: it broke off, or its writer made none.
+// Scans a file without a summary, which broke off or was written so.
 #include <algorithm>
 #include <optional>
 
@@ -10,7 +10,7 @@ namespace lidar::mcap {
 namespace {
 
 constexpr std::uint64_t kMaxRun = std::uint64_t{1} << 20;  // bytes
-constexpr int kChunksToLearn = 4;  // the channels of the others come when they are read
+constexpr int kChunksToLearn = 4;  // other channels become known when their messages are read
 
 class Scanner {
  public:
@@ -57,7 +57,7 @@ class Scanner {
 
   bool TakeChunk(const RecordPlace& record, std::uint64_t offset) {
     const auto header = ReadChunkHeader(&input_, record);
-    if (!header) return true;  // the next may be better
+    if (!header) return true;  // the next record may be better
     index_.chunks.push_back(
         {header->start_time, header->end_time, offset, record.end() - offset, false});
     if (learned_ == kChunksToLearn) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file to be read anywhere.
+// A file with random access.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -19,7 +19,7 @@ class InputFile : public Input {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  /// When it was opened.
+  /// Size when the file was opened.
   std::uint64_t size() const override { return size_; }
   bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) override;
 

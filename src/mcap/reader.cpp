@@ -9,7 +9,7 @@
 namespace lidar::mcap {
 namespace {
 
-/// The memory of overlapping chunks [bytes]. Past it their messages come chunk by chunk.
+/// Memory for overlapping chunks [bytes]. Beyond it messages come chunk by chunk.
 constexpr std::size_t kMaxOpen = std::size_t{128} << 20;
 constexpr std::size_t kMaxOpenChunks = 64;
 
@@ -34,7 +34,7 @@ void Reader::Seek(std::uint64_t log_time) {
   open_.clear();
 }
 
-/// Every chunk that may hold an earlier message than those that are open.
+/// Returns true if the next chunk may hold an earlier message than the open ones.
 bool Reader::WantsNextChunk() const {
   if (next_chunk_ == index_.chunks.size()) return false;
   if (open_.empty()) return true;

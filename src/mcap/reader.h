@@ -28,7 +28,7 @@ class Reader {
   /// Chunks that were left out.
   std::uint64_t damaged_chunks() const { return damaged_chunks_; }
 
-  /// Goes on with the first message of `log_time` or later.
+  /// Continues with the first message of `log_time` or later.
   void Seek(std::uint64_t log_time);
   /// The next message of a known channel, none at the end. Chunks that overlap are merged.
   std::optional<Message> Next();

@@ -8,7 +8,7 @@
 namespace lidar::mcap {
 namespace {
 
-// The fields of each record as they stand in the file: their types say how.
+// The fields of each record in the file's order; their types define the format.
 constexpr auto Fields(const Header*) { return std::tuple(&Header::profile, &Header::library); }
 constexpr auto Fields(const Footer*) {
   return std::tuple(&Footer::summary_start, &Footer::summary_offset_start, &Footer::summary_crc);

@@ -11,7 +11,7 @@
 namespace lidar::mcap {
 namespace {
 
-/// Some room stays for the schemas.
+/// Leaves room for the schemas.
 constexpr std::size_t kMaxChannels = kMaxCatalogue / 4 * 3;
 
 ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes an MCAP file: chunks with their indexes as they fill, and the summary at the end.
+// Writes an MCAP file: chunks with indexes, then the summary.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -44,12 +44,12 @@ class Writer {
 
   /// Takes a message, and writes a chunk if one is full. After false, Finish() may still work.
   bool Add(const MessageHeader& header, ByteView data);
-  /// Writes what is there as a chunk.
+  /// Writes the open chunk.
   bool Flush();
   /// Writes the rest, index and footer; an empty recording writes no byte.
   bool Finish();
 
-  /// Bytes of the file so far, those of the open chunk among them.
+  /// Bytes of the file so far, with the open chunk.
   std::uint64_t size() const { return offset_ + chunk_.size(); }
   /// Chunks that have been written.
   std::size_t chunks() const { return chunk_indexes_.size(); }
@@ -70,7 +70,7 @@ class Writer {
   const Write write_;
 
   std::uint64_t offset_ = 0;    // of the end of the file
-  std::uint32_t data_crc_ = 0;  // of the file up to there
+  std::uint32_t data_crc_ = 0;  // of the file up to offset_
   // The open chunk.
   Bytes chunk_;
   std::uint64_t chunk_start_ = 0;

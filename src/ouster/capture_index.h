@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The times of a capture file: its duration, and where to read from after a seek.
+// The times of a capture file: its duration, and where to read after a seek.
 #pragma once
 #include <functional>
 #include <memory>
@@ -10,22 +10,22 @@
 
 namespace lidar::ouster {
 
-/// Reads the file once, no further than it was asked about. Times count from the first datagram,
-/// and the latest time so far stands for datagrams that are out of order.
+/// Reads the file once, as far as calls need. Times are relative to the first datagram; a datagram
+/// out of order has the latest time so far.
 class CaptureIndex {
  public:
   explicit CaptureIndex(std::unique_ptr<PcapReader> reader) : reader_(std::move(reader)) {}
 
-  /// Reads on until a datagram of `time` or later, or to the end. Asks `go_on` now and then; false
-  /// if that is false.
+  /// Reads up to a datagram of `time` or later, or to the end. Calls `go_on` now and then, and
+  /// returns false if that does.
   bool ReadUntil(Duration time, const std::function<bool()>& go_on);
 
   /// The first datagram's capture time; nothing before it was read.
   std::optional<Time> first() const { return first_; }
   /// Time from the first datagram that was read to the last.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
-  /// The place from which a reader finds every read datagram of `time` and later; nothing if it has
-  /// to start at the front.
+  /// Returns the place from which a reader finds all read datagrams of `time` and later, or nothing
+  /// for the front.
   std::optional<std::int64_t> OffsetBefore(Duration time) const;
 
  private:

@@ -26,7 +26,7 @@ void ClockMapper::Observe(std::uint64_t sensor_ns, Time arrival) {
   }
   minimum_ = std::min(minimum_, seen);
   const Duration target = std::min(minimum_, last_minimum_);
-  // The offset falls to a faster packet at once, and rises no faster than clocks drift.
+  // The offset falls at once to that of a faster packet, and rises at most as fast as clocks drift.
   const Duration elapsed = std::max(Duration{0}, arrival - last_arrival_);
   const Duration step = elapsed * kMaxSlewPpm / 1'000'000;
   offset_ = std::min(target, *offset_ + step);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sensor's clock in terms of the receiver's, out of when packets arrived.
+// Maps the sensor's clock to the receiver's, by the arrival of packets.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace lidar::ouster {
 
-/// Only damaged packets have times past the year 2096. Below this bound, times can be added and
-/// subtracted without overflow.
+/// Only damaged packets have times after 2096. Below this bound sums and differences of times do
+/// not overflow.
 constexpr Duration kLatestTime{4'000'000'000'000'000'000};
 
 constexpr Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
@@ -17,21 +17,21 @@ constexpr Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
   return Duration(static_cast<std::int64_t>(sensor_ns < latest ? sensor_ns : latest));
 }
 
-/// The fastest packet shows the offset between the two clocks best, so the offset follows the
-/// minimum of (arrival - sampling) over the last seconds: jitter stays out, drift is followed. A
-/// jump of either clock starts over.
+/// The fastest packet shows the offset between the clocks best. So the offset is the minimum of
+/// (arrival - sampling) over the last seconds: it ignores jitter and follows drift. A jump of
+/// either clock restarts it.
 class ClockMapper {
  public:
   enum class Mode {
-    kFollow,  // live: see above
+    kFollow,  // live: as described above
     kHold,    // files: the first packet sets the offset, so that times step as the sensor's do
   };
   explicit ClockMapper(Mode mode) : mode_(mode) {}
 
   /// A packet whose last column was sampled at `sensor_ns` arrived at `arrival`.
   void Observe(std::uint64_t sensor_ns, Time arrival);
-  /// Returns true if Observe() would find that a clock jumped. Map what was sampled before the jump
-  /// before that call.
+  /// Returns true if Observe() would find a clock jump. Map data sampled before the jump before
+  /// that call.
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
   /// The next packet sets the offset anew.
   void Reset() { offset_.reset(); }
@@ -46,7 +46,7 @@ class ClockMapper {
   Mode mode_;
   std::optional<Duration> offset_;  // to add to the sensor's time
   Duration minimum_{};              // of this window
-  Duration last_minimum_{};         // of the one before
+  Duration last_minimum_{};         // of the last window
   Time window_start_{};
   Time last_arrival_{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads a lidar packet, whose size is the only thing that has been checked.
+// Reads a lidar packet, of which only the size is checked.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -72,8 +72,8 @@ class LidarPacket {
 /// for LEGACY packets, which have no header, and for bytes too short to hold one.
 std::optional<PacketHeader> PeekHeader(ByteView bytes, const PacketFormat& format);
 
-/// Firmware before 2.4 and FUSA packets carry a constant where newer ones have a CRC-64, so a
-/// mismatch means damage only once a packet of the same sensor matched.
+/// Firmware before 2.4 and FUSA packets have a constant in place of a CRC-64. So a mismatch means
+/// damage only after a packet of the same sensor has matched.
 class PacketCrcCheck {
  public:
   explicit PacketCrcCheck(const PacketFormat& format) : carried_(!format.is_legacy()) {}

@@ -16,9 +16,9 @@ using nlohmann::json;
 constexpr std::size_t kTransformSize = 16;
 constexpr double kMaxAngleDeg = 720;
 constexpr double kMaxTranslationMm = 100'000;
-constexpr double kSlowestScans = 0.1;  // a second
+constexpr double kSlowestScans = 0.1;  // scans per second
 constexpr double kFastestScans = 100;
-constexpr std::size_t kMaxPixels = std::size_t{1} << 22;  // a scan; bounds what it takes in memory
+constexpr std::size_t kMaxPixels = std::size_t{1} << 22;  // per scan; bounds its memory
 
 /// Finds a key in its section, or at the top level, where the flat layout has it.
 class Document {
@@ -55,7 +55,7 @@ class Document {
   }
   const json* Section(const char* name) const {
     const json* section = Member(&root_, name);
-    // The flat layout has one section, of another name.
+    // The flat layout has one section with another name.
     return section == nullptr && std::string_view(name) == "lidar_data_format"
                ? Member(&root_, "data_format")
                : section;
@@ -85,7 +85,7 @@ std::optional<LidarMode> ParseLidarMode(std::string_view text) {
   return LidarMode{*columns, static_cast<double>(*rate)};
 }
 
-/// |beam_to_lidar| where the metadata has none, by product line.
+/// Returns the default of |beam_to_lidar| by product line.
 double DefaultBeamOriginMm(std::string_view product_line) {
   if (product_line.rfind("OS-0-", 0) == 0) return 27.67;
   if (product_line.rfind("OS-1-", 0) == 0) return 15.806;
@@ -148,7 +148,7 @@ class Builder {
     return true;
   }
 
-  /// `missing` where the key is missing, 0 if it is wrong.
+  /// Returns `missing` for a missing key, and 0 for a wrong value.
   std::uint32_t CountOr(const char* key, std::size_t missing, std::uint32_t max) const {
     if (document_.Find(kFormat, key) != nullptr)
       return document_.Count(kFormat, key, max).value_or(0);
@@ -216,7 +216,7 @@ class Builder {
     return true;
   }
 
-  /// An angle a beam, or a list a beam with an angle a column.
+  /// Reads an angle per beam, or a list per beam with an angle per column.
   bool ReadAngleList(const char* key, std::vector<float>* angles, bool* per_pixel) {
     const json* list = document_.Find(kBeams, key);
     const std::string name = std::string("beam_intrinsics.") + key;
@@ -255,7 +255,7 @@ class Builder {
     const std::size_t per_beam = altitude_per_pixel ? m_.model.columns_per_scan : 1;
     m_.model.beams.resize(m_.format.beams);
     for (std::size_t i = 0; i < m_.model.beams.size(); ++i) {
-      // The middle column stands for a beam of many angles.
+      // Represents a beam with many angles by its middle column.
       const std::size_t at = i * per_beam + per_beam / 2;
       m_.model.beams[i].azimuth_deg = static_cast<double>(angles.azimuth_deg[at]);
       m_.model.beams[i].altitude_deg = static_cast<double>(angles.altitude_deg[at]);
@@ -278,7 +278,7 @@ class Builder {
     return true;
   }
 
-  /// Millimetres in the file, metres in `out`. A missing one leaves `out` alone.
+  /// Converts millimetres to metres. A missing transform leaves `out` unchanged.
   bool ReadTransform(const char* section, const char* key, Transform* out) {
     const json* list = document_.Find(section, key);
     if (list == nullptr || list->is_null()) return true;

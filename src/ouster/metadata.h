@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sensor's metadata JSON, as old and new firmware write it.
+// A sensor's metadata JSON, of old and new firmware.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -38,7 +38,7 @@ struct Metadata {
   double scans_per_second = 0;
   PacketFormat format;
   ColumnWindow window;
-  SensorModel model;  // with per-pixel angles: the beams' means, for their count and order only
+  SensorModel model;  // for per-pixel angles: means per beam, for number and order only
   PixelAngles pixel_angles;
   Transform imu_to_sensor = kIdentity;  // translation in metres
   ImuProfile imu_profile = ImuProfile::kLegacy;
@@ -61,7 +61,7 @@ struct Metadata {
 /// older clients. Returns nothing if a cloud could not be built; `error` then says why, for a user.
 std::optional<Metadata> ParseMetadata(std::string_view json, std::string* error);
 
-/// Returns true if packets and clouds of both look alike, so that a stream may go on.
+/// Returns true if packets and clouds of both are alike, so that a stream may continue.
 bool SameGeometry(const Metadata& a, const Metadata& b);
 
 }  // namespace lidar::ouster

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes lidar packets for software sensors, converted recordings and tests. It shares nothing with
-// the parser but the description of the format.
+// Writes lidar packets for software sensors, converted recordings and tests. It shares only the
+// format's description with the parser.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -27,7 +27,7 @@ class PacketWriter {
   };
   /// `column` counts within the packet.
   void SetColumn(std::uint32_t column, const ColumnHeader& header);
-  /// Keeps the bits that the channel has room for. Does nothing if the profile lacks it.
+  /// Keeps the bits that fit the channel. Does nothing if the profile lacks it.
   struct Pixel {
     std::uint32_t column = 0;
     std::uint32_t beam = 0;

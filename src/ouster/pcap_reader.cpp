@@ -13,10 +13,10 @@
 namespace lidar::ouster {
 namespace {
 
-// The version of classic pcap; libpcap takes pcapng for another one.
+// Version of classic pcap; libpcap reports another one for pcapng.
 constexpr int kClassicVersion = 2;
 
-/// The number of LINKTYPE_RAW differs from the DLT_ that libpcap gives for it.
+/// libpcap's DLT_ number for LINKTYPE_RAW differs from the file's.
 LinkType FromDlt(int dlt) { return dlt == DLT_RAW ? LinkType::kRaw : static_cast<LinkType>(dlt); }
 
 pcap* OpenFile(const std::string& path, std::string* error) {
@@ -57,7 +57,7 @@ std::optional<PcapReader::Captured> PcapReader::Next() {
     const int got = pcap_next_ex(handle_.get(), &header, &frame);
     if (got == PCAP_ERROR) error_ = pcap_geterr(handle_.get());
     if (got != 1) return std::nullopt;
-    // pcapng carries 64 bits of time, in units of its choice.
+    // pcapng has 64 bits of time, in a unit of its choice.
     const auto latest = std::chrono::duration_cast<std::chrono::seconds>(kLatestTime).count();
     const auto seconds = std::clamp<std::int64_t>(header->ts.tv_sec, 0, latest);
     // Captures of nanosecond precision: tv_usec holds nanoseconds.

@@ -29,10 +29,10 @@ class PcapReader {
   /// Back to the first packet; false if the file is gone.
   bool Rewind();
 
-  /// Place of the next frame in the file, for GoTo() of any reader of this file; nothing in pcapng,
-  /// whose frames mean nothing without the blocks before them.
+  /// Returns the place of the next frame, for GoTo() of any reader of this file. Returns nothing
+  /// for pcapng, whose frames need the blocks before them.
   std::optional<std::int64_t> Offset() const;
-  /// Returns false if that fails; the place is then not known.
+  /// Returns false on failure; the place is then undefined.
   bool GoTo(std::int64_t offset);
 
  private:

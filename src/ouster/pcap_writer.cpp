@@ -17,7 +17,7 @@ constexpr std::size_t kMaxPayload = 65'507;
 constexpr std::uint32_t kSensor = 0x0a000002;    // 10.0.0.2
 constexpr std::uint32_t kReceiver = 0x0a000001;  // 10.0.0.1
 
-/// Never a device or a pipe.
+/// Removes regular files only, no device or pipe.
 void RemoveFile(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);

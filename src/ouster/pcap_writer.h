@@ -22,11 +22,11 @@ class PcapWriter {
   PcapWriter(const PcapWriter&) = delete;
   PcapWriter& operator=(const PcapWriter&) = delete;
 
-  /// An Ethernet frame with IPv4, however large. Returns false if the disk is full, or the payload
-  /// is larger than UDP can carry.
+  /// Writes an Ethernet frame with IPv4 of any size. Returns false if the disk is full, or if the
+  /// payload is too large for UDP.
   bool Write(Time captured, std::uint16_t port, ByteView payload);
-  /// Call this at the end; false if the disk is full. A capture that is not closed well is taken
-  /// away.
+  /// Call this at the end. Returns false if the disk is full. A capture that is not closed
+  /// successfully is removed.
   bool Close();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Ranges to points for both kinds of sensor: turning beams, and angles of their own for each pixel.
+// Converts ranges to points for sensors with turning beams and for sensors with angles per pixel.
 #pragma once
 #include <array>
 #include <cstdint>

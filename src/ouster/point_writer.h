@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Turns the columns of a packet into points, packet by packet.
+// Converts the columns of a packet to points.
 #pragma once
 #include <memory>
 #include <optional>
@@ -29,7 +29,7 @@ struct Sector {
 
 struct PointOptions {
   Return returns = Return::kStrongest;
-  std::vector<std::string> channels;  // as ParseChannels gives them
+  std::vector<std::string> channels;  // in the form of ParseChannels()
   double min_range_m = 0;
   double max_range_m = 0;                // 0: no limit
   std::vector<Sector> sectors;           // empty: all

@@ -9,8 +9,8 @@
 namespace lidar::ouster {
 namespace {
 
-// A packet further ahead than this, or from the past, counts only when others follow it: a single
-// damaged frame id must not throw away a scan.
+// A packet further ahead, or from the past, counts only if others follow: a single damaged frame id
+// must not discard a scan.
 constexpr std::int64_t kMaxScansAhead = 8;
 constexpr std::uint32_t kStraysForRestart = 4;
 constexpr std::size_t kRememberedLosses = 256;
@@ -41,7 +41,7 @@ bool ScanBatcher::LeadsPacket(std::uint32_t column) const {
   return column % columns_per_packet_ == 0 || column == window_.first;
 }
 
-/// Scans from the newest scan so far to the packet's.
+/// Returns the number of scans from the newest one to the packet's.
 std::int64_t ScanBatcher::Locate(const PacketHeader& header) {
   const auto modulus = static_cast<std::int64_t>(frame_id_modulus_);
   std::int64_t distance = (std::int64_t{header.frame_id} - *frame_id_) % modulus;
@@ -175,7 +175,7 @@ ScanBatcher::Key ScanBatcher::NextExpected() const {
 bool ScanBatcher::IsReady(const OpenSlice& open) const {
   if (open.later_packets >= reorder_packets_) return true;
   if (open.seen < expected_[static_cast<std::size_t>(open.key % slices_)]) return false;
-  // If slices before it are missing altogether, their packets may still be on the way.
+  // Packets of slices before it may still be under way if all of them are missing.
   return open.key <= NextExpected() || open.packets >= reorder_packets_;
 }
 
@@ -214,7 +214,7 @@ void ScanBatcher::GiveOut(OpenSlice open) {
   }
 }
 
-/// Slices in [first, last) that lie outside the sensor's window.
+/// Gives out blanks for slices in [first, last) outside of the sensor's window.
 void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
   for (Key key = first; key < last; ++key) {
     const auto index = static_cast<std::uint32_t>(key % slices_);
@@ -230,7 +230,8 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
   }
 }
 
-/// Adds the lost packets whose first column is in the slice; `columns` null: it has none.
+/// Adds the lost packets whose first column is in the slice; `columns` is null for a slice without
+/// any.
 void ScanBatcher::CountLost(Key key, const std::vector<bool>* columns) {
   const std::int64_t scan = key / slices_;
   const auto first = static_cast<std::uint32_t>(key % slices_) * width_;
@@ -247,7 +248,7 @@ void ScanBatcher::CountLost(Key key, const std::vector<bool>* columns) {
   }
 }
 
-/// A packet that came after its slice was given out: it was taken for lost, or it is a duplicate.
+/// Counts a packet that came after its slice: it was counted as lost, or is a duplicate.
 void ScanBatcher::CountTooLate(std::int64_t scan, std::uint32_t column) {
   const auto found = std::find(lost_.begin(), lost_.end(), scan * columns_per_scan_ + column);
   if (found == lost_.end()) {

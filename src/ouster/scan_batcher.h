@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Lidar packets in, slices of points out, as soon as a slice's columns are there.
+// Assembles lidar packets into slices of points, each as soon as its columns are complete.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -30,17 +30,17 @@ struct Slice {
 
 struct BatcherStats {
   std::uint64_t packets = 0;
-  std::uint64_t lost_packets = 0;  // and never came
-  std::uint64_t late_packets = 0;  // came when their slice had been given out without them
+  std::uint64_t lost_packets = 0;  // that never came
+  std::uint64_t late_packets = 0;  // came after their slice was given out
   std::uint64_t duplicate_packets = 0;
-  std::uint64_t stray_packets = 0;  // of a scan far away; enough of them count as a restart
+  std::uint64_t stray_packets = 0;  // of a distant scan; enough of them count as a restart
   std::uint64_t restarts = 0;
   std::uint64_t slices = 0;
   std::uint64_t incomplete_slices = 0;
 };
 
-/// Survives loss, reordering, duplicates and restarts: a slice is given out when all its columns
-/// came, or when `reorder_packets` packets of later slices came first.
+/// Handles loss, reordering, duplicates and restarts: a slice is given out when it is complete, or
+/// after `reorder_packets` packets of later slices.
 class ScanBatcher {
  public:
   struct Options {
@@ -66,7 +66,7 @@ class ScanBatcher {
   struct OpenSlice {
     Key key = 0;
     std::uint32_t seen = 0;     // columns of the window
-    std::uint32_t packets = 0;  // own ones
+    std::uint32_t packets = 0;  // packets of this slice
     std::uint32_t later_packets = 0;
     std::vector<bool> columns;
     Slice slice;
@@ -116,13 +116,13 @@ class ScanBatcher {
   Key next_ = 0;           // the first slice not yet given out
   std::uint32_t strays_in_a_row_ = 0;
   bool gap_ = false;
-  // Packets from before the first or after the last one are not lost.
+  // Packets before the first or after the last one are not lost.
   Key joined_key_ = 0;
   std::uint32_t joined_column_ = 0;
   std::int64_t newest_scan_ = 0;
   std::uint32_t newest_column_ = 0;
   bool flushing_ = false;
-  std::deque<std::int64_t> lost_;  // first columns, scan x columns + column, of the newest losses
+  std::deque<std::int64_t> lost_;  // first columns of the newest losses, as scan x columns + column
   BatcherStats stats_;
 };
 

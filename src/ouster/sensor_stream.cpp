@@ -7,12 +7,12 @@
 namespace lidar::ouster {
 namespace {
 
-// A clock that claims to be synchronised but is further off than this is not.
+// A clock with a larger offset is not synchronised, whatever it claims.
 constexpr Duration kMaxSyncError = std::chrono::seconds(1);
-// A sensor whose packets carry no serial number may have another address after such a silence.
+// Silence after which a sensor without serial numbers in its packets may have another address.
 constexpr Duration kSenderKept = std::chrono::seconds(1);
 
-/// The difference from the sensor's time to UTC; nothing if its clock is its own.
+/// Returns the offset from the sensor's time to UTC, or nothing for an unsynchronised clock.
 std::optional<Duration> SensorToUtc(const Metadata& metadata, const StreamOptions& options) {
   if (metadata.timestamp_mode == "TIME_FROM_PTP_1588") return options.ptp_utc_offset;
   // The NMEA messages that come with the pulse give UTC.
@@ -69,7 +69,7 @@ Duration SensorStream::slice_duration() const {
 void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arrival) {
   const bool hold = options_.clock == ClockMapper::Mode::kHold;
   for (std::uint32_t i = 0; i < packet.columns(); ++i) {
-    // A held offset is set by the first column, so that the first slice of a file starts at zero.
+    // The first column sets a held offset, so that the first slice of a file starts at zero.
     const PacketColumn column = packet.Column(hold ? i : packet.columns() - 1 - i);
     if (!column.valid()) continue;
     if (local_.WouldJump(column.timestamp, arrival.local)) Restart();
@@ -125,7 +125,7 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     refused_init_id_ = header.init_id;
     return PacketVerdict::kNewInitId;
   }
-  // Old metadata has no serial number; the init id says that this packet is of its sensor.
+  // Old metadata have no serial number; the init id shows that this packet is of its sensor.
   if (metadata_.serial == 0 && metadata_.init_id != 0 && header.init_id == metadata_.init_id)
     metadata_.serial = header.serial;
   ObserveClocks(*packet, arrival);
@@ -151,7 +151,7 @@ Time SensorStream::UtcOf(std::uint64_t sensor_ns) const {
   return utc_.Map(sensor_ns);
 }
 
-/// Gives slices their times while the clocks are as they were when their columns came.
+/// Collects slices with their times before the clocks change.
 void SensorStream::CollectSlices() {
   while (auto slice = batcher_.Pop()) {
     TimedSlice timed;

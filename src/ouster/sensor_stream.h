@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Turns the UDP payloads of one sensor into slices with times: a driver without sockets and
+// Converts the UDP payloads of one sensor to slices with times: a driver without sockets and
 // clocks.
 #pragma once
 #include <array>
@@ -20,7 +20,7 @@ namespace lidar::ouster {
 /// An IP address; zeros: not known.
 using Sender = std::array<std::uint8_t, 16>;
 
-/// When a packet came, and from where.
+/// Time and source of a packet.
 struct Arrival {
   Time local{};  // by the clock of the slices' times
   Time utc{};    // since the Unix epoch
@@ -39,18 +39,18 @@ struct StreamOptions {
 
 struct TimedSlice {
   Slice slice;
-  Time local{};  // of the first column; never before that of the slice before
+  Time local{};  // of the first column; never before that of the last slice
   Time utc{};
-  Time completed{};  // arrival of the packet that made it ready, in UTC
+  Time completed{};  // arrival of the packet that completed it, in UTC
 };
 
 enum class PacketVerdict {
   kLidar,
   kImu,
   kWrongSize,  // of another profile, mode or sensor
-  kForeign,    // of another sensor, by its serial number; where it has none, by its sender
+  kForeign,    // of another sensor by its serial number, or without one by its sender
   kDamaged,    // by its CRC
-  kNewInitId,  // the sensor restarted or was reconfigured: its metadata may be out of date
+  kNewInitId,  // the sensor restarted or was reconfigured: its metadata may be outdated
 };
 
 struct StreamStats {
@@ -66,21 +66,21 @@ class SensorStream {
   static std::unique_ptr<SensorStream> Create(Metadata metadata, const StreamOptions& options,
                                               std::string* error);
 
-  /// Takes a packet. After kNewInitId, which leaves it out, refresh the metadata, or call
-  /// AcceptNewInitId() and push the packet again.
+  /// Takes a packet. kNewInitId leaves it out: then refresh the metadata, or call AcceptNewInitId()
+  /// and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
-  /// Call this after kNewInitId: the sensor restarted, and packets with that init id are taken from
-  /// now on.
+  /// Call this after kNewInitId: the sensor restarted, and packets with that init id count from now
+  /// on.
   void AcceptNewInitId() { metadata_.init_id = refused_init_id_; }
   std::optional<TimedSlice> Pop();
-  /// Makes the slices that are not complete ready. The next packet may be of any scan.
+  /// Makes incomplete slices ready. The next packet may be of any scan.
   void Flush();
-  /// Flush(), and the next packet may be of any time.
+  /// Calls Flush(); the next packet may have any time.
   void Restart();
-  /// Throws away slices that are not complete or not taken: the next packet is from another place
-  /// of a recording. The clocks stay, so a slice has the same time after any seek.
+  /// Drops incomplete and waiting slices: the next packet is from another place of a recording. The
+  /// clocks stay, so a slice has the same time after any seek.
   void Reposition();
-  /// Goes on where the stream before a reconfiguration ended.
+  /// Continues after the last slice of the stream before a reconfiguration.
   void Continue(const SensorStream& before) {
     first_scan_id_ = before.next_scan_id_;
     last_local_ = before.last_local_;
@@ -88,8 +88,8 @@ class SensorStream {
   /// Returns true once a packet has set the clocks.
   bool knows_time() const { return batcher_.stats().packets > 0; }
   Time LocalOf(std::uint64_t sensor_ns) const;
-  /// The sampling time of a lidar packet's first column, without taking the packet; nothing for
-  /// other packets.
+  /// Returns the sampling time of a lidar packet's first column without taking the packet; nothing
+  /// for other packets.
   std::optional<Time> SampledAt(ByteView payload) const;
   Time UtcOf(std::uint64_t sensor_ns) const;
   const StreamOptions& options() const { return options_; }
@@ -117,7 +117,7 @@ class SensorStream {
   PacketCrcCheck crc_;
   ClockMapper local_;
   ClockMapper utc_;
-  std::optional<Duration> sensor_to_utc_;  // where the sensor claims to be synchronised
+  std::optional<Duration> sensor_to_utc_;  // if the sensor claims to be synchronised
   bool synchronised_ = false;
   std::uint32_t refused_init_id_ = 0;
   std::optional<Time> last_local_;

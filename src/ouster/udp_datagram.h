@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// UDP datagrams out of captured frames: Ethernet (VLAN too), Linux cooked, loopback and raw IP;
-// IPv4 and IPv6, fragments put together.
+// Extracts UDP datagrams from captured frames: Ethernet (with VLAN), Linux cooked, loopback and raw
+// IP; IPv4 and IPv6, with reassembly of fragments.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -25,7 +25,7 @@ enum class LinkType : std::uint32_t {
   kLinuxSll2 = 276,
 };
 
-/// False for one that Extract() finds nothing in.
+/// Returns false for a type that Extract() cannot read.
 bool IsKnown(LinkType link);
 
 struct IpEndpoints {
@@ -44,8 +44,8 @@ struct UdpDatagram {
   ByteView view() const { return {payload.data(), payload.size()}; }
 };
 
-/// Puts fragments together. Holds a bounded number of datagrams, none for long; fragments that
-/// contradict each other discard their datagram (RFC 5722).
+/// Reassembles fragments. Holds a bounded number of datagrams for a short time; contradicting
+/// fragments discard their datagram (RFC 5722).
 class IpReassembler {
  public:
   struct Fragment {
@@ -55,7 +55,7 @@ class IpReassembler {
     bool more = false;
     ByteView payload;
   };
-  /// The whole IP payload once its last part came.
+  /// Returns the whole IP payload after its last part.
   std::optional<std::vector<std::uint8_t>> Add(const Fragment& fragment, Time time);
 
  private:
@@ -86,7 +86,7 @@ class UdpExtractor {
   std::optional<UdpDatagram> FromFragment(const IpReassembler::Fragment& fragment);
 
   IpReassembler reassembler_;
-  Time time_{};  // of the frame at hand
+  Time time_{};  // of the present frame
 };
 
 }  // namespace lidar::ouster

@@ -10,14 +10,14 @@ namespace lidar::rate {
 namespace {
 
 constexpr double kUnitStep = 0.01;
-// Fewer returns than this say nothing about the scene: headers are most of the bytes.
+// Slices with fewer returns say nothing about the scene, as headers are most of their bytes.
 constexpr std::uint32_t kFewReturns = 64;
-// Far more than a return takes that is not coded: such a size is a fault, and no scene.
+// Exceeds the size of an uncoded return: a larger size is a fault.
 constexpr double kMostBytesAReturn = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;
 constexpr int kBisections = 40;
-// The sum does not say what its parts are. Unbounded, the split drifts until one part is nothing.
+// The sum hides its parts. Without a bound the split drifts until one part vanishes.
 constexpr double kMostOffFit = 4;
 
 double X(double step_m) { return std::log2(std::max(step_m, 1e-9) / kUnitStep); }
@@ -107,7 +107,7 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
     }
     settings.step_m = kUnitStep * std::exp2((low + high) / 2);
   }
-  // If steps are few, take the nearest in bytes; but a little less is better than too much.
+  // Few steps: it takes the nearest in bytes, and prefers slightly less to too much.
   constexpr double kMostOver = 1.06;
   const AllowedSteps steps = StepsAround(settings.step_m, limits);
   settings.step_m = steps.coarser_m;
@@ -121,7 +121,7 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
 void AdaptiveModel::LearnGeometry(Learned* learned, const SliceFeatures& slice, double x,
                                   double observed, bool again) {
   constexpr double kGain = 0.3;
-  constexpr double kNoise = 0.02;  // (log2 units)^2: a smaller move of the step teaches little
+  constexpr double kNoise = 0.02;  // (log2 units)^2: smaller moves of the step are ignored
   const ModeCoefficients& mode = Mode(slice.mode);
   const double n = N(slice.returns);
   const double error = observed - GeometryLog2(slice, kUnitStep * std::exp2(x));
@@ -168,7 +168,7 @@ void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settin
     learned_[slice.mode] = Learned(*known);
   last_mode_ = slice.mode;
   Learned& learned = learned_[slice.mode];
-  double kept = 0;  // log2 of what thinning left
+  double kept = 0;  // log2 of the share after thinning
   if (encoded.keep_fraction < 1) {
     kept = std::log2(std::max(encoded.keep_fraction, 1e-6));
     const double error = observed - learned.thinning * kept - std::log2(predicted.geometry_bytes);

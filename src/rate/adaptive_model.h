@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Our predictor: log size against log step for each coding mode, corrected by every slice.
+// Our predictor: log size over log step for each coding mode, corrected by each slice.
 #pragma once
 #include <array>
 #include <map>
@@ -16,19 +16,19 @@ struct ModeCoefficients {
   std::array<double, 4> step{};  // cubic in x, lowest power first
   double min_x = -3;             // the fit is a straight line outside of [min_x, max_x]
   double max_x = 5;
-  double returns = 1;                 // times n
+  double returns = 1;                 // factor of n
   std::array<double, 2> intensity{};  // line in log2(intensity bits)
-  double intensity_returns = 1;       // times n
+  double intensity_returns = 1;       // factor of n
 
   double GeometryLog2(double x, double n) const;
   double IntensityLog2(double bits, double n) const;
-  /// Returns true if the size falls with the step all over the range, as Choose() needs it.
+  /// Returns true if the size falls with the step over the whole range, as Choose() needs it.
   bool Falls() const;
 };
 
 struct AdaptiveCoefficients {
   std::map<std::string, ModeCoefficients> modes;
-  /// For a mode that the file does not have; the corrections do the rest.
+  /// For modes missing in the file; corrections adapt it.
   ModeCoefficients fallback;
 };
 
@@ -47,20 +47,20 @@ class AdaptiveModel : public SizeModel {
   struct Learned {
     SliceTracker geometry;
     SliceTracker intensity;
-    /// The steepness of this scene's sizes against the fit's.
+    /// Steepness of this scene's sizes relative to the fit.
     double slope = 1;
     double thinning = 0.8;                    // log size against log keep_fraction
     std::optional<std::uint64_t> last_slice;  // scan and sector, to recognise a re-encoding
   };
   const ModeCoefficients& Mode(const std::string& mode) const;
-  /// What was learned of a mode, or null. If the mode has just changed within a geometry, what was
-  /// learned of the last mode: the scene is the same.
+  /// Returns what was learned of a mode, or null. After a change of mode within a geometry it
+  /// returns that of the last mode, as the scene is the same.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
   /// Intensity's part of the bytes of a slice if the codec does not report it.
   double IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
                         const PredictedSize& predicted) const;
-  /// `again`: the slice was encoded and learned from before.
+  /// `again`: the slice has been learned from before.
   void LearnGeometry(Learned* learned, const SliceFeatures& slice, double x, double observed,
                      bool again);
   void LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits, double observed,

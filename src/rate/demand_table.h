@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The least need and the largest use of each slice of the current turn.
+// The least need and the greatest use of each slice of the current turn.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@ constexpr unsigned kMaxIntensityBits = 16;
 struct Demand {
   double coarsest = 0;                                    // geometry at the coarsest step
   double finest = 0;                                      // geometry at the finest useful step
-  std::array<double, kMaxIntensityBits + 1> intensity{};  // by its bits
+  std::array<double, kMaxIntensityBits + 1> intensity{};  // by the number of bits
 
   double AtCoarsest(unsigned bits) const { return coarsest + intensity[bits]; }
   double AtFinest(unsigned bits) const { return finest + intensity[bits]; }
@@ -25,12 +25,12 @@ struct Demand {
 class DemandTable {
  public:
   void Set(std::uint32_t slice_index, std::uint32_t slice_count, const Demand& demand);
-  /// Sum over the slices from `first` to the end of the scan. A slice not seen yet counts as the
-  /// mean of the others.
+  /// Sums over the slices from `first` to the end of the scan. Unknown slices count as the mean of
+  /// the others.
   Demand Sum(std::uint32_t first = 0) const;
-  /// Divides `surplus` bytes among the slices from `first` to the end of the scan: each gets the
-  /// same, but no more than lies between its coarsest and its finest step. A slice without an
-  /// observation takes any amount.
+  /// Divides `surplus` bytes among the slices from `first` to the end of the scan. Each gets the
+  /// same, up to the difference between its coarsest and finest step. An unknown slice takes any
+  /// amount.
   double EvenShare(std::uint32_t first, double surplus) const;
 
  private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The residual error optimizer: how far a uniform grid can move a point, and the coarsest grid
-// that keeps to an error.
+// The residual error optimizer: the largest motion of a point by a uniform grid, and the coarsest
+// grid within an error.
 #pragma once
 #include "src/cloud/coded_geometry.h"
 #include "src/cloud/range_grid.h"
 
 namespace lidar::rate {
 
-/// Bounds by construction, not by measurement (docs/rate-control.md).
+/// Bounds by construction, without measurement (docs/rate-control.md).
 class ErrorBound {
  public:
   static ErrorBound Xyz() { return ErrorBound(Geometry::kXyz, 0); }
@@ -21,10 +21,10 @@ class ErrorBound {
   /// The coarsest step [m] whose MaxError is not above `error_m`. Errors below the sensor's
   /// resolution give the finest step.
   double CoarsestStep(double error_m) const;
-  /// A finer step than this [m] only codes digits that the sensor does not have.
+  /// Finer steps [m] only code digits that the sensor does not have.
   double FinestStep() const;
-  /// Steps are FinestStep() and any number of these [m]; 0 for xyz: any step. Steps of ranges are
-  /// so small that sizes are as good as continuous.
+  /// Steps are FinestStep() plus multiples of this [m]; 0 for xyz: any step. Steps of ranges are
+  /// small enough for nearly continuous sizes.
   double step_unit() const;
   Geometry geometry() const { return geometry_; }
 

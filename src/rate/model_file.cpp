@@ -11,9 +11,9 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr const char* kFormat = "gst-lidar-rate-model";
-constexpr double kLargest = 1e12;  // a coefficient that is larger is an accident
+constexpr double kLargest = 1e12;  // larger coefficients are a mistake
 
-/// Reads members and keeps the first thing that is wrong.
+/// Reads members and keeps the first fault.
 class Reader {
  public:
   explicit Reader(std::string* error) : error_(error) { error_->clear(); }

@@ -19,8 +19,8 @@ struct ModelFile {
   std::optional<PaperCoefficients> paper;
 };
 
-/// Returns nothing for anything but a sound file of this or an earlier version; `error` then says,
-/// in words for a user, what is wrong.
+/// Returns nothing unless the file is valid and of this or an earlier version; `error` then has the
+/// fault for a user.
 std::optional<ModelFile> ParseModelFile(std::string_view json, std::string* error);
 std::string WriteModelFile(const ModelFile& file);
 

@@ -17,12 +17,12 @@ using Samples = std::vector<const Sample*>;
 double X(const Sample& s) { return std::log2(s.settings.step_m / kUnitStep); }
 double N(const Sample& s) { return std::log2(s.slice.returns / 1000.0); }
 
-/// Minimises |A c - b|; a feature that never varies has no part.
+/// Minimises |A c - b|; constant features are left out.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   return a.colPivHouseholderQr().solve(b);
 }
 
-/// Fits the exponent of the returns too, if their number varies enough.
+/// Returns true, and so fits the exponent of the returns, if their number varies enough.
 double ReturnsSpread(const Samples& samples) {
   const auto [low, high] = std::minmax_element(
       samples.begin(), samples.end(),
@@ -53,7 +53,7 @@ void FitIntensity(const Samples& all, ModeCoefficients* mode) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(samples), [](const Sample* s) {
     return s->settings.intensity_bits > 0 && s->intensity_bytes > 1;
   });
-  // The model without a sample: half a bit a return and bit, to be corrected by the first slice.
+  // Model without samples: half a bit per return and bit. The first slice corrects it.
   mode->intensity = {std::log2(1000 / 16.0), 1};
   mode->intensity_returns = 1;
   if (samples.size() < kMinSamples) return;

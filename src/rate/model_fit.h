@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Least squares for the predictors: samples of real encodings in, coefficients out.
+// Least squares for the predictors: converts samples of real encodings to coefficients.
 #pragma once
 #include <optional>
 #include <vector>
@@ -15,7 +15,7 @@ struct Sample {
   Settings settings;
   double geometry_bytes = 0;
   double intensity_bytes = 0;
-  unsigned source = 0;  // which capture or scene: cross-validation leaves out whole sources
+  unsigned source = 0;  // capture or scene: cross-validation leaves out whole sources
 };
 
 /// Fits a cubic for each mode. Returns nothing if a mode has fewer than kMinSamples or its sizes do

@@ -36,7 +36,7 @@ const PaperPolynomial& PaperModel::Polynomial(const std::string& mode) const {
 
 PredictedSize PaperModel::Predict(const SliceFeatures& slice, const Settings& settings) const {
   const double q = BitsOfStep(slice.extent_m, settings.step_m);
-  // The polynomial may pass below zero far from its training.
+  // The polynomial may be negative far from its training data.
   return {std::max(0.0, Polynomial(slice.mode).Bytes(q, settings.level, slice.returns)), 0};
 }
 

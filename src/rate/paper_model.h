@@ -24,13 +24,13 @@ struct PaperCoefficients {
   std::map<std::string, PaperPolynomial> geometries;  // by "xyz", "range"
 };
 
-/// Quantisation bits of a box of `extent_m` for a grid of `step_m`, and the other way round.
+/// Converts between the step of a grid and quantisation bits of a box of `extent_m`.
 double BitsOfStep(double extent_m, double step_m);
 double StepOfBits(double extent_m, double bits);
 /// "xyz" or "range", of a mode such as "xyz-kd6".
 std::string GeometryOf(const std::string& mode);
 
-/// Learns nothing while it runs: as in the paper, the polynomial is fitted once.
+/// Does not learn while it runs: as in the paper, the polynomial is fitted once.
 class PaperModel : public SizeModel {
  public:
   explicit PaperModel(PaperCoefficients coefficients) : coefficients_(std::move(coefficients)) {}

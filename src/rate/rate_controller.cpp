@@ -7,14 +7,14 @@
 namespace lidar::rate {
 namespace {
 
-// A scan settles half of what the scans before left or owe: all at once would double the noise.
+// A scan compensates for half of the last scans' excess: all of it at once would double the noise.
 constexpr double kRepayGain = 0.5;
-// Unused budget is lost, but for this part of a scan: the network has no memory for it.
+// Greatest part of a scan's unused budget that is kept: the network does not keep unused capacity.
 constexpr double kMaxSaved = 0.05;
-constexpr double kOver = 0.015;       // a slice that is further over its budget is tried again
-constexpr double kOverOfScan = 0.01;  // ... but later slices even out less than this
-constexpr double kUnder = 3;          // times as much: too little is no harm to the network
-constexpr double kSameStep = 0.004;   // a second try with the same step is none
+constexpr double kOver = 0.015;       // excess over the budget that causes a second try
+constexpr double kOverOfScan = 0.01;  // ... but not if later slices even out less
+constexpr double kUnder = 3;          // times as much: too few bytes do no harm
+constexpr double kSameStep = 0.004;   // steps closer than this are the same
 // A second try aims a little lower, by how far it has to go, because its slope may be wrong.
 constexpr double kReencodeMargin = 0.02;
 constexpr double kBoundsChange = 0.03;
@@ -101,9 +101,9 @@ double RateController::SliceBudget() const {
   if (!parameters_.closed_loop) return share;
   const std::uint32_t left = slice_.slice_count - slice_.slice_index;
   const double rest = repay_ + ledger_ + share * (left - 1);
-  // Every slice gets what its error bound needs, and all get the same share of the rest. So near
-  // the minimum the quality is even, and far from it the times on the wire are. Slices outside of
-  // the sensor's window have few returns or none, and leave the others what they cannot use.
+  // Each slice gets what its error bound needs, and an equal share of the rest. So the quality is
+  // even near the minimum, and transmission times are even far from it. Slices with few or no
+  // returns, outside of the sensor's window, leave their unused share to others.
   const Demand needed = demand_.Sum(slice_.slice_index);
   const unsigned bits = plan_.intensity_bits;
   const double own = model_->Predict(slice_, {parameters_.limits.coarsest_step_m, bits, 0}).total();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Spends a target bitrate on slices: a budget for each, settings that fit it, one second try.
+// Spends a target bitrate on slices: a budget for each, fitting settings, and one second try.
 #pragma once
 #include <cstdint>
 #include <memory>

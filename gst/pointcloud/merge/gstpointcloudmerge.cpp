@@ -49,7 +49,7 @@ const std::array<Property<MergePadSettings>, 1> kPadProperties = {{
      &MergePadSettings::transform, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// Pose of a sensor, and its clouds in the common form.
+/// The pose of a sensor, and its clouds in the common form.
 struct MergePadState {
   std::mutex mutex;  // guards the settings
   MergePadSettings settings;
@@ -60,7 +60,7 @@ struct MergePadState {
   std::string plan_fields;
 };
 
-/// Scans without a duration that are farther apart are of different turns.
+/// Scans without a duration that are farther apart belong to different turns.
 constexpr GstClockTime kUsualScan = 100 * GST_MSECOND;
 
 struct Head {
@@ -72,7 +72,7 @@ struct Head {
 /// The next output.
 struct Merged {
   std::vector<std::uint8_t> points;
-  std::string fields;  // of the first pad that gave a cloud
+  std::string fields;  // of the first pad with a cloud
   GstClockTime time = GST_CLOCK_TIME_NONE;
   GstClockTime duration = 0;
   GstClockTime capture_time = GST_CLOCK_TIME_NONE;
@@ -99,8 +99,8 @@ static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
   pad->state->plan.reset();
 }
 
-/// Gives the points of `buffer` that are returns, in the common frame, with `fields` or else those
-/// of the cloud. Null on failure, with the reason for a user in `why`.
+/// Returns the returns of `buffer` in the common frame, with `fields` or the cloud's own. Returns
+/// null on failure; `why` then has the reason for a user.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
                               const std::string& fields, std::string* why) {
   MergePadState& state = *pad->state;
@@ -173,7 +173,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
     const BufferPtr buffer(gst_aggregator_pad_peek_buffer(pad));
     if (!buffer) continue;
-    // A scan of no length would be of an earlier turn than itself.
+    // A scan without length would belong to an earlier turn than itself.
     const GstClockTime duration = GST_BUFFER_DURATION(buffer.get());
     const bool known = GST_CLOCK_TIME_IS_VALID(duration) && duration > 0;
     heads.push_back({GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()),
@@ -195,7 +195,7 @@ static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& head
   return dropped;
 }
 
-/// Warns of slices, which would be merged one by one, from any two parts of the turn.
+/// Warns of slices: merged one by one, they would be of unrelated parts of the turn.
 static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
   GstLidarSlice slice{};
   if (self->state->slices_reported || !gst_lidar_buffer_get_slice(buffer, &slice) ||
@@ -271,7 +271,7 @@ static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
     });
     return ended ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
   }
-  // A sensor that is late is waited for no longer than the latency.
+  // Waits for a late sensor no longer than the latency.
   if (DropOld(self, heads) && !timeout) return GST_AGGREGATOR_FLOW_NEED_DATA;
   Merged merged;
   for (const Head& head : heads)
@@ -333,7 +333,7 @@ static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass*
                               static_cast<GstPluginAPIFlags>(0));
   auto* aggregator = GST_AGGREGATOR_CLASS(klass);
   aggregator->aggregate = Aggregate;
-  // The caps come with the clouds; the base class would send those of the template first.
+  // Caps come with the clouds; the base class would first send those of the template.
   aggregator->negotiate = [](GstAggregator*) -> gboolean { return TRUE; };
   aggregator->sink_event = SinkEvent;
   aggregator->get_next_time = NextTime;

@@ -13,7 +13,7 @@ namespace {
 struct FileKind {
   CloudFileType type;
   const char* name;
-  const char* media_type;  // NULL: such files are found by their points, as raw ones are
+  const char* media_type;  // NULL: typefind looks at the points, as such files have no header
   const char* extension;
 };
 constexpr FileKind kFileKinds[] = {{CloudFileType::kPcd, "PCD", "application/x-pcd", "pcd"},
@@ -21,7 +21,7 @@ constexpr FileKind kFileKinds[] = {{CloudFileType::kPcd, "PCD", "application/x-p
                                    {CloudFileType::kLas, "LAS", "application/vnd.las", "las"},
                                    {CloudFileType::kKitti, "KITTI", nullptr, nullptr}};
 
-/// As messages of ROS have it, whose converter does the rest.
+/// Returns the layout as ROS messages have it, for their converter.
 cdr::RosLayout LayoutOf(const FileCloud& file) {
   cdr::RosLayout layout;
   layout.width = file.width;
@@ -39,7 +39,7 @@ void Find(GstTypeFind* find, gpointer user_data) {
   const auto& wanted = *static_cast<const FileKind*>(user_data);
   guint64 length = gst_type_find_get_length(find);
   if (length == 0) length = 512;
-  // A short file has fewer bytes than one would like to see.
+  // Tries smaller sizes for a short file.
   for (guint size : {512U, 64U, 8U}) {
     if (size > length) continue;
     const guint8* data = gst_type_find_peek(find, 0, size);

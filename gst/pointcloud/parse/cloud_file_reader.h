@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Files of points as clouds of ours.
+// Reads files of points as our clouds.
 #pragma once
 #include <gst/gst.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Times of clouds that come from files: upstream's times, else by number.
+// Times of clouds from files: upstream's times, otherwise from their number.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,7 +12,7 @@
 
 namespace lidar::gst {
 
-/// Clouds per second, as caps and a property have them.
+/// Clouds per second in caps or property.
 struct FrameRate {
   gint n = 0;  // 0: not known
   gint d = 1;
@@ -30,14 +30,14 @@ struct Kind<FrameRate> {
   static void Get(FrameRate value, GValue* v) { gst_value_set_fraction(v, value.n, value.d); }
 };
 
-/// For the streaming thread, but for the timeline.
+/// For the streaming thread, except for the timeline.
 class CloudStamper {
  public:
   CloudTimeline& timeline() { return timeline_; }
   const FrameRate& rate() const { return rate_; }
-  /// A rate that is known.
+  /// Sets a known rate.
   void SetRate(const FrameRate& rate);
-  /// Clouds that went, and that were left out.
+  /// Number of clouds pushed or left out.
   guint64 count() const { return place_.next; }
   /// Whether upstream stamps its buffers.
   bool times_given() const { return times_given_; }
@@ -46,15 +46,15 @@ class CloudStamper {
   void TakeSegment(GstEvent* event);
   /// The segment that is to go before the next cloud; NULL once it was taken.
   EventPtr NextSegment() { return std::move(segment_); }
-  /// Clouds are all of one size, in bytes; 0: they are not. Seeks and queries are ours where they
-  /// are, and come as bytes.
+  /// Sets the size of all clouds in bytes; 0: sizes differ. With a size, seeks and queries are
+  /// answered here and arrive as bytes.
   void SetCloudSize(gsize bytes);
-  /// Gives a cloud without a capture time one, as if its sensor had begun when the first cloud
-  /// came. A cloud that is no slice becomes a scan with its number.
+  /// Gives a cloud without capture time one, as if its sensor had begun when the first cloud came.
+  /// Makes a cloud that is no slice a scan with its number.
   void Stamp(GstBuffer* cloud);
   /// A cloud that is left out keeps its place in time.
   void LeaveOut() { ++place_.next; }
-  /// True if the next cloud went out before a seek that resumes at the old place.
+  /// Returns true if the next cloud was pushed before a seek that resumes at the old place.
   bool HasGone() const { return place_.next < place_.shown; }
   void Flush(bool restarts_time);
   void Reset();

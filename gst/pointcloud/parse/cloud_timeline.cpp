@@ -7,7 +7,7 @@
 
 namespace lidar::gst {
 
-/// Times are rounded down, so the cloud that a time was made of would be missed by one.
+/// Times are rounded down, so a time computed from a cloud would otherwise miss it by one.
 guint64 CloudTimeline::Grid::CloudAt(GstClockTime time) const {
   const guint64 cloud = gst_util_uint64_scale(time, rate_n, rate_d * GST_SECOND);
   return TimeOf(cloud + 1) <= time ? cloud + 1 : cloud;
@@ -32,7 +32,7 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
   const std::lock_guard lock(mutex_);
   const bool counts = bytes->format == GST_FORMAT_BYTES && grid_.cloud_bytes > 0;
   if (counts) place->next = bytes->start / grid_.cloud_bytes;
-  // Clouds may have gone since a seek was asked for.
+  // Clouds may have been pushed since the request of a seek.
   const GstClockTime end = segment_.position;
   const GstClockTime gone = gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, end);
   if (sought_ && sought_->seqnum == seqnum) {
@@ -143,7 +143,7 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
   const guint64 past_last = ends ? grid.CloudAt(segment.stop - 1) + 1 : 0;
   if (std::max(first, past_last) > static_cast<guint64>(G_MAXINT64) / grid.cloud_bytes)
     return false;
-  // A stop of -1 takes an earlier one away.
+  // A stop of -1 removes an earlier stop.
   EventPtr bytes(
       gst_event_new_seek(rate, GST_FORMAT_BYTES, flags, GST_SEEK_TYPE_SET,
                          static_cast<gint64>(first * grid.cloud_bytes), GST_SEEK_TYPE_SET,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Time and bytes of a file of clouds that are all of one size: seeks and queries of its parser.
+// Times and bytes of a file with clouds of equal size: seeks and queries of its parser.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// Upstream counts bytes, downstream counts time. Queries and seeks come from any thread.
+/// Upstream uses bytes, downstream uses time. All threads may send queries and seeks.
 class CloudTimeline {
  public:
   CloudTimeline() { gst_segment_init(&segment_, GST_FORMAT_TIME); }
@@ -20,7 +20,7 @@ class CloudTimeline {
     guint64 rate_n = 10;      // clouds/s
     guint64 rate_d = 1;
 
-    /// When a cloud begins, counted from 0, and which is there at a time.
+    /// Begin of a cloud, counted from 0, and the cloud at a time.
     GstClockTime TimeOf(guint64 cloud) const {
       return gst_util_uint64_scale(cloud, rate_d * GST_SECOND, rate_n);
     }
@@ -32,35 +32,35 @@ class CloudTimeline {
   /// Clouds by their numbers.
   struct Place {
     guint64 next = 0;   // number of the next cloud
-    guint64 shown = 0;  // earlier clouds have gone, though their bytes may come again
+    guint64 shown = 0;  // earlier clouds were pushed, though their bytes may come again
   };
-  /// Turns a segment in bytes into one in time, which goes on where the last cloud ended. Sets
-  /// `place` to where it begins, as far as that is known.
+  /// Converts a segment in bytes to one in time that continues after the last cloud. Sets `place`
+  /// to its beginning, as far as known.
   EventPtr ToTime(GstEvent* segment, Place* place);
   /// SEGMENT_DONE in the time of downstream; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
-  /// A cloud has gone that ends then, or with the segment.
+  /// A cloud was pushed that ends then, or with the segment.
   void NotePosition(GstClockTime end);
   /// The running time begins anew.
   void RestartTime();
 
   /// Returns true if the query has its answer. `sinkpad` is where the bytes come in.
   bool Answer(GstPad* sinkpad, GstQuery* query) const;
-  /// Returns nothing if the seek is not for us; else whether upstream has done it.
+  /// Returns nothing if the seek is not for this parser, otherwise whether upstream performed it.
   std::optional<bool> Seek(GstPad* sinkpad, GstEvent* event);
 
  private:
   struct Sought {
     guint32 seqnum = 0;
     GstSegment segment{};
-    bool goes_on = false;  // from where the last cloud ended
+    bool goes_on = false;  // continues after the last cloud
   };
 
   std::optional<GstClockTime> Duration(GstPad* sinkpad, const Grid& grid) const;
 
   mutable std::mutex mutex_;  // guards what follows; not held while anything is pushed
   Grid grid_;
-  GstSegment segment_{};          // as downstream has it
+  GstSegment segment_{};          // as sent downstream
   std::optional<Sought> sought_;  // until its segment comes
 };
 

@@ -35,7 +35,7 @@ namespace {
 
 using namespace lidar::gst;
 
-constexpr gint kDefaultRate = 10;            // scans/s where neither caps nor property say
+constexpr gint kDefaultRate = 10;            // scans/s if neither caps nor property have a rate
 constexpr gsize kMaxCloud = gsize{1} << 30;  // bytes
 
 struct Settings {
@@ -58,7 +58,7 @@ struct State {
   std::optional<lidar::CloudFileType> type;  // empty: raw points
   CapsPtr caps;
   guint out_width = 0;
-  std::optional<gsize> file_size;  // of a file that comes in pieces; 0: pieces are clouds
+  std::optional<gsize> file_size;  // of a file that comes in pieces; 0: each piece is a cloud
   bool discont = false;            // a cloud was left out
   bool empty_reported = false;
   RefusedCaps refused;
@@ -82,7 +82,7 @@ GST_ELEMENT_REGISTER_DEFINE(pointcloudparse, "pointcloudparse", GST_RANK_NONE,
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state; }
 
-/// Bytes of one cloud in a stream that is cut anywhere; 0 if every buffer is a cloud.
+/// Returns the bytes of a cloud in a stream that is cut anywhere; 0 if each buffer is a cloud.
 static gsize CloudSize(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   if (!state.type && state.info->width > 0) return state.info->FrameSize();
@@ -113,7 +113,7 @@ static void PushSegment(GstLidarPointCloudParse* self) {
     gst_pad_push_event(self->srcpad, segment.release());
 }
 
-/// A recording that broke off leaves empty files; the rest of them counts.
+/// A recording that broke off leaves empty files, which are skipped.
 static GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   state.stamper.LeaveOut();
@@ -147,7 +147,7 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
   return gst_pad_push(self->srcpad, out);
 }
 
-/// A whole file that says what it is.
+/// Pushes a whole file with a header.
 static GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
   State& state = *self->state;
   std::string why = "it cannot be mapped";
@@ -183,7 +183,7 @@ static GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) 
   return self->state->type ? PushFile(self, buffer) : PushCloud(self, std::move(buffer));
 }
 
-/// Taken from the caps, which say more than the property where that is not set.
+/// Takes the rate from the property, or else from the caps.
 static void SetRate(State* state, gint n, gint d) {
   FrameRate rate{n, d};
   {
@@ -193,7 +193,7 @@ static void SetRate(State* state, gint n, gint d) {
   state->stamper.SetRate(rate.n > 0 ? rate : FrameRate{kDefaultRate, 1});
 }
 
-/// Files say themselves what they are.
+/// Detects the type from the file's content.
 static void GuessType(State* state, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   if (map) state->type = lidar::TypeOfCloudFile(map.view());
