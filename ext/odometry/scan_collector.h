@@ -40,7 +40,7 @@ class ScanCollector {
   std::vector<float> PhasesOf(const GstLidarSlice& slice, const PointsInMemory& points) const;
 
   CloudInfo info_;
-  std::optional<PointField> time_, ring_;  // where points have them
+  std::optional<PointField> time_, ring_;  // set if the points have these fields
   CollectedScan scan_;
   bool open_ = false;
   guint scan_id_ = 0;

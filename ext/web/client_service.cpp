@@ -241,7 +241,7 @@ void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text
 /// The newest subscription of a channel counts.
 void ClientService::Subscribe(Client* client, const foxglove::Subscription& subscription) {
   const auto topic = topics_.find(subscription.channel_id);
-  if (topic == topics_.end() || client->closed()) return;  // it has just gone
+  if (topic == topics_.end() || client->closed()) return;  // the topic or client has just gone
   if (!client->grant.Allows(topic->second->channel().topic)) return;
   const bool added =
       client->subscriptions.insert_or_assign(subscription.channel_id, subscription.id).second;
@@ -290,7 +290,7 @@ void ClientService::SetTopics(const std::vector<SharedTopic>& topics) {
 
 void ClientService::Deliver(std::uint32_t channel, const SharedMessage& message) {
   const auto topic = topics_.find(channel);
-  if (topic == topics_.end()) return;  // it has just gone
+  if (topic == topics_.end()) return;  // the topic has just gone
   const bool is_video = topic->second->channel().schema == foxglove::Schema::kCompressedVideo;
   for (const auto& client : clients_) {
     const auto found = client->subscriptions.find(channel);

@@ -29,7 +29,7 @@ double ErrorBound::MeanError(double step_m) const {
   if (geometry_ == Geometry::kXyz) return step_m * kMeanInCube;
   const RangeGrid grid = RangeGrid::ForStep(step_m, unit_mm_);
   const double n = grid.largest_bin();
-  const double units = grid.step_m() / unit();  // a bin on average
+  const double units = grid.step_m() / unit();  // units in a bin, on average
   const double larger = units - (n - 1);        // share of the larger bins
   return unit() * (larger * SumInBin(n) + (1 - larger) * SumInBin(n - 1)) / units;
 }

@@ -18,13 +18,13 @@ struct ControllerParameters {
   /// The controller lowers the intensity bits to this before it skips or thins.
   unsigned min_intensity_bits = 4;
   DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
-  /// The paper's controller is an open loop: no carry-over, no second try.
+  /// false: the paper's open loop, without carry-over and second try.
   bool closed_loop = true;
 };
 
 /// The decision for a slice.
 struct Decision {
-  bool skip = false;  // put out nothing but a gap
+  bool skip = false;  // leave the slice out, and send a gap
   Settings settings;
   double keep_fraction = 1;        // below 1: code only what ThinningPattern() keeps
   std::optional<DataSize> budget;  // empty: constant quality
@@ -33,7 +33,7 @@ struct Decision {
 /// Bitrates of media, for the event `bitrate-bounds`.
 struct RateBounds {
   DataRate min;      // at the coarsest step that the error allows, least intensity bits
-  DataRate nominal;  // at the coarsest step, all intensity bits
+  DataRate nominal;  // at the coarsest step, with all intensity bits
   DataRate max;      // at the finest useful step
 };
 
@@ -43,29 +43,29 @@ struct ControllerStats {
   std::uint64_t slices_skipped = 0;
   std::uint64_t scans_skipped = 0;
   std::uint64_t scans_thinned = 0;
-  double saved_bytes = 0;  // carried over; negative: owed
+  double saved_bytes = 0;  // carried over; negative: a debt
 };
 
-/// NextSlice(), encode, OnEncoded(); where that asks for it: encode once more, OnEncoded().
-/// Not thread-safe.
+/// Call NextSlice(), encode, OnEncoded(). If that returns settings, encode once more and call
+/// OnEncoded() again. Not thread-safe.
 class RateController {
  public:
   RateController(ControllerParameters parameters, std::unique_ptr<SizeModel> model);
 
-  /// Bitrate for the encoded slices alone, without transport overhead. Empty: constant quality at
-  /// the coarsest step.
+  /// Bitrate for the encoded slices without transport overhead. Unset: constant quality at the
+  /// coarsest step.
   void SetTarget(std::optional<DataRate> target);
   /// Sets parameters for the next slice on.
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
 
   Decision NextSlice(const SliceFeatures& slice);
-  /// Returns settings to encode the slice again with; nothing: the slice goes out as it is.
+  /// Returns settings for a second encoding of the slice; nothing: the slice is sent as it is.
   std::optional<Settings> OnEncoded(const EncodedSize& encoded);
 
   /// Zero before the first slice.
   RateBounds bounds() const;
-  /// The bounds, when one of them has moved by more than 3 % since they were last taken; at most
-  /// once a scan, after its last slice.
+  /// Returns the bounds if one has moved by more than 3 % since the last call; at most once a scan,
+  /// after its last slice.
   std::optional<RateBounds> TakeChangedBounds();
   const ControllerStats& stats() const { return stats_; }
 
@@ -82,15 +82,15 @@ class RateController {
 
   SliceFeatures slice_;
   Decision decision_;
-  bool pending_ = false;    // NextSlice() without its OnEncoded() yet
+  bool pending_ = false;    // NextSlice() was called, its OnEncoded() not yet
   bool reencoded_ = false;  // this slice has had its second try
   bool started_ = false;
   bool measured_ = false;
   DemandTable demand_;
   ScanPlan plan_;
   double saved_ = 0;   // bytes from scans before this one
-  double repay_ = 0;   // part of saved_ that this scan spends or pays back
-  double ledger_ = 0;  // this scan's share of the target so far, less the bytes put out
+  double repay_ = 0;   // part of saved_ that this scan spends or repays
+  double ledger_ = 0;  // this scan's share of the target so far, minus the bytes sent
   bool bounds_due_ = false;
   RateBounds bounds_taken_;
   ControllerStats stats_;

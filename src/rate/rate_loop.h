@@ -13,7 +13,7 @@ namespace lidar::rate {
 
 struct LoopSettings {
   double max_error_m = 0.02;
-  double fixed_step_m = 0;  // above 0: this step, whatever the target
+  double fixed_step_m = 0;  // above 0: use this step for any target
   unsigned intensity_bits = 5;
   DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
 };
@@ -27,7 +27,7 @@ struct SlicePlace {
 };
 
 struct LoopResult {
-  bool skipped = false;  // by the controller, to save bitrate
+  bool skipped = false;  // the controller left it out to save bitrate
   std::string mode;      // of coding
   CodingResult result = CodingResult::kEmpty;
   CodedSlice slice;  // where it was encoded
@@ -43,8 +43,8 @@ class RateLoop {
  public:
   explicit RateLoop(std::unique_ptr<SizeModel> model) : controller_({}, std::move(model)) {}
 
-  /// Encodes what `coder` has loaded, twice where the first size misses the budget by much. No
-  /// target: constant quality.
+  /// Encodes the slice that `coder` has loaded, twice if the first size misses the budget by far.
+  /// Without a target: constant quality.
   LoopResult Encode(const SlicePlace& place, const LoopSettings& settings,
                     std::optional<DataRate> target, SliceCoder* coder);
   RateController& controller() { return controller_; }

@@ -7,11 +7,11 @@
 namespace lidar::rate {
 namespace {
 
-// A debt of a tenth of a scan is paid back by the next scans' steps, not by a skip.
+// The next scans' steps repay a debt of a tenth of a scan without a skip.
 constexpr double kTolerance = 0.1;
-// Thinned further, a cloud is of no use: scans are skipped as well.
+// A cloud that is thinned further is useless: then scans are skipped as well.
 constexpr double kMinKeep = 1.0 / 16;
-// Intensity comes back only with room to spare, so that it does not flicker.
+// Intensity bits return only with a margin, so that they do not flicker.
 constexpr double kRoomToRaise = 0.9;
 
 unsigned IntensityBits(const ScanPlanInputs& in) {
@@ -33,7 +33,7 @@ ScanPlan PlanScan(const ScanPlanInputs& in, DegradationPreference preference) {
   plan.degraded = needed > in.budget;
   if (!plan.degraded || !in.measured) return plan;
   const double share = in.budget / needed;
-  double wanted = 1;  // part of `needed` that is sent, where the scan is
+  double wanted = 1;  // part of `needed` that is sent, if the scan is
   if (preference == DegradationPreference::kMaintainFramerate)
     wanted = std::min(1.0, share + std::min(0.0, in.saved / needed));
   else if (preference == DegradationPreference::kBalanced)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The degradation below what the error bound needs: intensity first, then scans or points.
+// The degradation below what the error bound needs: first intensity, then scans or points.
 #pragma once
 #include <vector>
 
@@ -16,7 +16,7 @@ enum class DegradationPreference {
 /// Holds for all slices of one scan.
 struct ScanPlan {
   bool skip = false;
-  /// True below the bound's minimum: the step stays at the coarsest, whatever was saved up.
+  /// True below the bound's minimum: the step stays the coarsest, even with savings.
   bool degraded = false;
   double keep_fraction = 1;  // of the returns
   unsigned intensity_bits = 0;
@@ -25,8 +25,8 @@ struct ScanPlan {
 struct ScanPlanInputs {
   Demand needed;          // of the whole scan
   double budget = 0;      // bytes that the target gives one scan
-  double saved = 0;       // bytes left over from the scans before; negative: owed
-  bool measured = false;  // a slice has been encoded, so `needed` can be trusted
+  double saved = 0;       // bytes left over from earlier scans; negative: a debt
+  bool measured = false;  // a slice has been encoded, so `needed` is known
   unsigned intensity_bits = 0;
   unsigned min_intensity_bits = 0;
   unsigned last_intensity_bits = 0;
@@ -34,8 +34,8 @@ struct ScanPlanInputs {
 
 ScanPlan PlanScan(const ScanPlanInputs& inputs, DegradationPreference preference);
 
-/// Which of `count` rows (beams, columns or points) a thinned slice keeps: `fraction` of them,
-/// evenly, the same ones every time. At least one.
+/// Returns which of `count` rows (beams, columns or points) a thinned slice keeps: `fraction` of
+/// them, evenly, always the same ones, and at least one.
 std::vector<bool> ThinningPattern(std::size_t count, double fraction);
 
 }  // namespace lidar::rate

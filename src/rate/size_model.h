@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a codec reports of a slice, and how a predictor turns it into bytes.
+// A codec's report of a slice, and predictors that turn it into bytes.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -63,8 +63,7 @@ class SizeModel {
                          const EncodedSize& encoded) = 0;
 };
 
-/// The allowed steps on both sides of a step; the same one twice at the ends, or where any step is
-/// allowed.
+/// The allowed steps on both sides of a step; equal at the ends, or if any step is allowed.
 struct AllowedSteps {
   double finer_m = 0;
   double coarser_m = 0;

@@ -14,15 +14,15 @@ struct LoadedSlice {
   std::size_t returns = 0;     // points that would be coded if none were thinned
   double extent_m = 0;         // longest side of the points' box, or the longest range
   std::size_t rows = 0;        // beams or points that Thin() chooses from; 0: it cannot thin
-  bool has_intensity = false;  // intensities are there, and wanted
+  bool has_intensity = false;  // the slice has intensities, and they are wanted
   unsigned level = 0;          // highest compression level; only some rate models lower it
   std::string mode;            // SliceFeatures::mode
 };
 
 /// The grids that keep to an error.
 struct StepRange {
-  double finest_step_m = 0.001;   // a finer step codes meaningless digits
-  double coarsest_step_m = 0.04;  // no point moves farther than the error that was asked for
+  double finest_step_m = 0.001;   // finer steps code meaningless digits
+  double coarsest_step_m = 0.04;  // no point moves farther than the requested error
   double step_unit_m = 0;         // steps are finest_step_m and any number of these; 0: any step
 };
 
@@ -45,12 +45,13 @@ class SliceCoder {
   virtual ~SliceCoder() = default;
 
   virtual LoadedSlice loaded() const = 0;
-  /// For what is loaded. The coarsest step may be below the finest where the error is.
+  /// Returns the steps for the loaded slice. The coarsest step may be below the finest for a small
+  /// error.
   virtual StepRange Steps(double max_error_m) const = 0;
-  /// Forgets all rows but those whose element of `kept`, which has loaded().rows, is true.
+  /// Forgets the rows whose element of `kept`, which has loaded().rows, is false.
   virtual void Thin(const std::vector<bool>& kept) = 0;
-  /// Encodes what is loaded, in place of an encoding before. The step is a wish; the bound
-  /// `max_error_m` holds whatever the step.
+  /// Encodes the loaded slice in place of an earlier encoding. The step is a wish; the bound
+  /// `max_error_m` always holds.
   virtual CodingResult Encode(double max_error_m, const Settings& settings, CodedSlice* slice) = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Remembers how far each sector of the last scan was from the model, to correct this scan's.
+// Remembers the model's error in each sector of the last scan, to correct this scan.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,15 +13,15 @@ struct Anchor {
   double residual = 0;
 };
 
-/// Sector i of a scan looks most like sector i of the scan before. On top comes what the sectors
-/// since then had in common: a turn of the vehicle, a wrong slope.
+/// Sector i of a scan resembles sector i of the last scan most. The common change of the sectors
+/// since then is added: a turn of the vehicle, or a wrong slope.
 class SliceTracker {
  public:
-  /// The observation to start from for a slice; nothing before the first one.
+  /// Returns the observation from which a slice is predicted; nothing before the first one.
   std::optional<Anchor> Predict(std::uint32_t slice_index, std::uint32_t slice_count) const;
-  /// `error`: observed minus what Predict() led to expect.
+  /// `error`: observed minus predicted.
   void Observe(std::uint32_t slice_index, std::uint32_t slice_count, Anchor anchor, double error);
-  /// Puts a re-encoded slice in place of its first encoding.
+  /// Replaces a slice's first encoding by its second.
   void Replace(std::uint32_t slice_index, std::uint32_t slice_count, Anchor anchor);
 
  private:

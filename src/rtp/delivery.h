@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which slices have arrived, from the sequence numbers that did.
+// Finds the slices that arrived from the sequence numbers that did.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -8,8 +8,8 @@
 
 namespace lidar::rtp {
 
-/// The packets of one SSRC that were sent lately, and the slices that they were of. Bounded: what a
-/// receiver never acknowledges is forgotten.
+/// Recent packets of an SSRC, and their slices, in bounded memory: packets without acknowledgement
+/// are forgotten.
 class Delivery {
  public:
   struct Slice {

@@ -6,7 +6,7 @@
 namespace lidar::rtp {
 namespace {
 
-// A node of the map and its vector, so that many tiny fragments cannot hide their cost.
+// Size of a map node and its vector, so that tiny fragments cannot hide their memory.
 constexpr std::size_t kFragmentOverhead = 96;
 
 }  // namespace

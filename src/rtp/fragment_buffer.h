@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The fragments of one unit, put in order by their RTP sequence numbers.
+// The fragments of a unit, ordered by their RTP sequence numbers.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -18,7 +18,8 @@ class FragmentBuffer {
   Added Add(std::uint16_t sequence, const Unit& unit);
   /// Are all fragments from the first to the last there?
   bool IsWhole() const;
-  /// The whole unit's bytes, which are as many and as they were sent, or none. IsWhole() only.
+  /// Returns the unit's bytes if their number and CRC are right, else nothing. Call it if
+  /// IsWhole().
   std::optional<std::vector<std::uint8_t>> Join() const;
   /// The unit's first packet, without its body; null before it came.
   const Unit* start() const { return start_ ? &*start_ : nullptr; }
@@ -31,7 +32,7 @@ class FragmentBuffer {
             std::map<int, std::vector<std::uint8_t>>::iterator to);
 
   std::map<int, std::vector<std::uint8_t>> fragments_;  // by distance from base_
-  std::optional<std::uint16_t> base_;                   // the first sequence number that came
+  std::optional<std::uint16_t> base_;                   // sequence number of the first arrival
   std::optional<int> first_;
   std::optional<int> last_;
   std::optional<Unit> start_;

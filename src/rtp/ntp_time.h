@@ -7,13 +7,13 @@ namespace lidar::rtp {
 
 constexpr std::uint64_t kNtpToUnixSeconds = 2'208'988'800;
 
-/// `unix_ns` since 1970; exact to the nanosecond after the way back.
+/// `unix_ns` is since 1970; the way back is exact to the nanosecond.
 constexpr std::uint64_t ToNtp(std::uint64_t unix_ns) {
   const std::uint64_t seconds = unix_ns / 1'000'000'000 + kNtpToUnixSeconds;
   const std::uint64_t fraction = ((unix_ns % 1'000'000'000) << 32) / 1'000'000'000;
   return seconds << 32 | fraction;
 }
-/// Seconds before 1970 are read as those of the next era, which starts in 2036.
+/// Times before 1970 are read as those of the next era, which starts in 2036.
 constexpr std::uint64_t FromNtp(std::uint64_t ntp) {
   std::uint64_t seconds = ntp >> 32;
   if (seconds < kNtpToUnixSeconds) seconds += std::uint64_t{1} << 32;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Cuts slices and stream configs into RTP payloads, or puts small slices together into one.
+// Cuts slices and stream configs into RTP payloads, or joins small slices into one payload.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -25,11 +25,11 @@ std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload
 /// Collects small slices into one aggregation packet.
 class Aggregator {
  public:
-  /// Returns false and adds nothing if the unit does not fit beside those already in, or is further
-  /// from the first than 16 bits of `rtp_ticks`, the running time in 90 kHz.
+  /// Returns false and adds nothing if the unit does not fit into the packet, or if its `rtp_ticks`
+  /// (running time in 90 kHz) exceed those of the first unit by more than 16 bits.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
-  /// The packet so far, whose RTP timestamp is the first unit's; a single unit packet if it has one
-  /// unit. Nothing when empty.
+  /// Returns the packet, with the RTP timestamp of its first unit; a single unit packet for one
+  /// unit, and nothing for none.
   std::optional<Packet> Take();
   bool empty() const { return units_ == 0; }
 
@@ -39,13 +39,13 @@ class Aggregator {
   std::uint64_t first_ticks_ = 0;
 };
 
-/// Numbers the scans that are sent, and says which slices of them are not, so that a receiver does
-/// not count these as lost.
+/// Numbers the scans that are sent, and announces unsent slices, so that a receiver does not count
+/// them as lost.
 class ScanCounter {
  public:
   explicit ScanCounter(std::uint32_t first) : number_(first) {}
-  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to be sent. The rest
-  /// of its slice id and its scan id are set already.
+  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to send. Its slice id
+  /// and scan id must be set otherwise.
   void Place(Unit* unit);
 
  private:

@@ -43,7 +43,7 @@ bool ReadSlice(bool starts, ByteReader* r, Unit* unit) {
   return unit->slice.index < unit->slice.count && unit->slice.count <= kMaxSlicesPerScan;
 }
 
-/// A single unit or a fragment that fills all of `bytes`.
+/// Parses a single unit or a fragment that fills `bytes`.
 std::optional<Unit> ParseUnit(ByteView bytes) {
   ByteReader r(bytes);
   const std::uint8_t first = r.U8();
@@ -127,7 +127,7 @@ std::uint32_t UnitCrc(const Unit& unit, ByteView bytes) {
 std::vector<Unit> ParsePayload(ByteView payload) {
   if (payload.empty()) return {};
   if (payload.data[0] >> 5 == static_cast<unsigned>(PacketType::kAggregation)) {
-    // The unit type of an aggregate stands in its units.
+    // The units of an aggregate have the unit type.
     return (payload.data[0] & 31) == 0 ? ParseAggregate(payload) : std::vector<Unit>{};
   }
   const auto unit = ParseUnit(payload);

@@ -21,7 +21,7 @@ enum class PacketType : std::uint8_t {
 enum class UnitType : std::uint8_t {
   kStreamConfig = 0,
   kSlice = 2,
-  kSliceAfterSkip = 3,  // a slice that counts skipped slices before it
+  kSliceAfterSkip = 3,  // a slice that lists skipped slices before it
 };
 
 constexpr bool IsSlice(UnitType t) {
@@ -35,7 +35,7 @@ constexpr bool EndsUnit(PacketType t) {
   return t == PacketType::kSingle || t == PacketType::kLastFragment;
 }
 
-/// Which slice a packet belongs to: on every packet of it.
+/// The slice of a packet, in each of its packets.
 struct SliceId {
   std::uint32_t scan_number = 0;  // counts the scans sent, without gaps; wraps
   std::uint16_t index = 0;
@@ -44,11 +44,11 @@ struct SliceId {
 
 /// Fields of the first packet of a slice.
 struct SliceInfo {
-  std::uint32_t scan_id = 0;  // the source's, which has gaps where scans were skipped
+  std::uint32_t scan_id = 0;  // the source's number, with gaps for skipped scans
   std::uint16_t first_column = 0;
   std::uint32_t duration_ns = kUnknownDuration;
   std::uint64_t capture_ntp = 0;  // 0: not known
-  // Bit n: the sender left out the slice n + 1 places before this one, across scans. For
+  // Bit n: the sender skipped the slice n + 1 places before this one, across scans. For
   // kSliceAfterSkip only.
   std::uint64_t skipped = 0;
 
@@ -64,7 +64,7 @@ struct Unit {
   SliceInfo info;                     // of slices, where StartsUnit(type)
   std::uint32_t length = 0;           // bytes of the whole unit, where StartsUnit(type)
   std::uint32_t crc = 0;              // UnitCrc of the whole unit, where StartsUnit(type)
-  std::uint16_t timestamp_ticks = 0;  // against the RTP timestamp; not 0 in aggregates only
+  std::uint16_t timestamp_ticks = 0;  // relative to the RTP timestamp; not 0 only in aggregates
   ByteView body;
 };
 
@@ -76,17 +76,17 @@ constexpr std::size_t kSkippedSize = 8;
 constexpr std::size_t kAggregateUnitSize = 4;  // ticks and size in front of each unit
 constexpr std::size_t kMaxUnitBytes = std::size_t{4} << 20;
 constexpr std::uint16_t kMaxSlicesPerScan = 4096;
-/// Smaller payloads would be nothing but headers.
+/// Smaller payloads would be headers only.
 constexpr std::size_t kMinPayload = 64;
 
 std::size_t HeaderSize(PacketType type, UnitType unit);
 /// Appends the header of `unit` (all but its body).
 void WriteHeader(const Unit& unit, std::vector<std::uint8_t>* out);
-/// CRC-32 of what the unit says about itself and of its bytes: a damaged time or index is as wrong
-/// as a damaged point.
+/// CRC-32 of the unit's description and its bytes: a damaged time or index is as wrong as a damaged
+/// point.
 std::uint32_t UnitCrc(const Unit& unit, ByteView bytes);
 
-/// The units of a packet; empty for anything malformed, in part or whole.
+/// Returns the units of a packet, or no units if any part is malformed.
 std::vector<Unit> ParsePayload(ByteView payload);
 
 }  // namespace lidar::rtp

@@ -9,9 +9,9 @@
 namespace lidar::rtp {
 namespace {
 
-// Slices of the config before may still be on their way when the next one comes.
+// Slices of the last config may still be under way when the next one comes.
 constexpr std::size_t kMaxConfigs = 4;
-constexpr Duration kTick{100'000};  // 9 of 90 kHz
+constexpr Duration kTick{100'000};  // 9 ticks of 90 kHz
 
 Duration FromTicks(std::uint16_t ticks) { return kTick * ticks / 9; }
 
@@ -43,7 +43,7 @@ void Reassembler::Push(const RtpPacket& packet, const std::vector<Unit>& units,
 }
 
 bool Reassembler::Admit(SlicePosition p, const RtpPacket& packet, const Unit& unit) {
-  if (!ledger_.started() && !StartsUnit(unit.type)) return true;  // perhaps overtook its start
+  if (!ledger_.started() && !StartsUnit(unit.type)) return true;  // may have overtaken its start
   const bool first = !ledger_.started();
   switch (ledger_.Admit(p, unit.slice.count, packet.arrival)) {
     case Admission::kOpen:
@@ -101,7 +101,7 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
     Emit(it, std::move(config), out);
 }
 
-/// `skipped` is as in SliceInfo. It is wrong about a slice that has a packet here.
+/// `skipped` is as in SliceInfo. It is ignored for a slice with a packet here.
 void Reassembler::BookSkipped(SlicePosition p, std::uint64_t skipped) {
   for (auto at = ledger_.Before(p); at && skipped != 0; at = ledger_.Before(*at), skipped >>= 1)
     if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Skip(*at);
@@ -126,7 +126,7 @@ void Reassembler::Emit(PendingMap::iterator it, std::shared_ptr<const StreamConf
 
 void Reassembler::PushConfig(const RtpPacket& packet, const Unit& unit,
                              std::vector<ReceivedSlice>* out) {
-  // Each repetition starts anew: fragments of two must not mix.
+  // Each repetition starts again: fragments of two must not mix.
   const auto start = config_fragments_.start_sequence();
   if (StartsUnit(unit.type) && start && *start != packet.sequence) config_fragments_ = {};
   config_fragments_.Add(packet.sequence, unit);
@@ -198,7 +198,7 @@ void Reassembler::DropBefore(SlicePosition limit) {
 }
 
 Reassembler::PendingMap::iterator Reassembler::Remove(PendingMap::iterator it) {
-  // A whole slice that goes without having been emitted never saw its config.
+  // A whole slice that leaves without output never got its config.
   if (!it->second.bytes.empty()) ledger_.Settle(it->first, SliceOutcome::kConfigMismatch);
   pending_bytes_ -= it->second.fragments.cost();
   return pending_.erase(it);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Puts the packets of one stream back together into slices; a lost packet costs its slice only.
+// Reassembles the packets of a stream to slices; a lost packet costs its slice only.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -21,7 +21,7 @@ struct RtpPacket {
   std::uint32_t ssrc = 0;
   std::uint16_t sequence = 0;
   Time arrival;             // of any clock that does not go back
-  std::optional<Time> pts;  // handed through to the slice
+  std::optional<Time> pts;  // passed on to the slice
   ByteView payload;
 };
 
@@ -32,17 +32,17 @@ struct ReceivedSlice {
   std::optional<Time> pts;  // of the packet of the slice that came first
   std::shared_ptr<const StreamConfig> config;
   std::vector<std::uint8_t> bytes;
-  bool discont = false;  // the first one, or something was lost since the one before
+  bool discont = false;  // the first slice, or a loss since the last one
 };
 
 struct PacketAccounts {
-  std::uint64_t invalid = 0;    // malformed, or contradicts packets before it
-  std::uint64_t duplicate = 0;  // of a packet or slice already there
-  std::uint64_t late = 0;       // of a slice already booked as lost, or from before the join
+  std::uint64_t invalid = 0;    // malformed, or contradicting earlier packets
+  std::uint64_t duplicate = 0;  // of a packet or slice that has arrived
+  std::uint64_t late = 0;       // of a slice counted as lost, or from before the join
   std::uint64_t config_damaged = 0;
 };
 
-/// Memory is bounded: kMaxPendingBytes and kMaxPendingSlices, oldest slices out first.
+/// Memory is bounded: kMaxPendingBytes and kMaxPendingSlices; the oldest slices leave first.
 class Reassembler {
  public:
   explicit Reassembler(Duration max_reorder_time) : ledger_(max_reorder_time) {}
@@ -50,26 +50,26 @@ class Reassembler {
   Reassembler(Duration max_reorder_time, const Reassembler& before)
       : ledger_(max_reorder_time), newest_scan_(before.newest_scan_) {}
 
-  /// Do the packet's scan numbers go on where this stream is? One damaged header must not move the
-  /// stream to another place.
+  /// Returns true if the packet's scan numbers continue this stream. One damaged header must not
+  /// move the stream to another place.
   bool Continues(const std::vector<Unit>& units) const;
   /// Takes the units of `packet` and appends the slices that are now whole to `out`, in the order
   /// of their completion: no slice waits for another.
   void Push(const RtpPacket& packet, const std::vector<Unit>& units,
             std::vector<ReceivedSlice>* out);
-  /// Has a slice begun here, behind all that `previous` saw, and by `max_scans` at most?
+  /// Returns true if a slice has begun here after all that `previous` saw, by `max_scans` at most.
   bool IsAfter(const Reassembler& previous, std::int64_t max_scans) const;
-  /// Did a slice come here whole and undamaged, whether or not its config is known?
+  /// Returns true if a slice was whole and undamaged, with or without its config.
   bool has_whole_slice() const { return has_whole_slice_; }
-  /// Has a slice begun here?
+  /// Returns true if a slice has begun.
   bool started() const { return ledger_.started(); }
-  /// Goes on where `previous` ended, which is the same stream before an outage. Books what the
-  /// outage took, takes over the configs, and appends the slices that had waited for them.
+  /// Continues after `previous`, the same stream before an outage. Counts what the outage took,
+  /// takes over the configs, and appends the slices that waited for them.
   void GoOn(const Reassembler& previous, std::vector<ReceivedSlice>* out);
-  /// The sender of `previous` started anew, with the same SSRC. Takes over only configs that came
-  /// after the last slice there: older ones may have the id of another one here.
+  /// The sender of `previous` restarted with the same SSRC. Takes over only configs that came after
+  /// the last slice there, as older ids may have a new meaning.
   void StartAnew(const Reassembler& previous, std::vector<ReceivedSlice>* out);
-  /// End of stream: what is not whole now is lost.
+  /// End of stream: incomplete slices are lost.
   void Finish();
 
   void set_max_reorder_time(Duration t) { ledger_.set_max_reorder_time(t); }
@@ -93,7 +93,7 @@ class Reassembler {
   struct KnownConfig {
     std::uint8_t id;
     std::shared_ptr<const StreamConfig> config;
-    bool after_slices = true;  // came after the last slice so far
+    bool after_slices = true;  // came after the last slice
   };
   using PendingMap = std::map<SlicePosition, Pending>;
 

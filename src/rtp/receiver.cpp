@@ -10,9 +10,9 @@ namespace lidar::rtp {
 namespace {
 
 constexpr int kMaxSequenceStep = 64;  // between two packets of a candidate
-// No sensor turns faster, so a stream that went on further than this in an outage is another one.
+// No sensor turns faster, so a stream that advanced further in an outage is another one.
 constexpr double kMostScansPerSecond = 1'000;
-constexpr std::int64_t kScansWithoutClock = 10'000;  // where arrival times stand still
+constexpr std::int64_t kScansWithoutClock = 10'000;  // limit while arrival times stand still
 
 void AddPackets(const Reassembler& r, ReceiverAccounts* sum) {
   sum->packets.invalid += r.packets().invalid;
@@ -51,7 +51,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
     return;
   }
   if (packet.ssrc != active_->ssrc) NoteRival(packet.ssrc);
-  // All that a sender in need put out comes at once: slices far apart.
+  // A whole slice is enough here, as a throttled sender sends slices that are far apart.
   if (packet.ssrc == active_->ssrc && candidate_ && !GoesOnWithCandidate(packet, units) &&
       candidate_->reassembler.has_whole_slice() && CandidateGoesOn(packet.arrival)) {
     Promote(packet.arrival, out);
@@ -94,7 +94,8 @@ bool Receiver::CandidateHasWon(Time now) const {
   return same || silent || candidate_->streak >= kProbationNoClock;
 }
 
-/// The candidate is the active stream after an outage, and not a sender that started anew.
+/// Returns true if the candidate is the active stream after an outage, and false for a restarted
+/// sender.
 bool Receiver::CandidateGoesOn(Time now) const {
   if (candidate_->ssrc != active_->ssrc) return false;
   const double most = Seconds(now - active_arrival_) * kMostScansPerSecond;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Follows one stream through outages and restarts of its sender, whatever else arrives.
+// Follows one stream through outages and restarts of its sender, among other packets.
 #pragma once
 #include <map>
 #include <optional>
@@ -19,25 +19,25 @@ struct ReceiverAccounts {
   std::uint64_t outages = 0;   // the same stream went on after a gap of several scans
 };
 
-/// The stream moves to another SSRC, or to other scan numbers, once several packets in sequence
-/// came from there and the old one fell silent, without loss. In silence, a whole and undamaged
-/// slice of the same stream further on moves it at once: a throttled sender may put out only such
-/// slices, far apart.
+/// Moves to another SSRC or to other scan numbers after several packets in sequence from there,
+/// once the old one is silent. No packet is lost thereby. During silence one whole slice of the
+/// same stream further on moves it at once: a throttled sender may send only such slices, far
+/// apart.
 class Receiver {
  public:
   explicit Receiver(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
 
   std::vector<ReceivedSlice> Push(const RtpPacket& packet);
-  /// End of stream: books what is not whole, and starts anew with the next packet.
+  /// End of stream: counts incomplete slices as lost, and restarts with the next packet.
   void Finish();
   void set_max_reorder_time(Duration t);
   ReceiverAccounts accounts() const;
   std::optional<std::uint32_t> ssrc() const;
-  /// Another SSRC, whose many packets came beside those of the stream and were dropped.
+  /// Another SSRC, of which many packets were dropped beside the stream.
   std::optional<std::uint32_t> rival() const { return rival_; }
 
   static constexpr unsigned kProbation = 3;          // packets
-  static constexpr unsigned kProbationNoClock = 64;  // packets, where arrival times stand still
+  static constexpr unsigned kProbationNoClock = 64;  // packets, while arrival times stand still
   static constexpr Duration kSilentStream = std::chrono::milliseconds(100);
   static constexpr unsigned kRivalPackets = 100;
   static constexpr std::size_t kMaxRivals = 16;

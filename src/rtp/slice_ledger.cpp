@@ -11,7 +11,7 @@ namespace {
 
 // Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
-// A slice may announce as many skipped slices before it, which may be scans of one slice.
+// Number of skipped slices that a slice may announce, possibly scans of one slice each.
 constexpr std::int64_t kKeptScans = 64;
 constexpr int kToldSlices = 64;
 
@@ -64,7 +64,7 @@ Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
 bool SliceLedger::Contradicts(std::int64_t number, std::uint32_t count) {
   const Scan* scan = Find(number);
   if (scan == nullptr || scan->slices.size() == count) return false;
-  // A guessed count may change as long as nothing was booked by it.
+  // A guessed count may change until a slice is counted by it.
   return scan->count_known || scan->open != scan->slices.size();
 }
 
@@ -78,7 +78,8 @@ void SliceLedger::Start(SlicePosition p, std::uint32_t count) {
   Scan& scan = scans_.front();
   scan.count_known = true;
   scan.joined_late = p.index > 0;
-  std::fill_n(scan.slices.begin(), p.index, SliceOutcome::kLost);  // before us, so in no account
+  // Slices before the join are not counted.
+  std::fill_n(scan.slices.begin(), p.index, SliceOutcome::kLost);
   scan.open = count - p.index;
 }
 
@@ -160,7 +161,7 @@ void SliceLedger::TakeBackLoss(Scan* scan, std::uint32_t index) {
   BookScan(scan);
 }
 
-/// Such slices are in no account, unless Continue() books them.
+/// Leaves such slices out of the accounts, unless Continue() counts them.
 void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
   if (!skipped_before_origin_.insert(p).second || !previous_end_) return;
   if (!(*previous_end_ < p) && lost_before_end_.erase(p) == 0) return;
@@ -168,7 +169,7 @@ void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
   ++accounts_.slices_skipped;
 }
 
-/// A source that starts its numbers anew has left out nothing.
+/// Returns 0 for a source that restarted its numbers.
 std::uint64_t SliceLedger::SkippedBetween(ScanId before, ScanId after) {
   const std::int64_t skipped =
       std::int64_t{SequenceDistance(after.id, before.id)} - (after.scan - before.scan);
@@ -224,7 +225,7 @@ void SliceLedger::CloseBefore(SlicePosition limit) {
 void SliceLedger::Finish() {
   if (!started()) return;
   CloseBefore({frontier_->scan, frontier_->index + 1});
-  // Unsent slices of the last scan are not lost, but the scan did end here.
+  // Unsent slices of the last scan are not lost, but the scan ended here.
   Scan* scan = Find(frontier_->scan);
   if (scan != nullptr && scan->open > 0) {
     BookScan(scan);

@@ -21,12 +21,12 @@ constexpr std::uint32_t kMaxFraction = 0x7FFF'FFFF;
 
 constexpr std::uint8_t kNamedCoder = 0xFF;  // in place of coder and geometry
 
-/// The media types of this set: coders with a number, then streams that are no slices.
+/// The media types of this project: coders with a number, then streams without slices.
 constexpr std::string_view kOwnTypes[] = {"application/x-draco",       "application/x-lidar-slice",
                                           "application/x-pointcloud2", "application/x-imu",
                                           "application/x-odometry",    "application/x-tf"};
 
-/// True for what decoders give.
+/// Returns true for fields that decoders produce.
 bool AreDecodable(const std::string& fields) {
   const auto parsed = PointFields::Parse(fields);
   return parsed && parsed->HasPackedXyz() && parsed->ArePacked();

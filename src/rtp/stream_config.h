@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a receiver needs before it can decode a slice: the stream-config unit.
+// The stream-config unit: what a receiver needs before it can decode a slice.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,13 +12,13 @@
 
 namespace lidar::rtp {
 
-/// Which coder made the slices; the numbers are part of the format. Coders without a number of
-/// their own are known by their caps.
+/// The coder of the slices; the numbers are part of the format. Other coders are identified by
+/// their caps.
 enum class Coder : std::uint8_t { kDraco = 0, kLidar = 1, kNamed = 15 };
 
 struct StreamConfig {
   Coder coder = Coder::kDraco;
-  ScalarCaps caps;  // of kNamed, which has nothing else
+  ScalarCaps caps;  // for kNamed, which uses nothing else
   Geometry geometry = Geometry::kXyz;
   std::uint32_t framerate_n = 0;  // scans/s; 0/1: not known
   std::uint32_t framerate_d = 1;
@@ -26,16 +26,16 @@ struct StreamConfig {
   std::vector<std::uint8_t> sensor_model;  // serialised and checked; may be empty
 
   std::vector<std::uint8_t> Serialise() const;
-  /// Returns nothing for another version or coder, a wrong length, or a sensor model that does not
-  /// parse; for fields that no decoder gives (decoders give x, y and z as F32 side by side, all
-  /// packed); and for caps that are not slices of a coder without a number.
+  /// Returns nothing for another version or coder, a wrong length, or an invalid sensor model; for
+  /// fields that no decoder produces (decoders produce packed fields with x, y and z as adjacent
+  /// F32); and for caps that are not slices of a coder without a number.
   static std::optional<StreamConfig> Parse(ByteView bytes);
   bool operator==(const StreamConfig& o) const;
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }
 };
 
-/// The id of a config that follows one with the id `previous`. It comes from the content, so that a
-/// restarted sender keeps its id, and differs from `previous`.
+/// Returns the id of a config after one with the id `previous`. It depends on the content, so that
+/// a restarted sender keeps its id, and differs from `previous`.
 std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,
                       std::optional<std::uint8_t> previous);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Says whether a stream of packets brings slices that are whole, without keeping them.
+// Detects whether a stream of packets has whole slices, without keeping them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace lidar::rtp {
 
-/// Follows one unit at a time, in order; a gap ends it, and the next unit has its chance. For
-/// packets of an SSRC whose sender is not accepted yet.
+/// Follows one unit at a time, in order; a gap ends it and the next unit starts. For packets of an
+/// SSRC whose sender is not accepted yet.
 class UnitCheck {
  public:
   /// Longer units are not followed.
@@ -22,7 +22,7 @@ class UnitCheck {
  private:
   bool PushUnit(std::uint16_t sequence, const Unit& unit);
 
-  std::optional<Unit> first_;  // its body is not to be read
+  std::optional<Unit> first_;  // without its body
   std::uint16_t next_sequence_ = 0;
   std::vector<std::uint8_t> bytes_;
 };

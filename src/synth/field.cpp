@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Open country: a lane between ditches, grass, hedges, trees, bales, a barn, and much sky.
+// Open country: a lane between ditches, grass, hedges, trees, bales, a barn, and open sky.
 #include <algorithm>
 
 #include "src/synth/props.h"
@@ -8,7 +8,7 @@
 namespace lidar::synth {
 namespace {
 
-/// The ground's height over |y|, the same all along x: road, verge, ditch, meadow, hillside.
+/// The ground's height by |y|, constant along x: road, verge, ditch, meadow, hillside.
 struct Knot {
   float y, z;
 };
@@ -99,7 +99,7 @@ void Field::AddPlants(const View& view, float side, std::vector<Shape>* shapes) 
 
 void Field::AddFence(const View& view, float side, std::vector<Shape>* shapes) const {
   View near = view;
-  near.radius = std::min(view.radius, 80.0F);  // thinner than a beam beyond
+  near.radius = std::min(view.radius, 80.0F);  // farther ones are thinner than a beam
   ForEachCell(near, 3, kPost + (side > 0 ? 64 : 0), [&](Random, std::int64_t index, float x) {
     if ((index / 40) % 2 != 0) return;
     const float z = HeightAt(kFence);
@@ -153,11 +153,11 @@ void Field::AddMoving(const View& view, const Instant& now, std::vector<Shape>* 
 }
 
 bool Field::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit) const {
-  // The ray runs, by symmetry, on the side it heads for; behind the middle it is mirrored.
+  // The ray is traced on the side it heads for; on the other side it is mirrored.
   const float toward = ray.direction.y >= 0 ? 1.0F : -1.0F;
   const float rate = std::max(std::abs(ray.direction.y), 1e-6F);
   for (int half = 0; half < 2; ++half) {
-    const float sign = half == 0 ? -toward : toward;  // the side it comes from, then the other
+    const float sign = half == 0 ? -toward : toward;  // first where it comes from
     for (std::size_t k = 1; k < kProfile.size(); ++k) {
       const std::size_t i = half == 0 ? kProfile.size() - k : k;
       const Knot& a = kProfile[i - 1];
@@ -167,7 +167,7 @@ bool Field::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit
       const float from = toward * ray.origin.y;
       if (last < from) continue;
       const float slope = (b.z - a.z) / (b.y - a.y);
-      // Height over the ground falls linearly within a segment.
+      // Height above the ground is linear within a segment.
       const float ground = a.z + slope * (sign * ray.origin.y - a.y);
       const float fall = slope * sign * ray.direction.y - ray.direction.z;
       if (fall <= 1e-6F) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors of other makers as tables: where their lasers look, and when they fire.
+// Sensors of other makers as tables of laser directions and firing times.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -12,8 +12,8 @@ struct DriverLayout {
   double timestamp_unit_s;  // of the field `timestamp`
 };
 
-/// Lasers fire one after the other in columns; columns follow each other at a constant rate. Angles
-/// are degrees, azimuths clockwise from x.
+/// Lasers fire one after the other in columns, at a constant column rate. Angles are degrees;
+/// azimuths are clockwise from x.
 struct Firing {
   std::string_view name;
   std::uint32_t lasers;
@@ -23,9 +23,9 @@ struct Firing {
   double bank_azimuth;         // from one bank to the next
   double laser_delay_ns;       // from one laser to the next
   std::uint32_t columns;       // of a scan
-  double first_azimuth, view;  // a sweep begins there, and spans that
-  double sweeps;               // of a scan; where it is no whole number, scans do not repeat
-  double swing, swings;        // elevations swing by +- so much, so often in a scan
+  double first_azimuth, view;  // where a sweep begins, and its span
+  double sweeps;               // per scan; scans differ if this is no whole number
+  double swing, swings;        // amplitude and number per scan of the elevations' swings
   double azimuth_unit;         // of the reported azimuths; 0: exact
   std::uint32_t range_unit_mm;
   double min_range_m, max_range_m, range_of_10_percent_m;

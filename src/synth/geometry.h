@@ -25,7 +25,7 @@ struct Rotation {
   }
 };
 
-/// A unit direction and what every test of a ray asks for again.
+/// A unit direction, and values that each intersection test needs.
 struct Ray {
   Vec3 origin;
   Vec3 direction;

@@ -6,7 +6,7 @@
 namespace lidar::synth {
 namespace {
 
-/// A part given in the frame of the thing, moved to where the thing stands.
+/// Adds a part, given in the thing's own frame, at the place of the thing.
 void AddPart(const Placement& at, Shape part, std::vector<Shape>* out) {
   const float c = std::cos(at.yaw);
   const float s = std::sin(at.yaw);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Randomness by place, not by order: the same world and the same noise however a scan is cut.
+// Random numbers by place instead of order: the same world and noise however a scan is cut.
 #pragma once
 #include <cstdint>
 
@@ -13,7 +13,7 @@ constexpr std::uint64_t Mix(std::uint64_t v) {
   return v ^ (v >> 31);
 }
 
-/// A stream of numbers that belongs to one thing of the world.
+/// The random numbers of one thing in the world.
 class Random {
  public:
   explicit constexpr Random(std::uint64_t key) : state_(Mix(key)) {}

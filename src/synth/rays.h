@@ -19,7 +19,7 @@ class Rays {
   Vec3 Direction(std::uint64_t scan, std::uint32_t beam, std::uint32_t column) const;
   /// Origin of a column's beams, in the sensor frame.
   Vec3 Origin(std::uint32_t column) const;
-  /// Ranges count from so much behind the origin of a beam.
+  /// Ranges are counted from this distance behind a beam's origin.
   float origin_m() const { return origin_m_; }
 
  private:

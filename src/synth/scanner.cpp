@@ -8,11 +8,11 @@ namespace lidar::synth {
 namespace {
 
 constexpr Duration kChunk = std::chrono::milliseconds(2);
-constexpr float kFastest = 25;  // of what moves in a scene [m/s]
+constexpr float kFastest = 25;  // greatest speed of things in a scene [m/s]
 constexpr std::size_t kGaussBits = 12;
-constexpr float kHalfDivergence = 0.0015F;  // of a beam [rad]
+constexpr float kHalfDivergence = 0.0015F;  // half divergence of a beam [rad]
 
-/// Normal deviates by quantile, to be drawn with uniform bits.
+/// Normal deviates by quantile, for uniform random bits.
 std::vector<float> MakeGaussTable() {
   constexpr double kTurn = 6.28318530717958647692;
   std::vector<float> table(std::size_t{1} << kGaussBits);
@@ -26,7 +26,7 @@ std::vector<float> MakeGaussTable() {
   return table;
 }
 
-/// A direction on the rim of the beam around `axis`; `turn` says where on it [rad].
+/// Returns a direction on the rim of the beam around `axis`, at the angle `turn` [rad].
 Vec3 OnTheRim(Vec3 axis, float turn) {
   const float horizontal = std::sqrt(axis.x * axis.x + axis.y * axis.y) + 1e-9F;
   const Vec3 left{-axis.y / horizontal, axis.x / horizontal, 0};
@@ -101,7 +101,7 @@ SectorIndex::Arc Scanner::ArcOf(std::uint64_t scan, std::uint32_t first, std::ui
       high = std::max(high, offset);
     }
   }
-  // The pose moves between the two columns by a little, too.
+  // The pose also moves slightly between the two columns.
   constexpr float kSlack = 0.02F;
   const float from = start + low - kSlack;
   return {from < 0 ? from + 4 : from, high - low + 2 * kSlack};
@@ -143,15 +143,15 @@ Hit Scanner::Trace(const Ray& ray, float age_s, Random* noise) const {
 
 Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
   constexpr float kDropout = 0.998F;
-  constexpr float kPhotons = 40;  // of an echo at the limit of detection
+  constexpr float kPhotons = 40;  // photons of an echo at the limit of detection
   const float range = hit.distance + rays_.origin_m();
-  // Reference: a target of 10 % at the range where nine pulses in ten come back.
+  // Reference: a target of 10 % at the range where nine of ten pulses return.
   const float signal = hit.reflectivity * hit.cosine * signal_scale_ / (range * range);
   const std::uint64_t bits = noise->Bits();
   const float chance = kDropout * signal * signal / (signal * signal + 0.11F);
   const float drawn = static_cast<float>(bits >> 40) * 0x1p-24F;
   if (hit.distance >= reach_m_ || !(drawn < chance)) return {};
-  // Weak echoes are timed less well: three times the noise at the limit of detection.
+  // Weak echoes are timed worse: at the limit of detection the noise is three times as large.
   const float sigma = static_cast<float>(config_.noise_m) * (1 + 2 / (1 + signal * signal));
   const float deviate = gauss_[bits & ((1U << kGaussBits) - 1)];
   const float measured = range + sigma * deviate;
@@ -164,7 +164,7 @@ Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
           static_cast<std::uint16_t>(std::min(65535.0F, kPhotons * signal * speckle + 0.5F))};
 }
 
-/// A beam has a width: at an edge, or in leaves, a part of it goes on to something farther away. A
+/// A beam has a width: at an edge, or in leaves, part of it continues to a farther surface. A
 /// sensor separates two surfaces only if their echoes do not overlap.
 Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const Hit& center,
                                      Random* noise) const {
@@ -186,8 +186,7 @@ Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const
   return a_leads ? Echoes{a, b} : Echoes{b, a};
 }
 
-/// The hits of a column's beams. It draws from the noise of the column as the column's own cast
-/// does.
+/// Returns the hits of a column's beams. Draws the same noise as the cast of that column.
 std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   BeginChunk(scan, index / chunk_columns_);
   const Column column = MakeColumn(scan, index);
@@ -200,9 +199,9 @@ std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   return hits;
 }
 
-/// If an edge lies within the beam, its two echoes run into one: the range lies between.
+/// Mixes the two echoes at an edge within the beam: the range lies between.
 Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
-  constexpr float kPulse = 1.0F;  // distance of separate echoes [m]
+  constexpr float kPulse = 1.0F;  // least distance of separate echoes [m]
   constexpr float kSurface = 0.15F;
   const float apart = std::abs(beside.distance - hit.distance);
   if (!(apart > kSurface && apart < kPulse)) return hit;
@@ -224,7 +223,7 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
   returns->range2_mm.resize(seconds);
   returns->reflectivity2.resize(seconds);
   returns->signal2.resize(seconds);
-  // The returns must not depend on where a window begins.
+  // Returns must not depend on where a window begins.
   std::vector<Hit> beside;
   if (config_.mixed_pixels && window.first > 0) beside = TraceColumn(scan, window.first - 1);
   std::uint32_t chunk = UINT32_MAX;

@@ -21,7 +21,7 @@ struct ScannerConfig {
   double noise_m = 0.01;  // standard deviation of a range on a white wall nearby
   std::uint64_t seed = 0;
   bool second_returns = false;  // two echoes where a beam meets two things; costs a second ray
-  bool mixed_pixels = false;    // ranges between two surfaces, where a beam meets an edge
+  bool mixed_pixels = false;    // ranges between two surfaces, for beams that meet an edge
 };
 
 /// The measured returns, beam by beam: [beam * columns + column]. Range 0: no return.
@@ -35,16 +35,15 @@ struct Returns {
   std::vector<std::uint16_t> signal2;
 };
 
-/// Every ray leaves at its own time from where the sensor is then. The returns depend on the
-/// configuration, the scan and the pixel only, never on how scans are cut into calls. One thread at
-/// a time.
+/// Each ray leaves at its own time from the sensor's place at that time. Returns depend on
+/// configuration, scan and pixel only, not on how calls cut a scan. One thread at a time.
 class Scanner {
  public:
   explicit Scanner(const ScannerConfig& config);
 
   /// Casts the columns of `window` (within a turn) of turn number `scan`.
   void Cast(std::uint64_t scan, ColumnWindow window, Returns* returns);
-  /// When column `column` of that turn is sampled, after the start.
+  /// Returns when column `column` of that turn is sampled, since the start.
   Duration ColumnTime(std::uint64_t scan, std::uint32_t column) const;
   const Rays& rays() const { return rays_; }
   const Trajectory& trajectory() const { return trajectory_; }
@@ -85,11 +84,11 @@ class Scanner {
   std::unique_ptr<Scene> scene_;
   Trajectory trajectory_;
 
-  // The piece of the world around the sensor, and the shapes in it: first those that stand.
+  // The part of the world around the sensor, and its shapes: fixed ones first.
   View view_;
   std::size_t static_shapes_ = 0;
   std::vector<Shape> shapes_;
-  // A chunk is a stretch of the sweep in which the world's order by distance holds.
+  // A chunk is a part of the sweep in which the world's order by distance holds.
   std::uint32_t chunk_columns_;
   Duration chunk_time_{};
   SectorIndex index_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A world without end: what stands near a place is made from the seed and the place.
+// An endless world: things near a place are made from the seed and the place.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace lidar::synth {
 
 enum class SceneKind { kStreet, kTunnel, kField, kTown };
 
-/// A piece of the world. Its coordinates are floats relative to the anchor, (anchor_x, anchor_y,
-/// 0), so that a long drive does not eat their precision. Both are multiples of kAnchorStep.
+/// A part of the world. Coordinates are floats relative to the anchor, (anchor_x, anchor_y, 0), so
+/// that they stay precise on a long drive. Both are multiples of kAnchorStep.
 struct View {
   double anchor_x = 0;
   double anchor_y = 0;  // 0 in the worlds along x
-  float radius = 100;   // how far from the anchor things matter
+  float radius = 100;   // distance from the anchor that matters
 };
 /// Textures of the ground repeat by divisors of this.
 constexpr double kAnchorStep = 18;
@@ -32,9 +32,9 @@ class Scene {
   virtual TrajectorySettings Lane(double speed_mps) const = 0;
   /// Sets the view of the next calls of IntersectGround.
   virtual void MoveTo(const View&) {}
-  /// Appends what stands still.
+  /// Appends fixed shapes.
   virtual void AddStatic(const View& view, std::vector<Shape>* shapes) const = 0;
-  /// Appends what moves, where it is at `time_s`, when the sensor's car is at `ego_x` with `speed`.
+  /// Appends moving shapes at `time_s`, with the sensor's car at `ego_x` and its `speed`.
   struct Instant {
     double time_s = 0;
     double ego_x = 0;
@@ -43,9 +43,10 @@ class Scene {
   };
   virtual void AddMoving(const View& view, const Instant& now,
                          std::vector<Shape>* shapes) const = 0;
-  /// If the ground is dear, rays that rather meet something else ask for it last.
+  /// Returns true for rays that test the ground first. A costly ground is tested last by rays that
+  /// more likely meet something else.
   virtual bool GroundFirst(const Ray&) const { return true; }
-  /// Ground and whatever else never ends; true if it is met nearer than hit->distance.
+  /// Intersects ground and other endless things. Returns true if one is nearer than hit->distance.
   virtual bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const = 0;
 
  protected:

@@ -7,19 +7,19 @@
 namespace lidar::synth {
 namespace {
 
-/// The rectangle a shape stands on, seen from the sensor.
+/// The rectangle below a shape, relative to the sensor.
 struct Footprint {
   float nearest = 0;
   float farthest = 0;
   float angle = 0;  // pseudo-angle where it begins
-  float width = 4;  // and its extent; 4 if the sensor stands on it
+  float width = 4;  // angle that it spans; 4 if the sensor stands on it
 
   Footprint(const Shape& s, Vec3 origin, float margin) {
     const float hx = s.half.x + margin;
     const float hy = s.half.y + margin;
     const float cx = s.center.x - origin.x;
     const float cy = s.center.y - origin.y;
-    // The sensor in the frame of the shape: distance to the rectangle.
+    // Distance to the rectangle, from the sensor's place in the shape's frame.
     const float lx = std::abs(s.cos_yaw * cx + s.sin_yaw * cy);
     const float ly = std::abs(s.cos_yaw * cy - s.sin_yaw * cx);
     const float dx = std::max(0.0F, lx - hx);

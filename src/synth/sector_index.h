@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which shapes can a ray meet? Those in its sector of azimuth, nearest first.
+// The shapes that a ray can meet: those in its sector of azimuth, nearest first.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,12 +14,12 @@ inline float PseudoAngle(float x, float y) {
   return x < 0 ? 2 - p : (p < 0 ? 4 + p : p);
 }
 
-/// Made for a short stretch of a sweep: the sensor stays within `margin` of one place.
+/// Valid for a short part of a sweep: the sensor stays within `margin` of one place.
 class SectorIndex {
  public:
   struct Entry {
     float nearest;    // horizontal distance of its nearest corner [m]
-    float min_slope;  // of rays that can meet it
+    float min_slope;  // least slope of rays that can meet it
     float max_slope;
     std::uint32_t shape;
   };

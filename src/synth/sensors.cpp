@@ -13,7 +13,7 @@ namespace {
 struct Family {
   std::string_view name;
   double half_view_deg;  // of the outermost beams
-  double bulge;          // how much wider the beams stand at the edge than in the middle
+  double bulge;          // how much farther apart beams are at the edge than in the middle
   double stagger_deg;    // azimuth of the outer of the four emitter columns
   double origin_m;       // lidar_origin_to_beam_origin
   double min_range_m;
@@ -73,7 +73,7 @@ std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns) {
     if (parsed.ptr == digits.data() + digits.size() &&
         (beams == 32 || beams == 64 || beams == 128)) {
       Sensor sensor = Build(family, beams, columns);
-      // As it reads in the caps, so that both ends turn ranges into the same points.
+      // As read from caps, so that both ends convert ranges to the same points.
       const auto bytes = sensor.model.Serialise();
       sensor.model = *SensorModel::Parse({bytes.data(), bytes.size()});
       return sensor;

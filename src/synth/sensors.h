@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors after data sheets, manuals and captures.
+// Sensors modelled on data sheets, manuals and captures.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace lidar::synth {
 
-/// A sensor as built: its beams, and how far it sees.
+/// A sensor unit: its beams, and its reach.
 struct Sensor {
-  SensorModel model;               // of one with a firing table no more than the size of its scans
+  SensorModel model;               // with a firing table only the size of its scans
   const Firing* firing = nullptr;  // null: an Ouster, which the model describes
   double min_range_m = 0;
   double max_range_m = 0;
   double range_of_10_percent_m =
-      0;  // where a target of 10 % reflectivity returns nine times in ten
+      0;  // distance at which a target of 10 % reflectivity returns nine times in ten
 };
 
 /// "os0-32" ... "os2-128", with 512, 1024, 2048 or 4096 columns; nothing for other names. Every

@@ -8,13 +8,13 @@ namespace {
 
 constexpr float kNearest = 0.05F;  // nearer points are inside the housing
 
-/// The stretch of a ray inside a convex body, and the face it enters by.
+/// The part of a ray inside a convex body, and the face of entry.
 struct Span {
   float in = kNearest;
   float out = 1e9F;
   Vec3 normal;
 
-  /// Keeps what lies below the plane `normal` . p = `offset`. False once nothing is left.
+  /// Keeps the part below the plane `normal` . p = `offset`. Returns false if nothing is left.
   bool Clip(Vec3 face, float offset, const Ray& ray) {
     const float height = offset - Dot(face, ray.origin);
     const float rate = Dot(face, ray.direction);
@@ -44,7 +44,7 @@ Ray ToLocal(const Shape& s, const Ray& ray) {
   return MakeRay(ToLocal(s, origin), ToLocal(s, ray.direction));
 }
 
-/// The slab test: where the ray enters a box centred on the origin.
+/// Slab test: finds where the ray enters a box centred on the origin.
 bool EnterBox(Vec3 half, const Ray& r, Span* span) {
   const float tx = (r.inverse.x > 0 ? -half.x - r.origin.x : half.x - r.origin.x) * r.inverse.x;
   const float ty = (r.inverse.y > 0 ? -half.y - r.origin.y : half.y - r.origin.y) * r.inverse.y;
@@ -118,8 +118,8 @@ bool EnterEllipsoid(Vec3 half, const Ray& r, Span* span, float* cosine) {
   return span->in > kNearest;
 }
 
-/// Windows in rows of storeys, deep in the wall. Behind some hangs a curtain; through the others
-/// the light is gone, but for the pane's own echo near its normal.
+/// Windows in rows of storeys, deep in the wall. Some have curtains; others absorb the light,
+/// except for the pane's own echo near its normal.
 void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& span, Hit* hit) {
   constexpr float kStorey = 3.2F;
   constexpr float kBay = 2.8F;
@@ -134,7 +134,7 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
   if (u < 0.25F || u > 0.75F || v < 0.28F || v > 0.78F) return;
   hit->distance +=
       std::min(kRecess * std::abs(long_side ? local.inverse.y : local.inverse.x), 2.0F);
-  // The paint differs from house to house, wherever the anchor is.
+  // The paint differs by house, for any anchor.
   const auto house = static_cast<std::uint64_t>(s.reflectivity * 1e6F);
   const auto window = static_cast<std::uint64_t>(storey) * 64 + static_cast<std::uint64_t>(bay);
   const bool curtain = Random(house * 4096 + window).Chance(0.55F);
@@ -143,7 +143,7 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
 }
 
 bool EnterFoliage(const Shape& s, Random* noise, Span* span) {
-  // The way through leaves until one is met is exponential; half.x sets the mean.
+  // The way through leaves to a hit is exponential; half.x sets the mean.
   const float mean = 0.55F * s.half.x;
   const float depth = -mean * std::log(1.0F - noise->Uniform());
   span->in += depth;
@@ -188,7 +188,7 @@ bool Intersect(const Shape& shape, const Ray& ray, Random* noise, Hit* hit) {
   }
   *hit = {span.in, shape.reflectivity, cosine};
   if (shape.surface == Surface::kFacade) TextureFacade(shape, local, noise, span, hit);
-  // A screen throws the light away except near its normal.
+  // A screen reflects the light away except near its normal.
   if (shape.surface == Surface::kGlass && cosine < 0.9F) hit->reflectivity *= 0.08F;
   return true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The objects of the synthetic world, and where a ray meets them.
+// The objects of the synthetic world, and intersections of rays with them.
 #pragma once
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace lidar::synth {
 
 enum class ShapeKind : std::uint8_t {
   kBox,        // turned about z
-  kCabin,      // a box whose front and back lean in: the glass house of a car
+  kCabin,      // a box with leaning front and back: the windows of a car
   kColumn,     // vertical cylinder
   kBar,        // cylinder along the x axis of the shape
   kEllipsoid,  // solid
@@ -38,7 +38,7 @@ struct Hit {
 };
 
 /// Returns true if the ray meets the shape nearer than hit->distance, which it then updates.
-/// `noise` belongs to this ray: a leaf is met or missed by it.
+/// `noise` belongs to this ray: it decides whether the ray meets a leaf.
 bool Intersect(const Shape& shape, const Ray& ray, Random* noise, Hit* hit);
 
 }  // namespace lidar::synth

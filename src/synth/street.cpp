@@ -107,7 +107,7 @@ void Street::AddFurniture(const View& view, float side, std::vector<Shape>* shap
 }
 
 void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // A car ahead and another behind, whose distance breathes.
+  // A car ahead and one behind, at varying distances.
   struct Follower {
     double gap, breath, period_s;
   };
@@ -126,7 +126,7 @@ void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>
 }
 
 void Street::AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // The column stands still in its own frame, so its cells do.
+  // A column does not move in its own frame, so neither do its cells.
   View column = view;
   const double shift = kOncomingSpeed * now.time_s;
   column.anchor_x = view.anchor_x + shift;
@@ -172,7 +172,8 @@ float Street::RoadReflectivity(double along, float y) {
 
 bool Street::IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const {
   if (ray.slope > -1e-4F) return false;
-  const float top = (kKerb - ray.origin.z) * ray.inverse.z;  // where the pavement's level is met
+  // The ray meets the pavement's level here.
+  const float top = (kKerb - ray.origin.z) * ray.inverse.z;
   const Vec3 at_top = ray.origin + top * ray.direction;
   const float grain = 0.9F + 0.2F * noise->Uniform();
   const bool beside = std::abs(at_top.y) > kHalfRoad;

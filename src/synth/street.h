@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A straight street along x, piece by piece: towns are made of bent ones.
+// A straight street along x, piece by piece; towns bend it.
 #pragma once
 #include "src/synth/scene.h"
 
 namespace lidar::synth {
 
-/// The length of a house and its plot; every seventh is a crossing instead.
+/// The length of a house with its plot; every seventh one is a crossing.
 constexpr double kBlock = kAnchorStep;
 constexpr std::int64_t kBlocksToCrossing = 7;
 constexpr double kCrossingSpacing = kBlock * kBlocksToCrossing;
-constexpr double kFirstCrossing = 3.5 * kBlock;  // its middle
+constexpr double kFirstCrossing = 3.5 * kBlock;  // its middle, in blocks
 constexpr float kStreetHalfRoad = 5.8F;          // two lanes and two rows of parked cars
 constexpr float kStreetKerb = 0.14F;
 constexpr float kStreetLane = 1.75F;  // middle of a lane
@@ -32,7 +32,7 @@ class Street final : public Scene {
   void AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
   void AddWalkers(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
 
-  /// Asphalt and what is painted on it, `along` the street and `lateral` of its middle.
+  /// Reflectivity of asphalt and road paint, `along` the street and `lateral` from its middle.
   static float RoadReflectivity(double along, float lateral);
 
  private:

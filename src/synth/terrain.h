@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The lie of the land under a town: hills, and a plan of straight streets that is bent into curves.
+// The ground of a town: hills, and a plan of straight streets that is bent into curves.
 #pragma once
 #include <cstdint>
 
 namespace lidar::synth {
 
-/// The rest of a phase after whole periods; quicker than floor().
+/// Returns the remainder of a phase after whole periods; faster than floor().
 template <class T>
 T Fraction(T phase) {
   const T rest = phase - static_cast<T>(static_cast<std::int32_t>(phase));
   return rest < 0 ? rest + 1 : rest;
 }
 
-/// A wave of parabolas with period 1 and amplitude 1: as smooth as roads are, and its curvature is
+/// A wave of parabolas with period 1 and amplitude 1, as smooth as roads are. Its curvature is
 /// known.
 template <class T>
 T Arch(T phase) {
@@ -35,14 +35,14 @@ struct Bend {
   }
 };
 
-// Lengths without a common measure with the distance of crossings: no two blocks are the same.
-// Grades are at most 10 % along each axis, and curves have radii from 350 m on.
+// The lengths have no common multiple with the distance of crossings, so all blocks differ. Grades
+// are at most 10 % along each axis, and curves have radii of at least 350 m.
 constexpr Bend kHillX{5, 421};
 constexpr Bend kHillY{4, 347};
-constexpr Bend kBendU{20, 521};  // of u, along y
-constexpr Bend kBendV{17, 463};  // of v, along x
+constexpr Bend kBendU{20, 521};  // shift of u along y
+constexpr Bend kBendV{17, 463};  // shift of v along x
 
-/// Two coordinates: x, y of the world, and u, v of the plan, in which streets are straight.
+/// Converts between x, y of the world and u, v of the plan, in which streets are straight.
 class Terrain {
  public:
   struct Point {
@@ -51,7 +51,7 @@ class Terrain {
   };
   static Point ToPlan(Point world);
   static Point FromPlan(Point plan);
-  /// The direction, not of unit length, in which a street along u, or along v, passes `world`.
+  /// Returns the direction, not of unit length, of a street along u, or along v, at `world`.
   static Point DirectionAt(Point world, bool along_u);
 
   struct Ground {
@@ -61,7 +61,7 @@ class Terrain {
   };
   static Ground At(Point world);
 
-  /// Around an anchor, where floats do: coordinates are relative to it.
+  /// The terrain around an anchor, relative to it, where floats are precise enough.
   class Local {
    public:
     Local(double anchor_x, double anchor_y)
@@ -78,7 +78,7 @@ class Terrain {
     /// Place of that point on the plan, relative to the anchor's own coordinates.
     float PlanU(float x, float y) const { return x - bend_y_.At(y); }
     float PlanV(float x, float y) const { return y - bend_x_.At(x); }
-    static constexpr float curvature() {  // of the ground, at most [1/m]
+    static constexpr float curvature() {  // greatest curvature of the ground [1/m]
       return kArchCurvature *
              static_cast<float>(kHillY.amplitude_m / (kHillY.length_m * kHillY.length_m));
     }

@@ -10,14 +10,14 @@
 namespace lidar::synth {
 namespace {
 
-/// Streets whose middle is farther from the sensor have houses only: the rest hides behind these.
+/// Only houses are drawn in streets whose middle is farther from the sensor: they hide the rest.
 constexpr double kInSight = 75;
 constexpr float kCornerFree = 10.5F;  // around the middle of a crossing nothing stands [m]
-constexpr float kCornerHouse = 27;    // the houses of the other street reach that far
-constexpr float kCellar = 1;          // of houses, below the ground beside a hillside [m]
+constexpr float kCornerHouse = 27;    // reach of the other street's houses [m]
+constexpr float kCellar = 1;          // depth of houses below the ground at a hillside [m]
 constexpr float kTrafficReach = 90;   // no people and cars beyond [m]
-constexpr float kSteep = -0.15F;      // rays that fall faster meet the road soon
-constexpr float kTooNear = 9;         // of traffic to the sensor: it takes another way [m]
+constexpr float kSteep = -0.15F;      // slope of rays that soon meet the road
+constexpr float kTooNear = 9;         // least distance of traffic to the sensor [m]
 
 /// A street of the plan: along u at one v, or along v at one u.
 struct Line {
@@ -53,7 +53,7 @@ struct Surroundings {
   }
 
   Terrain::Local land;
-  float u, v;  // how far the anchor is from the middle of a block, as parts of the spacing
+  float u, v;  // distance from the anchor to the middle of a block, in blocks
 };
 
 class Town final : public Scene {
@@ -83,7 +83,7 @@ class Town final : public Scene {
   Surroundings around_{View{}};
 };
 
-/// Moves shapes that stand beside a straight street along x to where the town has them.
+/// Moves shapes beside a straight street along x to their places in the town.
 void BendInto(const View& view, const Line& line, double straight_anchor, std::size_t first,
               std::vector<Shape>* shapes) {
   for (std::size_t i = first; i < shapes->size(); ++i) {
@@ -109,12 +109,12 @@ void BendInto(const View& view, const Line& line, double straight_anchor, std::s
   }
 }
 
-/// The distance of `along` from the middle of the nearest crossing.
+/// Returns the distance of `along` from the middle of the nearest crossing.
 float FromCrossing(double along) {
   return static_cast<float>(std::abs(std::remainder(along - kFirstCrossing, kCrossingSpacing)));
 }
 
-/// Removes shapes that stand in the other street or in its houses.
+/// Removes shapes that stand in the other street or its houses.
 void ClearCrossings(const Line& line, double straight_anchor, std::size_t first,
                     std::vector<Shape>* shapes) {
   const auto in_the_way = [&](const Shape& s) {
@@ -202,7 +202,8 @@ void Town::AddMoving(const View& view, const Instant& now, std::vector<Shape>* s
       shapes->end());
 }
 
-/// The distance at which the ray meets the hills, `above` them; nothing if it does not.
+/// Returns the distance at which the ray meets the hills, raised by `above`; nothing if it does
+/// not.
 float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float reach) {
   constexpr int kMostSteps = 20;
   constexpr float kClose = 0.001F;
@@ -216,7 +217,7 @@ float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float r
     if (clearance < kClose) return std::max(t, 0.0F);
     const float fall =
         ground.slope_x * ray.direction.x + ground.slope_y * ray.direction.y - ray.direction.z;
-    // However the ground bends, it is not met sooner than that.
+    // For any curvature of the ground, the ray does not meet it sooner.
     t += 2 * clearance / (fall + std::sqrt(fall * fall + 2 * curvature * clearance));
   }
   return reach;

@@ -11,7 +11,7 @@
 namespace lidar::synth {
 namespace {
 
-/// The crossings where the route turns, counted in blocks. It crosses itself at (1, 0).
+/// The crossings at which the route turns, counted in blocks. The route crosses itself at (1, 0).
 struct Corner {
   int u, v;
 };
@@ -19,7 +19,7 @@ constexpr std::array<Corner, 8> kCorners = {
     {{0, 0}, {3, 0}, {3, 2}, {1, 2}, {1, -2}, {-1, -2}, {-1, 0}, {0, 0}}};
 constexpr double kCornerRadius = 10;  // of the middle of the street [m]
 constexpr double kStep = 0.5;         // between points [m]
-constexpr double kSideways = 2.5;     // acceleration that a driver stands [m/s^2]
+constexpr double kSideways = 2.5;     // greatest sideways acceleration [m/s^2]
 constexpr double kForward = 2;
 constexpr double kQuarter = 1.57079632679489661923;
 
@@ -44,7 +44,7 @@ std::vector<Leg> MakeLegs() {
     const int du = Sign(to.u - from.u);
     const int dv = Sign(to.v - from.v);
     const int turn = du * Sign(next.v - to.v) - dv * Sign(next.u - to.u);
-    // The leg before ended its turn this far behind the corner; the first one began straight.
+    // The last leg ended its turn this far behind the corner; the first leg began straight.
     const Corner& before = kCorners[i > 0 ? i - 1 : kLegs - 1];
     const bool turned = Sign(from.u - before.u) != du || Sign(from.v - before.v) != dv;
     const double skip = turned ? kCornerRadius : 0;
@@ -94,7 +94,7 @@ double TownRoute::LengthOf(std::size_t i) const {
   return std::hypot(PointAt(i + 1).x - PointAt(i).x, PointAt(i + 1).y - PointAt(i).y);
 }
 
-/// The speed at each point: no faster than the curve allows, nor than the brakes before it.
+/// Sets the speed at each point, limited by the curve and by braking for later curves.
 void TownRoute::MakeTimes(double speed_mps) {
   const std::size_t n = points_.size();
   distances_.assign(1, 0);
@@ -110,7 +110,7 @@ void TownRoute::MakeTimes(double speed_mps) {
     speeds_[i] = std::min(speed_mps, std::sqrt(kSideways / std::max(curvature, 1e-6)));
   }
   length_m_ = distances_.back();
-  // Twice around, so that the end of the lap meets its beginning.
+  // Two laps, so that the end of the lap meets its beginning.
   const auto limit = [&](std::size_t at, std::size_t from) {
     const double reach = 2 * kForward * LengthOf(std::min(at, from) % n);
     speeds_[at % n] =
@@ -136,7 +136,7 @@ Route::Place TownRoute::At(double seconds) const {
   const double gain = whole > 0 ? (speeds_[i + 1] - speeds_[i]) / whole : 0;
   const double driven = lap_s() > 0 ? speeds_[i] * elapsed + gain * elapsed * elapsed / 2 : 0;
   const double f = driven / LengthOf(i);
-  // Catmull and Rom's curve through the points.
+  // Catmull-Rom curve through the points.
   const std::size_t n = points_.size();
   const auto curve = [&](double Point::*c) {
     const double a = PointAt(i + n - 1).*c, b = PointAt(i).*c, d = PointAt(i + 1).*c,

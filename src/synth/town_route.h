@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A round trip through the streets of a town, over and over.
+// An endless round trip through the streets of a town.
 #pragma once
 #include <vector>
 
@@ -23,9 +23,9 @@ class TownRoute final : public Route {
   void MakePoints();
   void MakeTimes(double speed_mps);
   const Point& PointAt(std::size_t i) const { return points_[i % points_.size()]; }
-  double LengthOf(std::size_t i) const;  // from point i to the next
+  double LengthOf(std::size_t i) const;  // Length from point i to the next.
 
-  std::vector<Point> points_;  // closed: after the last comes the first
+  std::vector<Point> points_;  // closed: the first follows the last
   double length_m_ = 0;
   std::vector<double> distances_;  // at each point, and at the end of the lap
   std::vector<double> speeds_;

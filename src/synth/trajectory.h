@@ -21,7 +21,7 @@ class Route {
     double bank = 0;      // rise to the left
     double distance = 0;  // driven since the start [m]
   };
-  /// Place of a car with the wanted speed `speed_mps`, slower in corners.
+  /// Returns the place of a car with the wanted speed `speed_mps`, slower in corners.
   virtual Place At(double seconds) const = 0;
 };
 
@@ -34,8 +34,7 @@ struct TrajectorySettings {
   std::shared_ptr<const Route> route;  // of the lane's centre; empty: along x at constant speed
 };
 
-/// Sway and bounce are functions of the distance driven, so a sensor that stands still does not
-/// shake.
+/// Sway and bounce depend on the distance driven, so a standing sensor does not shake.
 class Trajectory {
  public:
   explicit Trajectory(const TrajectorySettings& settings) : settings_(settings) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A road tunnel: the same shell for kilometres, which is where odometry loses its way.
+// A road tunnel: the same walls for kilometres, in which odometry gets lost.
 #include "src/synth/props.h"
 #include "src/synth/scene_makers.h"
 
@@ -7,7 +7,7 @@ namespace lidar::synth {
 namespace {
 
 constexpr float kRadius = 6.0F;
-constexpr float kAxisHeight = 1.4F;  // of the circle that the shell is part of
+constexpr float kAxisHeight = 1.4F;  // of the circle of the shell
 constexpr float kLane = 1.85F;
 constexpr float kHalfRoad = 4.2F;
 constexpr float kKerb = 0.25F;
@@ -89,7 +89,7 @@ void Tunnel::AddMoving(const View& view, const Instant& now, std::vector<Shape>*
 bool Tunnel::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit) const {
   const Vec3 o{ray.origin.x, ray.origin.y, ray.origin.z - kAxisHeight};
   const Vec3 d = ray.direction;
-  // The shell, met from inside.
+  // The shell is met from inside.
   const float a = d.y * d.y + d.z * d.z + 1e-12F;
   const float b = o.y * d.y + o.z * d.z;
   const float root = std::sqrt(b * b - a * (o.y * o.y + o.z * o.z - kRadius * kRadius));

@@ -6,7 +6,7 @@
 namespace lidar::viewer {
 namespace {
 
-/// Small slices cost more than their bytes.
+/// Overhead of a slice in memory.
 constexpr std::size_t kOverhead = 256;
 
 std::size_t CostOf(const Slice& slice) {
@@ -35,7 +35,7 @@ void Backlog::Push(SharedSlice slice) {
   }
   bytes_ += CostOf(*slice);
   slices_.push_back(std::move(slice));
-  // A slice without references to it was only for display.
+  // A slice to which no other refers was only for display.
   for (auto it = slices_.begin(); it != slices_.end();)
     it = (*it)->blocks.empty() && !IsRecent(**it) ? Erase(it) : std::next(it);
   while (bytes_ > most_bytes_) Erase(slices_.begin());
@@ -59,7 +59,7 @@ void Backlog::EraseBefore(const Slice& key) {
     it = (*it)->id.index == key.id.index ? Erase(it) : std::next(it);
 }
 
-/// The slice that `slice` refers to, if it waits here.
+/// Returns the slice to which `slice` refers, if it waits here.
 const Slice* Backlog::ReferenceOf(const Slice& slice) const {
   for (const codec::BlockName& block : slice.blocks) {
     if (!block.reference) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Undecoded slices: what a decoder that begins late needs to follow the stream.
+// Undecoded slices that a late decoder needs to follow the stream.
 #pragma once
 #include <cstddef>
 #include <list>
@@ -8,22 +8,22 @@
 
 namespace lidar::viewer {
 
-/// An encoder refers to ever newer slices of a place: if it refers to one that stands alone, all
-/// earlier ones of that place are no longer needed.
+/// An encoder refers to ever newer slices of a place. So a slice that refers to one which stands
+/// alone makes all earlier slices of that place obsolete.
 class Backlog {
  public:
   explicit Backlog(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  /// Forgets what is needed no more, and the oldest above the bound.
+  /// Drops obsolete slices, and the oldest ones above the bound.
   void Push(SharedSlice slice);
   /// The oldest; null if it is empty.
   SharedSlice Pop();
 
   bool empty() const { return slices_.empty(); }
   std::size_t size() const { return slices_.size(); }
-  /// True if it soon has to forget needed slices: a decoder should read it.
+  /// Returns true if needed slices must soon be dropped: then a decoder should read it.
   bool is_full() const { return bytes_ > most_bytes_ / 2; }
-  /// The slice is of one of the two newest scans, and still worth showing.
+  /// Returns true for a slice of the two newest scans.
   bool IsRecent(const Slice& slice) const {
     return slice.id.scan == newest_ || slice.id.scan == before_;
   }

@@ -7,9 +7,9 @@ namespace lidar::viewer {
 namespace {
 
 constexpr std::size_t kRecentScans = 2;
-/// The two newest scans have no more slices: a hostile sender could invent any number.
+/// Greatest number of slices in the two newest scans: a hostile sender could invent more.
 constexpr std::size_t kMostSlices = 1024;
-/// A decoder remembers 24 blocks of each sector; a scan has 128 of them at most in our streams.
+/// A decoder remembers 24 blocks of each sector; a scan of our streams has at most 128 sectors.
 constexpr std::size_t kMostKnown = 4096;
 
 }  // namespace
@@ -18,7 +18,7 @@ void RecentScans::Add(SharedSlice slice) {
   const auto is_of = [number = slice->id.scan](const Scan& s) { return s.number == number; };
   auto scan = std::find_if(scans_.begin(), scans_.end(), is_of);
   if (scan == scans_.end()) {
-    if (slice->is_recoded) return;  // its scan has gone
+    if (slice->is_recoded) return;  // its scan is obsolete
     if (scans_.size() == kRecentScans) scans_.pop_front();
     scans_.push_back({slice->id.scan, {}});
     scan = std::prev(scans_.end());

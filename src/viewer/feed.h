@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which slices a viewer gets: of the newest scans that its pace allows, each as the robot coded it
-// where the viewer has what it refers to, else re-coded.
+// Chooses the slices for a viewer: those of the newest scans that its pace allows, as the robot
+// coded them if the viewer has their references, otherwise re-coded.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -20,7 +20,7 @@ struct Slice {
   SliceId id;
   std::uint32_t count = 1;               // of the scan's slices
   bool is_recoded = false;               // it stands alone
-  std::vector<codec::BlockName> blocks;  // of the robot's own
+  std::vector<codec::BlockName> blocks;  // in the robot's own coding
   DataSize size;                         // of the message
 };
 using SharedSlice = std::shared_ptr<const Slice>;
@@ -29,14 +29,14 @@ using SharedSlice = std::shared_ptr<const Slice>;
 class RecentScans {
  public:
   struct Forms {
-    SharedSlice own;      // the robot's
+    SharedSlice own;      // as the robot coded it
     SharedSlice recoded;  // stands alone
   };
   struct Scan {
     std::uint32_t number = 0;
     std::map<std::uint32_t, Forms> slices;  // by their place
   };
-  /// Forgets scans that are older than the two newest; their slices come too late.
+  /// Drops scans older than the two newest, whose slices come too late.
   void Add(SharedSlice slice);
   /// The oldest first.
   const std::deque<Scan>& scans() const { return scans_; }
@@ -49,35 +49,35 @@ class Feed {
  public:
   explicit Feed(DataRate max_bitrate) : pace_(max_bitrate) {}
 
-  /// Returns what is to be sent now, in this order; it counts as sent. Call it when a slice has
-  /// come, when the viewer has drawn one, and now and then.
+  /// Returns the slices to send now, in this order, and counts them as sent. Call it after each new
+  /// slice, after each drawn one, and at intervals.
   std::vector<SharedSlice> Take(Time now, const RecentScans& recent);
   void OnDrawn(Time now, SliceId slice) { pace_.OnDrawn(now, slice); }
-  /// The viewer's decoder lacks something: it gets slices that stand alone.
+  /// The viewer's decoder lacks a reference: it now gets slices that stand alone.
   void OnLacksReference();
 
-  /// What it got takes too long for the next scan to begin.
+  /// Returns true if the viewer is too slow for the next scan to begin.
   bool IsLate(Time now) const { return pace_.IsLate(now); }
-  /// It waits for the re-coded form of a slice.
+  /// Returns true if the viewer waits for a re-coded slice.
   bool wants_recoded() const { return wants_recoded_; }
-  /// Scans that the pace left out.
+  /// Number of scans that the pace skipped.
   std::uint64_t scans_skipped() const { return scans_skipped_; }
 
  private:
   struct Taken {
     std::uint32_t scan = 0;
-    std::unordered_set<std::uint32_t> sent;  // places
+    std::unordered_set<std::uint32_t> sent;  // places of the slices sent
   };
   void Begin(Time now, const RecentScans& recent);
   bool Knows(const Slice& slice) const;
   void Learn(const Slice& slice);
 
   Pace pace_;
-  std::deque<Taken> taken_;                  // begun, among the recent ones
+  std::deque<Taken> taken_;                  // begun scans among the recent ones
   std::unordered_set<std::uint32_t> known_;  // names of blocks that the viewer has
-  std::deque<std::uint32_t> order_;          // the same, the oldest first
-  std::optional<std::uint32_t> newest_;      // scan that was there last
-  bool skipping_ = false;                    // it has not begun
+  std::deque<std::uint32_t> order_;          // the same, oldest first
+  std::optional<std::uint32_t> newest_;      // last scan that appeared
+  bool skipping_ = false;                    // it was not begun
   std::uint64_t scans_skipped_ = 0;
   bool wants_recoded_ = false;
 };

@@ -7,8 +7,8 @@ namespace lidar::viewer {
 namespace {
 
 constexpr double kCoarsest = 16;
-constexpr double kChange = 1.05;  // of the grid, from one slice to the next
-constexpr double kWeight = 0.2;   // of a slice in the averages
+constexpr double kChange = 1.05;  // greatest change of the grid between slices
+constexpr double kWeight = 0.2;   // weight of a slice in the averages
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes decoded slices anew, so that each stands alone.
+// Re-codes decoded slices so that each stands alone.
 #pragma once
 #include <optional>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace lidar::viewer {
 
-/// A slice that refers to no other needs more bits on the same grid. The grid gets coarser until
-/// the stream is about as large as the robot's. For one thread at a time.
+/// A slice without references needs more bits on the same grid. So the grid becomes coarser until
+/// the stream has about the robot's size. For one thread at a time.
 class Recoder {
  public:
   /// Returns nothing if `format` has no ranges.
@@ -23,9 +23,9 @@ class Recoder {
     codec::SliceDecoder::Quality quality;
     std::size_t coded_size = 0;  // bytes
   };
-  /// Returns false if it cannot be coded.
+  /// Returns false if the slice cannot be coded.
   bool Encode(const Decoded& slice, std::vector<std::uint8_t>* out);
-  /// The width of the grid in grids of the robot.
+  /// Width of the grid relative to the robot's.
   double coarseness() const { return coarseness_; }
 
  private:

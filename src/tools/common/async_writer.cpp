@@ -48,7 +48,7 @@ void AsyncWriter::Run() {
     const std::string bytes = std::move(backlog_.front());
     backlog_.pop_front();
     lock.unlock();
-    // The rest is dropped if the reader has gone.
+    // The remainder is dropped if the reader has gone.
     open = open && WriteAll(bytes);
     lock.lock();
     backlog_bytes_ -= bytes.size();

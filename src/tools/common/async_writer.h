@@ -11,12 +11,12 @@
 
 namespace lidar::tools {
 
-/// Thread-safe. What does not fit in `capacity` bytes of backlog is dropped whole and counted.
+/// Thread-safe. Data beyond `capacity` bytes of backlog are dropped whole and counted.
 class AsyncWriter {
  public:
   /// Does not own `fd`.
   AsyncWriter(int fd, std::size_t capacity);
-  /// Writes what is left.
+  /// Writes the remainder.
   ~AsyncWriter();
   AsyncWriter(const AsyncWriter&) = delete;
   AsyncWriter& operator=(const AsyncWriter&) = delete;

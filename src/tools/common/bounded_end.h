@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Bounds the end of a program, if a server, disk or client hangs.
+// Bounds the end of a program when a server, disk or client hangs.
 #pragma once
 #include <errno.h>
 #include <sys/time.h>
@@ -11,9 +11,8 @@
 
 namespace lidar::tools {
 
-/// The end of the program begins with this object: after `most` the process ends with a message
-/// and with 0. The exit of the process itself is not bounded: a sanitizer looks for leaks there,
-/// which takes long on a busy machine.
+/// Starts with the end of the program: after `most` the process ends with a message and code 0. The
+/// exit itself is not bounded, as a sanitizer's leak check takes long on a busy machine.
 class BoundedEnd {
  public:
   explicit BoundedEnd(std::chrono::milliseconds most) {

@@ -28,7 +28,7 @@ class ChildProcess {
   pid_t pid() const { return pid_; }
   int output_fd() const { return output_.get(); }
   int clouds_fd() const { return clouds_.get(); }
-  /// Hands every complete line that is there to `handler`. False at the end of the output.
+  /// Passes complete lines to `handler`. Returns false at the end of the output.
   bool ReadLines(const std::function<void(const std::string&)>& handler);
 
   void Signal(int signal) const;

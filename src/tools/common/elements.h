@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Elements that programs put together, and what they say on the bus.
+// Helpers to build pipelines, and to read messages of the bus.
 #pragma once
 #include <glib-unix.h>
 #include <gst/gst.h>

@@ -21,7 +21,7 @@ class EventLoop {
 
   void Watch(int fd, std::function<void()> readable);
   void Unwatch(int fd);
-  /// When Run next calls `before_wait` at the latest; Time::max() for never.
+  /// Sets when Run() next calls `before_wait` at the latest; Time::max() for never.
   void SetWakeUp(Time when);
   /// Calls the handlers of what is readable and then `before_wait`, which may set the next wake-up,
   /// until a signal or Stop.
@@ -36,8 +36,7 @@ class EventLoop {
   bool running_ = false;
 };
 
-/// Asks for a scheduler that lets this thread run at once. Returns false if the system does not let
-/// us.
+/// Requests a real-time scheduler for this thread. Returns false if the system refuses.
 bool RequestRealtimePriority();
 
 }  // namespace lidar::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Files that programs read and write, and their rest on a full disk.
+// Files that programs read and write, and their remains on a full disk.
 #pragma once
 #include <fstream>
 #include <string>
@@ -9,8 +9,8 @@ namespace lidar::tools {
 /// Throws std::runtime_error, with the path and the reason, where the file cannot be written.
 class OutputFile {
  public:
-  /// Rest of a file that cannot be written whole, or is not closed. An empty file never stays; only
-  /// regular files are removed.
+  /// What remains of a file that was not written or closed completely. Empty files are removed;
+  /// only regular files are.
   enum class Rest { kRemove, kKeepRows };
 
   /// An empty path writes nothing.
@@ -38,8 +38,8 @@ std::string ReadFile(const std::string& path);
 /// Writes all of the file, or no file.
 void WriteFile(const std::string& path, const std::string& text);
 
-/// Throws if something that was printed could not be written. Errors of a full disk stay with the
-/// stream, so it is enough to ask once, at the end.
+/// Throws if printed output could not be written. The stream keeps such errors, so one call at the
+/// end suffices.
 void FinishStandardOutput();
 
 /// Removes an incomplete file, if it is a regular one.

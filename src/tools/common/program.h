@@ -14,7 +14,7 @@ inline void AddVersionFlag(CLI::App* app, const std::string& program) {
   app->set_version_flag("--version", program + " (gst-lidar) " LIDAR_VERSION);
 }
 
-/// For programs of several commands: all their options at once, of which the man page is made.
+/// Adds an option that shows the options of all commands, for the man page.
 inline void AddHelpAllFlag(CLI::App* app) {
   app->set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
 }
@@ -34,7 +34,7 @@ inline void Parse(CLI::App* app, int argc, char** argv) {
   Parse(app, argc, argv, [] {});
 }
 
-/// The exit code of `run`; an exception becomes a message.
+/// Returns the exit code of `run`; an exception becomes a message.
 template <class Run>
 int Guard(const char* program, Run run) {
   try {

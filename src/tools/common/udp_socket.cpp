@@ -14,7 +14,7 @@ namespace lidar::tools {
 namespace {
 
 constexpr std::size_t kMaxDatagram = 65536;
-constexpr int kSocketBuffer = 4 << 20;  // a burst of scans fits
+constexpr int kSocketBuffer = 4 << 20;  // has room for a burst of scans
 constexpr std::size_t kControlSize = 256;
 
 [[noreturn]] void Fail(const std::string& what) {

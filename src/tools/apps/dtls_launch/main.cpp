@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// gst-launch for pipelines with DTLS-SRTP, that trusts one certificate and no other.
+// gst-launch for pipelines with DTLS-SRTP. Trusts exactly one certificate.
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
@@ -33,7 +33,7 @@ struct Certificates {
   std::string peer;  // the certificate to trust, without line breaks
 };
 
-/// A handshake, and what comes of it. Threads of the pipeline set the flags.
+/// A handshake and its result. Threads of the pipeline set the flags.
 struct Session {
   explicit Session(const Certificates& c) : certificates(c) {}
   ~Session() {
@@ -50,10 +50,11 @@ struct Session {
 };
 
 constexpr GstClockTime kPoll = 100 * GST_MSECOND;
-// Pause between handshakes, so that packets that are no handshake restart it no more often.
+// Pause between handshakes. It limits the restarts that other packets can cause.
 constexpr gulong kPauseUs = 200'000;
 
-/// What is between the lines that begin and end the first certificate, without white space.
+/// Returns the text between the lines that begin and end the first certificate, without white
+/// space.
 std::string CertificateIn(const std::string& pem) {
   static const std::string kBegin = "-----BEGIN CERTIFICATE-----";
   const auto begin = pem.find(kBegin);
@@ -81,8 +82,7 @@ bool ReadPem(const std::string& path, const char* must_have, std::string* pem) {
   return false;
 }
 
-/// The certificate comes in the handshake, before there are keys. No packet passes the flag from
-/// then on.
+/// The certificate comes in the handshake, before keys. After the flag no packet passes.
 void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   gchar* pem = nullptr;
   g_object_get(dtls, "peer-pem", &pem, nullptr);
@@ -90,7 +90,7 @@ void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   if (pem == nullptr || CertificateIn(pem) != session->certificates.peer) session->refused = true;
 }
 
-/// A stranger's packets end here: the rest of the handshake as well as what its keys would protect.
+/// Drops a stranger's packets: the rest of the handshake, and data under its keys.
 void DropOnceRefused(GstElement* decoder, Session* session) {
   GstPad* pad = gst_element_get_static_pad(decoder, "sink");
   gst_pad_add_probe(
@@ -102,7 +102,7 @@ void DropOnceRefused(GstElement* decoder, Session* session) {
   gst_object_unref(pad);
 }
 
-/// srtpenc would encrypt with a random key until the handshake gives it the real one.
+/// Holds packets back, as srtpenc would encrypt with a random key until the handshake sets one.
 void HoldUntilThereIsAKey(GstElement* encoder, Session* session) {
   g_object_set_data(G_OBJECT(encoder), "session", session);
   GstIterator* pads = gst_element_iterate_sink_pads(encoder);
@@ -169,8 +169,8 @@ bool IsOfDtls(GstObject* source) {
 
 enum class End { kOver, kFailed, kNoHandshake };
 
-/// Plays until EOS, an error, or `*run` is false. EOS does not get past dtlssrtpenc, whose
-/// handshake has no end.
+/// Plays until EOS, an error, or `*run` is false. EOS does not pass dtlssrtpenc, whose handshake
+/// never ends.
 End Play(Session* session, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);
@@ -188,7 +188,7 @@ End Play(Session* session, const bool* run, std::string* why) {
   return session->refused ? End::kNoHandshake : End::kOver;
 }
 
-/// Sessions one after the other: packets of strangers cost a handshake, not the program.
+/// Runs sessions in sequence: packets of strangers end a handshake, not the program.
 class Sessions {
  public:
   Sessions(const Options& options, const Certificates& certificates)
@@ -217,7 +217,7 @@ class Sessions {
   }
 
  private:
-  /// Prints each reason once until a success: strangers must not fill a log.
+  /// Prints each reason once until a success, so that strangers cannot fill a log.
   void Tell(const Session& session, const std::string& why) {
     if (session.has_keys) told_.clear();
     if (std::exchange(told_, why) == why) return;

@@ -75,7 +75,7 @@ bool IsWord(const std::string& text) {
 }
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 50;
-constexpr std::size_t kMaxSharing = 1'000;  // a program of the kernel has 4,096 steps, 3 a robot
+constexpr std::size_t kMaxSharing = 1'000;  // the kernel's programs have 4,096 steps, 3 a robot
 
 NatsConfig ReadNats(const json& object) {
   NatsConfig nats;
@@ -189,8 +189,8 @@ void CheckSharedPort(const EdgeConfig& config) {
                                " share an ssrc");
 }
 
-/// The stream of JetStream drops its oldest messages, of any sender. So it must hold what all
-/// robots may send in the time that it is for.
+/// JetStream's stream drops its oldest messages, of any sender. So it must hold all that robots may
+/// send within its period.
 void CheckShares(const EdgeConfig& config) {
   const NatsConfig& nats = config.nats;
   if (nats.jetstream.empty() || nats.max_bytes == 0) return;

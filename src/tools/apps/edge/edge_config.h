@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Settings of lidar-edge: which robots come on which ports, and where their streams go.
+// Settings of lidar-edge: ports of robots, and destinations of their streams.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -28,7 +28,7 @@ struct SsrcRange {
 struct RobotConfig {
   std::string name;
   std::string sensor = "lidar";
-  std::uint16_t port = 0;         // of its own; 0: the one for all
+  std::uint16_t port = 0;         // own port; 0: the common one
   std::optional<SsrcRange> ssrc;  // on the port for all
   std::string srtp_key;           // file:PATH or env:NAME; empty: no SRTP
   std::string srtp_cipher = "aes-128-icm";
@@ -40,7 +40,7 @@ struct RobotConfig {
 
 struct EdgeConfig {
   std::string address;     // that robots send to; empty: any
-  std::uint16_t port = 0;  // of all robots that have none of their own
+  std::uint16_t port = 0;  // for robots without a port of their own
   NatsConfig nats;
   std::string http_address = "127.0.0.1";
   int http_port = -1;  // -1: no server; 0: any port
@@ -48,7 +48,7 @@ struct EdgeConfig {
   std::vector<RobotConfig> robots;
 };
 
-/// Throws std::runtime_error, which names the key that is wrong.
+/// Throws std::runtime_error that names the wrong key.
 EdgeConfig ParseEdgeConfig(const std::string& json_text);
 
 std::string StreamSubject(const NatsConfig& nats, const RobotConfig& robot);

@@ -25,7 +25,7 @@ namespace lidar::edge {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{50};
-constexpr std::chrono::seconds kEnd{6};  // if a server, disk or client hangs
+constexpr std::chrono::seconds kEnd{6};  // limit if a server, disk or client hangs
 
 std::atomic<bool> stopping{false};
 
@@ -58,7 +58,7 @@ class Edge {
         fleet::StatisticsSettings{config.http_address, config.http_port, config.interval_s},
         connection);
   }
-  /// All sessions end at the same time.
+  /// Ends all sessions at the same time.
   ~Edge() {
     for (const auto& receiver : receivers_) receiver->AskToEnd();
   }

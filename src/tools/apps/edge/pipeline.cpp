@@ -14,7 +14,7 @@ using gst::ElementPtr;
 using gst::PadPtr;
 using tools::SetText;
 
-// What waits for a slow disk. The number bounds what tiny buffers cost beside their bytes, and the
+// Limits of data that wait for a slow disk. The number bounds the overhead of tiny buffers, and the
 // time bounds the events between them.
 constexpr guint kRecordQueue = 8U << 20;  // bytes
 constexpr guint kRecordQueueBuffers = 16'384;
@@ -30,7 +30,7 @@ void Link(GstElement* from, GstElement* to) {
   if (!gst_element_link(from, to)) throw std::runtime_error("elements cannot be linked");
 }
 
-/// All robots' sinks have the same stream; the first of them makes it for all.
+/// The sinks of all robots use the same stream, which the first one creates.
 void AddNats(GstElement* pipeline, GstElement* from, const NatsConfig& nats,
              const RobotConfig& robot) {
   GstElement* sink = Add(pipeline, "natssink");
@@ -48,7 +48,7 @@ ElementPtr RecorderOf(GstElement* pipeline) {
   return ElementPtr(gst_bin_get_by_name(GST_BIN(pipeline), kRecorder));
 }
 
-/// Makes the pad report success to the element that pushes to it, whatever happens behind it.
+/// Makes the pad report success upstream, whatever happens downstream.
 void Shield(GstPad* pad) {
   gst_pad_set_chain_function(pad, [](GstPad* self, GstObject* parent, GstBuffer* buffer) {
     gst_proxy_pad_chain_default(self, parent, buffer);
@@ -85,7 +85,7 @@ ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSoc
 void AddRecorder(GstElement* pipeline, const RobotConfig& robot) {
   GstElement* recorder = gst_bin_new(kRecorder);
   gst_bin_add(GST_BIN(pipeline), recorder);
-  // A disk that is slow costs the recording, and nothing else.
+  // A slow disk harms the recording only.
   GstElement* queue = Add(recorder, "queue");
   gst_util_set_object_arg(G_OBJECT(queue), "leaky", "downstream");
   g_object_set(queue, "max-size-buffers", kRecordQueueBuffers, "max-size-time", kRecordQueueTime,
@@ -116,7 +116,7 @@ void RemoveRecorder(GstElement* pipeline) {
 }
 
 bool IsFromRecorder(GstMessage* message) {
-  // It may be out of the pipeline already.
+  // It may be removed from the pipeline already.
   for (const char* name : {kRecorder, "queue", "mcapsink"})
     if (g_strcmp0(GST_MESSAGE_SRC_NAME(message), name) == 0) return true;
   return false;

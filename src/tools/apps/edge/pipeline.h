@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pipeline of one robot, and the branch that records it, which comes and goes by itself.
+// The pipeline of a robot, and its recording branch, which is added and removed while it runs.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -15,7 +15,7 @@ namespace lidar::edge {
 /// std::runtime_error if an element is missing.
 gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
 
-/// Makes a recorder that runs with the pipeline. Its failures stay in it, and go to the bus. Throws
+/// Adds a recorder that runs with the pipeline. Its failures only reach the bus. Throws
 /// std::runtime_error if an element is missing.
 void AddRecorder(GstElement* pipeline, const RobotConfig& robot);
 /// Does nothing if there is none.
@@ -23,9 +23,9 @@ void RemoveRecorder(GstElement* pipeline);
 /// Whether the message is of the recorder.
 bool IsFromRecorder(GstMessage* message);
 
-/// Ends the stream, and waits until all that has come is written and sent. Errors of the recorder
-/// go to `on_recorder_error`, which removes it, and what is left goes on. False at another error,
-/// or where it takes longer than `timeout`.
+/// Ends the stream, and waits until all received data are written and sent. Errors of the recorder
+/// go to `on_recorder_error`, which removes it; the remainder continues. Returns false after
+/// another error or `timeout`.
 bool Drain(GstElement* pipeline, GstClockTime timeout,
            const std::function<void(GstMessage*)>& on_recorder_error);
 

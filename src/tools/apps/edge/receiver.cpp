@@ -24,7 +24,7 @@ using tools::StatsOf;
 constexpr std::chrono::milliseconds kPoll{100};
 constexpr seconds kFirstPause{2};  // after a failure
 constexpr seconds kLongestPause{64};
-constexpr seconds kHealthySession{10};  // a session of this age has not failed at once
+constexpr seconds kHealthySession{10};  // a session of this age did not fail at once
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
 }  // namespace
@@ -117,7 +117,7 @@ void Receiver::Rest(Time now, Duration pause, const std::string& why) {
   Say(why);
 }
 
-/// If the recorder has failed, another one is tried later, and the stream goes on meanwhile.
+/// Replaces a failed recorder after a pause, while the stream continues.
 void Receiver::Record(Time now) {
   if (robot_.record.empty() || recording_ || now < record_at_) return;
   recording_ = true;
@@ -188,7 +188,7 @@ guint64 Receiver::BytesReceived() const {
   return bytes;
 }
 
-/// Once a second: is the robot there, and does it keep to its limit?
+/// Called once a second: checks that the robot is there and keeps to its limit.
 void Receiver::Watch(Time now) {
   if (watch_at_ && now < *watch_at_) return;
   watch_at_ = now + seconds(1);

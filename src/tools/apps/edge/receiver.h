@@ -29,7 +29,7 @@ class Receiver {
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
 
-  /// The session ends as soon as its files are complete. Does not wait.
+  /// Ends the session once its files are complete. Does not wait.
   void AskToEnd();
 
   const RobotConfig& robot() const { return robot_; }
@@ -54,7 +54,7 @@ class Receiver {
   void Begin(Time now);
   void End();
   void Finish();
-  /// The robot is shut out for as long.
+  /// Shuts the robot out for `pause`.
   void Rest(Time now, Duration pause, const std::string& why);
   void Record(Time now);
   bool ReadBus(Time now);
@@ -72,14 +72,14 @@ class Receiver {
   GSocket* const socket_;
   const gst::ElementPtr pipeline_;
 
-  // The thread's alone.
+  // Used by the thread only.
   State state_ = State::kResting;
-  Time begin_at_{};  // of a rest's end
+  Time begin_at_{};  // end of a rest
   Time began_at_{};
   std::optional<Time> watch_at_;  // the rate is taken then
   RobotWatch robot_watch_;
   bool recording_ = false;
-  Time record_at_{};  // when it began, or is to begin
+  Time record_at_{};  // when it began or will begin
   Backoff failures_;
   Backoff record_failures_;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether a robot is there, and how far it is ahead of its limit, by the bytes that came from it.
+// Tracks by a robot's received bytes whether it is there, and how far it exceeds its limit.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,13 +11,13 @@ namespace lidar::edge {
 
 class RobotWatch {
  public:
-  static constexpr Duration kTimeout = std::chrono::seconds(10);  // a silent robot is gone then
-  static constexpr double kCredit = 3;  // seconds at its limit that it may be ahead
+  static constexpr Duration kTimeout = std::chrono::seconds(10);  // silence of a robot that left
+  static constexpr double kCredit = 3;  // seconds of data by which it may exceed its limit
 
   /// 0: no limit.
   explicit RobotWatch(double max_mbps) : limit_(max_mbps * 125'000) {}
 
-  /// A session begins, and its count of bytes with it. What the robot is ahead stays.
+  /// Begins a session with a new byte count. The excess stays.
   void Begin() {
     bytes_ = 0;
     is_there_ = false;
@@ -35,8 +35,8 @@ class RobotWatch {
 
   bool is_there() const { return is_there_; }
   bool IsGone() const { return is_there_ && noted_at_ - heard_at_ > kTimeout; }
-  /// The time until a robot that is too far ahead of its limit is not ahead any more, so that in
-  /// the long run it stays below the limit; 0 for others.
+  /// Returns how long to shut out a robot that is too far ahead, so that in the long run it stays
+  /// below the limit; 0 for others.
   Duration ToShutOut() const {
     const bool is_ahead = limit_ > 0 && ahead_ > kCredit * limit_;
     return is_ahead ? FromSeconds(ahead_ / limit_) : Duration{};

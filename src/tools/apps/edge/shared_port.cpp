@@ -54,7 +54,7 @@ struct Address {
   socklen_t length = 0;
 };
 
-/// Empty: all addresses, of both families where the machine has them.
+/// An empty name means all addresses, of both families if the machine has them.
 Address Resolve(const std::string& name, std::uint16_t port) {
   addrinfo hints{};
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
@@ -97,7 +97,7 @@ const Program kNothing = {Step(BPF_RET | BPF_K, 0)};
 SharedPort::SharedPort(const std::string& address, std::uint16_t port,
                        const std::vector<SsrcRange>& ranges) {
   const Address local = Resolve(address, port);
-  // The port must be free: with another process of ours the kernel would mix the sockets.
+  // The port must be free: the kernel would mix our sockets with another process's.
   OpenSocket(local, false).Reset();
   for (std::size_t i = 0; i <= ranges.size(); ++i) {
     tools::FileDescriptor owner = OpenSocket(local, true);

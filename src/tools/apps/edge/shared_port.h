@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A UDP port for many robots: each has a socket of its own there, and the kernel puts a datagram
-// into the socket of its SSRC. So a robot that floods fills its own socket only.
+// A UDP port for many robots: each has its own socket, and the kernel puts datagrams into the
+// socket of their SSRC. So a flooding robot fills only its own socket.
 #pragma once
 #include <gio/gio.h>
 
@@ -19,19 +19,19 @@ class SharedPort {
   SharedPort(const std::string& address, std::uint16_t port, const std::vector<SsrcRange>& ranges);
 
   GSocket* socket(std::size_t index) const { return sockets_.at(index + 1).get(); }
-  /// Datagrams that were dropped, as they are of no robot's SSRC.
+  /// Number of dropped datagrams, which have no robot's SSRC.
   std::uint32_t strays() const;
 
  private:
   struct Unref {
     void operator()(GSocket* socket) const { g_object_unref(socket); }
   };
-  // Sockets in the order in which they were bound, which is their number in the kernel. The first
-  // is for strays.
+  // Sockets in the order of binding, which is their number in the kernel. The first one takes
+  // strays.
   std::vector<std::unique_ptr<GSocket, Unref>> sockets_;
 };
 
-/// A shut socket drops what comes in, and its queue.
+/// A shut socket drops its queue and new datagrams.
 void ShutSocket(GSocket* socket, bool shut);
 
 }  // namespace lidar::edge

@@ -16,7 +16,7 @@ std::string RobotLabels(const std::string& robot, const std::string& sensor);
 /// Converts numbers, flags, text and structures; other types are left out.
 nlohmann::json ToJson(const GstStructure* structure);
 
-/// Collects values and writes them by their names, as the text format requires.
+/// Collects values and writes them sorted by name, as the text format requires.
 class Exposition {
  public:
   /// `labels` have their braces, or are empty.
@@ -34,7 +34,8 @@ class Exposition {
 void AddStats(GstElement* bin, const std::vector<std::string>& elements, const std::string& labels,
               Exposition* exposition, nlohmann::json* report);
 
-/// A report as one line. Errors of the network may hold any bytes: what is no UTF-8 is replaced.
+/// Returns a report as one line. Errors from the network may have any bytes: invalid UTF-8 is
+/// replaced.
 std::string ToText(const nlohmann::json& report);
 
 }  // namespace lidar::fleet

@@ -102,7 +102,7 @@ void MetricsServer::Run() {
   }
 }
 
-/// The oldest makes room: it has had the most time to ask.
+/// Replaces the oldest connection, which has had the most time.
 void MetricsServer::Accept() {
   tools::FileDescriptor socket(
       accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -121,7 +121,7 @@ void MetricsServer::Accept() {
   connections_.push_back({std::move(socket), Clock::now() + kClientTimeout, "", "", 0});
 }
 
-/// False once the connection is over.
+/// Returns false once the connection is over.
 bool MetricsServer::GoesOn(Connection* connection) {
   if (connection->answer.empty() && !Receive(connection)) return false;
   if (connection->answer.empty()) return true;

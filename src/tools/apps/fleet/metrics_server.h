@@ -15,8 +15,8 @@
 
 namespace lidar::fleet {
 
-/// A thread serves all connections, and waits for none of them. A client that says nothing, or
-/// little, is cut off after two seconds, or once too many others have come.
+/// A thread serves all connections without waiting for any. A silent or slow client is closed
+/// after two seconds, or when too many others come.
 class MetricsServer {
  public:
   static constexpr std::size_t kMaxConnections = 32;
@@ -28,7 +28,7 @@ class MetricsServer {
   MetricsServer& operator=(const MetricsServer&) = delete;
 
   int port() const { return port_; }
-  /// Connections that were ended before they had an answer.
+  /// Number of connections closed before their answer.
   std::uint64_t cut() const { return cut_; }
   void Publish(std::string text);
 
@@ -36,7 +36,7 @@ class MetricsServer {
   using Clock = std::chrono::steady_clock;
   struct Connection {
     tools::FileDescriptor socket;
-    Clock::time_point until;  // cut off then
+    Clock::time_point until;  // closed at this time
     std::string request;
     std::string answer;  // empty: the request is not complete
     std::size_t sent = 0;
@@ -51,7 +51,7 @@ class MetricsServer {
   tools::FileDescriptor listener_;
   tools::FileDescriptor wake_;  // an eventfd
   int port_ = 0;
-  std::list<Connection> connections_;  // oldest first; the thread's alone
+  std::list<Connection> connections_;  // oldest first; used by the thread only
   std::atomic<std::uint64_t> cut_{0};
   std::mutex mutex_;  // guards text_
   std::shared_ptr<const std::string> text_ = std::make_shared<std::string>();

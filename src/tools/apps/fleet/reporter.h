@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Publishes reports of robots on NATS, in a thread of its own and over a connection of its own.
+// Publishes reports of robots on NATS, with a thread and a connection of its own.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -38,7 +38,7 @@ class Reporter {
 
   const nats::ConnectionSettings settings_;
 
-  // The thread's alone.
+  // Used by the thread only.
   std::unique_ptr<nats::Connection> connection_;
   Backoff refusals_;
   Clock::time_point open_at_{};
@@ -49,7 +49,7 @@ class Reporter {
   Reports waiting_;
   bool ending_ = false;
 
-  std::thread thread_;  // the last: it uses the rest
+  std::thread thread_;  // declared last, as it uses the other members
 };
 
 }  // namespace lidar::fleet

@@ -22,7 +22,7 @@ struct StatisticsSettings {
 /// For one thread.
 class Statistics {
  public:
-  /// If `connection` is missing, NATS gets nothing. Prints where Prometheus finds it. Throws
+  /// NATS gets nothing if `connection` is missing. Prints the address for Prometheus. Throws
   /// std::runtime_error if the port is taken.
   Statistics(const StatisticsSettings& settings,
              const std::optional<nats::ConnectionSettings>& connection);

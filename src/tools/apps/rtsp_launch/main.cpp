@@ -49,7 +49,7 @@ std::string Join(const std::vector<std::string>& words) {
   return text + " )";
 }
 
-/// Wrong pipelines fail now, not with the first viewer.
+/// Makes a wrong pipeline fail now instead of with the first viewer.
 void Check(const std::string& pipeline) {
   GError* error = nullptr;
   GstElement* bin = gst_parse_launch(pipeline.c_str(), &error);

@@ -25,7 +25,7 @@ struct Options {
   std::string stats;
   std::string address = "127.0.0.1";
   guint port = 0;   // of the callee; 0: any
-  guint relay = 0;  // port given to the caller in its place; 0: no relay
+  guint relay = 0;  // port that the caller gets instead; 0: no relay
   double duration_s = 0;
   double interval_s = 1;
   std::vector<std::string> pipeline;
@@ -38,7 +38,7 @@ struct Call {
   ElementPtr callee;
 };
 
-/// A step of the signalling, run once a webrtcbin has answered.
+/// A step of the signalling, run after a webrtcbin's answer.
 using Step = void (*)(Call*, const GstStructure* reply);
 
 struct Pending {
@@ -46,7 +46,7 @@ struct Pending {
   Step step;
 };
 
-/// A promise whose answer runs `step`.
+/// Returns a promise whose answer runs `step`.
 GstPromise* Then(Call* call, Step step) {
   return gst_promise_new_with_change_func(
       [](GstPromise* promise, gpointer data) {
@@ -112,7 +112,7 @@ void OnCandidateOfCaller(GstElement*, guint line, gchar* text, Call* call) {
     g_signal_emit_by_name(call->callee.get(), "add-ice-candidate", line, text);
 }
 
-/// Called caller-aux or callee-aux.
+/// Handler of the signal that requests the sender's auxiliary element.
 GstElement* OnAuxSender(GstElement* webrtc, GObject*, Call* call) {
   GError* error = nullptr;
   GstElement* aux = gst_parse_launch(call->options.aux.c_str(), &error);
@@ -124,7 +124,8 @@ GstElement* OnAuxSender(GstElement* webrtc, GObject*, Call* call) {
   return aux;
 }
 
-/// Only this address, and of the callee only this port: others would go around the relay.
+/// Restricts ICE to this address, and the callee to this port: other candidates would bypass the
+/// relay.
 void BindIce(GstElement* webrtc, const std::string& address, guint port) {
   GObject* ice = nullptr;
   g_object_get(webrtc, "ice-agent", &ice, nullptr);
@@ -170,7 +171,7 @@ void PrintStats(const Call& call, gint64 start) {
   lidar::tools::PrintStats(call.pipeline.get(), call.options.stats, time.data());
 }
 
-/// Returns true if the pipeline goes on.
+/// Returns true if the pipeline continues.
 bool Handle(GstMessage* message, int* result) {
   if (message == nullptr) return true;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) return false;

@@ -35,11 +35,11 @@ class FleetWatch {
   struct News {
     std::vector<Entry> entries;
     std::optional<std::set<std::string>> robots;  // "robot.sensor"; all within the bounds
-    std::size_t left_out = 0;                     // beyond them
-    std::uint64_t stream = 0;                     // that has them, as in Progress
+    std::size_t left_out = 0;                     // number of robots beyond the bounds
+    std::uint64_t stream = 0;                     // id of the stream that has them, as in Progress
     std::uint64_t first = 0;                      // number of its oldest message
     std::uint64_t last = 0;                       // number of its newest message
-    Time asked_at{};                              // it had them then, or later
+    Time asked_at{};                              // the answer was sent at this time or later
     std::string trouble;                          // empty: no trouble, or reported already
   };
 
@@ -48,9 +48,9 @@ class FleetWatch {
   FleetWatch(const FleetWatch&) = delete;
   FleetWatch& operator=(const FleetWatch&) = delete;
 
-  /// All entries come again.
+  /// Makes all entries come again.
   void Renew() { renew_ = true; }
-  /// What is new since the last call. Never waits.
+  /// Returns the changes since the last call. Never waits.
   News Take();
 
  private:
@@ -66,10 +66,10 @@ class FleetWatch {
   const FleetSettings settings_;
   nats::JetStreamPtr js_;
   nats::SubscriptionPtr entries_;
-  unsigned connections_ = 0;  // as the subscription counts them
+  unsigned connections_ = 0;  // as of the present subscription
   unsigned missed_heartbeats_ = 0;
   std::uint64_t last_number_ = 0;  // of the consumer
-  bool stale_ = true;              // the subscription missed something, or there is none
+  bool stale_ = true;              // the subscription has a gap, or there is none
   std::chrono::steady_clock::time_point renew_at_{};
   std::chrono::steady_clock::time_point list_at_{};
   std::string told_;
@@ -83,10 +83,10 @@ class FleetWatch {
 
 /// Whether `name` is a "robot.sensor" that fits a pattern.
 bool IsWanted(const FleetSettings& settings, const std::string& name);
-/// A publisher can make up sensors of its robot, so a robot has no more than these.
+/// Greatest number of sensors per robot, as a publisher can invent sensors.
 constexpr std::size_t kMostSensors = 16;
 constexpr std::size_t kMostRobots = 4'096;
-/// Leaves the first robots, and the first sensors of each, in the order of their names.
+/// Keeps the first robots, and the first sensors of each, in the order of their names.
 std::set<std::string> WithinBounds(const std::set<std::string>& all);
 /// "robot.sensor" of the subject of a stream; empty if it is none.
 std::string RobotOf(const FleetSettings& settings, const std::string& subject);

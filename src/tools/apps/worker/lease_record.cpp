@@ -43,13 +43,13 @@ bool IsPose(const std::array<double, 7>& p) {
          norm > 0.9 && norm < 1.1;
 }
 
-/// NaN is within no bounds.
+/// NaN is out of bounds.
 bool IsVelocity(const std::array<double, 6>& v) {
   return std::all_of(v.begin(), v.begin() + 3, [](double s) { return std::abs(s) <= kMaxSpeed; }) &&
          std::all_of(v.begin() + 3, v.end(), [](double s) { return std::abs(s) <= kMaxTurnRate; });
 }
 
-/// A velocity that makes no sense counts as unknown.
+/// An implausible velocity counts as unknown.
 std::optional<std::array<double, 6>> ReadVelocity(const json& object) {
   std::array<double, 6> velocity{};
   const bool good = ReadNumbers(object, "velocity", &velocity) && IsVelocity(velocity);
@@ -93,9 +93,9 @@ std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
   const Quaternion begin = RotationOf(before);
   const Quaternion turn = Product(Inverse(begin), RotationOf(after));
   const double sine = std::hypot(turn[0], turn[1], turn[2]);
-  // A rotation has two quaternions: this takes the one that turns the shorter way.
+  // Two quaternions have the same rotation: this takes the shorter turn.
   const double angle = 2 * std::atan2(std::copysign(sine, turn[3]), std::abs(turn[3]));
-  // The way is seen in the frame halfway, so that it does not look like a drift in a bend.
+  // The motion is seen from halfway, so that a bend does not look like a drift.
   Quaternion half = {turn[0], turn[1], turn[2], turn[3] + std::copysign(1.0, turn[3])};
   const double norm =
       std::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2] + half[3] * half[3]);

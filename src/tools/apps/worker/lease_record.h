@@ -14,24 +14,24 @@ namespace lidar::worker {
 /// Progress of the work on a robot's stream.
 struct Progress {
   std::array<double, 7> pose{};  // x y z qx qy qz qw
-  /// vx vy vz wx wy wz in the sensor's frame [m/s, rad/s], where it is known.
+  /// vx vy vz wx wy wz in the sensor's frame [m/s, rad/s], if known.
   std::optional<std::array<double, 6>> velocity;
   std::uint64_t time = 0;    // of the pose, by the robot's clock [ns]
-  std::uint64_t stream = 0;  // when it was made [ns since 1970]: numbers are its own
+  std::uint64_t stream = 0;  // its creation [ns since 1970], which identifies its numbers
   std::uint64_t scan = 0;    // number in the stream of the first message of the pose's scan
   std::uint64_t from = 0;    // an earlier message from which a decoder can start
 };
 
 struct LeaseRecord {
   std::string worker;  // empty: no worker
-  Duration lease{};    // how long it holds from when it was written
+  Duration lease{};    // duration of the lease from the time of its write
   std::optional<Progress> progress;
 };
 
 /// Returns false if ParseLeaseRecord() would refuse it.
 bool ReadsBack(const Progress& progress);
 
-/// Velocity by the poses and times of two scans in a row; nothing if they are not in a row.
+/// Returns the velocity from two consecutive scans; nothing for others.
 std::optional<std::array<double, 6>> VelocityBetween(const Progress& before, const Progress& after);
 
 std::string ToJson(const LeaseRecord& record);

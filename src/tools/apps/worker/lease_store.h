@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Writes to a bucket of NATS's key-value store without waiting: answers come later, and a silent
-// server holds up no thread.
+// server delays no thread.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -17,8 +17,8 @@ class LeaseStore {
  public:
   struct Answer {
     std::uint64_t ticket = 0;
-    std::optional<std::uint64_t> revision;  // of what was written; empty: refused
-    std::optional<std::uint64_t> newest;    // the revision that was in the way, if known
+    std::optional<std::uint64_t> revision;  // of the stored entry; empty: refused
+    std::optional<std::uint64_t> newest;    // revision that caused a refusal, if known
   };
 
   /// The bucket may be made later. Throws std::runtime_error.

@@ -10,11 +10,11 @@ namespace lidar::worker {
 namespace {
 
 constexpr int kRenewals = 4;  // in the time of a lease
-/// Others wait longer than a lease by this part of it: steady clocks differ by far less.
+/// Others wait a lease and one part in kMargin of it: steady clocks differ by far less.
 constexpr int kMargin = 20;
-/// A worker that has all it can take hesitates for this part of a lease, so that others go first.
+/// A full worker waits for this part of a lease, so that others go first.
 constexpr double kHesitation = 0.3;
-/// A sensor without progress for as long leaves its place to one that waits.
+/// A sensor without progress for this time gives its place to a waiting one.
 constexpr Duration kIdleSensor = std::chrono::seconds(30);
 
 /// The robot of an entry, which is a robot or one of its sensors.
@@ -61,7 +61,7 @@ void LeaseTable::OnEntry(const std::string& name, std::uint64_t revision,
   robot.revision = revision;
   const auto progress = robot.record.progress;
   robot.record = record.value_or(LeaseRecord());
-  // A write of this worker, whose answer is still to come or was lost. Our progress is newer.
+  // A write of this worker, with its answer missing. Our progress is newer.
   const bool ours = record && record->worker == settings_.worker;
   if (ours && robot.held) robot.record.progress = progress;
   if (!ours) robot.held = false;
@@ -89,7 +89,7 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The entry of the faster writer follows; it may be an earlier write of ours.
+  // The entry of the faster writer follows; it may be an earlier one of ours.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
@@ -111,12 +111,12 @@ void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
   const auto found = robots_.find(name);
   if (found == robots_.end()) return;
   found->second.held = false;
-  found->second.pending.reset();  // its answer must not make it ours again
+  found->second.pending.reset();  // its answer must not return the robot to us
   found->second.not_before = now + pause;
 }
 
 void LeaseTable::LeaveToOthers(const std::string& name, Duration least, Time now) {
-  // Others wait for the margin and hesitate, from when they saw our last write.
+  // Other workers wait from our last write.
   Drop(name, std::max(least, 2 * settings_.lease), now);
 }
 
@@ -141,8 +141,8 @@ LeaseTable::Robots::iterator LeaseTable::Choose(const std::map<std::string, std:
       FromSeconds(kHesitation * Seconds(settings_.lease) * static_cast<double>(held) /
                   static_cast<double>(settings_.most));
   auto best = robots_.end();
-  // Robots with the fewest places first, then those tried the least. Each worker has an order of
-  // its own for the rest, so that two seldom choose the same.
+  // Sorts robots by fewest places, then by fewest tries. The further order differs by worker, so
+  // that two seldom choose the same.
   std::tuple<std::size_t, std::uint64_t, std::size_t> best_rank;
   for (auto at = robots_.begin(); at != robots_.end(); ++at) {
     const Robot& robot = at->second;
@@ -174,7 +174,8 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
       worst = at;
   }
   if (worst == robots_.end()) return false;
-  // A robot must keep as many places as the other then has: else places would change for ever.
+  // A robot must keep at least as many places as the other gets; otherwise places would alternate
+  // for ever.
   const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
   const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
     return item.second.held && now - item.second.moved_at > kIdleSensor;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decides which robots are ours: entries of the key-value store and answers in, writes out.
+// Decides which robots are ours, from entries of the key-value store and answers; returns writes.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -14,7 +14,7 @@
 namespace lidar::worker {
 
 struct LeaseSettings {
-  std::string worker;  // a name that no other process has, nor will have
+  std::string worker;  // a name that no other process ever has
   Duration lease = std::chrono::seconds(1);
   std::size_t most = 8;  // robots at a time
 };
@@ -38,7 +38,7 @@ class LeaseTable {
     std::string text;
   };
   struct Held {
-    Time until{};             // the lease is over then, if it is not renewed
+    Time until{};             // end of the lease without a renewal
     std::string last_worker;  // the last owner; may be empty
     std::optional<Progress> progress;
   };
@@ -51,24 +51,24 @@ class LeaseTable {
   void OnEntry(const std::string& robot, std::uint64_t revision,
                const std::optional<LeaseRecord>& record, Time now);
   void OnStored(std::uint64_t ticket, std::uint64_t revision, Time now);
-  /// The store refused a write; `newest` is the revision that it has instead, if it said so.
+  /// The store refused a write. `newest` is its present revision, if known.
   void OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> newest, Time now);
 
   /// Sets the progress for the next renewal.
   void SetProgress(const std::string& robot, const Progress& progress);
   /// Gives up a robot; it is not taken again for `pause`.
   void Drop(const std::string& robot, Duration pause, Time now);
-  /// Gives up a robot that fails here: any other worker takes it before we try again, which we do
-  /// after `least` or later.
+  /// Gives up a robot that fails here. Another worker may take it; this one tries again after
+  /// `least`.
   void LeaveToOthers(const std::string& robot, Duration least, Time now);
   /// Ends leases that are over, and gives what to write now.
   std::vector<Write> Poll(Time now);
-  /// Gives up all robots at once, in favour of the waiting workers. Takes no robot any more.
+  /// Gives up all robots at once for waiting workers. Takes no robot any more.
   std::vector<Write> HandOver(Time now);
 
-  /// The robots of this worker at `now`, whether or not a renewal is in time.
+  /// Returns the robots of this worker at `now`, even if a renewal is late.
   std::map<std::string, Held> HeldAt(Time now) const;
-  /// Returns true if expected entries of others do not come, so that all are to be read again.
+  /// Returns true if expected entries are missing, so that all must be read again.
   bool MissesEntries(Time now);
   /// Writes that have no answer yet.
   std::size_t unanswered() const;
@@ -82,18 +82,18 @@ class LeaseTable {
     bool wanted = false;
     bool held = false;
     std::uint64_t revision = 0;  // of the newest known entry; 0: unknown
-    // When a write was refused: the store may have another entry, even of a lower revision.
+    // Time of a refused write: the store may have another entry, even with a lower revision.
     std::optional<Time> doubted_since;
-    LeaseRecord record;  // in that entry
-    Time free_at{};      // the lease of its owner ends
-    Time not_before{};   // no try is made
-    Time until{};        // while it is held
+    LeaseRecord record;  // the record of that entry
+    Time free_at{};      // end of the owner's lease
+    Time not_before{};   // no try before this time
+    Time until{};        // end of our lease
     Time renew_at{};
     std::string last_worker;
     std::optional<Pending> pending;
-    Time moved_at{};  // when it was taken, or progressed last
+    Time moved_at{};  // time of taking or last progress
     bool moved = false;
-    std::uint64_t tries = 0;  // how often we took it
+    std::uint64_t tries = 0;  // number of times we took it
   };
   using Robots = std::map<std::string, Robot>;
 
@@ -101,12 +101,12 @@ class LeaseTable {
   bool IsHeld(const Robot& robot, Time now) const { return robot.held && now < robot.until; }
   void NoteFree(Robot* robot, bool damaged, Time now) const;
   void Expire(Time now);
-  /// How many places each robot has, by its name.
+  /// Returns the number of places by robot.
   std::map<std::string, std::size_t> Places() const;
   /// The robot to take now, where there is room; end() for none.
   Robots::iterator Choose(const std::map<std::string, std::size_t>& places, std::size_t held,
                           Time now);
-  /// Gives up a place that `waiting` has more right to.
+  /// Gives up a place for which `waiting` has a better claim.
   bool MakeRoom(const std::map<std::string, std::size_t>& places, const std::string& waiting,
                 Time now);
   Robots::iterator Next(Time now);

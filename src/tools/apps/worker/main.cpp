@@ -18,11 +18,11 @@
 namespace lidar::worker {
 namespace {
 
-constexpr std::chrono::milliseconds kEnd{900};  // whatever servers do
+constexpr std::chrono::milliseconds kEnd{900};  // longest end, whatever servers do
 
 std::atomic<bool> stopping{false};
 
-/// A name that no other process has had or will have.
+/// Returns a name that no other process ever has.
 std::string NameOfThisProcess() {
   char host[65] = "";
   gethostname(host, sizeof host - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The message of a stream from which a decoder has to start.
+// Finds the message of a stream from which a decoder must start.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -9,7 +9,7 @@
 
 namespace lidar::worker {
 
-/// The messages of the last while. Deterministic; for one thread.
+/// Recent messages. Deterministic; for one thread.
 class RewindWindow {
  public:
   struct Message {
@@ -20,9 +20,9 @@ class RewindWindow {
 
   explicit RewindWindow(Duration rewind) : rewind_ns_(static_cast<std::uint64_t>(rewind.count())) {}
 
-  /// The window begins anew if the number goes back.
+  /// Adds a message. A lower number restarts the window.
   void Add(const Message& message);
-  /// Number of the first; there has to be one.
+  /// Number of the oldest message; the window must not be empty.
   std::uint64_t first() const { return messages_.front().number; }
 
  private:

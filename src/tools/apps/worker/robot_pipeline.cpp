@@ -46,7 +46,7 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
     g_object_set(odometry, "initial-velocity", NumbersText(*begin->velocity).c_str(), nullptr);
 }
 
-/// The velocity is that at the record's scan, so it counts only where the stream goes on from it.
+/// The velocity belongs to the record's scan, so it counts only if the stream continues there.
 std::optional<Progress> BeginIn(std::uint64_t stream, std::optional<Progress> begin) {
   if (begin && begin->stream != stream) begin->velocity.reset();
   return begin;
@@ -79,7 +79,7 @@ RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string
   if (begin_scan_ > 0) g_object_set(source, "start-sequence", begin->from, nullptr);
   g_object_set(poses, "subject", (begin_of_subject + ".odometry." + sensor).c_str(), nullptr);
   SetOdometry(odometry, settings, begin_);
-  // A single thread does it all, so one message is on its way at a time.
+  // A single thread does all the work, so one message is under way at a time.
   for (GstElement* sink : {clouds, poses})
     g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
   if (!gst_element_link_many(source, decoder, odometry, clouds, nullptr) ||
@@ -132,7 +132,7 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   if (number_ < begin_scan_) return GST_PAD_PROBE_DROP;  // the decoder had to see it
   GstLidarSlice slice{};
   if (!gst_lidar_buffer_get_slice(buffer, &slice) || slice.slice_count == 0) slice = {0, 0, 1, 0};
-  // A map that begins with half a scan fits the next scan badly.
+  // A map that begins with half a scan would fit the next scan badly.
   if (!begun_ && number_ != begin_scan_ && slice.slice_index > 0) return GST_PAD_PROBE_DROP;
   if (!std::exchange(begun_, true) && begin_scan_ > 0 && number_ > begin_scan_)
     NoteLateBegin(gst_lidar_buffer_get_capture_time(buffer));
@@ -145,14 +145,14 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// The pose is of a scan that odometry does not get to see.
+/// The record's pose is of a scan that odometry does not get.
 void RobotPipeline::NoteLateBegin(GstClockTime captured) {
   begun_late_ = true;
   const GstClockTime since = begin_->time;
   late_ns_ = GST_CLOCK_TIME_IS_VALID(captured) ? captured - std::min(since, captured) : 0;
 }
 
-/// A worker without its lease publishes and changes nothing any more.
+/// A worker without its lease publishes and changes nothing.
 GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   std::optional<Scan>& scan = closed_ ? closed_ : open_;
   const gst::BufferMap map(buffer, GST_MAP_READ);
@@ -170,12 +170,12 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   progress.scan = scan->first;
   progress.from = scan->from;
   scan.reset();
-  if (!ReadsBack(progress)) return GST_PAD_PROBE_OK;  // others could not go on from it
+  if (!ReadsBack(progress)) return GST_PAD_PROBE_OK;  // no other worker could continue from it
   const std::lock_guard lock(mutex_);
   if (progress_)
     progress.velocity = VelocityBetween(*progress_, progress);
   else if (begin_ && !begun_late_)
-    progress.velocity = begin_->velocity;  // the pose it began with
+    progress.velocity = begin_->velocity;  // the pose from the record
   progress_ = progress;
   return GST_PAD_PROBE_OK;
 }

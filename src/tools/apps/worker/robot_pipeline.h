@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The work for one robot: its slices from JetStream, decoded and followed by odometry, and its
-// poses back to NATS.
+// The work for one robot: decodes its slices from JetStream, follows them with odometry, and sends
+// poses to NATS.
 #pragma once
 #include <gst/gst.h>
 
@@ -30,7 +30,7 @@ struct PipelineSettings {
   std::string decoder = "lidardec";
   /// Properties of lidarodometry: name and value.
   std::vector<std::pair<std::string, std::string>> odometry;
-  /// What a decoder has to read before a slice, as its key-interval says.
+  /// Time that a decoder must read before a slice: the robot's key-interval.
   Duration rewind = std::chrono::milliseconds(1'200);
 };
 
@@ -46,12 +46,12 @@ class RobotPipeline {
   RobotPipeline(const RobotPipeline&) = delete;
   RobotPipeline& operator=(const RobotPipeline&) = delete;
 
-  /// Starts it in a thread of its own: elements wait for servers, and others must not.
+  /// Starts in a thread of its own, as elements wait for servers.
   void Play();
   /// Poses go out only before this time, even if the thread that stops them hangs.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
-  /// The place at which it had to begin.
+  /// The place in its record.
   const std::optional<Progress>& begin() const { return begin_; }
   /// Returns true if it waits for a scan behind `last`, the newest message of the stream at
   /// `asked_at`: then the record is wrong.
@@ -62,14 +62,14 @@ class RobotPipeline {
   bool has_dropped() const { return dropped_; }
   /// Returns nothing before the first pose.
   std::optional<Progress> progress() const;
-  /// Adds the statistics of its elements, as fleet::AddStats(). Does not wait.
+  /// Adds the statistics of its elements, as fleet::AddStats() does. Does not wait.
   void AddStats(const std::string& labels, fleet::Exposition* exposition,
                 nlohmann::json* report) const;
   /// Returns the error that has ended it, or nothing. Prints warnings.
   std::string Poll();
 
  private:
-  /// A scan that lidarodometry has not aligned yet, as it sees it.
+  /// A scan that lidarodometry has not aligned yet.
   struct Scan {
     guint id = 0;
     guint next_index = 0;
@@ -87,21 +87,21 @@ class RobotPipeline {
   const Time made_at_;
   const std::uint64_t stream_;
   const std::optional<Progress> begin_;
-  const std::uint64_t begin_scan_;  // 0: from now on
+  const std::uint64_t begin_scan_;  // 0: begin with new messages
   const std::string decoder_;
   gst::ElementPtr pipeline_;
   std::future<void> start_;
   std::atomic<std::int64_t> end_{0};
   std::atomic<bool> dropped_{false};
-  std::atomic<std::uint64_t> late_ns_{0};  // between the pose it began with and its first scan
+  std::atomic<std::uint64_t> late_ns_{0};  // from the record's pose to the first scan
 
   // Only the streaming thread uses what follows.
   std::uint64_t number_ = 0;  // of the message that is on its way
   RewindWindow window_;       // the last is that one
   bool begun_ = false;
-  bool begun_late_ = false;  // after the scan of the pose it began with
+  bool begun_late_ = false;  // after the scan of the record's pose
   std::optional<Scan> open_;
-  std::optional<Scan> closed_;  // its pose comes first
+  std::optional<Scan> closed_;  // waits for its pose
 
   mutable std::mutex mutex_;  // guards progress_
   std::optional<Progress> progress_;

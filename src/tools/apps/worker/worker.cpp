@@ -19,7 +19,7 @@ using tools::Now;
 
 constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
-// Together they stay below a second.
+// Their sum stays below a second.
 constexpr milliseconds kStopTimeout{400};
 constexpr milliseconds kAnswerTimeout{300};
 constexpr std::size_t kShownLetters = 300;  // letters of a record that is damaged
@@ -62,7 +62,7 @@ void Worker::Step() {
   if (table_.MissesEntries(Now())) watch_.Renew();
   PollPipelines();
   FollowLeases();
-  // What waits for a connection would be sent when it is out of date.
+  // Data that waited for a connection would be outdated.
   if (connection_->state().connected()) Send(table_.Poll(Now()));
 }
 
@@ -85,14 +85,14 @@ void Worker::TakeNews() {
   }
 }
 
-/// Numbers of messages mean nothing in another stream, even if it is called the same.
+/// Message numbers are void in another stream, even one of the same name.
 void Worker::NoteStream(std::uint64_t stream) {
   if (std::exchange(stream_, stream) == stream) return;
   for (const auto& [robot, pipeline] : pipelines_) table_.Drop(robot, Duration{0}, Now());
 }
 
-/// A record may ask for a scan that the stream does not have yet. Waiting for it would leave a
-/// robot without poses; the next renewal mends the record.
+/// A record may name a scan that the stream does not have. Waiting for it would leave the robot
+/// without poses; the next renewal corrects the record.
 void Worker::CheckPlaces(const FleetWatch::News& news) {
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const RobotPipeline& pipeline = *at->second;
@@ -102,7 +102,7 @@ void Worker::CheckPlaces(const FleetWatch::News& news) {
     }
     Warn(at->first, "its record is ahead of the stream; only its pose counts");
     Progress pose = pipeline.progress().value_or(*pipeline.begin());
-    pose.stream = 0;  // no stream's
+    pose.stream = 0;  // of no stream
     table_.SetProgress(at->first, pose);
     at = GiveUp(at);
   }
@@ -143,7 +143,7 @@ void Worker::FollowLeases() {
   const auto held = table_.HeldAt(Now());
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const auto lease = held.find(at->first);
-    // A renewal whose answer was late comes back to the scan that it had no pose of.
+    // A late renewal leads back to the scan that had no pose.
     if (lease != held.end() && !at->second->has_dropped()) {
       at->second->SetEnd(lease->second.until);
       ++at;
@@ -173,7 +173,7 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
                  (held.last_worker.empty() ? "" : ", after " + tools::Printable(held.last_worker)));
   ++counters_.taken;
   auto begin = held.progress;
-  if (begin && begin->scan < first_) begin->velocity.reset();  // it may have been hours ago
+  if (begin && begin->scan < first_) begin->velocity.reset();  // the stream may have dropped it
   try {
     auto pipeline = std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, begin);
     pipeline->SetEnd(held.until);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Has a pipeline run for each robot whose lease is ours, and for no other.
+// Runs a pipeline for each robot whose lease is ours.
 #pragma once
 #include <future>
 #include <map>
@@ -31,8 +31,8 @@ class Worker {
 
   /// Some milliseconds of work.
   void Step();
-  /// Stops all pipelines, and leaves the robots to other workers at once; at most two seconds. A
-  /// pipeline that runs longer publishes nothing more; the destructor waits for it.
+  /// Stops all pipelines, and leaves the robots to other workers within two seconds. A pipeline
+  /// that runs longer publishes nothing; the destructor waits for it.
   void HandOver();
 
   /// Adds the figures of the worker and of each robot that it has. Does not wait.
@@ -73,9 +73,9 @@ class Worker {
   } counters_;
   std::size_t left_out_ = 0;  // sensors beyond the bounds of FleetWatch
   Pipelines pipelines_;
-  /// Pipelines that stop, which may take a while: others must not wait for it.
+  /// Pipelines that are stopping, which may take a while; others do not wait for them.
   std::map<std::string, Ending> ending_;
-  FleetWatch watch_;  // the last, so that its thread ends first
+  FleetWatch watch_;  // declared last, so that its thread ends first
 };
 
 }  // namespace lidar::worker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How far a received cloud is from the one that was sent.
+// Measures how far a received cloud is from the sent one.
 #pragma once
 #include <cstdint>
 
@@ -17,8 +17,8 @@ struct Comparison {
   Comparison& operator+=(const Comparison& o);
 };
 
-/// Compares clouds of one shape place by place. In others it compares every point with the nearest
-/// one of the other cloud, within `reach_m`, and the other way round. All-zero points are missing
+/// Compares organised clouds of equal shape place by place. Otherwise compares each point with the
+/// nearest one of the other cloud within `reach_m`, in both directions. All-zero points are missing
 /// returns.
 Comparison Compare(const Cloud& sent, const Cloud& received, double reach_m);
 

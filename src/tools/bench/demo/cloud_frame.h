@@ -26,7 +26,7 @@ struct Cloud {
 /// Both ends are on one machine: native byte order.
 std::string WriteFrame(const Cloud& cloud);
 
-/// Blocks on `fd`. Returns nothing at its end or if the stream is no frame.
+/// Blocks on `fd`. Returns nothing at its end or for an invalid frame.
 std::optional<Cloud> ReadFrame(int fd);
 
 }  // namespace lidar::demo

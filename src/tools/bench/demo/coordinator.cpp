@@ -50,7 +50,7 @@ class Coordinator {
     kSender,
     kStreaming,
     kDraining,
-    kArriving,  // what is on its way when the sender has ended
+    kArriving,  // data under way when the sender has ended
     kReceiverStops,
     kLinkStops
   };
@@ -95,7 +95,7 @@ class Coordinator {
   std::string failure_;
 };
 
-/// A port that is free, below those that the kernel hands out until a child has bound it.
+/// Returns a free port below those that the kernel assigns, until a child has bound it.
 int FreePort() {
   std::random_device random;
   std::uniform_int_distribution<int> ports(10000, 32767);
@@ -199,7 +199,7 @@ void Coordinator::OnLink(std::size_t index, const nlohmann::json& record) {
   if (index + 1 == links_.size()) PrintLive(Together());
 }
 
-/// What all links carried in the last second; the longest of their queues.
+/// Returns the sum of all links over the last second, with the longest of their queues.
 nlohmann::json Coordinator::Together() const {
   nlohmann::json all = links_.front().latest;
   if (!all.is_object()) return links_.back().latest;
@@ -240,7 +240,7 @@ void Coordinator::PrintLive(const nlohmann::json& link) {
 void Coordinator::TakeComparisons() {
   if (!comparer_) return;
   for (const auto& [key, comparison] : comparer_->Take()) {
-    // A receiver that has stopped writes its clouds as fast as they are compared.
+    // A stopped receiver writes its clouds at the speed of the comparison.
     if (phase_ == Phase::kReceiverStops) phase_since_ = Now();
     last_error_m_ = std::max(last_error_m_, comparison.max_error_m);
     m_.ledger.Add(key, comparison);
@@ -297,7 +297,7 @@ void Coordinator::CheckLimit() {
   failure_ = std::string("gave up waiting for ") + kWaitingFor[static_cast<int>(phase_)];
 }
 
-/// All is there, or what is missing has had the time to come: the link may be in a gap.
+/// Returns true if all data arrived, or had time to arrive: the link may be in a gap.
 bool Coordinator::AllArrived() const {
   const Duration waited = Now() - phase_since_;
   return waited >= kArrivalLimit || (waited >= kTick && m_.ledger.Count().slices_lost == 0);
@@ -348,7 +348,7 @@ int Coordinator::Run() {
   };
   loop_.Run(before_wait);
   if (failure_.empty() && phase_ == Phase::kStreaming) {
-    // Ctrl-C: what has been streamed is worth a report.
+    // Ctrl-C: the streamed part still gets a report.
     Enter(Phase::kDraining);
     loop_.Run(before_wait);
   }

@@ -29,17 +29,17 @@ struct SliceLife {
   std::optional<Comparison> comparison;
 };
 
-/// What is older is late, as for the sender's queue (max-queue-delay of screamsink).
+/// Older data are late, as in the sender's queue (max-queue-delay of screamsink).
 constexpr Duration kMaxAge = std::chrono::milliseconds(200);
 
 using ScanLife = std::vector<SliceLife>;
 
 struct ScanCounts {
   std::uint64_t captured = 0;  // all slices left the source
-  std::uint64_t skipped = 0;   // of these, at least one was not encoded
+  std::uint64_t skipped = 0;   // with a slice that was not encoded
   std::uint64_t sent = 0;
   std::uint64_t complete = 0;  // every slice decoded
-  std::uint64_t in_time = 0;   // of these, every slice within kMaxAge of its last column
+  std::uint64_t in_time = 0;   // complete, with each slice within kMaxAge of its last column
   std::uint64_t slices_sent = 0;
   std::uint64_t slices_lost = 0;  // encoded, and not decoded
 };
@@ -50,11 +50,11 @@ class Ledger {
   void Add(const nlohmann::json& record);
   void Add(SliceKey key, const Comparison& comparison);
 
-  /// Slices that were encoded after `settled` may still be on their way, and do not count as lost.
-  /// Nor does a scan that was captured after it count as skipped.
+  /// Slices encoded after `settled` may still be under way and do not count as lost. Scans captured
+  /// after it do not count as skipped.
   ScanCounts Count(std::int64_t settled = INT64_MAX) const;
   const std::map<std::uint32_t, ScanLife>& scans() const { return scans_; }
-  /// When the edge knew the pose of a scan.
+  /// Times at which the edge knew the pose of each scan.
   const std::map<std::uint32_t, std::int64_t>& posed() const { return posed_; }
   const Comparison& total() const { return total_; }
   std::uint64_t compared_slices() const { return compared_slices_; }

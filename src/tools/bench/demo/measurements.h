@@ -25,7 +25,7 @@ struct LinkPacket {
 struct SenderSample {
   std::int64_t unix_ns = 0;
   double target_bps = 0;
-  double estimated_capacity_bps = 0;  // of the path, whatever the source sends; 0: not known
+  double estimated_capacity_bps = 0;  // of the path; 0: unknown
   double rtt_ms = 0;
   double queue_delay_ms = 0;
   double ref_wnd_bytes = 0;
@@ -54,22 +54,22 @@ struct Measurements {
   // are a guess.
   double encoder_min_bps = 0;
   double encoder_max_bps = 0;
-  /// The latest bitrate bounds, and since when they hold.
+  /// The latest bitrate bounds, with the start of their validity.
   struct {
     std::int64_t since_unix_ns = 0;
     double min_bps = 0, max_bps = 0;
-    double known_s = 0;  // for how long the means count bounds so far
+    double known_s = 0;  // duration of the bounds in the means
   } bounds;
   nlohmann::json sender_stats;  // the last of each
   nlohmann::json receiver_stats;
 
-  /// These bounds hold until the next call, or until the stream ends.
+  /// The bounds hold until the next call, or until the stream ends.
   void AddBounds(std::int64_t unix_ns, double min_bps, double max_bps);
   void EndBounds(std::int64_t unix_ns);
   double Since(std::int64_t unix_ns) const {
     return static_cast<double>(unix_ns - origin_unix_ns) / 1e9;
   }
-  /// Not in the first 3 s, nor in the second after a step of the capacity.
+  /// Returns false in the first 3 s, and in the second after a step of the capacity.
   bool IsSteady(double time_s) const;
 };
 

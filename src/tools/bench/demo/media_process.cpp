@@ -160,7 +160,7 @@ int MediaProcess::Run() {
   GstBus* bus = gst_element_get_bus(pipeline_.get());
   const guint watch = gst_bus_add_watch(bus, OnMessage, this);
   gst_object_unref(bus);
-  // The handlers stay: a signal after the end must not cut off the last records.
+  // The handlers stay: a signal after the end must not interrupt the last records.
   g_unix_signal_add(SIGINT, OnSignal, this);
   g_unix_signal_add(SIGTERM, OnSignal, this);
   std::vector<guint> sources = {watch};

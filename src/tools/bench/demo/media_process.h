@@ -40,7 +40,7 @@ class MediaProcess {
   /// A record on standard output.
   void Write(const nlohmann::json& record);
   void Write(const Cloud& cloud);
-  /// When the pipeline's clock shows, or showed, the running time of `pts`, in UnixNow's time.
+  /// Converts `pts` to UnixNow's time, by the pipeline's clock.
   std::int64_t UnixTimeOf(GstPad* pad, GstClockTime pts) const;
 
   /// Plays until EOS, an error, or a signal that asks for EOS. The program's exit code.

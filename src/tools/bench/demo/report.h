@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a run leaves behind: tables, CSV files, plots.
+// The files of a run: tables, CSV files, plots.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,7 +10,7 @@ namespace lidar::demo {
 
 /// slices.csv: the life of every slice. timeline.csv: tenths of a second.
 void WriteTables(const Measurements& m, const std::string& folder);
-/// Removes what an earlier run wrote there, so that nothing stale is taken for this run's.
+/// Removes files of an earlier run, so that they are not taken for this run's.
 void RemoveReport(const std::string& folder);
 /// Runs gnuplot over the tables. False, with a message on standard error, where that fails.
 bool DrawPlots(const Measurements& m, const std::string& folder);

@@ -14,10 +14,10 @@
 namespace lidar::demo {
 namespace {
 
-/// The cube that --fixed-bits divides: what a sensor of 100 m range can see.
+/// Side of the cube that --fixed-bits divides: the view of a sensor of 100 m range.
 constexpr double kFixedBitsExtentM = 200;
 
-/// Mean of --drive: between what the source needs at least and what it can use.
+/// Mean of --drive: between the source's least and greatest use.
 constexpr double kDriveMbps = 4;
 constexpr double kDriveOfCaptureMbps = 8;
 constexpr double kDriveTail_s = 60;  // for a stream that starts late
@@ -233,7 +233,7 @@ double FixedStepOf(const RunOptions& o) {
 
 double ErrorBoundOf(const RunOptions& o) {
   const double step = FixedStepOf(o);
-  // A uniform grid: half a step along the beam, or half the diagonal of a cube.
+  // Half a step along the beam for ranges, half the diagonal of a cube otherwise.
   if (step > 0) return HasRanges(o) ? step / 2 : step * std::sqrt(3) / 2;
   return o.max_error_m;
 }
@@ -270,7 +270,7 @@ std::vector<Duration> ChangesOf(const RunOptions& o) {
 
 std::string SenderPipeline(const RunOptions& o, const Ports& ports) {
   const double step = FixedStepOf(o);
-  // The queue lets the source keep its time while a slice is encoded.
+  // The queue lets the source keep its pace while a slice is encoded.
   std::string text = SourceOf(o) + " ! queue ! " + EncoderOf(o) + " name=encoder max-error=" +
                      Number(step > 0 ? std::max(step, 0.001) : o.max_error_m);
   if (EncoderOf(o) == "dracoenc") text += " geometry=" + o.geometry;
@@ -279,7 +279,7 @@ std::string SenderPipeline(const RunOptions& o, const Ports& ports) {
           " max-bitrate=" + Bps(o.max_bitrate_mbps) +
           " start-bitrate=" + Bps(o.start_bitrate_mbps) +
           " ecn-mode=" + (o.no_l4s ? "off" : "ect1") + KeyOf(o);
-  // A sink without a pad serves the statistics alone.
+  // A sink without a pad only serves the statistics.
   if (o.view) text += " foxglovesink port=" + std::to_string(kSenderPage);
   return text;
 }
@@ -299,7 +299,7 @@ std::string SlamOf(const RunOptions& o) {
          Quoted(o.output + "/map.png") + " posed. ! queue ! ";
 }
 
-/// A branch for the page, which decodes by itself; it may lose slices and holds up no other branch.
+/// A branch for the page, which decodes by itself. It may lose slices and delays no other branch.
 std::string ViewOf(const RunOptions& o) {
   if (!o.view) return "";
   return "tee name=viewed ! queue leaky=downstream max-size-buffers=64 ! foxglovesink name=page "

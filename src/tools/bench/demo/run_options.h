@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The command line of `lidar-demo run`, and what it means.
+// The command line of `lidar-demo run`, and its meaning.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -50,7 +50,7 @@ struct RunOptions {
   bool secure = false;  // SRTP, by a key of this run in the environment
 };
 
-/// The environment variable that holds the key of --secure, in hexadecimal digits.
+/// Environment variable with the key of --secure in hexadecimal digits.
 inline constexpr const char* kKeyVariable = "LIDAR_DEMO_SRTP_KEY";
 
 void AddRunOptions(CLI::App* app, RunOptions* options);
@@ -70,7 +70,7 @@ std::vector<Duration> ChangesOf(const RunOptions& options);
 
 /// The text of the capacity trace of --drive.
 std::string DriveTraceOf(const RunOptions& options, std::size_t index);
-/// NAME in the folder of the report, of the second link with a 2 in front of its extension.
+/// Path of NAME in the report's folder; for the second link with a 2 before the extension.
 std::string LinkFile(const RunOptions& options, const std::string& name, std::size_t index);
 
 struct Ports {

@@ -6,7 +6,7 @@
 namespace lidar::demo {
 namespace {
 
-/// A decoded slice may overtake the original, which waits in another process for its writer.
+/// A decoded slice may overtake its original, which another process may still be writing.
 constexpr auto kOriginalTimeout = std::chrono::seconds{2};
 
 }  // namespace

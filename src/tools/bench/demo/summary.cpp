@@ -15,7 +15,7 @@ namespace {
 using tools::Distribution;
 
 constexpr double kShortQueue_ms = 10;
-/// A queue that has been short for so long has settled.
+/// A queue has settled after being short for this time.
 constexpr double kSettled_s = 0.5;
 /// Coordinates are floats: half a unit in the last place at 200 m, in three dimensions.
 constexpr double kRounding_m = 5e-5;
@@ -86,7 +86,7 @@ Delays QueueDelays(const Measurements& m) {
 
 /// Delivered bits over those that the link carries and the source can use, in steady time.
 nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps) {
-  if (m.options.links > 1) return nullptr;  // copies fill what is left of them
+  if (m.options.links > 1) return nullptr;  // copies fill the remaining capacity
   constexpr double kSpan_s = 0.1;
   const auto bins = static_cast<std::size_t>(m.ran_s / kSpan_s);
   std::vector<double> sent(bins);
@@ -159,8 +159,8 @@ void AddGaps(const Measurements& m, nlohmann::ordered_json* s) {
   (*s)["gaps"] = {{"count", back.count()}, {"back_after_s", Percentiles(back)}};
 }
 
-/// What a sender that knew the link could deliver: how many scans at the lowest bitrate that keeps
-/// the bound, and how soon at the bitrate that was put out.
+/// Adds the results of a sender that knew the link: scans at the lowest bitrate within the bound,
+/// and delays at the measured bitrate.
 void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
   double bits = 0;
   for (const auto& [id, scan] : m.ledger.scans())
@@ -174,7 +174,7 @@ void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
        {{"p50", mean.Latency(50)}, {"p95", mean.Latency(95)}, {"p99", mean.Latency(99)}}}};
 }
 
-/// What each of several links carried.
+/// Adds the figures of each of several links.
 void AddLinks(const Measurements& m, nlohmann::ordered_json* s) {
   const nlohmann::json links = LinkStats(m);
   if (links.empty()) return;

@@ -9,7 +9,7 @@
 
 namespace lidar::demo {
 
-/// How the queue came down after one step of the capacity.
+/// The queue after a step of the capacity.
 struct Transient {
   double at_s = 0;
   double from_bps = 0;

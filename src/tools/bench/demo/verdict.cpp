@@ -8,9 +8,9 @@
 namespace lidar::demo {
 namespace {
 
-constexpr double kUseful = 0.9;  // of what the oracle delivers
+constexpr double kUseful = 0.9;  // share of the oracle's scans
 constexpr double kOfSomeUse = 0.5;
-constexpr double kMostly = 0.5;  // of the time
+constexpr double kMostly = 0.5;  // share of the time
 
 template <class... Args>
 std::string Text(const char* format, Args... args) {
@@ -94,7 +94,7 @@ Verdict Judge(const Measurements& m) {
   Verdict v;
   if (n.captured == 0) return {Verdict::Level::kPoor, "no scan was captured", {}};
   const auto captured = static_cast<double>(n.captured);
-  // Scans are counted a little differently at the start and the end.
+  // Scans at the start and the end are counted slightly differently.
   double possible = captured;
   if (m.encoder_min_bps > 0)
     possible = std::min(captured, static_cast<double>(AskOracle(m, m.encoder_min_bps).complete));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether a run was of use, beside what its link could have carried.
+// Judges whether a run was useful, relative to its link's capacity.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,14 +11,14 @@ namespace lidar::demo {
 
 /// Bits on the wire for each bit that the encoder put out; 1 without output.
 double WireShare(const Measurements& m);
-/// What a sender that knew the link could deliver of scans at this bitrate of media.
+/// Returns the scans that a sender which knew the link could deliver at this bitrate of media.
 link::OracleResult AskOracle(const Measurements& m, double media_bps);
 
 struct Verdict {
   enum class Level { kUseful, kReduced, kPoor };
   Level level = Level::kUseful;
   std::string text;
-  std::vector<std::string> hints;  // why, and what to try
+  std::vector<std::string> hints;  // causes, and suggestions
 };
 Verdict Judge(const Measurements& m);
 

@@ -12,7 +12,7 @@ namespace lidar::tools {
 struct LinkOptions {
   std::vector<std::string> listen{"127.0.0.1:5004"};
   std::vector<std::string> forward{"127.0.0.1:5006"};
-  link::BottleneckConfig there;  // its origin is the first packet
+  link::BottleneckConfig there;  // starts with the first packet
   link::BottleneckConfig back;
   bool origin_at_start = false;
   bool bleach = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lidar-link writes down: a line a packet, live lines, the summary.
+// The output of lidar-link: a log of packets, live lines, the summary.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -33,11 +33,11 @@ class Recorder {
   void Start(Time origin, Duration unix_offset);
   void OnPacket(const PacketRecord& record);
   void OnFeedback(bool delivered, std::size_t bytes);
-  /// How late a packet went out against its computed time.
+  /// Delay of a packet's departure relative to its computed time.
   void OnLateness(Duration late) { lateness_.Add(Milliseconds(late)); }
   void OnRefusedSend() { ++refused_sends_; }
 
-  /// Figures since the last call; `now` at least a little later than then.
+  /// Returns the figures since the last call, which must be earlier than `now`.
   nlohmann::ordered_json Live(Time now, const link::Bottleneck& there,
                               const link::Capacity& capacity);
   nlohmann::ordered_json Summary(Time now, const link::Bottleneck* there,

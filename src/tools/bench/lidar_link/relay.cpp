@@ -47,7 +47,7 @@ void Relay::Start(Time origin) {
 
 Time Relay::ArrivalOf(const Datagram& datagram) {
   const Time now = Now();
-  // The kernel's time of reception: this process may have had to wait for its turn.
+  // The kernel's time of reception, as this process may have waited for its turn.
   const Time kernel{datagram.kernel_time - unix_offset_};
   constexpr auto kPlausible = std::chrono::seconds{1};
   const bool use_kernel = kernel <= now && kernel > now - kPlausible;
@@ -124,7 +124,7 @@ void Relay::Return(const link::Outcome& outcome) {
 }
 
 void Relay::Release(const link::Outcome& outcome) {
-  // A duplicate comes right behind the first copy, before any slot is taken again.
+  // A duplicate directly follows the first copy, before any slot is reused.
   if (!outcome.duplicate) free_slots_.push_back(outcome.packet.id);
 }
 

@@ -19,7 +19,7 @@ class Relay {
   /// opened.
   Relay(const LinkOptions& options, EventLoop* loop, Recorder* recorder);
 
-  /// Sends what is due. Returns when to come back at the latest.
+  /// Sends due packets. Returns when to call again at the latest.
   Time Pump();
 
   std::vector<int> ListeningPorts() const;
@@ -32,7 +32,7 @@ class Relay {
     UdpSocket socket;
     Address forward;
   };
-  /// A sender; like a NAT, it gets a socket towards the receiver of its own.
+  /// A sender, with a socket of its own towards the receiver, as behind a NAT.
   struct Flow {
     std::size_t listener;
     Address client;

@@ -39,7 +39,7 @@ std::string Make(const Options& o) {
                                     FromSeconds(o.every_s), FromSeconds(o.duration_s)});
 }
 
-/// The link of a trace's file. Behind the last @ stands where in the trace it starts.
+/// Loads a trace. The number after the last @ is the second at which it starts.
 lidar::link::Capacity Load(const std::string& text) {
   const auto at = text.rfind('@');
   double start = 0;

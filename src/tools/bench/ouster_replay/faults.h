@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What goes wrong on the way from a sensor, on request and counted.
+// Faults between sensor and receiver, on request and counted.
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -19,10 +19,10 @@ struct Faults {
   double corrupt = 0;
   bool silent = false;      // no packets are sent
   bool wrong_size = false;  // packets are cut
-  int http_status = 0;      // every request is answered with this; 0: properly
+  int http_status = 0;      // status of each answer; 0: the proper one
   int http_delay_ms = 0;
 
-  /// Changes what the object names; the error, or "".
+  /// Sets the fields that the object names. Returns the error, or "".
   std::string Merge(const nlohmann::json& change);
 };
 
@@ -41,7 +41,7 @@ struct FaultCounts {
 class FaultInjector {
  public:
   explicit FaultInjector(std::uint64_t seed) : random_(seed) {}
-  /// What goes out in place of `packet`.
+  /// Returns the packets to send in place of `packet`.
   std::vector<OutPacket> Apply(const Faults& faults, OutPacket packet);
   const FaultCounts& counts() const { return counts_; }
 
@@ -49,7 +49,7 @@ class FaultInjector {
   bool Chance(double probability);
 
   std::mt19937_64 random_;
-  std::optional<OutPacket> held_;  // goes out behind the next packet
+  std::optional<OutPacket> held_;  // follows the next packet
   FaultCounts counts_;
 };
 

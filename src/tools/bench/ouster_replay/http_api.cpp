@@ -27,7 +27,7 @@ bool Flag(const HttpRequest& request, const char* name) {
   return value == "true" || value == "True" || value == "1";
 }
 
-/// Returns false for the paths that set faults, which work whatever faults the sensor has.
+/// Returns false for the paths that set faults, which ignore the sensor's faults.
 bool IsSensorPath(const HttpRequest& request) { return request.path.rfind("/replay/", 0) != 0; }
 
 /// "key value", the value being JSON or a bare word.
@@ -117,7 +117,7 @@ class HttpApi::Impl {
   Sensor& sensor_;
   std::function<std::string()> stats_;
   std::map<std::string, HttpServer::Handler> routes_;  // by method and path
-  std::unique_ptr<HttpServer> server_;                 // the last, so that it ends first
+  std::unique_ptr<HttpServer> server_;                 // declared last, so that it ends first
 };
 
 HttpApi::HttpApi(const Options& options, Sensor* sensor, std::function<std::string()> stats)

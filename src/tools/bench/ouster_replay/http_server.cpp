@@ -71,7 +71,7 @@ class HttpServer::Impl {
     });
   }
   ~Impl() {
-    // The loop ends from within: it may not run yet.
+    // Ends the loop from within, as it may not run yet.
     g_main_context_invoke_full(
         context_, G_PRIORITY_DEFAULT,
         [](gpointer loop) -> gboolean {

@@ -22,11 +22,11 @@ struct HttpReply {
   std::string location;  // of a redirect
 };
 
-/// Listens from its making to its end. Both functions are called from its thread.
+/// Listens during its lifetime. Calls both functions in its thread.
 class HttpServer {
  public:
   using Handler = std::function<HttpReply(const HttpRequest&)>;
-  /// How long a request waits before it is handled [ms]; others go on meanwhile.
+  /// Delay of a request's handling [ms]; other requests continue meanwhile.
   using Delay = std::function<unsigned(const HttpRequest&)>;
 
   /// Port 0: any free one. Throws std::runtime_error if the port is taken.

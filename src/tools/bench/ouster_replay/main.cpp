@@ -52,7 +52,7 @@ ouster::Metadata FirstMetadata(const ReplayOptions& o) {
   return m;
 }
 
-/// The window of columns that an azimuth window [millidegrees] leaves: columns count against it.
+/// Returns the columns within an azimuth window [millidegrees]; columns run against azimuth.
 ColumnWindow ToColumns(const json& window, std::uint32_t columns) {
   const auto start = window[0].get<double>() / 360e3;
   const auto end = window[1].get<double>() / 360e3;
@@ -62,7 +62,8 @@ ColumnWindow ToColumns(const json& window, std::uint32_t columns) {
   return {first % columns, (last + columns - first) % columns + 1};
 }
 
-/// What a synthetic sensor becomes with a new configuration; a recorded one stays what it is.
+/// Returns a synthetic sensor's metadata after a new configuration; a recorded sensor does not
+/// change.
 ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& first,
                          const json& config) {
   ouster::Metadata m = first;

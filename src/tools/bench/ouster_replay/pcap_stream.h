@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A capture as an endless, or ending, stream of packets.
+// A capture as a stream of packets, endless or not.
 #pragma once
 #include <string>
 
@@ -14,7 +14,7 @@ class PcapStream : public PacketStream {
     double speed = 1;
     std::uint64_t serial = 0;  // 0: as it is in the packets
   };
-  /// Holds the whole capture in memory, so that no disk is in the way. Throws std::runtime_error.
+  /// Holds the whole capture in memory, so that no disk delays it. Throws std::runtime_error.
   PcapStream(const std::string& path, const ouster::Metadata& metadata, const Options& options);
 
   void Restart(const Start& start) override;

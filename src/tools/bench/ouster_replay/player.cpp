@@ -10,9 +10,9 @@ namespace lidar::tools {
 namespace {
 
 constexpr Duration kTaiMinusUtc = std::chrono::seconds(37);
-constexpr Duration kRequestPoll = std::chrono::milliseconds(5);  // to look for requests
+constexpr Duration kRequestPoll = std::chrono::milliseconds(5);  // between checks
 
-/// What the sensor's clock shows when it starts to scan.
+/// Returns the sensor's clock when it starts to scan.
 std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now) {
   const Duration since_boot = std::chrono::seconds(3);
   const Duration utc = now.time_since_epoch() + UnixOffset();

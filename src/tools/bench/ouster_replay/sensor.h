@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sensor's configuration, metadata and state. Any thread may ask.
+// A sensor's configuration, metadata and state. All threads may call it.
 #pragma once
 #include <functional>
 #include <mutex>
@@ -23,7 +23,7 @@ class Sensor {
   std::string MetadataJson() const;
   std::string ConfigJson(bool staged) const;
   struct Change {
-    bool staging = false;  // into what the next restart makes active
+    bool staging = false;  // until the next restart activates it
     bool restart = false;
   };
   /// Returns the error, or "". `@auto` becomes `peer`.

@@ -90,7 +90,7 @@ void SynthStream::Restart(const Start& start) {
   start_ = start;
   writer_ = std::make_unique<ouster::PacketWriter>(
       metadata_.format, ouster::PacketIdentity{start.init_id, metadata_.serial});
-  // The car drove on: only the sensor's counters start over.
+  // The car drove on: only the sensor's counters restart.
   scan_ = 0;
   column_ = 0;
   imu_ = 0;
@@ -154,7 +154,7 @@ std::optional<OutPacket> SynthStream::LidarPacket() {
   return OutPacket{LidarDue(), false, writer_->Finish()};
 }
 
-/// What an IMU feels on that drive, by differences of the exact poses.
+/// Returns an IMU's samples on that drive, from differences of the exact poses.
 OutPacket SynthStream::ImuPacket() {
   constexpr Duration kStep = 5ms;
   constexpr double kGravity = 9.80665;

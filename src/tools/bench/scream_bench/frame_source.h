@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A media source that puts out exactly what it was asked for: frames of RTP packets.
+// A media source that obeys its target exactly: frames of RTP packets.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,7 +12,7 @@
 
 namespace lidar::tools {
 
-/// Sizes of frames that add up to the bitrate, whatever the rounding and the jitter.
+/// Sizes of frames whose sum follows the bitrate, despite rounding and jitter.
 class FrameSizes {
  public:
   FrameSizes(double fps, double jitter_percent)

@@ -23,7 +23,7 @@ struct Runner {
   int result = 0;
 };
 
-/// EOS first, so that queues drain; a second signal stops at once.
+/// Sends EOS, so that queues drain; a second signal stops at once.
 void End(Runner* runner) {
   if (runner->ending) {
     g_main_loop_quit(runner->loop.get());

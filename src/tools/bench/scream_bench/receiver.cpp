@@ -24,7 +24,7 @@
 namespace lidar::tools {
 namespace {
 
-/// Ages beyond this are those of a sender whose RTP timestamps are not Unix time.
+/// Greater ages show a sender whose RTP timestamps are not Unix time.
 constexpr Duration kPlausibleAge = std::chrono::seconds{60};
 
 Duration FromTicks(std::int32_t ticks) {
@@ -44,16 +44,16 @@ struct ReceivedPacket {
 /// Age of frames: from their creation to the arrival of their last packet.
 class FrameMeter {
  public:
-  /// The age of the frame that this packet ends, if it does.
+  /// Returns the age of the frame that this packet ends, if it ends one.
   std::optional<Duration> OnPacket(const ReceivedPacket& packet);
 
   std::uint64_t packets() const { return packets_; }
   std::uint64_t ce_packets() const { return ce_packets_; }
   DataSize received() const { return received_; }
-  /// Packets between the oldest and the newest that never came.
+  /// Number of missing packets between the oldest and the newest.
   std::uint64_t lost() const;
   std::uint64_t frames() const { return ages_ms_.count(); }
-  /// Returns true if the sender's clock is another, so that ages count from the youngest frame's.
+  /// Returns true if the sender's clock differs, so that ages are relative to the youngest frame's.
   bool is_relative() const { return offset_ != Duration{0}; }
   const Distribution& ages_ms() const { return ages_ms_; }
 
@@ -126,7 +126,7 @@ Receiver::Receiver(const BenchOptions& options) : options_(options) {
   Build();
 }
 
-/// The short way is screamsrc; feedback to another address needs its parts.
+/// Uses screamsrc, or its parts if feedback goes to another address.
 void Receiver::Build() {
   pipeline_.reset(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new("scream-bench-rx"))));
   const BenchRxOptions& o = options_.rx;

@@ -90,7 +90,7 @@ class Recording final : public ScanStream {
   }
 
  private:
-  /// A scan ends where the next one begins, unless scans are missing.
+  /// A scan lasts until the next one, unless scans are missing.
   void UpdatePeriod() {
     if (!next_ || !after_ || after_->start <= next_->start) return;
     const Duration period = after_->start - next_->start;

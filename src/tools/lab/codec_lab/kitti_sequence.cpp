@@ -39,7 +39,7 @@ bool IsReturn(const float* p) {
   return p[0] != 0 || p[1] != 0 || p[2] != 0;
 }
 
-/// A beam is sampled in the order of its phases, so another one begins where they go back.
+/// Phases ascend within a beam, so a new beam begins where they fall.
 std::vector<std::uint16_t> RingsOfPhases(const std::vector<float>& phases) {
   std::vector<std::uint16_t> rings;
   std::uint16_t ring = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A sequence in the layout of KITTI's odometry benchmark (Geiger et al., 2012), read and written:
 //   velodyne/000000.bin, …  x y z reflectance as F32, beam by beam
-//   times.txt               seconds, a line a scan: the middle of its sweep
-//   phases/000000.bin, …    not KITTI's: an F32 a point, when in its sweep it was sampled, 0 to 1.
-//                           Without these, as in KITTI's own sequences, scans are straight already.
+//   times.txt               seconds, a line per scan: the middle of its sweep
+//   phases/000000.bin, …    not KITTI's: an F32 per point, its time in the sweep, 0 to 1.
+//                           Without these, as in KITTI's own sequences, scans have no skew.
 #pragma once
 #include <memory>
 #include <string>
@@ -20,8 +20,8 @@ std::unique_ptr<ScanStream> OpenKittiSequence(const std::string& folder);
 /// The times of times.txt, which have to ascend. Throws std::runtime_error.
 std::vector<Time> ReadKittiTimes(const std::string& folder);
 
-/// The beam of each point of a cloud that lists one beam after the other, each from straight ahead
-/// once around. Empty if the points have no such order.
+/// Returns the beam of each point of a cloud that lists beams in sequence, each from straight ahead
+/// once around. Returns an empty list for another order.
 std::vector<std::uint16_t> FindRings(const std::vector<float>& xyz);
 
 /// Points as a sequence keeps them.

@@ -8,14 +8,14 @@
 namespace lidar::tools {
 
 struct Measurement {
-  double step_m = 0;  // mean, where it depends on the slice
+  double step_m = 0;  // mean, as it may depend on the slice
   double quantization_bits = 0;
   double bits_per_return = 0;
   double bitrate = 0;  // bit/s
   Distortion errors;
 };
 
-/// A setting by its step, or as the paper has it: bits of the slice's bounding cube.
+/// A setting by its step, or by the paper's bits of the slice's bounding cube.
 struct MeasuredSetting {
   double step_m = 0;
   unsigned quantization_bits = 0;  // not 0: goes before the step
@@ -27,10 +27,10 @@ struct MeasuredSetting {
 std::optional<Measurement> Measure(const ScanSet& set, const CodingMode& mode,
                                    const MeasuredSetting& setting);
 
-/// The own coder at an effort, which is 0 by default.
+/// Returns our coder at an effort; its default effort here is 0.
 const CodingMode& ModeOfEffort(unsigned effort);
 const CodingMode& DefaultRangeMode();
-/// What dracoenc takes by default: range geometry for organised sources, else xyz.
+/// Returns dracoenc's default: range geometry for organised sources, else xyz.
 const CodingMode& DefaultMode(const ScanSet& set);
 
 }  // namespace lidar::tools

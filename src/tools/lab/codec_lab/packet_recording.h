@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans of any sensor as the packets of an Ouster sensor, in a capture.
+// Converts scans of any sensor to packets of an Ouster sensor, in a capture.
 #pragma once
 #include <string>
 #include <vector>
@@ -17,11 +17,11 @@ std::vector<Beam> ParseBeams(const std::string& text);
 /// begins at -x, as those of Ouster's sensors and of KITTI's do. `columns` is a multiple of 16.
 SensorModel ModelOfCloud(const std::vector<Beam>& beams, std::uint32_t columns);
 
-/// Puts a cloud into the pixels of `geometry`, the nearest point of each; an organised scan stays
-/// as it is. A point moves by up to half a pixel across its ray, and not along it.
+/// Puts a cloud into the pixels of `geometry`, the nearest point in each. An organised scan stays
+/// unchanged. A point moves by up to half a pixel across its ray, and not along it.
 Scan ToRangeImage(const Scan& scan, const std::shared_ptr<const ScanGeometry>& geometry);
 
-/// What the capture of `set` says about its sensor: profile RNG19_RFL8_SIG16_NIR16.
+/// Metadata of the capture's sensor: profile RNG19_RFL8_SIG16_NIR16.
 ouster::Metadata MetadataOf(const ScanSet& set);
 
 /// Throws std::runtime_error. The scans are organised, all alike.

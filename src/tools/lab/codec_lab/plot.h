@@ -17,7 +17,7 @@ class CsvFile {
   void Close();
 
  private:
-  std::string header_;  // until it is written, with the first row
+  std::string header_;  // empty once it was written with the first row
   OutputFile file_;
 };
 

@@ -24,7 +24,7 @@ struct Scan {
   std::vector<float> xyz;                        // m; only without geometry
   std::vector<float> intensity;                  // of every range or point; may be empty
   std::vector<std::uint16_t> rings;              // beam of every point; only without geometry
-  std::vector<float> phases;                     // when it was sampled, as part of the scan; so too
+  std::vector<float> phases;  // time of each point in the scan, 0 to 1; may be empty
   bool organised() const { return geometry != nullptr; }
 };
 

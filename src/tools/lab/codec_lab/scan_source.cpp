@@ -43,7 +43,7 @@ ouster::Metadata ReadMetadata(const std::string& path) {
   return *metadata;
 }
 
-/// A slice of one whole scan, as PointWriter lays it out, to ranges and intensities.
+/// Converts a slice of one whole scan, as written by PointWriter, to ranges and intensities.
 Scan FromPoints(const ouster::Slice& slice, const ouster::PointWriter& writer,
                 const std::shared_ptr<const ScanGeometry>& geometry) {
   Scan scan;
@@ -116,7 +116,7 @@ std::unique_ptr<ScanStream> OpenCapture(const std::string& pcap, const std::stri
                                    std::move(reader));
 }
 
-/// A sensor that fires by a table: clouds, in the order of firing.
+/// A sensor with a firing table: gives clouds in the order of firing.
 class SyntheticFirings final : public ScanStream {
  public:
   explicit SyntheticFirings(const synth::ScannerConfig& config)

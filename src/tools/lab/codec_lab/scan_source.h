@@ -28,7 +28,7 @@ struct TimedScan {
   std::optional<synth::Pose> truth;  // in the middle, if the source has it
 };
 
-/// Scans one after the other, read or computed as they are asked for: a drive may be of any length.
+/// Scans in sequence, read or computed on request: a drive may have any length.
 class ScanStream {
  public:
   explicit ScanStream(double scans_per_second) : scans_per_second_(scans_per_second) {}
@@ -61,7 +61,7 @@ class ScanStream {
 std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptions& options);
 /// The folder that kitti:FOLDER names.
 std::optional<std::string> KittiFolderOf(const std::string& text);
-/// All of them at once; at least one, or std::runtime_error.
+/// Loads all scans at once. Throws std::runtime_error if there is none.
 ScanSet LoadScans(const std::string& text, const SourceOptions& options);
 std::vector<ScanSet> LoadAllScans(const std::vector<std::string>& texts,
                                   const SourceOptions& options);

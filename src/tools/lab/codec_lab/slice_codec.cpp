@@ -13,7 +13,7 @@
 namespace lidar::tools {
 namespace {
 
-// The step decides; the bound leaves room for the rounding of floats far out.
+// The step decides; this factor leaves room for the rounding of distant floats.
 constexpr double kRoomForRounding = 1e-3;
 
 double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }
@@ -132,7 +132,7 @@ rate::ErrorBound SliceCodec::Bound(const CodingMode& mode) {
   return rate::ErrorBound::Range(EncoderFor(mode).range_unit_mm());
 }
 
-/// Takes the coder that the mode names; dracoenc would take the smaller one.
+/// Uses the coder that the mode names; dracoenc would choose the smaller one.
 bool SliceCodec::EncodeXyz(const CodingMode& mode, const rate::Settings& settings,
                            double keep_fraction) {
   codec::XyzCloud all;
@@ -190,12 +190,12 @@ std::optional<rate::EncodedSize> SliceCodec::Encode(const CodingMode& mode,
 std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
                                              const rate::Settings& settings) {
   const bool xyz = mode.geometry == Geometry::kXyz;
-  // The kd-tree changes the order of the points, so they are compared through the sequential
-  // coder, which rounds to the very same grid and keeps the order.
+  // The kd-tree reorders points. So they are compared through the sequential coder, which has the
+  // same grid and keeps the order.
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
     return std::nullopt;
   constexpr std::uint32_t kMaxPoints = 1U << 26;
-  // The codec takes the kd-tree past a number of bits all the same.
+  // The codec uses the kd-tree anyway past a number of bits.
   const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
   if (xyz && draco::CheckDraco(bytes, {kMaxPoints}).value().is_kd_tree) return std::nullopt;
   draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);

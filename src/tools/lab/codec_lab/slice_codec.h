@@ -15,7 +15,7 @@
 
 namespace lidar::tools {
 
-/// A way of coding, under its name in the rate models.
+/// A way of coding, with its name in the rate models.
 struct CodingMode {
   std::string name;
   Geometry geometry = Geometry::kRange;
@@ -26,7 +26,7 @@ struct CodingMode {
 const std::vector<CodingMode>& AllModes();
 /// Throws std::runtime_error for an unknown name.
 const CodingMode& ModeNamed(const std::string& name);
-/// What Draco makes of xyz geometry at a compression level.
+/// Returns the mode that Draco uses for xyz geometry at a compression level.
 const CodingMode& XyzModeOfLevel(unsigned level);
 
 struct Distortion {
@@ -40,11 +40,11 @@ class SliceCodec {
   void Load(const Scan& scan, SliceOf slice);
 
   std::size_t returns() const { return returns_; }
-  /// The slice as it would lie in a buffer.
+  /// The format of the slice in a buffer.
   const codec::CloudFormat& format() const { return format_; }
   ByteView raw() const { return {raw_.data(), raw_.size()}; }
   std::uint32_t first_column() const { return first_column_; }
-  /// The slice's own part: returns, extent, mode.
+  /// The features of the slice: returns, extent, mode.
   rate::SliceFeatures Features(const CodingMode& mode);
   rate::ErrorBound Bound(const CodingMode& mode);
 
@@ -52,8 +52,8 @@ class SliceCodec {
   /// beams, or points of a cloud without order.
   std::optional<rate::EncodedSize> Encode(const CodingMode& mode, const rate::Settings& settings,
                                           double keep_fraction = 1);
-  /// Distances between the points and their decoded points. Returns nothing if Encode() would, and
-  /// for xyz steps so fine that no coder keeps the order of the points.
+  /// Returns distances between points and decoded points. Returns nothing if Encode() would, or for
+  /// xyz steps so fine that no coder keeps the order.
   std::optional<Distortion> Errors(const CodingMode& mode, const rate::Settings& settings);
 
  private:

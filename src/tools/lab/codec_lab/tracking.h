@@ -14,7 +14,7 @@ enum class TargetProfile { kSteady, kWalk, kJump };
 
 struct ProfileOptions {
   double steady_bps = 0;
-  double min_bps = 0;  // walks and jumps stay within these
+  double min_bps = 0;  // limits of walks and jumps
   double max_bps = 0;
   std::uint64_t seed = 1;
 };
@@ -40,8 +40,8 @@ struct TrackedScan {
   double target_bps = 0;
   double sent_bps = 0;
   double coarsest_step_m = 0;
-  double largest_bound_m = 0;  // of the error
-  double min_bps = 0;          // what the controller takes for r_min after this scan
+  double largest_bound_m = 0;  // of the error bound
+  double min_bps = 0;          // the controller's r_min after this scan
   unsigned intensity_bits = 0;
   double keep_fraction = 1;
   bool skipped = false;
@@ -52,7 +52,7 @@ struct TrackedScan {
 /// 0 1 2 1 0 1 2 ... for a count of 3.
 std::size_t ThereAndBack(std::size_t i, std::size_t count);
 
-/// Plays `set` there and back, so that no scan follows one it never followed.
+/// Plays `set` forwards and backwards in turn, so that consecutive scans are neighbours.
 std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& targets,
                                const TrackOptions& options, std::unique_ptr<rate::SizeModel> model);
 
@@ -67,7 +67,7 @@ struct TrackSummary {
   double mean = 0;           // of |error|
   double percentile_95 = 0;  // of |error|
   double largest_over = 0;   // error of the scan furthest above its target
-  double reencoded = 0;      // part of the slices
+  double reencoded = 0;      // share of the slices
   std::size_t skipped = 0;
   double largest_bound_m = 0;
 };

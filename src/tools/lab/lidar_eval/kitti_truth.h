@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The true way of the sensor in a sequence of KITTI's.
+// The true trajectory of the sensor in a KITTI sequence.
 #pragma once
 #include <string>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval predict: how far the predictors are off, before and after they have seen a slice.
+// lidar-eval predict: errors of the predictors before and after they have seen a slice.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -31,8 +31,7 @@ std::string Cell(const rate::FitError& e) {
                     : Format("%19s", "-");
 }
 
-/// Scan after scan, each at another random step: what the model says once it has seen the scan
-/// before.
+/// Predicts each scan at another random step, after the model has seen the scan before.
 rate::FitError Corrected(const ScanSet& set, const CodingMode& mode, const PredictOptions& o,
                          rate::SizeModel* model) {
   std::mt19937_64 random(o.sampling.seed);

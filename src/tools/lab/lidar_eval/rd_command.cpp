@@ -17,7 +17,7 @@ struct RdOptions {
   std::vector<std::string> sources;
   SourceOptions source;
   std::vector<std::string> modes = {DefaultRangeMode().name};
-  std::vector<unsigned> efforts;  // not empty: in place of `modes`
+  std::vector<unsigned> efforts;  // if not empty, replaces `modes`
   std::vector<std::uint32_t> slices = {1, 8};
   unsigned intensity_bits = 0;
   std::vector<double> errors = {0.002, 0.003, 0.005, 0.007, 0.01, 0.015,
@@ -31,7 +31,7 @@ struct Curve {
   std::vector<Measurement> points;
 };
 
-/// Automatic quantisation of the bounding cube, as the paper has it.
+/// Quantises the bounding cube automatically, as the paper does.
 Curve PaperCurve(const ScanSet& set, const std::string& mode, const char* name) {
   constexpr unsigned kFewestBits = 8;
   constexpr unsigned kMostBits = 17;  // beyond, Draco codes the sensor's noise

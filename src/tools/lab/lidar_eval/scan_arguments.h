@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What slam and to-kitti take of a source, and what they do to it.
+// Arguments of slam and to-kitti: a source, and changes to its scans.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <memory>

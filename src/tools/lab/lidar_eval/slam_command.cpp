@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval slam and ate: the way of the sensor from its scans, and how wrong it is.
+// lidar-eval slam and ate: the sensor's trajectory from its scans, and its error.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -100,7 +100,7 @@ void PrintRun(const SlamResult& r) {
               at(0.95), r.map_voxels);
 }
 
-/// The truth that the user names, or else the source's.
+/// Returns the truth that the user names, otherwise the source's.
 Trajectory FindTruth(const SlamArguments& a, const SlamResult& r, double scans_per_second) {
   if (!a.truth.empty()) return Load(a.truth, scans_per_second);
   return KittiFolderOf(a.scans.source) ? Load(a.scans.source, scans_per_second) : r.truth;
@@ -119,7 +119,7 @@ void Print(const Calibration& c, const char* unit) {
       c.mean, unit, 100 * c.within_1_sigma, 100 * c.within_3_sigma);
 }
 
-/// What the deviations of positions and of turns are worth.
+/// Calibrations of the deviations of positions and of turns.
 struct Calibrations {
   std::optional<Calibration> position;
   std::optional<Calibration> orientation;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kStart = 20;  // scans
 
-/// The grid that Draco lays over the cube of the cloud.
+/// Applies the grid that Draco lays over the cube of the cloud.
 void QuantizeCube(unsigned bits, odometry::Points* points) {
   if (points->empty()) return;
   Eigen::Vector3d low = points->front();
@@ -53,7 +53,7 @@ odometry::TimedPoints OrganisedPoints(const Scan& scan, double range_step_m) {
   return timed;
 }
 
-/// Adds to the sums how far `coded` lies from what the scan holds.
+/// Sums of the distances between `coded` and the points of the scan.
 struct PointErrors {
   double sum_m = 0;
   double max_m = 0;
@@ -75,11 +75,10 @@ odometry::Pose ToPose(const synth::Pose& pose) {
   return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
 }
 
-/// A gyroscope of the kind that sensors have: bias and noise are those of a data sheet of
-/// IAM-20680HT.
+/// A gyroscope with the bias and the noise of a data sheet (IAM-20680HT).
 class Gyroscope {
  public:
-  /// Gives the samples since the last call, up to `end`.
+  /// Returns the samples since the last call, up to `end`.
   void Measure(const ScanStream& scans, Time begin, Time end, odometry::Odometry* odometry) {
     if (!next_) next_ = begin;
     for (; *next_ < end; *next_ += kStep) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An odometry over all scans of a source, with what a codec does to their points.
+// Runs an odometry over all scans of a source, after a codec's effect on their points.
 #pragma once
 #include <functional>
 
@@ -9,7 +9,7 @@
 
 namespace lidar::tools {
 
-/// What is done to the points before they are aligned; by default they stay as they are.
+/// Changes of the points before they are aligned; by default none.
 struct CodingLoss {
   double range_step_m = 0;  // lidarenc: ranges on a grid of this step
   unsigned xyz_bits = 0;    // Draco as in the paper: so many bits over the cube of the scan
@@ -19,7 +19,7 @@ struct SlamOptions {
   odometry::OdometrySettings odometry;
   CodingLoss loss;
   std::size_t max_scans = 0;  // 0: all
-  bool gyroscope = false;     // of sources whose truth is known at any time
+  bool gyroscope = false;     // for sources with a truth at any time
   bool close_loops = false;
   std::size_t most_local_maps = 1000;  // with close_loops
 };
@@ -27,14 +27,14 @@ struct SlamOptions {
 struct SlamResult {
   odometry::Trajectory estimate;
   odometry::Trajectory truth;                 // empty if the source has no truth
-  std::vector<odometry::Matrix6> covariance;  // of each estimate, as the odometry has it
+  std::vector<odometry::Matrix6> covariance;  // covariance of each estimate
   std::vector<odometry::Tracking> states;
   std::size_t with_gyroscope = 0;
   std::size_t lost_at_start = 0;  // of the first twenty scans
   std::vector<double> cpu_ms;     // of each scan, ascending
   std::size_t map_voxels = 0;     // at the end
   std::size_t maps = 0;
-  // How far the loss moved the points
+  // Mean distance by which the loss moved points.
   double mean_point_error_m = 0;
   double max_point_error_m = 0;
   // Set with close_loops
@@ -47,16 +47,16 @@ struct SlamResult {
 SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress);
 
-/// How far each pose is off since the first one, seen along the axes of the first: x, y, z [m], and
-/// turns [rad]. Empty where `truth` does not cover the estimate.
+/// Errors of the poses since the first one, along its axes: x, y, z [m], and turns [rad]. Empty if
+/// `truth` does not cover the estimate.
 std::vector<odometry::Twist> ErrorsOf(const SlamResult& result, const odometry::Trajectory& truth);
 
-/// How errors compare with the deviations that the odometry has.
+/// Errors relative to the odometry's deviations.
 struct Calibration {
   double mean = 0;  // of the deviations [m or rad]
   double within_1_sigma = 0;
   double within_3_sigma = 0;
-  double width = 0;  // the deviations as a multiple of the errors, both root mean squares
+  double width = 0;  // deviations divided by errors, both root mean squares
 };
 /// `first`: 0 for positions, 3 for turns. None without errors.
 std::optional<Calibration> Calibrate(const std::vector<odometry::Twist>& errors,
@@ -66,7 +66,7 @@ std::optional<Calibration> Calibrate(const std::vector<odometry::Twist>& errors,
 /// The pose of the sensor in the middle of a scan, for scans with a known truth.
 odometry::Pose TrueMiddle(const TimedScan& scan);
 
-/// The returns of a scan after `loss`, with their phase in the sweep where it is known.
+/// Returns the returns of a scan after `loss`, with their phases in the sweep if known.
 odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss);
 
 }  // namespace lidar::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval static: what slices save that refer to scans which the receiver has.
+// lidar-eval static: savings of slices that refer to scans at the receiver.
 #include <cstdio>
 #include <deque>
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval to-kitti: what slam aligns, as other odometries read it.
+// lidar-eval to-kitti: writes the points of slam for other odometries.
 #include <cstdio>
 #include <filesystem>
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval track: how closely the rate controller follows a target.
+// lidar-eval track: measures how closely the rate controller follows a target.
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -65,7 +65,7 @@ void RunTrack(TrackArguments o) {
   const ScanSet set = LoadScans(o.source, o.read);
   o.track.mode = o.mode.empty() ? &DefaultMode(set) : &ModeNamed(o.mode);
   const rate::RateBounds bounds = MeasureBounds(set, o.track);
-  // Room on both sides, because the bounds move with the scene.
+  // Margin on both sides, as the bounds move with the scene.
   constexpr double kBoundsMargin = 1.15;
   if (o.profile.min_bps <= 0) o.profile.min_bps = kBoundsMargin * bounds.nominal.bits_per_second();
   if (o.profile.max_bps <= 0) o.profile.max_bps = bounds.max.bits_per_second() / kBoundsMargin;

@@ -16,11 +16,11 @@ namespace mixing = codec::mixing;
 using mixing::SliceBins;
 
 constexpr std::uint32_t kSlices = 8;
-// At least one for each class of steps, with ranges in units of 1 and of 8 mm.
+// At least one per class of steps, with ranges in units of 1 and of 8 mm.
 constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
 constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
 constexpr double kLevelError = 0.02;
-// A slice has to be able to change what other slices have taught.
+// Least rate with which a slice can change the states that other slices taught.
 constexpr std::uint16_t kLeastRate = mixing::RateAfter(24);
 constexpr std::uint16_t kLeastJumpRate = mixing::RateAfter(48);
 // Version, flags, lengths and the first byte of the payload.
@@ -60,8 +60,8 @@ void Hasten(std::uint16_t least_rate, std::array<mixing::Counter, kSize>* counte
   for (mixing::Counter& counter : *counters) counter.rate = std::max(counter.rate, least_rate);
 }
 
-/// Means of the numbers behind each slice that changed them, so that all slices weigh the same, the
-/// last one, too.
+/// Means of the numbers after each slice that changed them. All slices weigh the same, even the
+/// last one.
 class Means {
  public:
   void Add(std::size_t place, std::int64_t number) {
@@ -131,7 +131,7 @@ void ForEach(States& a, const States& b, Do&& act) {
   std::apply([&](auto... part) { (walk.Of(a.*part, b.*part, act), ...); }, kParts<States>);
 }
 
-/// Replaces `states` by what a slice has made of them.
+/// Replaces `states` by those after a slice.
 template <class States>
 void Keep(States& learnt, States* states, Means* means) {
   ForEach(learnt, *states, [&](std::size_t place, auto& now, auto before, bool visited) {
@@ -232,14 +232,14 @@ class Trainer {
   std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
-  std::vector<std::uint8_t> written_;  // unused: the model learns from what is coded
+  std::vector<std::uint8_t> written_;  // unused: the model learns from the coded data
 };
 
 }  // namespace
 
 std::unique_ptr<mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets) {
   Trainer trainer;
-  // Slices that follow each other should differ, so the sets take turns.
+  // Alternates between the sets, as consecutive slices should differ.
   for (std::uint32_t index = 0; index < kSlices; ++index)
     for (const ScanSet* set : sets)
       for (const Scan& scan : set->scans) trainer.Learn(scan, {index, kSlices});

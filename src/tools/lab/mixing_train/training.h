@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Trains the start states of the mixing coder, and measures what they are worth.
+// Trains the start states of the mixing coder, and measures their benefit.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -22,8 +22,8 @@ struct MixingCase {
 /// States trained on all scans of `sets`, rounded as the table has them.
 std::unique_ptr<codec::mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets);
 
-/// Bits a return of real payloads, all that a block has included. Each is decoded again: throws
-/// std::runtime_error if one does not come back as it was.
+/// Bits a return of real payloads, with all parts of a block. Decodes each block again and throws
+/// std::runtime_error for a difference.
 double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
                      const codec::mixing::StartStates& states);
 
