@@ -31,8 +31,15 @@ class HeldEvents {
     return waits || type == GST_EVENT_GAP;
   }
 
-  /// Pushes the events once the caps are sent, or before an EOS without caps. A push may flush the
-  /// pad and call this object again.
+  /// Pushes the caps, and the events behind them. If caps do not arrive, the next buffer brings
+  /// them, and its flow says why they did not.
+  void PushCapsTo(GstPad* pad, GstCaps* caps) {
+    gst_pad_push_event(pad, gst_event_new_caps(caps));
+    PushTo(pad);
+  }
+
+  /// Pushes the events, as before an EOS without caps. A push may flush the pad and call this
+  /// object again.
   void PushTo(GstPad* pad) {
     for (EventPtr& event : std::exchange(held_, {})) gst_pad_push_event(pad, event.release());
   }

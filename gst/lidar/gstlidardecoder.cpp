@@ -165,8 +165,7 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   return FALSE;
 }
 
-/// Pushes caps when a slice gives the cloud's size. If that fails, the next buffer pushes them
-/// again, and its flow has the reason.
+/// Pushes caps when the data of a slice give the cloud's size.
 static void PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;
@@ -175,9 +174,8 @@ static void PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   cloud.height = slice.height;
   const CapsPtr caps(cloud.ToCaps());
   GST_DEBUG_OBJECT(self, "giving %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
-  gst_pad_push_event(self->state->pads.src(), gst_event_new_caps(caps.get()));
   stream.has_size = true;
-  stream.held.PushTo(self->state->pads.src());
+  stream.held.PushCapsTo(self->state->pads.src(), caps.get());
 }
 
 static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {

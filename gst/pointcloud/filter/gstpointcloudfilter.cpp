@@ -179,14 +179,12 @@ static bool MakePlan(GstLidarPointCloudFilter* self) {
   return state.plan != nullptr;
 }
 
-/// Pushes caps. If that fails, the next buffer pushes them again, and its flow has the reason.
 static void PushCaps(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   GstCaps* caps = state.plan->caps();
   if (state.pushed && gst_caps_is_equal(state.pushed.get(), caps)) return;
   state.pushed.reset(gst_caps_ref(caps));
-  gst_pad_push_event(self->srcpad, gst_event_new_caps(caps));
-  state.held.PushTo(self->srcpad);
+  state.held.PushCapsTo(self->srcpad, caps);
 }
 
 static void Count(State* state) {
