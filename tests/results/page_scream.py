@@ -100,18 +100,33 @@ def over_sockets():
     return common.table(head, body)
 
 
-def beside_over_sockets():
-    body = []
-    for case, (m, *_) in measured("beside_sockets.py").items():
-        total, squares = m["ours_mbps"] + m["theirs_mbps"], m["ours_mbps"] ** 2 + m["theirs_mbps"] ** 2
-        body.append([
+def jain(a, b):
+    return (a + b) ** 2 / 2 / (a**2 + b**2)
+
+
+def beside_table(figures):
+    body = [
+        [
             f"`{case}`",
-            f"{m['ours_mbps']:.1f} : {m['theirs_mbps']:.1f}",
-            f"{total ** 2 / 2 / squares:.3f}",
-            f"{100 * m['our_loss']:.2f}/{100 * m['their_loss']:.2f}",
-            f"{m['queue_p95_ms']:.1f}",
-        ])
+            f"{of['ours_mbps']:.1f} : {of['theirs_mbps']:.1f}",
+            f"{jain(of['ours_mbps'], of['theirs_mbps']):.3f}",
+            f"{100 * of['our_loss']:.2f}/{100 * of['their_loss']:.2f}",
+            f"{of['queue_p95_ms']:.1f}",
+        ]
+        for case, of in figures.items()
+    ]
     return common.table(["case", "ours : other [Mbit/s]", "Jain", "own/other's loss %", "queue p95 [ms]"], body)
+
+
+def beside_over_sockets():
+    return beside_table({case: runs[0] for case, runs in measured("beside_sockets.py").items()})
+
+
+def beside_peers():
+    return beside_table({
+        case: {name: float(value) for name, value in row.items() if name != "scenario"}
+        for case, row in peer("beside_peers.csv").items()
+    })
 
 
 def elements():
@@ -130,5 +145,6 @@ TABLES = {
     "beside": beside,
     "over-sockets": over_sockets,
     "beside-over-sockets": beside_over_sockets,
+    "beside-peers": beside_peers,
     "elements": elements,
 }
