@@ -90,7 +90,7 @@ closed() { [ "$(tail -c 8 "$1" 2>/dev/null | tr -d '\0' | tail -c +2 | head -c 5
 # shellcheck disable=SC2086
 if [ -n "${LIDAR_EDGE:-}" ] && has mcapsink; then
   echo '{"http-port": 0, "robots": [{"name": "r1", "port": '"${ports[0]}"', "record": "'"$work"'/edge-%05d.mcap"}]}' >edge.json
-  start 'grep -q http output' "$LIDAR_EDGE" edge.json
+  start bound "$LIDAR_EDGE" edge.json
   "${play[@]}" $encoder ! $send
   for _ in {1..600}; do
     if closed edge-00000.mcap; then break; fi
