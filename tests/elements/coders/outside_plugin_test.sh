@@ -59,7 +59,7 @@ start() {
 
 # What is not live waits in the sender's queue, and nothing is left out.
 send="rtplidarpay ! screamsink host=127.0.0.1 port=${ports[0]} start-bitrate=20000000"
-bound() { grep -q "$(printf ':%04X ' "${ports[0]}")" /proc/net/udp; }
+bound() { grep -qs "$(printf ':%04X ' "${ports[0]}")" /proc/net/udp /proc/net/udp6; }
 # shellcheck disable=SC2086
 start bound "${play[@]}" screamsrc address=127.0.0.1 port="${ports[0]}" eos-on-bye=true ! rtplidardepay ! $decoder=scream
 # shellcheck disable=SC2086
