@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "src/base/byte_writer.h"
@@ -155,6 +156,15 @@ INSTANTIATE_TEST_SUITE_P(All, SpinningClouds,
                          ::testing::Combine(::testing::Values(0, 0.1),
                                             ::testing::Values(0U, 1U, 3U)));
 
+/// Writes a table, and returns what a decoder reads.
+std::optional<BeamTable> ThroughBytes(const BeamTable& table) {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter writer(&bytes);
+  table.Write(&writer);
+  ByteReader reader(bytes.data(), bytes.size());
+  return BeamTable::Read(&reader);
+}
+
 TEST(BeamTable, FindsTheBeamsAndColumnsOfASensor) {
   std::vector<Sighting> sightings;
   for (const auto& p : SpinningScan(0)) sightings.emplace_back(Point{p[0], p[1], p[2]});
@@ -163,11 +173,7 @@ TEST(BeamTable, FindsTheBeamsAndColumnsOfASensor) {
   EXPECT_EQ(table->rows(), 16U);
   EXPECT_EQ(table->turn, 450U * BeamTable::kParts);
   EXPECT_NEAR(table->beams[0].elevation * kRadians * 180 / M_PI, 15, 1e-3);
-  std::vector<std::uint8_t> bytes;
-  ByteWriter writer(&bytes);
-  table->Write(&writer);
-  ByteReader reader(bytes.data(), bytes.size());
-  const auto again = BeamTable::Read(&reader);
+  const auto again = ThroughBytes(*table);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->turn, table->turn);
   for (std::uint32_t i = 0; i < 16; ++i) {
@@ -315,11 +321,7 @@ TEST(BeamTable, FindsBeamsThatBend) {
   ASSERT_TRUE(table);
   EXPECT_TRUE(table->bends);
   EXPECT_EQ(table->rows(), 12U);
-  std::vector<std::uint8_t> bytes;
-  ByteWriter writer(&bytes);
-  table->Write(&writer);
-  ByteReader reader(bytes.data(), bytes.size());
-  const auto again = BeamTable::Read(&reader);
+  const auto again = ThroughBytes(*table);
   ASSERT_TRUE(again);
   EXPECT_TRUE(again->bends);
   for (std::uint32_t i = 0; i < 12; ++i) {
@@ -374,11 +376,7 @@ TEST(BeamTable, FindsThePathOfBeamsAndWritesIt) {
     EXPECT_NEAR(placed[i].above_m, 0, 0.002);
     EXPECT_LE(std::abs(placed[i].residual), 4);
   }
-  std::vector<std::uint8_t> bytes;
-  ByteWriter writer(&bytes);
-  table->Write(&writer);
-  ByteReader reader(bytes.data(), bytes.size());
-  const auto again = BeamTable::Read(&reader);
+  const auto again = ThroughBytes(*table);
   ASSERT_TRUE(again);
   for (std::uint32_t beam = 0; beam < 4; ++beam) {
     EXPECT_EQ(again->ElevationOf(beam, 999), table->ElevationOf(beam, 999));
