@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the tests of ros2src and ros2sink share: a domain of their own, clouds, pipelines.
 #pragma once
+#include <gio/gio.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,25 @@ namespace lidar::test {
 constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
 constexpr std::chrono::milliseconds kPatience{30'000};
 
-/// Programs that run side by side do not hear each other.
-inline std::uint32_t TestDomain() { return 100 + static_cast<std::uint32_t>(getpid()) % 100; }
+/// A domain of this program's own, until it ends. Domains 1 to 9 have the UDP ports 7650 to 9899:
+/// below those that the kernel hands out and those of other tests. The TCP port of a domain's first
+/// marks it taken.
+inline std::uint32_t TestDomain() {
+  using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
+  static const Object mark(
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_DEFAULT, nullptr),
+      g_object_unref);
+  static const std::uint32_t domain = [] {
+    for (std::uint32_t candidate = 1;; candidate = candidate % 9 + 1) {
+      const Object address(
+          g_inet_socket_address_new_from_string("127.0.0.1", 7400 + 250 * candidate),
+          g_object_unref);
+      if (g_socket_bind(G_SOCKET(mark.get()), G_SOCKET_ADDRESS(address.get()), FALSE, nullptr))
+        return candidate;
+    }
+  }();
+  return domain;
+}
 
 /// Points of x, y, z, intensity and a time, 24 bytes, with all bytes different from cloud to cloud.
 inline PeerCloud TestCloud(std::uint32_t width, std::uint32_t height, unsigned seed = 1) {
