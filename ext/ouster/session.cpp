@@ -42,7 +42,7 @@ using D = ouster::StreamStats;  // of datagrams
 
 }  // namespace
 
-const std::array<Stat<Counters>, 16> kOusterStats = {{
+const std::array<Stat<Counters>, 17> kOusterStats = {{
     {"packets", At<&C::batcher, &B::packets>},
     {"packets-lost", At<&C::batcher, &B::lost_packets>},
     {"packets-late", At<&C::batcher, &B::late_packets>},
@@ -52,6 +52,7 @@ const std::array<Stat<Counters>, 16> kOusterStats = {{
     {"packets-foreign", At<&C::stream, &D::foreign>},
     {"packets-damaged", At<&C::stream, &D::damaged>},
     {"packets-imu", At<&C::stream, &D::imu_packets>},
+    {"clock-jumps", At<&C::stream, &D::clock_jumps>},
     {"dropped-by-kernel", &C::kernel_drops},
     {"restarts", At<&C::batcher, &B::restarts>},
     {"reconnects", &C::reconnects},

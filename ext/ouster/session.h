@@ -24,7 +24,7 @@ struct Counters {
   guint receive_buffer = 0;  // bytes
   bool synchronised = false;
 };
-extern const std::array<Stat<Counters>, 16> kOusterStats;
+extern const std::array<Stat<Counters>, 17> kOusterStats;
 
 /// Runs in the streaming thread, except where it says otherwise. Posts its own errors.
 class Session {

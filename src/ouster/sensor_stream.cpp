@@ -72,7 +72,10 @@ void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arriv
     // The first column sets a held offset, so that the first slice of a file starts at zero.
     const PacketColumn column = packet.Column(hold ? i : packet.columns() - 1 - i);
     if (!column.valid()) continue;
-    if (local_.WouldJump(column.timestamp, arrival.local)) Restart();
+    if (local_.WouldJump(column.timestamp, arrival.local)) {
+      ++stats_.clock_jumps;
+      Restart();
+    }
     local_.Observe(column.timestamp, arrival.local);
     utc_.Observe(column.timestamp, arrival.utc);
     if (sensor_to_utc_) {

@@ -58,6 +58,7 @@ struct StreamStats {
   std::uint64_t foreign = 0;
   std::uint64_t damaged = 0;
   std::uint64_t imu_packets = 0;
+  std::uint64_t clock_jumps = 0;  // of the sensor's clock against the arrivals
 };
 
 class SensorStream {

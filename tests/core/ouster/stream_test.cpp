@@ -178,6 +178,11 @@ TEST_F(Stream, TimesNeverGoBackWhenTheSensorsClockDoes) {
     EXPECT_GE(slices[i].local, slices[i - 1].local) << i;
     EXPECT_LE(slices[i].local - slices[i - 1].local, 40ms) << i;
   }
+  EXPECT_EQ(stream->stats().clock_jumps, 1U);
+  for (const TimedSlice& slice : again) EXPECT_EQ(slice.slice.after_gap, &slice == &again.front());
+  stream->Restart();  // as after a pause: any time may follow
+  Run(stream.get(), 10s, 7'200'000'000'000);
+  EXPECT_EQ(stream->stats().clock_jumps, 1U);
 }
 
 TEST_F(Stream, PacketsThatDoNotFitAreCountedAndLeftOut) {
