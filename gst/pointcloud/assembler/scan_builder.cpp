@@ -53,10 +53,7 @@ ScanBuilder::ScanBuilder(const SliceView& slice)
 }
 
 bool ScanBuilder::Fits(const SliceView& slice) const {
-  return slice.meta.scan_id == scan_id_ && slice.meta.slice_count == present_.size() &&
-         slice.info->height == info_.height && slice.info->point_step == info_.point_step &&
-         slice.info->fields == info_.fields &&
-         (!IsOrganised(info_) || slice.info->width == info_.width);
+  return slice.meta.scan_id == scan_id_ && slice.meta.slice_count == present_.size();
 }
 
 bool ScanBuilder::Add(const SliceView& slice) {

@@ -21,8 +21,9 @@ bool SameButForWidth(const GstCaps* a, const GstCaps* b) {
 }
 
 bool CannotMix(const CloudInfo& a, const CloudInfo& b) {
+  const bool organised = ScanBuilder::IsOrganised(b);
   return a.height != b.height || a.point_step != b.point_step || a.fields != b.fields ||
-         (ScanBuilder::IsOrganised(b) && a.width != b.width);
+         ScanBuilder::IsOrganised(a) != organised || (organised && a.width != b.width);
 }
 
 GstClockTime DeadlineOf(const SliceView& slice, const DeadlineRules& rules) {

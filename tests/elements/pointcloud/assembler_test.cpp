@@ -281,6 +281,81 @@ TEST_F(Assembler, OpenScansLeaveWithTheirCapsBeforeNewOnes) {
   EXPECT_FALSE(IsCorrupted(Pull()));
 }
 
+/// Caps that slices of one scan cannot differ in.
+class AssemblerOfTwoLayouts : public Assembler,
+                              public ::testing::WithParamInterface<void (*)(CloudInfo*)> {};
+TEST_P(AssemblerOfTwoLayouts, NeverMixesThemInAScan) {
+  const CloudInfo before = SliceInfo();
+  CloudInfo after = before;
+  GetParam()(&after);
+  Push(Slice(0, 0));
+  Push(Slice(0, 1));
+  SetCaps(after);
+  ASSERT_EQ(Waiting(), 1U) << "the scan leaves before the caps change";
+  const BufferPtr old = Pull();
+  EXPECT_TRUE(IsCorrupted(old));
+  EXPECT_EQ(ColumnsOf(old), Columns({1, 2, 0, 0}));
+  EXPECT_EQ(OutInfo().fields, before.fields);
+  EXPECT_EQ(OutInfo().width, kColumns);
+  const guint slices = kColumns / after.width;
+  for (guint i = 2; i < slices; ++i)
+    Push(MakeSlice({0, i, slices, i * after.width}, after.FrameSize()));
+  for (guint i = 0; i < slices; ++i)
+    Push(MakeSlice({1, i, slices, i * after.width}, after.FrameSize()));
+  const BufferPtr whole = Pull();
+  EXPECT_FALSE(IsCorrupted(whole));
+  EXPECT_EQ(MetaOf(whole).scan_id, 1U);
+  EXPECT_EQ(OutInfo().fields, after.fields);
+  EXPECT_EQ(OutInfo().height, after.height);
+  EXPECT_EQ(gst_buffer_get_size(whole.get()), OutInfo().FrameSize());
+  EXPECT_EQ(Waiting(), 0U);
+}
+INSTANTIATE_TEST_SUITE_P(All, AssemblerOfTwoLayouts,
+                         ::testing::Values(
+                             +[](CloudInfo* cloud) {
+                               cloud->fields = *PointFields::Parse(
+                                   "x:F32:0,y:F32:4,z:F32:8,reflectivity:U8:12");
+                             },
+                             +[](CloudInfo* cloud) {
+                               cloud->fields =
+                                   *PointFields::Parse("z:F32:0,y:F32:4,x:F32:8,intensity:U8:12");
+                             },
+                             +[](CloudInfo* cloud) { cloud->point_step = 16; },
+                             +[](CloudInfo* cloud) { cloud->width = 16; },
+                             +[](CloudInfo* cloud) {
+                               cloud->height = 3;
+                               cloud->sensor_model->beams.push_back({0, -3, 0});
+                             }));
+
+/// One beam with or without a sensor model: columns with places, or points that are joined.
+TEST_F(Assembler, NeverMixesColumnsAndPoints) {
+  CloudInfo columns = SliceInfo();
+  columns.height = 1;
+  columns.sensor_model->beams.resize(1);
+  CloudInfo points = columns;
+  points.sensor_model.reset();
+  for (const guint width : {kWidth, 4 * kWidth}) {
+    points.width = width;
+    for (const auto& [before, after] :
+         {std::pair(&columns, &points), std::pair(&points, &columns)}) {
+      SetCaps(*before);
+      Push(MakeSlice({0, 0, kSlices, 0}, before->FrameSize()));
+      SetCaps(*after);
+      ASSERT_EQ(Waiting(), 1U);
+      EXPECT_TRUE(IsCorrupted(Pull()));
+      for (guint i = 0; i < kSlices; ++i)
+        Push(MakeSlice({1, i, kSlices, i * kWidth}, after->FrameSize()));
+      EXPECT_EQ(ColumnsOf(Pull()).size(), after->width * kSlices);
+      EXPECT_EQ(Waiting(), 0U);
+      gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+      gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+      GstSegment segment;
+      gst_segment_init(&segment, GST_FORMAT_TIME);
+      gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+    }
+  }
+}
+
 TEST_F(Assembler, StartsAfreshAfterAStateCycle) {
   for (int cycle = 0; cycle < 3; ++cycle) {
     Push(Slice(9, 0));
