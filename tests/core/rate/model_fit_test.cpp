@@ -53,6 +53,21 @@ TEST(FitAdaptive, FindsTheCoefficientsThatMadeTheSamples) {
   EXPECT_LT(ErrorOf(AdaptiveModel(*fit), samples).mean, 1e-4);
 }
 
+TEST(FitAdaptive, TakesSizesForProportionalToReturnsThatHardlyVary) {
+  std::uint32_t returns = 12'000;
+  const auto samples = Samples(400, [&returns](Sample* s) {
+    s->slice.mode = "range-adaptive";
+    s->settings.intensity_bits = 0;
+    s->slice.returns = returns = returns == 12'000 ? 15'999 : 12'000;  // less than half a doubling
+    s->geometry_bytes = s->slice.returns / 1000.0 * 512 * std::sqrt(0.01 / s->settings.step_m);
+  });
+  const auto fit = FitAdaptive(samples);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->fallback.step[0], 9, 1e-6) << "of a thousand returns";
+  EXPECT_DOUBLE_EQ(fit->fallback.returns, 1);
+  EXPECT_LT(ErrorOf(AdaptiveModel(*fit), samples).mean, 1e-6);
+}
+
 TEST(FitAdaptive, RefusesSizesThatGrowWithTheStepAndTooFewSamples) {
   const auto growing = [](Sample* s) { s->geometry_bytes = 1000 + 1e6 * s->settings.step_m; };
   EXPECT_FALSE(FitAdaptive(Samples(400, growing)));

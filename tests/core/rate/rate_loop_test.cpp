@@ -65,6 +65,26 @@ TEST_F(RateLoopTest, KeepsToAFixedStepWhateverTheTarget) {
   }
 }
 
+TEST_F(RateLoopTest, CanUseNoMoreThanAFixedStepNeeds) {
+  settings_.fixed_step_m = 0.013;
+  Encode(0, DataRate::BitsPerSecond(1));
+  const RateBounds fixed = loop_.controller().bounds();
+  EXPECT_EQ(fixed.max, fixed.nominal);
+  EXPECT_GT(fixed.nominal, DataRate());
+  settings_.fixed_step_m = 0;
+  Encode(1);
+  const RateBounds free = loop_.controller().bounds();
+  EXPECT_GT(free.max, fixed.max) << "finer steps";
+  EXPECT_LT(free.nominal, fixed.nominal) << "coarser steps";
+}
+
+TEST_F(RateLoopTest, AFixedStepEndsWithTheSetting) {
+  settings_.fixed_step_m = 0.001;
+  Encode(0);
+  settings_.fixed_step_m = 0;
+  EXPECT_DOUBLE_EQ(Encode(1).slice.step_m, 0.04);
+}
+
 TEST_F(RateLoopTest, NeverAsksForAFixedStepPastTheError) {
   settings_.fixed_step_m = 3;
   EXPECT_DOUBLE_EQ(Encode(0).slice.step_m, 0.04);

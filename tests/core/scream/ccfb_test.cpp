@@ -128,14 +128,32 @@ TEST(Ccfb, ACompoundIsSplitAndForeignPacketsAreLeftAlone) {
   EXPECT_TRUE(SplitRtcp(View(compound)).empty());
 }
 
-TEST(Ccfb, RtcpPaddingIsTakenOff) {
-  Bytes bytes = BuildCcfb(Report(2));
-  bytes[0] |= 0x20;
-  bytes[3] = static_cast<std::uint8_t>(bytes[3] + 1);
-  bytes.insert(bytes.end(), {0, 0, 0, 4});
-  ASSERT_TRUE(CcfbParser().Parse(View(bytes)));
-  bytes.back() = 200;
-  EXPECT_FALSE(CcfbParser().Parse(View(bytes)));
+/// `report` with `added` bytes behind it that say that `said` of them are padding.
+Bytes Padded(Bytes report, std::size_t added, std::uint8_t said) {
+  report[0] |= 0x20;
+  report[3] = static_cast<std::uint8_t>(report[3] + added / 4);
+  report.insert(report.end(), added, 0x5A);  // RFC 3550 says nothing of what is in it
+  report.back() = said;
+  return report;
+}
+
+TEST(Ccfb, ReadsAPaddedReportAsTheSameReport) {
+  for (const std::size_t count : {1U, 2U, 3U, 16U}) {
+    const Bytes plain = BuildCcfb(Report(count));
+    for (const std::size_t padding : {4U, 8U, 12U, 128U}) {
+      const auto parsed =
+          CcfbParser().Parse(View(Padded(plain, padding, static_cast<std::uint8_t>(padding))));
+      ASSERT_TRUE(parsed) << count << " metrics, " << padding << " bytes of padding";
+      EXPECT_EQ(BuildCcfb(*parsed), plain) << padding;
+    }
+  }
+}
+
+TEST(Ccfb, RefusesPaddingThatLeavesNoReport) {
+  const Bytes plain = BuildCcfb(Report(2));  // 28 bytes, of which 20 are no block
+  for (const int said : {0, 1, 2, 3, 5, 36, 200})
+    EXPECT_FALSE(CcfbParser().Parse(View(Padded(plain, 8, static_cast<std::uint8_t>(said)))))
+        << said;
 }
 
 TEST(ReportClock, GoesOnWhereTimestampsWrapAfterEighteenHours) {

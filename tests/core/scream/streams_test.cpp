@@ -336,6 +336,26 @@ TEST_F(StreamTest, ARepairPacketBeginsNoScan) {
   EXPECT_EQ(stream_.LatePackets(kStart + 300ms, DataRate::Infinite()), 1U);
 }
 
+TEST_F(StreamTest, ARepairPacketWithinAFrameIsNoPartOfIt) {
+  Stream without(parameters_, stream_.config());
+  for (std::uint32_t frame = 1; frame <= 20; ++frame) {
+    const Time now = kStart + frame * 100ms;
+    for (const bool marker : {false, true}) {
+      const QueuedPacket packet{1, DataSize::Bytes(20'000), marker, frame};
+      without.OnQueued(now, packet);
+      EXPECT_EQ(stream_.OnQueued(now, packet), marker);
+      for (const std::uint32_t timestamp : {frame, 1000 + frame})
+        EXPECT_FALSE(stream_.OnQueued(now, {2, DataSize::Bytes(20'000), false, timestamp}));
+    }
+    stream_.OnSent(now, 1, DataSize::Bytes(20'000));
+    EXPECT_FALSE(stream_.at_start()) << "its second packet begins no frame";
+    for (int i = 0; i < 5; ++i) stream_.OnSent(now, 1, DataSize::Bytes(20'000));
+    for (int i = 0; i < 2; ++i) without.OnSent(now, 1, DataSize::Bytes(20'000));
+  }
+  EXPECT_DOUBLE_EQ(stream_.frame_size_dev(), without.frame_size_dev());
+  EXPECT_EQ(stream_.frame_period(), without.frame_period());
+}
+
 TEST_F(StreamTest, IsActiveUntilItIsKnownToBeSilent) {
   EXPECT_TRUE(stream_.active(kStart));
   stream_.NoteTime(kStart);

@@ -35,6 +35,7 @@ class ParseUnderWay : public Parse {
     gint64 start = 0;
     GstSeekFlags flags = GST_SEEK_FLAG_NONE;
     gst_event_parse_seek(raw, nullptr, nullptr, &flags, nullptr, &start, nullptr, nullptr);
+    self->from_ = static_cast<guint64>(start);
     if (flags & GST_SEEK_FLAG_FLUSH) {
       gst_pad_push_event(pad, gst_event_new_flush_start());
       gst_pad_push_event(pad, gst_event_new_flush_stop(TRUE));
@@ -42,6 +43,7 @@ class ParseUnderWay : public Parse {
     self->PushBytesFrom(static_cast<guint64>(start), gst_event_get_seqnum(raw));
     return TRUE;
   }
+  guint64 from_ = 0;  // where the last seek began
   void PushBytesFrom(guint64 start, guint32 seqnum) {
     GstSegment segment;
     gst_segment_init(&segment, GST_FORMAT_BYTES);
@@ -93,6 +95,42 @@ TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   EXPECT_EQ(GST_BUFFER_OFFSET(last.get()), 7U);
   EXPECT_EQ(GST_BUFFER_OFFSET_END(last.get()), 8U);
 }
+
+/// Clouds a second whose times are no whole nanoseconds, and others.
+class ParseAnyCloud : public ParseUnderWay,
+                      public ::testing::WithParamInterface<std::pair<guint64, guint64>> {};
+TEST_P(ParseAnyCloud, IsFoundByItsTimeAndKnowsItsOffset) {
+  const auto [n, d] = GetParam();
+  PushCaps(
+      "application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\","
+      "framerate=" +
+      std::to_string(n) + "/" + std::to_string(d));
+  PushClouds(1);  // the size of a cloud is known
+  const auto time_of = [n = n, d = d](guint64 cloud) {
+    return gst_util_uint64_scale(cloud, d * GST_SECOND, n);
+  };
+  for (const guint64 cloud : {1U, 2U, 3U, 7U, 29U, 100U, 1'001U, 9'999U}) {
+    for (const gint64 off : {-1, 0, 1}) {
+      const auto time = static_cast<gint64>(time_of(cloud)) + off;
+      ASSERT_TRUE(
+          Seek(static_cast<GstSeekFlags>(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_KEY_UNIT), time));
+      LastCloud();
+      PushClouds(1);
+      const BufferPtr last = LastCloud();
+      const guint64 expected = off < 0 ? cloud - 1 : cloud;
+      EXPECT_EQ(from_ / kCloud, expected) << "cloud " << cloud << (off < 0 ? ", before" : "");
+      EXPECT_EQ(GST_BUFFER_OFFSET(last.get()), expected);
+      EXPECT_EQ(GST_BUFFER_OFFSET_END(last.get()), expected + 1);
+      EXPECT_EQ(GST_BUFFER_PTS(last.get()), time_of(expected));
+      EXPECT_EQ(GST_BUFFER_DURATION(last.get()), time_of(expected + 1) - time_of(expected));
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Rates, ParseAnyCloud,
+                         ::testing::Values(std::pair<guint64, guint64>(10, 1),
+                                           std::pair<guint64, guint64>(30, 1),
+                                           std::pair<guint64, guint64>(30'000, 1'001),
+                                           std::pair<guint64, guint64>(7, 3)));
 
 TEST_F(ParseUnderWay, BytesFromElsewhereGoOnWhereTheLastCloudEnded) {
   PushClouds(3);

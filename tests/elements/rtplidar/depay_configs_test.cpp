@@ -204,6 +204,78 @@ TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
   gst_object_unref(bus);
 }
 
+/// What a depayloader warns of, from packets that keep giving it reason to.
+class OneWarning : public ::testing::Test {
+ protected:
+  OneWarning() { gst_element_set_bus(h_->element, bus_); }
+  ~OneWarning() override {
+    gst_element_set_bus(h_->element, nullptr);
+    gst_object_unref(bus_);
+  }
+  unsigned Warnings() {
+    unsigned warnings = 0;
+    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)})
+      ++warnings;
+    return warnings;
+  }
+  void Restart() {
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    gst_element_set_state(h_->element, GST_STATE_PLAYING);
+    gst_harness_set_src_caps_str(h_.get(), kRtpCaps);
+  }
+  /// `cause` is repeated: a warning comes once in each run of the element.
+  template <class Cause>
+  void ExpectOne(const Cause& cause) {
+    for (int run = 0; run < 2; ++run) {
+      for (int i = 0; i < 3; ++i) cause();
+      EXPECT_EQ(Warnings(), 1U) << "run " << run;
+      Restart();
+    }
+  }
+
+  Harness h_ = Depay();
+  GstBus* const bus_ = gst_bus_new();
+  std::uint16_t sequence_ = 0;
+};
+
+TEST_F(OneWarning, OfAStreamThatTakesTurns) {
+  std::vector<std::uint8_t> ids(2);
+  const char* fields[] = {"x:F32:0,y:F32:4,z:F32:8", "x:F32:0,y:F32:4,z:F32:8,range:U32:12"};
+  std::uint32_t scan = 0;
+  ExpectOne([&] {
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      gst_harness_push(h_.get(), RtpOf(ConfigPayload(fields[i], &ids[i]), 7, sequence_++));
+    gst_harness_push(h_.get(), RtpOf(TakingTurns(ids, scan++, 32), 7, sequence_++));
+  });
+}
+
+TEST_F(OneWarning, OfASecondStream) {
+  ExpectOne([&] {
+    std::uint8_t id = 0;
+    for (std::uint16_t i = 0; i < 150; ++i, ++sequence_)
+      for (const guint32 ssrc : {7U, 8U, 9U})
+        gst_harness_push(h_.get(),
+                         RtpOf(ConfigPayload("x:F32:0,y:F32:4,z:F32:8", &id), ssrc, sequence_));
+  });
+}
+
+TEST_F(OneWarning, OfPacketsOfAnotherPayloadType) {
+  ExpectOne([&] {
+    for (std::uint16_t i = 0; i < 30; ++i) {
+      GstBuffer* packet = RtpOf({1, 2, 3}, 7, sequence_++);
+      gst_buffer_memset(packet, 1, 97, 1);
+      gst_harness_push(h_.get(), packet);
+    }
+  });
+}
+
+TEST_F(OneWarning, OfPacketsThatCannotBeRead) {
+  ExpectOne([&] {
+    for (std::uint16_t i = 0; i < 30; ++i)
+      gst_harness_push(h_.get(), RtpOf(std::vector<std::uint8_t>(50, 0xFF), 7, sequence_++));
+  });
+}
+
 TEST(RtpLidarDepay, SaysOnceThatNothingCanBeRead) {
   const Harness h = Depay();
   GstBus* bus = gst_bus_new();

@@ -53,6 +53,23 @@ TEST_F(PayLimits, TheConfigIsRepeatedOnceItsIntervalIsOver) {
   EXPECT_EQ(Configs(), 1U);
 }
 
+TEST_F(PayLimits, TheConfigIsRepeatedWhereTimesSayNothingOfItsInterval) {
+  const auto push = [this](GstClockTime pts) {
+    GstBuffer* buffer = EncodedSlice(0, 0, 100);
+    GST_BUFFER_PTS(buffer) = pts;
+    EXPECT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
+    return Configs();
+  };
+  EXPECT_EQ(push(GST_CLOCK_TIME_NONE), 1U);
+  EXPECT_EQ(push(GST_CLOCK_TIME_NONE), 1U) << "no time passes: each slice has it";
+  EXPECT_EQ(push(5 * GST_SECOND), 1U) << "the one before has no time";
+  EXPECT_EQ(push(5 * GST_SECOND + 1), 0U);
+  EXPECT_EQ(push(5 * GST_SECOND - 1), 1U) << "time went back";
+  g_object_set(h_->element, "config-interval", 0, nullptr);
+  EXPECT_EQ(push(GST_CLOCK_TIME_NONE), 0U);
+  EXPECT_EQ(push(GST_SECOND), 0U);
+}
+
 TEST_F(PayLimits, TheConfigComesAgainAfterAFlushAndWhereTheSsrcChanges) {
   g_object_set(h_->element, "config-interval", 0, nullptr);
   Push(0, 0);

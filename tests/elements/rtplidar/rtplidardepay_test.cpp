@@ -65,6 +65,35 @@ TEST(RtpLidarDepay, RestoresSlicesMetasTimesAndCaps) {
   }
 }
 
+/// A slice with all times, and others that each lack one.
+class SliceWithout : public ::testing::TestWithParam<int> {};
+TEST_P(SliceWithout, ATimeComesOutWithoutItAndWithTheOthers) {
+  for (const bool aggregate : {false, true}) {
+    Harness pay(gst_harness_new("rtplidarpay"));
+    g_object_set(pay->element, "aggregate", aggregate, nullptr);
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps().c_str());
+    GstBuffer* sent = gst_buffer_new_allocate(nullptr, 100, nullptr);
+    const GstLidarSlice meta{3, kSlices - 1, kSlices, 0};
+    gst_lidar_buffer_set_slice(sent, &meta);
+    const GstClockTime pts = GetParam() == 1 ? GST_CLOCK_TIME_NONE : GST_SECOND;
+    const GstClockTime duration = GetParam() == 2 ? GST_CLOCK_TIME_NONE : 25 * GST_MSECOND;
+    const GstClockTime capture = GetParam() == 3 ? GST_CLOCK_TIME_NONE : kCaptureStart;
+    GST_BUFFER_PTS(sent) = pts;
+    GST_BUFFER_DURATION(sent) = duration;
+    if (GetParam() != 3) gst_lidar_buffer_set_capture_time(sent, kCaptureStart);
+    ASSERT_EQ(gst_harness_push(pay.get(), sent), GST_FLOW_OK);
+    gst_harness_push_event(pay.get(), gst_event_new_eos());
+    const Harness h = Depay();
+    while (GstBuffer* b = gst_harness_try_pull(pay.get())) gst_harness_push(h.get(), b);
+    const auto slices = Pull(h.get());
+    ASSERT_EQ(slices.size(), 1U);
+    EXPECT_EQ(GST_BUFFER_PTS(slices[0].get()), pts);
+    EXPECT_EQ(GST_BUFFER_DURATION(slices[0].get()), duration);
+    EXPECT_EQ(gst_lidar_buffer_get_capture_time(slices[0].get()), capture);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(PtsDurationOrCapture, SliceWithout, ::testing::Range(0, 4));
+
 TEST(RtpLidarDepay, LosesOnlyTheSliceOfALostPacketAndCountsIt) {
   auto packets = Packets(5);
   packets.erase(packets.begin() + 9);

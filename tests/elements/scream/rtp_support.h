@@ -113,6 +113,19 @@ class Stats {
     g_object_get(element, "stats", &s, nullptr);
     stats_.reset(s);
   }
+  explicit Stats(const GstStructure* stats) : stats_(gst_structure_copy(stats)) {}
+  /// Member `index` of the array `name`.
+  Stats Of(const char* name, guint index) const {
+    const GValue* array = gst_structure_get_value(stats_.get(), name);
+    if (array == nullptr || gst_value_array_get_size(array) <= index) {
+      ADD_FAILURE() << "no member " << index << " of " << name;
+      return *this;
+    }
+    return Stats(gst_value_get_structure(gst_value_array_get_value(array, index)));
+  }
+  Stats(const Stats& other) : Stats(other.stats_.get()) {}
+  Stats& operator=(const Stats&) = delete;
+
   guint64 operator[](const char* field) const {
     guint64 wide = 0;
     guint narrow = 0;
@@ -120,6 +133,12 @@ class Stats {
     if (gst_structure_get_uint(stats_.get(), field, &narrow)) return narrow;
     ADD_FAILURE() << "no field " << field;
     return 0;
+  }
+  bool True(const char* field) const {
+    gboolean value = FALSE;
+    if (!gst_structure_get_boolean(stats_.get(), field, &value))
+      ADD_FAILURE() << "no field " << field;
+    return value != FALSE;
   }
   std::string Text(const char* field) const {
     const gchar* text = gst_structure_get_string(stats_.get(), field);

@@ -55,6 +55,93 @@ TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
   EXPECT_GT(told.rtt, 0U);
 }
 
+/// Sends a packet each 10 ms. `arrives` says how the reports have the packet of a number.
+class ScreamTxFates : public ScreamTx {
+ protected:
+  template <class Arrives>
+  void Run(int packets, const Arrives& arrives) {
+    for (int i = 0; i < packets; ++i) {
+      const std::size_t before = sent.size();
+      PushFrame(next_seq_ * 900U, 1);
+      for (int k = 0; k < 50 && sent.size() == before; ++k) {
+        time.Advance(10 * GST_MSECOND);
+        Collect();
+      }
+      Feed(ReportOf(arrives));
+      ++reports_;
+    }
+  }
+  template <class Arrives>
+  CongestionFeedback ReportOf(const Arrives& arrives) const {
+    CongestionFeedback report;
+    report.sender_ssrc = 9;
+    report.report_timestamp =
+        static_cast<std::uint32_t>(gst_util_uint64_scale(time.now(), 65536, GST_SECOND));
+    report.blocks.push_back({0x1234, 0, {}});
+    for (const Rtp& packet : sent) report.blocks[0].metrics.push_back(arrives(packet.seq));
+    return report;
+  }
+  guint64 reports_ = 0;
+};
+
+TEST_F(ScreamTxFates, AreCountedEachByItsName) {
+  const scream::PacketMetric arrived{true, scream::Ecn::kEct1, Duration{0}};
+  const scream::PacketMetric marked{true, scream::Ecn::kCe, Duration{0}};
+  const auto arrives = [&](guint16 seq) {
+    if (seq >= 3 && seq < 6) return scream::PacketMetric{};
+    return seq == 20 || seq == 22 ? marked : arrived;
+  };
+  Start();
+  Run(60, arrives);
+  EXPECT_EQ(Stats(element)["packets-lost"], 3U);
+  EXPECT_EQ(Stats(element)["packets-late"], 0U);
+  Run(1, [&](guint16 seq) { return seq == 4 ? arrived : arrives(seq); });  // one of them comes
+  // A block of another sender's packets, a lie, and a report that is cut off.
+  CongestionFeedback report = ReportOf(arrives);
+  report.blocks.push_back({0x9999, 0, {arrived}});
+  Feed(report);
+  for (int i = 0; i < 4; ++i)
+    gst_harness_push(rtcp.get(), FromBytes({0x8b, 205, 0, 1, 0, 0, 0, 1}));
+  ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes({1, 2, 3})), GST_FLOW_OK);
+  const Stats stats(element);
+  EXPECT_EQ(stats["packets-sent"], 61U);
+  EXPECT_EQ(stats["packets-acked"], 61U - 2);
+  EXPECT_EQ(stats["packets-lost"], 3U);
+  EXPECT_EQ(stats["packets-late"], 1U);
+  EXPECT_EQ(stats["packets-ce"], 2U);
+  EXPECT_EQ(stats["packets-dropped"], 0U);
+  EXPECT_EQ(stats["feedback-accepted"], reports_ - 3) << "those of the lost had no news";
+  EXPECT_EQ(stats["feedback-foreign-blocks"], 1U);
+  EXPECT_EQ(stats["rtcp-malformed"], 4U);
+  const Stats stream = stats.Of("streams", 0);
+  EXPECT_EQ(stream["ssrc"], 0x1234U);
+  EXPECT_EQ(stream["packets-queued"], 61U);
+  EXPECT_EQ(stream["packets-sent"], 61U);
+  EXPECT_EQ(stream["packets-lost"], 3U);
+  EXPECT_EQ(stream["packets-ce"], 2U);
+  EXPECT_EQ(stream["malformed"], 1U);
+  EXPECT_EQ(stream["bytes-sent"], stats["bytes-sent"]);
+}
+
+TEST_F(ScreamTx, TellsTheEncoderTheRoundTripAndTheQueueThatItShows) {
+  Start();
+  // An empty path of 40 ms, then one whose queue takes 30 ms more.
+  for (const guint64 round_trip_ms : {40U, 70U})
+    for (guint32 i = 0; i < 30; ++i) {
+      PushFrame(next_seq_ * 900U, 1);
+      Collect();
+      time.Advance(round_trip_ms * GST_MSECOND);
+      Acknowledge();
+    }
+  const GstLidarTargetBitrate told = NextTarget(rtp.get());
+  const Stats stats(element);
+  EXPECT_EQ(told.rtt, stats["rtt"]);
+  EXPECT_EQ(told.queue_delay, stats["queue-delay"]);
+  EXPECT_NEAR(static_cast<double>(told.rtt), 70e6, 5e6);
+  EXPECT_NEAR(static_cast<double>(told.queue_delay), 30e6, 5e6);
+  EXPECT_NEAR(static_cast<double>(stats["min-rtt"]), 40e6, 5e6);
+}
+
 constexpr const char* kLidarCaps =
     "application/x-rtp,media=(string)application,clock-rate=90000,"
     "encoding-name=(string)X-LIDAR-DRACO,payload=96";

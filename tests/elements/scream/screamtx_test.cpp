@@ -92,6 +92,8 @@ TEST_F(ScreamTx, CountsWhatIsNoRtp) {
   PushFrame(0, 1);
   const BufferPtr out(gst_harness_pull(rtp.get()));
   EXPECT_EQ(ReadRtp(out.get()).ssrc, 0x1234U);
+  EXPECT_EQ(Stats(element).Of("streams", 0)["malformed"], 2U);
+  EXPECT_EQ(Stats(element).Of("streams", 0)["packets-queued"], 1U);
 }
 
 TEST_F(ScreamTx, TellsTheEncoderItsOwnBoundsAndStartsWithinThem) {
