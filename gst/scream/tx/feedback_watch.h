@@ -11,6 +11,8 @@ class FeedbackWatch {
  public:
   /// Packets unanswered for this time show that there is no receiver.
   static constexpr Duration kFeedbackTimeout = std::chrono::seconds(2);
+  /// The same at the end of a stream that was never answered.
+  static constexpr Duration kFirstAnswer = std::chrono::milliseconds(300);
 
   void OnSent(Time now) {
     if (!unanswered_since_) unanswered_since_ = now;
@@ -23,12 +25,18 @@ class FeedbackWatch {
   void OnFeedback() {
     unanswered_since_.reset();
     silent_ = false;
+    heard_ = true;
   }
   bool silent() const { return silent_; }
+  /// Returns true at the end of a stream without a receiver.
+  bool EndsUnheard(Time now) const {
+    return !heard_ && unanswered_since_ && now - *unanswered_since_ >= kFirstAnswer;
+  }
 
  private:
   std::optional<Time> unanswered_since_;
   bool silent_ = false;
+  bool heard_ = false;
 };
 
 }  // namespace lidar::gst

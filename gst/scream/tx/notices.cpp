@@ -35,12 +35,12 @@ std::string Destination(GstPad* src) {
   return "";
 }
 
-void WarnOfSilence(GstElement* element, GstPad* src) {
+void WarnOfSilence(GstElement* element, GstPad* src, const char* when) {
   const std::string to = Destination(src);
   GST_ELEMENT_WARNING(
       element, RESOURCE, READ,
-      ("No feedback%s%s for 2 s, as if nobody listened there.", to.empty() ? "" : " from ",
-       to.c_str()),
+      ("No feedback%s%s %s, as if nobody listened there.", to.empty() ? "" : " from ", to.c_str(),
+       when),
       ("Check host and port; that screamsrc, or screamrx with its rtcp_src linked, runs there; and "
        "that no firewall is between. Without feedback only the lowest bitrate is sent. This is "
        "said "
@@ -115,10 +115,14 @@ MessagePtr Notices::FeedbackMessage(GstObject* element) {
 }
 
 void Notices::Post(GstElement* element, GstPad* src, Batch batch) {
-  if (batch.silence) WarnOfSilence(element, src);
+  if (batch.silence) WarnOfSilence(element, src, "for 2 s");
   if (batch.unheeded) WarnOfUnheeded(element);
   for (MessagePtr& m : batch.messages) gst_element_post_message(element, m.release());
   if (batch.estimate) g_object_notify(G_OBJECT(element), "estimated-bitrate");
+}
+
+void Notices::PostUnheard(GstElement* element, GstPad* src) {
+  WarnOfSilence(element, src, "until the stream ended");
 }
 
 }  // namespace lidar::gst

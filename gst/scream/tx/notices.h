@@ -41,6 +41,10 @@ class Notices {
   Time next_stats() const { return next_stats_; }
 
   static void Post(GstElement* element, GstPad* src, Batch batch);
+  /// Returns true if the end of the stream needs a warning that there was no receiver.
+  bool TakeUnheard(Time now) { return warn_of_silence_(watch_.EndsUnheard(now)); }
+  /// Call it before the end goes on, and without the lock.
+  static void PostUnheard(GstElement* element, GstPad* src);
 
  private:
   /// A warning that is posted once.

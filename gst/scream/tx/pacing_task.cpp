@@ -114,6 +114,7 @@ PacingTask::Batch PacingTask::NextBatch(Time now) {
   else
     batch.report = s.reports.Take(s.settings.report_interval, s.streams, *s.controller, now);
   if (batch.end) batch.goodbyes = Goodbyes(s);
+  batch.unheard = batch.end && s.reporter.notices().TakeUnheard(now);
   return batch;
 }
 
@@ -234,6 +235,8 @@ GstFlowReturn PacingTask::Push(Batch batch) {
   if (batch.event) gst_pad_push_event(self_->src, batch.event.release());
   if (!batch.packets.empty()) flow = PushPackets(self_->src, std::move(batch.packets));
   if (!batch.report.empty() && flow == GST_FLOW_OK) flow = PushRtcp(self_->src, batch.report);
+  // An application may stop at the end, so the warning goes first.
+  if (batch.unheard) Notices::PostUnheard(GST_ELEMENT(self_), self_->src);
   if (batch.end) PushEnd(self_->src, batch.goodbyes);
   return flow;
 }

@@ -49,6 +49,7 @@ class PacingTask {
     EventPtr event;
     bool end = false;
     std::vector<guint32> goodbyes;
+    bool unheard = false;  // a stream without a receiver ends
 
     bool empty() const { return packets.empty() && !event && !end; }
   };

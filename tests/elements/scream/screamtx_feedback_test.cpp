@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 #include <time.h>
 
+#include <atomic>
+
 #include "gst/scream/key_request.h"
 #include "tests/elements/scream/screamtx_fixture.h"
 
 namespace lidar::test {
 namespace {
 
+using gst::PadPtr;
 using scream::CongestionFeedback;
 
 TEST_F(ScreamTx, GoesOnWithFeedbackInOrderAndWithoutLoss) {
@@ -440,6 +443,68 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   gst_element_set_state(element, GST_STATE_NULL);
   gst_element_set_bus(element, nullptr);
   gst_object_unref(bus);
+}
+
+/// A stream that ends after some time, and whether a warning says that nobody received it.
+class ScreamTxEnds : public ScreamTx {
+ protected:
+  ScreamTxEnds() { gst_element_set_bus(element, bus_); }
+  void TearDown() override {
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_element_set_bus(element, nullptr);
+    gst_object_unref(bus_);
+    ScreamTx::TearDown();
+  }
+  /// Returns the warnings that stand before the end.
+  int WarningsOf(GstClockTime length, bool answered) {
+    Start();
+    for (GstClockTime at = 0; at < length; at += 10 * GST_MSECOND) {
+      PushFrame(next_seq_ * 900U, 1);
+      time.Advance(10 * GST_MSECOND);
+      if (answered) Acknowledge();
+    }
+    const PadPtr src(gst_element_get_static_pad(element, "src"));
+    gst_pad_add_probe(
+        src.get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
+        [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+          auto* self = static_cast<ScreamTxEnds*>(data);
+          if (GST_EVENT_TYPE(info->data) == GST_EVENT_EOS) self->CountWarnings();
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
+    EXPECT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_eos()));
+    for (int i = 0; i < 100 && !ended_; ++i) time.Advance(10 * GST_MSECOND);
+    EXPECT_TRUE(ended_);
+    return warnings_;
+  }
+  void CountWarnings() {
+    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) {
+      GError* raw = nullptr;
+      gchar* advice = nullptr;
+      gst_message_parse_warning(message.get(), &raw, &advice);
+      const gst::ErrorPtr error(raw);
+      const gst::StringPtr text(advice);
+      ++warnings_;
+      EXPECT_NE(std::string(error->message).find("No feedback until the stream ended"),
+                std::string::npos)
+          << error->message;
+      EXPECT_NE(std::string(text.get()).find("Check host and port"), std::string::npos);
+    }
+    ended_ = true;
+  }
+
+  GstBus* const bus_ = gst_bus_new();
+  std::atomic<bool> ended_{false};
+  int warnings_ = 0;
+};
+
+TEST_F(ScreamTxEnds, UnheardWithAWarningBeforeTheEnd) {
+  EXPECT_EQ(WarningsOf(500 * GST_MSECOND, false), 1);
+  EXPECT_EQ(Stats(element)["feedback-accepted"], 0U);
+}
+TEST_F(ScreamTxEnds, HeardWithoutAWarning) { EXPECT_EQ(WarningsOf(500 * GST_MSECOND, true), 0); }
+TEST_F(ScreamTxEnds, TooSoonForAnAnswerWithoutAWarning) {
+  EXPECT_EQ(WarningsOf(20 * GST_MSECOND, false), 0);
 }
 
 TEST_F(ScreamTx, TestsThePathAnewWhenTheReceiverHasMoved) {
