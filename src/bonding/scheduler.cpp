@@ -91,6 +91,12 @@ LinkSet Scheduler::Spare(Time now) const {
   return spare;
 }
 
+std::size_t Scheduler::Bottleneck(std::size_t link) const {
+  for (std::size_t other = 0; other < link; ++other)
+    if (shared_.Shared(link, other)) return Bottleneck(other);
+  return link;
+}
+
 bool Scheduler::Settled(Time now) const {
   return std::all_of(links_.begin(), links_.end(), [now](const Link& l) {
     return l.unsettled_since && now - *l.unsettled_since > kUnsettled;

@@ -116,6 +116,8 @@ class Scheduler {
   std::size_t links() const { return links_.size(); }
   bool usable(std::size_t link) const { return links_[link].usable; }
   bool has_reported(std::size_t link) const { return links_[link].has_reported; }
+  /// Returns the first of the links that pass the same queue, which may be the link itself.
+  std::size_t Bottleneck(std::size_t link) const;
   const LinkCounters& counters(std::size_t link) const { return links_[link].counters; }
 
  private:

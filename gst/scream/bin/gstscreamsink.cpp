@@ -156,7 +156,11 @@ static const std::array<Property<SinkSettings>, 25> kProperties = {{
     OfTx("tuning"),
     {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
      Estimate},
-    {"stats", "Statistics; bitrates in bit/s, times in ns", Stats},
+    {"stats",
+     "Statistics; bitrates in bit/s, times in ns; `links` has those of each of several links, "
+     "whose "
+     "`bottleneck` is the same where they share one",
+     Stats},
     Within<&SinkSettings::bond>(BondRows(), "bonding-addresses"),
     Within<&SinkSettings::bond>(BondRows(), "bonding-method"),
     Within<&SinkSettings::bond>(BondRows(), "bonding-target"),

@@ -449,8 +449,13 @@ void BondSetWatch(GstLidarScreamBond* bond, std::function<void()> watch) {
 BondLinkStats BondStats(GstLidarScreamBond* bond, std::size_t link) {
   BondShared& shared = *bond->state->shared;
   const std::lock_guard lock(shared.mutex);
-  return {shared.scheduler.counters(link), shared.scheduler.usable(link),
-          shared.scheduler.InGap(shared.Now(), link), shared.scheduler.has_reported(link)};
+  const Scheduler& scheduler = shared.scheduler;
+  return {"",
+          scheduler.counters(link),
+          scheduler.usable(link),
+          scheduler.InGap(shared.Now(), link),
+          scheduler.has_reported(link),
+          static_cast<guint>(scheduler.Bottleneck(link))};
 }
 
 }  // namespace lidar::gst

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "gst/scream/bond/link_stats.h"
 #include "gst/scream/srtp/layer.h"
 #include "gst/scream/tx/gstscreamtx.h"
 #include "src/bonding/scheduler.h"
@@ -49,12 +50,7 @@ void BondSetUsable(GstLidarScreamBond* bond, std::size_t link, bool usable);
 /// below READY.
 void BondSetWatch(GstLidarScreamBond* bond, std::function<void()> watch);
 
-struct BondLinkStats {
-  bonding::LinkCounters counters;
-  bool usable = true;
-  bool in_gap = false;
-  bool has_reported = false;
-};
+/// Returns all but the name of the link.
 BondLinkStats BondStats(GstLidarScreamBond* bond, std::size_t link);
 
 }  // namespace lidar::gst

@@ -262,15 +262,9 @@ void SinkLinks::AddStats(GstStructure* stats) const {
   gst_value_array_init(&array, 0);
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     StructurePtr link = StatsOf(chains_[i].tx);
-    const BondLinkStats bond = BondStats(bond_, i);
-    gst_structure_set(link.get(), "link", G_TYPE_STRING, links_[i].address.text.c_str(), "usable",
-                      G_TYPE_BOOLEAN, static_cast<gboolean>(bond.usable), "in-gap", G_TYPE_BOOLEAN,
-                      static_cast<gboolean>(bond.in_gap), "link-gaps", G_TYPE_UINT64,
-                      static_cast<guint64>(bond.counters.gaps), "packets-first", G_TYPE_UINT64,
-                      static_cast<guint64>(bond.counters.packets), "packets-copies", G_TYPE_UINT64,
-                      static_cast<guint64>(bond.counters.copies), "copies-cancelled", G_TYPE_UINT64,
-                      static_cast<guint64>(bond.counters.cancelled), "packets-saved", G_TYPE_UINT64,
-                      static_cast<guint64>(bond.counters.saved), nullptr);
+    BondLinkStats bond = BondStats(bond_, i);
+    bond.link = links_[i].address.text;
+    AddLinkStats(bond, link.get());
     CopyStat(chains_[i].sink, "send-errors", link.get());
     GValue value = G_VALUE_INIT;
     g_value_init(&value, GST_TYPE_STRUCTURE);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "src/link/random.h"
 #include "src/sim/simulated_time.h"
 
 namespace lidar::bonding {
@@ -300,6 +301,44 @@ TEST(Scheduler, KeepsAllPacketsOfASliceTogether) {
   const LinkSet first = scheduler.OnPacket(kStart, {{kMedia, 2}, kSize, 2});
   for (std::uint16_t seq = 3; seq < 90; ++seq)
     EXPECT_EQ(scheduler.OnPacket(kStart, {{kMedia, seq}, kSize, 2}), first);
+}
+
+/// Bursts over links of 8 Mbit/s each, or over fewer FIFOs of 8 Mbit/s.
+std::vector<std::size_t> Bottlenecks(const std::vector<std::size_t>& fifo_of_link) {
+  Scheduler scheduler(fifo_of_link.size(), Method::kBroadcast);
+  std::vector<Time> free(fifo_of_link.size(), kStart);
+  link::Random random(3);
+  Time now = kStart;
+  std::uint16_t seq = 0;
+  for (int i = 0; i < 6000; ++i) {
+    now += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random.Uniform());
+    const auto size = DataSize::Bytes(random.Chance(0.5) ? 1200 : 600);
+    const PacketId id{kMedia, ++seq};
+    scheduler.OnPacket(now, {id, size, seq});
+    for (std::size_t link = 0; link < fifo_of_link.size(); ++link) {
+      if (!random.Chance(0.6)) continue;
+      now += 10us;
+      scheduler.OnSent(now, link, id);
+      Time& leaves = free[fifo_of_link[link]];
+      leaves = std::max(leaves, now) + size / Mbps(8);
+      scream::CongestionFeedback report = Arrived(seq);
+      report.report_timestamp = static_cast<std::uint32_t>(Seconds(leaves - kStart) * 65536);
+      report.blocks[0].metrics[0].arrival_offset = 0ms;
+      scheduler.OnFeedback(now, link, report);
+    }
+  }
+  std::vector<std::size_t> bottlenecks;
+  for (std::size_t link = 0; link < fifo_of_link.size(); ++link)
+    bottlenecks.push_back(scheduler.Bottleneck(link));
+  return bottlenecks;
+}
+
+TEST(Scheduler, TellsWhichLinksPassOneQueue) {
+  using Links = std::vector<std::size_t>;
+  EXPECT_EQ(Bottlenecks({0, 1}), (Links{0, 1}));
+  EXPECT_EQ(Bottlenecks({0, 0}), (Links{0, 0}));
+  EXPECT_EQ(Bottlenecks({0, 1, 1}), (Links{0, 1, 1}));
+  EXPECT_EQ(Bottlenecks({0, 1, 0}), (Links{0, 1, 0}));
 }
 
 TEST(Scheduler, KeepsBoundedMemory) {

@@ -2,6 +2,7 @@
 // A peer of several links: who becomes one, what each hears, and what came twice.
 #include <gtest/gtest.h>
 
+#include "gst/scream/bond/link_stats.h"
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rx/link_reports.h"
 #include "tests/elements/scream/rtp_support.h"
@@ -110,6 +111,65 @@ TEST_F(PeerLinks, AreFewAndASilentOneGivesItsPlaceToANewOne) {
   const LinkAddress newest(Address("10.3.0.199", 5000));
   EXPECT_TRUE(latch.IsPeer(newest.get()));
   EXPECT_TRUE(latch.IsPeer(first.get()));
+}
+
+TEST_F(PeerLinks, OneWhoseAddressChangesEachSecondGoesOn) {
+  int lost = 0;
+  for (int change = 0; change < 600; ++change) {
+    const LinkAddress moved(Address("10.1.0.1", 5000 + static_cast<guint>(change)));
+    for (int i = 0; i < 100; ++i, ++seq, now += 10ms) {
+      EXPECT_EQ(Send(first, seq), Verdict::kAccepted);
+      lost += Send(moved, seq) == Verdict::kForeign;
+      EXPECT_EQ(Send(thief, seq, 2), Verdict::kForeign);
+    }
+    EXPECT_TRUE(latch.IsPeer(moved.get())) << change;
+    EXPECT_LE(latch.links(), PeerLatch::kMaxLinks);
+  }
+  EXPECT_TRUE(gst::SameAddress(latch.peer(), first.get()));
+  EXPECT_LE(lost, 600 * PeerLatch::kCopies) << "no more than what proves an address";
+}
+
+TEST_F(PeerLinks, GoOnWhereEachOfTwoAddressesChangesInTurn) {
+  LinkAddress one(Address("10.0.0.1", 5000)), other(Address("10.1.0.1", 5000));
+  SendBoth(one, other, 10);
+  for (guint change = 1; change < 600; ++change) {
+    (change % 2 == 0 ? one : other).reset(Address("10.1.0.1", 5000 + change));
+    int accepted = 0;
+    for (int i = 0; i < 100; ++i, ++seq, now += 10ms) {
+      const bool first_came = Send(one, seq) == Verdict::kAccepted;
+      accepted += Send(other, seq) == Verdict::kAccepted || first_came;
+    }
+    EXPECT_EQ(accepted, 100) << "change " << change;
+    EXPECT_TRUE(latch.IsPeer(one.get()) && latch.IsPeer(other.get()));
+    EXPECT_LE(latch.links(), PeerLatch::kMaxLinks);
+  }
+}
+
+TEST(LinkStats, HaveEachItsOwnName) {
+  gst::BondLinkStats stats;
+  stats.link = "edge:5004@wwan0";
+  stats.counters = {11, 12, 13, 14, 15};
+  stats.bottleneck = 16;
+  const auto shown = [&stats] {
+    StructurePtr out(gst_structure_new_empty("link"));
+    gst::AddLinkStats(stats, out.get());
+    return out;
+  };
+  const Stats all(shown().get());
+  EXPECT_EQ(all.Text("link"), "edge:5004@wwan0");
+  EXPECT_EQ(all["packets-first"], 11U);
+  EXPECT_EQ(all["packets-copies"], 12U);
+  EXPECT_EQ(all["copies-cancelled"], 13U);
+  EXPECT_EQ(all["packets-saved"], 14U);
+  EXPECT_EQ(all["link-gaps"], 15U);
+  EXPECT_EQ(all["bottleneck"], 16U);
+  for (const bool usable : {false, true}) {
+    stats.usable = usable;
+    stats.in_gap = !usable;
+    const Stats now_shown(shown().get());
+    EXPECT_EQ(now_shown.True("usable"), usable);
+    EXPECT_EQ(now_shown.True("in-gap"), !usable);
+  }
 }
 
 TEST(LinkReports, TellEachLinkWhatCameByIt) {
