@@ -91,6 +91,14 @@ std::optional<LinkLedger::Report> LinkLedger::OnFeedback(
   return report;
 }
 
+bool LinkLedger::HasSent(const scream::CongestionFeedback& feedback) const {
+  return std::all_of(feedback.blocks.begin(), feedback.blocks.end(), [this](const auto& block) {
+    const auto source = sources_.find(block.ssrc);
+    scream::SsrcReport own;
+    return source != sources_.end() && Translate(source->second, block, &own);
+  });
+}
+
 Time LinkLedger::Source::ReportOf(std::size_t packet) const {
   const Time latest = packets[packet].sent + kReportEvery;
   for (std::size_t i = packet; i < packets.size() && packets[i].sent < latest; ++i)

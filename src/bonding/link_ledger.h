@@ -39,6 +39,8 @@ class LinkLedger {
   std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
   /// Returns nothing if the report has packets that never left over this link.
   std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
+  /// Returns true if each packet of the report left over this link.
+  bool HasSent(const scream::CongestionFeedback& feedback) const;
   /// Returns when the oldest due report should have left the receiver. Packets count if neither
   /// they nor later ones were reported. The receiver reports at a slice's end, at the latest after
   /// kReportEvery.

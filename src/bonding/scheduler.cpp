@@ -281,6 +281,12 @@ std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(
   return std::move(report->feedback);
 }
 
+std::optional<std::size_t> Scheduler::OwnerOf(const scream::CongestionFeedback& feedback) const {
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    if (links_[i].ledger.HasSent(feedback)) return i;
+  return std::nullopt;
+}
+
 void Scheduler::SetUsable(Time now, std::size_t link, bool usable) {
   Link& l = links_[link];
   if (usable && !l.usable) {

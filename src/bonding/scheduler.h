@@ -104,6 +104,9 @@ class Scheduler {
   /// is impossible.
   std::optional<scream::CongestionFeedback> OnFeedback(Time now, std::size_t link,
                                                        const scream::CongestionFeedback& feedback);
+  /// Returns the link that sent the packets of a report which is impossible for the link that it
+  /// came by: something between the ends may swap feedback.
+  std::optional<std::size_t> OwnerOf(const scream::CongestionFeedback& feedback) const;
   void OnPath(std::size_t link, const PathView& path) { links_[link].path = path; }
   /// Sets whether packets can leave by the link at all.
   void SetUsable(Time now, std::size_t link, bool usable);

@@ -11,10 +11,12 @@
 #include <mutex>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "gst/common/sink_pads.h"
 #include "gst/lidar/gstlidar.h"
 #include "gst/scream/rtp_packet.h"
+#include "gst/scream/tx/feedback.h"
 #include "gst/scream/tx/link.h"
 
 namespace lidar::gst {
@@ -38,6 +40,13 @@ struct BondStream {
   std::optional<Time> key_unit_at;             // last request for a key unit
 };
 
+/// A report that came by another link than its own.
+struct Misdirected {
+  std::size_t owner;
+  lidar::scream::CongestionFeedback report;
+};
+constexpr std::size_t kMaxMisdirected = 64;  // a tick of feedback
+
 struct Kept {
   BufferPtr buffer;
   BondStream* stream;
@@ -57,6 +66,7 @@ struct BondShared {
   Scheduler scheduler;
   std::unordered_map<std::uint64_t, Kept> kept;
   std::deque<std::pair<Time, std::uint64_t>> order;
+  std::vector<Misdirected> misdirected;
 };
 
 class BondLink : public TxLink {
@@ -79,7 +89,12 @@ class BondLink : public TxLink {
   std::optional<lidar::scream::CongestionFeedback> OnFeedback(
       Time now, const lidar::scream::CongestionFeedback& report) override {
     const std::lock_guard lock(bond_->mutex);
-    return bond_->scheduler.OnFeedback(now, index_, report);
+    auto own = bond_->scheduler.OnFeedback(now, index_, report);
+    if (own || bond_->misdirected.size() >= kMaxMisdirected) return own;
+    // The other screamtx has a lock of its own, so the bond's thread takes the report there.
+    if (const auto owner = bond_->scheduler.OwnerOf(report))
+      bond_->misdirected.push_back({*owner, report});
+    return own;
   }
   gsize trailer() const override { return bond_->srtp ? bond_->srtp->overhead() : 0; }
   void OnPath(const lidar::scream::Statistics& s) override {
@@ -102,6 +117,7 @@ struct BondState {
   std::function<void()> watch;
   std::condition_variable wake;
   bool stop = false;
+  bool warned_of_swaps = false;
   GThread* thread = nullptr;
 };
 
@@ -253,12 +269,14 @@ static GstIterator* BondLinksOf(GstPad* pad, GstObject*) {
 struct BondWork {
   std::vector<std::pair<PadPtr, BufferPtr>> copies;
   std::vector<std::pair<PadPtr, EventPtr>> targets;
+  std::vector<Misdirected> reports;
 };
 
 /// The caller holds the lock.
 static BondWork TakeWork(BondState& state) {
   BondShared& shared = *state.shared;
   BondWork work;
+  work.reports.swap(shared.misdirected);
   for (const Scheduler::Copy& copy : shared.scheduler.TakeCopies(shared.Now())) {
     const auto kept = shared.kept.find(copy.id.key());
     if (kept == shared.kept.end()) continue;
@@ -272,8 +290,19 @@ static BondWork TakeWork(BondState& state) {
   return work;
 }
 
+static void TakeMisdirected(GstLidarScreamBond* self, const std::vector<Misdirected>& reports) {
+  BondState& state = *self->state;
+  for (const Misdirected& m : reports) TxTakeReport(state.links[m.owner], m.report);
+  if (reports.empty() || std::exchange(state.warned_of_swaps, true)) return;
+  GST_ELEMENT_WARNING(self, RESOURCE, READ,
+                      ("Feedback of a link comes by another link; it is used for its own."),
+                      ("Look for what swaps packets between the links: a relay, or translated "
+                       "addresses. This is said once; feedback-ignored in links counts it."));
+}
+
 static gpointer BondRun(gpointer data) {
-  BondState& state = *static_cast<BondState*>(data);
+  auto* self = static_cast<GstLidarScreamBond*>(data);
+  BondState& state = *self->state;
   std::unique_lock lock(state.shared->mutex);
   Time watch_at{};
   while (!state.stop) {
@@ -283,6 +312,7 @@ static gpointer BondRun(gpointer data) {
       watch_at = now + kWatchEvery;
       state.watch();
     }
+    TakeMisdirected(self, work.reports);
     for (auto& [pad, buffer] : work.copies) gst_pad_push(pad.get(), buffer.release());
     for (auto& [pad, event] : work.targets) gst_pad_push_event(pad.get(), event.release());
     work = {};
@@ -295,8 +325,9 @@ static gpointer BondRun(gpointer data) {
 static bool StartThread(GstLidarScreamBond* self) {
   BondState& state = *self->state;
   state.stop = false;
+  state.warned_of_swaps = false;
   GError* error = nullptr;
-  state.thread = g_thread_try_new("screambond", BondRun, &state, &error);
+  state.thread = g_thread_try_new("screambond", BondRun, self, &error);
   const ErrorPtr owner(error);
   if (state.thread != nullptr) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("No thread can be made: %s", error->message),
@@ -315,6 +346,7 @@ static void StopThread(BondState& state) {
   state.thread = nullptr;
   const std::lock_guard lock(state.shared->mutex);
   state.shared->kept.clear();
+  state.shared->misdirected.clear();
   state.shared->order.clear();
 }
 

@@ -56,7 +56,10 @@ scream::FeedbackResult GiveToController(TxState& state, Time now,
                                         const scream::CongestionFeedback& report) {
   if (!state.link) return state.controller->OnFeedback(now, report);
   const auto own = state.link->OnFeedback(now, report);
-  if (!own) return scream::FeedbackResult::kImplausible;
+  if (!own) {
+    ++state.reports_of_others;
+    return scream::FeedbackResult::kImplausible;
+  }
   const auto result = state.controller->OnFeedback(now, *own);
   state.link->OnPath(state.controller->statistics(now));
   return result;

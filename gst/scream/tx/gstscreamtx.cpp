@@ -183,7 +183,7 @@ static void Prepare(TxState& state) {
   state.merger = {};
   state.pacing.ForgetEnd();
   state.reporter.notices().Reset(*state.controller, TxNow(state));
-  state.malformed_rtcp = 0;
+  state.malformed_rtcp = state.reports_of_others = 0;
 }
 
 static void BeforeChange(TxState& state, GstStateChange change) {

@@ -48,7 +48,8 @@ struct TxState {
   scream::CcfbParser parser;
   FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
-  std::shared_ptr<TxLink> link;  // null for a single link
+  guint64 reports_of_others = 0;  // of packets that this link never sent
+  std::shared_ptr<TxLink> link;   // null for a single link
 
   EntryGate gate{clock};
   StreamMerger merger;

@@ -104,7 +104,9 @@ StructurePtr StatsOf(TxState& state) {
   if (!state.controller)
     return StructurePtr(gst_structure_new_empty("application/x-screamtx-stats"));
   const Time now = TxNow(state);
-  StructurePtr out = ControllerStats(state.controller->statistics(now));
+  scream::Statistics statistics = state.controller->statistics(now);
+  statistics.feedback_ignored += state.reports_of_others;
+  StructurePtr out = ControllerStats(statistics);
   guint64 frames_dropped = 0;
   GValue streams = G_VALUE_INIT;
   gst_value_array_init(&streams, static_cast<guint>(state.streams.size()));

@@ -67,18 +67,27 @@ class SimLink {
         {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn), p.marker, p.size});
   }
 
-  void Step(Time now, Scheduler* scheduler) {
-    while (auto report = generator_.Take(now + config_.receiver_clock))
+  /// `reported`: the link whose receiver is heard here.
+  using Links = std::vector<std::unique_ptr<SimLink>>;
+  void Step(Time now, Scheduler* scheduler, SimLink* reported, const Links& links) {
+    while (auto report = reported->generator_.Take(now + reported->config_.receiver_clock))
       reports_.emplace(now + config_.rtt / 2, *report);
     for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin())) {
       const auto bytes = scream::BuildCcfb(reports_.begin()->second);
       const auto report = parser_.Parse({bytes.data(), bytes.size()});
-      if (const auto own = scheduler->OnFeedback(now, index_, *report))
-        controller_.OnFeedback(now, *own);
+      if (Take(now, scheduler, *report)) continue;
+      if (const auto owner = scheduler->OwnerOf(*report))
+        links[*owner]->Take(now, scheduler, *report);
     }
     if (controller_.NextTimer() <= now) controller_.OnTimer(now);
     const scream::Statistics s = controller_.statistics(now);
     scheduler->OnPath(index_, {s.s_rtt > Duration{0} ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
+  }
+
+  bool Take(Time now, Scheduler* scheduler, const scream::CongestionFeedback& report) {
+    const auto own = scheduler->OnFeedback(now, index_, report);
+    if (own) controller_.OnFeedback(now, *own);
+    return own.has_value();
   }
 
   void Send(Time now, Scheduler* scheduler, Network* network) {
@@ -186,7 +195,8 @@ class BondedRun {
     const LinkConfig& c = config_.links[i];
     const Duration t = now - kStart;
     scheduler_.SetUsable(now, i, t < c.unusable_from || t >= c.unusable_until);
-    links_[i]->Step(now, &scheduler_);
+    const bool swapped = t >= config_.swapped_from;
+    links_[i]->Step(now, &scheduler_, links_[swapped ? 1 - i : i].get(), links_);
   }
 
   void Deliver(Time now) {

@@ -24,6 +24,8 @@ struct LinkConfig {
 
 struct RunConfig {
   std::vector<LinkConfig> links;
+  /// What is received by one of two links is reported by the other one, from this time of the run.
+  Duration swapped_from = Duration::max();
   /// All pass the first one's queue; the others have a round trip of their own only.
   bool one_bottleneck = false;
   /// Flows of somebody else on the first link.

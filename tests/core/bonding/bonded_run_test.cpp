@@ -128,6 +128,15 @@ TEST(TwoLinkRun, SendsLittleTwiceOnLinksThatAreSettled) {
   EXPECT_LE(adaptive, 0.6 * broadcast);
 }
 
+TEST(TwoLinkRun, GoesOnWhereFeedbackIsSwapped) {
+  for (const Duration from : {0s, 20s}) {
+    RunConfig config = AtNeed({{Constant(8)}, {Constant(8), 60ms}});
+    config.swapped_from = from;
+    const RunResult run = Simulate(config);
+    EXPECT_GE(run.Share(), 0.99) << "from " << Seconds(from);
+  }
+}
+
 TEST(TwoLinkRun, OneLinkOfFourIsEnough) {
   LinkConfig dead{Constant(8)};
   dead.capacity.AddOutage(0s, 1h);

@@ -229,6 +229,23 @@ TEST_F(TwoLinks, RefusesForgedReports) {
   EXPECT_TRUE(scheduler_.InGap(now_ + 1s, 0));
 }
 
+TEST_F(TwoLinks, RefusesReportsOfTheOtherLinkAndLosesNothing) {
+  Settle();
+  ASSERT_EQ(Packet(), SetOf({0}));
+  EXPECT_FALSE(scheduler_.OnFeedback(now_, 1, Arrived(seq_))) << "swapped";
+  EXPECT_EQ(scheduler_.OwnerOf(Arrived(seq_)), std::size_t{0});
+  EXPECT_FALSE(scheduler_.OwnerOf(Arrived(static_cast<std::uint16_t>(seq_ + 1)))) << "forged";
+  scream::CongestionFeedback report = Arrived(seq_);
+  report.blocks.push_back({kMedia + 1, 1, {{true, scream::Ecn::kEct1, std::nullopt}}});
+  EXPECT_FALSE(scheduler_.OwnerOf(report)) << "with a block of another's packets";
+  const auto copies = scheduler_.TakeCopies(now_ + 61ms);
+  ASSERT_EQ(copies.size(), 1U);
+  scheduler_.OnSent(now_ + 61ms, 1, copies[0].id);
+  EXPECT_TRUE(scheduler_.OnFeedback(now_ + 100ms, 1, Arrived(seq_)));
+  EXPECT_FALSE(scheduler_.Wants(now_ + 100ms, 0, copies[0].id));
+  EXPECT_EQ(scheduler_.counters(1).saved, 1U);
+}
+
 TEST_F(TwoLinks, SendsNothingByALinkThatCannotBeUsed) {
   Settle();
   scheduler_.SetUsable(now_, 0, false);

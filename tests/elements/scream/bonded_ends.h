@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A sender of audio over several links, and its receiver.
 #pragma once
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/elements/scream/pipeline.h"
@@ -66,5 +73,108 @@ inline std::vector<guint64> OfLinks(GstElement* element, const char* field) {
   }
   return values;
 }
+
+/// A router between the links of a sender and one receiver: each link has a port of its own here,
+/// and another address for the receiver.
+class Router {
+ public:
+  static constexpr int kLinks = 2;
+
+  explicit Router(const std::string& receiver_port)
+      : receiver_(Loopback(std::stoi(receiver_port))) {
+    for (int i = 0; i < kLinks; ++i) {
+      doors_[i] = Bind();
+      backs_[i] = Bind();
+    }
+    thread_ = std::thread([this] { Run(); });
+  }
+  ~Router() {
+    stop_ = true;
+    thread_.join();
+    for (const int fd : doors_) close(fd);
+    for (const int fd : backs_) close(fd);
+  }
+  Router(const Router&) = delete;
+  Router& operator=(const Router&) = delete;
+
+  /// The links, for the property bonding-addresses.
+  std::string Addresses() const {
+    return "127.0.0.1:" + PortOf(doors_[0]) + "@127.0.0.1,127.0.0.1:" + PortOf(doors_[1]) +
+           "@127.0.0.2";
+  }
+
+  /// Feedback of each link goes to the other one.
+  std::atomic<bool> swaps{false};
+  /// Link 1 loses what the sender sends.
+  std::atomic<bool> loses{false};
+  /// The receiver sees link 1 at another address each time so many milliseconds have passed.
+  std::atomic<int> moves_each_ms{0};
+  std::atomic<int> moves{0};
+
+ private:
+  static sockaddr_in Loopback(int port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    return address;
+  }
+  static int Bind() {
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const sockaddr_in local = Loopback(0);
+    EXPECT_EQ(bind(fd, reinterpret_cast<const sockaddr*>(&local), sizeof local), 0);
+    return fd;
+  }
+  static std::string PortOf(int fd) {
+    sockaddr_in local{};
+    socklen_t size = sizeof local;
+    getsockname(fd, reinterpret_cast<sockaddr*>(&local), &size);
+    return std::to_string(ntohs(local.sin_port));
+  }
+  static void Send(int fd, const char* bytes, ssize_t size, const sockaddr_in& to) {
+    sendto(fd, bytes, static_cast<std::size_t>(size), 0, reinterpret_cast<const sockaddr*>(&to),
+           sizeof to);
+  }
+  void Run() {
+    gint64 moved_at = g_get_monotonic_time();
+    while (!stop_) {
+      pollfd fds[2 * kLinks];
+      for (int i = 0; i < kLinks; ++i) {
+        fds[i] = {doors_[i], POLLIN, 0};
+        fds[kLinks + i] = {backs_[i], POLLIN, 0};
+      }
+      poll(fds, 2 * kLinks, 10);
+      for (int i = 0; i < kLinks; ++i) {
+        if ((fds[i].revents & POLLIN) != 0) PassMedia(i);
+        if ((fds[kLinks + i].revents & POLLIN) != 0) PassFeedback(i);
+      }
+      const gint64 now = g_get_monotonic_time();
+      if (moves_each_ms == 0 || now - moved_at < moves_each_ms * 1000) continue;
+      moved_at = now;
+      ++moves;
+      close(std::exchange(backs_[1], Bind()));
+    }
+  }
+  void PassMedia(int link) {
+    char bytes[2'000];
+    socklen_t size = sizeof senders_[link];
+    const ssize_t n = recvfrom(doors_[link], bytes, sizeof bytes, 0,
+                               reinterpret_cast<sockaddr*>(&senders_[link]), &size);
+    if (n > 0 && !(loses && link == 1)) Send(backs_[link], bytes, n, receiver_);
+  }
+  void PassFeedback(int link) {
+    char bytes[2'000];
+    const ssize_t n = recv(backs_[link], bytes, sizeof bytes, 0);
+    const int to = swaps ? 1 - link : link;
+    if (n > 0 && senders_[to].sin_port != 0) Send(doors_[to], bytes, n, senders_[to]);
+  }
+
+  const sockaddr_in receiver_;
+  int doors_[kLinks] = {};
+  int backs_[kLinks] = {};
+  sockaddr_in senders_[kLinks] = {};
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
 
 }  // namespace lidar::test

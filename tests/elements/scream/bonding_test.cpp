@@ -83,6 +83,72 @@ TEST(Bonding, GoesOnWithoutALinkWhoseInterfaceIsMissingAndSaysSo) {
   EXPECT_EQ(sent[1], 150U);
 }
 
+TEST(Bonding, GoesOnWhereTheFeedbackOfTwoLinksIsSwapped) {
+  BondReceiver receiver;
+  Router router(receiver.port);
+  Pipeline sender(Bonded(router.Addresses(), "bonding-method=backup"));
+  sender.Play();
+  while (receiver.passed < 50) g_usleep(10'000);
+  router.swaps = true;
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  const auto ignored = OfLinks(sender.Get("out").get(), "feedback-ignored");
+  EXPECT_GT(ignored[0] + ignored[1], 0U) << "packets that a link never sent";
+}
+
+TEST(Bonding, GoesOnWhereTheAddressOfALinkChangesEachSecond) {
+  BondReceiver receiver;
+  Router router(receiver.port);
+  router.moves_each_ms = 1'000;
+  Pipeline sender(Bonded(router.Addresses()));
+  g_object_set(sender.Get("src").get(), "num-buffers", 450, nullptr);
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_GE(router.moves, 4);
+  EXPECT_EQ(receiver.passed, 450U);
+  const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
+  EXPECT_EQ(OfLinks(out.get(), "packets-sent").size(), 2U);
+  EXPECT_LE(OfLinks(in.get(), "packets-received").size(), 4U);
+  const auto accepted = OfLinks(out.get(), "feedback-accepted");
+  EXPECT_GT(accepted[1], 50U) << "each address is answered";
+}
+
+TEST(Bonding, ShowsEachLinksFigures) {
+  BondReceiver receiver;
+  Router router(receiver.port);
+  Pipeline sender(Bonded(router.Addresses()));
+  const ElementPtr out = sender.Get("out");
+  sender.Play();
+  while (receiver.passed < 40) g_usleep(10'000);
+  router.loses = true;  // link 1, until the end
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  const Stats all(out.get());
+  const Stats links[] = {all.Of("links", 0), all.Of("links", 1)};
+  const std::string addresses = router.Addresses();
+  EXPECT_EQ(links[0].Text("link") + "," + links[1].Text("link"), addresses);
+  EXPECT_EQ(links[0]["packets-first"] + links[1]["packets-first"], 150U);
+  EXPECT_EQ(links[0]["link-gaps"], 0U);
+  EXPECT_EQ(links[1]["link-gaps"], 1U);
+  EXPECT_GT(links[0]["packets-first"], 100U);
+  EXPECT_GT(links[1]["packets-copies"], 20U) << "until it was lost";
+  EXPECT_GT(links[1]["copies-cancelled"], 0U) << "of what the other link delivered";
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LE(links[i]["packets-sent"] + links[i]["copies-cancelled"],
+              links[i]["packets-first"] + links[i]["packets-copies"]);
+    EXPECT_EQ(links[i]["bottleneck"], i);
+    EXPECT_EQ(links[i]["send-errors"], 0U);
+    EXPECT_GE(links[i]["packets-sent"], links[i]["packets-acked"]);
+    EXPECT_TRUE(links[i].True("usable"));
+    EXPECT_EQ(links[i].True("in-gap"), i == 1);
+  }
+  EXPECT_GT(links[0]["packets-acked"], links[1]["packets-acked"] + 80);
+  EXPECT_EQ(all["packets-sent"], links[0]["packets-sent"]) << "the first link's";
+}
+
 TEST(Bonding, GivesAVideoEncoderItsBitrate) {
   Pipeline receiver(
       "screamsrc name=in port=0 caps=\"application/x-rtp,media=video,encoding-name=H264,"
