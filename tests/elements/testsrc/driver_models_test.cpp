@@ -23,11 +23,23 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
       : firing_(*synth::FindFiring(GetParam())),
         h_(gst_harness_new_parse(
             (std::string("lidartestsrc num-buffers=2 scene=tunnel model=") + GetParam()).c_str())) {
+    // The width changes from scan to scan, and the source may be ahead of the test.
+    gst_pad_add_probe(
+        h_->sinkpad, GST_PAD_PROBE_TYPE_BUFFER,
+        [](GstPad* pad, GstPadProbeInfo*, gpointer self) {
+          g_async_queue_push(static_cast<DriverModel*>(self)->caps_, gst_pad_get_current_caps(pad));
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
     gst_harness_play(h_.get());
+  }
+  ~DriverModel() override {
+    h_.reset();
+    g_async_queue_unref(caps_);
   }
   void Pull() {
     cloud_.reset(gst_harness_pull(h_.get()));
-    const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+    const CapsPtr caps(static_cast<GstCaps*>(g_async_queue_pop(caps_)));
     info_ = *CloudInfo::FromFrameCaps(caps.get());
     const BufferMap map(cloud_.get(), GST_MAP_READ);
     bytes_.assign(map.data(), map.data() + map.size());
@@ -64,6 +76,9 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
 
   const Firing& firing_;
   Harness h_;
+  // Of each cloud that came.
+  GAsyncQueue* const caps_ =
+      g_async_queue_new_full([](gpointer caps) { gst_caps_unref(static_cast<GstCaps*>(caps)); });
   BufferPtr cloud_;
   CloudInfo info_;
   std::vector<guint8> bytes_;
