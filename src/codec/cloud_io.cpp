@@ -54,6 +54,14 @@ PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_
   return kept;
 }
 
+std::vector<PointField> ExactFields(const PointFields& kept) {
+  const PointFields usual = KeptFields(kept, true, false);
+  std::vector<PointField> exact;
+  for (const PointField& field : kept.all())
+    if (usual.Find(field.name) == nullptr) exact.push_back(field);
+  return exact;
+}
+
 bool HasIntensity(const PointFields& fields) { return fields.Has("intensity", FieldType::kF32); }
 
 FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
@@ -93,8 +101,10 @@ std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t
   return unit <= RangeGrid::kMaxUnitMm ? unit : std::gcd(unit, sensor_unit_mm);
 }
 
-void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud) {
+void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud,
+             std::vector<std::uint32_t>* rows) {
   cloud->Clear();
+  if (rows != nullptr) rows->clear();
   const std::size_t count = raw.size / layout.point_step;
   const std::uint32_t xyz_offset = layout.fields.Find("x")->offset;
   const PointField* intensity = with_intensity ? layout.fields.Find("intensity") : nullptr;
@@ -106,6 +116,7 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
     const bool missing = p[0] == 0 && p[1] == 0 && p[2] == 0;
     if (missing || !std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
     cloud->xyz.insert(cloud->xyz.end(), p, p + 3);
+    if (rows != nullptr) rows->push_back(static_cast<std::uint32_t>(i));
     if (intensity == nullptr) continue;
     const auto value = Load<float>(point + intensity->offset);
     cloud->intensity.push_back(std::isfinite(value) && value > 0 ? value : 0.0F);
@@ -146,14 +157,16 @@ void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
   }
 }
 
-void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw) {
+void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw,
+              const std::vector<std::uint32_t>& order) {
   const std::uint32_t xyz_offset = layout.fields.Find("x")->offset;
   const PointField* intensity = FindTyped(layout.fields, "intensity", FieldType::kF32);
   const bool has_intensity = intensity != nullptr && cloud.intensity.size() == cloud.size();
   std::memset(raw, 0, cloud.size() * layout.point_step);
-  for (std::size_t i = 0; i < cloud.size(); ++i, raw += layout.point_step) {
-    std::memcpy(raw + xyz_offset, &cloud.xyz[3 * i], 3 * sizeof(float));
-    if (has_intensity) Store(cloud.intensity[i], raw + intensity->offset);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::uint8_t* point = raw + (order.empty() ? i : order[i]) * layout.point_step;
+    std::memcpy(point + xyz_offset, &cloud.xyz[3 * i], 3 * sizeof(float));
+    if (has_intensity) Store(cloud.intensity[i], point + intensity->offset);
   }
 }
 

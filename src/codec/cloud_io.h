@@ -47,6 +47,9 @@ constexpr unsigned kFineIntensityBits = IntensityScale::kMaxBits;
 /// and there, intensity and range.
 PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_range);
 
+/// The other fields of an encoded slice of points, which come back exactly.
+std::vector<PointField> ExactFields(const PointFields& kept);
+
 /// Returns true if there is an intensity that the codecs take: F32.
 bool HasIntensity(const PointFields& fields);
 
@@ -61,14 +64,17 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
 std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm);
 
 /// Fills `cloud` with the points of `raw` that are finite and not all zero. Intensities that are
-/// negative or not finite become 0.
-void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud);
+/// negative or not finite become 0. `rows`, if it is there, becomes the place of each in `raw`.
+void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud,
+             std::vector<std::uint32_t>* rows = nullptr);
 
 /// Writes `image` as points, missing ones as zeros; `raw` has image.size() * point_step bytes.
 void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
                      const RangeProjection& projection, const CloudLayout& layout,
                      std::uint8_t* raw);
-/// Writes `cloud` as points; other fields are zero.
-void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw);
+/// Writes `cloud` as points, each at its place of `order` if that is not empty; other fields are
+/// zero.
+void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw,
+              const std::vector<std::uint32_t>& order = {});
 
 }  // namespace lidar::codec

@@ -12,8 +12,8 @@
 #include <random>
 
 #include "ext/draco/slice_coder.h"
-#include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
+#include "src/codec/cloud/exact_decoder.h"
 #include "tests/benchmarks/capture_scans.h"
 
 namespace lidar::bench {
@@ -117,9 +117,9 @@ std::vector<Bytes> Code(const Capture& capture, Geometry geometry, codec::RangeC
   return all;
 }
 
-std::vector<Bytes> CodeAsCloud(const Capture& capture) {
+std::vector<Bytes> CodeAsCloud(const Capture& capture, const codec::cloud::ExactChoice& exact) {
   auto encoder = *codec::cloud::CloudEncoder::Create(
-      {capture.format.layout.fields, capture.format.layout.point_step});
+      {capture.format.layout.fields, capture.format.layout.point_step}, exact);
   std::vector<Bytes> all;
   for (const CapturedSlice& slice : capture.slices) {
     codec::EncodedSlice encoded;
@@ -164,10 +164,14 @@ int Run(double seconds) {
          decode(Geometry::kRange), seconds);
   Search("lidarenc", Code(*capture, Geometry::kRange, RangeCoder::kMixing, 1),
          decode(Geometry::kRange), seconds);
-  codec::cloud::CloudDecoder cloud(kMaxPoints);
-  Search(
-      "lidarenc geometry=xyz", CodeAsCloud(*capture),
-      [&cloud](ByteView bytes) { cloud.Decode(bytes); }, seconds);
+  codec::cloud::ExactChoice exact;
+  for (const char* coder : {"lidarenc geometry=xyz", "the same, fields and order"}) {
+    codec::cloud::ExactDecoder cloud(exact.fields, kMaxPoints);
+    Search(
+        coder, CodeAsCloud(*capture, exact), [&cloud](ByteView bytes) { cloud.Decode(bytes); },
+        seconds);
+    exact = {{*capture->format.layout.fields.Find("range")}, true};
+  }
   Search("dracoenc geometry=range", Code(*capture, Geometry::kRange, RangeCoder::kDraco, 0),
          decode(Geometry::kRange), seconds);
   Search("dracoenc geometry=xyz", Code(*capture, Geometry::kXyz, RangeCoder::kAdaptive, 0),

@@ -103,7 +103,7 @@ void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
   CodeResiduals(image, *settings, residuals, bits);
 }
 
-/// Beside the guess of azimuths: further returns are coded by four neighbours.
+/// A flag beside the guess of azimuths: further returns are coded by four neighbours.
 constexpr unsigned kByFourFlag = 4;
 
 void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* writer) {
@@ -233,7 +233,7 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
 
 /// False where a range is none.
 bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t range_mm,
-                 std::uint8_t level, XyzCloud* cloud) {
+                 std::uint8_t level, XyzCloud* cloud, PointPlaces* places) {
   if (range_mm == 0 || range_mm > RangeGrid::kMaxRangeMm) return false;
   const auto beam = static_cast<std::uint32_t>(pixel / section.image.columns);
   const std::uint32_t column =
@@ -245,6 +245,7 @@ bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t
           : section.slopes[beam];
   const Point point = section.table.At(beam, azimuth, slope, range_mm);
   cloud->xyz.insert(cloud->xyz.end(), point.begin(), point.end());
+  if (places != nullptr) places->points.push_back({beam, column});
   if (section.scale.bits() > 0) cloud->intensity.push_back(section.scale.ValueOf(level));
   return true;
 }
@@ -252,7 +253,7 @@ bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t
 }  // namespace
 
 bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
-                       XyzCloud* cloud) {
+                       XyzCloud* cloud, PointPlaces* places) {
   DecodedSection section;
   if (!DecodeImage(reader, &section) || section.scale.bits() != scale.bits() ||
       section.scale.full() != scale.full() || !DecodeRest(reader, max_points, &section)) {
@@ -260,18 +261,19 @@ bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const Intensi
   }
   for (const BeamTable::Beam& beam : section.table.beams)
     section.slopes.emplace_back(beam.elevation);
+  if (places != nullptr) *places = {section.table.rows(), section.table.columns(), {}};
   const RangeImage& image = section.image;
   auto extra = section.extras.begin();
   const auto last_bin = static_cast<std::int64_t>(section.grid.BinOf(RangeGrid::kMaxRangeMm));
   for (std::size_t i = 0; i < image.size(); ++i) {
     if (image.ranges[i] == 0) continue;
     const std::uint8_t level = image.intensity.empty() ? std::uint8_t{0} : image.intensity[i];
-    if (!AppendPixel(section, i, image.ranges[i], level, cloud)) return false;
+    if (!AppendPixel(section, i, image.ranges[i], level, cloud, places)) return false;
     for (; extra != section.extras.end() && extra->pixel == i; ++extra) {
       const std::int64_t bin = std::int64_t{section.grid.BinOf(image.ranges[i])} + extra->bin;
       if (bin < 0 || bin > last_bin) return false;
       const std::uint32_t range = section.grid.RangeOf(static_cast<std::uint32_t>(bin));
-      if (!AppendPixel(section, i, range, extra->level, cloud)) return false;
+      if (!AppendPixel(section, i, range, extra->level, cloud, places)) return false;
     }
   }
   return true;

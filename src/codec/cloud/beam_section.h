@@ -6,6 +6,7 @@
 
 #include "src/base/byte_reader.h"
 #include "src/codec/cloud/beam_table.h"
+#include "src/codec/cloud/firing_order.h"
 #include "src/codec/cloud/pixel_list.h"
 #include "src/codec/cloud_io.h"
 #include "src/codec/intensity_scale.h"
@@ -23,9 +24,9 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
                        unsigned effort, PixelList* list, std::vector<std::uint8_t>* out);
 
 /// Appends the points of the section that `reader` comes to, beam by beam, columns in order, and
-/// returns of a pixel one after the other. False, with the cloud undefined, for a section that is
-/// damaged or of more than `max_points`.
+/// returns of a pixel one after the other, and sets their places if they are asked for. False, with
+/// both undefined, for a section that is damaged or of more than `max_points`.
 bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
-                       XyzCloud* cloud);
+                       XyzCloud* cloud, PointPlaces* places = nullptr);
 
 }  // namespace lidar::codec::cloud

@@ -7,11 +7,14 @@
 #include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/level_tree.h"
 #include "src/codec/mixing/binary_coder.h"
+#include "src/codec/varint.h"
 
 namespace lidar::codec::cloud {
 
 bool CloudDecoder::Decode(ByteView stream) {
   cloud_.Clear();
+  places_ = {};
+  exact_section_ = {};
   ByteReader reader(stream);
   const auto header = CloudHeader::Read(&reader);
   if (!header || std::uint64_t{header->points} + header->far_points > max_points_) return false;
@@ -22,14 +25,22 @@ bool CloudDecoder::Decode(ByteView stream) {
   ByteReader far(reader.Bytes(far_size));
   const std::size_t others = std::size_t{header_.points} + header_.far_points;
   if (header_.has_beams &&
-      !DecodeBeamSection(&reader, max_points_ - others, header_.intensity, &cloud_)) {
+      !DecodeBeamSection(&reader, max_points_ - others, header_.intensity, &cloud_,
+                         header_.has_exact_part ? &places_ : nullptr)) {
     return false;
   }
   const ByteView cells = reader.Bytes(header_.stream_size);
+  if (header_.has_exact_part) {
+    bool ok = true;
+    exact_section_ = reader.Bytes(ReadVarint(&reader, &ok));
+    if (!ok || exact_section_.empty()) return false;
+  }
   if (!reader.ok()) return false;
   const ByteView filler = reader.Rest();
   const bool filled = std::all_of(filler.begin(), filler.end(), [](auto b) { return b == 0; });
-  return filled && DecodeCells(cells, stream.size) && ReadFarPoints(&far);
+  if (!filled || !DecodeCells(cells, stream.size) || !ReadFarPoints(&far)) return false;
+  if (header_.has_exact_part) places_.AddLoose(cloud_.size() - places_.points.size());
+  return true;
 }
 
 bool CloudDecoder::DecodeCells(ByteView stream, std::size_t slice_bytes) {

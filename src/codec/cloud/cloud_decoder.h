@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes what CloudEncoder encodes; any bytes give a cloud or nothing.
+// Decodes the points that CloudEncoder encodes; any bytes give a cloud or nothing.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,6 +7,7 @@
 #include "src/base/byte_reader.h"
 #include "src/codec/cloud/cell_tree.h"
 #include "src/codec/cloud/cloud_header.h"
+#include "src/codec/cloud/firing_order.h"
 #include "src/codec/cloud_io.h"
 
 namespace lidar::codec::cloud {
@@ -22,6 +23,10 @@ class CloudDecoder {
   /// The points decoded last: those of beams, beam by beam and column by column; cell by cell, the
   /// cells in the order of their Morton codes, then those too far away for cells.
   const XyzCloud& cloud() const { return cloud_; }
+  /// The section of what comes back exactly, part of the stream; null if there is none.
+  ByteView exact_section() const { return exact_section_; }
+  /// The places of the points, if there is such a section.
+  const PointPlaces& places() const { return places_; }
   double step_m() const { return static_cast<double>(header_.grid.step_m); }
   double error_m() const { return header_.grid.error_m(); }
   unsigned intensity_bits() const { return header_.intensity.bits(); }
@@ -35,6 +40,8 @@ class CloudDecoder {
   CellTree tree_;
   CellList cells_;
   XyzCloud cloud_;
+  PointPlaces places_;
+  ByteView exact_section_;
 };
 
 }  // namespace lidar::codec::cloud

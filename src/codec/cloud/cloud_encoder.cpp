@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "src/codec/cloud/level_tree.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/mixing/binary_coder.h"
+#include "src/codec/varint.h"
 
 namespace lidar::codec::cloud {
 namespace {
@@ -32,7 +34,7 @@ IntensityScale ScaleOf(const XyzCloud& cloud, unsigned bits) {
 
 /// Shares the error between ranges and azimuths so that the cloud should be smallest.
 PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
-  // A part of the points tells as much.
+  // A part of the points suffices.
   constexpr std::size_t kSample = 8'192;
   cloud.stride = cloud.points->size() / kSample + 1;
   // Bits of what fits no pixel, and of a residual.
@@ -75,13 +77,24 @@ constexpr std::array<double, 8> kReaches = {0, 15, 25, 35, kUsualReach, 70, 100,
 
 }  // namespace
 
-std::optional<CloudEncoder> CloudEncoder::Create(const CloudLayout& layout) {
+std::optional<CloudEncoder> CloudEncoder::Create(const CloudLayout& layout, ExactChoice exact) {
   if (!layout.fields.HasPackedXyz()) return std::nullopt;
-  return CloudEncoder(layout);
+  return CloudEncoder(layout, std::move(exact));
 }
 
 void CloudEncoder::Load(ByteView raw, bool with_intensity) {
-  ReadXyz(raw, layout_, with_intensity && HasIntensity(layout_.fields), &cloud_);
+  std::vector<std::uint32_t> rows;
+  ReadXyz(raw, layout_, with_intensity && HasIntensity(layout_.fields), &cloud_, &rows);
+  exact_.clear();
+  for (const PointField& field : choice_.fields) {
+    ExactField& exact = exact_.emplace_back();
+    exact.type = field.type;
+    exact.numbers.assign(rows.size(), 0);
+    const std::size_t size = SizeOf(field.type);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      std::memcpy(&exact.numbers[i],
+                  raw.data + std::size_t{rows[i]} * layout_.point_step + field.offset, size);
+  }
 }
 
 double CloudEncoder::extent_m() const {
@@ -99,6 +112,12 @@ double CloudEncoder::extent_m() const {
 }
 
 void CloudEncoder::Thin(const std::vector<bool>& kept) {
+  for (ExactField& field : exact_) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (kept[i]) field.numbers[count++] = field.numbers[i];
+    field.numbers.resize(count);
+  }
   XyzCloud thinned;
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     if (!kept[i]) continue;
@@ -112,6 +131,7 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
 void CloudEncoder::SortOut(CloudHeader* header) {
   near_.clear();
   levels_.clear();
+  near_ids_.clear();
   far_ids_.clear();
   const IntensityScale fine(header->intensity.full(), kFineIntensityBits);
   float most = 0;
@@ -125,6 +145,7 @@ void CloudEncoder::SortOut(CloudHeader* header) {
     }
     most = std::max(most, farthest);
     near_.push_back(point);
+    near_ids_.push_back(i);
     if (header->intensity.bits() > 0) levels_.push_back(fine.LevelOf(cloud_.intensity[i]));
   }
   header->depth = std::max(header->depth, header->grid.DepthFor(static_cast<double>(most)));
@@ -148,15 +169,19 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
   candidate->cells.clear();
   mixing::BinaryEncoder encoder(&candidate->cells);
   tree_.Code(&covered_.cells, {points.size(), SIZE_MAX}, &encoder);
+  std::vector<std::uint32_t>& points_in_order = candidate->cell_points;
+  points_in_order.clear();
+  for (const std::uint32_t i : covered_.order) points_in_order.push_back(ids[i]);
   if (!levels_.empty()) {
-    std::vector<std::uint8_t> levels;
-    for (const std::uint32_t i : covered_.order)
-      levels.push_back(header.intensity.Coarsen(levels_[ids[i]]));
-    auto first = levels.begin();
+    const auto level_of = [&](std::uint32_t i) { return header.intensity.Coarsen(levels_[i]); };
+    auto first = points_in_order.begin();
     for (const std::uint32_t count : covered_.cells.counts) {
-      std::sort(first, first + count);
+      std::stable_sort(first, first + count,
+                       [&](std::uint32_t a, std::uint32_t b) { return level_of(a) < level_of(b); });
       first += count;
     }
+    std::vector<std::uint8_t> levels;
+    for (const std::uint32_t i : points_in_order) levels.push_back(level_of(i));
     CodeLevels(covered_.cells, header.intensity.bits(), &levels, &encoder);
   }
   encoder.Finish();
@@ -179,6 +204,7 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
   CodeCells(points, ids, false, &other);
   if (other.cells.size() >= candidate->cells.size()) return;
   candidate->cells.swap(other.cells);
+  candidate->cell_points.swap(other.cell_points);
   candidate->nodes = other.nodes;
 }
 
@@ -193,7 +219,49 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
     return false;
   }
   EncodeCells(pixels_.rest, candidate);
+  EncodeExact(&table, candidate);
   return true;
+}
+
+/// Exact fields of points in cells cost more than what cells save.
+double CloudEncoder::LargestReach() const { return choice_.empty() ? kReaches.back() : 0; }
+
+/// Codes what is to come back exactly of the points in `table`, which are those of pixels_, and of
+/// the others.
+void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) const {
+  if (choice_.empty()) return;
+  PointPlaces places;
+  ExactPart part;
+  const auto add = [&](std::uint32_t near, const PointPlace& place) {
+    places.points.push_back(place);
+    part.order.push_back(near_ids_[near]);
+  };
+  if (table != nullptr) {
+    places.beams = table->rows();
+    places.columns = table->columns();
+    const RangeImage& image = pixels_.image;
+    auto extra = pixels_.extras.begin();
+    for (std::uint32_t i = 0; i < image.size(); ++i) {
+      if (image.ranges[i] == 0) continue;
+      const PointPlace place{i / image.columns, image.first_column + i % image.columns};
+      add(pixels_.points[i], place);
+      for (; extra != pixels_.extras.end() && extra->pixel == i; ++extra) add(extra->point, place);
+    }
+  }
+  for (const std::uint32_t i : candidate->cell_points) add(i, {});
+  for (const std::uint32_t i : far_ids_) {
+    places.AddLoose(1);
+    part.order.push_back(i);
+  }
+  for (const ExactField& field : exact_) {
+    ExactField& sorted = part.fields.emplace_back();
+    sorted.type = field.type;
+    for (const std::uint32_t i : part.order) sorted.numbers.push_back(field.numbers[i]);
+  }
+  part.keeps_order = choice_.keeps_order;
+  candidate->numbers = part.Numbers(part.order.size());
+  candidate->header.has_exact_part = true;
+  EncodeExactPart(places, part, &candidate->exact);
 }
 
 /// Codes the beams as each effort does; what is near goes to cells up to where the lowest has
@@ -214,9 +282,9 @@ bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelError
     found = true;
     return true;
   };
-  double cheapest = kUsualReach;
+  double cheapest = std::min(kUsualReach, LargestReach());
   for (const double reach : kReaches)
-    if (attempt(1, reach)) cheapest = reach;
+    if (reach <= LargestReach() && attempt(1, reach)) cheapest = reach;
   for (unsigned lower = 2; lower <= effort; ++lower) attempt(lower, cheapest);
   return found;
 }
@@ -233,9 +301,10 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   }
   if (table != nullptr) {
     const PixelErrors errors = CheapestErrors({&sightings_, &placed_, table}, error_m);
-    found = effort_ < EffortControl::kHighest
-                ? EncodeBeams(*table, errors, kUsualReach * error_m, &best)
-                : EncodeBeamsInAllWays(*table, errors, &best);
+    found =
+        effort_ < EffortControl::kHighest
+            ? EncodeBeams(*table, errors, std::min(kUsualReach, LargestReach()) * error_m, &best)
+            : EncodeBeamsInAllWays(*table, errors, &best);
   }
   if (found && effort_ < EffortControl::kHighest) return best;
   Candidate cells;
@@ -243,6 +312,7 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   std::vector<std::uint32_t> all(near_.size());
   std::iota(all.begin(), all.end(), 0U);
   EncodeCells(all, &cells);
+  EncodeExact(nullptr, &cells);
   return found && best.size() <= cells.size() ? best : cells;
 }
 
@@ -253,7 +323,13 @@ void CloudEncoder::Write(const Candidate& candidate, EncodedSlice* slice) const 
   WriteFarPoints(header.intensity, &slice->bytes);
   for (const auto* part : {&candidate.beams, &candidate.cells})
     slice->bytes.insert(slice->bytes.end(), part->begin(), part->end());
-  while (candidate.nodes > MostNodes(slice->bytes.size())) slice->bytes.push_back(0);
+  if (header.has_exact_part) {
+    ByteWriter writer(&slice->bytes);
+    WriteVarint(static_cast<std::uint32_t>(candidate.exact.size()), &writer);
+    writer.Bytes({candidate.exact.data(), candidate.exact.size()});
+  }
+  const std::size_t work = std::max(candidate.nodes, candidate.numbers);
+  while (work > MostNodes(slice->bytes.size())) slice->bytes.push_back(0);
 }
 
 SliceResult CloudEncoder::Encode(const SliceSettings& settings, EncodedSlice* slice) {

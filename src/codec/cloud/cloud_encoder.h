@@ -11,16 +11,25 @@
 #include "src/codec/cloud/cell_cover.h"
 #include "src/codec/cloud/cell_tree.h"
 #include "src/codec/cloud/cloud_header.h"
+#include "src/codec/cloud/exact_part.h"
 #include "src/codec/cloud_io.h"
 #include "src/codec/slice_encoder.h"
 
 namespace lidar::codec::cloud {
 
+/// What of the points comes back exactly.
+struct ExactChoice {
+  std::vector<PointField> fields;  // of the layout
+  bool keeps_order = false;
+
+  bool empty() const { return fields.empty() && !keeps_order; }
+};
+
 /// A stream, and so a format. For one thread at a time.
 class CloudEncoder {
  public:
   /// Returns nothing where `layout` lacks x, y and z as F32 side by side.
-  static std::optional<CloudEncoder> Create(const CloudLayout& layout);
+  static std::optional<CloudEncoder> Create(const CloudLayout& layout, ExactChoice exact = {});
 
   /// Takes the points that are finite and not all zero, for Encode().
   void Load(ByteView raw, bool with_intensity);
@@ -41,15 +50,19 @@ class CloudEncoder {
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
 
  private:
-  explicit CloudEncoder(CloudLayout layout) : layout_(std::move(layout)) {}
+  CloudEncoder(CloudLayout layout, ExactChoice exact)
+      : layout_(std::move(layout)), choice_(std::move(exact)) {}
   /// A way of coding what is loaded.
   struct Candidate {
     CloudHeader header;
-    std::vector<std::uint8_t> beams;  // the section
-    std::vector<std::uint8_t> cells;  // the stream
+    std::vector<std::uint8_t> beams;         // the section
+    std::vector<std::uint8_t> cells;         // the stream
+    std::vector<std::uint8_t> exact;         // the section
+    std::vector<std::uint32_t> cell_points;  // indices of near_, as a decoder gives them
     std::size_t nodes = 0;
+    std::size_t numbers = 0;
 
-    std::size_t size() const { return beams.size() + cells.size(); }
+    std::size_t size() const { return beams.size() + cells.size() + exact.size(); }
   };
   void SortOut(CloudHeader* header);
   void EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate);
@@ -58,15 +71,20 @@ class CloudEncoder {
   bool EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                    Candidate* candidate);
   bool EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors, Candidate* best);
+  double LargestReach() const;
+  void EncodeExact(const BeamTable* table, Candidate* candidate) const;
   Candidate EncodeSmallest(const CloudHeader& header, double error_m);
   void Write(const Candidate& candidate, EncodedSlice* slice) const;
   void WriteFarPoints(const IntensityScale& scale, std::vector<std::uint8_t>* out) const;
 
   CloudLayout layout_;
+  ExactChoice choice_;
   unsigned effort_ = 1;
   XyzCloud cloud_;
-  std::vector<Point> near_;           // on the grid
-  std::vector<std::uint8_t> levels_;  // of near_, at full resolution; empty: geometry only
+  std::vector<ExactField> exact_;        // fields of cloud_
+  std::vector<Point> near_;              // on the grid
+  std::vector<std::uint8_t> levels_;     // of near_, at full resolution; empty: geometry only
+  std::vector<std::uint32_t> near_ids_;  // of cloud_
   std::vector<std::uint32_t> far_ids_;
   std::vector<Sighting> sightings_;  // of near_
   std::vector<PlacedPoint> placed_;  // the same

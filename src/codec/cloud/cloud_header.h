@@ -14,6 +14,7 @@ namespace lidar::codec::cloud {
 
 struct CloudHeader {
   bool has_beams = false;        // a beam section follows the far points
+  bool has_exact_part = false;   // fields or an order follow the cells
   IntensityScale intensity;      // 0 bits: geometry only
   std::uint32_t points = 0;      // in cells
   std::uint32_t far_points = 0;  // past the largest grid

@@ -5,63 +5,13 @@
 #include <array>
 #include <memory>
 
+#include "src/codec/cloud/number_model.h"
 #include "src/codec/mixing/binary_coder.h"
-#include "src/codec/mixing/bit_mixer.h"
 
 namespace lidar::codec::cloud {
 namespace {
 
 using mixing::BitLength;
-using mixing::BitMixer;
-using mixing::Counter;
-using mixing::Weights;
-
-/// Signed integers by contexts: is it 0, its sign, how long, and the rest of its digits.
-template <unsigned kContexts>
-class NumberModel {
- public:
-  static constexpr std::uint32_t kNodes = 128;
-  static constexpr std::uint32_t kValues = 512;  // of a context
-  static constexpr std::int32_t kTooLarge = 1 << 26;
-  using Contexts = std::array<std::uint32_t, kContexts>;
-
-  NumberModel() {
-    for (Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
-  }
-
-  /// kTooLarge for a damaged stream.
-  template <class Coder>
-  std::int32_t Code(std::int32_t number, const Contexts& contexts, Coder* coder) {
-    if (!CodeBit(number != 0, 0, contexts, coder)) return 0;
-    const bool negative = CodeBit(number < 0, 1, contexts, coder);
-    const auto size = static_cast<std::uint32_t>(negative ? -number : number);
-    // As in an Exp-Golomb code.
-    const auto wanted = static_cast<unsigned>(BitLength(size | 1) - 1);
-    unsigned length = 0;
-    while (CodeBit(length < wanted, (negative ? 32 : 2) + length, contexts, coder))
-      if (++length == 26) return kTooLarge;
-    std::uint32_t value = 1;
-    for (unsigned place = length; place-- > 0;) {
-      const bool top = place + 1 == length;
-      const std::uint32_t node = 64 + (top ? length : 32 + place);
-      value = value << 1 | (CodeBit((size >> place & 1) != 0, node, contexts, coder) ? 1U : 0U);
-    }
-    const auto result = static_cast<std::int32_t>(value);
-    return negative ? -result : result;
-  }
-  template <class Coder>
-  bool CodeBit(bool bit, std::uint32_t node, const Contexts& contexts, Coder* coder) {
-    BitMixer<kContexts, 0> mixer;
-    mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
-      return &counters_[k][(contexts[k] % kValues) * kNodes + node];
-    });
-    return mixer.Code(bit, &weights_[node], coder);
-  }
-
- private:
-  std::array<std::array<Counter, kValues * kNodes>, kContexts> counters_{};
-  std::array<Weights, kNodes> weights_{};
-};
 
 std::int32_t RoundedQuotient(std::int32_t number, std::int32_t width) {
   return (number >= 0 ? number + width / 2 : number - width / 2) / width;

@@ -3,6 +3,7 @@
 //   decoder_cases GOLDEN_FOLDER CORPUS_FOLDER
 // Numbers are u32, little-endian. A stream is a name, a sensor model (empty: points), the count of
 // slices, and each slice with its result, the count of its points, and those as RawPoint.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -155,9 +156,13 @@ void PutRoom(unsigned effort) {
 
 void PutClouds() {
   const SensorModel model = test::RoomSensor();
-  for (unsigned effort = 0; effort < 4; ++effort) {
-    auto encoder = codec::cloud::CloudEncoder::Create(test::OrganisedLayout());
-    encoder->set_effort(effort);
+  const codec::CloudLayout layout = test::OrganisedLayout();
+  for (unsigned effort = 0; effort < 5; ++effort) {
+    codec::cloud::ExactChoice exact;
+    // The page draws the points of such slices, and passes over their ranges and order.
+    if (effort == 4) exact = {{*layout.fields.Find("range")}, true};
+    auto encoder = codec::cloud::CloudEncoder::Create(layout, exact);
+    encoder->set_effort(std::min(effort, 3U));
     std::vector<Bytes> slices;
     for (std::uint32_t scan = 0; scan < 2; ++scan) {
       const Bytes raw = test::RawCloud(model, test::RoomScan(model, 0, 512, scan + 1));
@@ -166,7 +171,9 @@ void PutClouds() {
       if (encoder->Encode({0.02, 0, 5}, &slice) != codec::SliceResult::kEncoded) std::abort();
       slices.push_back(slice.bytes);
     }
-    PutBoth("cloud at effort " + std::to_string(effort), std::nullopt, slices);
+    PutBoth(
+        effort == 4 ? "cloud with ranges and order" : "cloud at effort " + std::to_string(effort),
+        std::nullopt, slices);
   }
 }
 

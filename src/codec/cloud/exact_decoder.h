@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Decodes clouds with their other fields, and in their order; any bytes give a cloud or nothing.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "src/base/byte_reader.h"
+#include "src/cloud/point_fields.h"
+#include "src/codec/cloud/cloud_decoder.h"
+#include "src/codec/cloud/exact_part.h"
+
+namespace lidar::codec::cloud {
+
+/// For one thread at a time.
+class ExactDecoder {
+ public:
+  /// `fields` come back exactly, in this sequence.
+  ExactDecoder(std::vector<PointField> fields, std::uint32_t max_points)
+      : fields_(std::move(fields)), geometry_(max_points) {}
+
+  /// Returns false, with the cloud undefined, for what CloudDecoder refuses, and for a slice whose
+  /// fields have other types or are damaged.
+  bool Decode(ByteView stream);
+  const CloudDecoder& geometry() const { return geometry_; }
+  std::size_t size() const { return geometry_.cloud().size(); }
+  /// Writes the points in the order in which they were, if the slice keeps it, and those fields
+  /// that `layout` has.
+  void Write(const CloudLayout& layout, std::uint8_t* raw) const;
+
+ private:
+  std::vector<PointField> fields_;
+  CloudDecoder geometry_;
+  ExactPart part_;
+};
+
+}  // namespace lidar::codec::cloud

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The order in which a sensor fires: what it does at once has fields in common.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace lidar::codec::cloud {
+
+/// The pixel that a decoded point comes from.
+struct PointPlace {
+  static constexpr std::uint32_t kNoBeam = UINT32_MAX;
+  std::uint32_t beam = kNoBeam;  // of none: it comes from cells, or from far away
+  std::uint32_t column = 0;
+
+  bool is_loose() const { return beam == kNoBeam; }
+};
+
+/// The places of all points of a slice, as decoders give them.
+struct PointPlaces {
+  std::uint32_t beams = 0;    // 0: all points are loose
+  std::uint32_t columns = 0;  // of a turn; places are below both
+  std::vector<PointPlace> points;
+
+  void AddLoose(std::size_t count) { points.resize(points.size() + count); }
+};
+
+struct FiringOrder {
+  /// When a beam fires.
+  struct Slot {
+    std::uint32_t delay = 0;  // columns that its firings are behind its own; below the columns
+    std::uint32_t rank = 0;   // in a firing
+  };
+  std::uint32_t first = 0;  // firing
+  bool descends = false;    // columns fall with time
+  std::vector<Slot> slots;  // of the beams
+
+  /// Counts the firings from the first one to that of a point that is not loose.
+  std::uint32_t FiringOf(const PointPlace& place, std::uint32_t columns) const {
+    const std::uint32_t firing = (place.column + slots[place.beam].delay) % columns;
+    return (descends ? first + columns - firing : firing + columns - first) % columns;
+  }
+  /// The points of beams in the order of their firings, then the loose ones.
+  std::vector<std::uint32_t> Visit(const PointPlaces& places) const;
+};
+
+/// Finds the order by `clock`, which rises with the time of each point; `fit` becomes the part of
+/// the points that keep to it.
+FiringOrder FindFiringOrder(const PointPlaces& places, const std::vector<std::int64_t>& clock,
+                            double* fit);
+
+}  // namespace lidar::codec::cloud
