@@ -6,7 +6,7 @@
 #include <optional>
 #include <system_error>
 
-#include "src/codec/cloud/cloud_decoder.h"
+#include "src/codec/cloud/exact_decoder.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_links.h"
 #include "src/foxglove/messages.h"
@@ -32,7 +32,7 @@ class SliceStream::Decoding {
  public:
   Decoding(const gst::CloudInfo& info, bool has_ranges) : format_(FormatOf(info)) {
     if (!has_ranges) {
-      cloud_.emplace(kMostPoints);
+      cloud_.emplace(codec::ExactFields(info.fields), kMostPoints);
       return;
     }
     slices_.emplace(format_, kMostPoints);
@@ -44,7 +44,7 @@ class SliceStream::Decoding {
     const ByteView bytes{slice.payload.data(), slice.payload.size()};
     if (cloud_) {
       if (!cloud_->Decode(bytes)) return false;
-      shape_ = {static_cast<std::uint32_t>(cloud_->cloud().size()), 1, 0, true};
+      shape_ = {static_cast<std::uint32_t>(cloud_->size()), 1, 0, true};
     } else {
       const auto shape = slices_->Decode(bytes);
       if (!shape) return false;
@@ -53,7 +53,7 @@ class SliceStream::Decoding {
     coded_size_ = bytes.size;
     points_.resize(std::size_t{shape_.width} * shape_.height * format_.layout.point_step);
     if (cloud_)
-      codec::WriteXyz(cloud_->cloud(), format_.layout, points_.data());
+      cloud_->Write(format_.layout, points_.data());
     else
       slices_->Write(points_.data());
     return true;
@@ -79,7 +79,7 @@ class SliceStream::Decoding {
  private:
   const codec::CloudFormat format_;
   std::optional<codec::SliceDecoder> slices_;
-  std::optional<codec::cloud::CloudDecoder> cloud_;
+  std::optional<codec::cloud::ExactDecoder> cloud_;
   std::optional<viewer::Recoder> recoder_;
   codec::SliceDecoder::Shape shape_;
   std::size_t coded_size_ = 0;

@@ -14,7 +14,7 @@
 #include "gst/common/properties.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidardecoder.h"
-#include "src/codec/cloud/cloud_decoder.h"
+#include "src/codec/cloud/exact_decoder.h"
 #include "src/codec/slice_decoder.h"
 
 namespace {
@@ -24,7 +24,7 @@ struct State {
   lidar::codec::CloudFormat format;
   bool has_points = false;                                 // instead of ranges
   std::optional<lidar::codec::SliceDecoder> decoder;       // for ranges
-  std::optional<lidar::codec::cloud::CloudDecoder> cloud;  // for points
+  std::optional<lidar::codec::cloud::ExactDecoder> cloud;  // for points
 };
 
 }  // namespace
@@ -53,14 +53,15 @@ static gboolean SetFormat(GstLidarDecoder* base, GstCaps* caps, const GstLidarCl
 
 static gboolean DecodePoints(State* state, lidar::ByteView stream, guint max_points,
                              GstLidarDecodedSlice* slice) {
-  if (!state->cloud) state->cloud.emplace(max_points);
-  const auto& decoder = *state->cloud;
+  if (!state->cloud)
+    state->cloud.emplace(lidar::codec::ExactFields(state->format.layout.fields), max_points);
   if (!state->cloud->Decode(stream)) return FALSE;
-  slice->width = static_cast<guint>(decoder.cloud().size());
+  const auto& geometry = state->cloud->geometry();
+  slice->width = static_cast<guint>(state->cloud->size());
   slice->height = 1;
-  slice->step = decoder.step_m();
-  slice->error_bound = decoder.error_m();
-  slice->intensity_bits = decoder.intensity_bits();
+  slice->step = geometry.step_m();
+  slice->error_bound = geometry.error_m();
+  slice->intensity_bits = geometry.intensity_bits();
   return TRUE;
 }
 
@@ -81,7 +82,7 @@ static gboolean Decode(GstLidarDecoder* base, const guint8* data, gsize size, gu
 static void Write(GstLidarDecoder* base, guint8* points) {
   const State& coder = *GST_LIDAR_DEC(base)->state;
   if (coder.decoder) return coder.decoder->Write(points);
-  lidar::codec::WriteXyz(coder.cloud->cloud(), coder.format.layout, points);
+  coder.cloud->Write(coder.format.layout, points);
 }
 
 static void Reset(GstLidarDecoder* base) { *GST_LIDAR_DEC(base)->state = {}; }

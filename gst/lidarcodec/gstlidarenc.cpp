@@ -4,8 +4,8 @@
  *
  * Encodes clouds slice by slice, to a bitrate and within an error, as small as the machine has time
  * for. Organised scans with a sensor model are ranges, predicted from neighbouring beams
- * (docs/wire-format.md); other clouds are cells in a tree, and the order of their points is lost
- * (docs/cloud-coder.md).
+ * (docs/wire-format.md); other clouds are beams and cells (docs/cloud-coder.md), in an order of
+ * their own unless `keep-order` is set.
  *
  * |[
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! lidarenc max-error=0.02 ! lidardec ! fakesink
@@ -15,6 +15,9 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "gst/common/element_class.h"
@@ -40,6 +43,8 @@ struct LidarEncSettings {
   gint effort = kAutoEffort;
   Reference reference = Reference::kAcknowledged;
   lidar::Duration key_interval = std::chrono::seconds(10);
+  std::string fields;
+  bool keeps_order = false;
 };
 
 GType GeometryType() {
@@ -74,7 +79,7 @@ GType ReferenceType() {
   return type;
 }
 
-const std::array<Property<LidarEncSettings>, 4> kProperties = {{
+const std::array<Property<LidarEncSettings>, 6> kProperties = {{
     {"geometry", "What is coded: ranges or points",
      EnumField<LidarEncSettings, GeometryChoice>{&LidarEncSettings::geometry, GeometryType}},
     {"effort", "How much computing slices are worth",
@@ -88,12 +93,20 @@ const std::array<Property<LidarEncSettings>, 4> kProperties = {{
      "Each sector comes at least so often as a slice that stands alone, for those who join late; "
      "0: only when asked for [ns]",
      &LidarEncSettings::key_interval, 0, 3600e9, GST_PARAM_MUTABLE_PLAYING},
+    {"fields",
+     "Further fields of points, which come back exactly; names with commas between them: ring,time",
+     &LidarEncSettings::fields},
+    {"keep-order", "Points come back in the order in which they came",
+     &LidarEncSettings::keeps_order},
 }};
 
 struct State {
   std::mutex mutex;  // guards settings
   LidarEncSettings settings;
-  LidarEncCoder coder;  // belongs to the streaming thread
+
+  // Belong to the streaming thread.
+  LidarEncCoder coder;
+  bool warned_of_fields = false;
 };
 
 }  // namespace
@@ -109,6 +122,41 @@ GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, gst_lidar_enc_g
 
 static LidarEncCoder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
 
+/// What comes back exactly of points with these fields; `missing` gets the other names.
+static lidar::codec::cloud::ExactChoice ExactChoiceOf(const LidarEncSettings& settings,
+                                                      const lidar::PointFields& fields,
+                                                      std::string* missing) {
+  lidar::PointFields known = lidar::codec::KeptFields(fields, true, false);
+  lidar::codec::cloud::ExactChoice choice;
+  choice.keeps_order = settings.keeps_order;
+  std::istringstream names(settings.fields);
+  for (std::string name; std::getline(names >> std::ws, name, ',');) {
+    const lidar::PointField* field = fields.Find(name);
+    if (field == nullptr) *missing += (missing->empty() ? "" : ", ") + name;
+    if (field == nullptr || known.Find(name) != nullptr) continue;
+    choice.fields.push_back(*field);
+    known.Add(name, field->type);
+  }
+  return choice;
+}
+
+/// Says once what of `fields` and `keep-order` is impossible.
+static void WarnOfFields(GstLidarEncoder* base, const LidarEncSettings& settings, bool ranges,
+                         const std::string& missing, const lidar::PointFields& fields) {
+  State& state = *GST_LIDAR_ENC(base)->state;
+  const bool is_vain = ranges && (settings.keeps_order || !settings.fields.empty());
+  if ((!is_vain && missing.empty()) || std::exchange(state.warned_of_fields, true)) return;
+  if (is_vain)
+    GST_ELEMENT_WARNING(base, STREAM, ENCODE,
+                        ("This cloud is coded as ranges, without the further fields and the order "
+                         "that fields and keep-order ask for. Set geometry=xyz."),
+                        (nullptr));
+  else
+    GST_ELEMENT_WARNING(base, STREAM, ENCODE,
+                        ("The property fields names %s, which this cloud lacks.", missing.c_str()),
+                        ("it has %s", fields.ToString().c_str()));
+}
+
 static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,
                           gboolean with_intensity, GstLidarCodedFormat* coded) {
   coded->refusal =
@@ -116,9 +164,14 @@ static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* clou
   const LidarEncSettings settings = Snapshot(*GST_LIDAR_ENC(base)->state);
   auto info = CloudInfo::FromFormat(*cloud);
   if (settings.geometry == GeometryChoice::kXyz) info.sensor_model.reset();
-  if (!CoderOf(base).SetFormat(info, with_intensity != FALSE)) return FALSE;
+  std::string missing;
+  const auto exact = ExactChoiceOf(settings, info.fields, &missing);
+  if (!CoderOf(base).SetFormat(info, with_intensity != FALSE, exact)) return FALSE;
   const bool ranges = CoderOf(base).codes_ranges();
-  const auto kept = lidar::codec::KeptFields(info.fields, with_intensity != FALSE, ranges);
+  WarnOfFields(base, settings, ranges, missing, info.fields);
+  auto kept = lidar::codec::KeptFields(info.fields, with_intensity != FALSE, ranges);
+  if (!ranges)
+    for (const lidar::PointField& field : exact.fields) kept.Add(field.name, field.type);
   coded->caps =
       gst_lidar_coded_caps_new(GST_LIDAR_SLICE_MEDIA_TYPE, kept.ToString().c_str(), cloud);
   gst_caps_set_simple(coded->caps, "geometry", G_TYPE_STRING, ranges ? "range" : "xyz", nullptr);
@@ -151,11 +204,17 @@ static GstLidarEncodeResult Encode(GstLidarEncoder* base, const GstLidarEncodeSe
 
 static gboolean Decode(GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
                        GstLidarPointOrder* order) {
-  *order = CoderOf(base).codes_ranges() ? GST_LIDAR_ORDER_PIXELS : GST_LIDAR_ORDER_ANY;
+  const LidarEncCoder& coder = CoderOf(base);
+  *order = coder.codes_ranges()  ? GST_LIDAR_ORDER_PIXELS
+           : coder.keeps_order() ? GST_LIDAR_ORDER_KEPT
+                                 : GST_LIDAR_ORDER_ANY;
   return CoderOf(base).Decode({data, size}, points);
 }
 
-static void Reset(GstLidarEncoder* base) { CoderOf(base) = {}; }
+static void Reset(GstLidarEncoder* base) {
+  CoderOf(base) = {};
+  GST_LIDAR_ENC(base)->state->warned_of_fields = false;
+}
 
 static void Acknowledge(GstLidarEncoder* base, guint receiver, guint scan_id, guint slice_index) {
   CoderOf(base).OnAcknowledged(receiver, scan_id, slice_index);

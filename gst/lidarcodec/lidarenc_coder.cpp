@@ -10,7 +10,8 @@ Time Now() { return Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
 }  // namespace
 
-bool LidarEncCoder::SetFormat(const CloudInfo& info, bool with_intensity) {
+bool LidarEncCoder::SetFormat(const CloudInfo& info, bool with_intensity,
+                              const codec::cloud::ExactChoice& exact) {
   const codec::EffortControl control = control_;
   *this = LidarEncCoder();
   control_ = control;
@@ -20,7 +21,8 @@ bool LidarEncCoder::SetFormat(const CloudInfo& info, bool with_intensity) {
   with_intensity_ = with_intensity;
   encoder_ = codec::SliceEncoder::Create(format_);
   if (encoder_ && info.width > info.sensor_model->columns_per_scan) encoder_.reset();
-  if (!encoder_) cloud_ = codec::cloud::CloudEncoder::Create(format_.layout);
+  if (!encoder_) cloud_ = codec::cloud::CloudEncoder::Create(format_.layout, exact);
+  exact_ = exact;
   return encoder_ || cloud_;
 }
 
@@ -96,10 +98,10 @@ bool LidarEncCoder::Decode(ByteView stream, GArray* points) {
   format.layout = {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,range:U32:12"),
                    sizeof(GstLidarPoint)};
   if (!encoder_) {
-    codec::cloud::CloudDecoder decoder(static_cast<std::uint32_t>(returns()));
+    codec::cloud::ExactDecoder decoder(exact_.fields, static_cast<std::uint32_t>(returns()));
     if (!decoder.Decode(stream)) return false;
-    g_array_set_size(points, static_cast<guint>(decoder.cloud().size()));
-    codec::WriteXyz(decoder.cloud(), format.layout, reinterpret_cast<guint8*>(points->data));
+    g_array_set_size(points, static_cast<guint>(decoder.size()));
+    decoder.Write(format.layout, reinterpret_cast<guint8*>(points->data));
     return true;
   }
   if (!decoder_) {

@@ -8,8 +8,8 @@
 
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidarencoder.h"
-#include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
+#include "src/codec/cloud/exact_decoder.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_encoder.h"
@@ -22,7 +22,9 @@ class LidarEncCoder {
  public:
   /// Returns false if it has neither ranges of a sensor nor points. The measured speed of the
   /// machine stays.
-  bool SetFormat(const CloudInfo& info, bool with_intensity);
+  /// `exact` is for points only.
+  bool SetFormat(const CloudInfo& info, bool with_intensity,
+                 const codec::cloud::ExactChoice& exact);
   /// Takes the slice. Without `effort` it chooses the effort that time allows.
   void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
   /// Lets the loaded slice refer to blocks that the receiver has, if it `remembers`.
@@ -31,6 +33,7 @@ class LidarEncCoder {
   void Describe(GstLidarLoadedSlice* loaded);
   /// Returns true if slices are ranges of a sensor, and false if they are points in any order.
   bool codes_ranges() const { return encoder_.has_value(); }
+  bool keeps_order() const { return exact_.keeps_order; }
   rate::ErrorBound Bound() const;
   void Thin(const std::vector<bool>& kept);
   GstLidarEncodeResult Encode(const GstLidarEncodeSettings& settings, GByteArray* bytes,
@@ -51,6 +54,7 @@ class LidarEncCoder {
   std::optional<codec::cloud::CloudEncoder> cloud_;  // or of points
   std::optional<codec::SliceDecoder> decoder_;       // for Decode()
   bool with_intensity_ = false;
+  codec::cloud::ExactChoice exact_;
   std::string mode_;
   codec::EncodedSlice slice_;
   codec::ReferenceKeeper keeper_;

@@ -93,11 +93,11 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   EXPECT_EQ(CountMessages("odometry"), 20U);
 }
 
-/// How far the last 10 of 20 scans of a drive of 10 m/s lead.
-double DriveOf(const std::string& model, const char* deskew) {
-  const Harness h(gst_harness_new_parse(
-      ("lidartestsrc speed=10 num-buffers=20 model=" + model + " ! lidarodometry deskew=" + deskew)
-          .c_str()));
+/// How far the last 10 of 20 scans of a drive of 10 m/s lead, if `coder` is before the odometry.
+double DriveOf(const std::string& model, const char* deskew, const std::string& coder = "") {
+  const Harness h(gst_harness_new_parse(("lidartestsrc speed=10 num-buffers=20 model=" + model +
+                                         " ! " + coder + "lidarodometry deskew=" + deskew)
+                                            .c_str()));
   gst_harness_play(h.get());
   GstLidarPose middle{};
   GstLidarPose last{};
@@ -115,6 +115,12 @@ TEST_F(Odometry, FollowsCloudsOfDriversByTheTimesOfTheirPoints) {
   EXPECT_NEAR(DriveOf("xt32", "true"), 10, 0.1);
   EXPECT_NEAR(DriveOf("mid-360", "true"), 10, 0.1);
   EXPECT_GT(std::abs(DriveOf("mid-360", "false") - 10), 0.2);
+}
+
+TEST_F(Odometry, FollowsCodedCloudsByTheTimesThatComeBack) {
+  const std::string decoder = " ! lidardec ! ";
+  EXPECT_NEAR(DriveOf("mid-360", "true", "lidarenc effort=1 fields=timestamp" + decoder), 10, 0.1);
+  EXPECT_GT(std::abs(DriveOf("mid-360", "true", "lidarenc effort=1" + decoder) - 10), 0.2);
 }
 
 TEST_F(Odometry, BeginsAtItsInitialPose) {

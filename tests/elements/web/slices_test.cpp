@@ -214,6 +214,30 @@ TEST(Slices, AreDecodedForOthersWhileSomebodySubscribes) {
   EXPECT_GT(edge.sink.Stat("points-sent"), 100U);
 }
 
+TEST(Slices, OfPointsBringTheirFurtherFields) {
+  Edge edge("", "effort=1 geometry=xyz fields=range keep-order=true");
+  edge.PushScans(1);
+  Peer foxglove(&edge.sink);
+  foxglove.Subscribe("/points", 4);
+  edge.Push();
+  const Received cloud = foxglove.Next();
+  const ProtoMessage message(
+      {reinterpret_cast<const std::uint8_t*>(cloud.payload.data()), cloud.payload.size()});
+  ASSERT_EQ(message.Count(5), 5U);
+  const ProtoMessage field = message.Message(5, 4);
+  EXPECT_EQ(field.Text(1), "range");
+  const std::string points = message.Text(6);
+  ASSERT_GT(points.size(), 1000U);
+  for (std::size_t at = 0; at < points.size(); at += message.Number(4)) {
+    float p[3];
+    std::uint32_t range_mm = 0;
+    std::memcpy(p, &points[at], sizeof p);
+    std::memcpy(&range_mm, &points[at + field.Number(2)], sizeof range_mm);
+    // Beams begin beside the sensor's middle.
+    ASSERT_NEAR(std::hypot(p[0], p[1], p[2]), 1e-3 * range_mm, 0.06);
+  }
+}
+
 TEST(Slices, WhoseReferenceNeverCameAreNotDamaged) {
   Edge edge;
   for (guint i = 0; i < 5 * kScanSlices; ++i) edge.robot.Next();
