@@ -53,7 +53,7 @@ std::uint64_t AtOrdinal(std::int64_t ordinal, FieldType type) {
 }
 
 /// Gives 0 for NaN and for numbers that a double does not hold exactly.
-std::int64_t Rounded(double value) {
+std::int64_t NearestInteger(double value) {
   return std::abs(value) < kExact ? static_cast<std::int64_t>(std::floor(value + 0.5)) : 0;
 }
 
@@ -66,7 +66,7 @@ bool Holds(const NumberForm& form, std::uint64_t bits) {
 std::int64_t NumberForm::RankOf(std::uint64_t bits) const {
   if (!is_float()) return static_cast<std::int64_t>(NumberOf(bits, type));
   if (decimals == 0) return Ordinal(bits, type);
-  return Rounded(NumberOf(bits, type) * kPowers[decimals]);
+  return NearestInteger(NumberOf(bits, type) * kPowers[decimals]);
 }
 
 std::uint64_t NumberForm::WithRank(std::int64_t rank) const {
@@ -77,7 +77,8 @@ std::uint64_t NumberForm::WithRank(std::int64_t rank) const {
 
 std::int64_t NumberForm::LevelOf(std::int64_t rank) const {
   const bool is_any = is_float() && decimals == 0;
-  return Times(is_any ? Rounded(std::ldexp(NumberOf(WithRank(rank), type), scale)) : rank, kParts);
+  return Times(is_any ? NearestInteger(std::ldexp(NumberOf(WithRank(rank), type), scale)) : rank,
+               kParts);
 }
 
 std::int64_t NumberForm::RankAt(std::int64_t level) const {

@@ -8,21 +8,21 @@
 namespace lidar::gst {
 namespace {
 
-constexpr guint kStep = 32;
+constexpr guint kDriverStep = 32;
 constexpr const char* kDriverFields =
     "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,ring:U16:16,tag:U8:18,timestamp:F64:24";
 
 CloudInfo DriverInfo(std::size_t points) {
   CloudInfo info = XyzInfo(static_cast<guint>(points));
-  info.point_step = kStep;
+  info.point_step = kDriverStep;
   info.fields = *PointFields::Parse(kDriverFields);
   return info;
 }
 
 std::vector<std::uint8_t> DriverCloud(const std::vector<float>& xyz) {
-  std::vector<std::uint8_t> raw(xyz.size() / 3 * kStep);
+  std::vector<std::uint8_t> raw(xyz.size() / 3 * kDriverStep);
   for (std::size_t i = 0; i < xyz.size() / 3; ++i) {
-    std::uint8_t* point = &raw[i * kStep];
+    std::uint8_t* point = &raw[i * kDriverStep];
     const auto ring = static_cast<std::uint16_t>(i % 16);
     const double time = 1.7e9 + 1e-5 * static_cast<double>(i / 16);
     std::memcpy(point, &xyz[3 * i], 12);
@@ -57,17 +57,17 @@ void ExpectSame(const std::vector<std::uint8_t>& before, GstBuffer* after, const
                 const std::vector<const char*>& names) {
   const PointFields driver = *PointFields::Parse(kDriverFields);
   const BufferMap map(after, GST_MAP_READ);
-  ASSERT_EQ(map.size() / info.point_step, before.size() / kStep);
+  ASSERT_EQ(map.size() / info.point_step, before.size() / kDriverStep);
   EXPECT_LE(LargestDistance(PointsOf(after, info.point_step),
                             [&] {
                               const BufferPtr raw(BufferOf(before));
-                              return PointsOf(raw.get(), kStep);
+                              return PointsOf(raw.get(), kDriverStep);
                             }()),
             0.02001);
-  for (std::size_t i = 0; i < before.size() / kStep; ++i)
+  for (std::size_t i = 0; i < before.size() / kDriverStep; ++i)
     for (const char* name : names)
       ASSERT_EQ(FieldOf(map.data() + i * info.point_step, info.fields, name),
-                FieldOf(&before[i * kStep], driver, name))
+                FieldOf(&before[i * kDriverStep], driver, name))
           << name << " of " << i;
 }
 

@@ -17,7 +17,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-constexpr std::uint32_t kMaxPoints = 1U << 20;
+constexpr std::uint32_t kMostDecoded = 1U << 20;
 
 /// Fields that come back exactly, and whether the order does.
 struct Wish {
@@ -90,7 +90,7 @@ std::vector<std::uint8_t> Encoded(const Cloud& cloud, const Wish& wish, unsigned
 }
 
 Cloud Decoded(const Cloud& like, const Wish& wish, const std::vector<std::uint8_t>& bytes) {
-  ExactDecoder decoder(ChoiceOf(like, wish).fields, kMaxPoints);
+  ExactDecoder decoder(ChoiceOf(like, wish).fields, kMostDecoded);
   EXPECT_TRUE(decoder.Decode({bytes.data(), bytes.size()}));
   Cloud cloud{like.layout, {}};
   cloud.bytes.resize(decoder.size() * like.layout.point_step);
@@ -295,7 +295,7 @@ TEST(ExactDecoder, RefusesSlicesWhoseFieldsAreOthers) {
   const Cloud cloud = SpinningScan();
   const auto decodes = [&](const Wish& has, const Wish& expected) {
     const auto bytes = Encoded(cloud, has);
-    return ExactDecoder(ChoiceOf(cloud, expected).fields, kMaxPoints)
+    return ExactDecoder(ChoiceOf(cloud, expected).fields, kMostDecoded)
         .Decode({bytes.data(), bytes.size()});
   };
   EXPECT_TRUE(decodes({{"ring"}, false}, {{"ring"}, false}));
@@ -311,7 +311,7 @@ TEST(ExactDecoder, RefusesSlicesWhoseFieldsAreOthers) {
 TEST(CloudDecoder, PassesOverWhatComesBackExactly) {
   const Cloud cloud = SpinningScan();
   const auto bytes = Encoded(cloud, {{"ring", "time"}, true});
-  CloudDecoder decoder(kMaxPoints);
+  CloudDecoder decoder(kMostDecoded);
   ASSERT_TRUE(decoder.Decode({bytes.data(), bytes.size()}));
   EXPECT_EQ(decoder.cloud().size(), cloud.size());
   EXPECT_FALSE(decoder.exact_section().empty());
