@@ -2,6 +2,7 @@
 #include "gst/lidarcodec/lidarenc_coder.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lidar::gst {
 namespace {
@@ -12,17 +13,20 @@ Time Now() { return Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
 bool LidarEncCoder::SetFormat(const CloudInfo& info, bool with_intensity,
                               const codec::cloud::ExactChoice& exact) {
-  const codec::EffortControl control = control_;
-  *this = LidarEncCoder();
-  control_ = control;
+  LidarEncCoder next;
+  next.control_ = control_;
   if (info.framerate_n > 0)
-    scans_per_second_ = static_cast<double>(info.framerate_n) / info.framerate_d;
-  format_ = {{info.fields, info.point_step}, info.height, info.sensor_model};
-  with_intensity_ = with_intensity;
-  encoder_ = codec::SliceEncoder::Create(format_);
-  if (encoder_ && info.width > info.sensor_model->columns_per_scan) encoder_.reset();
-  if (!encoder_) cloud_ = codec::cloud::CloudEncoder::Create(format_.layout, exact);
-  exact_ = exact;
+    next.scans_per_second_ = static_cast<double>(info.framerate_n) / info.framerate_d;
+  next.format_ = {{info.fields, info.point_step}, info.height, info.sensor_model};
+  next.with_intensity_ = with_intensity;
+  next.exact_ = exact;
+  next.encoder_ = codec::SliceEncoder::Create(next.format_);
+  if (next.encoder_ && info.width > info.sensor_model->columns_per_scan) next.encoder_.reset();
+  const bool stays = cloud_ && next.format_.layout == format_.layout && exact == exact_;
+  if (!next.encoder_)
+    next.cloud_ =
+        stays ? std::move(cloud_) : codec::cloud::CloudEncoder::Create(next.format_.layout, exact);
+  *this = std::move(next);
   return encoder_ || cloud_;
 }
 

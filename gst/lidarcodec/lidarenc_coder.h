@@ -21,7 +21,7 @@ namespace lidar::gst {
 class LidarEncCoder {
  public:
   /// Returns false if it has neither ranges of a sensor nor points. The measured speed of the
-  /// machine stays.
+  /// machine stays, and what is known of a sensor whose clouds only differ in size.
   /// `exact` is for points only.
   bool SetFormat(const CloudInfo& info, bool with_intensity,
                  const codec::cloud::ExactChoice& exact);

@@ -29,6 +29,10 @@ struct XyzCloud {
 struct CloudLayout {
   PointFields fields;
   std::uint32_t point_step = 0;  // bytes
+
+  bool operator==(const CloudLayout& o) const {
+    return fields == o.fields && point_step == o.point_step;
+  }
 };
 
 /// What the caps say of every raw slice of a stream.

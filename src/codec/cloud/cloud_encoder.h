@@ -23,6 +23,9 @@ struct ExactChoice {
   bool keeps_order = false;
 
   bool empty() const { return fields.empty() && !keeps_order; }
+  bool operator==(const ExactChoice& o) const {
+    return fields == o.fields && keeps_order == o.keeps_order;
+  }
 };
 
 /// A stream, and so a format. For one thread at a time.
