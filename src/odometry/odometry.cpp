@@ -69,15 +69,6 @@ constexpr double kLeastNear = 0.25;
 /// A scan nearer than that to an earlier one repeats its lines. Relative to the map's cubes.
 constexpr double kSameLines = 0.5;
 
-/// Picks at most `most` of the points, evenly.
-Points PickEvenly(const Points& points, std::size_t most) {
-  if (points.size() <= most) return points;
-  Points kept;
-  kept.reserve(most);
-  for (std::size_t i = 0; i < most; ++i) kept.push_back(points[i * points.size() / most]);
-  return kept;
-}
-
 /// Moves each point of a scan by the sensor's motion from its sample to the middle of the scan.
 class Sweep {
  public:
@@ -164,13 +155,20 @@ RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& 
   return settings;
 }
 
-/// Returns the points to align.
-Points Odometry::ThinOut(const Points& fine) const {
-  return PickEvenly(Downsample(fine, kAlignedGrid * settings_.voxel_size_m), kMostAligned);
+/// Returns the points to align: one of each cube, and of these kMostAligned, evenly.
+Surface Odometry::ThinOut(const Surface& fine) const {
+  const auto kept = FirstOfEachCube(fine.points, kAlignedGrid * settings_.voxel_size_m);
+  const std::size_t count = std::min(kept.size(), kMostAligned);
+  Surface thin;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = kept[i * kept.size() / count];
+    thin.points.push_back(fine.points[from]);
+    if (from < fine.normals.size()) thin.normals.push_back(fine.normals[from]);
+  }
+  return thin;
 }
 
-Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Time middle,
-                                         Duration duration) const {
+Surface Odometry::SelectPoints(const TimedPoints& scan, Time middle, Duration duration) const {
   const double nearest = settings_.min_range_m * settings_.min_range_m;
   const double farthest = settings_.max_range_m * settings_.max_range_m;
   const Sweep sweep(scan, SweepAround(middle, duration));
@@ -189,13 +187,14 @@ Odometry::Surface Odometry::SelectPoints(const TimedPoints& scan, Time middle,
   Points rest;
   for (const std::size_t k : FirstOfEachCube(selected, kMapGrid * settings_.voxel_size_m)) {
     const std::size_t i = origins[k];
-    const Eigen::Vector3d normal =
-        scan.HasRings() ? normals.At(scan.points[i], scan.rings[i]) : Eigen::Vector3d::Zero();
-    if (normal.isZero(0)) {
+    const ScanNormals::Surface surface =
+        normals.At(scan.points[i], scan.HasRings() ? scan.rings[i] : std::uint16_t{0});
+    if (surface.normal.isZero(0)) {
       rest.push_back(selected[k]);
     } else {
-      fine.points.push_back(selected[k]);
-      fine.normals.push_back(sweep.MotionOf(i).rotation * normal);
+      const Pose moved = sweep.MotionOf(i);
+      fine.points.push_back(moved * surface.point);
+      fine.normals.push_back(moved.rotation * surface.normal);
     }
   }
   fine.points.insert(fine.points.end(), rest.begin(), rest.end());
@@ -250,7 +249,7 @@ void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second,
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
     StartMap(SelectPoints(*first_scan_, *last_time_, duration));
     // The same velocity straightens both scans, which improves the next estimate of it.
-    const Points points = ThinOut(SelectPoints(second, middle, duration).points);
+    const Points points = ThinOut(SelectPoints(second, middle, duration)).points;
     found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
                   settings_.registration)
                 .pose;
@@ -295,7 +294,7 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
 /// Searches with the widest reach if the scan does not fit within the usual one.
 Alignment Odometry::AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
                               const Surface& fine) {
-  const Points aligned = ThinOut(fine.points);
+  const Surface aligned = ThinOut(fine);
   const RegistrationSettings settings = SettingsFor(scan, guess);
   const auto align = [&](double sigma) {
     const double kernel = std::max(kKernel * sigma, kLeastKernel * settings_.voxel_size_m);

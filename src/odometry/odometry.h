@@ -81,11 +81,6 @@ class Odometry {
   static constexpr Duration kLongestGap = std::chrono::seconds(5);
 
  private:
-  /// Points of a scan in the sensor's frame at its middle, with the normals that the scan shows.
-  struct Surface {
-    Points points;
-    Points normals;  // of the first points; the other points have no normal
-  };
   RegistrationSettings SettingsFor(const TimedPoints& scan, const Pose& guess) const;
   /// The motion of the sensor between two times, in its frame at the first.
   Pose MotionBetween(Time from, Time to) const;
@@ -93,7 +88,7 @@ class Odometry {
   std::optional<Eigen::Quaterniond> KnownTurn(Time from, Time to) const;
   std::vector<Pose> SweepAround(Time middle, Duration duration) const;
   Surface SelectPoints(const TimedPoints& scan, Time middle, Duration duration) const;
-  Points ThinOut(const Points& fine) const;
+  Surface ThinOut(const Surface& fine) const;
   void AddToMap(const Surface& fine);
   bool IsFarFromTheLastInMap() const;
   void StartMap(const Surface& fine);

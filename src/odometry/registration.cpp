@@ -47,13 +47,12 @@ struct Neighbours {
   NormalEquations surfaces;
   NormalEquations points;
   std::size_t fitting = 0;
-  std::size_t fitting_points = 0;  // number of points in `points` that fit
-  /// Sums of n n' over the normals of the surfaces, and over those that fit.
+  /// Sums of n n' over the normals of all points that have one, and of those that fit.
   Eigen::Matrix3d facing = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d fitting_facing = Eigen::Matrix3d::Zero();
 };
 
-Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, double reach_m,
+Neighbours Linearise(const Surface& scan, LocalMap* map, const Pose& pose, double reach_m,
                      double kernel_m, const RegistrationSettings& settings) {
   Neighbours sums;
   const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
@@ -64,29 +63,34 @@ Neighbours Linearise(const Points& points, LocalMap* map, const Pose& pose, doub
   };
   Eigen::Matrix<double, 3, 6> jacobian;
   jacobian.leftCols<3>().setIdentity();
-  for (const Eigen::Vector3d& point : points) {
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const Eigen::Vector3d& point = scan.points[i];
+    const bool has_own = i < scan.normals.size();
+    Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+    if (has_own) own = scan.normals[i] * scan.normals[i].transpose();
+    sums.facing += own;
     const Eigen::Vector3d there = rotation * point + pose.position;
     const auto nearest = map->FindNearest(there, reach_m);
     if (!nearest) continue;
     const Eigen::Vector3d residual = rotation.transpose() * (there - nearest->point);
     // The residual's derivative is [I, -p^] in the sensor's frame.
     jacobian.rightCols<3>() = -Skew(point);
+    bool fits = false;
+    Eigen::Matrix3d faces = own;
     if (nearest->has_normal) {
       const Eigen::Vector3d normal = rotation.transpose() * nearest->normal;
       const Eigen::Matrix<double, 1, 1> distance(normal.dot(residual));
-      const bool fits = distance.norm() <= settings.fit_m;
-      const Eigen::Matrix3d faces = normal * normal.transpose();
-      sums.facing += faces;
-      if (fits) sums.fitting_facing += faces;
-      sums.fitting += fits ? 1 : 0;
+      fits = distance.norm() <= settings.fit_m;
+      if (!has_own) sums.facing += faces = normal * normal.transpose();
       sums.surfaces.Add(weight_of(distance.squaredNorm()), normal.transpose() * jacobian, distance);
     } else {
       jacobian.rightCols<3>() *= settings.point_turn;
-      const bool fits = residual.norm() <= settings.fit_m;
-      sums.fitting_points += fits ? 1 : 0;
-      sums.fitting += fits ? 1 : 0;
+      fits = residual.norm() <= settings.fit_m;
       sums.points.Add(weight_of(residual.squaredNorm()), jacobian, residual);
     }
+    if (!fits) continue;
+    ++sums.fitting;
+    sums.fitting_facing += faces;
   }
   return sums;
 }
@@ -120,8 +124,7 @@ double StandingShare(const Neighbours& found, std::size_t count) {
   const Eigen::Vector3d best = solver.eigenvectors().col(2);
   const auto lying = [&best](const Eigen::Matrix3d& sum) { return best.dot(sum * best); };
   const double all = static_cast<double>(count) - lying(found.facing);
-  const double fitting = found.fitting_facing.trace() - lying(found.fitting_facing) +
-                         static_cast<double>(found.fitting_points);
+  const double fitting = static_cast<double>(found.fitting) - lying(found.fitting_facing);
   return all > 0 ? fitting / all : 0;
 }
 
@@ -132,20 +135,21 @@ double VarianceOf(const NormalEquations& sums) {
 
 }  // namespace
 
-Alignment Align(const Points& points, LocalMap* map, const Prediction& prediction, double reach_m,
+Alignment Align(const Surface& scan, LocalMap* map, const Prediction& prediction, double reach_m,
                 double kernel_m, const RegistrationSettings& settings) {
   const Pose& guess = prediction.pose;
   Alignment result;
   result.pose = guess;
-  if (points.empty() || map->empty()) return result;
+  if (scan.points.empty() || map->empty()) return result;
   bool enough = false;
   while (result.iterations++ < settings.max_iterations) {
-    const Neighbours found = Linearise(points, map, result.pose, reach_m, kernel_m, settings);
+    const Neighbours found = Linearise(scan, map, result.pose, reach_m, kernel_m, settings);
     if (result.iterations == 1) enough = AreEnough(found.surfaces, settings);
     NormalEquations sums = found.surfaces;
     sums.Add(enough ? settings.spare_point_weight : settings.point_weight, found.points);
-    result.inlier_share = static_cast<double>(found.fitting) / static_cast<double>(points.size());
-    result.standing_share = StandingShare(found, points.size());
+    result.inlier_share =
+        static_cast<double>(found.fitting) / static_cast<double>(scan.points.size());
+    result.standing_share = StandingShare(found, scan.points.size());
     if (sums.pairs < kLeastPairs) return {guess, result.inlier_share, 0, result.iterations};
     if (result.iterations == 1) {
       result.unobserved = FindUnobserved(sums, settings);

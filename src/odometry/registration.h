@@ -30,6 +30,12 @@ struct RegistrationSettings {
   double fit_m = 0.2;
 };
 
+/// Points of a scan in the sensor's frame, with the normals that the scan shows.
+struct Surface {
+  Points points;
+  Points normals;  // of the first points; the other points have no normal
+};
+
 /// The pose before the points are used.
 struct Prediction {
   Pose pose;
@@ -41,7 +47,7 @@ struct Alignment {
   Pose pose;
   double inlier_share = 0;  // share of the points that fit
   /// The same without the surfaces that face the best held direction. Usually these are ground,
-  /// which fits at every place.
+  /// which fits at every place. The scan shows them, or else the map.
   double standing_share = 0;
   int iterations = 0;
   /// The scene does not show the motion along a direction; the guess is kept there.
@@ -52,17 +58,17 @@ struct Alignment {
   Matrix6 information = Matrix6::Zero();
 };
 
-/// Aligns `points` of the sensor's frame to `map`, from `guess`, as KISS-ICP does (Vizzo et al.,
+/// Aligns the points of `scan` to `map`, from `guess`, as KISS-ICP does (Vizzo et al.,
 /// 2023, section III-D): neighbours within `reach_m`, residuals weighted by the Geman-McClure
 /// kernel of scale `kernel_m`. It differs at surfaces of the map: the distance from the surface
 /// counts there, so that a wall does not hold motion along it, and fewer iterations suffice. The
 /// prediction holds the pose along directions that the points hold weakly.
-Alignment Align(const Points& points, LocalMap* map, const Prediction& prediction, double reach_m,
+Alignment Align(const Surface& scan, LocalMap* map, const Prediction& prediction, double reach_m,
                 double kernel_m, const RegistrationSettings& settings);
 /// Aligns from a guess without a known error.
 inline Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
                        double kernel_m, const RegistrationSettings& settings) {
-  return Align(points, map, Prediction{guess, Matrix6::Zero()}, reach_m, kernel_m, settings);
+  return Align({points, {}}, map, Prediction{guess, Matrix6::Zero()}, reach_m, kernel_m, settings);
 }
 
 }  // namespace lidar::odometry

@@ -12,6 +12,8 @@ constexpr int kBins = 1024;  // of azimuth, a power of two
 constexpr float kSide_m = 0.6F;
 constexpr float kLeastBins = 6;
 constexpr float kMostBins = 24;
+/// Bins to each side that level a point: more would round kerbs and window frames.
+constexpr int kBesides = 3;
 constexpr std::size_t kSums = kBins + 1;  // of a ring
 constexpr float kBinsPerRadian = kBins / 6.2831853F;
 /// Range of the elevation between rings: closer ones give noise, distant ones see other things.
@@ -101,8 +103,8 @@ ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
 }
 
 /// Fits a plane to what three rings, from below, saw left and right of `bin`.
-bool ScanNormals::FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f& point,
-                           Eigen::Vector3f* normal) const {
+std::optional<Eigen::Vector3f> ScanNormals::FitPlane(const int (&rings)[3], int bin,
+                                                     const Eigen::Vector3f& point) const {
   const int bins =
       static_cast<int>(std::clamp(kSide_m * kBinsPerRadian / point.norm(), kLeastBins, kMostBins));
   Side left[3];
@@ -110,31 +112,32 @@ bool ScanNormals::FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f
   Eigen::Vector3f across = Eigen::Vector3f::Zero();
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   for (int i = 0; i < 3; ++i) {
-    if (rings[i] < 0) return false;
+    if (rings[i] < 0) return std::nullopt;
     left[i] = MeanOf(rings[i], bin + 1, bins);
     right[i] = MeanOf(rings[i], bin - bins, bins);
-    if (!left[i].seen || !right[i].seen) return false;
+    if (!left[i].seen || !right[i].seen) return std::nullopt;
     across += left[i].mean - right[i].mean;
     mean += (left[i].mean + right[i].mean) / 6;
   }
   const Eigen::Vector3f up = (left[2].mean + right[2].mean - left[0].mean - right[0].mean) / 2;
-  *normal = across.cross(up);
-  const float area = normal->norm();
-  if (!(area > kLeastSine * across.norm() * up.norm())) return false;
-  *normal /= area;
+  Eigen::Vector3f normal = across.cross(up);
+  const float area = normal.norm();
+  if (!(area > kLeastSine * across.norm() * up.norm())) return std::nullopt;
+  normal /= area;
   const float rough = std::min(kRoughness_m + kBend * up.norm(), kMostRough_m);
   const auto fits = [&](const Eigen::Vector3f& p) {
-    return std::abs(normal->dot(p - mean)) <= rough;
+    return std::abs(normal.dot(p - mean)) <= rough;
   };
   for (int i = 0; i < 3; ++i)
-    if (!fits(left[i].mean) || !fits(right[i].mean)) return false;
-  return fits(point);
+    if (!fits(left[i].mean) || !fits(right[i].mean)) return std::nullopt;
+  return fits(point) ? std::optional(normal) : std::nullopt;
 }
 
-Eigen::Vector3d ScanNormals::At(const Eigen::Vector3d& point, std::uint16_t ring) const {
-  if (ring >= rings_.size() || !rings_[ring].seen) return Eigen::Vector3d::Zero();
+ScanNormals::Surface ScanNormals::At(const Eigen::Vector3d& point, std::uint16_t ring) const {
+  const Surface none{point, Eigen::Vector3d::Zero()};
+  if (ring >= rings_.size() || !rings_[ring].seen) return none;
   const Eigen::Vector3f p = point.cast<float>();
-  if (!IsReturn(p)) return Eigen::Vector3d::Zero();
+  if (!IsReturn(p)) return none;
   const int bin = BinOf(p.x(), p.y());
   const auto next = [this](int r, bool up) {
     if (r < 0) return -1;
@@ -144,12 +147,14 @@ Eigen::Vector3d ScanNormals::At(const Eigen::Vector3d& point, std::uint16_t ring
   const int own = ring;
   const int above = next(own, true);
   const int below = next(own, false);
-  Eigen::Vector3f normal;
-  if (FitPlane({below, own, above}, bin, p, &normal) ||
-      FitPlane({own, above, next(above, true)}, bin, p, &normal) ||
-      FitPlane({next(below, false), below, own}, bin, p, &normal))
-    return normal.cast<double>() * (normal.dot(p) > 0 ? -1 : 1);
-  return Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3f> found = FitPlane({below, own, above}, bin, p);
+  if (!found) found = FitPlane({own, above, next(above, true)}, bin, p);
+  if (!found) found = FitPlane({next(below, false), below, own}, bin, p);
+  if (!found) return none;
+  const Side near = MeanOf(own, bin - kBesides, 2 * kBesides + 1);
+  const double above_mean = near.seen ? double{found->dot(p - near.mean)} : 0;
+  const Eigen::Vector3d normal = found->cast<double>();
+  return {point - above_mean * normal, normal * (found->dot(p) > 0 ? -1 : 1)};
 }
 
 }  // namespace lidar::odometry

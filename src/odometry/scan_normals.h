@@ -2,6 +2,7 @@
 // Computes the normals that a single scan shows, from the beams around each point.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "src/odometry/pose.h"
@@ -16,9 +17,15 @@ class ScanNormals {
   /// both. Points that are not finite have no normal; without rings no point has one.
   ScanNormals(const Points& points, const std::vector<std::uint16_t>& rings);
 
-  /// Returns a normal of unit length that points to the sensor. It is zero if the point's
-  /// neighbours lie on no plane.
-  Eigen::Vector3d At(const Eigen::Vector3d& point, std::uint16_t ring) const;
+  struct Surface {
+    Eigen::Vector3d point;
+    /// Has unit length and points to the sensor. It is zero if the point's neighbours lie on no
+    /// plane.
+    Eigen::Vector3d normal;
+  };
+  /// Moves a point along its normal to the mean of its ring nearby. Returns of grass lie on the
+  /// cone of their beam, the nearest highest, so the front edge of a map of them would be low.
+  Surface At(const Eigen::Vector3d& point, std::uint16_t ring) const;
 
   static constexpr std::size_t kMaxRings = 1024;  // points of further rings are left out
 
@@ -36,8 +43,8 @@ class ScanNormals {
   void FindNeighbours();
   void SumUp(const std::vector<Eigen::Vector3f>& image);
   Side MeanOf(int ring, int first_bin, int bins) const;
-  bool FitPlane(const int (&rings)[3], int bin, const Eigen::Vector3f& point,
-                Eigen::Vector3f* normal) const;
+  std::optional<Eigen::Vector3f> FitPlane(const int (&rings)[3], int bin,
+                                          const Eigen::Vector3f& point) const;
 
   std::vector<Ring> rings_;
   /// Per ring and bin: the sum of the returns before the bin, and in the last number their count.

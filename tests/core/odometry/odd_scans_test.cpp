@@ -84,6 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OdometryJumps,
                                          Jump{synth::SceneKind::kTown, "os0-32"},
                                          Jump{synth::SceneKind::kStreet, "os1-64"},
                                          Jump{synth::SceneKind::kTown, "os1-64"},
+                                         Jump{synth::SceneKind::kField, "os0-32"},
                                          Jump{synth::SceneKind::kField, "os1-64"}));
 
 TEST(OddScans, FindsItsWayAfterTwoScansOfTheSameTime) {

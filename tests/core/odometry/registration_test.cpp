@@ -79,7 +79,7 @@ TEST(Align, KeepsTheGuessWhereTheSceneDoesNotShowTheMotion) {
 TEST(Align, APredictionDoesNotPullWhereSurfacesHoldEveryDirection) {
   LocalMap map = MapOf(Corner());
   const Prediction sure{Moved(0.2, 0, 0), Matrix6::Identity() * 1e4};
-  const Alignment found = Align(Corner(), &map, sure, kReach_m, kKernel_m, {});
+  const Alignment found = Align({Corner(), {}}, &map, sure, kReach_m, kKernel_m, {});
   EXPECT_LT(found.pose.position.norm(), 0.001);
 }
 
@@ -145,6 +145,19 @@ TEST(Align, TellsThePartOfThePointsThatFit) {
   const Alignment found = Align(seen, &map, Pose(), kReach_m, kKernel_m, {});
   EXPECT_DOUBLE_EQ(found.inlier_share, 0.5);
   EXPECT_LT(found.pose.position.norm(), 1e-3);
+}
+
+TEST(Align, GroundThatTheScanShowsDoesNotStandWhateverTheMapHasThere) {
+  // Of the floor the map has few points, and of the poles it has none.
+  const Points floor = Floor();
+  Points sparse;
+  for (std::size_t i = 0; i < floor.size(); i += 50) sparse.push_back(floor[i]);
+  LocalMap map = MapOf(sparse);
+  Surface seen{floor, Points(floor.size(), Eigen::Vector3d::UnitZ())};
+  for (int i = 0; i < 50; ++i) seen.points.emplace_back(i % 10, i / 10, floor[0].z() + 5);
+  const auto found = Align(seen, &map, Prediction{}, kReach_m, kKernel_m, {});
+  EXPECT_GT(found.inlier_share, 0);
+  EXPECT_LT(found.standing_share, 1e-9);
 }
 
 TEST(Align, LeavesTheGuessWhereFewerThanTwentyPointsFit) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <random>
 
 namespace lidar::odometry {
 namespace {
@@ -33,7 +34,7 @@ struct View {
     const ScanNormals normals(points, rings);
     std::size_t count = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (!normals.At(points[i], rings[i]).isZero(0)) ++count;
+      if (!normals.At(points[i], rings[i]).normal.isZero(0)) ++count;
     return count;
   }
   Points points;
@@ -49,9 +50,32 @@ TEST(ScanNormals, TheCirclesOnTheGroundMakeAPlane) {
   const View view(Ground);
   const ScanNormals normals(view.points, view.rings);
   for (std::size_t i = 0; i < view.points.size(); ++i) {
-    const Eigen::Vector3d normal = normals.At(view.points[i], view.rings[i]);
+    const Eigen::Vector3d normal = normals.At(view.points[i], view.rings[i]).normal;
     EXPECT_NEAR(normal.z(), 1, 1e-3) << view.points[i].transpose();
   }
+}
+
+TEST(ScanNormals, MovesAPointOfGrassToTheMeanOfItsRing) {
+  std::minstd_rand random(1);
+  std::uniform_real_distribution<double> blade(0, 0.1);
+  const View view([&](const Eigen::Vector3d& along) {
+    return along.z() < 0 ? (blade(random) - 2) / along.z()
+                         : std::numeric_limits<double>::infinity();
+  });
+  const ScanNormals normals(view.points, view.rings);
+  double raw = 0;
+  double moved = 0;
+  double count = 0;
+  for (std::size_t i = 0; i < view.points.size(); ++i) {
+    if (view.points[i].head<2>().norm() > 10) continue;
+    const auto surface = normals.At(view.points[i], view.rings[i]);
+    if (surface.normal.isZero(0)) continue;
+    raw += std::pow(view.points[i].z() + 1.95, 2);
+    moved += std::pow(surface.point.z() + 1.95, 2);
+    ++count;
+  }
+  EXPECT_GT(count, static_cast<double>(view.points.size()) / 4);
+  EXPECT_LT(std::sqrt(moved / raw), 0.6);
 }
 
 TEST(ScanNormals, AWallFacesTheSensor) {
@@ -60,7 +84,7 @@ TEST(ScanNormals, AWallFacesTheSensor) {
   });
   EXPECT_GT(view.CountNormals(), view.points.size() * 9 / 10);
   const ScanNormals normals(view.points, view.rings);
-  EXPECT_NEAR(normals.At({10, 0, 10 * std::tan(1.5 / 360 * kTurn)}, 9).x(), -1, 1e-3);
+  EXPECT_NEAR(normals.At({10, 0, 10 * std::tan(1.5 / 360 * kTurn)}, 9).normal.x(), -1, 1e-3);
 }
 
 TEST(ScanNormals, APoleBeforeAWallHasNone) {
@@ -72,7 +96,7 @@ TEST(ScanNormals, APoleBeforeAWallHasNone) {
   const ScanNormals normals(view.points, view.rings);
   for (std::size_t i = 0; i < view.points.size(); ++i) {
     if (view.points[i].norm() < 6) {
-      EXPECT_TRUE(normals.At(view.points[i], view.rings[i]).isZero(0));
+      EXPECT_TRUE(normals.At(view.points[i], view.rings[i]).normal.isZero(0));
     }
   }
 }
@@ -106,9 +130,9 @@ TEST(ScanNormals, TakesAnyPoints) {
   EXPECT_GT(view.CountNormals(), view.points.size() / 2);
   const ScanNormals normals(view.points, view.rings);
   for (const std::size_t i : {7U, 8U, 9U})
-    EXPECT_TRUE(normals.At(view.points[i], view.rings[i]).isZero(0)) << i;
-  EXPECT_TRUE(ScanNormals({}, {}).At({1, 0, 0}, 0).isZero(0));
-  EXPECT_TRUE(ScanNormals(view.points, {1, 2}).At({1, 0, 0}, 1).isZero(0));
+    EXPECT_TRUE(normals.At(view.points[i], view.rings[i]).normal.isZero(0)) << i;
+  EXPECT_TRUE(ScanNormals({}, {}).At({1, 0, 0}, 0).normal.isZero(0));
+  EXPECT_TRUE(ScanNormals(view.points, {1, 2}).At({1, 0, 0}, 1).normal.isZero(0));
 }
 
 }  // namespace
