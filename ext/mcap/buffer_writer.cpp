@@ -80,7 +80,7 @@ class ImuWriter : public BufferWriter {
 
   bool Write(GstBuffer* buffer, GstClockTime, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
-    if (!map || map.size() % cdr::kImuSampleSize != 0) return false;
+    if (!map || map.size() % kImuSampleSize != 0) return false;
     std::uint64_t first = 0;
     for (cdr::Imu& imu : cdr::ReadImuSamples(map.view())) {
       const auto time = static_cast<std::uint64_t>(imu.header.stamp.time_since_epoch().count());
@@ -125,7 +125,7 @@ std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps, const std:
   switch (*type) {
     case MessageType::kImu:
       if (IsOurImu(caps)) return std::make_unique<ImuWriter>(frame_id);
-      *why = std::string("the samples of the IMU are not ") + cdr::kImuFields;
+      *why = std::string("the samples of the IMU are not ") + kImuFields;
       return nullptr;
     case MessageType::kOdometry:
       return std::make_unique<OdometryWriter>(frame_id);

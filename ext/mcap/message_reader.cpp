@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/imu_caps.h"
 #include "gst/common/pose_covariance.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
@@ -109,9 +110,7 @@ class ImuReader : public MessageReader {
     if (caps && IsOurImu(caps.get()))
       caps_ = std::move(caps);
     else
-      caps_.reset(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,
-                                      static_cast<gint>(cdr::kImuSampleSize), "fields",
-                                      G_TYPE_STRING, cdr::kImuFields, nullptr));
+      caps_ = ImuCaps();
   }
 
   BufferPtr Read(ByteView message) override {

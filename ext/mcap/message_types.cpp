@@ -171,8 +171,8 @@ std::optional<MessageType> TypeOf(const GstCaps* caps) {
 bool IsOurImu(const GstCaps* caps) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   gint size = 0;
-  return gst_structure_get_int(s, "sample-size", &size) && size == gint{cdr::kImuSampleSize} &&
-         g_strcmp0(gst_structure_get_string(s, "fields"), cdr::kImuFields) == 0;
+  return gst_structure_get_int(s, "sample-size", &size) && size == gint{kImuSampleSize} &&
+         g_strcmp0(gst_structure_get_string(s, "fields"), kImuFields) == 0;
 }
 
 std::string_view TopicOf(MessageType type) { return InfoOf(type).topic; }

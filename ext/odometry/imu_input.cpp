@@ -30,7 +30,7 @@ bool ImuInput::SetCaps(const GstCaps* caps) {
   const gchar* fields = gst_structure_get_string(s, "fields");
   Eigen::Matrix3d rotation;
   const bool known =
-      fields != nullptr && std::strcmp(fields, cdr::kImuFields) == 0 && ReadRotation(s, &rotation);
+      fields != nullptr && std::strcmp(fields, kImuFields) == 0 && ReadRotation(s, &rotation);
   std::lock_guard lock(mutex_);
   known_ = known;
   if (known) to_sensor_ = rotation;
@@ -39,7 +39,7 @@ bool ImuInput::SetCaps(const GstCaps* caps) {
 
 bool ImuInput::Add(ByteView bytes) {
   std::lock_guard lock(mutex_);
-  if (!known_ || bytes.size % cdr::kImuSampleSize != 0) return false;
+  if (!known_ || bytes.size % kImuSampleSize != 0) return false;
   for (const cdr::Imu& imu : cdr::ReadImuSamples(bytes)) {
     const auto& g = imu.angular_velocity;
     samples_.push_back({imu.header.stamp, to_sensor_ * Eigen::Vector3d(g[0], g[1], g[2])});

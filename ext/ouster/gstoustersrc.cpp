@@ -16,7 +16,6 @@
 #include <mutex>
 #include <utility>
 
-#include "ext/ouster/imu_pad.h"
 #include "ext/ouster/session.h"
 #include "ext/ouster/settings.h"
 #include "gst/common/element_class.h"

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "ext/ouster/live_session.h"
 #include "ext/ouster/slice_buffer.h"
 #include "gst/common/refs.h"
+#include "src/ouster/imu_packet.h"
 
 #include "ext/ouster/debug.h"
 
@@ -68,7 +70,7 @@ std::shared_ptr<Session> Session::Create(GstBaseSrc* element, const OusterSettin
 }
 
 Session::Session(GstBaseSrc* element, OusterSettings settings)
-    : element_(element), settings_(std::move(settings)), imu_(GST_ELEMENT(element)) {}
+    : element_(element), settings_(std::move(settings)), imu_(element) {}
 
 std::optional<ouster::Metadata> Session::LoadMetadata() {
   const std::string path = settings_.MetadataPath();
@@ -137,8 +139,23 @@ bool Session::SetMetadata(ouster::Metadata metadata) {
 ouster::PacketVerdict Session::Push(ByteView payload, const ouster::Arrival& arrival) {
   const auto verdict = stream_->Push(payload, arrival);
   if (verdict == ouster::PacketVerdict::kImu && settings_.imu && stream_->knows_time())
-    imu_.Push(payload, *stream_);
+    PushImu(payload);
   return verdict;
+}
+
+void Session::PushImu(ByteView packet) {
+  const auto packed = ouster::ParseImuPacket(packet, stream_->metadata());
+  if (!packed || packed->empty()) return;
+  std::vector<ImuSample> samples;
+  for (const ouster::ImuSample& s : *packed) {
+    ImuSample& sample = samples.emplace_back();
+    sample.time = stream_->UtcOf(s.timestamp);
+    std::copy(s.acceleration.begin(), s.acceleration.end(), sample.acceleration.begin());
+    std::copy(s.angular_velocity.begin(), s.angular_velocity.end(),
+              sample.angular_velocity.begin());
+  }
+  imu_.Push(samples, stream_->metadata().imu_to_sensor,
+            ToClockTime(stream_->LocalOf(packed->front().timestamp)));
 }
 
 bool Session::SendCaps() {

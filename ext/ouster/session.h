@@ -8,8 +8,8 @@
 #include <mutex>
 #include <optional>
 
-#include "ext/ouster/imu_pad.h"
 #include "ext/ouster/settings.h"
+#include "gst/common/imu_pad.h"
 #include "gst/common/stats.h"
 #include "src/ouster/sensor_stream.h"
 
@@ -83,6 +83,7 @@ class Session {
 
  private:
   Counters Total() const;
+  void PushImu(ByteView packet);
   bool SendCaps();
   void PostLoss(const Counters& now);
 

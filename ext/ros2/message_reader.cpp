@@ -7,6 +7,7 @@
 #include "ext/ros2/cloud_compression.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/coordinate_frames.h"
+#include "gst/common/imu_caps.h"
 #include "gst/common/pose_covariance.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
@@ -148,10 +149,9 @@ MessageReader::Verdict MessageReader::ReadImu(ByteView message) {
     why_ = "the message is truncated or is no Imu";
     return Verdict::kDamaged;
   }
-  CapsPtr caps(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,
-                                   static_cast<gint>(cdr::kImuSampleSize), "fields", G_TYPE_STRING,
-                                   cdr::kImuFields, GST_LIDAR_FRAME_ID, G_TYPE_STRING,
-                                   ToText(imu->header.frame_id).c_str(), nullptr));
+  CapsPtr caps = ImuCaps();
+  gst_caps_set_simple(caps.get(), GST_LIDAR_FRAME_ID, G_TYPE_STRING,
+                      ToText(imu->header.frame_id).c_str(), nullptr);
   buffer_ = Copied(cdr::WriteImuSample(*imu));
   SetStamp(imu->header.stamp);
   return SetCaps(std::move(caps));

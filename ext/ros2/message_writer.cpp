@@ -47,8 +47,8 @@ bool MessageWriter::SetCaps(const GstCaps* caps) {
   from_caps_ = {TextOf(s, GST_LIDAR_FRAME_ID), TextOf(s, GST_LIDAR_CHILD_FRAME_ID)};
   if (type_ == cdr::RosType::kImu) {
     const gchar* fields = gst_structure_get_string(s, "fields");
-    why_ = std::string("samples must have the fields ") + cdr::kImuFields;
-    return fields == nullptr || std::string_view(fields) == cdr::kImuFields;
+    why_ = std::string("samples must have the fields ") + kImuFields;
+    return fields == nullptr || std::string_view(fields) == kImuFields;
   }
   if (!cdr::IsCloud(type_)) return true;
   auto info = CloudInfo::FromCaps(caps, &why_);

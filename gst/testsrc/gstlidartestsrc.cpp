@@ -18,11 +18,13 @@
 
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
+#include "gst/common/imu_pad.h"
 #include "gst/common/properties.h"
 #include "gst/testsrc/live_pacer.h"
 #include "gst/testsrc/slice_maker.h"
 #include "src/base/row_file.h"
 #include "src/synth/geometry.h"
+#include "src/synth/imu.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_test_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_test_src_debug
@@ -80,22 +82,26 @@ struct Settings {
   gint mode = 2;
   gint scene = 0;
   gdouble speed_mps = 12;
+  gdouble roughness = 1;
   gdouble noise_m = 0.01;
   bool mixed_pixels = false;
   guint seed = 0;
   guint slices_per_scan = 0;
   std::string channels;
   std::string trajectory_location;
+  bool imu = false;
   bool is_live = false;
 };
 
 using Row = Property<Settings>;
-const std::array<Row, 11> kProperties = {{
+const std::array<Row, 13> kProperties = {{
     {"model", "Sensor to simulate", EnumField<Settings>{&Settings::model, ModelType}},
     {"mode", "Columns of a scan x scans per second, of an Ouster",
      EnumField<Settings>{&Settings::mode, ModeType}},
     {"scene", "World to drive through", EnumField<Settings>{&Settings::scene, SceneType}},
     {"speed", "Speed of the sensor [m/s]", &Settings::speed_mps, 0, 100},
+    {"roughness", "How far the car sways, heaves and tilts, relative to what the scene's road does",
+     &Settings::roughness, 0, 20},
     {"noise", "Standard deviation of ranges on a bright target nearby [m]", &Settings::noise_m, 0,
      10},
     {"mixed-pixels", "Ranges at edges lie between the two surfaces", &Settings::mixed_pixels},
@@ -113,6 +119,7 @@ const std::array<Row, 11> kProperties = {{
     {"trajectory-location",
      "File for the exact trajectory: one pose a buffer in TUM format, at its capture time",
      &Settings::trajectory_location},
+    {"imu", "Add the pad imu, with the samples of an inertial measurement unit", &Settings::imu},
     {"is-live", "Scan in the time of the clock, else as fast as possible", &Settings::is_live},
 }};
 
@@ -151,6 +158,8 @@ struct State {
   GstClockTime latency = GST_CLOCK_TIME_NONE;  // of one slice, while started
   // Only the streaming thread uses these, between start and stop.
   std::optional<SliceMaker> maker;
+  std::optional<lidar::synth::Imu> imu;
+  std::optional<ImuPad> imu_pad;
   std::unique_ptr<TrajectoryLog> log;
   LivePacer pacer;
 };
@@ -169,6 +178,7 @@ lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
   config.period = Duration(std::chrono::seconds(1)) / scans_per_second;
   config.scene = static_cast<lidar::synth::SceneKind>(s.scene);
   config.speed_mps = s.speed_mps;
+  config.roughness = s.roughness;
   config.noise_m = s.noise_m;
   config.mixed_pixels = s.mixed_pixels;
   config.seed = s.seed;
@@ -231,6 +241,10 @@ static gboolean Start(GstBaseSrc* base) {
   std::lock_guard lock(state.mutex);
   state.log = std::move(log);
   state.maker.emplace(ConfigFrom(settings), OptionsFrom(settings));
+  if (settings.imu) {
+    state.imu.emplace(state.maker->trajectory(), lidar::synth::kMemsImu, settings.seed);
+    state.imu_pad.emplace(base);
+  }
   state.latency = static_cast<GstClockTime>(state.maker->LongestSlice().count());
   return TRUE;
 }
@@ -240,6 +254,8 @@ static gboolean Stop(GstBaseSrc* base) {
   std::lock_guard lock(state.mutex);
   state.latency = GST_CLOCK_TIME_NONE;
   state.maker.reset();
+  state.imu.reset();
+  state.imu_pad.reset();
   state.log.reset();
   state.pacer.Stop();
   return TRUE;
@@ -286,42 +302,59 @@ static bool SkipWhatIsLate(GstElement* element, State* state) {
   return true;
 }
 
+/// Stream time as running time, and as time since 1970.
+static GstClockTime RunningTime(GstLidarTestSrc* self, Duration t) {
+  const bool live = gst_base_src_is_live(GST_BASE_SRC(self));
+  return live ? self->state->pacer.ToRunningTime(t) : static_cast<GstClockTime>(t.count());
+}
+static GstClockTime UnixTime(GstLidarTestSrc* self, Duration t) {
+  const bool live = gst_base_src_is_live(GST_BASE_SRC(self));
+  return live ? self->state->pacer.ToUnixTime(t) : kEpoch + static_cast<GstClockTime>(t.count());
+}
+
 /// Reports the first row that does not fit; written rows stay, and no more follow.
-static void LogPose(GstLidarTestSrc* self, GstClockTime capture, const lidar::synth::Pose& pose) {
+static void LogPose(GstLidarTestSrc* self, Duration at) {
   State& state = *self->state;
-  if (!state.log || state.log->Write(capture, pose)) return;
+  if (!state.log) return;
+  if (state.log->Write(UnixTime(self, at), state.maker->trajectory().At(at))) return;
   state.log.reset();
   GST_ELEMENT_WARNING(self, RESOURCE, NO_SPACE_LEFT,
                       ("The trajectory cannot be written any more; the stream goes on."),
                       GST_ERROR_SYSTEM);
 }
 
-static GstFlowReturn CreateLive(GstLidarTestSrc* self, GstBuffer** out) {
+/// Pushes the samples of a slice's sweep.
+static void PushImu(GstLidarTestSrc* self, Duration begin, Duration end) {
   State& state = *self->state;
-  if (!state.pacer.started()) state.pacer.Start();
-  const bool skipped = SkipWhatIsLate(GST_ELEMENT(self), &state);
-  const Duration begin = state.maker->NextTime();
-  const Duration end = state.maker->NextEnd();
-  const lidar::synth::Pose pose = state.maker->NextPose();
-  // Casts early, so that the slice leaves when its last column is sampled.
-  BufferPtr buffer = state.maker->Make(state.pacer.ToUnixTime(begin));
-  const GstFlowReturn flow = state.pacer.WaitUntil(end);
-  if (flow != GST_FLOW_OK) return flow;
-  GST_BUFFER_PTS(buffer.get()) = state.pacer.ToRunningTime(begin);
-  gst_lidar_buffer_set_capture_time(buffer.get(), state.pacer.ToUnixTime(begin));
-  if (skipped) GST_BUFFER_FLAG_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT);
-  LogPose(self, state.pacer.ToUnixTime(begin), pose);
-  *out = buffer.release();
-  return GST_FLOW_OK;
+  if (!state.imu) return;
+  state.imu->SkipTo(begin);
+  auto samples = state.imu->Until(end);
+  if (samples.empty()) return;
+  const Duration first = samples.front().time - lidar::Time{};
+  for (lidar::ImuSample& sample : samples) {
+    const GstClockTime captured = UnixTime(self, sample.time - lidar::Time{});
+    sample.time = lidar::Time{} + Duration{static_cast<std::int64_t>(captured)};
+  }
+  constexpr ImuToSensor kSensorsFrame = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  state.imu_pad->Push(samples, kSensorsFrame, RunningTime(self, first));
 }
 
-static GstFlowReturn CreateAtOnce(GstLidarTestSrc* self, GstBuffer** out) {
+/// Casts early, so that a live slice leaves when its last column is sampled.
+static GstFlowReturn CreateSlice(GstLidarTestSrc* self, GstBuffer** out) {
   State& state = *self->state;
-  const lidar::synth::Pose pose = state.maker->NextPose();
-  const GstClockTime capture = kEpoch + static_cast<GstClockTime>(state.maker->NextTime().count());
-  BufferPtr buffer = state.maker->Make(capture);
-  gst_lidar_buffer_set_capture_time(buffer.get(), capture);
-  LogPose(self, capture, pose);
+  const bool live = gst_base_src_is_live(GST_BASE_SRC(self));
+  if (live && !state.pacer.started()) state.pacer.Start();
+  const bool skipped = live && SkipWhatIsLate(GST_ELEMENT(self), &state);
+  const Duration begin = state.maker->NextTime();
+  const Duration end = state.maker->NextEnd();
+  BufferPtr buffer = state.maker->Make(UnixTime(self, begin));
+  const GstFlowReturn flow = live ? state.pacer.WaitUntil(end) : GST_FLOW_OK;
+  if (flow != GST_FLOW_OK) return flow;
+  GST_BUFFER_PTS(buffer.get()) = RunningTime(self, begin);
+  gst_lidar_buffer_set_capture_time(buffer.get(), UnixTime(self, begin));
+  if (skipped) GST_BUFFER_FLAG_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT);
+  LogPose(self, begin);
+  PushImu(self, begin, end);
   *out = buffer.release();
   return GST_FLOW_OK;
 }
@@ -329,10 +362,9 @@ static GstFlowReturn CreateAtOnce(GstLidarTestSrc* self, GstBuffer** out) {
 /// Rows that differ in width have caps of their own.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_TEST_SRC(push);
-  const bool live = gst_base_src_is_live(GST_BASE_SRC(push));
   const CloudInfo* info = self->state->maker->OwnInfo();
   for (;;) {
-    const GstFlowReturn flow = live ? CreateLive(self, out) : CreateAtOnce(self, out);
+    const GstFlowReturn flow = CreateSlice(self, out);
     if (flow != GST_FLOW_OK || info == nullptr) return flow;
     if (info->width > 0) break;
     gst_clear_buffer(out);  // drivers publish no empty cloud
@@ -371,7 +403,8 @@ static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
   Describe(klass,
            {"LiDAR test source", "Source/PointCloud",
             "A synthetic LiDAR that drives through a synthetic world"},
-           {{"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE}});
+           {{"src", GST_PAD_SRC, GST_LIDAR_CLOUD_MEDIA_TYPE},
+            {"imu", GST_PAD_SRC, GST_LIDAR_IMU_MEDIA_TYPE, GST_PAD_SOMETIMES}});
   auto* base = GST_BASE_SRC_CLASS(klass);
   base->start = Start;
   base->stop = Stop;

@@ -37,7 +37,7 @@ class SliceMaker {
   Duration NextTime() const { return scanner_.ColumnTime(scan_, FirstColumn()); }
   /// When its last column is.
   Duration NextEnd() const { return scanner_.ColumnTime(scan_, FirstColumn() + width_); }
-  synth::Pose NextPose() const { return scanner_.trajectory().At(NextTime()); }
+  const synth::Trajectory& trajectory() const { return scanner_.trajectory(); }
   Duration LongestSlice() const;
   Duration period() const { return period_; }
   /// Casts the next slice into a buffer with PTS, duration and slice meta. `begin` is NextTime()

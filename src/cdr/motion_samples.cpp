@@ -10,11 +10,7 @@ namespace lidar::cdr {
 
 std::vector<std::uint8_t> WriteImuSample(const Imu& imu) {
   std::vector<std::uint8_t> bytes;
-  ByteWriter w(&bytes);
-  w.Le64(static_cast<std::uint64_t>(
-      std::max<std::int64_t>(imu.header.stamp.time_since_epoch().count(), 0)));
-  for (const double v : imu.linear_acceleration) w.LeF32(static_cast<float>(v));
-  for (const double v : imu.angular_velocity) w.LeF32(static_cast<float>(v));
+  lidar::WriteImuSample({imu.header.stamp, imu.linear_acceleration, imu.angular_velocity}, &bytes);
   return bytes;
 }
 

@@ -5,14 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "src/base/imu_sample.h"
 #include "src/cdr/messages.h"
 
 namespace lidar::cdr {
-
-/// Capture time [ns since the Unix epoch], acceleration [m/s^2], angular velocity [rad/s].
-inline constexpr const char* kImuFields =
-    "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
-inline constexpr std::size_t kImuSampleSize = 32;
 
 std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
 /// Returns a message for each sample in `bytes`, without orientation and frame, or no messages if

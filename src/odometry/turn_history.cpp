@@ -13,8 +13,10 @@ constexpr Duration kLongestStep = std::chrono::milliseconds(50);
 constexpr Duration kNewClock = std::chrono::seconds(1);
 constexpr double kMostRate = 50;  // [rad/s]: vehicles turn slower
 constexpr double kMostBias = 0.2;
-/// Part of a scan's error that enters the bias.
+/// Least part of a scan's error that enters the bias. The first scans have more weight: an offset
+/// is about as large as the noise of kOffsetScans.
 constexpr double kBiasShare = 0.05;
+constexpr int kOffsetScans = 3;
 constexpr double kMemory = 0.9;
 /// Error of an alignment itself [rad].
 constexpr double kNoise = 0.003;
@@ -80,7 +82,7 @@ void TurnHistory::Teach(Time from, Time to, const Eigen::Quaterniond& found,
   own_squares_ = kMemory * own_squares_ + off.squaredNorm();
   steady_squares_ = kMemory * steady_squares_ + LogOf(found.conjugate() * steady).squaredNorm();
   ++taught_;
-  bias_ += kBiasShare * off / Seconds(to - from);
+  bias_ += std::max(kBiasShare, 1.0 / (kOffsetScans + taught_)) * off / Seconds(to - from);
   if (bias_.norm() > kMostBias) bias_ *= kMostBias / bias_.norm();
 }
 

@@ -35,6 +35,13 @@ Vec3 OnTheRim(Vec3 axis, float turn) {
   return (1 / std::sqrt(Dot(rim, rim))) * rim;
 }
 
+TrajectorySettings LaneOf(const Scene& scene, const ScannerConfig& config) {
+  TrajectorySettings lane = scene.Lane(config.speed_mps);
+  lane.sway_m *= config.roughness;
+  lane.bounce *= config.roughness;
+  return lane;
+}
+
 }  // namespace
 
 Scanner::Scanner(const ScannerConfig& config)
@@ -45,7 +52,7 @@ Scanner::Scanner(const ScannerConfig& config)
                                        config.sensor.range_of_10_percent_m)),
       gauss_(MakeGaussTable()),
       scene_(Scene::Make(config.scene, config.seed)),
-      trajectory_(scene_->Lane(config.speed_mps)),
+      trajectory_(LaneOf(*scene_, config)),
       chunk_columns_(
           std::max(1U, static_cast<std::uint32_t>(rays_.columns() * kChunk / config.period))) {
   view_.radius = reach_m_ + static_cast<float>(kAnchorStep);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A drive whose every pose is known, its scans, and its gyroscope.
 #pragma once
-#include <random>
-
 #include "src/odometry/odometry.h"
+#include "src/synth/imu.h"
 #include "src/synth/scanner.h"
 
 namespace lidar::odometry {
@@ -43,6 +42,7 @@ class Drive {
     const auto [x, y, z, w] = pose.ToQuaternion();
     return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
   }
+  synth::Imu Imu() const { return {scanner_.trajectory(), synth::kMemsImu, 7}; }
   /// From the middle of the first scan to that of another.
   Pose WayTo(std::uint64_t number) const {
     return TruthAt(StartOf(0) + kPeriod / 2).Inverse() * TruthAt(StartOf(number) + kPeriod / 2);
@@ -64,18 +64,11 @@ class Drive {
   RangeProjection projection_;
 };
 
-/// A gyroscope as data sheets have them, or one whose axes are turned about the vertical.
-inline void AddTurns(const Drive& drive, Time from, Time to, double axes_rad, Odometry* odometry) {
-  constexpr Duration kStep = std::chrono::milliseconds(10);
-  const Eigen::Vector3d bias(0.01, -0.01, 0.005);
-  std::minstd_rand random(7);
-  std::normal_distribution<double> noise(0, 0.005);
-  for (Time t = from; t < to; t += kStep) {
-    const Pose turn = drive.TruthAt(t - kStep / 2).Inverse() * drive.TruthAt(t + kStep / 2);
-    Eigen::Vector3d rate = Log(turn).tail<3>() / Seconds(kStep) + bias;
-    for (double& r : rate) r += noise(random);
-    odometry->OnTurn(t, Eigen::AngleAxisd(axes_rad, Eigen::Vector3d::UnitZ()) * rate);
-  }
+/// Passes the turns before `end` on, as a gyroscope that is turned about the vertical has them.
+inline void AddTurns(synth::Imu* imu, Time end, double axes_rad, Odometry* odometry) {
+  const Eigen::AngleAxisd axes(axes_rad, Eigen::Vector3d::UnitZ());
+  for (const ImuSample& s : imu->Until(end.time_since_epoch()))
+    odometry->OnTurn(s.time, axes * Eigen::Vector3d(s.angular_velocity.data()));
 }
 
 }  // namespace lidar::odometry

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ext/odometry/imu_input.h"
+#include "gst/common/imu_caps.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 #include "tests/support/harness.h"
@@ -80,25 +81,10 @@ class ImuPad : public ::testing::Test {
   std::vector<BufferPtr> scans_;
 };
 
-/// A quarter of a turn about the vertical, as row-major transforms have it.
-CapsPtr TurnedCaps() {
-  CapsPtr caps(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT, 32,
-                                   "fields", G_TYPE_STRING, cdr::kImuFields, nullptr));
-  GValue list = G_VALUE_INIT;
-  g_value_init(&list, GST_TYPE_ARRAY);
-  for (const double v : {0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.}) {
-    GValue number = G_VALUE_INIT;
-    g_value_init(&number, G_TYPE_DOUBLE);
-    g_value_set_double(&number, v);
-    gst_value_array_append_and_take_value(&list, &number);
-  }
-  gst_structure_take_value(gst_caps_get_structure(caps.get(), 0), "imu-to-sensor", &list);
-  return caps;
-}
-
 TEST(ImuInput, TurnsRatesAsTheImuIsMounted) {
   ImuInput input;
-  ASSERT_TRUE(input.SetCaps(TurnedCaps().get()));
+  const ImuToSensor quarter = {0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  ASSERT_TRUE(input.SetCaps(ImuCaps(quarter).get()));
   cdr::Imu imu;
   imu.angular_velocity = {1, 0, 0.5};
   const auto sample = cdr::WriteImuSample(imu);
@@ -109,21 +95,101 @@ TEST(ImuInput, TurnsRatesAsTheImuIsMounted) {
 }
 
 TEST_F(ImuPad, UsesSamplesThatAgreeWithTheScans) {
-  ASSERT_TRUE(Describe(cdr::kImuFields));
+  ASSERT_TRUE(Describe(kImuFields));
   EXPECT_GE(ScansWithImu(0), kScans / 2);
 }
 
 TEST_F(ImuPad, DoesNotUseSamplesThatContradictTheScans) {
-  ASSERT_TRUE(Describe(cdr::kImuFields));
+  ASSERT_TRUE(Describe(kImuFields));
   EXPECT_EQ(ScansWithImu(1.5), 0U);
 }
 
 TEST_F(ImuPad, RefusesOtherLayouts) { EXPECT_FALSE(Describe("t:U64:0,gx:F64:8")); }
 
 TEST_F(ImuPad, DropsPiecesOfSamples) {
-  ASSERT_TRUE(Describe(cdr::kImuFields));
+  ASSERT_TRUE(Describe(kImuFields));
   EXPECT_EQ(gst_pad_chain(imu_.get(), gst_buffer_new_memdup("cut", 3)), GST_FLOW_OK);
   EXPECT_GE(ScansWithImu(0), kScans / 2);
+}
+
+/// A drive through the corners of a town, and how the odometry takes its IMU.
+class ImuOfADrive : public ::testing::Test {
+ protected:
+  static constexpr guint64 kDriveScans = 60;
+  void SetUp() override {
+    const std::string line =
+        "lidartestsrc name=s imu=true model=os0-32 mode=512x10 scene=town speed=12 seed=3 "
+        "roughness=3 "
+        "slices-per-scan=1 num-buffers=" +
+        std::to_string(kDriveScans) +
+        " ! lidarodometry name=o ! fakesink async=false s.imu ! identity name=i ! o.imu";
+    pipeline_.reset(gst_parse_launch(line.c_str(), nullptr));
+    ASSERT_TRUE(pipeline_);
+    odometry_.reset(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "o"));
+    const ElementPtr imu(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "i"));
+    imu_.reset(gst_element_get_static_pad(imu.get(), "src"));
+    ASSERT_TRUE(imu_);
+  }
+  void TearDown() override { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
+  void Run() {
+    gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
+    const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline_.get()));
+    const MessagePtr end(gst_bus_timed_pop_filtered(
+        bus.get(), 60 * GST_SECOND,
+        static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+    ASSERT_TRUE(end);
+    ASSERT_EQ(GST_MESSAGE_TYPE(end.get()), GST_MESSAGE_EOS);
+  }
+  guint64 Count(const char* name) {
+    GstStructure* stats = nullptr;
+    g_object_get(odometry_.get(), "stats", &stats, nullptr);
+    guint64 count = 0;
+    gst_structure_get_uint64(stats, name, &count);
+    gst_structure_free(stats);
+    return count;
+  }
+
+  ElementPtr pipeline_;
+  ElementPtr odometry_;
+  PadPtr imu_;
+};
+
+TEST_F(ImuOfADrive, IsUsedOnceItHasProvedItself) {
+  Run();
+  EXPECT_GE(Count("scans-with-imu"), kDriveScans - 10);
+  EXPECT_EQ(Count("scans-lost"), 0U);
+}
+
+TEST_F(ImuOfADrive, MayStop) {
+  gst_pad_add_probe(
+      imu_.get(), GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo* info, gpointer) {
+        return GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info)) < 3 * GST_SECOND
+                   ? GST_PAD_PROBE_OK
+                   : GST_PAD_PROBE_DROP;
+      },
+      nullptr, nullptr);
+  Run();
+  EXPECT_GE(Count("scans-with-imu"), 20U);
+  EXPECT_LE(Count("scans-with-imu"), 31U);
+  EXPECT_EQ(Count("scans-lost"), 0U);
+}
+
+TEST_F(ImuOfADrive, IsNotUsedWhereItsAxesAreTurned) {
+  gst_pad_add_probe(
+      imu_.get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
+      [](GstPad*, GstPadProbeInfo* info, gpointer) {
+        GstEvent* event = GST_PAD_PROBE_INFO_EVENT(info);
+        if (GST_EVENT_TYPE(event) != GST_EVENT_CAPS) return GST_PAD_PROBE_OK;
+        const ImuToSensor on_its_side = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+        gst_event_unref(event);
+        GST_PAD_PROBE_INFO_DATA(info) = gst_event_new_caps(ImuCaps(on_its_side).get());
+        return GST_PAD_PROBE_OK;
+      },
+      nullptr, nullptr);
+  Run();
+  EXPECT_LE(Count("scans-with-imu"), kDriveScans / 4);
+  EXPECT_EQ(Count("scans-lost"), 0U);
 }
 
 }  // namespace

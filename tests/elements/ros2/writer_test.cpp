@@ -69,8 +69,8 @@ TEST_F(WrittenMessages, HaveTheTypeThatTheirCapsUsuallyBecome) {
 TEST_F(WrittenMessages, OfAnImuNeedTheFieldsThatWeKnowOrNone) {
   MessageWriter writer(cdr::RosType::kImu);
   EXPECT_TRUE(SetCaps(&writer, "application/x-imu"));
-  EXPECT_TRUE(SetCaps(&writer,
-                      std::string("application/x-imu,fields=(string)\"") + cdr::kImuFields + "\""));
+  EXPECT_TRUE(
+      SetCaps(&writer, std::string("application/x-imu,fields=(string)\"") + kImuFields + "\""));
   EXPECT_FALSE(SetCaps(&writer, "application/x-imu,fields=(string)\"t:U64:0\""));
 }
 

@@ -9,6 +9,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"
+#include "src/base/imu_sample.h"
 #include "src/cloud/range_projection.h"
 #include "tests/support/harness.h"
 
@@ -298,6 +299,103 @@ TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {
   gst_object_unref(bus);
   EXPECT_TRUE(message);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
+/// What a source gives at its pads, until its end.
+struct Played {
+  std::vector<BufferPtr> clouds;
+  std::vector<BufferPtr> samples;
+  CapsPtr caps;  // of the samples
+};
+
+void Collect(GstElement*, GstBuffer* buffer, GstPad*, std::vector<BufferPtr>* to) {
+  to->emplace_back(gst_buffer_ref(buffer));
+}
+
+Played PlayWithImu(GstElement* pipeline) {
+  Played run;
+  const auto collect = [&](const char* name, std::vector<BufferPtr>* to) -> ElementPtr {
+    ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline), name));
+    g_signal_connect(sink.get(), "handoff", G_CALLBACK(Collect), to);
+    return sink;
+  };
+  const ElementPtr clouds = collect("clouds", &run.clouds);
+  const ElementPtr samples = collect("samples", &run.samples);
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline));
+  const MessagePtr end(
+      gst_bus_timed_pop_filtered(bus.get(), 20 * GST_SECOND,
+                                 static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+  EXPECT_TRUE(end && GST_MESSAGE_TYPE(end.get()) == GST_MESSAGE_EOS);
+  const PadPtr pad(gst_element_get_static_pad(samples.get(), "sink"));
+  run.caps.reset(gst_pad_get_current_caps(pad.get()));
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  g_signal_handlers_disconnect_by_data(clouds.get(), &run.clouds);
+  g_signal_handlers_disconnect_by_data(samples.get(), &run.samples);
+  return run;
+}
+
+constexpr unsigned kSlices = 40;
+ElementPtr MakeWithImu() {
+  const std::string line =
+      "lidartestsrc name=s imu=true model=os0-32 mode=512x10 speed=0 num-buffers=" +
+      std::to_string(kSlices) +
+      " ! fakesink name=clouds async=false signal-handoffs=true "
+      "s.imu ! fakesink name=samples async=false signal-handoffs=true";
+  return ElementPtr(gst_parse_launch(line.c_str(), nullptr));
+}
+
+std::vector<ImuSample> SamplesIn(const BufferPtr& buffer) {
+  const BufferMap map(buffer.get(), GST_MAP_READ);
+  EXPECT_EQ(map.size() % kImuSampleSize, 0U);
+  std::vector<ImuSample> samples(map.size() / kImuSampleSize);
+  ByteReader r(map.view());
+  for (ImuSample& sample : samples) {
+    sample.time += Duration{static_cast<std::int64_t>(r.Le64())};
+    for (double& v : sample.acceleration) v = double{r.LeF32()};
+    for (double& v : sample.angular_velocity) v = double{r.LeF32()};
+  }
+  return samples;
+}
+
+TEST(LidarTestSrc, GivesEachSampleOfItsImuWithTheSliceInWhichItWasTaken) {
+  const ElementPtr pipeline = MakeWithImu();
+  const Played run = PlayWithImu(pipeline.get());
+  ASSERT_EQ(run.clouds.size(), kSlices);
+  const GstStructure* s = gst_caps_get_structure(run.caps.get(), 0);
+  EXPECT_STREQ(gst_structure_get_string(s, "fields"), kImuFields);
+  std::int64_t expected = 1'704'067'200'000'000'000;
+  auto slice = run.clouds.begin();
+  for (const BufferPtr& buffer : run.samples) {
+    const GstClockTime pts = GST_BUFFER_PTS(buffer.get());
+    while (GST_BUFFER_PTS(slice->get()) + GST_BUFFER_DURATION(slice->get()) <= pts) ++slice;
+    const GstClockTime end = GST_BUFFER_PTS(slice->get()) + GST_BUFFER_DURATION(slice->get());
+    EXPECT_GE(pts, GST_BUFFER_PTS(slice->get()));
+    EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()), static_cast<GstClockTime>(expected));
+    for (const ImuSample& sample : SamplesIn(buffer)) {
+      EXPECT_EQ(sample.time.time_since_epoch().count(), expected);
+      EXPECT_LT(sample.time.time_since_epoch().count() - 1'704'067'200'000'000'000,
+                static_cast<std::int64_t>(end));
+      EXPECT_NEAR(sample.acceleration[2], 9.8, 1);
+      expected += 10'000'000;
+    }
+  }
+  EXPECT_EQ(expected, 1'704'067'200'500'000'000);
+}
+
+TEST(LidarTestSrc, ItsImuGivesTheSameSamplesAgain) {
+  const Played first = PlayWithImu(MakeWithImu().get());
+  const Played again = PlayWithImu(MakeWithImu().get());
+  ASSERT_EQ(first.samples.size(), again.samples.size());
+  for (std::size_t i = 0; i < first.samples.size(); ++i)
+    EXPECT_EQ(BytesOf(first.samples[i]), BytesOf(again.samples[i]));
+}
+
+TEST(LidarTestSrc, HasNoImuUnlessItIsWanted) {
+  const Harness h = Launch("num-buffers=2");
+  gst_harness_play(h.get());
+  EXPECT_TRUE(Pull(h));
+  EXPECT_EQ(h->element->numsrcpads, 1);
 }
 
 }  // namespace

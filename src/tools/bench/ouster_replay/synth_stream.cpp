@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "src/base/byte_writer.h"
+#include "src/synth/imu.h"
 
 namespace lidar::tools {
 namespace {
@@ -154,33 +155,18 @@ std::optional<OutPacket> SynthStream::LidarPacket() {
   return OutPacket{LidarDue(), false, writer_->Finish()};
 }
 
-/// Returns an IMU's samples on that drive, from differences of the exact poses.
 OutPacket SynthStream::ImuPacket() {
-  constexpr Duration kStep = 5ms;
   constexpr double kGravity = 9.80665;
   constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
   const Duration t = kImuPeriod * static_cast<std::int64_t>(imu_++);
-  const synth::Pose before = scanner_.trajectory().At(t - kStep);
-  const synth::Pose now = scanner_.trajectory().At(t);
-  const synth::Pose after = scanner_.trajectory().At(t + kStep);
-  const double h = Seconds(kStep);
-  const auto second = [&](double a, double b, double c) { return (a - 2 * b + c) / (h * h); };
-  const std::array<double, 3> world = {second(before.x, now.x, after.x),
-                                       second(before.y, now.y, after.y),
-                                       second(before.z, now.z, after.z) + kGravity};
-  const synth::Rotation r = now.ToRotation();
+  const ImuSample sample = synth::TrueMotion(scanner_.trajectory(), t);
   OutPacket packet{t, true, {}};
   ByteWriter w(&packet.bytes);
   const std::uint64_t time = start_.sensor_time_ns + static_cast<std::uint64_t>(t.count());
   for (int i = 0; i < 3; ++i) w.Le64(time);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double felt = 0;  // the rotation's transpose turns the world into the sensor
-    for (std::size_t k = 0; k < 3; ++k) felt += static_cast<double>(r.m[k * 3 + axis]) * world[k];
-    w.LeF32(static_cast<float>(felt / kGravity));
-  }
-  for (const double rate :
-       {after.roll - before.roll, after.pitch - before.pitch, after.yaw - before.yaw})
-    w.LeF32(static_cast<float>(rate / (2 * h) * kDegreesPerRadian));
+  for (const double a : sample.acceleration) w.LeF32(static_cast<float>(a / kGravity));
+  for (const double rate : sample.angular_velocity)
+    w.LeF32(static_cast<float>(rate * kDegreesPerRadian));
   return packet;
 }
 

@@ -43,7 +43,7 @@ class FaultyScans final : public ScanStream {
     }
     return std::nullopt;
   }
-  std::optional<synth::Pose> TruthAt(Time t) const override { return scans_->TruthAt(t); }
+  const synth::Trajectory* trajectory() const override { return scans_->trajectory(); }
 
  private:
   bool IsLost(Duration since_first) {

@@ -171,9 +171,7 @@ class SyntheticDrive final : public ScanStream {
     timed.scan.intensity.assign(returns.reflectivity.begin(), returns.reflectivity.end());
     return timed;
   }
-  std::optional<synth::Pose> TruthAt(Time t) const override {
-    return scanner_.trajectory().At(t.time_since_epoch());
-  }
+  const synth::Trajectory* trajectory() const override { return &scanner_.trajectory(); }
 
  private:
   std::uint32_t columns_;
@@ -212,6 +210,7 @@ std::unique_ptr<ScanStream> OpenSynthetic(const std::string& text, const SourceO
   if (options.max_scans == 0)
     throw std::runtime_error(text + ": a synthetic drive has no end; say how many scans");
   config.speed_mps = options.speed_mps;
+  config.roughness = options.roughness;
   config.seed = options.seed;
   config.noise_m = options.noise_m;
   config.mixed_pixels = options.mixed_pixels;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/base/time.h"
-#include "src/synth/geometry.h"
+#include "src/synth/trajectory.h"
 #include "src/tools/lab/codec_lab/scan.h"
 
 namespace lidar::tools {
@@ -15,6 +15,7 @@ namespace lidar::tools {
 struct SourceOptions {
   std::size_t max_scans = 20;  // of each source; 0: all there are
   double speed_mps = 10;       // of synthetic drives
+  double roughness = 1;        // of synthetic drives, relative to what the scene's road does
   std::uint64_t seed = 0;      // of synthetic drives
   double noise_m = 0.01;       // of synthetic ranges on a bright target nearby
   bool mixed_pixels = false;   // of synthetic drives
@@ -35,8 +36,8 @@ class ScanStream {
   virtual ~ScanStream() = default;
   /// Returns nothing at the end. Throws std::runtime_error with a message for the user.
   virtual std::optional<TimedScan> Next() = 0;
-  /// The pose of the sensor at any time, if the source has it.
-  virtual std::optional<synth::Pose> TruthAt(Time) const { return std::nullopt; }
+  /// The motion of the sensor, if the source has it. Its times are those of the scans.
+  virtual const synth::Trajectory* trajectory() const { return nullptr; }
   double scans_per_second() const { return scans_per_second_; }
 
  protected:

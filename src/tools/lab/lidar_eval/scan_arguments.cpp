@@ -8,6 +8,11 @@ void AddScanOptions(CLI::App* command, ScanArguments* a) {
   command->add_option("SOURCE", a->source, kSourceHelp)->required();
   command->add_option("--scans", a->read.max_scans, "Scans to read; 0: all");
   command->add_option("--speed", a->read.speed_mps, "Of synthetic drives [m/s]");
+  command
+      ->add_option("--roughness", a->read.roughness,
+                   "How far synthetic cars sway, heave and tilt, relative to what the scene's road "
+                   "does")
+      ->check(CLI::Range(0.0, 20.0));
   command->add_option("--seed", a->read.seed, "Of synthetic drives");
   command->add_option("--noise", a->read.noise_m, "Of synthetic ranges, standard deviation [m]")
       ->check(CLI::Range(0.0, 10.0));

@@ -4,16 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <random>
+#include <memory>
 #include <stdexcept>
 
 #include "src/cloud/range_grid.h"
 #include "src/slam/loop_closer.h"
+#include "src/synth/imu.h"
 
 namespace lidar::tools {
 namespace {
 
 constexpr std::size_t kStart = 20;  // scans
+constexpr std::uint64_t kImuSeed = 7;
 
 /// Applies the grid that Draco lays over the cube of the cloud.
 void QuantizeCube(unsigned bits, odometry::Points* points) {
@@ -75,30 +77,13 @@ odometry::Pose ToPose(const synth::Pose& pose) {
   return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
 }
 
-/// A gyroscope with the bias and the noise of a data sheet (IAM-20680HT).
-class Gyroscope {
- public:
-  /// Returns the samples since the last call, up to `end`.
-  void Measure(const ScanStream& scans, Time begin, Time end, odometry::Odometry* odometry) {
-    if (!next_) next_ = begin;
-    for (; *next_ < end; *next_ += kStep) {
-      const auto before = scans.TruthAt(*next_ - kStep / 2);
-      const auto after = scans.TruthAt(*next_ + kStep / 2);
-      if (!before || !after) throw std::runtime_error("only synthetic drives have a gyroscope");
-      const odometry::Pose turn = ToPose(*before).Inverse() * ToPose(*after);
-      Eigen::Vector3d rate = odometry::Log(turn).tail<3>() / Seconds(kStep) + kBias;
-      for (double& r : rate) r += noise_(random_);
-      odometry->OnTurn(*next_, rate);
-    }
-  }
-
- private:
-  static constexpr Duration kStep = std::chrono::milliseconds(10);
-  const Eigen::Vector3d kBias{0.017, -0.017, 0.017};  // 1 degree/s
-  std::optional<Time> next_;
-  std::minstd_rand random_{7};
-  std::normal_distribution<double> noise_{0, 0.001};
-};
+/// The gyroscope of a unit on the drive; null unless `options` want one.
+std::unique_ptr<synth::Imu> MakeImu(const ScanStream& scans, const SlamOptions& options) {
+  if (!options.gyroscope) return nullptr;
+  if (scans.trajectory() == nullptr)
+    throw std::runtime_error("only synthetic drives have a gyroscope");
+  return std::make_unique<synth::Imu>(*scans.trajectory(), synth::kMemsImu, kImuSeed);
+}
 
 }  // namespace
 
@@ -169,7 +154,7 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
   slam::LoopSettings loop_settings;
   loop_settings.most_maps = options.most_local_maps;
   slam::LoopCloser closer(loop_settings);
-  Gyroscope gyroscope;
+  const auto imu = MakeImu(*scans, options);
   PointErrors errors;
   const bool lossy = options.loss.range_step_m > 0 || options.loss.xyz_bits > 0;
   for (std::size_t done = 0; options.max_scans == 0 || done < options.max_scans; ++done) {
@@ -177,8 +162,9 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     if (!timed) break;
     const odometry::TimedPoints points = PointsOf(timed->scan, options.loss);
     if (lossy) errors.Add(PointsOf(timed->scan, {}).points, points.points);
-    if (options.gyroscope)
-      gyroscope.Measure(*scans, timed->start, timed->start + timed->duration, &odometry);
+    if (imu)
+      for (const ImuSample& s : imu->Until((timed->start + timed->duration).time_since_epoch()))
+        odometry.OnTurn(s.time, Eigen::Map<const Eigen::Vector3d>(s.angular_velocity.data()));
     const std::clock_t begin = std::clock();
     const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);

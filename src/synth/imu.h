@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An inertial measurement unit on the drive, with the errors that its data sheet states.
+#pragma once
+#include <random>
+#include <vector>
+
+#include "src/base/imu_sample.h"
+#include "src/synth/trajectory.h"
+
+namespace lidar::synth {
+
+/// Errors of each axis of one kind of sensor, in its unit.
+struct InertialErrors {
+  double noise_density = 0;     // per square root of a hertz
+  double offset = 0;            // standard deviation from unit to unit
+  double bias_instability = 0;  // lowest point of the Allan deviation
+};
+struct ImuSpec {
+  Duration period = std::chrono::milliseconds(10);
+  InertialErrors gyroscope;      // [rad/s]
+  InertialErrors accelerometer;  // [m/s^2]
+};
+
+/// A MEMS unit of robots and vehicles, such as Bosch's BMI088: 0.014 degrees/s and 175 micro-g a
+/// root hertz, offsets of 1 degree/s and 20 milli-g, instabilities of 2 degrees/h and 40 micro-g.
+inline constexpr ImuSpec kMemsImu = {
+    std::chrono::milliseconds(10), {2.44e-4, 0.0175, 9.7e-6}, {1.72e-3, 0.196, 3.9e-4}};
+
+/// Measures in the sensor's frame. Samples depend on trajectory, spec and seed only.
+class Imu {
+ public:
+  Imu(const Trajectory& trajectory, const ImuSpec& spec, std::uint64_t seed);
+
+  /// Leaves out the samples before `begin`.
+  void SkipTo(Duration begin);
+  /// Returns the next samples before `end`. Their times count from the start of the drive.
+  std::vector<ImuSample> Until(Duration end);
+
+ private:
+  /// An offset, and a bias that wanders about it (Gauss-Markov).
+  struct Axis {
+    double offset = 0;
+    double wander = 0;
+  };
+  using Axes = std::array<Axis, 3>;
+
+  Axes MakeAxes(const InertialErrors& errors);
+  void Disturb(const InertialErrors& errors, Axes* axes, std::array<double, 3>* values);
+
+  Trajectory trajectory_;
+  ImuSpec spec_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  Axes gyroscope_;
+  Axes accelerometer_;
+  std::int64_t next_ = 0;  // number of the next sample
+};
+
+/// The sample of a unit without errors.
+ImuSample TrueMotion(const Trajectory& trajectory, Duration t);
+
+}  // namespace lidar::synth
