@@ -19,6 +19,7 @@
 #include "ext/odometry/loop_thread.h"
 #include "ext/odometry/pose_output.h"
 #include "ext/odometry/scan_collector.h"
+#include "ext/odometry/side_pads.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
@@ -108,7 +109,6 @@ struct State {
 G_DECLARE_FINAL_TYPE(GstLidarOdometry, gst_lidar_odometry, GST, LIDAR_ODOMETRY, GstBaseTransform)
 struct _GstLidarOdometry {
   GstBaseTransform parent;
-  GstPad* poses;
   State* state;
 };
 
@@ -203,16 +203,6 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
                       (nullptr));
 }
 
-/// Pushes the pose to the pads that are linked. The pad of the map is on request.
-static void PushPoses(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
-  if (gst_pad_is_linked(self->poses)) gst_pad_push(self->poses, PoseBuffer(estimate, pts));
-}
-static void PushMap(GstLidarOdometry* self, const Estimate& estimate, GstClockTime pts) {
-  const PadPtr map(gst_element_get_static_pad(GST_ELEMENT(self), "map"));
-  if (map && gst_pad_is_linked(map.get()))
-    gst_pad_push(map.get(), MapBuffer(self->state->stream.map_from_odometry, estimate.time, pts));
-}
-
 /// Reads the drift that the loops have shown so far.
 static void TakeLoops(GstLidarOdometry* self) {
   State& state = *self->state;
@@ -257,9 +247,9 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   WriteTrajectory(self, estimate);
   WarnIfLost(self, estimate);
   if (Snapshot(state).post_messages) Post(self, OdometryMessage(estimate));
-  PushPoses(self, estimate, pts);
+  PushPose(GST_ELEMENT(self), estimate, pts);
   SearchLoops(self, estimate);
-  PushMap(self, estimate, pts);
+  PushMap(GST_ELEMENT(self), stream.map_from_odometry, estimate.time, pts);
   stream.last = estimate;
 }
 
@@ -269,19 +259,7 @@ static void FinishLoops(GstLidarOdometry* self) {
   if (!stream.loops) return;
   stream.loops->Finish();
   TakeLoops(self);
-  PushMap(self, stream.last, GST_CLOCK_TIME_NONE);
-}
-
-/// Pushes an event to the pads of poses that exist. Their streams begin with their own caps.
-static void PushToPoses(GstLidarOdometry* self, GstEvent* event) {
-  const auto push = [event](GstPad* pad, const CapsPtr& caps) {
-    gst_pad_push_event(pad, gst_event_ref(event));
-    if (GST_EVENT_TYPE(event) == GST_EVENT_STREAM_START)
-      gst_pad_push_event(pad, gst_event_new_caps(caps.get()));
-  };
-  push(self->poses, CapsPtr(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE)));
-  const PadPtr map(gst_element_get_static_pad(GST_ELEMENT(self), "map"));
-  if (map) push(map.get(), MapCaps());
+  PushMap(GST_ELEMENT(self), stream.map_from_odometry, stream.last.time, GST_CLOCK_TIME_NONE);
 }
 
 /// Returns true if a scan took the buffer.
@@ -341,14 +319,14 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
     case GST_EVENT_EOS:
       FinishScan(self, GST_CLOCK_TIME_NONE);
       FinishLoops(self);
-      PushToPoses(self, event);
+      PushToPoses(GST_ELEMENT(self), event);
       break;
     case GST_EVENT_FLUSH_STOP:
       stream.collector.Take();
-      PushToPoses(self, event);
+      PushToPoses(GST_ELEMENT(self), event);
       break;
     default:
-      PushToPoses(self, event);
+      PushToPoses(GST_ELEMENT(self), event);
   }
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_odometry_parent_class)->sink_event(base, event);
 }
@@ -404,52 +382,9 @@ static gboolean Stop(GstBaseTransform* base) {
   return TRUE;
 }
 
-static GstFlowReturn ImuChain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
-  const BufferPtr owned(buffer);
-  const BufferMap map(buffer, GST_MAP_READ);
-  if (!map || !GST_LIDAR_ODOMETRY(parent)->state->imu.Add(map.view()))
-    GST_WARNING_OBJECT(pad, "a buffer that is no samples as its caps have them");
-  return GST_FLOW_OK;
-}
-
-/// Drops the events of the samples: this element is their sink.
-static gboolean ImuEvent(GstPad*, GstObject* parent, GstEvent* event) {
-  const EventPtr owned(event);
-  if (GST_EVENT_TYPE(event) != GST_EVENT_CAPS) return TRUE;
-  GstCaps* caps = nullptr;
-  gst_event_parse_caps(event, &caps);
-  if (GST_LIDAR_ODOMETRY(parent)->state->imu.SetCaps(caps)) return TRUE;
-  GST_ELEMENT_ERROR(
-      parent, STREAM, FORMAT,
-      ("The samples of the IMU are not as ouster_src, ros2src and mcapsrc give them."),
-      ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
-  return FALSE;
-}
-
-/// Copies a sticky event of the odometry's pad to the pad of the map, which may be requested later.
-static gboolean CopyToMap(GstPad*, GstEvent** event, gpointer map) {
-  const bool caps = GST_EVENT_TYPE(*event) == GST_EVENT_CAPS;
-  const EventPtr copy(caps ? gst_event_new_caps(MapCaps().get()) : gst_event_ref(*event));
-  gst_pad_store_sticky_event(GST_PAD(map), copy.get());
-  return TRUE;
-}
-
 static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar*,
                           const GstCaps*) {
-  const gchar* name = GST_PAD_TEMPLATE_NAME_TEMPLATE(pad_template);
-  const PadPtr there(gst_element_get_static_pad(element, name));
-  if (there) return nullptr;
-  GstPad* pad = gst_pad_new_from_template(pad_template, name);
-  if (GST_PAD_IS_SINK(pad)) {
-    gst_pad_set_chain_function(pad, ImuChain);
-    gst_pad_set_event_function(pad, ImuEvent);
-  } else {
-    gst_pad_use_fixed_caps(pad);
-    gst_pad_set_active(pad, TRUE);
-    gst_pad_sticky_events_foreach(GST_LIDAR_ODOMETRY(element)->poses, CopyToMap, pad);
-  }
-  gst_element_add_pad(element, pad);
-  return pad;
+  return AddSidePad(element, pad_template, &GST_LIDAR_ODOMETRY(element)->state->imu);
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
@@ -460,8 +395,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
 static void gst_lidar_odometry_init(GstLidarOdometry* self) {
   self->state = new State;
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
-  self->poses = AddPad(self, "odometry");
-  gst_pad_use_fixed_caps(self->poses);
+  gst_pad_use_fixed_caps(AddPad(self, "odometry"));
 }
 
 static void gst_lidar_odometry_class_init(GstLidarOdometryClass* klass) {
