@@ -107,6 +107,31 @@ TEST(LinkLedger, ExpectsAReportAtTheEndOfASliceAndWithinFortyMilliseconds) {
   EXPECT_EQ(ledger.waiting_since(), kStart + 10ms);
 }
 
+TEST(LinkLedger, ForgetsTheSourceThatIsSilentLongest) {
+  LinkLedger ledger;
+  for (std::uint32_t ssrc = 0; ssrc < LinkLedger::kMaxSources; ++ssrc)
+    ledger.OnSent(kStart + ssrc * 1ms, {ssrc, 1});
+  ledger.OnSent(kStart + 1s, {0, 2});
+  ledger.OnSent(kStart + 1s, {1'000, 1});
+  EXPECT_EQ(ledger.OnFeedback(ReportOf(1, {true, true}, 0))->arrived.size(), 2U);
+  EXPECT_TRUE(ledger.OnFeedback(ReportOf(1, {true}, 1))->arrived.empty()) << "the oldest one";
+  for (std::uint32_t ssrc = 2; ssrc < LinkLedger::kMaxSources; ++ssrc)
+    EXPECT_EQ(ledger.OnFeedback(ReportOf(1, {true}, ssrc))->arrived.size(), 1U) << ssrc;
+}
+
+TEST(LinkLedger, WaitsForTheOldestThatItRemembers) {
+  LinkLedger ledger;
+  constexpr int kSent = 3 * static_cast<int>(LinkLedger::kMaxPackets);
+  for (int i = 0; i < kSent; ++i)
+    ledger.OnSent(kStart + i * 1ms, {kSsrc, static_cast<std::uint16_t>(i)});
+  const int oldest = kSent - static_cast<int>(LinkLedger::kMaxPackets);
+  EXPECT_EQ(ledger.waiting_since(), kStart + oldest * 1ms);
+  const auto report = ledger.OnFeedback(ReportOf(static_cast<std::uint16_t>(kSent - 1), {true}));
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->missing.size(), LinkLedger::kMaxPackets - 1);
+  EXPECT_EQ(report->missing.front().seq, static_cast<std::uint16_t>(oldest));
+}
+
 TEST(LinkLedger, ForgetsTheOldestOfManyAndGoesRoundTheNumbers) {
   LinkLedger ledger;
   std::uint16_t seq = 0;

@@ -108,6 +108,18 @@ TEST_F(TwoLinks, CopiesAtOnceWhatWaitsBehindAGap) {
   EXPECT_TRUE(scheduler_.TakeCopies(now_ + 62ms).empty()) << "once";
 }
 
+TEST_F(TwoLinks, CopiesWhatWaitsInAFifoForLongerThanExpected) {
+  Settle();
+  const PacketId id{kMedia, ++seq_};
+  ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, seq_}), SetOf({0}));
+  // 1.2 ms of sending, a round trip, and 20 ms.
+  EXPECT_TRUE(scheduler_.TakeCopies(now_ + 61ms).empty());
+  EXPECT_FALSE(scheduler_.InGap(now_ + 62ms, 0)) << "nothing was sent that could be reported";
+  const auto copies = scheduler_.TakeCopies(now_ + 62ms);
+  ASSERT_EQ(copies.size(), 1U);
+  EXPECT_EQ(copies[0].link, 1U);
+}
+
 TEST_F(TwoLinks, CopiesTheOldestFirst) {
   Settle();
   const std::uint32_t slice = ++seq_;
@@ -171,6 +183,14 @@ TEST_F(TwoLinks, SendsNothingThatArrivedOnTheOtherLink) {
   scheduler_.OnDropped(now_, 0, id);
   EXPECT_EQ(scheduler_.counters(0).cancelled, 1U);
   EXPECT_EQ(scheduler_.counters(1).saved, 1U);
+}
+
+TEST_F(TwoLinks, CountsNoCopyAsCancelledThatIsLate) {
+  const PacketId id{kMedia, 1};
+  ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, 1}), SetOf({0, 1}));
+  scheduler_.OnDropped(now_ + 300ms, 0, id);
+  scheduler_.OnDropped(now_ + 300ms, 0, id);
+  EXPECT_EQ(scheduler_.counters(0).cancelled, 0U);
 }
 
 TEST_F(TwoLinks, CopiesToEachLinkWhatWaitsWhileAllAreInGaps) {
@@ -320,42 +340,109 @@ TEST(Scheduler, KeepsAllPacketsOfASliceTogether) {
     EXPECT_EQ(scheduler.OnPacket(kStart, {{kMedia, seq}, kSize, 2}), first);
 }
 
-/// Bursts over links of 8 Mbit/s each, or over fewer FIFOs of 8 Mbit/s.
-std::vector<std::size_t> Bottlenecks(const std::vector<std::size_t>& fifo_of_link) {
-  Scheduler scheduler(fifo_of_link.size(), Method::kBroadcast);
-  std::vector<Time> free(fifo_of_link.size(), kStart);
-  link::Random random(3);
-  Time now = kStart;
-  std::uint16_t seq = 0;
-  for (int i = 0; i < 6000; ++i) {
-    now += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random.Uniform());
-    const auto size = DataSize::Bytes(random.Chance(0.5) ? 1200 : 600);
-    const PacketId id{kMedia, ++seq};
-    scheduler.OnPacket(now, {id, size, seq});
-    for (std::size_t link = 0; link < fifo_of_link.size(); ++link) {
-      if (!random.Chance(0.6)) continue;
-      now += 10us;
-      scheduler.OnSent(now, link, id);
-      Time& leaves = free[fifo_of_link[link]];
-      leaves = std::max(leaves, now) + size / Mbps(8);
-      scream::CongestionFeedback report = Arrived(seq);
-      report.report_timestamp = static_cast<std::uint32_t>(Seconds(leaves - kStart) * 65536);
-      report.blocks[0].metrics[0].arrival_offset = 0ms;
-      scheduler.OnFeedback(now, link, report);
+/// Links whose packets pass FIFOs of 8 Mbit/s each.
+class LinksOfFifos {
+ public:
+  LinksOfFifos(std::vector<std::size_t> fifo_of_link, Method method)
+      : scheduler_(fifo_of_link.size(), method),
+        fifo_of_link_(std::move(fifo_of_link)),
+        free_(fifo_of_link_.size(), kStart) {}
+
+  void Send(std::size_t link, PacketId id, DataSize size) {
+    now_ += 10us;
+    scheduler_.OnSent(now_, link, id);
+    Time& leaves = free_[fifo_of_link_[link]];
+    leaves = std::max(leaves, now_) + size / Mbps(8);
+    scream::CongestionFeedback report = Arrived(id.seq);
+    report.report_timestamp = static_cast<std::uint32_t>(Seconds(leaves - kStart) * 65536);
+    report.blocks[0].metrics[0].arrival_offset = 0ms;
+    scheduler_.OnFeedback(now_, link, report);
+  }
+  /// Bursts that show whose packets wait for whose.
+  void Burst() {
+    for (int i = 0; i < 6000; ++i) {
+      now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());
+      const auto size = DataSize::Bytes(random_.Chance(0.5) ? 1200 : 600);
+      const PacketId id{kMedia, ++seq_};
+      scheduler_.OnPacket(now_, {id, size, seq_});
+      for (std::size_t link = 0; link < fifo_of_link_.size(); ++link)
+        if (random_.Chance(0.6)) Send(link, id, size);
     }
   }
-  std::vector<std::size_t> bottlenecks;
-  for (std::size_t link = 0; link < fifo_of_link.size(); ++link)
-    bottlenecks.push_back(scheduler.Bottleneck(link));
-  return bottlenecks;
-}
+  std::vector<std::size_t> Bottlenecks() const {
+    std::vector<std::size_t> bottlenecks;
+    for (std::size_t link = 0; link < fifo_of_link_.size(); ++link)
+      bottlenecks.push_back(scheduler_.Bottleneck(link));
+    return bottlenecks;
+  }
+
+  Scheduler scheduler_;
+  Time now_ = kStart;
+  std::uint16_t seq_ = 0;
+
+ private:
+  const std::vector<std::size_t> fifo_of_link_;
+  std::vector<Time> free_;
+  link::Random random_{3};
+};
 
 TEST(Scheduler, TellsWhichLinksPassOneQueue) {
   using Links = std::vector<std::size_t>;
-  EXPECT_EQ(Bottlenecks({0, 1}), (Links{0, 1}));
-  EXPECT_EQ(Bottlenecks({0, 0}), (Links{0, 0}));
-  EXPECT_EQ(Bottlenecks({0, 1, 1}), (Links{0, 1, 1}));
-  EXPECT_EQ(Bottlenecks({0, 1, 0}), (Links{0, 1, 0}));
+  for (const auto& [fifos, expected] :
+       {std::pair(Links{0, 1}, Links{0, 1}), std::pair(Links{0, 0}, Links{0, 0}),
+        std::pair(Links{0, 1, 1}, Links{0, 1, 1}), std::pair(Links{0, 1, 0}, Links{0, 1, 0})}) {
+    LinksOfFifos links(fifos, Method::kBroadcast);
+    links.Burst();
+    EXPECT_EQ(links.Bottlenecks(), expected);
+  }
+}
+
+TEST(Scheduler, ForgetsTheBottleneckOfALinkThatGoesOrComesBack) {
+  for (const std::size_t link : {0U, 1U}) {
+    LinksOfFifos links({0, 0}, Method::kBroadcast);
+    links.Burst();
+    links.scheduler_.SetUsable(links.now_, link, true);
+    EXPECT_EQ(links.scheduler_.Bottleneck(1), 0U) << "no change";
+    links.scheduler_.SetUsable(links.now_, link, false);
+    EXPECT_EQ(links.scheduler_.Bottleneck(1), 1U) << "it may come back by another path";
+  }
+}
+
+TEST(Scheduler, KeepsALinkThatIsSparedKnownByOnePacketInThirtyTwoSlices) {
+  LinksOfFifos links({0, 0}, Method::kAdaptive);
+  links.Burst();
+  ASSERT_EQ(links.scheduler_.Bottleneck(1), 0U);
+  int first = 0, spared = 0;
+  for (std::uint32_t slice = 0; slice < 320; ++slice) {
+    for (const bool ends : {false, true}) {
+      links.now_ += 5ms;
+      const PacketId id{kMedia, ++links.seq_};
+      const LinkSet to = links.scheduler_.OnPacket(links.now_, {id, kSize, 100'000 + slice, ends});
+      for (std::size_t i = 0; i < 2; ++i)
+        if (to[i]) links.Send(i, id, kSize);
+      EXPECT_TRUE(!to[1] || ends) << "the end of a slice is reported at once";
+      first += to[0];
+      spared += to[1];
+    }
+  }
+  EXPECT_EQ(first, 640);
+  EXPECT_EQ(spared, 10);
+}
+
+TEST(Scheduler, SparesNoLinkBesideOneThatIsDead) {
+  LinksOfFifos links({0, 0}, Method::kAdaptive);
+  links.Burst();
+  ASSERT_EQ(links.scheduler_.Bottleneck(1), 0U);
+  links.now_ += 1s;
+  const Time silent_since = links.now_;
+  for (std::uint32_t slice = 0; links.now_ < silent_since + 1s; ++slice, links.now_ += 5ms) {
+    const PacketId id{kMedia, ++links.seq_};
+    const LinkSet to = links.scheduler_.OnPacket(links.now_, {id, kSize, 100'000 + slice, false});
+    links.scheduler_.OnSent(links.now_, 0, id);  // and nothing is heard of it
+    const Duration silent = links.now_ - silent_since;
+    EXPECT_TRUE(to[1] || silent < 300ms) << Seconds(silent);
+    EXPECT_FALSE(to[1] && silent < 100ms) << Seconds(silent);
+  }
 }
 
 TEST(Scheduler, KeepsBoundedMemory) {

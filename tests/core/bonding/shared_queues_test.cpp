@@ -46,6 +46,21 @@ TEST_F(TwoFifos, FindsOneQueue) {
   EXPECT_FALSE(queues_.Shared(0, 1));
 }
 
+TEST_F(TwoFifos, KnowsTheEmptyQueueOfTheWindowBeforeWhileOneStands) {
+  while (now_ < kStart + 9950ms) {  // nothing waits
+    now_ += 50ms;
+    for (const std::size_t link : {0U, 1U}) Send(link, 0, DataSize::Bytes(600));
+  }
+  // A burst fills the queue, and then it stands while the next window of ten seconds begins.
+  while (free_[0] - now_ < 200ms) Send(0, 0, DataSize::Bytes(1200));
+  while (now_ < kStart + 14s) {
+    now_ += FromSeconds(0.003 + 0.002 * random_.Uniform());
+    while (free_[0] - now_ < 198ms)
+      Send(random_.Chance(0.5) ? 1 : 0, 0, DataSize::Bytes(random_.Chance(0.5) ? 1200 : 600));
+  }
+  EXPECT_TRUE(queues_.Shared(0, 1));
+}
+
 TEST_F(TwoFifos, KeepsTwoQueuesApartThatCopiesFillAlike) {
   Run(1, true);
   EXPECT_FALSE(queues_.Shared(0, 1));
