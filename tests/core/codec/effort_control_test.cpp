@@ -110,6 +110,22 @@ TEST(EffortControl, LetsSingleSlicesBeLate) {
   }
 }
 
+/// A sensor whose window shows the road in one slice of eight, and the sky in the others.
+TEST(EffortControl, LeavesRoomForTheSliceWithTheMostReturns) {
+  EffortControl control;
+  const Machine machine;
+  unsigned late = 0;
+  constexpr int kSeconds = 60;
+  for (int i = 0; i < kSeconds * 80; ++i) {
+    const std::size_t returns = i % 8 == 3 ? 10'000 : 1'000;
+    const double spent_s = static_cast<double>(returns) / (1e6 * machine.speeds[control.effort()]);
+    late += spent_s > EffortControl::kAllowedPart * 0.0125;
+    control.OnSlice(Duration{12'500'000}, returns, FromSeconds(spent_s));
+  }
+  EXPECT_EQ(control.effort(), 2U) << "effort 3 takes 5 ms of 3.1 for the road";
+  EXPECT_EQ(late, 0U);
+}
+
 TEST(EffortControl, StandsSlicesWithoutReturnsOrDuration) {
   EffortControl control;
   for (int i = 0; i < 1'000; ++i) {

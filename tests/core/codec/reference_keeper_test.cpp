@@ -72,6 +72,33 @@ TEST(ReferenceKeeper, RefersToNoSliceWhoseNameCameTwice) {
   }
 }
 
+TEST(Standstill, ForgetsASourceThatBeginsInMoreColumnsThanASensorHasSectors) {
+  RangeImage image;
+  image.beams = 8;
+  image.columns = 4;
+  for (const std::uint32_t range : {5'000U, 9'000U, 5'000U, 9'000U})
+    image.ranges.insert(image.ranges.end(), 8, range);
+  for (const std::uint32_t sectors : {250U, 260U}) {
+    Standstill standstill;
+    for (image.first_column = 0; image.first_column < sectors; ++image.first_column)
+      EXPECT_FALSE(standstill.OnImage(image, 0.04));
+    image.first_column = 0;
+    EXPECT_EQ(standstill.OnImage(image, 0.04), sectors == 250);
+  }
+}
+
+/// The first pixel of a row has no neighbour: the last one of the row above looks elsewhere.
+TEST(Standstill, ComparesNoPixelWithTheRowAbove) {
+  RangeImage image;
+  image.beams = 64;
+  image.columns = 1;
+  image.ranges.assign(64, 5'000);
+  Standstill standstill;
+  EXPECT_FALSE(standstill.OnImage(image, 0.04));
+  for (std::uint32_t& range : image.ranges) range += 160;  // four steps
+  EXPECT_TRUE(standstill.OnImage(image, 0.04)) << "that costs less than a return without any";
+}
+
 TEST(Standstill, ForgetsASourceOfMoreSectorsThanItHasMemoryFor) {
   RangeImage image;
   image.beams = 64;

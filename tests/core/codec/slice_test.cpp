@@ -140,8 +140,9 @@ TEST(IntensityScale, IsTheSmallestThatHoldsTheLargestIntensity) {
     EXPECT_EQ(IntensityScale::Fitting(largest), full) << largest;
 }
 
-/// Two blocks of a slice, the second of which begins at `second` and has `bits` of intensity.
-std::vector<std::uint8_t> TwoBlocks(std::uint32_t second, unsigned bits) {
+/// Two blocks of a slice. The second begins at `second`, with `bits` of intensity up to `full`.
+std::vector<std::uint8_t> TwoBlocks(std::uint32_t second, unsigned bits,
+                                    FullScale full = FullScale::kByte) {
   const SensorModel model = test::RoomSensor();
   RangeEncoder encoder(model);
   std::vector<std::uint8_t> bytes;
@@ -149,8 +150,7 @@ std::vector<std::uint8_t> TwoBlocks(std::uint32_t second, unsigned bits) {
   encoder.Encode(test::RoomScan(model, 0, 40), {RangeCoder::kAdaptive, RangeGrid(1, 41), five},
                  &bytes);
   encoder.Encode(test::RoomScan(model, second, 40),
-                 {RangeCoder::kAdaptive, RangeGrid(1, 41), IntensityScale(FullScale::kByte, bits)},
-                 &bytes);
+                 {RangeCoder::kAdaptive, RangeGrid(1, 41), IntensityScale(full, bits)}, &bytes);
   return bytes;
 }
 
@@ -164,6 +164,49 @@ TEST(RangeSlices, AreRefusedWhereTheirBlocksDoNotAdjoinOrAreOfAnotherKind) {
     EXPECT_FALSE(decodes(TwoBlocks(second, 5)));
   EXPECT_FALSE(decodes(TwoBlocks(40, 4)));
   EXPECT_FALSE(decodes(TwoBlocks(40, 0)));
+  EXPECT_FALSE(decodes(TwoBlocks(40, 5, FullScale::kWord)));
+}
+
+TEST(RangeSlices, HaveNoMorePointsInAllTheirBlocksThanIsAllowed) {
+  const auto bytes = TwoBlocks(40, 5);
+  constexpr std::uint32_t kPoints = 2 * 40 * 32;
+  for (const std::uint32_t allowed : {kPoints, kPoints - 1, kPoints / 2, kPoints / 2 - 1}) {
+    SliceDecoder decoder(test::RoomFormat(), allowed);
+    EXPECT_EQ(decoder.Decode({bytes.data(), bytes.size()}).has_value(), allowed == kPoints)
+        << allowed;
+  }
+}
+
+TEST(RangeSlices, HaveNoMoreColumnsThanATurn) {
+  SensorModel finer = test::RoomSensor();
+  finer.columns_per_scan = 1'024;
+  for (const std::uint32_t columns : {511U, 512U, 513U, 1'024U}) {
+    RangeEncoder encoder(finer);
+    RangeImage wall;
+    wall.beams = 32;
+    wall.columns = columns;
+    wall.ranges.assign(wall.size(), 5'000);
+    std::vector<std::uint8_t> bytes;
+    ASSERT_TRUE(encoder.Encode(wall, {}, &bytes));
+    SliceDecoder decoder(test::RoomFormat(), kMaxPoints);
+    EXPECT_EQ(decoder.Decode({bytes.data(), bytes.size()}).has_value(), columns <= 512) << columns;
+  }
+}
+
+TEST(RangeSlices, AreNeverCoarserThanTheirErrorAllowsWhateverTheStep) {
+  const RangeImage image = test::RoomScan(test::RoomSensor(), 0, 64);
+  const auto raw = test::RawCloud(test::RoomSensor(), image);
+  auto encoder = *SliceEncoder::Create(test::RoomFormat());
+  encoder.Load({raw.data(), raw.size()}, 0, false);
+  EncodedSlice slice;
+  SliceSettings settings;
+  settings.max_error_m = 0.02;
+  for (const double step : {0.0, 0.01, 0.04, 0.05, 1.0, 100.0}) {
+    settings.step_m = step;
+    ASSERT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
+    EXPECT_LE(slice.error_m, 0.02 + 1e-9) << step;
+    EXPECT_NEAR(slice.step_m, step > 0 ? std::min(step, 0.041) : 0.041, 0.001) << step;
+  }
 }
 
 TEST(CommonUnits, AreWhatAllRangesAreMultiplesOf) {

@@ -55,6 +55,24 @@ TEST_P(TemporalBlocks, AreTheBytesThatTheyAlwaysWere) {
 }
 INSTANTIATE_TEST_SUITE_P(Efforts, TemporalBlocks, ::testing::Values(1U, 2U, 3U));
 
+TEST(Temporal, BlocksWithFewerBeamsAreNoReference) {
+  const SensorModel model = test::GoldenSensor(16, 256);
+  RangeImage image = test::GoldenImage({16, 128, 64, 1, 10});
+  image.intensity.clear();
+  for (const std::uint32_t kept : {0U, 8U}) {
+    RangeEncoder encoder(model);
+    RangeSettings settings;
+    settings.coder = RangeCoder::kMixing;
+    settings.grid = RangeGrid(1, 41);
+    settings.kept_beams = kept;
+    std::vector<std::uint8_t> bytes;
+    BlockLink link;
+    ASSERT_TRUE(encoder.Encode(image, settings, &bytes, &link));
+    EXPECT_EQ(link.left != nullptr, kept == 0) << "others would see beams that were left out";
+    EXPECT_EQ(LinksOf({bytes.data(), bytes.size()})->size(), kept == 0 ? 1U : 0U);
+  }
+}
+
 TEST(Temporal, BlocksNeedTheirReferenceAndNothingElse) {
   const Pair pair;
   RangeDecoder decoder(pair.model);
