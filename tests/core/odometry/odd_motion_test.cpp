@@ -2,6 +2,9 @@
 // Motions and sensors that are no drive of a car.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "src/odometry/odometry.h"
 #include "tests/core/odometry/true_drive.h"
 
@@ -29,6 +32,41 @@ TEST(OddMotion, ScansOfAnotherSensorBetweenAreLostAndTheOthersAreNot) {
     if (!other) last = e;
   }
   EXPECT_LT((last.pose.position - drive.WayTo(38).position).norm(), 0.5);
+}
+
+/// A sensor that sees a quarter of the horizon turns where it stands.
+TEST(OddMotion, ATurnBringsANarrowViewIntoTheMap) {
+  std::minstd_rand random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  Points world;
+  for (int box = 0; box < 120; ++box) {
+    const double at = 2 * M_PI * (box + 0.5 * share(random)) / 120;
+    const double far = 6 + 12 * share(random), wide = 0.5 + share(random), high = 4 * share(random);
+    const Eigen::Vector3d corner(far * std::cos(at), far * std::sin(at), -1.5);
+    for (double a = 0; a < wide; a += 0.3)
+      for (double z = 0; z < 1 + high; z += 0.3) {
+        world.push_back(corner + Eigen::Vector3d(a, 0, z));
+        world.push_back(corner + Eigen::Vector3d(0, a, z));
+      }
+  }
+  for (double x = -18; x < 18; x += 1)
+    for (double y = -18; y < 18; y += 1) world.emplace_back(x, y, -1.5);
+  OdometrySettings settings;
+  settings.deskew = false;
+  Odometry odometry(settings);
+  constexpr double kTurn = 0.06;  // a scan
+  for (int scan = 0; scan < 50; ++scan) {
+    const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(kTurn * scan, Eigen::Vector3d::UnitZ())),
+                    Eigen::Vector3d::Zero()};
+    TimedPoints seen;
+    for (const Eigen::Vector3d& point : world) {
+      const Eigen::Vector3d p = pose.Inverse() * point;
+      if (std::abs(std::atan2(p.y(), p.x())) < M_PI / 4) seen.points.push_back(p);
+    }
+    const Estimate e = odometry.OnScan(Time{} + kPeriod * scan, kPeriod, seen);
+    EXPECT_NE(e.tracking, Tracking::kLost) << scan;
+    EXPECT_LT(Angle(pose.Inverse() * e.pose), 0.05) << scan;
+  }
 }
 
 TEST(OddMotion, AGyroscopeMayStop) {

@@ -160,6 +160,28 @@ TEST(Align, GroundThatTheScanShowsDoesNotStandWhateverTheMapHasThere) {
   EXPECT_LT(found.standing_share, 1e-9);
 }
 
+/// Poles and twigs over a floor, each of them a single point.
+TEST(Align, CountsPointsWithoutASurfaceAmongThoseThatStand) {
+  Points twigs;
+  for (double x = -3; x < 4; x += 2)
+    for (double y = -3; y < 4; y += 2)
+      for (double z = 2.5; z < 12; z += 2) twigs.emplace_back(x, y, z);
+  ASSERT_GT(twigs.size(), 60U);
+  Points world = Floor();
+  world.insert(world.end(), twigs.begin(), twigs.end());
+  LocalMap map = MapOf(world);
+  for (const std::size_t moved : {std::size_t{0}, twigs.size() / 4, twigs.size()}) {
+    Points seen = Floor();
+    for (std::size_t i = 0; i < twigs.size(); ++i)
+      seen.push_back(twigs[i] + Eigen::Vector3d(0, 0, i < moved ? 0.7 : 0));
+    RegistrationSettings settings;
+    settings.max_iterations = 1;
+    const Alignment found = Align(seen, &map, Pose(), kReach_m, kKernel_m, settings);
+    const double standing = 1 - static_cast<double>(moved) / static_cast<double>(twigs.size());
+    EXPECT_NEAR(found.standing_share, standing, 0.05) << moved;
+  }
+}
+
 TEST(Align, LeavesTheGuessWhereFewerThanTwentyPointsFit) {
   LocalMap map = MapOf(Corner());
   const Pose guess = Moved(0.05, 0, 0);

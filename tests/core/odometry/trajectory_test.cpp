@@ -119,6 +119,19 @@ TEST(TrajectoryErrors, InterpolateTheTruth) {
   EXPECT_LT(error->ate_rmse_m, 1e-6);
 }
 
+TEST(Trajectories, AreInterpolatedInProportionToTheTime) {
+  Trajectory two(2);
+  two[1].time = Time{} + milliseconds(100);
+  two[1].pose.position = {8, -4, 0};
+  two[1].pose.rotation = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitZ());
+  for (const int ms : {-50, 0, 25, 50, 75, 100, 150}) {
+    const double part = std::clamp(ms / 100.0, 0.0, 1.0);
+    const Pose pose = InterpolateAt(two, Time{} + milliseconds(ms));
+    EXPECT_NEAR((pose.position - part * two[1].pose.position).norm(), 0, 1e-12) << ms;
+    EXPECT_NEAR(Angle(pose), part * 0.8, 1e-9) << ms;
+  }
+}
+
 TEST(TrajectoryErrors, NeedThreePosesInCommon) {
   Trajectory later = Circle();
   for (StampedPose& p : later) p.time += seconds(100);

@@ -57,6 +57,8 @@ TEST(TurnHistory, KnowsNothingBeforeOrAfterItsSamplesOrOverAGap) {
   EXPECT_FALSE(turns.Between(Time{} + milliseconds(1900), Time{} + milliseconds(2200)));
   EXPECT_TRUE(turns.Between(Time{} + milliseconds(2200), Time{} + milliseconds(3040)))
       << "the samples of the last slice may be on their way";
+  EXPECT_FALSE(turns.Between(Time{} + milliseconds(3200), Time{} + milliseconds(3210)));
+  EXPECT_FALSE(turns.Between(Time{} + milliseconds(790), Time{} + milliseconds(800)));
 }
 
 TEST(TurnHistory, DropsTimesThatRepeatOrGoBackAndFollowsANewClock) {
