@@ -257,6 +257,32 @@ TEST(PointConverter, GivesWhatIsWanted) {
   EXPECT_EQ(why, "there is no field t");
 }
 
+/// The same fields at other places: together, with a gap before the last, and in another order.
+TEST(PointConverter, PutsFieldsWhereTheyAreWanted) {
+  PointCloud2 cloud;
+  cloud.layout = {1,     2,  {{"x", 0, kRosF32, 1}, {"y", 4, kRosF32, 1}, {"i", 8, kRosF32, 1}},
+                  false, 16, 32};
+  Bytes points;
+  for (const float v : {1.F, 2.F, 3.F, 9.F, 4.F, 5.F, 6.F, 9.F}) Put(v, false, &points);
+  cloud.data = View(points);
+  for (const char* wanted : {"x:F32:0,y:F32:4,i:F32:8", "x:F32:0,y:F32:4,i:F32:12",
+                             "x:F32:4,y:F32:8,i:F32:12", "y:F32:0,x:F32:4,i:F32:8"}) {
+    const auto fields = PointFields::Parse(wanted);
+    ASSERT_TRUE(fields);
+    const auto out = Convert(cloud, PointLayout{*fields, 16});
+    ASSERT_TRUE(out);
+    for (const std::size_t point : {0U, 1U}) {
+      const auto at = [&](const char* name) {
+        return Get<float>(*out, 16 * point + fields->Find(name)->offset);
+      };
+      const auto first = static_cast<float>(1 + 3 * point);
+      EXPECT_EQ(at("x"), first) << wanted;
+      EXPECT_EQ(at("y"), first + 1) << wanted;
+      EXPECT_EQ(at("i"), first + 2) << wanted;
+    }
+  }
+}
+
 TEST(PointConverter, NotANumberIsZeroAsAnInteger) {
   PointCloud2 cloud;
   cloud.layout = {1, 1, {{"v", 0, kRosF32, 1}}, false, 4, 4};

@@ -59,6 +59,17 @@ class CompressedClouds : public ::testing::TestWithParam<CloudCompression> {
   Bytes points_;
 };
 
+TEST_P(CompressedClouds, OfNoPointsAreEmptyWhateverTheirData) {
+  MessageReader reader(cdr::RosType::kCompressedCloud, [] { return CapsPtr(); });
+  cdr::CompressedCloud compressed{cloud_, NameOf(GetParam())};
+  compressed.cloud.layout.width = compressed.cloud.layout.row_step = 0;
+  for (const Bytes& data : {Bytes(), Bytes{1, 2, 3}}) {
+    compressed.cloud.data = ViewOf(data);
+    const Bytes message = cdr::WriteCompressedCloud(compressed);
+    EXPECT_EQ(reader.Read(ViewOf(message)), Verdict::kEmpty) << data.size();
+  }
+}
+
 TEST_P(CompressedClouds, ComeBackAsTheyWere) {
   MessageReader reader(cdr::RosType::kCompressedCloud, [] { return CapsPtr(); });
   const Bytes message = Message();

@@ -245,6 +245,18 @@ TEST(MotionMessages, HaveTheirStampsAndFrames) {
   EXPECT_EQ(gst_lidar_buffer_get_capture_time(transforms.buffer.get()), 42U);
 }
 
+TEST(MotionMessages, HaveNewCapsOnlyWhereTheirFrameChanges) {
+  MessageReader reader(cdr::RosType::kImu, [] { return CapsPtr(); });
+  cdr::Imu imu;
+  for (const char* frame : {"a", "a", "b", "b", "a"}) {
+    const bool changes = imu.header.frame_id != frame;
+    imu.header.frame_id = frame;
+    const Bytes message = cdr::WriteImu(imu);
+    ASSERT_EQ(reader.Read(AsView(message)), Verdict::kBuffer);
+    EXPECT_EQ(reader.TakeNewCaps() != nullptr, changes) << frame;
+  }
+}
+
 TEST(MotionMessages, ThatAreCutAreDamagedAndSayWhatTheyAreNot) {
   const auto why = [](cdr::RosType type, Bytes message) {
     message.resize(message.size() / 2);
