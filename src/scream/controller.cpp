@@ -83,17 +83,9 @@ FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedba
   now = Advance(now);
   if (outage_.active()) history_.Expire(now);
   AckSummary acks;
-  switch (history_.OnFeedback(now, feedback, &acks)) {
-    case HistoryResult::kImplausible:
-      ++counters_.feedback_ignored;
-      return FeedbackResult::kImplausible;
-    case HistoryResult::kNotOurs:
-      return FeedbackResult::kNotOurs;
-    case HistoryResult::kNothingNew:
-      return FeedbackResult::kStale;
-    case HistoryResult::kApplied:
-      break;
-  }
+  const FeedbackResult result = history_.OnFeedback(now, feedback, &acks);
+  if (result == FeedbackResult::kImplausible) ++counters_.feedback_ignored;
+  if (result != FeedbackResult::kAccepted) return result;
   ++counters_.feedback_accepted;
   if (!acks.acked.empty()) TakeOutageRestart(now);
   MeasurePath(now, acks);
@@ -101,7 +93,7 @@ FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedba
   streams_.OnReport(acks);
   Respond(now, acks);
   UpdateTarget(now);
-  return FeedbackResult::kAccepted;
+  return result;
 }
 
 void Controller::TakeOutageRestart(Time now) {
@@ -121,7 +113,7 @@ void Controller::MeasurePath(Time now, const AckSummary& acks) {
     started_ = true;
     StartWindow();
   }
-  path_.OnReport(now, acks, {window_.ref_wnd(), streams_.frame_period(), p_.qdelay_target_lo});
+  path_.OnReport(now, acks, {window_.ref_wnd(), streams_.frame_period()});
 }
 
 void Controller::CountAcks(const AckSummary& acks) {
@@ -140,7 +132,7 @@ void Controller::Respond(Time now, const AckSummary& acks) {
 }
 
 void Controller::TakeGapRestart(Time now) {
-  const auto restart = gap_recovery_.Update(now, path_, window_.ref_wnd(), p_.qdelay_target_lo);
+  const auto restart = gap_recovery_.Update(now, path_, window_.ref_wnd());
   if (!restart) return;
   window_.Set(restart->window);
   window_.ForgetSigns();
@@ -155,7 +147,7 @@ bool Controller::RespondToDrop(Time now) {
   const auto window =
       capacity_drop_.Update(now, path_,
                             {window_target_, window_.ref_wnd(), streams_.frame_period(),
-                             p_.qdelay_target_lo, window_.last_reaction_to_congestion_time()});
+                             window_.last_reaction_to_congestion_time()});
   if (!window) return false;
   window_.SetInflection(*window);
   window_.Set(*window);
@@ -172,11 +164,11 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   const CongestionSignals signals = Signals(now, acks);
   // A backlog behind recent congestion must leave first.
   if (streams_.media_qdelay(now) <= streams_.frame_period() || !CongestedLately())
-    fast_increase_.Update(now, Round());
-  const Reaction reaction = window_.Update(now, signals);
-  if (reaction == Reaction::kLoss && p_.extensions.evidence) path_.evidence().OnLossReaction(now);
-  if (reaction != Reaction::kNone) fast_increase_.OnCongestion(now);
-  Count(reaction);
+    fast_increase_.Update(now, path_.Round(streams_.frame_period()));
+  const RateReason reason = window_.Update(now, signals);
+  if (reason == RateReason::kLoss && p_.extensions.evidence) path_.evidence().OnLossReaction(now);
+  if (reason != RateReason::kIncrease) fast_increase_.OnCongestion(now);
+  Count(reason);
   if (window_target_ >= streams_.max_bitrate()) window_.Limit(source_limit().LargestWindow());
 }
 
@@ -190,14 +182,14 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.queue_at_loss = tolerance.queue_at_loss;
   if (p_.extensions.capacity)
     s.fast_growth =
-        fast_increase_.growth(path_.queue_delay().qdelay(), Round(), path_.L4sWorks(now)) *
+        fast_increase_.growth(path_.queue_delay().qdelay(), path_.Round(streams_.frame_period()),
+                              path_.L4sWorks(now)) *
         (path_.loss_context().AtFullQueue() ? p_.fast_increase_beside : 1);
   if (p_.extensions.capacity) s.earliness = path_.UnreportedTime() / 2;
   s.l4s_alpha = path_.l4s_alpha().value();
   s.is_l4s = p_.ecn == Ecn::kEct1 && !(p_.extensions.company && path_.classic_ecn().found());
   s.qdelay = path_.queue_delay().qdelay();
   s.qdelay_avg = path_.queue_delay().qdelay_avg();
-  s.qdelay_target = p_.qdelay_target_lo;
   s.ref_wnd_delay_scale = path_.queue_delay().ref_wnd_delay_scale();
   s.boldness = BesideOthers(p_, path_, now);
   s.s_rtt = path_.rtt().smoothed();
@@ -214,24 +206,11 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   return s;
 }
 
-void Controller::Count(Reaction reaction) {
-  switch (reaction) {
-    case Reaction::kLoss:
-      ++counters_.loss_events;
-      counters_.reason = RateReason::kLoss;
-      break;
-    case Reaction::kCe:
-      ++counters_.ce_events;
-      counters_.reason = RateReason::kCe;
-      break;
-    case Reaction::kVirtualCe:
-      ++counters_.delay_events;
-      counters_.reason = RateReason::kDelay;
-      break;
-    case Reaction::kNone:
-      counters_.reason = RateReason::kIncrease;
-      break;
-  }
+void Controller::Count(RateReason reason) {
+  counters_.reason = reason;
+  if (reason == RateReason::kLoss) ++counters_.loss_events;
+  if (reason == RateReason::kCe) ++counters_.ce_events;
+  if (reason == RateReason::kDelay) ++counters_.delay_events;
 }
 
 void Controller::StartWindow() {
@@ -284,18 +263,13 @@ DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   return std::min(asked, streams_.max_bitrate());
 }
 
-/// Marks of a frame source come once a frame.
-Duration Controller::Round() const {
-  return std::max({path_.rtt().smoothed(), p_.virtual_rtt, streams_.frame_period()});
-}
-
 std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
   const auto id = streams_.Next();
   if (!id) return std::nullopt;
   const Stream& stream = *streams_.Find(*id);
   const DataSize max = Holds(stream, std::max(now_, clock_.Peek(caller_now)))
                            ? DataSize()
-                           : send_window_.Max(now_, window_.ref_wnd(), path_, p_.qdelay_target_lo);
+                           : send_window_.Max(now_, window_.ref_wnd(), path_);
   const Time opens = send_window_.Opens(stream.head_size(), history_.bytes_in_flight(), max);
   return SendDecision{clock_.ToCaller(std::max(pacer_.next(), opens)), *id,
                       path_.ecn().codepoint()};

@@ -30,13 +30,6 @@ struct SendDecision {
   Ecn ecn = Ecn::kNotEct;  ///< ECN codepoint for the packet
 };
 
-enum class FeedbackResult {
-  kAccepted,     ///< counted; decisions may have changed
-  kImplausible,  ///< ignored as a whole: unknown packets, absurd times, or a flood
-  kNotOurs,      ///< has no block for our SSRCs
-  kStale,        ///< has nothing new
-};
-
 /// Congestion control of one 5-tuple with any number of streams, each with any number of SSRCs.
 ///
 /// **The RTP queue** lives at the caller, the controller knows its sizes: each stream has one FIFO,
@@ -120,7 +113,7 @@ class Controller {
   bool RespondToDrop(Time now);
   void RespondToSignals(Time now, const AckSummary& acks);
   CongestionSignals Signals(Time now, const AckSummary& acks) const;
-  void Count(Reaction reaction);
+  void Count(RateReason reason);
   void StartWindow();
   SourceLimit source_limit() const {
     return {p_, path_, streams_.max_bitrate(), streams_.queue_compensation()};
@@ -134,7 +127,6 @@ class Controller {
   DataRate QueueRate(const Stream& stream) const;
   DataRate AskedTarget(Time now, DataRate allowed) const;
   bool Holds(const Stream& stream, Time now) const;
-  Duration Round() const;
 
   const Parameters p_;
   SteadyTime clock_;  // the caller's clock; all times inside are steady

@@ -23,7 +23,13 @@ struct Extensions {
 
 struct Parameters {
   /// Returns exactly the draft's constants, without its optional parts and extensions.
-  static Parameters Draft();
+  static Parameters Draft() {
+    Parameters p;
+    p.reduce_jitter = p.clock_drift = p.link_layer_loss = p.undershoot_remedy = false;
+    p.extensions = {false, false, false, false};
+    p.pacing_catch_up = Duration{0};
+    return p;
+  }
 
   /// Codepoint of sent packets. ECT(1) also selects the L4S reaction (IS_L4S of the draft).
   Ecn ecn = Ecn::kEct1;

@@ -1,42 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/scream/statistics.h"
 
+#include <cstddef>
+
 namespace lidar::scream {
 
 const char* ToString(EcnState state) {
-  switch (state) {
-    case EcnState::kOff:
-      return "off";
-    case EcnState::kTesting:
-      return "testing";
-    case EcnState::kCapable:
-      return "capable";
-    case EcnState::kBleached:
-      return "bleached";
-    case EcnState::kSilent:
-      return "silent";
-  }
-  return "";
+  constexpr const char* kNames[] = {"off", "testing", "capable", "bleached", "silent"};
+  return kNames[static_cast<std::size_t>(state)];
 }
 
 const char* ToString(RateReason reason) {
-  switch (reason) {
-    case RateReason::kStart:
-      return "start";
-    case RateReason::kIncrease:
-      return "increase";
-    case RateReason::kCe:
-      return "ce";
-    case RateReason::kLoss:
-      return "loss";
-    case RateReason::kDelay:
-      return "delay";
-    case RateReason::kDrop:
-      return "capacity-drop";
-    case RateReason::kTimeout:
-      return "no-feedback";
-  }
-  return "";
+  constexpr const char* kNames[] = {"start", "increase",      "ce",         "loss",
+                                    "delay", "capacity-drop", "no-feedback"};
+  return kNames[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace lidar::scream

@@ -74,7 +74,7 @@ double Streams::NeedShare(Time now, DataRate total) const {
 void Streams::OnReport(const AckSummary& acks) {
   for (const AckedPacket& packet : acks.acked)
     if (Stream* stream = Find(packet.stream)) stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
-  for (const LostPacket& packet : acks.lost)
+  for (const SentRecord& packet : acks.lost)
     if (Stream* stream = Find(packet.stream)) stream->OnLost();
 }
 

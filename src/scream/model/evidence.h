@@ -30,7 +30,7 @@ class Evidence {
   }
   bool NewLoss(const AckSummary& acks) const {
     return std::any_of(acks.lost.begin(), acks.lost.end(),
-                       [this](const LostPacket& lost) { return lost.sent >= losses_; });
+                       [this](const SentRecord& lost) { return lost.sent >= losses_; });
   }
   bool NewMark(const AckSummary& acks) const {
     const auto is_new = [this](const AckedPacket& acked) {

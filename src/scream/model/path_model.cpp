@@ -45,9 +45,9 @@ void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
 }
 
 void PathModel::OnReport(Time now, const AckSummary& acks, const SenderState& sender) {
-  MeasureDelays(now, acks, sender);
+  MeasureDelays(now, acks);
   CountMarksAndLosses(now, acks, sender);
-  ObserveCapacity(now, acks, sender.qdelay_target);
+  ObserveCapacity(now, acks);
   MeasureReports(now, acks, sender.ref_wnd);
 }
 
@@ -75,7 +75,7 @@ void PathModel::Reset(Time now) {
   marking_onset_ = MarkingOnset(p_.pacing_reserve);
 }
 
-void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender) {
+void PathModel::MeasureDelays(Time now, const AckSummary& acks) {
   const Duration excess = rtt_.last() - rtt_.min();
   const bool recent = p_.extensions.evidence && L4sWorks(now);
   for (const AckedPacket& packet : acks.acked) {
@@ -85,7 +85,7 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks, const SenderStat
     ++clock_resets_;
     busy_run_.Reset();
   }
-  if (evidence_.Counts(acks)) queue_delay_.Update(now, rtt_.smoothed(), sender.qdelay_target);
+  if (evidence_.Counts(acks)) queue_delay_.Update(now, rtt_.smoothed());
   if (queue_delay_.TakeDriftReset()) {
     ++clock_resets_;
     half_rate_until_ = now + std::max(5 * rtt_.smoothed(), kShortestHalfRate);
@@ -112,11 +112,11 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
   for (std::size_t i = 0; i < acks.lost.size(); ++i) loss_rate_.Add(true, sender.ref_wnd);
   packets_ce_ += static_cast<std::uint64_t>(marked + answered);
   if (!acks.lost.empty()) last_loss_ = now;
-  const Duration round = std::max({rtt_.smoothed(), p_.virtual_rtt, sender.frame_period});
-  l4s_alpha_.Update(now, static_cast<int>(acks.acked.size()), marked, rtt_.smoothed(), round);
+  l4s_alpha_.Update(now, static_cast<int>(acks.acked.size()), marked, rtt_.smoothed(),
+                    Round(sender.frame_period));
 }
 
-void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target) {
+void PathModel::ObserveCapacity(Time now, const AckSummary& acks) {
   hole_in_report_ = false;
   const bool lossy = loss_context_.AtFullQueue() && now - last_loss_ < kLossesExpected;
   const bool congested = MarkedLately(now) || lossy;
@@ -128,7 +128,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     }
     const bool marked = packet.arrived_ecn == Ecn::kCe;
     const Duration qdelay = *packet.arrival - packet.sent - queue_delay_.base();
-    const bool busy = marked || qdelay >= BusyQdelay(now, qdelay_target);
+    const bool busy = marked || qdelay >= BusyQdelay(now);
     loss_context_.OnAcked(packet.sent, qdelay);
     if (evidence_.Counts(packet.sent)) {
       classic_ecn_.OnPacket(now, qdelay, marked);
@@ -138,7 +138,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks, Duration qdela
     busy_run_.Add({packet.sent, *packet.arrival, packet.size, busy, marked});
     if (train_.Add({*packet.arrival, packet.size, qdelay, busy})) hole_in_report_ = true;
   }
-  for (const LostPacket& packet : acks.lost) loss_context_.OnLost(packet.sent);
+  for (const SentRecord& packet : acks.lost) loss_context_.OnLost(packet.sent);
   EstimateCapacity(now);
 }
 
@@ -164,9 +164,9 @@ bool PathModel::L4sWorks(Time now) const {
          now - *last_mark_ < kMarksExpected;
 }
 
-Duration PathModel::BusyQdelay(Time now, Duration qdelay_target) const {
+Duration PathModel::BusyQdelay(Time now) const {
   return L4sWorks(now) ? p_.busy_qdelay
-                       : FromSeconds(Seconds(qdelay_target) * p_.busy_qdelay_unmarked);
+                       : FromSeconds(Seconds(p_.qdelay_target_lo) * p_.busy_qdelay_unmarked);
 }
 
 bool PathModel::Queueing(Time now, Duration qdelay) const {

@@ -29,7 +29,6 @@ namespace lidar::scream {
 struct SenderState {
   DataSize ref_wnd;
   Duration frame_period{0};
-  Duration qdelay_target{0};
 };
 
 /// The estimators of one path. They measure; the responses decide.
@@ -75,7 +74,6 @@ class PathModel {
   /// The newest acknowledged packet was marked.
   bool newest_marked() const { return newest_marked_; }
   const MaxBytesInFlight& max_in_flight() const { return max_in_flight_; }
-  DataRate sent_rate(Time now) const { return sent_rate_.Rate(now); }
   /// Averaged over a round trip, or over two frame periods if those are longer.
   DataRate acked_rate(Time now) const { return acked_rate_.Rate(now); }
   /// Averaged over a second and read at arrivals: a shorter average would ignore pauses between
@@ -86,10 +84,16 @@ class PathModel {
   bool L4sWorks(Time now) const;
   /// Queueing delay of a packet that shows a busy link. Without marks a queue only counts as
   /// congestion if the draft counts it.
-  Duration BusyQdelay(Time now, Duration qdelay_target) const;
+  Duration BusyQdelay(Time now) const;
   /// Returns true if the queue exceeds `qdelay` and packets keep coming out of it. On a path with
   /// marks they must be marked, too, as delay alone may be a longer route.
   bool Queueing(Time now, Duration qdelay) const;
+  /// Least time between reactions: min(VIRTUAL_RTT, s_rtt).
+  Duration ReactionInterval() const { return std::min(p_.virtual_rtt, rtt_.smoothed()); }
+  /// Round trip, but at least VIRTUAL_RTT and a frame: marks of a frame source come once a frame.
+  Duration Round(Duration frame_period) const {
+    return std::max({rtt_.smoothed(), p_.virtual_rtt, frame_period});
+  }
   /// Mean time between reports.
   Duration report_gap() const { return report_gap_; }
   /// Time for which arrived packets are unreported and still count as in flight. It is 0 unless
@@ -101,9 +105,9 @@ class PathModel {
   void Describe(Time now, Statistics* statistics) const;
 
  private:
-  void MeasureDelays(Time now, const AckSummary& acks, const SenderState& sender);
+  void MeasureDelays(Time now, const AckSummary& acks);
   void CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender);
-  void ObserveCapacity(Time now, const AckSummary& acks, Duration qdelay_target);
+  void ObserveCapacity(Time now, const AckSummary& acks);
   void EstimateCapacity(Time now);
   void MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd);
 

@@ -81,12 +81,12 @@ bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   return !jumped;
 }
 
-void QueueDelay::Update(Time now, Duration s_rtt, Duration qdelay_target) {
+void QueueDelay::Update(Time now, Duration s_rtt) {
   if (p_.reduce_jitter) {
-    qdelay_max_avg_ = std::min(qdelay_target, std::max(qdelay_, qdelay_max_avg_));
+    qdelay_max_avg_ = std::min(p_.qdelay_target_lo, std::max(qdelay_, qdelay_max_avg_));
     qdelay_min_avg_ = std::min(qdelay_, qdelay_min_avg_);
   }
-  if (p_.clock_drift) UpdateDrift(now, s_rtt, qdelay_target);
+  if (p_.clock_drift) UpdateDrift(now, s_rtt);
   if (now - last_update_qdelay_avg_time_ < std::min(p_.virtual_rtt, s_rtt)) return;
   last_update_qdelay_avg_time_ = now;
   qdelay_avg_ = qdelay_ < qdelay_avg_
@@ -105,13 +105,13 @@ void QueueDelay::CalculateRefWndDelayScale() {
   ref_wnd_delay_scale_ = std::clamp(1 - relative, 0.0, 1.0);
 }
 
-void QueueDelay::UpdateDrift(Time now, Duration s_rtt, Duration qdelay_target) {
+void QueueDelay::UpdateDrift(Time now, Duration s_rtt) {
   if (now - rtt_start_ < s_rtt || min_this_rtt_ == Duration::max()) return;
   const double g = p_.qdelay_min_avg_alpha;
   slow_min_avg_ = Scale(slow_min_avg_, 1 - g) + Scale(min_this_rtt_, g);
   min_this_rtt_ = Duration::max();
   rtt_start_ = now;
-  if (slow_min_avg_ <= qdelay_target / 4) return;
+  if (slow_min_avg_ <= p_.qdelay_target_lo / 4) return;
   ForgetBase();
   drift_reset_ = true;
 }

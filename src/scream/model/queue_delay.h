@@ -28,7 +28,7 @@ class QueueDelay {
   bool Add(Time now, const DelaySample& sample, bool short_history = false);
   /// Updates the averages after the packets of a report, at most once every min(VIRTUAL_RTT,
   /// s_rtt).
-  void Update(Time now, Duration s_rtt, Duration qdelay_target);
+  void Update(Time now, Duration s_rtt);
   /// Forgets the present queue.
   void ForgetQueue() { qdelay_avg_ = Duration{0}; }
   /// Returns to the initial state.
@@ -51,7 +51,7 @@ class QueueDelay {
   bool Jumped(Time now, Duration owd, Duration way_back);
   void AddToBase(Time now, Duration owd, bool short_history);
   void CalculateRefWndDelayScale();
-  void UpdateDrift(Time now, Duration s_rtt, Duration qdelay_target);
+  void UpdateDrift(Time now, Duration s_rtt);
 
   const Parameters& p_;
   std::deque<Base> history_;

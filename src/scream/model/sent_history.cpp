@@ -61,7 +61,7 @@ void SentHistory::Insert(Source* source, const Packet& packet) {
     packets.insert(packets.begin() + FirstFrom(packets, packet.seq), packet);
   }
   in_flight_ += packet.record.size;
-  Trim(source, &in_flight_);
+  Trim(source);
 }
 
 /// Detects numbers that run backwards, as of a restarted payloader.
@@ -78,8 +78,7 @@ bool SentHistory::StartsAgain(Source* source, std::int64_t seq) {
 }
 
 void SentHistory::StartAgain(Time now, std::uint16_t seq, Source* source) {
-  for (const Packet& packet : source->packets)
-    if (packet.seq > source->highest_acked) in_flight_ -= packet.record.size;
+  Settle(source, source->packets.back().seq);
   *source = Source{};
   source->highest_acked = std::int64_t{seq} - 1;
   source->restarted = now;
@@ -112,8 +111,7 @@ void SentHistory::ForgetSilentSource() {
   const auto silent = std::min_element(sources_.begin(), sources_.end(), [](auto& a, auto& b) {
     return a.second.packets.back().record.sent < b.second.packets.back().record.sent;
   });
-  for (const Packet& packet : silent->second.packets)
-    if (packet.seq > silent->second.highest_acked) in_flight_ -= packet.record.size;
+  Settle(&silent->second, silent->second.packets.back().seq);
   sources_.erase(silent);
 }
 
@@ -152,8 +150,8 @@ bool SentHistory::Plausible(Time now, Source* source, const SsrcReport& block) c
   return true;
 }
 
-HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedback,
-                                      AckSummary* summary) {
+FeedbackResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedback,
+                                       AckSummary* summary) {
   bool any_ours = false;
   for (const SsrcReport& block : feedback.blocks) {
     const auto it = sources_.find(block.ssrc);
@@ -163,9 +161,9 @@ HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedba
     }
     any_ours = true;
     if (!OfBefore(now, it->second, block) && !Plausible(now, &it->second, block))
-      return HistoryResult::kImplausible;
+      return FeedbackResult::kImplausible;
   }
-  if (!any_ours) return HistoryResult::kNotOurs;
+  if (!any_ours) return FeedbackResult::kNotOurs;
   const Time report = summary->report = clock_.Unwrap(feedback.report_timestamp);
   held_.reset();
   newest_timed_.reset();
@@ -181,7 +179,7 @@ HistoryResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedba
   ExpireTails();
   DetectLoss(now, &summary->lost);
   const bool nothing = summary->acked.empty() && summary->lost.empty() && summary->late_ce.empty();
-  return nothing ? HistoryResult::kNothingNew : HistoryResult::kApplied;
+  return nothing ? FeedbackResult::kStale : FeedbackResult::kAccepted;
 }
 
 void SentHistory::Apply(Time now, const SsrcReport& block, Source* source, Time report,
@@ -196,15 +194,15 @@ void SentHistory::Apply(Time now, const SsrcReport& block, Source* source, Time 
     Packet* packet = Find(source, seq);
     if (packet == nullptr) continue;
     if (block.metrics[i].received)
-      Acknowledge(now, block.metrics[i], report, block.ssrc, packet, summary);
+      Acknowledge(now, block.metrics[i], report, packet, summary);
     else if (seq < highest)
       MarkMissing(now, source, packet);
   }
-  AdvanceHighest(source, highest, summary);
+  summary->bytes_newly_acked += Settle(source, highest);
 }
 
-void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report, std::uint32_t ssrc,
-                              Packet* packet, AckSummary* summary) {
+void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report, Packet* packet,
+                              AckSummary* summary) {
   const bool ce = metric.ecn == Ecn::kCe;
   if (packet->state == State::kAcked) {
     if (ce && !packet->ce) {
@@ -215,7 +213,6 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   }
   AckedPacket acked;
   static_cast<SentRecord&>(acked) = packet->record;
-  acked.ssrc = ssrc;
   acked.arrived_ecn = metric.ecn;
   // The delay of packets from an outage says nothing about the present delay.
   const bool timed = metric.arrival_offset && packet->state != State::kExpired;
@@ -244,14 +241,15 @@ void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report,
   summary->acked.push_back(acked);
 }
 
-void SentHistory::AdvanceHighest(Source* source, std::int64_t seq, AckSummary* summary) {
-  if (seq <= source->highest_acked) return;
+/// Takes the packets up to `seq` out of flight. Returns their bytes.
+DataSize SentHistory::Settle(Source* source, std::int64_t seq) {
+  DataSize bytes;
+  if (seq <= source->highest_acked) return bytes;
   auto it = source->packets.begin() + FirstFrom(source->packets, source->highest_acked + 1);
-  for (; it != source->packets.end() && it->seq <= seq; ++it) {
-    summary->bytes_newly_acked += it->record.size;
-    in_flight_ -= it->record.size;
-  }
+  for (; it != source->packets.end() && it->seq <= seq; ++it) bytes += it->record.size;
   source->highest_acked = seq;
+  in_flight_ -= bytes;
+  return bytes;
 }
 
 void SentHistory::MarkMissing(Time now, Source* source, Packet* packet) {
@@ -267,7 +265,7 @@ void SentHistory::DecayReorderingWindow(Time now) {
   reordering_window_ -= reordering_window_ / kReorderingDecay;
 }
 
-void SentHistory::DetectLoss(Time now, std::vector<LostPacket>* lost) {
+void SentHistory::DetectLoss(Time now, std::vector<SentRecord>* lost) {
   DecayReorderingWindow(now);
   for (auto& [ssrc, source] : sources_) {
     std::vector<std::int64_t> still_missing;
@@ -279,16 +277,13 @@ void SentHistory::DetectLoss(Time now, std::vector<LostPacket>* lost) {
         continue;
       }
       packet->state = State::kLost;
-      LostPacket p;
-      static_cast<SentRecord&>(p) = packet->record;
-      p.ssrc = ssrc;
-      lost->push_back(p);
+      lost->push_back(packet->record);
     }
     source.missing = std::move(still_missing);
   }
 }
 
-void SentHistory::Trim(Source* source, DataSize* in_flight) {
+void SentHistory::Trim(Source* source) {
   const auto& packets = source->packets;
   const auto superfluous = [&] {
     return packets.size() > kMaxSettled && packets[kMaxSettled].seq <= source->highest_acked &&
@@ -298,11 +293,7 @@ void SentHistory::Trim(Source* source, DataSize* in_flight) {
     return packets.back().seq - packets.front().seq >= static_cast<std::int64_t>(kMaxPackets);
   };
   while (ambiguous() || superfluous()) {
-    const Packet& front = packets.front();
-    if (front.seq > source->highest_acked) {
-      *in_flight -= front.record.size;
-      source->highest_acked = front.seq;
-    }
+    Settle(source, packets.front().seq);
     source->packets.pop_front();
   }
 }
@@ -313,9 +304,7 @@ void SentHistory::Expire(Time before) {
       if (packet.record.sent >= before) break;
       if (packet.state == State::kOutstanding || packet.state == State::kMissing)
         packet.state = State::kExpired;
-      if (packet.seq <= source.highest_acked) continue;
-      in_flight_ -= packet.record.size;
-      source.highest_acked = packet.seq;
+      Settle(&source, packet.seq);
     }
   }
 }
@@ -327,8 +316,7 @@ void SentHistory::ExpireTails() {
     for (; packet != source.packets.end(); ++packet) {
       if (packet->record.sent + kTailWait >= newest_acked_) break;
       packet->state = State::kExpired;
-      in_flight_ -= packet->record.size;
-      source.highest_acked = packet->seq;
+      Settle(&source, packet->seq);
     }
   }
 }

@@ -24,7 +24,6 @@ struct SentRecord {
 };
 
 struct AckedPacket : SentRecord {
-  std::uint32_t ssrc = 0;
   /// Arrival on the receiver's clock, unwrapped. Unset if the report has no time, and after
   /// Expire().
   std::optional<Time> arrival;
@@ -32,14 +31,10 @@ struct AckedPacket : SentRecord {
   bool was_lost = false;
 };
 
-struct LostPacket : SentRecord {
-  std::uint32_t ssrc = 0;
-};
-
 /// The news of a report.
 struct AckSummary {
   std::vector<AckedPacket> acked;  ///< in the order of sending
-  std::vector<LostPacket> lost;
+  std::vector<SentRecord> lost;
   Time report{};  ///< time of the report on the receiver's clock, unwrapped
   /// Sending times of packets that an earlier report acknowledged without their CE mark.
   std::vector<Time> late_ce;
@@ -52,15 +47,18 @@ struct AckSummary {
   std::optional<Duration> rtt;
 };
 
-enum class HistoryResult { kApplied, kNothingNew, kImplausible, kNotOurs };
+enum class FeedbackResult {
+  kAccepted,     ///< counted; decisions may have changed
+  kImplausible,  ///< ignored as a whole: unknown packets, absurd times, or a flood
+  kNotOurs,      ///< has no block for our SSRCs
+  kStale,        ///< has nothing new
+};
 
 /// Validates the whole report before it changes its state.
 class SentHistory {
  public:
   void OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record);
-  HistoryResult OnFeedback(Time now, const CongestionFeedback& feedback, AckSummary* summary);
-  /// Declares overdue packets lost.
-  void DetectLoss(Time now, std::vector<LostPacket>* lost);
+  FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback, AckSummary* summary);
   /// Packets sent before `before` no longer count as in flight or as lost; they may still be
   /// acknowledged.
   void Expire(Time before);
@@ -102,12 +100,13 @@ class SentHistory {
   static Packet* Find(Source* source, std::int64_t seq);
   bool Plausible(Time now, Source* source, const SsrcReport& block) const;
   void Apply(Time now, const SsrcReport& block, Source* source, Time report, AckSummary* summary);
-  void Acknowledge(Time now, const PacketMetric& metric, Time report, std::uint32_t ssrc,
-                   Packet* packet, AckSummary* summary);
-  void AdvanceHighest(Source* source, std::int64_t seq, AckSummary* summary);
+  void Acknowledge(Time now, const PacketMetric& metric, Time report, Packet* packet,
+                   AckSummary* summary);
+  DataSize Settle(Source* source, std::int64_t seq);
   static void MarkMissing(Time now, Source* source, Packet* packet);
   void DecayReorderingWindow(Time now);
-  static void Trim(Source* source, DataSize* in_flight);
+  void DetectLoss(Time now, std::vector<SentRecord>* lost);
+  void Trim(Source* source);
 
   std::map<std::uint32_t, Source> sources_;
   ReportClock clock_;

@@ -21,13 +21,13 @@ constexpr double kRestoredPart = 0.9;
 }  // namespace
 
 std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathModel& path,
-                                                        DataSize ref_wnd, Duration qdelay_target) {
+                                                        DataSize ref_wnd) {
   if (!p_.extensions.gaps) return std::nullopt;
   const auto rate = path.train().rate();
   if (Slow(rate)) BelieveLess();
   if (path.hole_in_report() || Slow(rate)) NoteSign(now);
   if (!last_sign_) {
-    const bool calm = path.queue_delay().qdelay() < path.BusyQdelay(now, qdelay_target);
+    const bool calm = path.queue_delay().qdelay() < path.BusyQdelay(now);
     if (calm) Remember(path, ref_wnd);
     return std::nullopt;
   }

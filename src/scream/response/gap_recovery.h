@@ -21,8 +21,7 @@ class GapRecovery {
   explicit GapRecovery(const Parameters& parameters) : p_(parameters) {}
 
   /// Call it after each report. Returns where to continue once the gap is over.
-  std::optional<Restart> Update(Time now, const PathModel& path, DataSize ref_wnd,
-                                Duration qdelay_target);
+  std::optional<Restart> Update(Time now, const PathModel& path, DataSize ref_wnd);
   /// No acknowledgement comes back.
   void OnSilence(Time now) { NoteSign(now); }
   /// Forgets the state before the gap, after another route or an unknown time.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Extension gaps: handles silence of the receiver, and the restart after it.
 #pragma once
+#include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "src/scream/parameters.h"
 
@@ -17,17 +19,33 @@ class Outage {
   /// Call it while packets are in flight. Returns a smaller window each time that the silence is
   /// too long for these round trips and frames.
   std::optional<DataSize> OnTimer(Time now, DataSize ref_wnd, Duration s_rtt,
-                                  Duration frame_period);
+                                  Duration frame_period) {
+    const Duration expected = 2 * std::max(frame_period, p_.feedback_interval);
+    const Duration timeout = 2 * s_rtt + std::max(kOutage, expected);
+    if (!p_.extensions.gaps || now - std::max(last_feedback_, last_timeout_) <= timeout)
+      return std::nullopt;
+    last_timeout_ = now;
+    if (!window_before_) window_before_ = ref_wnd;
+    return ref_wnd * kBackoff;
+  }
   /// Packets were acknowledged. Returns the window for the restart if that ends an outage.
-  std::optional<DataSize> OnFeedback(Time now);
+  std::optional<DataSize> OnFeedback(Time now) {
+    last_feedback_ = now;
+    const auto before = std::exchange(window_before_, std::nullopt);
+    return before ? std::optional(*before * kRestart) : std::nullopt;
+  }
 
   bool active() const { return window_before_.has_value(); }
   /// Time since the last acknowledgement, or since the first packet to wait for.
   Duration Quiet(Time now) const { return now - last_feedback_; }
   /// Time without acknowledgements in an outage; 0 without an outage.
-  Duration Silence(Time now) const { return active() ? now - last_feedback_ : Duration{0}; }
+  Duration Silence(Time now) const { return active() ? Quiet(now) : Duration{0}; }
 
  private:
+  /// Silence of the receiver, beyond round trips, that is an outage.
+  static constexpr Duration kOutage = 200ms;
+  static constexpr double kBackoff = 0.5;
+  static constexpr double kRestart = 0.5;
   const Parameters& p_;
   Time last_feedback_{};
   Time last_timeout_{};

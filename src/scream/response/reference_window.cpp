@@ -35,31 +35,31 @@ double ReferenceWindow::InflectionScale(double slope) const {
   return std::clamp(scl * scl, kInflectionMin, 1.0);
 }
 
-Reaction ReferenceWindow::Update(Time now, const CongestionSignals& signals) {
+RateReason ReferenceWindow::Update(Time now, const CongestionSignals& signals) {
   loss_detected_ = loss_detected_ || signals.loss_detected;
   data_units_marked_ = data_units_marked_ || signals.data_units_marked;
   const double scl = InflectionScale(kInflectionSlope);
-  const Reaction reaction = Detect(now, signals);
-  if (reaction != Reaction::kNone) Reduce(now, reaction, signals, scl);
+  const RateReason reason = Detect(now, signals);
+  if (reason != RateReason::kIncrease) Reduce(now, reason, signals, scl);
   Increase(now, signals, scl);
-  return reaction;
+  return reason;
 }
 
-Reaction ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
+RateReason ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
   const bool isolated = p_.extensions.evidence && !LossCounts(s);
   if (data_units_marked_ || (loss_detected_ && !isolated)) last_congestion_detected_time_ = now;
   if (now - last_reaction_to_congestion_time_ + s.earliness < std::min(p_.virtual_rtt, s.s_rtt))
-    return Reaction::kNone;
-  if (std::exchange(loss_detected_, false) && LossCounts(s)) return Reaction::kLoss;
-  if (data_units_marked_) return Reaction::kCe;
-  if (s.qdelay_avg > s.qdelay_target / 2) return Reaction::kVirtualCe;
-  return Reaction::kNone;
+    return RateReason::kIncrease;
+  if (std::exchange(loss_detected_, false) && LossCounts(s)) return RateReason::kLoss;
+  if (data_units_marked_) return RateReason::kCe;
+  if (s.qdelay_avg > p_.qdelay_target_lo / 2) return RateReason::kDelay;
+  return RateReason::kIncrease;
 }
 
 /// See the draft's section "Link layer losses and rate policers".
 bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
   return !p_.link_layer_loss || s.loss_rate > s.loss_rate_threshold || s.queue_at_loss ||
-         s.qdelay_avg > s.qdelay_target / 4;
+         s.qdelay_avg > p_.qdelay_target_lo / 4;
 }
 
 void ReferenceWindow::NoteReaction(Time now) {
@@ -67,14 +67,14 @@ void ReferenceWindow::NoteReaction(Time now) {
   ForgetSigns();
 }
 
-void ReferenceWindow::Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl) {
+void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignals& s, double scl) {
   if (ref_wnd_i_update_allowed_) {
     ref_wnd_i_ = ref_wnd_;
     ref_wnd_i_update_allowed_ = false;
   }
-  if (reaction == Reaction::kLoss)
+  if (reason == RateReason::kLoss)
     ref_wnd_ *= p_.beta_loss;
-  else if (reaction == Reaction::kVirtualCe)
+  else if (reason == RateReason::kDelay)
     ref_wnd_ *= 1 - VirtualBackoff(s);
   else if (s.is_l4s)
     ref_wnd_ *= 1 - L4sBackoff(now, s, scl);
@@ -88,7 +88,7 @@ void ReferenceWindow::Reduce(Time now, Reaction reaction, const CongestionSignal
 double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double scl) {
   double backoff = s.l4s_alpha / 2 * UndershootScale(s);
   backoff /= std::max(1.0, Ratio(s.s_rtt, p_.virtual_rtt));
-  if (s.qdelay < s.qdelay_target / 4) {
+  if (s.qdelay < p_.qdelay_target_lo / 4) {
     backoff *= std::max(s.boldness.backoff, scl);
     backoff *= std::max(kScaleMin, s.ref_wnd_delay_scale);
     backoff = std::min(backoff, kMostBackoff);
@@ -101,7 +101,7 @@ double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double 
 }
 
 double ReferenceWindow::VirtualBackoff(const CongestionSignals& s) const {
-  const double half = Seconds(s.qdelay_target) / 2;
+  const double half = Seconds(p_.qdelay_target_lo) / 2;
   const double alpha = std::clamp((Seconds(s.qdelay_avg) - half) / half, 0.0, 1.0);
   return alpha / 2 / std::max(1.0, Ratio(s.s_rtt, p_.virtual_rtt)) * UndershootScale(s);
 }

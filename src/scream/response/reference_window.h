@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/scream/parameters.h"
+#include "src/scream/statistics.h"
 
 namespace lidar::scream {
 
@@ -30,7 +31,6 @@ struct CongestionSignals {
   bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
   Duration qdelay{0};
   Duration qdelay_avg{0};
-  Duration qdelay_target{0};
   double ref_wnd_delay_scale = 1;
   Boldness boldness;
   /// Extension: a reaction may be this much early, as the next report is far away.
@@ -48,14 +48,13 @@ struct CongestionSignals {
   double fast_growth = 0;  ///< growth as a fraction of the acknowledged bytes
 };
 
-enum class Reaction { kNone, kLoss, kCe, kVirtualCe };
-
 class ReferenceWindow {
  public:
   explicit ReferenceWindow(const Parameters& parameters);
 
-  /// Takes a report. Reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases.
-  Reaction Update(Time now, const CongestionSignals& signals);
+  /// Takes a report. Reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases. Returns
+  /// the reason of the reduction, or kIncrease.
+  RateReason Update(Time now, const CongestionSignals& signals);
   /// Notes a reaction that was made elsewhere; the draft's own then waits.
   void NoteReaction(Time now);
   /// Drops marks and losses that still wait for a reaction.
@@ -75,9 +74,9 @@ class ReferenceWindow {
  private:
   double InflectionScale(double slope) const;
   double FastIncrement(const CongestionSignals& s, double scl) const;
-  Reaction Detect(Time now, const CongestionSignals& s);
+  RateReason Detect(Time now, const CongestionSignals& s);
   bool LossCounts(const CongestionSignals& s) const;
-  void Reduce(Time now, Reaction reaction, const CongestionSignals& s, double scl);
+  void Reduce(Time now, RateReason reason, const CongestionSignals& s, double scl);
   double L4sBackoff(Time now, const CongestionSignals& s, double scl);
   double VirtualBackoff(const CongestionSignals& s) const;
   double UndershootScale(const CongestionSignals& s) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The draft's send window, and its limits by the extension capacity.
 #pragma once
+#include <algorithm>
+
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
 
@@ -15,10 +17,22 @@ class SendWindow {
   bool unused() const { return last_sent_ == Time{}; }
   /// Returns the most bytes in flight. With the extension they exceed the window slightly if marks
   /// work, and not at all while packets keep coming out of a queue. Unreported bytes are added.
-  DataSize Max(Time now, DataSize ref_wnd, const PathModel& path, Duration qdelay_target) const;
+  DataSize Max(Time now, DataSize ref_wnd, const PathModel& path) const {
+    const double range = p_.ref_wnd_overhead_max - p_.ref_wnd_overhead_min;
+    double overhead = p_.ref_wnd_overhead_min + range * path.queue_delay().ref_wnd_delay_scale();
+    if (p_.extensions.capacity) {
+      if (path.L4sWorks(now)) overhead = std::min(overhead, p_.open_overhead);
+      if (path.Queueing(now, 2 * path.BusyQdelay(now))) overhead = p_.bounded_overhead;
+      overhead *= 1 + Seconds(path.UnreportedTime()) / Seconds(path.rtt().smoothed());
+    }
+    return ref_wnd * overhead;
+  }
   /// Returns when a packet of `size` may leave. A closed window passes one at RATE_PACE_MIN, so
   /// that lost feedback cannot stop the sender.
-  Time Opens(DataSize size, DataSize in_flight, DataSize max) const;
+  Time Opens(DataSize size, DataSize in_flight, DataSize max) const {
+    const bool fits = in_flight.bytes() == 0 || in_flight + size <= max;
+    return fits ? Time{} : last_sent_ + size / p_.rate_pace_min;
+  }
 
  private:
   const Parameters& p_;

@@ -13,7 +13,7 @@ namespace {
 class CapacityDropTest : public ::testing::Test {
  protected:
   CapacityDrop::Load Load(double target_mbps) {
-    return {Mbps(target_mbps), DataSize::Bytes(100000), 20ms, 60ms, kStart};
+    return {Mbps(target_mbps), DataSize::Bytes(100000), 20ms, kStart};
   }
   /// Packets of 4 Mbit/s that left twice as fast, so the queue grows.
   void HoldBack(int packets, Ecn ecn, Duration by = 1ms) {

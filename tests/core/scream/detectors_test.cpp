@@ -62,7 +62,7 @@ class QueueDelayTest : public ::testing::Test {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
       const Duration way_back = 40ms + rtt_excess - owd - 1h;
       ok_ = delay_.Add(now_, {now_ - 20ms, now_ - 20ms + owd + 1h, rtt_excess, way_back}) && ok_;
-      delay_.Update(now_, 40ms, 60ms);
+      delay_.Update(now_, 40ms);
     }
   }
   Parameters parameters_;
@@ -110,7 +110,7 @@ TEST_F(QueueDelayTest, AQueueThatStandsForMinutesIsNoClock) {
   Run(1000, 210ms, 190ms);
   for (int i = 0; i < 100; ++i, now_ += 1s) {  // the lowest round trip has become this one
     ok_ = delay_.Add(now_, {now_ - 20ms, now_ + 190ms + 1h, 0ms, 20ms - 1h}) && ok_;
-    delay_.Update(now_, 40ms, 60ms);
+    delay_.Update(now_, 40ms);
     ASSERT_EQ(delay_.qdelay(), Duration(190ms));
   }
   EXPECT_TRUE(ok_);

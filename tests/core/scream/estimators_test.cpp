@@ -13,7 +13,7 @@
 namespace lidar::scream {
 namespace {
 
-constexpr SenderState kSender{DataSize::Bytes(10000), 20ms, 60ms};
+constexpr SenderState kSender{DataSize::Bytes(10000), 20ms};
 
 TEST(PathModel, KnowsNothingOfAnotherRoute) {
   const Parameters p;

@@ -33,7 +33,7 @@ class Path {
       acks.report = *packet.arrival;
       acks.acked.push_back(packet);
       acks.bytes_newly_acked = kPacket;
-      model.OnReport(now, acks, {DataSize::Bytes(10000), 20ms, 60ms});
+      model.OnReport(now, acks, {DataSize::Bytes(10000), 20ms});
     }
   }
   PathModel model;

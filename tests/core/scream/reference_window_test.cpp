@@ -16,7 +16,6 @@ class ReferenceWindowTest : public ::testing::Test {
   ReferenceWindowTest() {
     signals_.s_rtt = 25ms;
     signals_.loss_rate_threshold = parameters_.loss_rate_threshold;
-    signals_.qdelay_target = 60ms;
     signals_.target_bitrate = Mbps(5);
     signals_.target_bitrate_max = Mbps(100);
     signals_.max_bytes_in_flight_prev = DataSize::Bytes(1000000);
@@ -26,7 +25,7 @@ class ReferenceWindowTest : public ::testing::Test {
   double Factor(Duration after = 1s) {
     const auto before = static_cast<double>(window_.ref_wnd().bytes());
     now_ += after;
-    reaction_ = window_.Update(now_, signals_);
+    reason_ = window_.Update(now_, signals_);
     return static_cast<double>(window_.ref_wnd().bytes()) / before;
   }
 
@@ -34,7 +33,7 @@ class ReferenceWindowTest : public ::testing::Test {
   CongestionSignals signals_;
   ReferenceWindow window_{parameters_};
   Time now_ = kStart;
-  Reaction reaction_ = Reaction::kNone;
+  RateReason reason_ = RateReason::kIncrease;
 };
 
 TEST_F(ReferenceWindowTest, IsNeverSetBelowItsMinimum) {
@@ -45,7 +44,7 @@ TEST_F(ReferenceWindowTest, IsNeverSetBelowItsMinimum) {
 TEST_F(ReferenceWindowTest, LossScalesByBetaLoss) {
   signals_.loss_detected = true;
   EXPECT_NEAR(Factor(), 0.7, 1e-4);
-  EXPECT_EQ(reaction_, Reaction::kLoss);
+  EXPECT_EQ(reason_, RateReason::kLoss);
 }
 
 TEST_F(ReferenceWindowTest, ClassicEcnScalesByBetaEcn) {
@@ -58,7 +57,7 @@ TEST_F(ReferenceWindowTest, L4sScalesByHalfOfAlpha) {
   signals_.data_units_marked = true;
   signals_.l4s_alpha = 0.4;
   EXPECT_NEAR(Factor(), 0.8, 1e-4);
-  EXPECT_EQ(reaction_, Reaction::kCe);
+  EXPECT_EQ(reason_, RateReason::kCe);
 }
 
 TEST_F(ReferenceWindowTest, L4sIsGentlerCloseToTheInflectionPointUnlessTheQueueIsLong) {
@@ -76,14 +75,14 @@ TEST_F(ReferenceWindowTest, LongRoundTripsReactInPartsEveryVirtualRtt) {
   signals_.s_rtt = 100ms;
   EXPECT_NEAR(Factor(), 1 - 0.2 / 4, 1e-4);
   EXPECT_DOUBLE_EQ(Factor(24ms), 1);
-  EXPECT_EQ(reaction_, Reaction::kNone);
+  EXPECT_EQ(reason_, RateReason::kIncrease);
   EXPECT_LT(Factor(1ms), 1);
 }
 
 TEST_F(ReferenceWindowTest, QueueDelayActsAsVirtualMarks) {
   signals_.qdelay = signals_.qdelay_avg = 45ms;
   EXPECT_NEAR(Factor(), 0.75, 1e-4);
-  EXPECT_EQ(reaction_, Reaction::kVirtualCe);
+  EXPECT_EQ(reason_, RateReason::kDelay);
   signals_.qdelay_avg = 30ms;
   EXPECT_DOUBLE_EQ(Factor(), 1);
 }
@@ -107,7 +106,6 @@ TEST_F(ReferenceWindowTest, GrowsByOneMssARoundTripRightAfterCongestion) {
   const auto before = window_.ref_wnd().bytes();
   signals_ = {};
   signals_.s_rtt = 25ms;
-  signals_.qdelay_target = 60ms;
   signals_.target_bitrate_max = Mbps(100);
   signals_.max_bytes_in_flight = DataSize::Bytes(100000);
   signals_.bytes_newly_acked = window_.ref_wnd();

@@ -56,7 +56,7 @@ class GapRecoveryTest : public ::testing::Test {
  protected:
   static constexpr DataSize kWindow = DataSize::Bytes(50000);  // 8 Mbit/s
   std::optional<GapRecovery::Restart> Update(DataSize window) {
-    return gaps_.Update(path_.now, path_.model, window, 60ms);
+    return gaps_.Update(path_.now, path_.model, window);
   }
   /// 8 Mbit/s, then for a second next to nothing.
   void FallIntoAGap() {
@@ -162,7 +162,7 @@ class SendWindowTest : public ::testing::Test {
  protected:
   double Overhead() {
     const DataSize window = DataSize::Bytes(100000);
-    return window_.Max(path_.now, window, path_.model, 60ms) / window;
+    return window_.Max(path_.now, window, path_.model) / window;
   }
   Parameters parameters_;
   Path path_{parameters_};
