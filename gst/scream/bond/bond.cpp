@@ -1,112 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/bond/bond.h"
 
-#include <gst/video/video.h>
-
 #include <algorithm>
-#include <cmath>
 #include <condition_variable>
-#include <deque>
 #include <memory>
 #include <mutex>
-#include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include "gst/common/sink_pads.h"
-#include "gst/lidar/gstlidar.h"
-#include "gst/scream/rtp_packet.h"
+#include "gst/scream/bond/bond_shared.h"
 #include "gst/scream/tx/feedback.h"
-#include "gst/scream/tx/link.h"
 
 namespace lidar::gst {
 
-using bonding::PacketId;
 using bonding::Scheduler;
 
-constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
-// Least change of a target that is sent to the encoder, relative to the target.
-constexpr double kWorthTelling = 0.02;
-// Least interval between key units. The interval of a single link is longer.
-constexpr Duration kKeyUnitInterval = std::chrono::milliseconds(400);
 constexpr Duration kWatchEvery = std::chrono::milliseconds(100);
-
-struct BondStream {
-  GstPad* sink = nullptr;
-  std::vector<GstPad*> srcs;                   // one per link
-  std::vector<GstLidarTargetBitrate> targets;  // as the links report them
-  std::vector<std::string> reasons;            // of `targets`
-  guint told = 0;                              // last target sent to the encoder [bit/s]
-  std::optional<Time> key_unit_at;             // last request for a key unit
-};
-
-/// A report that came by another link than its own.
-struct Misdirected {
-  std::size_t owner;
-  lidar::scream::CongestionFeedback report;
-};
-constexpr std::size_t kMaxMisdirected = 64;  // a tick of feedback
-
-struct Kept {
-  BufferPtr buffer;
-  BondStream* stream;
-};
-
-/// Shared with the links, whose calls may still run when the element is finalized.
-struct BondShared {
-  BondShared(std::size_t links, lidar::bonding::Method method, lidar::bonding::TargetRule rule)
-      : scheduler(links, method, rule) {}
-  ~BondShared() { gst_object_unref(clock); }
-
-  Time Now() const { return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(clock))}}; }
-
-  std::mutex mutex;
-  GstClock* clock = gst_system_clock_obtain();  // the links use the same one
-  std::shared_ptr<SrtpLayer> srtp;              // set below READY
-  Scheduler scheduler;
-  std::unordered_map<std::uint64_t, Kept> kept;
-  std::deque<std::pair<Time, std::uint64_t>> order;
-  std::vector<Misdirected> misdirected;
-};
-
-class BondLink : public TxLink {
- public:
-  BondLink(std::shared_ptr<BondShared> bond, std::size_t index)
-      : bond_(std::move(bond)), index_(index) {}
-
-  bool Wants(Time now, guint32 ssrc, guint16 seq) override {
-    const std::lock_guard lock(bond_->mutex);
-    return bond_->scheduler.Wants(now, index_, {ssrc, seq});
-  }
-  guint16 OnSent(Time now, guint32 ssrc, guint16 seq) override {
-    const std::lock_guard lock(bond_->mutex);
-    return bond_->scheduler.OnSent(now, index_, {ssrc, seq});
-  }
-  void OnDropped(Time now, guint32 ssrc, guint16 seq) override {
-    const std::lock_guard lock(bond_->mutex);
-    bond_->scheduler.OnDropped(now, index_, {ssrc, seq});
-  }
-  std::optional<lidar::scream::CongestionFeedback> OnFeedback(
-      Time now, const lidar::scream::CongestionFeedback& report) override {
-    const std::lock_guard lock(bond_->mutex);
-    auto own = bond_->scheduler.OnFeedback(now, index_, report);
-    if (own || bond_->misdirected.size() >= kMaxMisdirected) return own;
-    // The other screamtx has a lock of its own, so the bond's thread takes the report there.
-    if (const auto owner = bond_->scheduler.OwnerOf(report))
-      bond_->misdirected.push_back({*owner, report});
-    return own;
-  }
-  gsize trailer() const override { return bond_->srtp ? bond_->srtp->overhead() : 0; }
-  void OnPath(const lidar::scream::Statistics& s) override {
-    const std::lock_guard lock(bond_->mutex);
-    const bool known = s.s_rtt > Duration{0};
-    bond_->scheduler.OnPath(index_, {known ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
-  }
-
- private:
-  std::shared_ptr<BondShared> bond_;
-  std::size_t index_;
-};
 
 struct BondState {
   std::shared_ptr<BondShared> shared;
@@ -124,8 +33,6 @@ struct BondState {
 }  // namespace lidar::gst
 
 using namespace lidar::gst;
-using lidar::DataRate;
-using lidar::DataSize;
 using lidar::Duration;
 using lidar::Time;
 
@@ -147,32 +54,6 @@ static BondStream& StreamOf(GstPad* pad) {
 
 static BondState& BondOf(gpointer self) { return *GST_LIDAR_SCREAM_BOND(self)->state; }
 
-/// Keeps a packet while it may be copied.
-static void Keep(BondShared& shared, Time now, PacketId id, GstBuffer* buffer, BondStream* stream) {
-  while (!shared.order.empty() && (now - shared.order.front().first > Scheduler::kMaxAge ||
-                                   shared.order.size() >= Scheduler::kMaxPackets)) {
-    shared.kept.erase(shared.order.front().second);
-    shared.order.pop_front();
-  }
-  const bool fresh =
-      shared.kept.insert_or_assign(id.key(), Kept{BufferPtr(gst_buffer_ref(buffer)), stream})
-          .second;
-  if (fresh) shared.order.emplace_back(now, id.key());
-}
-
-static lidar::bonding::LinkSet Schedule(BondShared& shared, GstBuffer* buffer, BondStream* stream) {
-  const auto header = ReadRtpHeader(buffer);
-  if (!header) return 1;  // another buffer counts as sent by the first link
-  const Time now = shared.Now();
-  const PacketId id{header->ssrc, header->seq};
-  const auto size = static_cast<std::int64_t>(gst_buffer_get_size(buffer));
-  const std::lock_guard lock(shared.mutex);
-  Keep(shared, now, id, buffer, stream);
-  const std::uint32_t slice = header->timestamp ^ header->ssrc;
-  return shared.scheduler.OnPacket(now,
-                                   {id, DataSize::Bytes(size) + kHeaders, slice, header->marker});
-}
-
 /// A failing link stops the stream only if no other link takes the packet.
 static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
   BufferPtr packet(buffer);
@@ -180,7 +61,7 @@ static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer
   BondShared& shared = *BondOf(parent).shared;
   if (shared.srtp) packet = shared.srtp->Protect(packet.release());
   if (!packet) return GST_FLOW_OK;
-  const auto links = Schedule(shared, packet.get(), &stream);
+  const auto links = shared.Schedule(packet.get(), &stream);
   GstFlowReturn best = GST_FLOW_ERROR;
   for (std::size_t i = 0; i < stream.srcs.size(); ++i)
     if (links[i]) best = std::max(best, gst_pad_push(stream.srcs[i], gst_buffer_ref(packet.get())));
@@ -204,42 +85,11 @@ static gboolean BondSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return taken;
 }
 
-/// Returns an event with the stream's combined target if the encoder does not have it yet. The
-/// caller holds the lock.
-static EventPtr DueTarget(BondShared& shared, BondStream& stream) {
-  std::vector<DataRate> rates;
-  for (const GstLidarTargetBitrate& t : stream.targets)
-    rates.push_back(DataRate::BitsPerSecond(t.bitrate));
-  const double bps = shared.scheduler.Target(shared.Now(), rates).bits_per_second();
-  if (bps <= 0 ||
-      std::abs(bps / std::max(1.0, static_cast<double>(stream.told)) - 1) < kWorthTelling)
-    return nullptr;
-  stream.told = static_cast<guint>(bps);
-  std::size_t nearest = 0;
-  for (std::size_t i = 1; i < rates.size(); ++i)
-    if (std::abs(rates[i].bits_per_second() - bps) <
-        std::abs(rates[nearest].bits_per_second() - bps))
-      nearest = i;
-  GstLidarTargetBitrate target = stream.targets[nearest];
-  target.bitrate = stream.told;
-  target.reason = stream.reasons[nearest].c_str();
-  return EventPtr(gst_lidar_event_new_target_bitrate(&target));
-}
-
-/// Returns true if another link has brought the same request for a key unit.
-static bool IsRepeatedRequest(BondShared& shared, BondStream& stream, GstEvent* event) {
-  if (!gst_video_event_is_force_key_unit(event)) return false;
-  const Time now = shared.Now();
-  const std::lock_guard lock(shared.mutex);
-  if (stream.key_unit_at && now - *stream.key_unit_at < kKeyUnitInterval) return true;
-  stream.key_unit_at = now;
-  return false;
-}
-
 /// Combines targets, drops repeated requests, and passes other events on.
 static gboolean BondSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   BondStream& stream = StreamOf(pad);
-  if (IsRepeatedRequest(*BondOf(parent).shared, stream, event)) {
+  BondShared& shared = *BondOf(parent).shared;
+  if (shared.IsRepeatedRequest(stream, event)) {
     gst_event_unref(event);
     return TRUE;
   }
@@ -247,47 +97,13 @@ static gboolean BondSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   if (!gst_lidar_event_parse_target_bitrate(event, &target))
     return gst_pad_push_event(stream.sink, event);
   const EventPtr owner(event);
-  BondShared& shared = *BondOf(parent).shared;
-  EventPtr due;
-  {
-    const std::lock_guard lock(shared.mutex);
-    for (std::size_t i = 0; i < stream.srcs.size(); ++i) {
-      if (stream.srcs[i] != pad) continue;
-      stream.reasons[i] = target.reason != nullptr ? target.reason : "update";
-      stream.targets[i] = target;
-    }
-    due = DueTarget(shared, stream);
-  }
+  EventPtr due = shared.Combine(stream, pad, target);
   return due ? gst_pad_push_event(stream.sink, due.release()) : TRUE;
 }
 
 static GstIterator* BondLinksOf(GstPad* pad, GstObject*) {
   BondStream& stream = StreamOf(pad);
   return LinkTo(pad == stream.sink ? stream.srcs.front() : stream.sink);
-}
-
-struct BondWork {
-  std::vector<std::pair<PadPtr, BufferPtr>> copies;
-  std::vector<std::pair<PadPtr, EventPtr>> targets;
-  std::vector<Misdirected> reports;
-};
-
-/// The caller holds the lock.
-static BondWork TakeWork(BondState& state) {
-  BondShared& shared = *state.shared;
-  BondWork work;
-  work.reports.swap(shared.misdirected);
-  for (const Scheduler::Copy& copy : shared.scheduler.TakeCopies(shared.Now())) {
-    const auto kept = shared.kept.find(copy.id.key());
-    if (kept == shared.kept.end()) continue;
-    work.copies.emplace_back(PadPtr(GST_PAD(gst_object_ref(kept->second.stream->srcs[copy.link]))),
-                             BufferPtr(gst_buffer_ref(kept->second.buffer.get())));
-  }
-  for (const auto& stream : state.streams)
-    if (stream->told != 0)
-      if (EventPtr due = DueTarget(shared, *stream))
-        work.targets.emplace_back(PadPtr(GST_PAD(gst_object_ref(stream->sink))), std::move(due));
-  return work;
 }
 
 static void TakeMisdirected(GstLidarScreamBond* self, const std::vector<Misdirected>& reports) {
@@ -306,7 +122,7 @@ static gpointer BondRun(gpointer data) {
   std::unique_lock lock(state.shared->mutex);
   Time watch_at{};
   while (!state.stop) {
-    BondWork work = TakeWork(state);
+    BondWork work = state.shared->TakeWorkLocked(state.streams);
     lock.unlock();
     if (const Time now = state.shared->Now(); state.watch && now >= watch_at) {
       watch_at = now + kWatchEvery;
@@ -344,10 +160,7 @@ static void StopThread(BondState& state) {
   }
   g_thread_join(state.thread);
   state.thread = nullptr;
-  const std::lock_guard lock(state.shared->mutex);
-  state.shared->kept.clear();
-  state.shared->misdirected.clear();
-  state.shared->order.clear();
+  state.shared->Clear();
 }
 
 static GstStateChangeReturn BondChangeState(GstElement* element, GstStateChange change) {
@@ -386,8 +199,7 @@ GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding
   BondState& state = *bond->state;
   state.shared = std::make_shared<BondShared>(links.size(), method, rule);
   state.links = links;
-  for (std::size_t i = 0; i < links.size(); ++i)
-    TxSetLink(links[i], std::make_shared<BondLink>(state.shared, i));
+  for (std::size_t i = 0; i < links.size(); ++i) TxSetLink(links[i], NewBondLink(state.shared, i));
   return bond;
 }
 
@@ -446,8 +258,7 @@ void BondRemoveStream(GstLidarScreamBond* bond, GstPad* sink) {
   std::unique_ptr<BondStream> gone;
   {
     const std::lock_guard lock(state.shared->mutex);
-    for (auto it = state.shared->kept.begin(); it != state.shared->kept.end();)
-      it = it->second.stream == stream ? state.shared->kept.erase(it) : std::next(it);
+    state.shared->ForgetPacketsLocked(stream);
     for (auto& s : state.streams)
       if (s.get() == stream) gone = std::move(s);
     state.streams.erase(std::remove(state.streams.begin(), state.streams.end(), nullptr),

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a bond shares with its links: the scheduler, and the packets that may still be copied.
+#pragma once
+#include <gst/gst.h>
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "gst/common/refs.h"
+#include "gst/lidar/gstlidar.h"
+#include "gst/scream/srtp/layer.h"
+#include "gst/scream/tx/link.h"
+#include "src/bonding/scheduler.h"
+
+namespace lidar::gst {
+
+struct BondStream {
+  GstPad* sink = nullptr;
+  std::vector<GstPad*> srcs;                   // one per link
+  std::vector<GstLidarTargetBitrate> targets;  // as the links report them
+  std::vector<std::string> reasons;            // of `targets`
+  guint told = 0;                              // last target sent to the encoder [bit/s]
+  std::optional<Time> key_unit_at;             // last request for a key unit
+};
+
+/// A report that came by another link than its own.
+struct Misdirected {
+  std::size_t owner;
+  scream::CongestionFeedback report;
+};
+
+/// Copies of packets, changed targets and reports, to be passed on without the lock.
+struct BondWork {
+  std::vector<std::pair<PadPtr, BufferPtr>> copies;
+  std::vector<std::pair<PadPtr, EventPtr>> targets;
+  std::vector<Misdirected> reports;
+};
+
+/// The links' calls may still run when the element is finalized. Methods that are named
+/// `...Locked` expect that the caller holds `mutex`.
+struct BondShared {
+  BondShared(std::size_t links, bonding::Method method, bonding::TargetRule rule)
+      : scheduler(links, method, rule) {}
+  ~BondShared() { gst_object_unref(clock); }
+
+  Time Now() const { return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(clock))}}; }
+  /// Keeps the packet while it may be copied. Returns the links that send it.
+  bonding::LinkSet Schedule(GstBuffer* buffer, BondStream* stream);
+  /// Takes the target of the link behind `src`. Returns an event with the combined target if the
+  /// encoder does not have it yet.
+  EventPtr Combine(BondStream& stream, GstPad* src, const GstLidarTargetBitrate& target);
+  /// Returns true if another link has brought the same request for a key unit.
+  bool IsRepeatedRequest(BondStream& stream, GstEvent* event);
+  BondWork TakeWorkLocked(const std::vector<std::unique_ptr<BondStream>>& streams);
+  void ForgetPacketsLocked(const BondStream* stream);
+  /// Forgets packets and reports.
+  void Clear();
+
+  std::mutex mutex;
+  GstClock* clock = gst_system_clock_obtain();  // the links use the same one
+  std::shared_ptr<SrtpLayer> srtp;              // set below READY
+  bonding::Scheduler scheduler;
+  std::vector<Misdirected> misdirected;
+
+ private:
+  struct Kept {
+    BufferPtr buffer;
+    BondStream* stream;
+  };
+  void KeepLocked(Time now, bonding::PacketId id, GstBuffer* buffer, BondStream* stream);
+  EventPtr DueTargetLocked(BondStream& stream);
+
+  std::unordered_map<std::uint64_t, Kept> kept_;
+  std::deque<std::pair<Time, std::uint64_t>> order_;
+};
+
+/// Returns link `index`, as its screamtx sees it.
+std::shared_ptr<TxLink> NewBondLink(std::shared_ptr<BondShared> bond, std::size_t index);
+
+}  // namespace lidar::gst
