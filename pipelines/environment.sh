@@ -10,5 +10,16 @@ plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sor
 export GST_PLUGIN_PATH_1_0=$plugins${GST_PLUGIN_PATH_1_0:+:$GST_PLUGIN_PATH_1_0}
 export GST_REGISTRY=$build/pipelines-registry.bin
 
+# need PACKAGES ELEMENT...: ends the script if an element is missing.
+need() {
+  local packages=$1 element
+  shift
+  for element in "$@"; do
+    gst-inspect-1.0 "$element" >/dev/null 2>&1 && continue
+    echo "The element $element is missing${packages:+: install $packages}." >&2
+    exit 1
+  done
+}
+
 # launch PIPELINE...: gst-launch-1.0 becomes this process. Its progress is not shown; its warnings are, which -q would hide.
 launch() { exec gst-launch-1.0 "$@" > >(grep --line-buffered '^WARNING' >&2); }

@@ -35,9 +35,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 source "$(dirname "$0")/environment.sh"
-for element in openh264enc lidarenc screamsink; do
-  gst-inspect-1.0 "$element" >/dev/null 2>&1 || { echo "The element $element is missing." >&2; exit 1; }
-done
+need "" openh264enc lidarenc screamsink
 
 work=$(mktemp -d)
 trap 'kill "${link:-}" "${receiver:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT

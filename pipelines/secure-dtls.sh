@@ -24,9 +24,7 @@ port=${PORT:-5064}
 back=$((port + 2))
 launch=$build/src/tools/lidar-dtls-launch
 
-for element in dtlssrtpenc srtpenc; do
-  gst-inspect-1.0 --exists $element || { echo "Install gstreamer1.0-plugins-bad: it has $element." >&2; exit 1; }
-done
+need gstreamer1.0-plugins-bad dtlssrtpenc srtpenc
 folder=$(mktemp -d)
 trap 'kill $receiver 2>/dev/null || true; rm -rf "$folder"' EXIT
 

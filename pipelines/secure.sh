@@ -21,7 +21,7 @@ source "$(dirname "$0")/environment.sh"
 seconds=${1:-5}
 port=${PORT:-5044}
 
-gst-inspect-1.0 --exists srtpenc || { echo "Install gstreamer1.0-plugins-bad: it has the srtp plugin." >&2; exit 1; }
+need gstreamer1.0-plugins-bad srtpenc
 
 # 16 bytes of key and 14 of salt; in the environment, so that the list of processes does not show them.
 LIDAR_SRTP_KEY=$(od -An -tx1 -N30 /dev/urandom | tr -d ' \n')

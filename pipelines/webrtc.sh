@@ -34,10 +34,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 source "$(dirname "$0")/environment.sh"
-for element in webrtcbin nicesink dtlssrtpenc screamaux; do
-  gst-inspect-1.0 "$element" >/dev/null 2>&1 ||
-    { echo "The element $element is missing: install gstreamer1.0-plugins-bad and gstreamer1.0-nice." >&2; exit 1; }
-done
+need "gstreamer1.0-plugins-bad and gstreamer1.0-nice" webrtcbin nicesink dtlssrtpenc screamaux
 
 work=$(mktemp -d)
 trap 'kill "${link:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/sim/simulated_time.h"
+
 namespace lidar::scream::test {
 namespace {
 
@@ -136,6 +138,19 @@ void MeasureOthers(const RmcatCase& c, const SimulationResult& result, RmcatMetr
 }
 
 }  // namespace
+
+FlowConfig RmcatVideo(const Parameters& parameters, Duration start, double max_mbps) {
+  FlowConfig flow;
+  flow.parameters = parameters;
+  flow.start = kStart + start;
+  SourceConfig& source = flow.sources[0];
+  source.frames_per_second = 30;
+  source.frame_jitter = 0.1;
+  source.stream.min_bitrate = Mbps(0.15);
+  source.stream.start_bitrate = Mbps(0.3);
+  source.stream.max_bitrate = Mbps(max_mbps);
+  return flow;
+}
 
 RmcatMetrics Measure(const RmcatCase& c, const SimulationResult& result) {
   RmcatMetrics m;

@@ -25,6 +25,9 @@ std::vector<RmcatCase> WiredCases(const Parameters& parameters);
 /// RFC 8869, sections 3 and 4.
 std::vector<RmcatCase> WirelessCases(const Parameters& parameters);
 
+/// A video of 30 frames a second whose sizes vary.
+FlowConfig RmcatVideo(const Parameters& parameters, Duration start = {}, double max_mbps = 1.5);
+
 struct RmcatMetrics {
   double utilisation = 0;  ///< relative to what link 0 carries and its flows can use
   double media_mbps = 0;   ///< mean of the forward flows

@@ -37,19 +37,6 @@ link::BottleneckConfig DropTail(link::Capacity capacity, std::uint64_t seed = 1)
   return link;
 }
 
-FlowConfig Video(const Parameters& p, Duration start = {}) {
-  FlowConfig flow;
-  flow.parameters = p;
-  flow.start = kStart + start;
-  SourceConfig& source = flow.sources[0];
-  source.frames_per_second = 30;
-  source.frame_jitter = 0.1;
-  source.stream.min_bitrate = Mbps(0.15);
-  source.stream.start_bitrate = Mbps(0.3);
-  source.stream.max_bitrate = Mbps(1.5);
-  return flow;
-}
-
 RmcatCase Case(const char* section, const char* name, const std::string& description,
                link::Capacity capacity, Duration duration) {
   RmcatCase c;
@@ -79,8 +66,8 @@ RmcatCase CongestedFeedback(const Parameters& p) {
                      "media both ways; 2, 1, 0.5, 2 Mbit/s there, 2, 0.8, 2 back",
                      Pattern({{0, 2}, {20, 1}, {40, 0.5}, {60, 2}}), 100s);
   c.config.more_links.push_back(DropTail(Pattern({{0, 2}, {35, 0.8}, {70, 2}}), 2));
-  AddFlow(Video(p), &c);
-  AddFlow(Video(p), &c);
+  AddFlow(RmcatVideo(p), &c);
+  AddFlow(RmcatVideo(p), &c);
   c.config.flows[0].return_route = {1};
   c.config.flows[1].route = {1};
   c.config.flows[1].return_route = {0};
@@ -92,7 +79,7 @@ RmcatCase CongestedFeedback(const Parameters& p) {
 RmcatCase ThreeFlows(const char* section, const char* name, const std::string& description,
                      const Parameters& p) {
   RmcatCase c = Case(section, name, description, link::Capacity::Constant(Mbps(3.5)), 120s);
-  for (const Duration start : {0s, 20s, 40s}) AddFlow(Video(p, start), &c);
+  for (const Duration start : {0s, 20s, 40s}) AddFlow(RmcatVideo(p, start), &c);
   c.from = 60s;
   return c;
 }
@@ -103,7 +90,7 @@ RmcatCase RoundTripFairness(const Parameters& p) {
   c.config.forward.delay = c.config.return_delay = 10ms;
   Duration start = 0s;
   for (const Duration one_way : {10ms, 25ms, 50ms, 100ms, 150ms}) {
-    AddFlow(Video(p, start), &c);
+    AddFlow(RmcatVideo(p, start), &c);
     c.config.flows.back().access_delay = one_way - 10ms;
     start += 10s;
   }
@@ -117,7 +104,7 @@ RmcatCase LongTcp(const Parameters& p, Duration fifo) {
       Case("5.6", ("long_tcp_fifo_" + ms + "ms").c_str(),
            "beside one Cubic, a FIFO of " + ms + " ms", link::Capacity::Constant(Mbps(2)), 120s);
   c.config.forward.limit.time = fifo;
-  AddFlow(Video(p, 5s), &c);
+  AddFlow(RmcatVideo(p, 5s), &c);
   c.config.others = {{TcpKind::kCubic}};
   c.from = 20s;
   return c;
@@ -126,8 +113,8 @@ RmcatCase LongTcp(const Parameters& p, Duration fifo) {
 RmcatCase ShortTcp(const Parameters& p) {
   RmcatCase c = Case("5.7", "short_tcp", "two flows beside ten that send files of 0.1 to 1 MB",
                      link::Capacity::Constant(Mbps(2)), 300s);
-  AddFlow(Video(p), &c);
-  AddFlow(Video(p, 5s), &c);
+  AddFlow(RmcatVideo(p), &c);
+  AddFlow(RmcatVideo(p, 5s), &c);
   for (int i = 0; i < 10; ++i) {
     TcpConfig files;
     files.files = FileConfig{DataSize::Bytes(100'000), DataSize::Bytes(1'000'000), 10s};
@@ -150,7 +137,7 @@ RmcatCase PauseAndResume(const Parameters& p) {
 RmcatCase Priorities(const Parameters& p) {
   RmcatCase c = Case("6.1", "priority", "two streams of one sender, at priorities of 2 and 1",
                      link::Capacity::Constant(Mbps(1.5)), 60s);
-  FlowConfig flow = Video(p);
+  FlowConfig flow = RmcatVideo(p);
   flow.sources.push_back(flow.sources[0]);
   flow.sources[0].stream.priority = 2;
   AddFlow(flow, &c);
@@ -165,7 +152,7 @@ RmcatCase TwoBottlenecks(const Parameters& p) {
   c.config.forward.delay = 25ms;
   c.config.more_links.push_back(DropTail(link::Capacity::Constant(Mbps(2)), 2));
   c.config.more_links.back().delay = 25ms;
-  for (int i = 0; i < 3; ++i) AddFlow(Video(p), &c);
+  for (int i = 0; i < 3; ++i) AddFlow(RmcatVideo(p), &c);
   c.config.flows[0].route = {0, 1};
   c.config.flows[2].route = {1};
   c.forward = {0, 1};
@@ -179,11 +166,11 @@ std::vector<RmcatCase> WiredCases(const Parameters& p) {
   std::vector<RmcatCase> all;
   all.push_back(
       Case("5.1", "variable_capacity", "1, 2.5, 0.6, 1 Mbit/s", Pattern(kOnePattern), 100s));
-  AddFlow(Video(p), &all.back());
+  AddFlow(RmcatVideo(p), &all.back());
   all.push_back(Case("5.2", "two_flows_variable_capacity", "two flows; 4, 2, 3.5, 1, 2 Mbit/s",
                      Pattern({{0, 4}, {25, 2}, {50, 3.5}, {75, 1}, {100, 2}}), 125s));
-  AddFlow(Video(p), &all.back());
-  AddFlow(Video(p), &all.back());
+  AddFlow(RmcatVideo(p), &all.back());
+  AddFlow(RmcatVideo(p), &all.back());
   all.push_back(CongestedFeedback(p));
   all.push_back(ThreeFlows("5.4", "three_flows", "three flows that start 20 s apart", p));
   all.push_back(RoundTripFairness(p));
@@ -194,7 +181,7 @@ std::vector<RmcatCase> WiredCases(const Parameters& p) {
   all.push_back(Priorities(p));
   all.push_back(
       Case("6.2", "ecn", "5.1 with marks from 2 to 10 ms of queue", Pattern(kOnePattern), 100s));
-  AddFlow(Video(p), &all.back());
+  AddFlow(RmcatVideo(p), &all.back());
   all.back().config.forward.aqm.kind = link::AqmConfig::Kind::kRamp;
   all.push_back(TwoBottlenecks(p));
   return all;

@@ -16,19 +16,6 @@ constexpr Duration kWirelessFifo = std::chrono::milliseconds(300);
 constexpr Duration kAggregate = std::chrono::milliseconds(4);
 constexpr double kAirMbps = 20;
 
-FlowConfig WirelessVideo(const Parameters& p, double max_mbps, Duration start) {
-  FlowConfig flow;
-  flow.parameters = p;
-  flow.start = kStart + start;
-  SourceConfig& source = flow.sources[0];
-  source.frames_per_second = 30;
-  source.frame_jitter = 0.1;
-  source.stream.min_bitrate = Mbps(0.15);
-  source.stream.start_bitrate = Mbps(0.3);
-  source.stream.max_bitrate = Mbps(max_mbps);
-  return flow;
-}
-
 link::BottleneckConfig Link(link::Capacity capacity, std::uint64_t seed) {
   link::BottleneckConfig link;
   link.origin = kStart;
@@ -73,7 +60,7 @@ RmcatCase Cellular(const char* section, const char* name, const std::string& des
   RmcatCase c = Wireless(section, name, description, std::move(capacity));
   c.config.forward.path.jitter = 8ms;  // a radio retransmits
   c.config.forward.limit = {Mbps(2) * kWirelessFifo, Duration::max()};
-  c.config.flows.push_back(WirelessVideo(p, 5, 0s));
+  c.config.flows.push_back(RmcatVideo(p, 0s, 5));
   c.forward = {0};
   return c;
 }
@@ -95,7 +82,7 @@ RmcatCase WiredBottleneck(const std::string& name, const std::string& descriptio
   c.config.more_links.push_back(c.config.forward);
   c.config.more_links.back().seed = 2;
   for (std::size_t i = 0; i < 2; ++i) {
-    c.config.flows.push_back(WirelessVideo(p, 1.5, 0s));
+    c.config.flows.push_back(RmcatVideo(p));
     c.config.flows.back().route = {i};
     c.config.flows.back().return_route = {1 - i};
   }
@@ -145,7 +132,7 @@ RmcatCase WirelessBottleneck(const std::string& name, const std::string& descrip
   c.config.forward.path.burst_interval = kAggregate;
   c.config.forward.path.jitter = 3ms;  // backoff
   for (int i = 0; i < air.flows; ++i) {
-    c.config.flows.push_back(WirelessVideo(p, 1.5, i * 103ms));
+    c.config.flows.push_back(RmcatVideo(p, i * 103ms));
     c.config.flows.back().return_route = {0};
     c.forward.push_back(i);
   }

@@ -29,6 +29,13 @@ std::string Accounts(const Receiver& r) {
          std::to_string(a.scans_lost);
 }
 
+std::string AccountsAfter(const std::vector<Wire>& packets) {
+  Receiver receiver(kReorder);
+  DeliverAll(&receiver, packets);
+  receiver.Finish();
+  return Accounts(receiver);
+}
+
 Names Without(Names all, const Names& missing) {
   for (const auto& m : missing) all.erase(std::find(all.begin(), all.end(), m));
   return all;
@@ -81,9 +88,7 @@ TEST(Loss, OfAnyOnePacketCostsItsSliceOnly) {
 
 TEST(Loss, OfOneSliceMarksTheNextOneDiscontinuousOnce) {
   auto packets = Sender().Scans(0, 4);
-  packets.erase(std::remove_if(packets.begin(), packets.end(),
-                               [](const Wire& w) { return w.scan == 1 && w.index == 2; }),
-                packets.end());
+  Lose(&packets, [](const Wire& w) { return w.scan == 1 && w.index == 2; });
   Receiver receiver(milliseconds(0));
   Names discont;
   for (const Wire& w : packets)
@@ -97,9 +102,7 @@ TEST(Damage, MarksTheNextSliceDiscontinuousWhateverWasLostBefore) {
   auto packets = Sender().Scans(0, 4);
   for (Wire& w : packets)
     if (w.scan == 2 && w.index == 0 && !w.config) w.payload.back() ^= 1;
-  packets.erase(std::remove_if(packets.begin(), packets.end(),
-                               [](const Wire& w) { return w.scan == 1 && w.index < 2; }),
-                packets.end());
+  Lose(&packets, [](const Wire& w) { return w.scan == 1 && w.index < 2; });
   Receiver receiver(milliseconds(0));
   Names discont;
   for (const Wire& w : packets)
@@ -111,16 +114,9 @@ TEST(Damage, MarksTheNextSliceDiscontinuousWhateverWasLostBefore) {
 
 TEST(Loss, OfWholeScansCountsEachSliceAndScanOnce) {
   auto packets = Sender().Scans(0, 10);
-  packets.erase(std::remove_if(packets.begin(), packets.end(),
-                               [](const Wire& w) {
-                                 return (w.scan == 3 || w.scan == 6) ||
-                                        (w.scan == 4 && w.index < 2);
-                               }),
-                packets.end());
-  Receiver receiver(kReorder);
-  DeliverAll(&receiver, packets);
-  receiver.Finish();
-  EXPECT_EQ(Accounts(receiver), "received 30 lost 10 damaged 0 mismatch 0; scans 7 1 2");
+  Lose(&packets,
+       [](const Wire& w) { return (w.scan == 3 || w.scan == 6) || (w.scan == 4 && w.index < 2); });
+  EXPECT_EQ(AccountsAfter(packets), "received 30 lost 10 damaged 0 mismatch 0; scans 7 1 2");
 }
 
 TEST(Loss, OfTheLastPacketIsCountedAtTheEnd) {
@@ -244,10 +240,7 @@ TEST(Damage, OfAnyByteOfASliceIsNeverShown) {
 TEST(Damage, IsCountedOnce) {
   auto packets = Sender().Scans(0, 2);
   packets.back().payload.back() ^= 1;
-  Receiver receiver(kReorder);
-  DeliverAll(&receiver, packets);
-  receiver.Finish();
-  EXPECT_EQ(Accounts(receiver), "received 7 lost 0 damaged 1 mismatch 0; scans 1 1 0");
+  EXPECT_EQ(AccountsAfter(packets), "received 7 lost 0 damaged 1 mismatch 0; scans 1 1 0");
 }
 
 TEST(Damage, TakesNoMemory) {

@@ -45,9 +45,7 @@ TEST(SkippedSlices, AreToldFromLostOnesEvenWhereTheNextSliceIsLostToo) {
   auto packets = sender.ScansWithout(
       10, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
   // 4.3 would have been the first to tell.
-  packets.erase(std::remove_if(packets.begin(), packets.end(),
-                               [](const Wire& w) { return w.scan == 4 && w.index == 3; }),
-                packets.end());
+  Lose(&packets, [](const Wire& w) { return w.scan == 4 && w.index == 3; });
   DeliverAll(&receiver, packets);
   receiver.Finish();
   EXPECT_EQ(SkipAccounts(receiver), "skipped 2 lost 1; scans 9 1 0");
@@ -77,10 +75,7 @@ TEST(SkippedSlices, AreNotLostInAnOutage) {
   auto packets = sender.ScansWithout(
       20, [](std::uint32_t s, std::uint16_t i) { return s == 11 || (s == 12 && i < 2) || i == 3; });
   // Nothing of scans 5 to 11 comes through. Scan 11 has no number, as none of it was sent.
-  packets.erase(
-      std::remove_if(packets.begin(), packets.end(),
-                     [](const Wire& w) { return !w.config && w.scan >= 5 && w.scan <= 11; }),
-      packets.end());
+  Lose(&packets, [](const Wire& w) { return !w.config && w.scan >= 5 && w.scan <= 11; });
   DeliverAll(&receiver, packets);
   receiver.Finish();
   const auto a = receiver.accounts();
@@ -98,13 +93,11 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesAfterAnOutage) {
       20, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
   // Slice 4.3 would have told, but only one packet of it comes. Then scans 5 to 9 are lost.
   bool first = true;
-  packets.erase(std::remove_if(packets.begin(), packets.end(),
-                               [&](const Wire& w) {
-                                 if (w.config) return false;
-                                 if (w.scan != 4 || w.index != 3) return w.scan >= 5 && w.scan <= 9;
-                                 return !std::exchange(first, false);
-                               }),
-                packets.end());
+  Lose(&packets, [&](const Wire& w) {
+    if (w.config) return false;
+    if (w.scan != 4 || w.index != 3) return w.scan >= 5 && w.scan <= 9;
+    return !std::exchange(first, false);
+  });
   DeliverAll(&receiver, packets);
   receiver.Finish();
   const auto a = receiver.accounts();
@@ -131,12 +124,10 @@ TEST(SkippedScans, AreCountedWhateverIsLostBesides) {
     Sender sender;
     auto packets = sender.ScansWithout(
         40, [](std::uint32_t s, std::uint16_t) { return s % 4 == 1 || s % 4 == 2; });
-    packets.erase(std::remove_if(packets.begin(), packets.end(),
-                                 [&](const Wire& w) {
-                                   const bool cut = outage && w.scan > 5 && w.scan < 30;
-                                   return !w.config && (cut || w.scan == 4 || w.index == 2);
-                                 }),
-                  packets.end());
+    Lose(&packets, [&](const Wire& w) {
+      const bool cut = outage && w.scan > 5 && w.scan < 30;
+      return !w.config && (cut || w.scan == 4 || w.index == 2);
+    });
     DeliverAll(&receiver, packets);
     receiver.Finish();
     EXPECT_EQ(receiver.accounts().slices.scans_skipped, 20U);
@@ -159,9 +150,7 @@ TEST(SkippedScans, AreNotThoseOfWhichAPartWasLost) {
   Sender sender;
   auto packets =
       sender.ScansWithout(10, [](std::uint32_t s, std::uint16_t i) { return s == 4 && i < 2; });
-  packets.erase(
-      std::remove_if(packets.begin(), packets.end(), [](const Wire& w) { return w.scan == 4; }),
-      packets.end());
+  Lose(&packets, [](const Wire& w) { return w.scan == 4; });
   DeliverAll(&receiver, packets);
   receiver.Finish();
   EXPECT_EQ(SkipAccounts(receiver), "skipped 2 lost 2; scans 9 0 1");

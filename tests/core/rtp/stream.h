@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A sender of synthetic slices whose packets a test may drop, repeat, damage and reorder.
 #pragma once
+#include <algorithm>
 #include <deque>
 #include <string>
 #include <vector>
@@ -50,6 +51,11 @@ struct Wire {
   std::uint32_t index = 0;
   Time sent;
 };
+
+template <class Predicate>
+void Lose(std::vector<Wire>* packets, Predicate lost) {
+  packets->erase(std::remove_if(packets->begin(), packets->end(), lost), packets->end());
+}
 
 struct SenderOptions {
   std::uint32_t ssrc = 0x11223344;

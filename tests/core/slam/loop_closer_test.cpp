@@ -13,15 +13,19 @@ using odometry::Points;
 using odometry::Pose;
 using namespace test::block;
 
-TEST(LoopCloser, TakesTheDriftOutOfADriveThatReturns) {
+void AddDrive(const odometry::Trajectory& drifted, LoopCloser* closer) {
   const Points world = MakeWorld();
-  const odometry::Trajectory drifted = Drive(kScansOfALap + 12);
-  LoopCloser closer({});
   for (std::size_t i = 0; i < drifted.size(); ++i) {
     const int scan = static_cast<int>(i);
-    closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
+    closer->AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
   }
-  closer.Finish();
+  closer->Finish();
+}
+
+TEST(LoopCloser, TakesTheDriftOutOfADriveThatReturns) {
+  const odometry::Trajectory drifted = Drive(kScansOfALap + 12);
+  LoopCloser closer({});
+  AddDrive(drifted, &closer);
   const odometry::Trajectory closed = closer.Correct(drifted);
   ASSERT_EQ(closed.size(), drifted.size());
   EXPECT_GE(closer.closures().size(), 1U);
@@ -31,14 +35,9 @@ TEST(LoopCloser, TakesTheDriftOutOfADriveThatReturns) {
 }
 
 TEST(LoopCloser, LeavesADriveAloneThatDoesNotReturn) {
-  const Points world = MakeWorld();
   const odometry::Trajectory drifted = Drive(kScansOfALap / 2);
   LoopCloser closer({});
-  for (std::size_t i = 0; i < drifted.size(); ++i) {
-    const int scan = static_cast<int>(i);
-    closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
-  }
-  closer.Finish();
+  AddDrive(drifted, &closer);
   const odometry::Trajectory closed = closer.Correct(drifted);
   EXPECT_TRUE(closer.closures().empty());
   EXPECT_TRUE(closed.back().pose.position.isApprox(drifted.back().pose.position));
@@ -57,14 +56,9 @@ TEST(LoopCloser, TakesADriveWithoutPoints) {
 }
 
 TEST(LoopCloser, MovesTheMapAndNotTheOdometry) {
-  const Points world = MakeWorld();
   const odometry::Trajectory drifted = Drive(kScansOfALap + 30);
   LoopCloser closer({});
-  for (std::size_t i = 0; i < drifted.size(); ++i) {
-    const int scan = static_cast<int>(i);
-    closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
-  }
-  closer.Finish();
+  AddDrive(drifted, &closer);
   odometry::Trajectory now = drifted;
   now.back().pose = closer.MapFromOdometry() * drifted.back().pose;
   EXPECT_LT(EndError(now), EndError(drifted) / 5);

@@ -29,20 +29,22 @@ bool LoadRandomSlice(const ScanSet& set, std::uint32_t slices, Random* random, S
   return false;
 }
 
-std::optional<rate::Sample> Encode(const CodingMode& mode, const rate::Settings& settings,
-                                   SliceCodec* codec) {
+/// Adds a sample of the loaded slice, unless the mode cannot code it.
+void AddSample(const CodingMode& mode, const rate::Settings& settings, std::size_t source,
+               SliceCodec* codec, std::vector<rate::Sample>* samples) {
   rate::Settings bare = settings;
   bare.intensity_bits = 0;
   const auto geometry = codec->Encode(mode, bare);
   const auto all = settings.intensity_bits > 0 ? codec->Encode(mode, settings) : geometry;
-  if (!geometry || !all) return std::nullopt;
+  if (!geometry || !all) return;
   rate::Sample sample;
+  sample.source = static_cast<unsigned>(source);
   sample.slice = codec->Features(mode);
   sample.settings = settings;
   sample.settings.step_m = geometry->step_m;
   sample.geometry_bytes = static_cast<double>(geometry->size.bytes());
   sample.intensity_bytes = static_cast<double>((all->size - geometry->size).bytes());
-  return sample;
+  samples->push_back(sample);
 }
 
 bool Suits(const CodingMode& mode, const ScanSet& set) {
@@ -66,6 +68,19 @@ rate::Settings PaperSettings(const CodingMode& mode, SliceCodec* codec, Random* 
   return settings;
 }
 
+/// Loads random slices into `codec`, and calls take(source) for each.
+template <class Take>
+void ForRandomSlices(const std::vector<ScanSet>& sets, const SamplingOptions& options,
+                     const Progress& progress, Random* random, SliceCodec* codec, Take take) {
+  const std::size_t all = sets.size() * options.samples;
+  for (std::size_t i = 0; i < all; ++i) {
+    const std::size_t source = i / options.samples;
+    progress(static_cast<double>(i) / static_cast<double>(all));
+    if (LoadRandomSlice(sets[source], OneOf(options.slices, random), random, codec)) take(source);
+  }
+  progress(1);
+}
+
 }  // namespace
 
 std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
@@ -75,26 +90,18 @@ std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
                                                   std::log2(options.max_step_m));
   std::vector<rate::Sample> samples;
   SliceCodec codec;
-  const std::size_t all = sets.size() * options.samples;
-  for (std::size_t i = 0; i < all; ++i) {
-    const ScanSet& set = sets[i / options.samples];
-    progress(static_cast<double>(i) / static_cast<double>(all));
-    if (!LoadRandomSlice(set, OneOf(options.slices, &random), &random, &codec)) continue;
+  ForRandomSlices(sets, options, progress, &random, &codec, [&](std::size_t source) {
     // All modes get the same settings, so the samples of a mode do not depend on the others.
     rate::Settings settings;
     settings.step_m = std::exp2(log_step(random));
     settings.intensity_bits = static_cast<unsigned>(random() % (options.intensity_bits + 1));
     for (const std::string& name : options.modes) {
       const CodingMode& mode = ModeNamed(name);
-      if (!Suits(mode, set)) continue;
+      if (!Suits(mode, sets[source])) continue;
       settings.level = mode.level;
-      if (auto sample = Encode(mode, settings, &codec)) {
-        sample->source = static_cast<unsigned>(i / options.samples);
-        samples.push_back(*sample);
-      }
+      AddSample(mode, settings, source, &codec, &samples);
     }
-  }
-  progress(1);
+  });
   return samples;
 }
 
@@ -107,24 +114,16 @@ std::vector<rate::Sample> TakePaperSamples(const std::vector<ScanSet>& sets,
     if (ModeNamed(name).geometry == Geometry::kRange && range == nullptr) range = &ModeNamed(name);
   std::vector<rate::Sample> samples;
   SliceCodec codec;
-  const std::size_t all = sets.size() * options.samples;
-  for (std::size_t i = 0; i < all; ++i) {
-    const ScanSet& set = sets[i / options.samples];
-    progress(static_cast<double>(i) / static_cast<double>(all));
-    if (!LoadRandomSlice(set, OneOf(options.slices, &random), &random, &codec)) continue;
+  ForRandomSlices(sets, options, progress, &random, &codec, [&](std::size_t source) {
     const auto level = static_cast<unsigned>(random() % (rate::PaperModel::kMaxLevel + 1));
     for (const CodingMode* mode : {&XyzModeOfLevel(level), range}) {
-      if (mode == nullptr || !Suits(*mode, set)) continue;
+      if (mode == nullptr || !Suits(*mode, sets[source])) continue;
       rate::Settings settings = PaperSettings(*mode, &codec, &random);
       settings.intensity_bits = options.intensity_bits;
       settings.level = level;
-      if (auto sample = Encode(*mode, settings, &codec)) {
-        sample->source = static_cast<unsigned>(i / options.samples);
-        samples.push_back(*sample);
-      }
+      AddSample(*mode, settings, source, &codec, &samples);
     }
-  }
-  progress(1);
+  });
   return samples;
 }
 
