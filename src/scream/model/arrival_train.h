@@ -7,6 +7,7 @@
 
 #include "src/base/time.h"
 #include "src/base/units.h"
+#include "src/scream/model/busy_run.h"
 
 namespace lidar::scream {
 
@@ -32,22 +33,13 @@ class ArrivalTrain {
   }
   void Reset() { *this = ArrivalTrain(); }
 
-  /// Returns the link's capacity without the train's longest pause. Returns nothing for a train
-  /// that is too short for the coarse arrival times of reports.
+  /// Returns the link's capacity, or nothing for a train that is too short.
   std::optional<DataRate> rate() const {
     if (train_.size() < kShortest) return std::nullopt;
-    DataSize bytes, after_pause;
-    Duration pause{0};
-    for (std::size_t i = 1; i < train_.size(); ++i) {
-      bytes += train_[i].size;
-      const Duration step = train_[i].time - train_[i - 1].time;
-      if (step <= pause) continue;
-      pause = step;
-      after_pause = train_[i].size;
-    }
-    const Duration span = train_.back().time - train_.front().time - pause;
-    if (span < kMinSpan) return std::nullopt;
-    return (bytes - after_pause) / span;
+    BusySpacing spacing;
+    for (std::size_t i = 1; i < train_.size(); ++i)
+      spacing.Add(train_[i].time - train_[i - 1].time, Duration{0}, train_[i].size);
+    return spacing.rate(kMinSpan);
   }
 
  private:
