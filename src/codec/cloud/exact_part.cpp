@@ -383,9 +383,9 @@ FieldCode BestCode(const Visited& visited, const ExactField& field) {
 
 /// The key that leaves fewest steps.
 unsigned BestOrderKey(const Visited& visited, const ExactPart& part) {
-  unsigned best = 0;
+  unsigned best = kAsVisited;
   std::size_t least = SIZE_MAX;
-  for (unsigned key = 0; key < kByFirstField + part.fields.size(); ++key) {
+  for (unsigned key = kAsVisited; key < kByFirstField + part.fields.size(); ++key) {
     const auto sequence = Sequence(visited, key, part.fields);
     const auto places = PlacesInSequence(sequence, part.order);
     std::size_t steps = 0;
