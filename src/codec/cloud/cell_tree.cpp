@@ -17,7 +17,6 @@ using mixing::Counter;
 using mixing::Weights;
 
 constexpr std::uint32_t kTable = 1U << 16;
-constexpr std::uint32_t kCountNodes = 64;
 
 std::uint32_t Hash(std::uint64_t value) {
   return static_cast<std::uint32_t>(value * 0x9E3779B97F4A7C15U >> 48);
