@@ -193,7 +193,8 @@ static bool Start(GstLidarMcapSink* self) {
     s.recorder.writer.chunk_size = static_cast<std::size_t>(s.chunk_size.bytes());
     const bool limited = s.recorder.max_file_size > 0 || s.recorder.max_files > 0 ||
                          s.recorder.max_file_duration > lidar::Duration{};
-    auto names = s.location.empty() ? std::nullopt : FileNames::Parse(s.location, &why);
+    auto names =
+        s.location.empty() ? std::nullopt : lidar::mcap::FileNames::Parse(s.location, &why);
     if (names && limited && !names->is_numbered()) {
       why = "several files need a number in their name, as in rec-%05d.mcap";
       names.reset();

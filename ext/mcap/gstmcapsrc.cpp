@@ -20,12 +20,12 @@
 
 #include "ext/mcap/play_messages.h"
 #include "ext/mcap/play_task.h"
-#include "ext/mcap/playback.h"
 #include "ext/mcap/seeking.h"
 #include "ext/mcap/stream_group.h"
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/stats.h"
+#include "src/mcap/playback.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_mcap_src_debug);
 #define GST_CAT_DEFAULT gst_lidar_mcap_src_debug
@@ -58,7 +58,7 @@ const std::array<Stat<Counters>, 5> kStats = {{
 
 /// Used by the streaming thread. While the task is stopped, the holder of its lock may use it.
 struct Run {
-  std::unique_ptr<Playback> playback;
+  std::unique_ptr<lidar::mcap::Playback> playback;
   std::unique_ptr<StreamGroup> streams;
 };
 
@@ -132,7 +132,7 @@ static GstPad* NewPad(const std::string& name) {
 }
 
 /// Returns true if there is something to play, before any message is read.
-static bool HasTopic(const Playback& playback, const Settings& settings) {
+static bool HasTopic(const lidar::mcap::Playback& playback, const Settings& settings) {
   return std::any_of(playback.topics().begin(), playback.topics().end(), [&](const auto& topic) {
     return IsWanted(settings, topic.channel.topic) &&
            MessageReader::Make(topic.schema, topic.channel) != nullptr;
@@ -151,7 +151,7 @@ static bool Open(GstLidarMcapSrc* self) {
   state.stopping = false;
   auto playback = settings.location.empty()
                       ? nullptr
-                      : Playback::Open(settings.location, &state.stopping, &why);
+                      : lidar::mcap::Playback::Open(settings.location, &state.stopping, &why);
   if (!playback) {
     GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
                       ("Cannot play \"%s\": %s.", settings.location.c_str(), why.c_str()),
@@ -236,7 +236,8 @@ static void Count(State* state, bool dropped, GstClockTime position) {
   state->segment.position = position;
 }
 
-static GstFlowReturn PlayItem(GstLidarMcapSrc* self, const Playback::Item& item, GstClockTime pts) {
+static GstFlowReturn PlayItem(GstLidarMcapSrc* self, const lidar::mcap::Playback::Item& item,
+                              GstClockTime pts) {
   StreamGroup& streams = *self->state->run.streams;
   StreamGroup::Played played = streams.Read(item, pts);
   Count(self->state, played.buffer == nullptr, pts);

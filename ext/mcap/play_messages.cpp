@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-std::string TopicNames(const Playback& playback) {
+std::string TopicNames(const mcap::Playback& playback) {
   std::string names;
   for (const auto& topic : playback.topics())
     names += (names.empty() ? "" : ", ") + topic.channel.topic + " (" + topic.schema.name + ")";
@@ -35,15 +35,15 @@ std::string MediaTypes(GstElement* element) {
 
 }  // namespace
 
-void PostNothingToPlay(GstElement* element, const Playback& playback, const std::string& location,
-                       const std::string& topic) {
+void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
+                       const std::string& location, const std::string& topic) {
   GST_ELEMENT_ERROR(element, STREAM, WRONG_TYPE,
                     ("\"%s\" holds nothing that can be played.", location.c_str()),
                     ("wanted: %s; topics: %s", topic.empty() ? "any" : topic.c_str(),
                      TopicNames(playback).c_str()));
 }
 
-void WarnOfFiles(GstElement* element, const Playback& playback, const std::string& why) {
+void WarnOfFiles(GstElement* element, const mcap::Playback& playback, const std::string& why) {
   if (playback.unclosed_files() > 0)
     GST_ELEMENT_WARNING(element, STREAM, DEMUX,
                         ("%" G_GUINT64_FORMAT " files of the recording break off, or are being "

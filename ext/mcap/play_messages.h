@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "ext/mcap/playback.h"
+#include "src/mcap/playback.h"
 
 namespace lidar::gst {
 
@@ -17,10 +17,10 @@ struct PlayedCounts {
 };
 
 /// Error: no topic of the recording can be played, or not the one that is wanted.
-void PostNothingToPlay(GstElement* element, const Playback& playback, const std::string& location,
-                       const std::string& topic);
+void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
+                       const std::string& location, const std::string& topic);
 /// Warns of files that break off or cannot be read; `why` belongs to the last one.
-void WarnOfFiles(GstElement* element, const Playback& playback, const std::string& why);
+void WarnOfFiles(GstElement* element, const mcap::Playback& playback, const std::string& why);
 /// Error where nothing could be read, a warning where parts are left out, else nothing.
 void PostDamage(GstElement* element, const PlayedCounts& counts);
 /// Posts an error: downstream takes the caps of no pad.

@@ -8,7 +8,7 @@
 
 namespace lidar::gst {
 
-Recorder::Recorder(const RecorderSettings& settings, FileNames names)
+Recorder::Recorder(const RecorderSettings& settings, mcap::FileNames names)
     : settings_(settings), names_(std::move(names)) {
   // Files of an earlier recording stay: the numbers continue after them.
   const auto existing = names_.Existing(&listing_failed_);

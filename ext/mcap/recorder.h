@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "ext/mcap/file_names.h"
 #include "ext/mcap/output_file.h"
+#include "src/mcap/file_names.h"
 #include "src/mcap/writer.h"
 
 namespace lidar::gst {
@@ -38,7 +38,7 @@ struct RecordedFile {
 
 class Recorder {
  public:
-  Recorder(const RecorderSettings& settings, FileNames names);
+  Recorder(const RecorderSettings& settings, mcap::FileNames names);
 
   /// Returns what prevents the first file, without making it.
   std::optional<RecorderFault> Check() const;
@@ -62,7 +62,7 @@ class Recorder {
   std::optional<RecorderFault> Fault() const;
 
   const RecorderSettings settings_;
-  const FileNames names_;
+  const mcap::FileNames names_;
   mcap::Catalogue catalogue_;
   std::error_code listing_failed_;
   std::uint32_t next_number_ = 0;

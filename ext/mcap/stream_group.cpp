@@ -35,7 +35,7 @@ PlayedStream* StreamGroup::StreamOf(const std::string& topic) {
   return streams_.back().get();
 }
 
-void StreamGroup::ShowKnown(const Playback& playback, const std::string& topic) {
+void StreamGroup::ShowKnown(const mcap::Playback& playback, const std::string& topic) {
   bool all = true;
   for (const auto& [schema, channel] : playback.topics()) {
     if (!topic.empty() && topic != channel.topic) continue;
@@ -51,7 +51,7 @@ void StreamGroup::EndPads() {
   if (!std::exchange(told_no_more_pads_, true)) gst_element_no_more_pads(element_);
 }
 
-StreamGroup::Played StreamGroup::Read(const Playback::Item& item, GstClockTime pts) {
+StreamGroup::Played StreamGroup::Read(const mcap::Playback::Item& item, GstClockTime pts) {
   Played played{StreamOf(item.channel->topic), nullptr};
   if (played.stream != nullptr && played.stream->Follow(*item.schema, *item.channel))
     played.buffer = played.stream->Read(item.message.data, pts);

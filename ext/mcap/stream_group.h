@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "ext/mcap/playback.h"
 #include "ext/mcap/played_stream.h"
+#include "src/mcap/playback.h"
 
 namespace lidar::gst {
 
@@ -31,7 +31,7 @@ class StreamGroup {
 
   /// Adds the pads whose caps the channels have before the first buffer: those of `topic`, or all
   /// if it is empty.
-  void ShowKnown(const Playback& playback, const std::string& topic);
+  void ShowKnown(const mcap::Playback& playback, const std::string& topic);
   /// Announces once that no more pads come.
   void EndPads();
   /// A message for its pad; no buffer where it is damaged, its caps are not known, or there are
@@ -40,7 +40,7 @@ class StreamGroup {
     PlayedStream* stream = nullptr;
     BufferPtr buffer;
   };
-  Played Read(const Playback::Item& item, GstClockTime pts);
+  Played Read(const mcap::Playback::Item& item, GstClockTime pts);
   /// Returns the combined flow of all pads.
   GstFlowReturn Push(Played played);
   /// The source was sought.

@@ -43,7 +43,7 @@ class Pieces : public ::testing::Test {
                                  const std::string& name = "r%02d.mcap") {
     std::string why;
     auto recorder =
-        std::make_unique<Recorder>(settings, *FileNames::Parse(folder_ + "/" + name, &why));
+        std::make_unique<Recorder>(settings, *mcap::FileNames::Parse(folder_ + "/" + name, &why));
     mcap::Channel channel;
     channel.schema_id = recorder->catalogue().AddSchema({0, "s", "ros2msg", ""});
     channel.topic = "/t";
@@ -155,7 +155,7 @@ TEST_F(Pieces, AreNotWrittenOverWhereAnotherProgramIsFaster) {
 TEST_F(Pieces, NamesHaveOneNumber) {
   std::string why;
   const auto name = [&](const char* location, std::uint32_t number) {
-    const auto names = FileNames::Parse(location, &why);
+    const auto names = mcap::FileNames::Parse(location, &why);
     return names ? names->Name(number) : "none";
   };
   EXPECT_EQ(name("a-%03d.mcap", 7), "a-007.mcap");
@@ -177,7 +177,7 @@ TEST_F(Pieces, OnlyNamesThatItWouldGiveAreItsFiles) {
   }
   std::string why;
   std::error_code failed;
-  const auto existing = FileNames::Parse(folder_ + "/r%02d.mcap", &why)->Existing(&failed);
+  const auto existing = mcap::FileNames::Parse(folder_ + "/r%02d.mcap", &why)->Existing(&failed);
   EXPECT_FALSE(failed);
   ASSERT_EQ(existing.size(), 2U);
   EXPECT_EQ(existing[0].first, 0U);

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/mcap/playback.h"
+#include "src/mcap/playback.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "ext/mcap/file_names.h"
+#include "src/mcap/file_names.h"
 #include "src/mcap/input_file.h"
 
-namespace lidar::gst {
+namespace lidar::mcap {
 namespace {
 
-std::unique_ptr<mcap::Reader> OpenReader(const std::string& path,
-                                         const std::atomic<bool>* cancelled, std::string* why) {
-  auto input = mcap::InputFile::Open(path, why, cancelled);
-  return input ? mcap::Reader::Open(std::move(input), why) : nullptr;
+std::unique_ptr<Reader> OpenReader(const std::string& path, const std::atomic<bool>* cancelled,
+                                   std::string* why) {
+  auto input = InputFile::Open(path, why, cancelled);
+  return input ? Reader::Open(std::move(input), why) : nullptr;
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::unique_ptr<Playback> Playback::Open(const std::string& location,
   return playback->files_.empty() ? nullptr : std::move(playback);
 }
 
-void Playback::Add(const std::string& path, const mcap::FileIndex& index) {
+void Playback::Add(const std::string& path, const FileIndex& index) {
   start_time_ = files_.empty() ? index.start_time() : std::min(start_time_, index.start_time());
   end_time_ = std::max(end_time_, index.end_time());
   unclosed_files_ += index.complete ? 0 : 1;
@@ -87,7 +87,7 @@ std::optional<Playback::Item> Playback::Next() {
       if (!OpenNextFile()) return std::nullopt;
       continue;
     }
-    const mcap::FileIndex& index = reader_->index();
+    const FileIndex& index = reader_->index();
     Item item;
     item.message = *message;
     item.channel = &index.channels.at(message->header.channel_id);
@@ -99,4 +99,4 @@ std::optional<Playback::Item> Playback::Next() {
   return std::nullopt;
 }
 
-}  // namespace lidar::gst
+}  // namespace lidar::mcap

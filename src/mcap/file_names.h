@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace lidar::gst {
+namespace lidar::mcap {
 
 class FileNames {
  public:
@@ -30,4 +30,4 @@ class FileNames {
   bool is_numbered_ = false;
 };
 
-}  // namespace lidar::gst
+}  // namespace lidar::mcap

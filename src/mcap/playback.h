@@ -11,19 +11,19 @@
 
 #include "src/mcap/reader.h"
 
-namespace lidar::gst {
+namespace lidar::mcap {
 
 class Playback {
  public:
   struct Topic {
-    mcap::Schema schema;
-    mcap::Channel channel;
+    Schema schema;
+    Channel channel;
   };
   /// `message` stays until the next call of Next() or Seek().
   struct Item {
-    const mcap::Schema* schema = nullptr;
-    const mcap::Channel* channel = nullptr;
-    mcap::Message message;
+    const Schema* schema = nullptr;
+    const Channel* channel = nullptr;
+    Message message;
   };
 
   /// Opens the files that `location` names, which may have a number. Returns nothing if no file can
@@ -54,7 +54,7 @@ class Playback {
     std::uint64_t end_time = 0;
   };
 
-  void Add(const std::string& path, const mcap::FileIndex& index);
+  void Add(const std::string& path, const FileIndex& index);
   bool OpenNextFile();
 
   const std::atomic<bool>* const cancelled_;
@@ -68,8 +68,8 @@ class Playback {
   // Place in the file.
   std::uint64_t from_ = 0;
   std::size_t next_file_ = 0;
-  std::unique_ptr<mcap::Reader> reader_;
+  std::unique_ptr<Reader> reader_;
   std::uint64_t damaged_before_ = 0;  // in files before the one that is open
 };
 
-}  // namespace lidar::gst
+}  // namespace lidar::mcap

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "ext/mcap/file_names.h"
+#include "src/mcap/file_names.h"
 
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
 
-namespace lidar::gst {
+namespace lidar::mcap {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +96,4 @@ std::vector<std::pair<std::uint32_t, std::string>> FileNames::Existing(
   return files;
 }
 
-}  // namespace lidar::gst
+}  // namespace lidar::mcap
