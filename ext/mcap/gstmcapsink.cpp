@@ -316,7 +316,7 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   channel.schema_id = catalogue.AddSchema(SchemaOf(writer.type()));
   channel.topic = topic;
   channel.message_encoding = "cdr";
-  channel.metadata = {{kCapsKey, caps.ToText().value_or("")}, {kQosKey, ""}};
+  channel.metadata = {{mcap::kCapsKey, caps.ToText().value_or("")}, {kQosKey, ""}};
   stream->channel_id = known->second = catalogue.AddChannel(std::move(channel));
   if (stream->channel_id != 0) return true;
   stream->channels.erase(known);

@@ -143,7 +143,7 @@ std::unique_ptr<MessageReader> MessageReader::Make(const mcap::Schema& schema,
                                                    const mcap::Channel& channel) {
   const auto type = TypeOf(schema);
   if (!type || channel.message_encoding != "cdr") return nullptr;
-  const auto text = channel.metadata.find(kCapsKey);
+  const auto text = channel.metadata.find(mcap::kCapsKey);
   CapsPtr caps = text == channel.metadata.end() ? nullptr : CapsOfType(text->second, *type);
   switch (*type) {
     case MessageType::kCloud:

@@ -29,8 +29,7 @@ std::string_view TopicOf(MessageType type);
 /// of `type`.
 CapsPtr CapsOfType(const std::string& text, MessageType type);
 
-/// The entries of a channel's metadata.
-constexpr const char* kCapsKey = "gst_caps";
+/// An entry of a channel's metadata.
 constexpr const char* kQosKey = "offered_qos_profiles";  // of rosbag2; empty: its default
 
 }  // namespace lidar::gst

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "src/base/crc.h"
 
@@ -93,10 +94,10 @@ bool FileIndex::Learn(const Record& record) {
   return is_new;
 }
 
-FileIndex ReadFileIndex(Input* input) {
+FileIndex ReadFileIndex(Input* input, FileIndex known) {
   const auto place = FindSummary(input);
   const auto summary = place ? ReadSummary(input, *place) : std::nullopt;
-  if (!summary) return ScanFile(input);
+  if (!summary) return ScanFile(input, std::move(known));
   FileIndex index;
   std::size_t offset = 0;
   while (const auto record = NextRecord({summary->data(), summary->size()}, &offset)) {

@@ -34,10 +34,10 @@ struct FileIndex {
 };
 
 /// Reads the index of `input`, which begins with the magic. It never fails, but leaves unreadable
-/// parts out.
-FileIndex ReadFileIndex(Input* input);
+/// parts out. `known` is the index of the same file when it was shorter.
+FileIndex ReadFileIndex(Input* input, FileIndex known = {});
 
-/// Reads records from the first one to the first that is cut off.
-FileIndex ScanFile(Input* input);
+/// Reads records from the end of the `known` ones to the first that is cut off.
+FileIndex ScanFile(Input* input, FileIndex known = {});
 
 }  // namespace lidar::mcap

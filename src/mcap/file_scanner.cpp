@@ -2,6 +2,7 @@
 // Scans a file without a summary, which broke off or was written so.
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "src/mcap/chunk.h"
 #include "src/mcap/file_index.h"
@@ -14,10 +15,10 @@ constexpr int kChunksToLearn = 4;  // other channels become known when their mes
 
 class Scanner {
  public:
-  explicit Scanner(Input* input) : input_(*input) {}
+  Scanner(Input* input, FileIndex known) : input_(*input), index_(std::move(known)) {}
 
   FileIndex Run() {
-    std::uint64_t offset = kMagic.size();
+    std::uint64_t offset = Begin();
     while (const auto record = RecordAt(&input_, offset)) {
       if (!Take(*record, offset)) break;
       offset = record->end();
@@ -31,6 +32,21 @@ class Scanner {
   }
 
  private:
+  /// The end of what is known. A file that was replaced is another.
+  std::uint64_t Begin() {
+    const auto last = std::max_element(
+        index_.chunks.begin(), index_.chunks.end(),
+        [](const ChunkPlace& a, const ChunkPlace& b) { return a.offset < b.offset; });
+    if (last == index_.chunks.end()) return kMagic.size();
+    const auto record = RecordAt(&input_, last->offset);
+    const auto header = record ? ReadChunkHeader(&input_, *record) : std::nullopt;
+    if (header && record->end() == last->offset + last->size &&
+        header->start_time == last->start_time && header->end_time == last->end_time)
+      return record->end();
+    index_ = {};
+    return kMagic.size();
+  }
+
   /// Returns false if the data section ends.
   bool Take(const RecordPlace& record, std::uint64_t offset) {
     switch (record.op) {
@@ -97,6 +113,6 @@ class Scanner {
 
 }  // namespace
 
-FileIndex ScanFile(Input* input) { return Scanner(input).Run(); }
+FileIndex ScanFile(Input* input, FileIndex known) { return Scanner(input, std::move(known)).Run(); }
 
 }  // namespace lidar::mcap

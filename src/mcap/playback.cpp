@@ -4,49 +4,78 @@
 #include <algorithm>
 #include <utility>
 
-#include "src/mcap/file_names.h"
 #include "src/mcap/input_file.h"
 
 namespace lidar::mcap {
 namespace {
 
-std::unique_ptr<Reader> OpenReader(const std::string& path, const std::atomic<bool>* cancelled,
-                                   std::string* why) {
+namespace fs = std::filesystem;
+
+std::unique_ptr<Reader> OpenReader(const std::string& path, const FileIndex& known,
+                                   const std::atomic<bool>* cancelled, std::string* why) {
   auto input = InputFile::Open(path, why, cancelled);
-  return input ? Reader::Open(std::move(input), why) : nullptr;
+  return input ? Reader::Open(std::move(input), why, known) : nullptr;
 }
 
 }  // namespace
 
 std::unique_ptr<Playback> Playback::Open(const std::string& location,
                                          const std::atomic<bool>* cancelled, std::string* why) {
-  const auto names = FileNames::Parse(location, why);
+  auto names = FileNames::Parse(location, why);
   if (!names) return nullptr;
-  std::error_code failed;
-  const auto existing = names->Existing(&failed);
-  if (existing.empty()) *why = "there is no such file";
-  if (failed && failed != std::errc::no_such_file_or_directory) *why = failed.message();
-  std::unique_ptr<Playback> playback(new Playback(cancelled));
-  for (const auto& [number, path] : existing) {
-    const auto reader = OpenReader(path, cancelled, why);
-    if (reader != nullptr && !reader->index().empty()) {
-      playback->Add(path, reader->index());
-      continue;
-    }
-    if (reader != nullptr) *why = "it holds no messages";
-    ++playback->unreadable_files_;
-  }
-  return playback->files_.empty() ? nullptr : std::move(playback);
+  std::unique_ptr<Playback> playback(new Playback(*std::move(names), cancelled));
+  return playback->Refresh(why) ? std::move(playback) : nullptr;
 }
 
-void Playback::Add(const std::string& path, const FileIndex& index) {
-  start_time_ = files_.empty() ? index.start_time() : std::min(start_time_, index.start_time());
-  end_time_ = std::max(end_time_, index.end_time());
-  unclosed_files_ += index.complete ? 0 : 1;
-  files_.push_back({path, index.start_time(), index.end_time()});
+bool Playback::Refresh(std::string* why) {
+  std::error_code failed;
+  const auto existing = names_.Existing(&failed);
+  if (existing.empty()) *why = "there is no such file";
+  if (failed && failed != std::errc::no_such_file_or_directory) *why = failed.message();
+  Seek(0);
+  std::vector<File> before = std::exchange(files_, {});
+  unclosed_files_ = unreadable_files_ = start_time_ = end_time_ = 0;
+  for (const auto& [number, path] : existing) {
+    const auto known = std::find_if(before.begin(), before.end(),
+                                    [&name = path](const File& f) { return f.path == name; });
+    File file;
+    if (known != before.end()) file = std::move(*known);
+    file.path = path;
+    if (!Read(&file, why)) {
+      ++unreadable_files_;
+      continue;
+    }
+    start_time_ = files_.empty() ? file.start_time : std::min(start_time_, file.start_time);
+    end_time_ = std::max(end_time_, file.end_time);
+    unclosed_files_ += file.complete ? 0 : 1;
+    files_.push_back(std::move(file));
+  }
+  return !files_.empty();
+}
+
+/// Reads the index of the file, if it is another than before.
+bool Playback::Read(File* file, std::string* why) {
+  std::error_code failed;
+  const auto size = fs::file_size(file->path, failed);
+  const auto written = fs::last_write_time(file->path, failed);
+  if (!failed && file->size == size && file->written == written) return true;
+  const auto reader = OpenReader(file->path, file->known, cancelled_, why);
+  if (reader == nullptr) return false;
+  const FileIndex& index = reader->index();
+  if (index.empty()) {
+    *why = "it holds no messages";
+    return false;
+  }
+  *file = {file->path, size, written, index.start_time(), index.end_time(), index.complete};
+  if (!index.complete) file->known = index;
+  Learn(index);
+  return true;
+}
+
+void Playback::Learn(const FileIndex& index) {
   for (const auto& [id, channel] : index.channels) {
     const auto schema = index.schemas.find(channel.schema_id);
-    if (schema != index.schemas.end() && names_.insert(channel.topic).second)
+    if (schema != index.schemas.end() && topic_names_.insert(channel.topic).second)
       topics_.push_back({schema->second, channel});
   }
 }
@@ -69,7 +98,7 @@ bool Playback::OpenNextFile() {
     const File& file = files_[next_file_++];
     std::string why;
     if (file.end_time < from_) continue;
-    reader_ = OpenReader(file.path, cancelled_, &why);
+    reader_ = OpenReader(file.path, file.known, cancelled_, &why);
     if (reader_ == nullptr) {
       ++unreadable_files_;
       continue;

@@ -3,12 +3,15 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "src/mcap/file_names.h"
 #include "src/mcap/reader.h"
 
 namespace lidar::mcap {
@@ -32,6 +35,10 @@ class Playback {
   static std::unique_ptr<Playback> Open(const std::string& location,
                                         const std::atomic<bool>* cancelled, std::string* why);
 
+  /// Looks at the files anew: a recording that is still written grows, and its oldest files go.
+  /// Returns false if there is none to read; `why` then says so. Seek() comes next.
+  bool Refresh(std::string* why);
+
   /// Log times [ns].
   std::uint64_t start_time() const { return start_time_; }
   std::uint64_t end_time() const { return end_time_; }
@@ -47,19 +54,26 @@ class Playback {
   std::optional<Item> Next();
 
  private:
-  explicit Playback(const std::atomic<bool>* cancelled) : cancelled_(cancelled) {}
+  Playback(FileNames names, const std::atomic<bool>* cancelled)
+      : names_(std::move(names)), cancelled_(cancelled) {}
   struct File {
     std::string path;
+    std::uintmax_t size = 0;
+    std::filesystem::file_time_type written;
     std::uint64_t start_time = 0;
     std::uint64_t end_time = 0;
+    bool complete = false;
+    FileIndex known = {};  // of a file that is not complete
   };
 
-  void Add(const std::string& path, const FileIndex& index);
+  bool Read(File* file, std::string* why);
+  void Learn(const FileIndex& index);
   bool OpenNextFile();
 
+  const FileNames names_;
   const std::atomic<bool>* const cancelled_;
   std::vector<File> files_;
-  std::set<std::string> names_;  // of topics_
+  std::set<std::string> topic_names_;
   std::vector<Topic> topics_;
   std::uint64_t start_time_ = 0;
   std::uint64_t end_time_ = 0;

@@ -15,18 +15,19 @@ constexpr std::size_t kMaxOpenChunks = 64;
 
 }  // namespace
 
-std::unique_ptr<Reader> Reader::Open(std::unique_ptr<Input> input, std::string* why) {
+std::unique_ptr<Reader> Reader::Open(std::unique_ptr<Input> input, std::string* why,
+                                     FileIndex known) {
   if (input->size() == 0)
     *why = "it is empty";
   else if (!HasMagic(input.get(), 0))
     *why = "it does not begin as an MCAP file";
   else
-    return std::unique_ptr<Reader>(new Reader(std::move(input)));
+    return std::unique_ptr<Reader>(new Reader(std::move(input), std::move(known)));
   return nullptr;
 }
 
-Reader::Reader(std::unique_ptr<Input> input)
-    : input_(std::move(input)), index_(ReadFileIndex(input_.get())) {}
+Reader::Reader(std::unique_ptr<Input> input, FileIndex known)
+    : input_(std::move(input)), index_(ReadFileIndex(input_.get(), std::move(known))) {}
 
 void Reader::Seek(std::uint64_t log_time) {
   from_ = log_time;

@@ -20,8 +20,10 @@ struct Message {
 
 class Reader {
  public:
-  /// Returns nothing if `input` is no MCAP file; `why` then says so in words for a user.
-  static std::unique_ptr<Reader> Open(std::unique_ptr<Input> input, std::string* why);
+  /// Returns nothing if `input` is no MCAP file; `why` then says so in words for a user. `known` is
+  /// the index of the same file when it was shorter.
+  static std::unique_ptr<Reader> Open(std::unique_ptr<Input> input, std::string* why,
+                                      FileIndex known = {});
 
   /// Schemas and channels of a file that broke off may grow with each message.
   const FileIndex& index() const { return index_; }
@@ -47,7 +49,7 @@ class Reader {
     std::uint64_t time() const { return entries[next].log_time; }
   };
 
-  explicit Reader(std::unique_ptr<Input> input);
+  Reader(std::unique_ptr<Input> input, FileIndex known);
   bool WantsNextChunk() const;
   void OpenNextChunk();
   void FindMessages(OpenChunk* chunk);

@@ -59,6 +59,8 @@ struct Channel {
   std::string message_encoding;
   Metadata metadata;
 };
+/// The entry of a channel's metadata that has the caps of its stream, in our recordings.
+inline constexpr const char* kCapsKey = "gst_caps";
 struct MessageHeader {
   static constexpr std::size_t kSize = 22;
   std::uint16_t channel_id = 0;

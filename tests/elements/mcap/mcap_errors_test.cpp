@@ -140,7 +140,7 @@ TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
   mcap::Channel channel;
   channel.topic = "/slices";
   channel.message_encoding = "cdr";
-  channel.metadata = {{gst::kCapsKey, caps}};
+  channel.metadata = {{mcap::kCapsKey, caps}};
   ASSERT_TRUE(maker.Add(
       maker.AddChannel(gst::SchemaOf(gst::MessageType::kSlice), std::move(channel)), 1, "x"));
   ASSERT_TRUE(maker.writer().Finish());

@@ -170,7 +170,7 @@ void WriteBombs(const std::string& path, int chunks) {
   schema.id = 1;
   Append(schema, &records);
   const char* caps = "application/x-lidar-slice,alignment=(string)slice";
-  Append(mcap::Channel{1, 1, "/slices", "cdr", {{gst::kCapsKey, caps}}}, &records);
+  Append(mcap::Channel{1, 1, "/slices", "cdr", {{mcap::kCapsKey, caps}}}, &records);
   const mcap::Bytes catalogue = records;
   records.resize(mcap::kMaxChunk);
   mcap::Bytes bomb;
