@@ -118,11 +118,11 @@ std::size_t Client::Send(Outbox::Item item, std::size_t depth) {
   return dropped;
 }
 
-void Client::SendSlice(std::uint32_t channel, std::uint32_t subscription,
-                       SharedSliceMessage slice) {
+void Client::SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice,
+                       std::uint16_t replay) {
   if (closed_) return;
   if (slices_.size() >= kMaxSlices) return End();
-  slices_.push_back({channel, subscription, std::move(slice)});
+  slices_.push_back({channel, subscription, std::move(slice), replay});
   Write();
 }
 
@@ -181,8 +181,12 @@ bool Client::TakeSlice() {
   slices_.pop_front();
   const SliceMessage& slice = *next.slice;
   const auto now_ns = static_cast<std::uint64_t>(g_get_real_time()) * 1000;
-  const auto about = foxglove::HeadOfSlice(
-      {{slice.id.scan, slice.id.index}, slice.count, slice.first_column, slice.is_recoded}, now_ns);
+  const auto about = foxglove::HeadOfSlice({{slice.id.scan, slice.id.index},
+                                            slice.count,
+                                            slice.first_column,
+                                            slice.is_recoded,
+                                            next.replay},
+                                           now_ns);
   Begin(foxglove::HeadOf(next.subscription, slice.unix_ns), {about.data(), about.size()},
         {next.slice, &slice.payload});
   return true;

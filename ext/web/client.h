@@ -38,8 +38,10 @@ class Client {
   /// The channel's next message does not come here.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
   /// Slices are kept in order. Their sender waits for earlier ones to be drawn, so a client that
-  /// lets too many wait has lied and is closed.
-  void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice);
+  /// lets too many wait has lied and is closed. `replay` is the number of the replay to which the
+  /// slice belongs, or 0 if it is live.
+  void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice,
+                 std::uint16_t replay = 0);
   /// The channel's messages are no longer sent.
   void Forget(std::uint32_t channel);
   /// Sends the close frame, if the peer takes it, and ends the connection.
@@ -67,6 +69,7 @@ class Client {
     std::uint32_t channel = 0;
     std::uint32_t subscription = 0;
     SharedSliceMessage slice;
+    std::uint16_t replay = 0;
   };
   static gboolean OnReadable(GObject*, gpointer self);
   static gboolean OnWritable(GObject*, gpointer self);

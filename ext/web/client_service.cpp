@@ -48,7 +48,7 @@ ClientService::ClientService(const ServerConfig& config, ServerCounters* counter
       certificate_(config.certificate, config.private_key),
       soup_(soup_server_new("server-header", "gst-lidar", nullptr)),
       door_(soup_.get(), certificate_.is_wanted() ? &certificate_ : nullptr, {}),
-      slices_(config.max_bitrate) {
+      slices_(config.max_bitrate, config.warn) {
   soup_server_add_early_handler(soup_.get(), nullptr, OnHeaders, this, nullptr);
   soup_server_add_handler(soup_.get(), nullptr, OnRequest, this, nullptr);
   statistics_ = std::make_shared<Topic>(
@@ -229,6 +229,8 @@ void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text
       return;
     case Request::Kind::kDrawn:
     case Request::Kind::kLacksReference:
+    case Request::Kind::kReplay:
+    case Request::Kind::kLive:
       return slices_.OnRequest(client, request);
     case Request::Kind::kUnsupported:
       return client->SendText(foxglove::ErrorStatus("This server does not offer that operation."));

@@ -157,7 +157,8 @@ bool OpenSlices(GstBaseSink* sink, const InputSettings& settings, const GstCaps*
   Hub& hub = *state.used;
   std::string why;
   state.slices = lidar::web::SliceStream::Open(
-      hub.server.get(), caps, {TopicName(settings, "/points"), settings.frame_id, hub.max_points},
+      hub.server.get(), caps,
+      {TopicName(settings, "/points"), settings.frame_id, settings.recording, hub.max_points},
       {hub.points, hub.malformed}, &why);
   if (state.slices) return true;
   GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("Not the caps of slices to show: %s.", why.c_str()),

@@ -29,7 +29,8 @@ struct Hub {
 struct InputSettings {
   std::string topic;  // empty: chosen by the data's kind
   std::string frame_id = "lidar";
-  guint number = 0;  // of the pad; makes topics differ
+  std::string recording;  // location of mcapsink; empty: there is none
+  guint number = 0;       // of the pad; makes topics differ
 };
 
 void SetHub(GstLidarFoxgloveInput* input, std::shared_ptr<Hub> hub);

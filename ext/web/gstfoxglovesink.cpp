@@ -102,7 +102,7 @@ Counters CountersOf(const Hub& hub) {
   return c;
 }
 
-const std::array<Property<InputSettings>, 2> kPadProperties = {{
+const std::array<Property<InputSettings>, 3> kPadProperties = {{
     {"topic",
      "Topic of the channel; NULL: /points, /points_draco, /pose or /camera, with the number of the "
      "pad from "
@@ -110,6 +110,10 @@ const std::array<Property<InputSettings>, 2> kPadProperties = {{
      &InputSettings::topic},
     {"frame-id", "Frame of the clouds or pictures, or of the sensor whose poses come",
      &InputSettings::frame_id},
+    {"recording",
+     "Files that an mcapsink writes of these slices, as its location has them; viewers may go back "
+     "into them; NULL: there are none",
+     &InputSettings::recording},
 }};
 
 }  // namespace

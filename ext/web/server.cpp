@@ -69,7 +69,8 @@ void Server::Run(std::function<void(std::string)> listens) {
   g_main_context_pop_thread_default(context_.get());
 }
 
-SharedTopic Server::Open(const std::string& name, foxglove::Schema schema, std::string stream) {
+SharedTopic Server::Open(const std::string& name, foxglove::Schema schema, std::string stream,
+                         std::shared_ptr<Recording> recording) {
   if (name == kStatisticsTopic) return nullptr;
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[name];
@@ -77,8 +78,8 @@ SharedTopic Server::Open(const std::string& name, foxglove::Schema schema, std::
   if (shared && (entry.topic->channel().schema != schema || schema == foxglove::Schema::kSlice))
     return nullptr;
   if (entry.users++ == 0)
-    entry.topic =
-        std::make_shared<Topic>(foxglove::Channel{next_id_++, name, schema, std::move(stream)});
+    entry.topic = std::make_shared<Topic>(
+        foxglove::Channel{next_id_++, name, schema, std::move(stream)}, std::move(recording));
   WakeLocked();
   return entry.topic;
 }

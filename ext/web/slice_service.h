@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Gives viewers the slices that their pace allows. Lives in the server's thread.
+// Gives viewers the slices that their pace allows: live ones, or those of a recording. Lives in the
+// server's thread.
 #pragma once
+#include <deque>
+#include <functional>
 #include <map>
+#include <optional>
+#include <string>
 
 #include "ext/web/client.h"
+#include "ext/web/recording_reader.h"
 #include "ext/web/topic.h"
 
 namespace lidar::web {
 
 class SliceService {
  public:
-  /// 0: no limit.
-  explicit SliceService(DataRate max_bitrate) : max_bitrate_(max_bitrate) {}
+  /// `max_bitrate` 0: no limit. `warn` gets a text for a user if a recording cannot be read.
+  explicit SliceService(DataRate max_bitrate, std::function<void(std::string)> warn = {});
 
   void Subscribe(Client* client, const SharedTopic& topic, std::uint32_t subscription);
   void Unsubscribe(Client* client, std::uint32_t channel);
@@ -20,7 +26,7 @@ class SliceService {
   void ForgetChannel(std::uint32_t channel) { streams_.erase(channel); }
 
   void Deliver(std::uint32_t channel, const SharedSliceMessage& slice);
-  /// `request` is of the kind kDrawn or kLacksReference.
+  /// `request` is about slices.
   void OnRequest(Client* client, const foxglove::Request& request);
   /// Call it regularly: sends what had to wait.
   void Tick();
@@ -32,19 +38,46 @@ class SliceService {
   std::uint64_t scans_skipped() const { return scans_skipped_; }
 
  private:
+  /// What a viewer gets of a recording in place of live slices.
+  struct Replay {
+    std::uint16_t number = 0;                 // the viewer's
+    std::deque<viewer::SharedSlice> waiting;  // read and not sent
+    std::uint64_t next_ns = 0;                // begin of the next piece
+    std::uint64_t last_ns = 0;                // of the last slice that was read
+    std::uint64_t damaged = 0;                // parts that were left out
+    bool is_reading = true;
+    bool ended = false;  // no more follow
+  };
   struct Viewer {
     std::uint32_t subscription = 0;
     viewer::Feed feed;
+    std::optional<Replay> replay = {};
+    std::uint64_t asker = 0;  // of the replay, for the reader
   };
   struct Stream {
     SharedTopic topic;
     viewer::RecentScans recent;
     std::map<Client*, Viewer> viewers;
+    Time looked_at{};           // at the recording
+    std::uint64_t from_ns = 0;  // its times at that time
+    std::uint64_t to_ns = 0;
+    std::string why;  // of the last warning
   };
   void Serve(Stream* stream, Client* client, Viewer* viewer);
   void ServeAll(Stream* stream);
+  void ServeReplay(const Stream& stream, Client* client, Viewer* viewer);
+
+  void Look(Stream* stream);
+  void BeginReplay(const foxglove::Request& request, const Stream& stream, Viewer* viewer);
+  void EndReplay(Viewer* viewer);
+  void OnPiece(const RecordingReader::Job& job, const Recording::Piece& piece);
+  void Learn(const Recording::Piece& piece, Stream* stream);
+  void Describe(const Stream& stream, const Viewer& viewer, Client* client);
 
   const DataRate max_bitrate_;
+  const std::function<void(std::string)> warn_;
+  RecordingReader reader_;
+  std::uint64_t next_asker_ = 1;             // 0: looks for all viewers of a stream
   std::map<std::uint32_t, Stream> streams_;  // by channel, with viewers
   std::uint64_t scans_skipped_ = 0;
 };

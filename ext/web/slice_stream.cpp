@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "ext/web/recording.h"
 #include "src/codec/cloud/exact_decoder.h"
 #include "src/codec/slice_decoder.h"
 #include "src/codec/slice_links.h"
@@ -95,14 +96,11 @@ SliceStream::SliceStream(Server* server, Settings settings, Counters counters)
 std::unique_ptr<SliceStream> SliceStream::Open(Server* server, const GstCaps* caps,
                                                Settings settings, Counters counters,
                                                std::string* why) {
-  const auto info = gst::CloudInfo::FromCodedCaps(caps);
-  if (!info) {
-    *why = "their fields lack x, y and z as F32 side by side";
-    return nullptr;
-  }
+  const auto parsed = SliceCaps::Parse(caps, why);
+  if (!parsed) return nullptr;
   std::unique_ptr<SliceStream> stream(new SliceStream(server, std::move(settings), counters));
-  if (!stream->OpenTopics(caps, *info, why)) return nullptr;
-  stream->decoding_ = std::make_unique<Decoding>(*info, stream->has_ranges_);
+  if (!stream->OpenTopics(*parsed, why)) return nullptr;
+  stream->decoding_ = std::make_unique<Decoding>(parsed->info, stream->has_ranges_);
   try {
     stream->thread_ = std::thread([self = stream.get()] { self->Run(); });
   } catch (const std::system_error& e) {
@@ -114,25 +112,19 @@ std::unique_ptr<SliceStream> SliceStream::Open(Server* server, const GstCaps* ca
   return stream;
 }
 
-bool SliceStream::OpenTopics(const GstCaps* caps, const gst::CloudInfo& info, std::string* why) {
-  const gchar* geometry = gst_structure_get_string(gst_caps_get_structure(caps, 0), "geometry");
-  has_ranges_ = g_strcmp0(geometry, "xyz") != 0;
-  if (has_ranges_ && !info.sensor_model) {
-    *why = "with geometry=range they lack a sensor-model";
-    return false;
-  }
-  foxglove::SliceStreamInfo about;
-  about.has_ranges = has_ranges_;
-  about.fields = info.fields.ToString();
-  about.framerate_n = info.framerate_n;
-  about.framerate_d = info.framerate_d;
-  if (has_ranges_) about.sensor_model = info.sensor_model->Serialise();
+bool SliceStream::OpenTopics(SliceCaps caps, std::string* why) {
+  foxglove::SliceStreamInfo about = caps.about;
+  has_ranges_ = about.has_ranges;
   about.frame_id = settings_.frame_id;
   about.clouds = settings_.topic;
+  about.recording = !settings_.recording.empty();
+  std::shared_ptr<Recording> recording;
+  if (about.recording)
+    recording = std::make_shared<Recording>(settings_.recording, std::move(caps));
   clouds_ = server_->Open(settings_.topic, foxglove::Schema::kPointCloud);
   if (clouds_)
     slices_ = server_->Open(settings_.topic + kSlicesEnding, foxglove::Schema::kSlice,
-                            foxglove::DescribeSlices(about));
+                            foxglove::DescribeSlices(about), std::move(recording));
   if (slices_) return true;
   *why = "the topic \"" + settings_.topic + "\" is already used for something else";
   return false;

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "ext/web/server.h"
-#include "gst/lidar/cloud_info.h"
+#include "ext/web/slice_caps.h"
 #include "src/viewer/backlog.h"
 
 namespace lidar::web {
@@ -17,9 +17,10 @@ namespace lidar::web {
 class SliceStream {
  public:
   struct Settings {
-    std::string topic;     // of the decoded clouds; slices have it with kSlicesEnding
-    std::string frame_id;  // of both channels
-    guint max_points = 0;  // of a decoded message; 0: no limit
+    std::string topic;           // of the decoded clouds; slices have it with kSlicesEnding
+    std::string frame_id;        // of both channels
+    std::string recording = {};  // location of mcapsink's files of the stream; empty: none
+    guint max_points = 0;        // of a decoded message; 0: no limit
   };
   struct Counters {
     std::atomic<guint64>& points;     // decoded points sent to clients
@@ -43,7 +44,7 @@ class SliceStream {
   class Decoding;
 
   SliceStream(Server* server, Settings settings, Counters counters);
-  bool OpenTopics(const GstCaps* caps, const gst::CloudInfo& info, std::string* why);
+  bool OpenTopics(SliceCaps caps, std::string* why);
   void Wake();
   void Run();
   void Publish(const SliceMessage& slice, bool recodes);

@@ -30,10 +30,15 @@ struct SliceMessage final : viewer::Slice {
 };
 using SharedSliceMessage = std::shared_ptr<const SliceMessage>;
 
+class Recording;
+
 class Topic {
  public:
-  explicit Topic(foxglove::Channel channel) : channel_(std::move(channel)) {}
+  /// `recording` is that of slices; null: there is none.
+  explicit Topic(foxglove::Channel channel, std::shared_ptr<Recording> recording = {})
+      : channel_(std::move(channel)), recording_(std::move(recording)) {}
   const foxglove::Channel& channel() const { return channel_; }
+  const std::shared_ptr<Recording>& recording() const { return recording_; }
   /// Number of messages that may wait for a slow client; older ones are dropped.
   std::size_t depth() const { return depth_; }
   void set_depth(std::size_t depth) { depth_ = depth > 0 ? depth : 1; }
@@ -61,6 +66,7 @@ class Topic {
   }
 
   const foxglove::Channel channel_;
+  const std::shared_ptr<Recording> recording_;
   std::mutex mutex_;
   std::function<void()> on_wish_;
   std::atomic<std::size_t> depth_{1};

@@ -67,7 +67,7 @@ void PutLe(std::uint64_t value, unsigned bytes, std::uint8_t* out) {
   for (unsigned i = 0; i < bytes; ++i) out[i] = static_cast<std::uint8_t>(value >> 8 * i);
 }
 
-/// `{"op":"drawn","subscriptionId":7,"scan":1234,"slice":5}`; lacksReference has no slice.
+/// `{"op":"drawn","subscriptionId":7,"scan":1234,"slice":5}`; others have no slice.
 Request ParseOfSlices(const json& message, Request::Kind kind) {
   const auto subscription = Id(message, "subscriptionId");
   const auto scan = Id(message, "scan");
@@ -82,6 +82,26 @@ Request ParseOfSlices(const json& message, Request::Kind kind) {
   return request;
 }
 
+/// `{"op":"replay","subscriptionId":7,"number":3,"time":1764085200.5}`
+Request ParseReplay(const json& message) {
+  constexpr double kLatest_s = 1e10;  // year 2286
+  Request request = ParseOfSlices(message, Request::Kind::kReplay);
+  const auto number = Id(message, "number");
+  const auto time = message.find("time");
+  if (request.kind != Request::Kind::kReplay) return request;
+  if (!number || *number == 0 || *number > std::numeric_limits<std::uint16_t>::max() ||
+      time == message.end() || !time->is_number())
+    return Malformed("replay needs a number from 1 to 65535 and a time");
+  const auto seconds = time->get<double>();
+  if (!(seconds >= 0 && seconds <= kLatest_s))
+    return Malformed("time is not in seconds since 1970");
+  request.number = static_cast<std::uint16_t>(*number);
+  request.time_ns = static_cast<std::uint64_t>(seconds * 1e9);
+  return request;
+}
+
+double Seconds(std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
 }  // namespace
 
 std::string DescribeSlices(const SliceStreamInfo& stream) {
@@ -90,7 +110,8 @@ std::string DescribeSlices(const SliceStreamInfo& stream) {
               {"framerate", {stream.framerate_n, stream.framerate_d}},
               {"sensorModel", Base64(stream.sensor_model)},
               {"frameId", stream.frame_id},
-              {"clouds", stream.clouds}}
+              {"clouds", stream.clouds},
+              {"recording", stream.recording}}
       .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -124,6 +145,17 @@ std::string Unadvertise(const std::vector<std::uint32_t>& channel_ids) {
   return json{{"op", "unadvertise"}, {"channelIds", channel_ids}}.dump();
 }
 
+std::string Describe(const RecordingStatus& status) {
+  return json{{"op", "recording"},
+              {"subscriptionId", status.subscription},
+              {"number", status.number},
+              {"from", Seconds(status.from_ns)},
+              {"to", Seconds(status.to_ns)},
+              {"damaged", status.damaged},
+              {"end", status.end_ns ? json(Seconds(*status.end_ns)) : json()}}
+      .dump();
+}
+
 std::string ErrorStatus(const std::string& text) {
   constexpr int kError = 2;
   return json{{"op", "status"}, {"level", kError}, {"message", text}}.dump(
@@ -138,6 +170,8 @@ Request ParseRequest(std::string_view text) {
   if (*op == "subscribe") return ParseSubscribe(message);
   if (*op == "unsubscribe") return ParseUnsubscribe(message);
   if (*op == "drawn") return ParseOfSlices(message, Request::Kind::kDrawn);
+  if (*op == "replay") return ParseReplay(message);
+  if (*op == "live") return ParseOfSlices(message, Request::Kind::kLive);
   if (*op == "lacksReference") return ParseOfSlices(message, Request::Kind::kLacksReference);
   Request request;
   request.kind = Request::Kind::kUnsupported;
@@ -157,6 +191,7 @@ SliceHead HeadOfSlice(const SliceInfo& slice, std::uint64_t sent_unix_ns) {
   SliceHead head{kVersion, static_cast<std::uint8_t>(slice.is_recoded ? 1 : 0)};
   PutLe(slice.name.index, 2, &head[2]);
   PutLe(slice.count, 2, &head[4]);
+  PutLe(slice.replay, 2, &head[6]);
   PutLe(slice.name.scan, 4, &head[8]);
   PutLe(slice.first_column, 4, &head[12]);
   PutLe(sent_unix_ns, 8, &head[16]);

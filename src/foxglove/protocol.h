@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,7 +32,8 @@ struct SliceStreamInfo {
   int framerate_d = 1;
   std::vector<std::uint8_t> sensor_model;  // docs/wire-format.md; empty without ranges
   std::string frame_id;
-  std::string clouds;  // topic of the decoded stream
+  std::string clouds;      // topic of the decoded stream
+  bool recording = false;  // viewers may replay it
 };
 std::string DescribeSlices(const SliceStreamInfo& stream);
 
@@ -40,6 +42,17 @@ std::string Advertise(const std::vector<Channel>& channels);
 std::string Unadvertise(const std::vector<std::uint32_t>& channel_ids);
 /// Describes the fault of a client's message.
 std::string ErrorStatus(const std::string& text);
+
+/// The state of a recording and of a viewer's replay. Times are [ns since 1970].
+struct RecordingStatus {
+  std::uint32_t subscription = 0;
+  std::uint16_t number = 0;   // of the replay; 0: the viewer is live
+  std::uint64_t from_ns = 0;  // both are 0 if nothing can be read
+  std::uint64_t to_ns = 0;
+  std::uint64_t damaged = 0;            // parts that the replay left out
+  std::optional<std::uint64_t> end_ns;  // of the last slice, if no more follow
+};
+std::string Describe(const RecordingStatus& status);
 
 struct Subscription {
   std::uint32_t id = 0;  // the client's choice
@@ -61,12 +74,16 @@ struct Request {
     kUnsubscribe,
     kDrawn,           // the viewer has drawn `slice`, and all that came before it
     kLacksReference,  // its decoder lacks a slice
+    kReplay,          // slices of the recording from `time_ns` on, in place of live ones
+    kLive,            // live slices again
   };
   Kind kind = Kind::kMalformed;
   std::vector<Subscription> subscriptions;
   std::vector<std::uint32_t> unsubscribed;  // subscription ids
   std::uint32_t subscription = 0;           // by which `slice` came
   SliceName slice;
+  std::uint16_t number = 0;  // of a replay; never 0
+  std::uint64_t time_ns = 0;
   std::string error;
 };
 /// `text` may be anything.
@@ -82,6 +99,7 @@ struct SliceInfo {
   std::uint32_t count = 1;  // number of slices in the scan
   std::uint32_t first_column = 0;
   bool is_recoded = false;
+  std::uint16_t replay = 0;  // number of the replay; 0: live
 };
 using SliceHead = std::array<std::uint8_t, 24>;
 SliceHead HeadOfSlice(const SliceInfo& slice, std::uint64_t sent_unix_ns);

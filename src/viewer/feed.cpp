@@ -9,6 +9,8 @@ namespace {
 constexpr std::size_t kRecentScans = 2;
 /// Greatest number of slices in the two newest scans: a hostile sender could invent more.
 constexpr std::size_t kMostSlices = 1024;
+/// Greatest number of recorded slices under way: a hostile file may have slices of one byte.
+constexpr std::size_t kMostRecorded = 512;
 /// A decoder remembers 24 blocks of each sector; a scan of our streams has at most 128 sectors.
 constexpr std::size_t kMostKnown = 4096;
 
@@ -26,6 +28,23 @@ void RecentScans::Add(SharedSlice slice) {
   if (scan->slices.size() >= kMostSlices && scan->slices.count(slice->id.index) == 0) return;
   Forms& forms = scan->slices[slice->id.index];
   (slice->is_recoded ? forms.recoded : forms.own) = std::move(slice);
+}
+
+std::vector<SharedSlice> WithReferences(const std::vector<SharedSlice>& slices, std::size_t first) {
+  std::vector<SharedSlice> out;
+  std::unordered_set<std::uint32_t> needed;
+  for (std::size_t i = slices.size(); i-- > 0;) {
+    const auto& blocks = slices[i]->blocks;
+    const bool wanted = i >= first || std::any_of(blocks.begin(), blocks.end(), [&](const auto& b) {
+                          return needed.count(b.crc) > 0;
+                        });
+    if (!wanted) continue;
+    for (const codec::BlockName& block : blocks)
+      if (block.reference) needed.insert(*block.reference);
+    out.push_back(slices[i]);
+  }
+  std::reverse(out.begin(), out.end());
+  return out;
 }
 
 std::vector<SharedSlice> Feed::Take(Time now, const RecentScans& recent) {
@@ -46,6 +65,18 @@ std::vector<SharedSlice> Feed::Take(Time now, const RecentScans& recent) {
       pace_.OnSent(now, slice->id, slice->size);
       out.push_back(slice);
     }
+  }
+  return out;
+}
+
+std::vector<SharedSlice> Feed::TakeRecorded(Time now, std::deque<SharedSlice>* waiting) {
+  std::vector<SharedSlice> out;
+  while (!waiting->empty() && pace_.unacknowledged_slices() < kMostRecorded &&
+         pace_.MayBegin(now)) {
+    const SharedSlice& next = waiting->front();
+    pace_.OnSent(now, next->id, next->size);
+    out.push_back(next);
+    waiting->pop_front();
   }
   return out;
 }

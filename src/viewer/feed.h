@@ -45,6 +45,9 @@ class RecentScans {
   std::deque<Scan> scans_;
 };
 
+/// Returns the slices from `first` on, and earlier ones that they refer to, directly or not.
+std::vector<SharedSlice> WithReferences(const std::vector<SharedSlice>& slices, std::size_t first);
+
 class Feed {
  public:
   explicit Feed(DataRate max_bitrate) : pace_(max_bitrate) {}
@@ -52,6 +55,9 @@ class Feed {
   /// Returns the slices to send now, in this order, and counts them as sent. Call it after each new
   /// slice, after each drawn one, and at intervals.
   std::vector<SharedSlice> Take(Time now, const RecentScans& recent);
+  /// Takes slices of a recording off the front as the pace allows, all of them in order. Call it as
+  /// Take().
+  std::vector<SharedSlice> TakeRecorded(Time now, std::deque<SharedSlice>* waiting);
   void OnDrawn(Time now, SliceId slice) { pace_.OnDrawn(now, slice); }
   /// The viewer's decoder lacks a reference: it now gets slices that stand alone.
   void OnLacksReference();

@@ -32,6 +32,7 @@ class Pace {
   void OnDrawn(Time now, SliceId slice);
 
   DataSize unacknowledged() const { return unacknowledged_; }
+  std::size_t unacknowledged_slices() const { return sent_.size(); }
   DataRate rate() const { return rate_.empty() ? DataRate() : rate_.front().rate; }
   std::optional<Duration> shortest_delay() const { return shortest_; }
 

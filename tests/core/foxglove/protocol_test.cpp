@@ -39,7 +39,8 @@ TEST(Advertise, TellsWhatAStreamOfSlicesIs) {
   EXPECT_EQ(text["schemaEncoding"], "json");
   EXPECT_EQ(json::parse(text["schema"].get<std::string>()),
             json::parse(R"({"geometry":"range","fields":"x:F32:0,y:F32:4,z:F32:8",
-              "framerate":[10,1],"sensorModel":"AQID","frameId":"os1","clouds":"/points"})"));
+              "framerate":[10,1],"sensorModel":"AQID","frameId":"os1","clouds":"/points",
+              "recording":false})"));
 }
 
 TEST(Advertise, SurvivesTextsThatAreNone) {
@@ -53,8 +54,8 @@ TEST(Advertise, SurvivesTextsThatAreNone) {
 }
 
 TEST(SliceHead, HasTheLayoutOfThePage) {
-  const SliceHead head = HeadOfSlice({{0x01020304, 5}, 16, 1023, true}, 0x0807060504030201);
-  const SliceHead expected = {1,    1, 5, 0, 16, 0, 0, 0, 4, 3, 2, 1,
+  const SliceHead head = HeadOfSlice({{0x01020304, 5}, 16, 1023, true, 0x0203}, 0x0807060504030201);
+  const SliceHead expected = {1,    1, 5, 0, 16, 0, 3, 2, 4, 3, 2, 1,
                               0xFF, 3, 0, 0, 1,  2, 3, 4, 5, 6, 7, 8};
   EXPECT_EQ(head, expected);
 }
@@ -73,6 +74,41 @@ TEST(Requests, SayWhatAViewerHasDrawnAndLacks) {
        {R"({"op":"drawn","subscriptionId":7,"scan":1})", R"({"op":"drawn","scan":1,"slice":1})",
         R"({"op":"lacksReference"})", R"({"op":"drawn","subscriptionId":7,"scan":-1,"slice":1})"})
     EXPECT_EQ(ParseRequest(bad).kind, Kind::kMalformed) << bad;
+}
+
+TEST(Requests, GoBackInTimeAndReturn) {
+  const Request replay =
+      ParseRequest(R"({"op":"replay","subscriptionId":7,"number":65535,"time":1764085200.5})");
+  ASSERT_EQ(replay.kind, Kind::kReplay) << replay.error;
+  EXPECT_EQ(replay.subscription, 7U);
+  EXPECT_EQ(replay.number, 65535U);
+  EXPECT_EQ(replay.time_ns, 1764085200500000000U);
+  EXPECT_EQ(ParseRequest(R"({"op":"live","subscriptionId":7})").kind, Kind::kLive);
+  for (const char* bad :
+       {R"({"op":"replay","number":1,"time":1})", R"({"op":"replay","subscriptionId":7,"time":1})",
+        R"({"op":"replay","subscriptionId":7,"number":0,"time":1})",
+        R"({"op":"replay","subscriptionId":7,"number":65536,"time":1})",
+        R"({"op":"replay","subscriptionId":7,"number":1})",
+        R"({"op":"replay","subscriptionId":7,"number":1,"time":-1})",
+        R"({"op":"replay","subscriptionId":7,"number":1,"time":1e300})",
+        R"({"op":"replay","subscriptionId":7,"number":1,"time":"../../etc/passwd"})",
+        R"({"op":"live"})"})
+    EXPECT_EQ(ParseRequest(bad).kind, Kind::kMalformed) << bad;
+}
+
+TEST(Recordings, SayWhatTheyHave) {
+  const auto text =
+      json::parse(Describe(RecordingStatus{7, 3, 1'500'000'000, 2'000'000'000, 4, {}}));
+  EXPECT_EQ(text["op"], "recording");
+  EXPECT_EQ(text["subscriptionId"], 7);
+  EXPECT_EQ(text["number"], 3);
+  EXPECT_EQ(text["from"], 1.5);
+  EXPECT_EQ(text["to"], 2.0);
+  EXPECT_EQ(text["damaged"], 4);
+  EXPECT_TRUE(text["end"].is_null());
+  RecordingStatus ended;
+  ended.end_ns = 1'250'000'000;
+  EXPECT_EQ(json::parse(Describe(ended))["end"], 1.25);
 }
 
 TEST(ServerInfo, SurvivesANameThatIsNoText) {

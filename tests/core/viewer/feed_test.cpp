@@ -137,6 +137,41 @@ TEST(Feed, GivesSlicesThatStandAloneToAViewerThatLacksSomething) {
   EXPECT_EQ(stream.Take(&feed), "2.0r ");
 }
 
+TEST(Recorded, ComeInOrderAsFastAsTheyAreDrawn) {
+  Feed feed{DataRate()};
+  Time now{};
+  std::deque<SharedSlice> waiting;
+  for (std::uint32_t scan = 1; scan <= 100; ++scan) waiting.push_back(Own(scan, 0, 1));
+  std::uint32_t scan = 0;
+  for (const auto& slice : feed.TakeRecorded(now, &waiting)) EXPECT_EQ(slice->id.scan, ++scan);
+  EXPECT_EQ(scan, Pace::kFirstScans);
+  EXPECT_TRUE(feed.TakeRecorded(now, &waiting).empty());
+  for (std::uint32_t drawn = 1; drawn <= 100; ++drawn) {
+    now += std::chrono::milliseconds(10);
+    feed.OnDrawn(now, {drawn, 0});
+    for (const auto& slice : feed.TakeRecorded(now, &waiting)) EXPECT_EQ(slice->id.scan, ++scan);
+    EXPECT_LT(scan - drawn, 15U);  // 100 ms at that rate, and what takes its way
+  }
+  EXPECT_TRUE(waiting.empty());
+}
+
+TEST(Recorded, AreFewUnderWayHoweverSmallTheyAre) {
+  Feed feed{DataRate()};
+  std::deque<SharedSlice> waiting;
+  for (std::uint32_t i = 0; i < 5000; ++i) waiting.push_back(Own(1, i, 0));
+  EXPECT_LE(feed.TakeRecorded(Time{}, &waiting).size(), 512U);
+}
+
+TEST(References, OfTheWantedSlicesComeBeforeThem) {
+  // Place 0: 5 refers to 3, 3 to 1; place 1: 5 refers to 4, which stands alone.
+  const std::vector<SharedSlice> slices = {Own(1, 0, 0), Own(1, 1, 0), Own(2, 0, 1), Own(2, 1, 1),
+                                           Own(3, 0, 2), Own(4, 1, 0), Own(5, 0, 2), Own(5, 1, 1)};
+  std::string text;
+  for (const SharedSlice& slice : WithReferences(slices, 6))
+    text += std::to_string(slice->id.scan) + "." + std::to_string(slice->id.index) + " ";
+  EXPECT_EQ(text, "1.0 3.0 4.1 5.0 5.1 ");
+}
+
 TEST(RecentScans, AreTwoWithABoundedNumberOfSlices) {
   RecentScans recent;
   for (std::uint32_t scan = 0; scan < 5; ++scan)

@@ -218,6 +218,7 @@ class Peer {
   nlohmann::json server_info;
   std::map<std::string, nlohmann::json> channels;  // by topic
   std::vector<std::string> statuses;
+  nlohmann::json recording;  // the last word about one
   std::deque<Received> received;
 
  private:
@@ -246,6 +247,7 @@ class Peer {
   }
   void OnText(const nlohmann::json& text) {
     if (text["op"] == "serverInfo") server_info = text;
+    if (text["op"] == "recording") recording = text;
     if (text["op"] == "status") statuses.push_back(text["message"]);
     if (text["op"] == "advertise")
       for (const auto& channel : text["channels"]) channels[channel["topic"]] = channel;

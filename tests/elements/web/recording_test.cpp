@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Viewers that go back into what mcapsink has written, or still writes.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/elements/web/slice_viewer.h"
+
+namespace lidar::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the first slice; they follow each other by 25 ms.
+constexpr std::uint64_t kFirst_ns = 1'700'000'000'000'000'000;
+constexpr std::uint64_t kSlice_ns = 25'000'000;
+
+double Seconds(std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+/// An edge that records what it serves.
+class Recordings : public ::testing::Test {
+ protected:
+  Recordings() : folder_(::testing::TempDir() + "replays-" + std::to_string(getpid())) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Recordings() override {
+    recorder_.reset();
+    fs::remove_all(folder_);
+  }
+
+  std::string path() const { return folder_ + "/r%d.mcap"; }
+  std::string file() const { return folder_ + "/r0.mcap"; }
+  void OpenEdge() { edge_.emplace("sink_0::recording=" + path(), "effort=2", 700); }
+  /// Both get the next `n` slices.
+  void Push(guint n) {
+    for (guint i = 0; i < n; ++i) {
+      gst::BufferPtr buffer(gst_buffer_make_writable(edge_->robot.Next().release()));
+      const std::uint64_t captured = kFirst_ns + pushed_++ * kSlice_ns;
+      gst_lidar_buffer_set_capture_time(buffer.get(), captured);
+      GST_BUFFER_PTS(buffer.get()) = captured - kFirst_ns;
+      if (!recorder_) {
+        GstElement* sink = gst_element_factory_make("mcapsink", nullptr);
+        g_object_set(sink, "location", path().c_str(), "max-file-duration", 100 * GST_SECOND,
+                     nullptr);
+        recorder_.reset(gst_harness_new_with_element(sink, "sink_0", nullptr));
+        gst_harness_set_src_caps(recorder_.get(), edge_->robot.caps().release());
+      }
+      gst_harness_push(recorder_.get(), gst_buffer_ref(buffer.get()));
+      edge_->Push(std::move(buffer));
+    }
+  }
+  /// The file is complete.
+  void EndRecording() { recorder_.reset(); }
+
+  const std::string folder_;
+  std::optional<Edge> edge_;
+  Harness recorder_;
+  std::uint64_t pushed_ = 0;
+};
+
+void Replay(Viewer* viewer, guint number, double time) {
+  viewer->peer.SendText(nlohmann::json{
+      {"op", "replay"},
+      {"subscriptionId", 9},
+      {"number", number},
+      {"time", time}}.dump());
+}
+
+nlohmann::json AwaitStatus(Viewer* viewer, guint number) {
+  EXPECT_TRUE(WaitUntil([&] {
+    return viewer->peer.recording.is_object() && viewer->peer.recording["number"] == number;
+  }));
+  return viewer->peer.recording;
+}
+
+TEST_F(Recordings, AreOfferedWithTheirTimes) {
+  OpenEdge();
+  Push(400);  // 10 s
+  EndRecording();
+  Viewer viewer(&edge_->sink);
+  const auto stream =
+      nlohmann::json::parse(viewer.peer.channels["/points/slices"]["schema"].get<std::string>());
+  EXPECT_EQ(stream["recording"], true);
+  const auto status = AwaitStatus(&viewer, 0);
+  EXPECT_EQ(status["subscriptionId"], 9);
+  EXPECT_NEAR(status["from"], Seconds(kFirst_ns), 1e-3);
+  EXPECT_NEAR(status["to"], Seconds(kFirst_ns + 399 * kSlice_ns), 1e-3);
+}
+
+TEST_F(Recordings, ArePlayedFromATimeOnInPlaceOfWhatIsNew) {
+  OpenEdge();
+  Push(400);
+  EndRecording();
+  Viewer viewer(&edge_->sink);
+  const std::uint64_t time = kFirst_ns + 200 * kSlice_ns;
+  Replay(&viewer, 3, Seconds(time));
+  AwaitStatus(&viewer, 3);
+  // All decode: what they refer to comes before them.
+  std::uint64_t last = 0;
+  unsigned at_time = 0;
+  while (last < time + 20 * kSlice_ns) {
+    viewer.Draw();
+    const SliceReader slice(viewer.last);
+    EXPECT_EQ(slice.replay, 3U);
+    EXPECT_GT(viewer.last.unix_ns, last);
+    last = viewer.last.unix_ns;
+    if (last > time - 12 * kSlice_ns && last <= time) ++at_time;
+  }
+  EXPECT_GE(at_time, 2 * kScanSlices);
+  Push(kScanSlices);
+  viewer.peer.SendText(R"({"op":"live","subscriptionId":9})");
+  viewer.peer.Sync();
+  while (!viewer.peer.received.empty()) viewer.Draw();
+  Push(2 * kScanSlices);
+  do viewer.Draw();
+  while (SliceReader(viewer.last).replay != 0);
+}
+
+TEST_F(Recordings, GrowWhileTheyArePlayed) {
+  OpenEdge();
+  Push(160);  // 4 s
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns));
+  const double end = AwaitStatus(&viewer, 1)["to"];
+  EXPECT_LT(end, Seconds(kFirst_ns + 160 * kSlice_ns));
+  Push(160);
+  Replay(&viewer, 2, end);
+  EXPECT_TRUE(WaitUntil([&] { return AwaitStatus(&viewer, 2)["to"] > end + 2; }));
+  do viewer.Draw();
+  while (SliceReader(viewer.last).replay != 2);
+}
+
+TEST_F(Recordings, AreSentAsFastAsTheViewerDrawsThem) {
+  OpenEdge();
+  Push(600);
+  EndRecording();
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns + 10 * kSlice_ns));
+  for (int i = 0; i < 8; ++i) viewer.Draw();
+  // It acknowledges no more: the last slices of the recording wait.
+  for (int i = 0; i < 40; ++i) viewer.peer.Sync();
+  EXPECT_LE(viewer.peer.received.size(), 512U);
+}
+
+TEST_F(Recordings, WhoseChunksAreDamagedPlayOnWithoutThem) {
+  OpenEdge();
+  Push(400);
+  EndRecording();
+  {
+    std::fstream bytes(file(), std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(fs::file_size(file()) / 2));
+    bytes.write("damage", 6);
+  }
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns + 399 * kSlice_ns));
+  EXPECT_TRUE(WaitUntil([&] { return AwaitStatus(&viewer, 1)["damaged"] == 1; }));
+  ASSERT_TRUE(WaitUntil([&] { return !viewer.peer.received.empty(); }));
+}
+
+TEST_F(Recordings, ThatAreMissingOrNoRecordingsSaySo) {
+  OpenEdge();
+  Push(kScanSlices);
+  EndRecording();
+  fs::remove(file());
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns));
+  EXPECT_EQ(AwaitStatus(&viewer, 1)["to"], 0);
+  std::ofstream(file()) << "no recording";
+  Replay(&viewer, 2, Seconds(kFirst_ns));
+  EXPECT_EQ(AwaitStatus(&viewer, 2)["to"], 0);
+  viewer.peer.SendText(R"({"op":"live","subscriptionId":9})");
+  viewer.peer.Sync();
+  Push(1);
+  viewer.Draw();
+}
+
+TEST_F(Recordings, EndWhereTheyEnd) {
+  OpenEdge();
+  Push(200);
+  EndRecording();
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns + 180 * kSlice_ns));
+  while (viewer.last.unix_ns < kFirst_ns + 199 * kSlice_ns) viewer.Draw();
+  ASSERT_TRUE(WaitUntil([&] { return viewer.peer.recording["end"].is_number(); }));
+  EXPECT_NEAR(viewer.peer.recording["end"], Seconds(kFirst_ns + 199 * kSlice_ns), 1e-3);
+  EXPECT_EQ(viewer.peer.recording["damaged"], 0);
+}
+
+TEST_F(Recordings, CostOtherViewersNothing) {
+  OpenEdge();
+  Push(400);
+  EndRecording();
+  Viewer replaying(&edge_->sink);
+  Viewer live(&edge_->sink);
+  Replay(&replaying, 1, Seconds(kFirst_ns));
+  AwaitStatus(&replaying, 1);
+  for (guint i = 0; i < 2 * kScanSlices; ++i) {
+    Push(1);
+    live.Draw();
+    EXPECT_EQ(SliceReader(live.last).replay, 0U);
+    EXPECT_GE(live.last.unix_ns, kFirst_ns + 400 * kSlice_ns);
+  }
+}
+
+TEST_F(Recordings, OfAnotherSensorAreNotShown) {
+  const auto others = gst::ElementPtr(gst_parse_launch(
+      ("lidartestsrc model=os1-64 mode=512x10 num-buffers=80 ! lidarenc ! mcapsink location=" +
+       path())
+          .c_str(),
+      nullptr));
+  gst_element_set_state(others.get(), GST_STATE_PLAYING);
+  GstBus* bus = gst_element_get_bus(others.get());
+  gst_message_unref(gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS));
+  gst_object_unref(bus);
+  gst_element_set_state(others.get(), GST_STATE_NULL);
+  Edge edge("sink_0::recording=" + path());
+  edge.Push();
+  Viewer viewer(&edge.sink);
+  Replay(&viewer, 1, 1e9);
+  EXPECT_EQ(AwaitStatus(&viewer, 1)["to"], 0);
+  for (int i = 0; i < 20; ++i) viewer.peer.Sync();
+  EXPECT_TRUE(viewer.peer.received.empty());
+}
+
+TEST_F(Recordings, AreNotThereForAStreamWithoutOne) {
+  edge_.emplace();
+  Push(kScanSlices);
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns));
+  viewer.peer.Sync();
+  EXPECT_TRUE(viewer.peer.recording.is_null());
+  Push(1);
+  viewer.Draw();
+  EXPECT_EQ(SliceReader(viewer.last).replay, 0U);
+}
+
+TEST_F(Recordings, SurviveAViewerThatJumpsWithoutEnd) {
+  OpenEdge();
+  Push(400);
+  Viewer viewer(&edge_->sink);
+  for (guint i = 1; i <= 2000; ++i)
+    Replay(&viewer, i, i % 3 == 0 ? 1e10 : Seconds(kFirst_ns + (i % 400) * kSlice_ns));
+  AwaitStatus(&viewer, 2000);
+  Peer other(&edge_->sink);
+  other.Sync();  // served meanwhile
+  EXPECT_FALSE(viewer.peer.closed());
+}
+
+}  // namespace
+}  // namespace lidar::test
