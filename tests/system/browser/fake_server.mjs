@@ -101,12 +101,19 @@ export class FakeServer {
     return true;
   }
 
-  /** Slice `i` of what was recorded, `age` ms after its capture. */
-  sendSlice(channel, { coded, slices }, i, age = 0) {
+  /** The state of the recording of a channel. */
+  describe(channel, status) {
+    const subscriptionId = this.subscribed.get(channel);
+    this.client.send(JSON.stringify({ op: 'recording', subscriptionId, number: 0, damaged: 0, end: null, ...status }));
+  }
+
+  /** Slice `i` of what was recorded, `age` ms after its capture, of a replay if it has a number. */
+  sendSlice(channel, { coded, slices }, i, age = 0, replay = 0) {
     const head = Buffer.alloc(24);
     head.writeUInt8(1, 0);
     head.writeUInt16LE(i % slices, 2);
     head.writeUInt16LE(slices, 4);
+    head.writeUInt16LE(replay, 6);
     head.writeUInt32LE(Math.floor(i / slices), 8);
     head.writeBigUInt64LE(now(), 16);
     return this.send(channel, Buffer.concat([head, coded[i % coded.length]]), now() - BigInt(Math.round(age * 1e6)));

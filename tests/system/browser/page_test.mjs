@@ -2,6 +2,9 @@
 // The page in a real browser: what a user sees and does, and what a server that ends, refuses or
 // waits for a stalled client does to it.
 import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
 import { after, before, test } from 'node:test';
 import WebSocket from 'ws';
 import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './support.mjs';
@@ -260,6 +263,36 @@ test('two viewers see it; a stalled one slows neither them nor the pipeline', li
   await pipeline.stop();
 });
 
+test('it goes back to before it came, in what an mcapsink writes', limits, async () => {
+  const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-recording-'));
+  const files = path.join(folder, 'r-%05d.mcap');
+  const port = await freePort();
+  const pipeline = await Pipeline.start(
+    `${SENSOR} ! lidarenc ! tee name=t t. ! queue ! mcapsink location=${files} max-file-duration=3000000000 ` +
+      `t. ! queue ! foxglovesink port=${port} sink_0::recording=${files}`,
+    port,
+  );
+  await sleep(5000);
+  const { page, context, complaints } = await openPage(browser, address(port));
+  await until('a recording', () => page.evaluate(() => window.lidarPage.replay.span !== null));
+  const came = Date.now() / 1000;
+  const [from] = await page.evaluate(() => window.lidarPage.timeline.span);
+  assert.ok(from < came - 4, `it begins ${came - from} s ago`);
+  const at = () => page.evaluate(() => window.lidarPage.scene.fresh.time);
+  await page.evaluate(() => window.lidarPage.timeline.seek(0));
+  await until('its begin', async () => Math.abs((await at()) - from) < 0.5);
+  await until('the next file', async () => (await at()) > from + 3.5);
+  assert.ok((await look(page)).drawn > 1000);
+  assert.equal(await page.textContent('#state span'), 'Recorded');
+  await page.click('#live');
+  await until('what is new', async () => (await at()) > came);
+  assert.equal(await page.evaluate(() => window.lidarPage.slices.damaged), 0);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await pipeline.stop();
+  rmSync(folder, { recursive: true });
+});
+
 test('it fits a phone, follows the theme, and the keyboard reaches all of it', limits, async () => {
   const port = await freePort();
   const pipeline = await Pipeline.start(`${SENSOR} ! lidarenc ! foxglovesink port=${port}`, port);
@@ -280,8 +313,8 @@ test('it fits a phone, follows the theme, and the keyboard reaches all of it', l
   await page.click('#panel');
   await page.click('#pause'); // brings the timeline
   assert.ok((await covered()) < 0.25, `${await covered()} of the scene is covered`);
+  const heights = await page.$$eval('.always button, #timeline button', (all) => all.map((b) => b.getBoundingClientRect().height));
   await page.click('#pause');
-  const heights = await page.$$eval('.always button', (all) => all.map((b) => b.getBoundingClientRect().height));
   assert.ok(heights.every((height) => height >= 48));
   await page.click('#more');
   const reached = new Set();

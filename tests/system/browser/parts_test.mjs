@@ -7,6 +7,8 @@ import { History, Player } from '../../../ext/web/page/src/history.js';
 import { Links } from '../../../ext/web/page/src/links.js';
 import { Poses } from '../../../ext/web/page/src/poses.js';
 import { readHeader } from '../../../ext/web/page/src/slices.js';
+import { Replay } from '../../../ext/web/page/src/replay.js';
+import { duration } from '../../../ext/web/page/src/timeline.js';
 
 const pose = (time, x, yaw) => ({
   time, child: 'lidar', position: [x, 0, 0], rotation: [0, 0, Math.sin(yaw / 2), Math.cos(yaw / 2)],
@@ -127,4 +129,43 @@ test('headers of another version, and what is too short, are passed over', () =>
   bytes.set([1, 1, 3, 0, 8, 0, 0, 0, 7]);
   const { recoded, slice, slices, scan } = readHeader(bytes);
   assert.deepEqual([recoded, slice, slices, scan], [true, 3, 8, 7]);
+});
+
+test('recordings of two sensors are one, and wait for each other', () => {
+  const schema = JSON.stringify({ recording: true });
+  const [left, right] = [1, 2].map((id) => ({ id, schemaName: 'lidar.Slice', schema }));
+  const other = { id: 3, schemaName: 'lidar.Slice', schema: '{}' };
+  const channels = new Map([left, right, other].map((channel) => [channel.id, channel]));
+  const [told, shown] = [[], []];
+  const connection = { subscriptions: channels, offered: channels, tell: (op, { id }, rest) => told.push({ op, id, ...rest }) };
+  const on = { begin() {}, end() {}, known() {}, show: (time) => shown.push(time) };
+  const replay = new Replay(on, () => connection);
+  replay.status(left, { number: 0, from: 100, to: 200, damaged: 0, end: null });
+  replay.status(right, { number: 0, from: 0, to: 0, damaged: 0, end: null });
+  assert.deepEqual([replay.span, replay.isBroken], [[100, 200], false]);
+  replay.begin(150);
+  assert.deepEqual(told.splice(0), [1, 2].map((id) => ({ op: 'replay', id, number: 1, time: 150 })));
+  const slice = (captured, scan) => ({ replay: 1, captured, scan, slice: 0 });
+  for (const [i, time] of [149, 150, 150.9, 152].entries()) replay.arrived(left, slice(time, i));
+  assert.deepEqual([replay.reach, shown], [-Infinity, []]);
+  replay.acknowledge();
+  assert.deepEqual(told.splice(0), [{ op: 'drawn', id: 1, scan: 2, slice: 0 }]);
+  replay.status(right, { number: 9, from: 0, to: 0, damaged: 0, end: 0 }); // of another replay
+  assert.deepEqual(shown, []);
+  replay.status(right, { number: 1, from: 0, to: 0, damaged: 0, end: 0 });
+  assert.deepEqual([replay.reach, shown, replay.last], [152, [150], Infinity]);
+  replay.status(left, { number: 1, from: 100, to: 200, damaged: 0, end: 152 });
+  assert.equal(replay.last, 152);
+  // What is not shown any more is acknowledged, too.
+  const rest = { op: 'drawn', id: 1, scan: 3, slice: 0 };
+  replay.begin(160);
+  assert.deepEqual(told.splice(0)[0], rest);
+  replay.arrived(left, slice(152, 3));
+  assert.deepEqual(told.splice(0), [rest]);
+  replay.end();
+  assert.deepEqual(told, [{ op: 'live', id: 1 }, { op: 'live', id: 2 }]);
+});
+
+test('times that are long ago are in minutes and hours', () => {
+  assert.deepEqual([7, 42.3, 200, 18200].map(duration), ['7.0 s', '42 s', '3:20 min', '5:03:20 h']);
 });

@@ -152,6 +152,128 @@ test('the page goes back into what it got, and returns to live', limits, async (
   await close();
 });
 
+/** A page of a stream with a recording of the last hour. */
+async function openRecorded(options = {}) {
+  const opened = await open([sliceChannel(2, '/points', { about: { ...recorded.about, recording: true } })], options);
+  const { server, page } = opened;
+  const to = Date.now() / 1000;
+  const describe = (rest = {}) => server.describe(2, { from: to - 3600, to, ...rest });
+  const replay = () => server.told.findLast(({ op }) => op === 'replay');
+  /** Slices [first, end) of the replay that the page asked for, 12.5 ms each, from 0.2 s before its time on. */
+  const play = (first, end) => {
+    const { number, time } = replay();
+    for (let i = first; i < end; ++i) server.sendSlice(2, recorded, i, Date.now() - 1000 * time + 200 - 12.5 * i, number);
+  };
+  await until('a subscription', () => server.subscribed.has(2));
+  describe();
+  await until('a timeline', () => page.isVisible('#timeline'));
+  return { ...opened, to, describe, replay, play };
+}
+const stateOf = (page) => page.textContent('#state span');
+/** Waits for a picture of a time after `time`, and not of what is live. */
+const shows = (page, time) =>
+  until(`the picture at ${time}`, async () => {
+    const shown = await shownAt(page);
+    return shown !== null && shown > time && shown < time + 5;
+  });
+
+test('the page goes back into a recording of the server, and returns to live at its end', limits, async () => {
+  const { server, page, complaints, close, to, describe, replay, play } = await openRecorded();
+  for (let i = 0; i < 8; ++i) server.sendSlice(2, recorded, i);
+  await until('a scan', () => acknowledged(server)?.slice === 7);
+  const whole = await points(page);
+  await page.fill('#timeline input', '-600');
+  const { number, time } = await until('a request', replay);
+  assert.ok(Math.abs(time - to + 600) < 0.1);
+  await until('words that say so', async () => (await stateOf(page)) === 'Loading the recording');
+  assert.match(await page.textContent('#timeline output'), /^10:00 min ago/);
+  play(0, 80);
+  await shows(page, time - 0.02);
+  assert.equal(await stateOf(page), 'Recorded');
+  assert.ok(Math.abs((await points(page)) - whole) < 0.2 * whole, 'the scan is not whole');
+  // What is live, and what another replay was sent, is not shown.
+  server.sendSlice(2, recorded, 9);
+  server.sendSlice(2, recorded, 79, Date.now() - 1000 * time - 900, number + 1);
+  await shows(page, time + 0.6);
+  assert.ok((await shownAt(page)) < time + 0.81);
+  await until('all of them', () => server.told.some(({ scan, slice }) => scan === 9 && slice === 7));
+  await until('words that say so', async () => (await stateOf(page)) === 'Loading the recording');
+  describe({ number, end: time + 0.7 });
+  await until('what is live', () => server.told.some(({ op }) => op === 'live'));
+  assert.equal(await stateOf(page), 'Live');
+  server.sendSlice(2, recorded, 10);
+  await until('what is new', async () => (await shownAt(page)) > time + 500);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a recording is held, stepped through by keys and buttons, and no more of it taken than is due', limits, async () => {
+  const { server, page, complaints, close, replay, play } = await openRecorded();
+  await page.click('#pause');
+  await until('none', () => !server.subscribed.has(2));
+  await page.focus('#timeline input');
+  await page.keyboard.press('PageDown');
+  const first = await until('a request', replay);
+  assert.ok(server.subscribed.has(2), 'without a subscription');
+  play(0, 240); // 3 s
+  await shows(page, first.time - 0.02);
+  assert.ok((await shownAt(page)) <= first.time);
+  assert.equal(await stateOf(page), 'Recorded, paused');
+  const { scan, slice } = await until('acknowledgements', () => acknowledged(server));
+  const due = 16 + 80; // 0.2 s before, and a second ahead
+  assert.ok(scan * 8 + slice >= due - 2 && scan * 8 + slice <= due + 1, `slice ${scan * 8 + slice} is acknowledged`);
+  const another = () => until('another request', () => replay().number !== first.number && replay());
+  await page.keyboard.press('ArrowRight');
+  assert.ok(Math.abs((await another()).time - first.time - 1) < 1e-3);
+  await page.click('#back');
+  const last = await until('a request', () => replay().number > first.number + 1 && replay());
+  assert.ok(Math.abs(last.time - first.time + 9) < 1e-3);
+  play(0, 40);
+  await until('the picture', async () => Math.abs((await shownAt(page)) - last.time) < 0.02);
+  await page.focus('#timeline input');
+  await page.keyboard.press(' ');
+  await shows(page, last.time + 0.2);
+  await page.keyboard.press('l');
+  await until('what is live', () => server.told.some(({ op }) => op === 'live'));
+  assert.equal(await stateOf(page), 'Live');
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a connection that comes back replays on', limits, async () => {
+  const { server, page, close, describe, replay, play } = await openRecorded();
+  await page.fill('#timeline input', '-600');
+  const first = await until('a request', replay);
+  play(0, 40);
+  await shows(page, first.time - 0.02);
+  server.client.terminate();
+  await until('the same from there on', () => replay().number > first.number && server.subscribed.has(2));
+  assert.ok(replay().time > first.time && replay().time < first.time + 1);
+  describe();
+  play(16, 80);
+  const { time } = replay();
+  await shows(page, time + 0.3);
+  await close();
+});
+
+test('a recording that cannot be read is told, and what the page has itself is there', limits, async () => {
+  const { server, page, complaints, close, describe } = await openRecorded({ options: { locale: 'de-DE' } });
+  describe({ from: 0, to: 0 });
+  await until('words', async () => /nicht lesbar/.test(await page.textContent('#recording')));
+  const slices = 160; // 2 s
+  for (let i = 0; i < slices; ++i) server.sendSlice(2, recorded, i, (slices - i) * 12.5);
+  await until('all', () => acknowledged(server)?.scan === 19 && acknowledged(server)?.slice === 7);
+  const end = await shownAt(page);
+  await page.fill('#timeline input', '-1');
+  await until('the picture', async () => (await shownAt(page)) < end - 0.5);
+  assert.ok(!server.told.some(({ op }) => op === 'replay'));
+  await page.click('#live');
+  describe({ damaged: 3 });
+  await until('other words', async () => /Beschädigte Teile/.test(await page.textContent('#recording')));
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 /** Frames that a coder makes of a picture that changes, each a file. */
 function recordVideo(coder) {
   const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-video-'));
@@ -319,7 +441,8 @@ const VIEWS = {
 };
 for (const [name, options] of Object.entries(VIEWS)) {
   test(`axe finds nothing: ${name}`, limits, async () => {
-    const channels = [sliceChannel(1, '/r7/points', recorded), sliceChannel(2, '/r8/points', recorded)];
+    const about = { ...recorded.about, recording: true };
+    const channels = [sliceChannel(1, '/r7/points', { about }), sliceChannel(2, '/r8/points', recorded)];
     channels.push(jsonChannel(3, '/statistics', 'lidar.Statistics'));
     const { server, page, close } = await open(channels, { options });
     await until('a subscription', () => server.subscribed.has(1));
@@ -328,7 +451,9 @@ for (const [name, options] of Object.entries(VIEWS)) {
     await page.click('#more');
     if (await page.evaluate(() => document.body.dataset.panel === 'closed')) await page.click('#panel');
     await until('a chart', () => page.isVisible('.chart:not([hidden])'));
-    await until('a timeline', () => page.isVisible('#timeline'));
+    server.describe(1, { from: 0, to: 0 });
+    await until('words', () => page.isVisible('#recording'));
+    assert.ok(await page.isVisible('#timeline'));
     assert.deepEqual(await violations(page), []);
     await close();
   });

@@ -25,7 +25,7 @@ export function robotsOf(list) {
   return [...new Set(topics.map(robotOf))].sort();
 }
 
-/** `known` has the schemas that the page understands. */
+/** `known` has the schemas that the page understands; `paused`: it shows no new clouds. */
 export function chooseChannels(list, { known, robot, idle, paused }) {
   if (idle) return [];
   const robots = robotsOf(list);

@@ -26,7 +26,8 @@ export class Connection {
   /**
    * `on.state(state)`: connecting, open, lost, or why the server refuses; `on.message(channel, bytes,
    * nanoseconds)`; `on.channels(list)` of all that are offered; `on.dropped(channel)` of one that was
-   * subscribed to; `wanted(list)` picks those to subscribe to.
+   * subscribed to, `on.subscribed(channel)` of a new one; `on.recording(channel, status)`; `wanted(list)`
+   * picks those to subscribe to.
    */
   constructor(host, token, on, wanted) {
     Object.assign(this, { host, token, on, wanted });
@@ -59,6 +60,7 @@ export class Connection {
       this.on.message(channel, new Uint8Array(data.buffer, data.byteOffset, data.byteLength), timestamp);
     });
     client.on('close', (event) => this.closed(event?.code));
+    this.socket.addEventListener('message', ({ data }) => this.read(data));
     this.client = client;
   }
 
@@ -73,7 +75,18 @@ export class Connection {
       this.client.unsubscribe(id);
       this.on.dropped?.(channel);
     }
-    for (const channel of wanted) this.subscriptions.set(this.client.subscribe(channel.id), channel);
+    for (const channel of wanted) {
+      this.subscriptions.set(this.client.subscribe(channel.id), channel);
+      this.on.subscribed?.(channel);
+    }
+  }
+
+  /** An operation of our server's own; the client above has read the others. */
+  read(data) {
+    if (typeof data !== 'string' || !data.includes('"recording"')) return;
+    const { op, subscriptionId, ...status } = JSON.parse(data);
+    const channel = op === 'recording' ? this.subscriptions.get(subscriptionId) : undefined;
+    if (channel) this.on.recording?.(channel, status);
   }
 
   /** An operation of our own, about the subscription to `channel`. */

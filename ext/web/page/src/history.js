@@ -18,9 +18,9 @@ export class History {
     this.named = new Map();
   }
 
-  /** The newest come last; the oldest go where there is no room, and what cannot be shown without them. */
+  /** In the order of time; the oldest go where there is no room, and what cannot be shown without them. */
   add(slice) {
-    this.slices.push(slice);
+    this.slices.splice(this.after(slice.captured) - this.first, 0, slice);
     this.bytes += slice.bytes.length;
     for (const { name } of slice.links) this.named.set(name, slice);
     let old = 0;

@@ -8,6 +8,7 @@ import { Connection } from './connection.js';
 import { fromDraco, unpack } from './fields.js';
 import { Links } from './links.js';
 import { Poses } from './poses.js';
+import { Replay } from './replay.js';
 import { Scene } from './scene.js';
 import { Slices } from './slices.js';
 import { language, number, t, translate } from './text.js';
@@ -32,6 +33,8 @@ const page = {
   age: null, // [s] of the cloud drawn last
   received: {}, // by schema, since the start
   spanS: 0.1,
+  kept: null, // times of the slices that the page itself can show again [s]
+  isLoading: false,
   robot: '',
   charts: new Charts(document.getElementById('charts')),
   scene: new Scene(document.getElementById('scene')),
@@ -41,13 +44,38 @@ const page = {
 };
 const tools = buildTools(page);
 page.slices = new Slices(
-  { points: addSlice, picture: showPicture, span: (span) => (page.timeline.span = span) },
+  {
+    points: addSlice,
+    picture: showPicture,
+    span: (span) => {
+      page.kept = span;
+      setSpan();
+    },
+    arrived: (channel, header) => page.replay.arrived(channel, header),
+  },
+  () => page.connection,
+);
+page.replay = new Replay(
+  {
+    begin: (number) => page.slices.replay(number),
+    end: () => page.slices.replay(0),
+    show: (time) => page.slices.show(time, true),
+    known: setSpan,
+  },
   () => page.connection,
 );
 page.timeline = new Timeline(document.getElementById('timeline'), {
-  ask: (time) => page.slices.show(time),
+  jump,
+  ask: (time) => (page.replay.isOn ? page.replay.show(time) : page.slices.show(time)),
+  reach: () => (page.replay.isOn ? page.replay.reach : Infinity),
+  last: () => (page.replay.isOn ? page.replay.last : page.timeline.span[1]),
   past: showTime,
-  live: showTime,
+  live: () => {
+    page.slices.show(null);
+    page.replay.end();
+    page.choose();
+    showTime();
+  },
 });
 
 // --- clouds ---
@@ -103,8 +131,27 @@ function addSlice(about, header, decoded, clock) {
 function showPicture(picture) {
   if (!page.timeline.answered(picture, page.paused)) return;
   if (picture.jumped) page.scene.fresh.clear();
+  if (page.replay.isOn) for (const { points } of picture.slices) page.points += points.length / 6;
   for (const { stream, header, ...decoded } of picture.slices) show(placed(page.slices.abouts[stream], header), decoded);
   page.scene.dirty = true;
+}
+
+/** Where the timeline reaches: into a recording, or into what this page has kept of the stream. */
+function setSpan() {
+  const { replay, timeline } = page;
+  const span = replay.span ?? (replay.isOn ? null : page.kept);
+  if (span) timeline.span = span;
+  if (replay.isOn && replay.isBroken) timeline.live();
+  const words = replay.isBroken ? 'recording_broken' : replay.isDamaged ? 'recording_damaged' : '';
+  timeline.tell(words && t(words));
+}
+
+function jump(time) {
+  if (page.replay.span === null) return page.slices.show(time);
+  const wasOn = page.replay.isOn;
+  page.replay.begin(time);
+  // A page that is paused takes slices while it replays: each that it subscribes to begins anew.
+  if (!wasOn) page.choose();
 }
 
 /** The picture of another time is to come. */
@@ -117,8 +164,10 @@ function showTime() {
 }
 
 page.forget = () => {
+  page.kept = null;
   page.slices.forget();
   page.timeline.forget();
+  page.replay.forget();
   page.scene.clear();
   page.video.clear();
 };
@@ -152,7 +201,7 @@ function setState(state) {
   page.state = state;
   document.body.dataset.state = state;
   document.body.toggleAttribute('data-paused', page.paused);
-  const what = t(page.timeline.isPast ? 'past' : state);
+  const what = t(page.timeline.isPast ? (page.isLoading ? 'loading' : 'past') : state);
   document.querySelector('#state span').textContent = page.paused ? `${what}, ${t('paused')}` : what;
   const notice = document.getElementById('notice');
   notice.hidden = !TELLING.includes(state);
@@ -162,9 +211,18 @@ page.showState = () => setState(page.state);
 
 function checkFlow() {
   if (page.state !== 'live' && page.state !== 'stalled') return;
-  if (page.paused) page.quietMs = 0;
+  if (page.paused || page.replay.isOn) page.quietMs = 0;
   const quiet = page.quietMs > STALLED_MS;
   if (quiet !== (page.state === 'stalled')) setState(quiet ? 'stalled' : 'live');
+}
+
+/** What is to be shown has not come yet. */
+function checkReplay() {
+  const { replay, timeline } = page;
+  const isLoading = replay.isOn && (replay.wanted !== null || timeline.at >= replay.reach);
+  if (isLoading === page.isLoading) return;
+  page.isLoading = isLoading;
+  setState(page.state);
 }
 
 let counted = performance.now();
@@ -227,10 +285,20 @@ function connect() {
       received.bytes += bytes.length;
       handlers[channel.schemaName](bytes, channel, nanoseconds);
     },
-    dropped: (channel) => page.slices.close(channel),
+    subscribed: (channel) => page.replay.subscribed(channel),
+    dropped: (channel) => {
+      page.slices.close(channel);
+      page.replay.dropped(channel);
+    },
+    recording: (channel, status) => page.replay.status(channel, status),
   };
   const wanted = (list) =>
-    chooseChannels(list, { known: handlers, robot: page.robot, idle: document.hidden, paused: page.paused });
+    chooseChannels(list, {
+      known: handlers,
+      robot: page.robot,
+      idle: document.hidden,
+      paused: page.paused && !page.replay.isOn,
+    });
   page.connection = new Connection(location.host, tokenOf(), on, wanted);
 }
 
@@ -257,6 +325,7 @@ function connectOthers() {
 /** What the server paces by, and the age that a viewer sees. */
 function afterDrawing() {
   page.slices.drawn();
+  page.replay.acknowledge();
   if (!page.newest) return;
   const age = page.newest.ageOf(page.newest.time);
   page.age = age >= 0 && age < MOST_AGE_S ? age : null;
@@ -266,7 +335,7 @@ function afterDrawing() {
 let drawn = 0;
 let drawnCharts = 0;
 function frame(now) {
-  page.timeline.tick((now - drawn) / 1000, page.paused);
+  page.timeline.tick((now - drawn) / 1000, page.paused || page.replay.wanted !== null);
   page.scene.draw();
   if (!page.timeline.isPast) page.video.draw(page.scene.fresh.time);
   afterDrawing();
@@ -278,6 +347,7 @@ function frame(now) {
     page.charts.draw(tools.style());
     page.timeline.update();
     checkFlow();
+    checkReplay();
   }
   requestAnimationFrame(frame);
 }

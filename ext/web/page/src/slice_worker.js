@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Decodes slices beside the page: {open, model} and {close} of a stream, {stream, header, data,
 // offset} and {show} of a time in; {stream, header, span} with points, step, error and has, or with
-// lacksReference, and {picture} out. `show` is null where nothing is to be shown again.
+// lacksReference, and {picture} out. `show` is null where nothing is to be shown again. Slices of the
+// replay that {replay} names are only kept, and {stream, header} says so.
 import { Decoder } from './decoder.js';
 import { History, Player } from './history.js';
 
@@ -12,7 +13,11 @@ let module = null;
 const sources = new Map(); // {id, model, decoder}
 const history = new History(MOST_BYTES);
 const pause = () => new Promise((done) => setTimeout(done));
-const player = new Player(history, ({ model }) => new Decoder(module, model), pause);
+const recorded = new History(MOST_BYTES); // of the replay
+const [player, replayer] = [history, recorded].map(
+  (kept) => new Player(kept, ({ model }) => new Decoder(module, model), pause),
+);
+let replay = 0;
 
 async function open(id, model) {
   const source = { id, model, decoder: null };
@@ -30,6 +35,11 @@ function decode({ stream, header, data, offset }) {
   const answer = { stream, header, points: null, lacksReference: false };
   if (!source?.decoder) return postMessage(answer);
   const bytes = new Uint8Array(data, offset);
+  if (header.replay !== 0) {
+    if (header.replay === replay)
+      recorded.add({ captured: header.captured, header, bytes, source, links: source.decoder.links(bytes) });
+    return postMessage(answer);
+  }
   const slice = source.decoder.decode(bytes);
   // What leaves is a copy: the decoder writes the next slice to the same place.
   const points = slice.points?.slice() ?? null;
@@ -43,19 +53,26 @@ function forget() {
   player.stop();
 }
 
-let wanted = null; // time
+function beginReplay(number) {
+  replay = number;
+  wanted = null;
+  recorded.clear();
+  replayer.stop();
+}
+
+let wanted = null; // {time, isReplay}
 let isShowing = false;
-async function show(time) {
-  wanted = time;
-  if (time === null) player.stop();
+async function show(time, isReplay) {
+  wanted = time === null ? null : { time, isReplay };
+  if (wanted === null) player.stop();
   if (isShowing) return;
   isShowing = true;
   while (wanted !== null) {
     const now = wanted;
-    const picture = await player.show(now, () => wanted === now);
+    const picture = await (now.isReplay ? replayer : player).show(now.time, () => wanted === now);
     if (!picture) continue;
     const slices = picture.slices.map(({ slice: { source, header }, decoded }) => ({ stream: source.id, header, ...decoded }));
-    postMessage({ picture: { ...picture, time: now, slices } }, slices.map(({ points }) => points.buffer));
+    postMessage({ picture: { ...picture, time: now.time, slices } }, slices.map(({ points }) => points.buffer));
     if (wanted === now) wanted = null;
   }
   isShowing = false;
@@ -64,7 +81,8 @@ async function show(time) {
 // One after the other: a decoder may still be on its way.
 let last = Promise.resolve();
 onmessage = ({ data: message }) => {
-  if (message.show !== undefined) return void show(message.show);
+  if (message.show !== undefined) return void show(message.show, message.isReplay);
+  if (message.replay !== undefined) return beginReplay(message.replay);
   last = last.then(() => {
     if (message.open !== undefined) return open(message.open, message.model);
     if (message.close !== undefined) return sources.delete(message.close);

@@ -23,6 +23,7 @@ export function readHeader(bytes) {
     recoded: (view.getUint8(1) & 1) !== 0,
     slice: view.getUint16(2, true),
     slices: view.getUint16(4, true),
+    replay: view.getUint16(6, true),
     scan: view.getUint32(8, true),
     sent: Number(view.getBigUint64(16, true)) * 1e-9,
   };
@@ -40,9 +41,9 @@ class Stream {
 
 export class Slices {
   /**
-   * `on.points(about, header, decoded, clock)` of slices as they come; `on.picture(picture)` of what
-   * was asked for by show(), and `on.span([from, to])` of the times that can be; `connection()` gives
-   * the one that streams come by.
+   * `on.points(about, header, decoded, clock)` of slices as they come; `on.arrived(channel, header)`
+   * of those of a replay; `on.picture(picture)` of what was asked for by show(), and `on.span([from,
+   * to])` of the times that can be; `connection()` gives the one that streams come by.
    */
   constructor(on, connection) {
     Object.assign(this, { on, connection });
@@ -55,13 +56,17 @@ export class Slices {
     const about = JSON.parse(channel.schema);
     const stream = new Stream(this.abouts.push(about) - 1, channel, about);
     this.streams.set(channel, stream);
-    if (!this.worker) {
-      this.worker = new Worker(new URL('./slice_worker.js', import.meta.url), { type: 'module' });
-      this.worker.onmessage = ({ data }) => this.decoded(data);
-    }
     const model = about.geometry === 'range' ? fromBase64(about.sensorModel) : new Uint8Array();
-    this.worker.postMessage({ open: stream.id, model });
+    this.start().postMessage({ open: stream.id, model });
     return stream;
+  }
+
+  /** The worker, which is there once it is needed. */
+  start() {
+    if (this.worker) return this.worker;
+    this.worker = new Worker(new URL('./slice_worker.js', import.meta.url), { type: 'module' });
+    this.worker.onmessage = ({ data }) => this.decoded(data);
+    return this.worker;
   }
 
   close(channel) {
@@ -77,7 +82,7 @@ export class Slices {
     if (!header) return;
     const stream = this.streams.get(channel) ?? this.open(channel);
     header.captured = Number(captured) * 1e-9;
-    stream.clock.arrived(header.sent);
+    if (header.replay === 0) stream.clock.arrived(header.sent);
     const offset = bytes.byteOffset + HEADER;
     this.worker.postMessage({ stream: stream.id, header, data: bytes.buffer, offset }, [bytes.buffer]);
   }
@@ -87,6 +92,7 @@ export class Slices {
     if (span) this.on.span(span);
     const stream = [...this.streams.values()].find((s) => s.id === id);
     if (!stream) return; // it has ended
+    if (header.replay !== 0) return this.on.arrived(stream.channel, header);
     stream.newest = header;
     if (result.points) return this.on.points(stream.about, header, result, stream.clock);
     ++this.damaged;
@@ -96,9 +102,14 @@ export class Slices {
     this.connection().tell('lacksReference', stream.channel);
   }
 
-  /** Asks for the picture at a capture time; null: for no more. */
-  show(time) {
-    this.worker?.postMessage({ show: time });
+  /** Asks for the picture at a capture time, of the replay or of what came; null: for no more. */
+  show(time, isReplay = false) {
+    this.worker?.postMessage({ show: time, isReplay });
+  }
+
+  /** Only slices of this replay are kept; 0: of none. */
+  replay(number) {
+    this.start().postMessage({ replay: number });
   }
 
   /** What came so far is not to be shown again. */

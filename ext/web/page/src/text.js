@@ -32,8 +32,18 @@ const TEXTS = {
   theme: ['Theme', 'Hell/Dunkel'],
   theme_title: ['Dark or light (D)', 'Dunkel oder hell (D)'],
   time: ['Time', 'Zeit'],
+  back: ['−10 s', '−10 s'],
+  back_title: ['Ten seconds back (B)', 'Zehn Sekunden zurück (B)'],
+  forth: ['+10 s', '+10 s'],
+  forth_title: ['Ten seconds on (N)', 'Zehn Sekunden weiter (N)'],
   live_title: ['Back to what is now (L)', 'Zurück zum Jetzt (L)'],
   past: ['Recorded', 'Aufgezeichnet'],
+  loading: ['Loading the recording', 'Lädt die Aufzeichnung'],
+  recording_broken: [
+    'The recording on the server cannot be read.',
+    'Die Aufzeichnung auf dem Server ist nicht lesbar.',
+  ],
+  recording_damaged: ['Damaged parts of the recording are left out.', 'Beschädigte Teile der Aufzeichnung fehlen.'],
   ago: ['ago', 'her'],
   more: ['More', 'Mehr'],
   more_title: ['All controls', 'Alle Bedienelemente'],
@@ -105,7 +115,7 @@ const TEXTS = {
   link: ['link', 'Verbindung'],
 };
 
-const asked = new URLSearchParams(location.search).get('lang') ?? navigator.language ?? 'en';
+const asked = new URLSearchParams(globalThis.location?.search).get('lang') ?? globalThis.navigator?.language ?? 'en';
 export const language = asked.startsWith('de') ? 'de' : 'en';
 
 export const t = (name) => TEXTS[name]?.[language === 'de' ? 1 : 0] ?? name;

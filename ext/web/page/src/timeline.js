@@ -1,20 +1,44 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The time that is shown: the newest as it comes, or a while before, playing on or held.
+// The time that is shown: the newest as it comes, or one before, playing on or held.
 import { number, t } from './text.js';
 
 const LEAST_S = 1; // that is worth a slider
 const HOLE_S = 1; // while which nothing came: it is passed over
+const STEP_S = 10; // of the buttons
+const KEYS_S = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -60, PageUp: 60 };
+
+/** 7.0 s, 42 s, 3:20 min or 5:03:20 h. */
+export function duration(seconds) {
+  if (seconds < 60) return `${number(seconds, seconds < 10 ? 1 : 0)} s`;
+  const whole = Math.round(seconds);
+  const parts = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
+  const isLong = parts[0] > 0;
+  const text = (isLong ? parts : parts.slice(1)).map((n, i) => (i > 0 ? String(n).padStart(2, '0') : n)).join(':');
+  return `${text} ${isLong ? 'h' : 'min'}`;
+}
 
 export class Timeline {
-  /** `ask(time)` for the picture of a time, null for none any more; `onLive()` and `onPast()` at changes. */
+  /**
+   * `on.jump(time)` and then `on.ask(time)` for pictures; `on.past()` and `on.live()` at changes;
+   * `on.reach()` is the time up to which they have come, `on.last()` that behind which there are no
+   * more.
+   */
   constructor(element, on) {
     Object.assign(this, { element, on });
     this.slider = element.querySelector('input');
     this.output = element.querySelector('output');
+    this.words = element.querySelector('#recording');
     this.at = null; // what is shown [s]; null: the newest
     this.asked = null; // and not answered
     this.span = [0, 0];
     this.slider.oninput = () => this.seek(this.span[1] + Number(this.slider.value));
+    this.slider.onkeydown = (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in KEYS_S)) return;
+      event.preventDefault();
+      this.step(KEYS_S[event.key]);
+    };
+    element.querySelector('#back').onclick = () => this.step(-STEP_S);
+    element.querySelector('#forth').onclick = () => this.step(STEP_S);
     this.update();
   }
 
@@ -25,16 +49,20 @@ export class Timeline {
   seek(time) {
     const [from, to] = this.span;
     const wasPast = this.isPast;
-    this.at = Math.min(Math.max(time, from), to);
-    this.ask();
+    this.at = this.asked = Math.min(Math.max(time, from), to);
+    this.on.jump(this.at);
     if (!wasPast) this.on.past();
     this.update();
+  }
+
+  /** Goes by `seconds`; from the newest on only back. */
+  step(seconds) {
+    if (this.isPast || seconds < 0) this.seek((this.at ?? this.span[1]) + seconds);
   }
 
   live() {
     if (!this.isPast) return;
     this.at = this.asked = null;
-    this.on.ask(null);
     this.on.live();
     this.update();
   }
@@ -44,11 +72,6 @@ export class Timeline {
     this.live();
     this.span = [0, 0];
     this.update();
-  }
-
-  ask() {
-    this.asked = this.at;
-    this.on.ask(this.at);
   }
 
   /** What was asked for has come; whether it is still wanted. */
@@ -62,19 +85,27 @@ export class Timeline {
   /** Time goes on by `seconds`. */
   tick(seconds, isHeld) {
     if (!this.isPast || isHeld) return;
-    this.at = Math.max(this.at + seconds, this.span[0]);
-    if (this.at >= this.span[1]) this.live();
-    else if (this.asked === null) this.ask();
+    const at = Math.max(this.at + seconds, this.span[0]);
+    if (at >= this.on.last()) return this.live();
+    this.at = Math.max(this.at, Math.min(at, this.on.reach()));
+    if (this.asked !== null) return;
+    this.asked = this.at;
+    this.on.ask(this.at);
+  }
+
+  /** Words about what can be shown, if any. */
+  tell(words) {
+    if (words !== this.words.textContent) this.words.textContent = words;
   }
 
   /** Shows where it is. */
   update() {
     const [from, to] = this.span;
-    this.element.hidden = to - from < LEAST_S;
-    const ago = this.isPast ? to - this.at : 0;
+    this.element.hidden = !this.isPast && this.words.textContent === '' && to - from < LEAST_S;
+    const ago = this.isPast ? Math.max(to - this.at, 0) : 0;
     this.slider.min = (from - to).toFixed(1);
     this.slider.value = -ago;
-    const text = this.isPast ? `${number(ago, ago < 10 ? 1 : 0)} s ${t('ago')}` : t('live');
+    const text = this.isPast ? `${duration(ago)} ${t('ago')}` : t('live');
     this.output.textContent = this.isPast ? text : '';
     this.slider.setAttribute('aria-valuetext', text);
   }

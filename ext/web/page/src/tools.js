@@ -294,7 +294,9 @@ class Tools {
   }
 
   onKey(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || ['INPUT', 'SELECT'].includes(event.target.tagName)) return;
+    const isSlider = event.target.type === 'range';
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!isSlider && ['INPUT', 'SELECT'].includes(event.target.tagName)) return;
     const inScene = event.target === byId('scene') || event.target === document.body;
     const { scene } = this.page;
     const moves = {
@@ -311,8 +313,8 @@ class Tools {
       return scene.nudge(...moves[event.key]);
     }
     if (inScene && event.key === '0') return scene.home();
-    const buttons = { f: 'follow', m: 'map', t: 'trail', s: 'snapshot', c: 'panel', d: 'theme', r: 'measure', o: 'top', l: 'live' };
-    const id = inScene && event.key === ' ' ? 'pause' : buttons[event.key.toLowerCase()];
+    const buttons = { f: 'follow', m: 'map', t: 'trail', s: 'snapshot', c: 'panel', d: 'theme', r: 'measure', o: 'top', l: 'live', b: 'back', n: 'forth' };
+    const id = (inScene || isSlider) && event.key === ' ' ? 'pause' : buttons[event.key.toLowerCase()];
     if (!id || byId(id).disabled) return;
     event.preventDefault();
     byId(id).click();
