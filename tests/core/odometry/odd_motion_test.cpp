@@ -107,7 +107,8 @@ TEST(OddMotion, AFerryIsTheWorld) {
 TimedPoints TurnedScan(Drive* drive, std::uint64_t number, double rate) {
   TimedPoints scan = drive->Scan(number);
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    const double t = Seconds(kPeriod) * (static_cast<double>(number) + double{scan.phases[i]});
+    const double t =
+        Seconds(kPeriod) * (static_cast<double>(number) + static_cast<double>(scan.phases[i]));
     scan.points[i] = Eigen::AngleAxisd(-rate * t, Eigen::Vector3d::UnitZ()) * scan.points[i];
   }
   return scan;
