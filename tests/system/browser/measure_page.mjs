@@ -12,8 +12,16 @@ const SETTLED_MS = 3000; // compilers, and what else a page does once
 const CLOUDS = ['lidar.Slice', 'foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
 const LONG_MS = 50; // tasks of which a browser tells
 
-const p95 = (values) => values.sort((a, b) => a - b)[Math.floor(0.95 * values.length)] ?? NaN;
-const ms = (seconds) => `${(1000 * seconds).toFixed(0)} ms`;
+const quantile = (share, values) => values.sort((a, b) => a - b)[Math.floor(share * values.length)] ?? NaN;
+const ms = (seconds) => (1000 * seconds).toFixed(0);
+/** The parts of a slice's way, by the times that end them. */
+const PARTS = {
+  sent: 'first column to `foxglovesink`: the sensor, coder, SCReAM and receiver',
+  received: 'to the page: socket, and the main thread that is busy',
+  decoded: 'to points: the worker, and messages to it and back',
+  begun: 'to the begin of a frame',
+  drawn: 'the frame, up to the begin of the next',
+};
 
 /** CPU time so far of the threads of that name in all of the browser [s]. */
 function browserCpu(thread) {
@@ -29,7 +37,7 @@ function browserCpu(thread) {
 
 /**
  * In the page: turns the camera, so that there is always something to draw, and notes tasks that held
- * up the main thread, and of each slice when it was captured, sent, decoded and drawn.
+ * up the main thread, and of each slice when each of its PARTS ended.
  */
 function observe(turns) {
   const seen = { slices: [], longest: 0, blocked: 0 };
@@ -43,10 +51,19 @@ function observe(turns) {
     }
   }).observe({ type: 'longtask' });
   const now = () => (performance.timeOrigin + performance.now()) / 1000;
+  const received = new Map(); // by the time at which it was sent
+  const add = slices.add.bind(slices);
+  slices.add = (channel, bytes, captured) => {
+    const sent = new DataView(bytes.buffer, bytes.byteOffset).getBigUint64(16, true);
+    received.set(Number(sent) * 1e-9, now());
+    add(channel, bytes, captured);
+  };
   const { points } = slices.on;
   let waiting = [];
   slices.on.points = (about, header, ...rest) => {
-    waiting.push({ captured: header.captured, sent: header.sent, decoded: now() });
+    const { captured, sent } = header;
+    if (received.has(sent)) waiting.push({ captured, sent, received: received.get(sent), decoded: now() });
+    received.delete(sent);
     return points(about, header, ...rest);
   };
   // What is drawn in a frame is on the screen when the next begins.
@@ -54,7 +71,7 @@ function observe(turns) {
   const draw = scene.draw.bind(scene);
   scene.draw = () => {
     seen.slices.push(...drawn.map((slice) => ({ ...slice, drawn: now() })));
-    drawn = waiting;
+    drawn = waiting.map((slice) => ({ ...slice, begun: now() }));
     waiting = [];
     return draw();
   };
@@ -101,8 +118,14 @@ async function measureAge(browser, model) {
       `screamsrc port=${rtp} ! rtplidardepay ! foxglovesink port=${port}`, port);
   const { page, context } = await openPage(browser, `http://127.0.0.1:${port}/`);
   const { now, rate } = await watch(page, false);
-  const age = (what) => ms(p95(now.slices.map((slice) => slice[what] - slice.captured)));
-  row([model.toUpperCase(), `${rate('frames').toFixed(1)} frames/s`, age('sent'), age('decoded'), age('drawn')]);
+  console.log(`${model.toUpperCase()}, ${rate('frames').toFixed(1)} frames/s:\n`);
+  head(['part', 'median [ms]', 'p95 [ms]', 'p95 from capture to its end [ms]']);
+  let from = 'captured';
+  for (const [to, name] of Object.entries(PARTS)) {
+    const [part, all] = [from, 'captured'].map((begin) => now.slices.map((slice) => slice[to] - slice[begin]));
+    row([name, ms(quantile(0.5, part)), ms(quantile(0.95, part)), ms(quantile(0.95, all))]);
+    from = to;
+  }
   await context.close();
   await pipeline.stop();
 }
@@ -130,8 +153,7 @@ try {
   ]);
   const coders = { ...CODERS, 'slices at 2 cm': '! lidarenc max-error=0.02' };
   await eachStream(folder, coders, (...of) => measureStream(browser, ...of));
-  console.log('\nFrom capture by SCReAM over loopback, p95 of all slices; drawn is when the next frame begins.\n');
-  head(['sensor', 'drawn', 'sent by `foxglovesink`', 'decoded in the page', 'drawn']);
+  console.log('\nThe way of all slices from capture by SCReAM over loopback to the screen.\n');
   await measureAge(browser, 'os1-64');
   console.log('\naxe:\n');
   head(['page', 'rules that hold', 'violations']);
