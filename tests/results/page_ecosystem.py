@@ -12,8 +12,8 @@ def viewers():
     return common.run(common.ROOT / "tests/system/viewers/measure.py").strip()
 
 
-def page():
-    return common.run("node", common.ROOT / "tests/system/browser/measure_page.mjs").strip()
+def page(*arguments):
+    return common.run("node", common.ROOT / "tests/system/browser/measure_page.mjs", *arguments).strip()
 
 
-TABLES = {"ros2": lambda: part("ros2"), "web": lambda: part("web"), "page": page, "viewers": viewers}
+TABLES = {"ros2": lambda: part("ros2"), "web": lambda: part("web"), "page": page, "way": lambda: page("way"), "viewers": viewers}

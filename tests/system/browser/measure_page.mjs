@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the page costs and shows in a headless Chromium, where software draws it, as Markdown tables
-// of docs/results/ecosystem.md.
+// of docs/results/ecosystem.md: measure_page.mjs [way], the way of a slice to the screen alone.
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -111,7 +111,7 @@ async function measureStream(browser, name, width, source, coder) {
 }
 
 /** From a robot by SCReAM to the screen. */
-async function measureAge(browser, model) {
+async function measureWay(browser, model) {
   const [port, rtp] = [await freePort(), await freePort()];
   const pipeline = await Pipeline.start(
     `lidartestsrc is-live=true model=${model} speed=5 ! queue ! lidarenc ! rtplidarpay ! screamsink host=127.0.0.1 port=${rtp} ` +
@@ -143,9 +143,7 @@ async function measureAxe(browser, name, options) {
   await pipeline.stop();
 }
 
-const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-measure-'));
-const browser = await openBrowser();
-try {
+async function measurePage(browser, folder) {
   console.log(`Chromium ${browser.version()}, headless, drawn by software; the camera turns.\n`);
   head([
     'OS1-128', 'stream', 'points of a picture', 'taken', 'downlink', 'drawn', 'workers, of a core',
@@ -153,12 +151,16 @@ try {
   ]);
   const coders = { ...CODERS, 'slices at 2 cm': '! lidarenc max-error=0.02' };
   await eachStream(folder, coders, (...of) => measureStream(browser, ...of));
-  console.log('\nThe way of all slices from capture by SCReAM over loopback to the screen.\n');
-  await measureAge(browser, 'os1-64');
   console.log('\naxe:\n');
   head(['page', 'rules that hold', 'violations']);
   await measureAxe(browser, 'desk, dark', { colorScheme: 'dark' });
   await measureAxe(browser, 'phone, light', { viewport: { width: 390, height: 780 }, colorScheme: 'light' });
+}
+
+const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-measure-'));
+const browser = await openBrowser();
+try {
+  await (process.argv[2] === 'way' ? measureWay(browser, 'os1-64') : measurePage(browser, folder));
 } finally {
   await browser.close();
   await Pipeline.stopAll();
