@@ -9,9 +9,9 @@
 
 namespace lidar::codec {
 
-/// The beams of a spinning sensor do not point at the same azimuth when they fire together, so a
-/// column of the slice is skewed. Coding beam by beam, one value an azimuth is remembered from the
-/// beams above; pixel i of beam b finds its neighbours at AlignedRow::At(b)[i - 1 .. i + 1].
+/// The beams of a spinning sensor fire together at different azimuths, so a column of the slice is
+/// skewed. Coding goes beam by beam, and remembers a value for each azimuth from the beams above:
+/// pixel i of beam b finds its neighbours at AlignedRow::At(b)[i - 1 .. i + 1].
 class AzimuthAlignment {
  public:
   AzimuthAlignment() = default;
@@ -23,7 +23,7 @@ class AzimuthAlignment {
   std::uint32_t span() const { return span_; }
 
  private:
-  std::vector<std::uint32_t> offsets_;  // pixel shifts, the smallest of them being 0
+  std::vector<std::uint32_t> offsets_;  // pixel shifts; the smallest is 0
   std::uint32_t span_ = 0;
   std::uint32_t columns_per_scan_ = 0;
 };
@@ -32,7 +32,7 @@ class AzimuthAlignment {
 template <class T>
 class AlignedRow {
  public:
-  /// Forgets all; `initial` stands where no beam has been yet.
+  /// Sets each value to `initial`.
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns, T initial) {
     alignment_ = &alignment;
     columns_ = columns;
@@ -42,8 +42,8 @@ class AlignedRow {
   }
   /// Valid for [-kMargin .. columns + kMargin).
   T* At(std::uint32_t beam) { return &values_[kMargin + alignment_->offset(beam)]; }
-  /// Call it when At(beam)[0 .. columns) has been written: in a full turn the last column is the
-  /// neighbour of the first.
+  /// Call it after At(beam)[0 .. columns) was written: in a full turn the last column is the first
+  /// one's neighbour.
   void CloseTurn(std::uint32_t beam) {
     if (!closed_) return;
     const std::size_t begin = kMargin + alignment_->offset(beam);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a block leaves for later ones of its sector (docs/temporal-coder.md): where each pixel has
-// seen something, and how the coder has learnt to use that.
+// The memory that a block leaves to later blocks of its sector (docs/temporal-coder.md): the ranges
+// that each pixel has seen, and the models that code by them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace lidar::codec {
 
-/// What a pixel has seen.
+/// The ranges that a pixel has seen.
 struct PixelMemory {
   std::uint32_t mean = 0;    // of the range, in 1/8 mm
-  std::uint16_t spread = 0;  // mean distance from it, in 1/8 mm
-  std::uint8_t count = 0;    // returns in the mean, up to kMostCount; 0: none was seen yet
-  std::uint8_t returns = 0;  // whether the last 8 scans had one, the last in bit 0
+  std::uint16_t spread = 0;  // mean distance from the mean, in 1/8 mm
+  std::uint8_t count = 0;    // returns in the mean, up to kMostCount
+  std::uint8_t returns = 0;  // the last 8 scans, 1: with a return; the newest in bit 0
 
   static constexpr std::uint32_t kPerMm = 8;
   static constexpr std::uint8_t kMostCount = 16;
 
-  /// The next scan has `range_mm` there, decoded on a grid of `step` [1/8 mm]; 0: no return.
+  /// Adds the next scan: `range_mm`, decoded on a grid of `step` [1/8 mm]; 0: no return.
   void See(std::uint32_t range_mm, std::int64_t step);
 };
 
@@ -37,7 +37,7 @@ struct BlockMemory {
   std::uint32_t beams = 0;
   std::uint32_t columns = 0;
   std::uint32_t first_column = 0;
-  std::uint32_t crc = 0;  // of the whole block, header included: its name
+  std::uint32_t crc = 0;  // name of the block: CRC over it and its header
   std::vector<PixelMemory> pixels;
   mixing::TemporalModel model;
 
@@ -49,18 +49,17 @@ struct BlockMemory {
   }
   std::size_t bytes() const { return sizeof *this + pixels.size() * sizeof(PixelMemory); }
 };
-/// A memory that others may see is never changed.
+/// A shared memory is never changed.
 using BlockMemoryPtr = std::shared_ptr<const BlockMemory>;
 
-/// How a block hangs together with others.
+/// References of a block.
 struct BlockLink {
-  BlockMemoryPtr reference;           // to be coded by; null: the block stands alone
-  std::shared_ptr<BlockMemory> left;  // by the block, which names itself; null where it is of
-                                      // a coder that nothing can refer to
+  BlockMemoryPtr reference;           // memory to code by; null: the block stands alone
+  std::shared_ptr<BlockMemory> left;  // the block's own memory; null: no block can refer to it
 };
 
-/// The memory after `image`, whose ranges are those that a decoder has. `before` is the memory
-/// before it, and may be null. The model is a new one, or that of `before`.
+/// Returns the memory after `image`, whose ranges are the decoded ones. `before` is the memory
+/// before it, whose model continues; null: the model starts anew.
 std::shared_ptr<BlockMemory> Remember(const RangeImage& image, const RangeGrid& grid,
                                       const BlockMemory* before);
 

@@ -9,18 +9,17 @@
 
 namespace lidar::codec {
 
-/// An encoder refers to ever newer blocks of a sector, so what is older than a reference can go.
+/// An encoder refers to newer and newer blocks of a sector, so blocks before a reference can go.
 class BlockStore {
  public:
-  /// The newest of each sector. An encoder stays below both, so that what it refers to is there.
+  /// Limits of a sector. An encoder keeps to lower ones, so that its references are here.
   static constexpr std::size_t kMostOfSector = 24;
   static constexpr std::size_t kMostBytes = 64U << 20;
-  /// How many blocks before a reference are kept, for slices that come late.
+  /// Number of blocks kept before a reference, for late slices.
   static constexpr std::size_t kOvertaking = 3;
 
   void Add(BlockMemoryPtr block);
-  /// The block of that name and place; null where there is none. Forgets much older ones of its
-  /// sector.
+  /// Returns the block of that name and place, or null. Forgets much older blocks of its sector.
   BlockMemoryPtr Recall(std::uint32_t crc, const RangeImage& place);
 
   std::size_t size() const { return blocks_.size(); }

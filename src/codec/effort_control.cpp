@@ -8,11 +8,11 @@ namespace {
 
 constexpr Duration kWindow{1'000'000'000};
 constexpr unsigned kFewestSlices = 8;
-// Slices that may be late in a window: a busy moment of the machine is no reason to change.
+// Part of a window that may be late, as in a busy moment of the machine.
 constexpr double kLatePart = 0.1;
-// A window ends early after so many slices in a row that take more than twice what they may.
+// A window ends early after so many slices in a row that take twice their time.
 constexpr unsigned kMuchTooLate = 3;
-// A higher effort is tried where it is likely to leave some of its time.
+// A higher effort is tried if it is likely to need no more than this part of its time.
 constexpr double kRoom = 0.75;
 constexpr Duration kFirstHold{4'000'000'000};
 constexpr Duration kLongestHold{120'000'000'000};
@@ -38,7 +38,7 @@ void EffortControl::OnSlice(Duration sweep, std::size_t returns, Duration spent)
   much_too_late_ = 0;
 }
 
-/// `cost`: s a return, in the window.
+/// `cost` is the window's, in seconds a return.
 void EffortControl::Reconsider(double cost) {
   LearnRatio(cost);
   if (much_too_late_ >= kMuchTooLate || window_.late > kLatePart * window_.slices) {
@@ -52,7 +52,7 @@ void EffortControl::Reconsider(double cost) {
   ++effort_;
 }
 
-/// The first window after a raise. What the machine does beside must not spoil it for long.
+/// Judges the first window after a raise. A busy machine must not spoil the level for long.
 void EffortControl::LearnRatio(double cost) {
   if (cost_below_ > 0 && cost > 0) {
     double& ratio = levels_[effort_].ratio;

@@ -8,33 +8,33 @@
 
 namespace lidar::codec {
 
-/// Takes the highest effort whose slices are coded in a part of the time in which they were swept.
-/// It knows no clock: its time is the sum of the sweeps.
+/// Takes the highest effort that codes slices in a part of the time in which they were swept. Its
+/// clock is the sum of the sweeps.
 class EffortControl {
  public:
   static constexpr unsigned kHighest = 3;
   /// Part of its sweep that a slice may take.
   static constexpr double kAllowedPart = 0.25;
 
-  /// For the next slice.
+  /// Effort of the next slice.
   unsigned effort() const { return effort_; }
-  /// The slice with `returns`, swept in `sweep`, took `spent` to code at effort().
+  /// Notes that a slice with `returns`, swept in `sweep`, was coded at effort() in `spent`.
   void OnSlice(Duration sweep, std::size_t returns, Duration spent);
 
  private:
-  /// Slices of about a second, after which the effort is thought over.
+  /// Slices of about a second, after which the effort may change.
   struct Window {
     Duration swept{};
     unsigned slices = 0;
-    unsigned late = 0;  // took more than they may
+    unsigned late = 0;  // slices beyond their time
     double spent_s = 0;
     double returns = 0;
     double most_returns_per_s = 0;  // of sweep
   };
   struct Level {
-    double ratio;           // what it costs against the level below
-    Duration hold{};        // how long it is left alone after it proved too slow
-    Duration not_before{};  // when it may be tried again
+    double ratio;           // cost relative to the level below
+    Duration hold{};        // pause after the level was too slow
+    Duration not_before{};  // earliest next try
   };
   void Reconsider(double cost);
   void LearnRatio(double cost);
@@ -42,9 +42,9 @@ class EffortControl {
 
   unsigned effort_ = 1;
   Duration now_{};
-  unsigned much_too_late_ = 0;  // slices one after the other
+  unsigned much_too_late_ = 0;  // slices in a row
   Window window_;
-  double cost_below_ = 0;  // s a return, just before the effort was raised; 0: it was not
+  double cost_below_ = 0;  // seconds a return before the last raise; 0: no raise
   std::array<Level, kHighest + 1> levels_ = {{{1}, {5}, {1.7}, {2.7}}};
 };
 

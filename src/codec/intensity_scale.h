@@ -6,8 +6,8 @@
 
 namespace lidar::codec {
 
-/// The largest intensity that a slice's levels stand for: 0 .. 1 as in KITTI, or integers of 8 or
-/// 16 bits as sensors give them. What is larger is cut off.
+/// Largest intensity of a slice's levels: 1 as in KITTI, or that of integers of 8 or 16 bits as
+/// sensors give them. Larger values are cut off.
 enum class FullScale : std::uint8_t { kOne = 0, kByte = 1, kWord = 2 };
 
 class IntensityScale {
@@ -19,7 +19,7 @@ class IntensityScale {
     if (full == FullScale::kOne) {
       step_ = 1.0F / static_cast<float>((1U << bits) - 1);
     } else {
-      // Each level stands for as many integers; their mean comes back. 8 bits of 8 are exact.
+      // Each level stands for the same number of integers, and decodes to their mean.
       const float integers = full == FullScale::kByte ? 256.0F : 65536.0F;
       step_ = integers / static_cast<float>(1U << bits);
       offset_ = (step_ - 1) / 2;
@@ -38,7 +38,7 @@ class IntensityScale {
     const float top = static_cast<float>((1U << bits_) - 1);
     return static_cast<std::uint8_t>(level > 0 ? std::min(level, top) : 0.0F);
   }
-  /// This scale's level for a level of the 8-bit scale of the same size.
+  /// Returns this scale's level for a level of the 8-bit scale of the same size.
   std::uint8_t Coarsen(std::uint8_t fine) const {
     if (full_ != FullScale::kOne) return static_cast<std::uint8_t>(fine >> (kMaxBits - bits_));
     return static_cast<std::uint8_t>((fine * ((1U << bits_) - 1) + 127) / 255);

@@ -22,7 +22,7 @@ struct RangeSettings {
   RangeCoder coder = RangeCoder::kAdaptive;
   RangeGrid grid;
   IntensityScale intensity;      // 0 bits: geometry only
-  std::uint32_t kept_beams = 0;  // the others were left out on purpose; 0: all
+  std::uint32_t kept_beams = 0;  // others were left out on purpose; 0: all
   unsigned effort = 1;           // of kMixing, 1 to 3
 };
 

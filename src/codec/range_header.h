@@ -14,10 +14,10 @@ namespace lidar::codec {
 /// How the integers of a block are coded. The numbers are part of the format.
 enum class RangeCoder : std::uint8_t {
   kDraco = 1,     // Draco's sequential coder with its own delta prediction
-  kResidual = 2,  // what our prediction leaves, by Draco's sequential coder
-  kAdaptive = 3,  // what our prediction leaves, by adaptive rANS
-  kMixing = 4,    // every bit by mixed contexts (docs/mixing-coder.md)
-  kTemporal = 5,  // the same, by what pixels saw in scans before (docs/temporal-coder.md)
+  kResidual = 2,  // residuals of our prediction, by Draco's sequential coder
+  kAdaptive = 3,  // residuals of our prediction, by adaptive rANS
+  kMixing = 4,    // each bit by mixed contexts (docs/mixing-coder.md)
+  kTemporal = 5,  // as kMixing, with memory of scans before (docs/temporal-coder.md)
 };
 
 struct RangeHeader {
@@ -27,13 +27,13 @@ struct RangeHeader {
   std::uint32_t columns = 0;
   RangeGrid grid;
   IntensityScale intensity;        // 0 bits: geometry only
-  std::uint32_t kept_beams = 0;    // the others were left out to save bits; 0: none was
-  bool has_gaps = false;           // some pixels have no return, and a mask says which
-  std::uint32_t mask_size = 0;     // bytes of the mask where it is a stream of its own
+  std::uint32_t kept_beams = 0;    // others were left out to save bits; 0: all
+  bool has_gaps = false;           // some pixels have no return; a mask says which
+  std::uint32_t mask_size = 0;     // bytes of the mask, if it is a stream of its own
   std::uint32_t payload_size = 0;  // bytes behind it
 
   void Write(std::vector<std::uint8_t>* out) const;
-  /// Reads a header and leaves `reader` behind it. None for a version or coder that is not known,
+  /// Reads a header and leaves `reader` behind it. Returns nothing for an unknown version or coder,
   /// numbers outside of their limits, or lengths past the end.
   static std::optional<RangeHeader> Read(ByteReader* reader);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One slice of an organised scan as integers: what the range codec takes and gives.
+// One slice of an organised scan as integers, as the range codec takes and gives it.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@ struct RangeImage {
   std::uint32_t columns = 0;
   std::uint32_t first_column = 0;       // measurement id of the first column
   std::vector<std::uint32_t> ranges;    // mm; 0: no return
-  std::vector<std::uint8_t> intensity;  // levels; empty where intensity is not coded
+  std::vector<std::uint8_t> intensity;  // levels; empty: intensity is not coded
 
   std::size_t size() const { return std::size_t{beams} * columns; }
 };

@@ -24,7 +24,7 @@ void ReferenceKeeper::Restart(Slot* slot) {
 void ReferenceKeeper::OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id,
                                      std::uint32_t index) {
   if (receiver_ != receiver) {
-    // A second receiver lacks what the first one has, and so does one that was started anew.
+    // A second receiver, or a restarted one, lacks the blocks of the first.
     if (receiver_) alone_since_ = now + kPatience;
     receiver_ = receiver;
     Forget();
@@ -56,7 +56,7 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
   if (now < alone_since_) return false;
   Slot& slot = slots_[slice.index];
   if (key_interval_ > Duration{0}) {
-    // Not all slices at once: they would make a scan much larger than the others.
+    // Slices take turns: all at once would make a scan much larger than the others.
     const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
     if (!slot.last_key) slot.last_key = now - head_start;
     if (now - *slot.last_key >= key_interval_) {
@@ -79,7 +79,7 @@ BlockMemoryPtr ReferenceKeeper::Reference(const RangeImage& image) const {
 
 void ReferenceKeeper::OnEncoded(std::vector<BlockMemoryPtr> blocks) {
   if (current_ == nullptr || blocks.empty()) return;
-  // An acknowledgement could not tell two of one name apart.
+  // An acknowledgement cannot separate two slices of one name.
   const auto same = [&](const Sent& sent) { return sent.scan_id == name_.scan_id; };
   if (std::any_of(current_->sent.begin(), current_->sent.end(), same)) return Restart(current_);
   for (const BlockMemoryPtr& block : blocks) bytes_ += block->bytes();

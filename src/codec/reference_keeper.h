@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which slices an encoder may refer to: the newest that its receiver has said it has.
+// The slices that an encoder may refer to: the newest that its receiver has acknowledged.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,45 +13,45 @@
 
 namespace lidar::codec {
 
-/// A slice by its source's numbers.
+/// Numbers of a slice at its source.
 struct SliceName {
   std::uint32_t scan_id = 0;
   std::uint32_t index = 0;
   std::uint32_t count = 1;
 };
 
-/// There is nothing to refer to without acknowledgements, or with those of several receivers.
-/// All calls name the time; it never goes back. For one thread at a time.
+/// Slices stand alone without acknowledgements, or with those of several receivers. Times of calls
+/// never go back. For one thread at a time.
 class ReferenceKeeper {
  public:
-  /// Slices that stand alone come at least so often, for those who join late; 0: never again.
+  /// Longest time between slices that stand alone, for late receivers; 0: no limit.
   void set_key_interval(Duration interval) { key_interval_ = interval; }
 
-  /// `receiver` has all of the slice.
+  /// Notes that `receiver` has all of the slice.
   void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id, std::uint32_t index);
-  /// Somebody needs slices that stand alone, now.
+  /// Lets the next slices stand alone.
   void OnKeyRequest();
 
-  /// The next slice; false where none can be remembered.
+  /// Begins the next slice. Returns false if it cannot be remembered.
   bool Begin(Time now, const SliceName& slice);
-  /// The receiver has an earlier slice of that sector.
+  /// Returns true if the receiver has an earlier slice of the sector.
   bool HasReference() const { return current_ != nullptr && !current_->reference.empty(); }
-  /// The blocks of that one.
+  /// Blocks of that slice.
   std::vector<BlockMemoryPtr> references() const {
     return HasReference() ? current_->reference : std::vector<BlockMemoryPtr>{};
   }
-  /// A block of that slice that the receiver has, at the place of `image`; null: none.
+  /// Returns that slice's block at the place of `image`, or null.
   BlockMemoryPtr Reference(const RangeImage& image) const;
-  /// What the blocks of that slice left, at most once.
+  /// Takes the memories of the begun slice's blocks, once at most.
   void OnEncoded(std::vector<BlockMemoryPtr> blocks);
 
-  /// Bytes of all that is remembered.
+  /// Bytes of all memories.
   std::size_t bytes() const { return bytes_; }
 
-  /// Lower than those of BlockStore, for slices that came in another order.
+  /// Lower than the limits of BlockStore, as slices may be reordered.
   static constexpr std::size_t kMostOfSlice = 20;
   static constexpr std::size_t kMostBytes = 48U << 20;
-  /// A receiver that acknowledges nothing for so long is gone.
+  /// Silence after which a receiver is gone.
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
  private:
@@ -59,9 +59,9 @@ class ReferenceKeeper {
     std::uint32_t scan_id = 0;
     std::vector<BlockMemoryPtr> blocks;
   };
-  /// A sector of all scans.
+  /// The same sector of all scans.
   struct Slot {
-    std::deque<Sent> sent;                  // since the reference, the oldest first
+    std::deque<Sent> sent;                  // slices since the reference, the oldest first
     std::vector<BlockMemoryPtr> reference;  // empty: none
     std::optional<Time> last_key;
   };
@@ -77,7 +77,7 @@ class ReferenceKeeper {
 
   std::optional<std::uint32_t> receiver_;
   Time last_heard_{};
-  Time alone_since_{};  // the receiver has been the only one
+  Time alone_since_{};  // since then there is one receiver
 };
 
 }  // namespace lidar::codec

@@ -25,19 +25,19 @@ class SliceDecoder {
     std::uint32_t first_column = 0;
     bool is_dense = true;  // no point is missing
   };
-  /// Decodes a slice and keeps it for Write(). None for a stream that is damaged, of another
-  /// sensor, or larger than max_points.
+  /// Decodes a slice and keeps it for Write(). Returns nothing for a stream that is damaged, of
+  /// another sensor, or larger than max_points.
   std::optional<Shape> Decode(ByteView stream);
-  /// The last Decode() failed because its slice refers to one that never came.
+  /// True if the last Decode() failed for lack of a slice that it refers to.
   bool lacks_reference() const { return decoder_.lacks_reference(); }
   /// Lets slices refer to `block`, as if this decoder had decoded it.
   void Know(BlockMemoryPtr block) { store_.Add(std::move(block)); }
-  /// What the slice says of itself.
+  /// Quality of a slice.
   struct Quality {
     double step_m = 0;
-    double error_m = 0;  // bound that holds
+    double error_m = 0;  // bound of all points
     unsigned intensity_bits = 0;
-    double keep_fraction = 1;  // part of the beams; the others were left out to save bits
+    double keep_fraction = 1;  // part of the beams; others were left out to save bits
   };
   /// The quality of the slice decoded last.
   const Quality& quality() const { return quality_; }

@@ -23,21 +23,21 @@ struct EncodedSlice {
   std::vector<std::uint8_t> bytes;
   std::size_t returns = 0;
   double step_m = 0;
-  double error_m = 0;                  // bound that holds with this step
+  double error_m = 0;                  // bound with this step
   std::vector<BlockMemoryPtr> blocks;  // memories for later slices; may be empty
 };
 
 enum class SliceResult {
   kEncoded,
-  kEmpty,       // nothing that this coder could encode
+  kEmpty,       // no return to encode
   kOutOfReach,  // no grid meets max_error_m
 };
 
 /// Encodes a stream of one format. For one thread at a time.
 class SliceEncoder {
  public:
-  /// Returns nothing where `format` has no ranges. `integers` is needed for coders that are not our
-  /// own, and must outlive the encoder.
+  /// Returns nothing if `format` has no ranges. `integers` is needed for external coders, and must
+  /// outlive the encoder.
   static std::optional<SliceEncoder> Create(const CloudFormat& format,
                                             RangeCoder coder = RangeCoder::kAdaptive,
                                             const IntegerCoder* integers = nullptr);
@@ -55,24 +55,22 @@ class SliceEncoder {
   /// Names the coder for statistics and predictors: "range-adaptive", "range-mixing2",
   /// "range-temporal2".
   std::string Mode() const;
-  /// Lets the loaded slice refer to those that the receiver has, if it saves bits and the effort is
-  /// above 0. `keeper` knows them, has begun this slice, and outlives its coding. Null: no slice
-  /// refers to any other.
+  /// Lets the loaded slice refer to those that the receiver has, if that saves bits and the effort
+  /// is above 0. `keeper` has begun this slice, and outlives its coding. Null: slices stand alone.
   void LinkBy(const ReferenceKeeper* keeper);
-  /// How hard the own coder tries: 0 is RangeCoder::kAdaptive, 1 to EffortControl::kHighest are
-  /// kMixing, each slower and smaller than the one below. Without effect for other coders.
+  /// Effort of our own coder: 0 is RangeCoder::kAdaptive, 1 to EffortControl::kHighest are kMixing,
+  /// each slower and smaller than the one below.
   void set_effort(unsigned effort);
 
-  /// Forgets all but `kept` of the loaded beams.
+  /// Keeps `kept` of the loaded beams.
   void Thin(const std::vector<bool>& kept);
-  /// How many beams Thin() chooses from.
+  /// Number of beams that Thin() chooses from.
   std::size_t rows() const { return image_.beams; }
 
-  /// Whole scans are cut into as many blocks, each with a thread of its own, as long as a block has
-  /// kMinBlockReturns.
+  /// Most blocks of a whole scan. Each has a thread of its own, and kMinBlockReturns at least.
   void set_threads(unsigned threads) { threads_ = threads; }
 
-  /// Encodes what is loaded, as often as wanted.
+  /// Encodes the loaded slice; may be called again.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
 
   static constexpr std::size_t kMinBlockReturns = 8'000;
@@ -108,8 +106,8 @@ class SliceEncoder {
   std::uint32_t unit_mm_ = 1;
 
   Standstill standstill_;
-  const ReferenceKeeper* keeper_ = nullptr;  // of what is loaded; null: it is not linked
-  bool refers_ = false;                      // it may refer to others
+  const ReferenceKeeper* keeper_ = nullptr;  // of the loaded slice; null: it stands alone
+  bool refers_ = false;                      // the loaded slice may refer to others
   double last_step_m_ = 0.04;
 };
 

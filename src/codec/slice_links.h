@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How a coded slice hangs together with others, read without decoding it.
+// References of a coded slice, read without decoding it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,12 +11,12 @@ namespace lidar::codec {
 
 /// A block that others may refer to, or that refers to another.
 struct BlockName {
-  std::uint32_t crc = 0;                   // of the whole block: its name
-  std::optional<std::uint32_t> reference;  // the name of the block that it needs
+  std::uint32_t crc = 0;                   // name of the block: CRC over it
+  std::optional<std::uint32_t> reference;  // name of the block that it needs
 };
 
-/// The blocks of a slice in range geometry, without those that hang together with no other. None
-/// for bytes that no decoder takes; bytes that are taken here may still be refused by one.
+/// Returns the blocks of a slice in range geometry that have links. Returns nothing for bytes that
+/// no decoder takes; a decoder may refuse further ones.
 std::optional<std::vector<BlockName>> LinksOf(ByteView slice);
 
 }  // namespace lidar::codec

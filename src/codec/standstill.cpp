@@ -6,13 +6,13 @@
 namespace lidar::codec {
 namespace {
 
-// What a return costs where nothing is known of it, as a distance.
+// Cost of a return without a prediction, as a distance.
 constexpr double kSurpriseSteps = 8;
 
 /// Distances cost about their logarithm.
 double Cost(double steps) { return std::log2(1 + steps); }
 
-/// `recalled(i)` is the range of pixel i [mm] as it was before; 0: not known.
+/// `recalled(i)` is the earlier range of pixel i [mm]; 0: unknown.
 template <class Recalled>
 bool IsWorthIt(const RangeImage& image, double step_m, Recalled&& recalled) {
   const double per_mm = 1e-3 / step_m;
@@ -28,7 +28,7 @@ bool IsWorthIt(const RangeImage& image, double step_m, Recalled&& recalled) {
     beside += Cost(last > 0 ? std::abs(range - last) * per_mm : kSurpriseSteps);
     last = range;
   }
-  // Measured: references save bits up to half more than that.
+  // Measured: references save bits up to 1.5 times that.
   return before < beside;
 }
 
@@ -43,7 +43,7 @@ bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m
 }
 
 bool Standstill::OnImage(const RangeImage& image, double step_m) {
-  // A source whose slices begin anywhere cannot be followed.
+  // A source with changing first columns cannot be followed.
   if (last_.size() > kMostSectors || (last_.size() + 1) * image.size() > kMostPixels) last_.clear();
   std::vector<std::uint32_t>& last = last_[image.first_column];
   const bool known = last.size() == image.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether a sensor sees what it saw before, so well that slices should refer to others.
+// Finds out whether a sensor stands still, so that slices should refer to earlier ones.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -10,13 +10,14 @@
 
 namespace lidar::codec {
 
-/// The memory says more about `image` than its pixels do about each other, on a grid of `step_m`.
+/// Returns true if the memory predicts `image` better than its own pixels do, on a grid of
+/// `step_m`.
 bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m);
 
 /// Compares each slice with the one of the same sector before.
 class Standstill {
  public:
-  /// True where `image` resembles the last one that began in the same column.
+  /// Returns true if `image` resembles the last one that began in the same column.
   bool OnImage(const RangeImage& image, double step_m);
 
  private:

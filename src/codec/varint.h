@@ -13,7 +13,7 @@ inline void WriteVarint(std::uint32_t value, ByteWriter* writer) {
   writer->U8(static_cast<std::uint8_t>(value));
 }
 
-/// A longer one makes `*ok` false.
+/// A longer number makes `*ok` false.
 inline std::uint32_t ReadVarint(ByteReader* reader, bool* ok) {
   std::uint32_t value = 0;
   for (unsigned shift = 0; shift < 28; shift += 7) {

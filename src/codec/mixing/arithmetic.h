@@ -14,15 +14,14 @@ constexpr std::int32_t kMostChance = kOne - 17;
 /// Logits are in 1/256 nat, and stay within +-kMostLogit.
 constexpr std::int32_t kMostLogit = 2'047;
 
-/// Position of the highest one, counted from 1; 0 for 0.
+/// Position of the highest 1 bit, counted from 1; 0 for 0.
 inline int BitLength(std::uint32_t value) { return value == 0 ? 0 : 32 - __builtin_clz(value); }
 
 inline std::int32_t ClampLogit(std::int32_t logit) {
   return std::min(std::max(logit, -kMostLogit), kMostLogit);
 }
 
-/// Built from integers only, so that they are the same on every machine, and by the compiler, so
-/// that they are there before anything runs.
+/// Made of integers, so that they are the same on every machine, and by the compiler.
 struct Tables {
   constexpr Tables();
   std::array<std::uint16_t, 4'096> chance{};      // of logit i - 2048
@@ -44,18 +43,17 @@ inline std::int32_t Log(std::uint32_t value) {
   return ((bits - 1) * kLog2 >> 8) + kTables.log_mantissa[mantissa >> 8];
 }
 
-/// How much a counter still learns from a bit after so many, in 1/65536.
+/// Rate at which a counter learns after so many bits, in 1/65536.
 constexpr std::uint16_t RateAfter(unsigned bits) {
   return static_cast<std::uint16_t>(bits == 0 ? 40'000 : kOne / (static_cast<int>(bits) + 2));
 }
 
-/// An adaptive chance that learns the less from a bit the more it has seen: its rate falls for
-/// about 300 bits, to 255. Lanes hold eight of them.
+/// An adaptive chance whose rate falls for about 300 bits, to 255. Lanes hold eight of them.
 struct Counter {
   std::uint16_t rate = RateAfter(0);
   std::uint16_t chance = kOne / 2;
 
-  /// What it has to say where its logit is `logit`: the less, the less it has seen.
+  /// Vote of a counter whose logit is `logit`: nearer to 0 the fewer bits it has seen.
   std::int32_t Vote(std::int32_t logit) const {
     const std::int32_t sure = 65'535 - (rate + (rate >> 1));
     return logit * 2 * (sure >> 1) >> 16;
@@ -64,7 +62,7 @@ struct Counter {
     const std::uint32_t mirror = bit ? 65'535 : 0;
     const std::uint32_t miss = chance ^ mirror;
     chance = static_cast<std::uint16_t>((miss - (miss * rate >> 16)) ^ mirror);
-    // Becomes about rate / (1 + rate), which makes 1/n of it.
+    // The rate becomes about rate / (1 + rate), so that it is 1/n.
     const std::uint32_t square = std::uint32_t{rate} * rate >> 16;
     rate = static_cast<std::uint16_t>(rate - (rate * (rate - (square >> 1)) >> 16));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Chooses between the bins that returns may take by what they cost to code.
+// Chooses the cheapest of the bins that each return may take.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace lidar::codec::mixing {
 
-/// A beam search along each row, with the models of the coder as they are before it. A bin that is
-/// cheap by itself may make the next ones expensive, so two ways are followed at a time.
+/// A beam search along each row, with the coder's models as before the row. A cheap bin may make
+/// the next ones expensive, so the search follows two ways.
 template <class Effort>
 class BinSearch {
  public:
@@ -24,11 +24,11 @@ class BinSearch {
   struct Row {
     const Azimuth* above;
     const std::int32_t* north;
-    const std::uint8_t* spare;  // how many bins more than one each return may take
+    const std::uint8_t* spare;  // number of further bins that each return may take
     std::uint32_t columns;
   };
 
-  /// `bins` are the first that returns may take, and become those that they do take.
+  /// `bins` has the first bin of each return, and becomes the chosen ones.
   void Choose(const Row& row, std::int32_t* bins) {
     for (Part& part : parts_) part.StartRow(row.above, row.north);
     steps_.clear();
@@ -48,7 +48,7 @@ class BinSearch {
  private:
   using Part = RangePart<Effort, CostMeter>;
   static constexpr unsigned kMostWays = 2;  // more save 0.2 %
-  /// A way that costs so much more than the best one hardly ever becomes that.
+  /// A way that costs so much more than the best one hardly ever wins.
   static constexpr std::int64_t kMostBehind = 1'065;  // 6 bits
   struct Way {
     std::int64_t cost = 0;
@@ -74,7 +74,7 @@ class BinSearch {
         const std::int64_t most = found_ > 0 ? trials_[0].cost + kMostBehind : INT64_MAX;
         Offer({ways_[k].cost + part.CostOf(bin, most - ways_[k].cost), bin, k});
       };
-      // What is likely to cost least shows early which others are hopeless.
+      // The likely cheapest bin comes first, so that others are given up early.
       const std::int32_t likely = std::clamp(part.Predicted(), first, last);
       try_bin(likely);
       for (std::int32_t bin = first; bin <= last; ++bin)
@@ -85,7 +85,7 @@ class BinSearch {
     return found_ > 0 && cost > trials_[0].cost + kMostBehind;
   }
 
-  /// Keeps the two cheapest, and one of those that end in the same two bins.
+  /// Keeps the two cheapest trials, and the cheapest of those that end in the same two bins.
   void Offer(const Trial& trial) {
     if (IsHopeless(trial.cost)) return;
     if (found_ == 0) {

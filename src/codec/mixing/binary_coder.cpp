@@ -5,7 +5,7 @@ namespace lidar::codec::mixing {
 
 void BinaryEncoder::Finish() {
   for (unsigned shift = 32; shift >= 8; shift -= 8) {
-    // The first number at or above low_ whose lower bits, which stay unwritten, are 0.
+    // Lowest number from low_ on whose unwritten lower bits are 0.
     const std::uint64_t unit = std::uint64_t{1} << shift;
     const std::uint64_t value = (low_ + unit - 1) / unit * unit;
     if (value > high_) continue;

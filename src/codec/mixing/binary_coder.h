@@ -28,9 +28,9 @@ class BinaryEncoder {
     }
     return bit;
   }
-  /// Never, other than its twin.
+  /// Always false; the decoder's may be true.
   static constexpr bool overran() { return false; }
-  /// Writes as many bytes as tell the last interval from others: a decoder reads zeros behind them.
+  /// Writes the bytes that name the last interval. A decoder reads zeros behind them.
   void Finish();
 
  private:
@@ -47,22 +47,22 @@ class BinaryDecoder {
     for (int i = 0; i < 4; ++i) code_ = code_ << 8 | NextByte();
   }
 
-  /// The first argument is for BinaryEncoder, whose twin this is.
+  /// The first argument serves BinaryEncoder only.
   [[gnu::always_inline]] bool Code(bool /*bit*/, std::int32_t chance) {
     const std::uint32_t split =
         low_ + static_cast<std::uint32_t>(
                    std::uint64_t{high_ - low_} * static_cast<std::uint32_t>(chance) >> 16);
     const bool bit = code_ <= split;
-    // Has no branch, which would often be guessed wrong.
+    // A branch would often be mispredicted.
     const std::uint32_t ones = bit ? UINT32_MAX : 0;
     high_ ^= (high_ ^ split) & ones;
     low_ += (split + 1 - low_) & ~ones;
     if (__builtin_expect((low_ ^ high_) < 1U << 24, 0)) Refill();
     return bit;
   }
-  /// True where bits were read that no encoder has written.
+  /// Returns true if bits were read past the end.
   bool overran() const { return missing_ > 4; }
-  /// True where all bytes were of use, and enough of them.
+  /// Returns true if exactly all bytes were used.
   bool AtEnd() const { return next_ == end_ && !overran(); }
 
  private:

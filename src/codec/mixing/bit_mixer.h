@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Logistic mixing: codes one bit by the opinions of counters and others. Weights that learn which
-// of them are right make one logit of all. Then the opinions learn.
+// Logistic mixing: codes a bit by the weighted sum of the votes of counters and other logits.
+// Weights and counters then learn from the bit.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,31 +14,30 @@ namespace lidar::codec::mixing {
 
 constexpr unsigned kInputs = 2 * kLanes;
 
-/// What the inputs of a decision count, in 1/kWeightOne.
+/// Weights of a decision's inputs, in 1/kWeightOne.
 struct alignas(32) Weights {
   std::array<std::int16_t, kInputs> values{};
 };
 constexpr unsigned kWeightShift = 13;
 constexpr std::int32_t kWeightOne = 1 << kWeightShift;
 
-/// How far weights move for an error `bit - chance`; it fits an int16.
+/// Step of the weights for an error `bit - chance`; fits an int16.
 inline std::int32_t StepOf(bool bit, std::int32_t chance) {
   constexpr std::int32_t kSpeed = 5;
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
-/// For decisions that have kCounters counters and kExtra other logits: inputs of one place always
-/// mean the same. The last place, of eight where they suffice, is always the same number.
+/// Codes decisions of kCounters counters and kExtra other logits. The last place is a constant.
 ///
-/// A mixer lives for one decision. All of it is compiled into its caller, so that counters, votes
-/// and sums stay in registers: with calls and members efforts 2 and 3 take 1.3 times as long.
+/// A mixer lives for one decision and is inlined, so that counters, votes and sums stay in
+/// registers: with calls, efforts 2 and 3 take 1.3 times as long.
 template <unsigned kCounters, unsigned kExtra, class Lanes = FastLanes>
 class BitMixer {
  public:
   static_assert(kCounters + kExtra < kInputs);
 
-  /// `counter_at(0 .. kCounters - 1)` are the counters of the next bit, each another one;
-  /// `logit_at` gives the rest.
+  /// `counter_at(0 .. kCounters - 1)` gives the different counters of the next bit, and `logit_at`
+  /// the other logits.
   template <class CounterAt, class LogitAt>
   [[gnu::always_inline]] void Ask(CounterAt&& counter_at, LogitAt&& logit_at) {
     AskEight<0>(counter_at, logit_at);
@@ -59,7 +58,7 @@ class BitMixer {
     Learn(bit);
     return bit;
   }
-  /// Mixes by two sets of weights. Each learns from what it would have said alone.
+  /// Mixes by two sets of weights. Each learns from the error that it would have made alone.
   template <class Coder>
   [[gnu::always_inline]] bool Code(bool bit, Weights* first, Weights* second, Coder* coder) {
     static_assert(kTeaches<Coder>);
@@ -71,7 +70,7 @@ class BitMixer {
     Learn(bit);
     return bit;
   }
-  /// What Code() would take for the chance of a 1.
+  /// Returns the chance of a 1 that Code() would use.
   [[gnu::always_inline]] std::int32_t ChanceBy(const Weights* first, const Weights* second) const {
     return Chance((LogitBy(*first) + LogitBy(*second)) >> 1);
   }

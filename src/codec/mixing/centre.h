@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What follows from a value being near another: a logistic distribution of learnt width.
+// Logits of a value near a centre: a logistic distribution of learnt width.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace lidar::codec::mixing {
 
 class Centre {
  public:
-  /// `offset` is that of the centre from the prediction, in 1/16 bin; `spread` the mean distance
-  /// from it so far, in 1/4096.
+  /// `offset` is the centre's from the prediction, in 1/16 bin. `spread` is the mean distance from
+  /// the centre so far, in 1/4096.
   void Set(std::int32_t offset, std::int32_t* spread) {
     offset_ = std::clamp(offset, -kMostOffset, kMostOffset);
     exact_ = offset;
@@ -20,8 +20,8 @@ class Centre {
     inverse_ = (1 << 22) / *spread;
   }
 
-  /// Logit of a decision on the difference from the prediction (kSmallNodes). Decisions come in the
-  /// order of a value's.
+  /// Logit of a decision on the difference from the prediction (kSmallNodes). Decisions come in
+  /// the order of the code.
   [[gnu::always_inline]] std::int32_t Opinion(unsigned node) {
     if (node == 0) {
       below_ = Below(-8);
@@ -37,7 +37,7 @@ class Centre {
     return Ratio(beyond, within);
   }
 
-  /// `value` is where it came to lie against the prediction.
+  /// Learns `value`, the difference from the prediction.
   void Learn(std::int32_t value) {
     constexpr std::int32_t kMostDistance = 96;
     const std::int32_t distance = std::min(std::abs(value - exact_), kMostDistance);
@@ -58,7 +58,7 @@ class Centre {
   std::int32_t offset_ = 0;
   std::int32_t exact_ = 0;
   std::int32_t inverse_ = 0;
-  std::int32_t below_ = 0;  // what is left on each side
+  std::int32_t below_ = 0;  // rest on each side
   std::int32_t above_ = 0;
   std::int32_t* spread_ = nullptr;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What bits would cost: a coder for trying something out.
+// A coder that only counts what bits would cost.
 #pragma once
 #include <cstdint>
 
@@ -15,7 +15,7 @@ class CostMeter {
     cost_ += kLogOne - Log(static_cast<std::uint32_t>(bit ? chance : kOne - chance));
     return bit;
   }
-  /// What was coded since the last Take().
+  /// Returns the cost since the last Take().
   std::int32_t cost() const { return cost_; }
   std::int32_t Take() {
     const std::int32_t cost = cost_;
@@ -27,7 +27,7 @@ class CostMeter {
   std::int32_t cost_ = 0;
 };
 
-/// Whether coding a bit teaches the model.
+/// True if coding a bit teaches the model.
 template <class Coder>
 constexpr bool kTeaches = true;
 template <>

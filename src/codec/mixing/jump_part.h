@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes how far a value is from its prediction where that is more than a few steps: then it often
-// lies on a surface that some neighbour has seen.
+// Codes distances of more than a few steps from the prediction. The value then often lies on a
+// surface that a neighbour has seen.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace lidar::codec::mixing {
 
-/// What is known before a jump.
+/// Context of a jump.
 struct JumpContext {
   std::uint32_t uneven = 0;
   std::uint32_t range_class = 0;  // with the direction: 32 values
   std::uint32_t gap_class = 0;    // of gap and step between neighbours: 16 values
-  /// Distances that neighbours would be, in the direction of the jump.
+  /// Distances of neighbours in the direction of the jump.
   std::array<std::int32_t, kCandidates> candidates{};
 };
 
@@ -31,8 +31,8 @@ class JumpPart {
   /// `distance` is 1 or more; kTooFar for a damaged stream.
   std::uint32_t Code(std::uint32_t distance, const JumpContext& context) {
     context_ = &context;
-    // As in an Exp-Golomb code: the length first, then the bits below the highest one. Each is
-    // coded as a question whether the distance reaches `middle`.
+    // An Exp-Golomb code: first the length, then the bits below the highest one. Each bit says
+    // whether the distance reaches `middle`.
     unsigned length = 0;
     const auto last = static_cast<unsigned>(BitLength(distance) - 1);
     while (CodeNode(length < last, std::min(length, kLengthNodes - 1), context.gap_class,
@@ -58,7 +58,7 @@ class JumpPart {
   };
   using Places = std::array<std::int32_t, kUsed>;
 
-  /// Places of the candidates in the interval: 0 for one in the other direction, else 1 to 11.
+  /// Places of the candidates in the interval, 1 to 11; 0: in the other direction.
   Places PlacesOf(const Split& split) const {
     const auto middle = static_cast<std::int32_t>(split.middle);
     const auto half = static_cast<std::int32_t>(split.half);

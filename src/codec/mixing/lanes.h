@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Eight counters, votes or weights at once, in the instructions of each kind of processor. All
-// kinds give the same numbers.
+// Eight counters, votes or weights at once, in the vector instructions of the processor. All
+// processors give the same numbers.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -21,11 +21,10 @@ namespace lidar::codec::mixing {
 
 constexpr unsigned kLanes = 8;
 
-/// For any processor. The others have the same functions:
-/// - Of: eight numbers. Load and Store: counters of `kCount` places, and in other lanes some that
-///   have no vote.
-/// - Votes: of counters whose logits are given. Learnt: what counters are after a bit.
-/// - Join: the numbers of two groups; where one has a number, the other has zero.
+/// Serves any processor. The others have the same functions:
+/// - Of: eight numbers. Load and Store: counters of `kCount` places; other lanes have no vote.
+/// - Votes: of counters whose logits are given. Learnt: counters after a bit.
+/// - Join: the numbers of two groups, of which one is zero in each place.
 /// - Dot, Plus and Total: a sum of products, in parts. Teach: weight += (input step + 2^16) / 2^17,
 ///   rounded down, in the bounds of an int16.
 struct PlainLanes {

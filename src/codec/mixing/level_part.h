@@ -19,7 +19,7 @@ struct LevelAt {
   std::int32_t residual = 0;  // -3 to 3
 };
 
-/// Asks the first kContexts of its contexts.
+/// Uses the first kContexts of its contexts.
 template <unsigned kContexts, class Coder>
 class LevelPart {
  public:
@@ -36,8 +36,8 @@ class LevelPart {
   };
 
   void StartRow() { zero_run_ = 0; }
-  /// Returns the level, and in `residual` what it differs from its prediction; -1 for a damaged
-  /// stream.
+  /// Returns the level, or -1 for a damaged stream. `residual` is its difference from the
+  /// prediction.
   std::int32_t Code(std::int32_t level, const Around& around, std::int32_t* residual) {
     Look(around);
     SetContexts(around);
@@ -49,7 +49,7 @@ class LevelPart {
   }
 
  private:
-  /// 2: as far away as the return, 1: not quite, 0: on another surface, or none.
+  /// 2: as far away as the return, 1: nearly, 0: on another surface, or missing.
   static std::uint32_t Closeness(const LevelAt& at, std::int32_t bin) {
     if (at.bin < 0) return 0;
     const std::int32_t apart = std::abs(at.bin - bin);
@@ -86,16 +86,16 @@ class LevelPart {
   static std::uint32_t Size(const LevelAt& at) {
     return static_cast<std::uint32_t>(std::abs(at.residual));
   }
-  /// Scales a level to 0 to 31, whatever the bits are.
+  /// Scales a level of any bits to 0 to 31.
   std::uint32_t Height(std::int32_t level) const {
     return static_cast<std::uint32_t>(level * 32 / (most_ + 1));
   }
-  /// Says how far the return is behind a neighbour, or before it.
+  /// Class of the distance behind a neighbour, or before it.
   std::uint32_t Depth(const LevelAt& at, std::int32_t bin) const {
     return at.bin < 0 ? 3U : StepClass(std::clamp(bin - at.bin, -4, 4) * kStep);
   }
 
-  /// Place of the mean of neighbours that count the more the closer they are.
+  /// Place of the mean of the neighbours, weighted by closeness.
   struct Weighed {
     std::int32_t sum = 0;
     std::int32_t count = 0;
@@ -165,7 +165,7 @@ class LevelPart {
     return negative ? -coded : coded;
   }
 
-  /// 1 to 255, as a binary tree behind its length.
+  /// Codes 1 to 255 as a length, and a binary tree behind it.
   std::int32_t CodeRest(std::int32_t rest, bool negative) {
     const int last = BitLength(static_cast<std::uint32_t>(rest)) - 1;
     int length = 0;

@@ -26,7 +26,7 @@ class MaskPart {
     north_west_ = above[-1].returns;
   }
 
-  /// Codes pixel `i`. `near_class` is the range class of what is nearest to it.
+  /// Codes pixel `i`. `near_class` is the range class of the nearest return.
   [[gnu::always_inline]] bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
     SetContexts(i, near_class);
@@ -37,7 +37,7 @@ class MaskPart {
     Keep(bit, i);
     return bit;
   }
-  /// The same, with what `code(bit, counters)` makes of the first contexts.
+  /// Codes by `code(bit, counters)`, which gets the counters of the first contexts.
   template <class Code>
   bool CodeBy(bool bit, std::uint32_t i, std::uint32_t near_class, Code&& code) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
@@ -86,9 +86,9 @@ class MaskPart {
   Model& model_;
   Coder& coder_;
   const Azimuth* above_ = nullptr;
-  std::uint32_t west_ = 0;    // the last pixels of the row, the newest in bit 0
-  std::uint32_t run_ = 0;     // how many of them are alike
-  std::uint32_t nearby_ = 0;  // of the row above, from two columns to the left on
+  std::uint32_t west_ = 0;    // last pixels of the row, the newest in bit 0
+  std::uint32_t run_ = 0;     // length of the run of equal ones
+  std::uint32_t nearby_ = 0;  // pixels of the row above, from two columns to the left on
   std::uint32_t north_west_ = 0;
   std::array<std::uint32_t, kContexts> contexts_{};
 };

@@ -35,7 +35,7 @@ std::int64_t StepMm(const RangeGrid& grid) {
 
 void PrepareMixing() { mixing::Trained(); }
 
-/// What both sides keep between slices.
+/// Buffers and models of encoder and decoder.
 struct MixingCoderState {
   explicit MixingCoderState(const SensorModel& sensor)
       : alignment(sensor), coder(alignment), model(std::make_unique<mixing::Model>()) {}
@@ -56,7 +56,7 @@ struct MixingCoderState {
 struct MixingEncoder::State : MixingCoderState {
   using MixingCoderState::MixingCoderState;
 
-  /// False where a range is too long.
+  /// Returns false if a range is too long.
   bool Load(const RangeImage& image, const MixingSettings& settings) {
     slice.beams = image.beams;
     slice.columns = image.columns;
@@ -85,7 +85,7 @@ struct MixingEncoder::State : MixingCoderState {
     return true;
   }
 
-  /// Which bins each return may take.
+  /// Finds the bins that each return may take.
   void Spare(const RangeImage& image, const MixingSettings& settings) {
     constexpr std::int32_t kMostSpare = 255;
     // Decoders refuse more.
@@ -139,7 +139,7 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
 struct MixingDecoder::State : MixingCoderState {
   using MixingCoderState::MixingCoderState;
 
-  /// What stands before the bits; none where that is damaged or of another version.
+  /// Reads the header. Returns nothing if it is damaged or of another version.
   std::optional<unsigned> ReadHead(ByteReader* reader) {
     const unsigned first = reader->U8();
     const unsigned effort = first & kEffortMask;
@@ -189,7 +189,7 @@ bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned int
   for (std::size_t i = 0; i < image->size(); ++i) {
     const std::int32_t bin = s.slice.bins[i];
     image->ranges[i] = bin < 0 ? 0 : grid.RangeOf(static_cast<std::uint32_t>(bin));
-    // A range of 0 would be none.
+    // A range of 0 means no return.
     if (bin > last_bin || (bin >= 0 && image->ranges[i] == 0)) return false;
   }
   image->intensity.assign(s.slice.levels.begin(), s.slice.levels.end());

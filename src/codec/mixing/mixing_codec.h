@@ -17,23 +17,22 @@ struct MixingSettings {
   RangeGrid grid;
   IntensityScale intensity;  // 0 bits: geometry only
   unsigned effort = 2;       // 1 to 3
-  mixing::Memory memory{};   // what its pixels have seen; none: the image stands alone
-  /// Above 0, at kSearchingEffort: several bins of a return may come back within this error, and it
-  /// takes the one that costs least. The error may be above the grid's own. With a memory the
-  /// ranges are those of bins that were chosen already.
+  mixing::Memory memory{};   // of its pixels; empty: the image stands alone
+  /// Above 0, at kSearchingEffort: a return takes the cheapest bin within this error, which may be
+  /// larger than the grid's. With a memory the ranges are those of bins chosen before.
   std::uint32_t error_mm = 0;
 };
 
-/// A payload of so many bytes holds no more pixels than this. A pixel costs a decoder 0.3 us, and
-/// may cost its sender a thousandth of a bit.
+/// Most pixels of a payload of so many bytes. A pixel costs a decoder 0.3 us, but may cost its
+/// sender a thousandth of a bit.
 constexpr std::size_t MostMixedPixels(std::size_t payload_bytes) {
   constexpr std::size_t kFree = 4'096;
   constexpr std::size_t kPixelsPerByte = 256;
   return kFree + kPixelsPerByte * payload_bytes;
 }
 
-/// Reads the start states, once a process: some 50 ms of work that the first slice waits for
-/// otherwise.
+/// Reads the start states once a process, some 50 ms of work. Without a call the first slice waits
+/// for it.
 void PrepareMixing();
 
 /// Keeps its buffers between slices; not for several threads at once.
@@ -44,10 +43,10 @@ class MixingEncoder {
   MixingEncoder& operator=(MixingEncoder&&) noexcept;
   ~MixingEncoder();
 
-  /// Appends one payload to `out`. False, with nothing appended, where the image does not fit the
-  /// sensor, has ranges past mixing::kMaxBins bins, or becomes smaller than MostMixedPixels()
-  /// allows. Ranges are multiples of the grid's unit; the image's levels are of 8 bits and become
-  /// those of settings.intensity.
+  /// Appends a payload to `out`. Ranges are multiples of the grid's unit; levels of 8 bits become
+  /// those of settings.intensity. Returns false, with nothing appended, if the image does not fit
+  /// the sensor, has ranges past mixing::kMaxBins bins, or becomes smaller than MostMixedPixels()
+  /// allows.
   bool Encode(const RangeImage& image, const MixingSettings& settings,
               std::vector<std::uint8_t>* out);
 
@@ -65,12 +64,11 @@ class MixingDecoder {
   ~MixingDecoder();
 
   /// Fills ranges and levels of `image`, whose beams, columns and first_column are set. The grid,
-  /// the bits of the intensity and the memory are those of the encoder. False, with the image
-  /// undefined, for a payload that is damaged or of another version.
+  /// the bits of the intensity and the memory are those of the encoder. Returns false, with the
+  /// image undefined, for a payload that is damaged or of another version.
   bool Decode(ByteView payload, const RangeGrid& grid, unsigned intensity_bits, RangeImage* image,
               const mixing::Memory& memory = {});
-  /// The largest error of the image decoded last, if its encoder chose between bins; else 0, and
-  /// the error is the grid's.
+  /// Largest error of the image decoded last, if its encoder chose between bins; 0: the grid's.
   std::uint32_t error_mm() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that the mixing coder learns within a slice.
+// The models of the mixing coder, which learn within a slice.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace lidar::codec::mixing {
 
-// How many values the contexts have (docs/mixing-coder.md). Their order is that of the contexts.
+// Numbers of values of the contexts, in their order (docs/mixing-coder.md).
 constexpr std::array<std::uint32_t, 6> kMaskContexts = {5'632, 4'096, 560, 4'096, 2'048, 1'024};
 constexpr std::array<std::uint32_t, 13> kRangeContexts = {
     1'331, 1'372, 484, 512, 1'372, 1'936, 121, 120, 512, 24, 2'401, 1'024, 484};
@@ -17,10 +17,10 @@ constexpr std::array<std::uint32_t, 3> kJumpContexts = {24, 32, 64};
 constexpr std::array<std::uint32_t, 14> kLevelContexts = {
     24, 225, 1'331, 1'024, 512, 1'331, 1'024, 1'024, 225, 405, 735, 1'372, 1'024, 225};
 
-/// Decisions about the small differences from a prediction: is it any, its sign, and for each sign
+/// Decisions on small differences from a prediction: zero or not, the sign, and for each sign
 /// whether it is more than 1, 2, 3.
 constexpr unsigned kSmallNodes = 8;
-/// Larger values take 24 nodes for the length, and others for the bits below the highest one, by
+/// Larger values take 24 nodes for the length, and more for the bits below the highest one, by
 /// place and level.
 constexpr unsigned kJumpNodes = 48;
 constexpr unsigned kLengthNodes = 24;
@@ -38,13 +38,13 @@ constexpr std::uint32_t Total(const std::array<std::uint32_t, kSize>& contexts) 
   return sum;
 }
 
-/// What codes mask and bins.
+/// Models of mask and bins.
 struct BinCounters {
   std::array<Counter, Total(kMaskContexts)> mask;
   std::array<Counter, kSmallNodes * Total(kRangeContexts)> range;
   std::array<Counter, kJumpNodes * Total(kJumpContexts)> jump;
   std::array<Counter, kJumpNodes * kCandidates * kPlaces> candidates;
-  /// Mean distance from each centre by unevenness and whether there is a gap, in 1/4096 step.
+  /// Mean distance from each centre, by unevenness and with or without a gap, in 1/4096 step.
   std::array<std::int32_t, kCentres * kUnevenClasses * 2> spread;
 };
 struct BinWeights {
@@ -53,7 +53,7 @@ struct BinWeights {
   std::array<Weights, kSmallNodes * 64> event;
   std::array<Weights, kJumpNodes> jump;
 };
-/// What codes intensities.
+/// Models of intensities.
 struct LevelCounters {
   std::array<Counter, kSmallNodes * Total(kLevelContexts)> small;
   std::array<Counter, 512> rest;

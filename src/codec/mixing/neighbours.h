@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is known around a pixel, and the classes in which the contexts see it.
+// Values around a pixel, and their classes for the contexts.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -16,11 +16,11 @@ constexpr std::int32_t kUnknown = 0;
 
 inline std::int32_t CentreOf(std::int32_t bin) { return kStep * bin + kStep / 2; }
 
-/// A direction, as the beams above have seen it.
+/// Values that the beams above had in a direction.
 struct Azimuth {
   std::array<std::int32_t, 3> values{};  // the last returns, newest first
-  std::int8_t residual = 0;              // of the beam above, between -3 and 3
-  std::uint8_t returns = 0xFF;           // whether the beams above had one, the last in bit 0
+  std::int8_t residual = 0;              // of the beam above, -3 to 3
+  std::uint8_t returns = 0xFF;           // beams above, 1: with a return; the last in bit 0
   std::uint8_t level = 0;                // of the newest return
   std::int8_t level_residual = 0;
 };
@@ -81,23 +81,24 @@ inline std::uint32_t PhaseClass(std::int32_t phase) {
   return kClasses[static_cast<std::size_t>(std::clamp(phase, -41, 41) + 41)];
 }
 
-/// The ranges at `value` when bins are so wide.
+/// Range of `value`, in bins of that width.
 inline std::uint32_t RangeClass(std::int32_t value, std::int64_t step_mm) {
   const std::int64_t mm = value * step_mm / kStep;
   return std::min(HalfOctave(static_cast<std::uint32_t>(mm >> 7)), 15U);
 }
 
-/// Residuals between -3 and 3, as 0 to 6 in the sense of `mirror`, which is 1 or -1.
+/// Residual of -3 to 3 as 0 to 6, with the sign of `mirror`, 1 or -1.
 inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
   return static_cast<std::uint32_t>(residual * mirror + 3);
 }
 
-/// What a line through `far` and `near` meets next, where a straight wall has an even slope in the
+/// Next value on the wall through `far` and `near`. A straight wall has an even slope in the
 /// inverse of the range.
 inline std::int32_t Extrapolate(std::int32_t near, std::int32_t far) {
   const std::int64_t divisor = 2 * std::int64_t{far} - near;
   if (divisor <= 0) return near;
-  // The quotient is near + step + 2 step^2 / divisor. As a rule nobody has to divide for the last.
+  // The quotient is near + step + 2 step^2 / divisor. The last term is mostly 0, without a
+  // division.
   const std::int64_t step = std::int64_t{near} - far;
   if (2 * step * step < divisor) return static_cast<std::int32_t>(near + step);
   return static_cast<std::int32_t>(

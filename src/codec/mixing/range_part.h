@@ -17,7 +17,7 @@ namespace lidar::codec::mixing {
 /// Larger bins are not coded, so that sums of a few values fit 32 bits.
 constexpr std::int32_t kMaxBins = 1 << 25;
 
-/// What is known around a return.
+/// Surroundings of a return.
 struct Surroundings {
   std::int32_t w = 0;
   std::int32_t n = 0;
@@ -26,20 +26,20 @@ struct Surroundings {
   std::uint32_t range_class = 0;
 };
 
-/// `Effort` has the numbers of contexts, centres and candidates, and whether there are weights by
-/// events beside those by unevenness.
+/// `Effort` has the numbers of contexts, centres and candidates, and a flag for weights by events
+/// beside those by unevenness.
 template <class Effort, class Coder>
 class RangePart {
  public:
   /// State of a row after the returns so far.
   struct Row {
-    std::array<std::int32_t, 3> west{};  // the last ones, newest first
+    std::array<std::int32_t, 3> west{};  // last returns, newest first
     std::int32_t residual_west = 0;
     std::int32_t residual_west2 = 0;
     std::int32_t residual_north_west = 0;
     std::int32_t gap = 0;  // pixels since the last return
     std::int32_t zero_run = 0;
-    std::int32_t other = kUnknown;      // what was left in the last jump
+    std::int32_t other = kUnknown;      // surface that the last jump left
     std::int32_t latest = CentreOf(0);  // return of the slice
   };
 
@@ -47,8 +47,7 @@ class RangePart {
   RangePart(Model* model, Coder* coder, std::int64_t step_mm)
       : jump_(model, coder), model_(*model), coder_(*coder), step_mm_(step_mm) {}
 
-  /// `above` is the first azimuth of the row, and `north` what is known above each; it is kUnknown
-  /// all along where there is nothing.
+  /// `above` is the first azimuth of the row. `north` has the values above each, or kUnknown.
   void StartRow(const Azimuth* above, const std::int32_t* north) {
     above_ = above;
     north_ = north;
@@ -67,7 +66,7 @@ class RangePart {
     ++row_.gap;
     row_.residual_north_west = above_[i].residual;
   }
-  /// Codes the bin of pixel `i` and keeps what the azimuth learns of it; -1 for a damaged stream.
+  /// Codes the bin of pixel `i` and notes it for the azimuth. Returns -1 for a damaged stream.
   [[gnu::always_inline]] std::int32_t Code(std::int32_t bin, std::uint32_t i, Azimuth* azimuth) {
     Look(i);
     SetContexts(i);
@@ -80,7 +79,7 @@ class RangePart {
     Keep(CentreOf(bin), difference, azimuth);
     return bin;
   }
-  /// What is known around pixel `i`, for another coder.
+  /// Surroundings of pixel `i`, for another coder.
   Surroundings SurroundingsOf(std::uint32_t i) {
     Look(i);
     return {w_, n_, median_, uneven_, range_class_};
@@ -90,19 +89,18 @@ class RangePart {
     Keep(CentreOf(bin), mirror_ * (bin - (median_ >> 4)), azimuth);
   }
 
-  /// Bins are tried out with a CostMeter. A row can be taken up again at any return: it goes on
-  /// from where row() was taken.
+  /// Bins are tried out with a CostMeter. Resume() continues a row from the state that row() gave.
   const Row& row() const { return row_; }
   void Resume(const Row& row) { row_ = row; }
-  /// Looks at pixel `i`, whose bins CostOf() then rates. Resume() and See() do not change what
-  /// they cost; the next Consider() does.
+  /// Selects pixel `i`, whose bins CostOf() then rates. Resume() and See() do not change the
+  /// costs.
   void Consider(std::uint32_t i) {
     Look(i);
     SetContexts(i);
     asked_ = 0;
   }
   std::int32_t Predicted() const { return median_ >> 4; }
-  /// Cost of `bin`. It stops past `most`: the answer is then above `most`, but too low.
+  /// Cost of `bin`. The sum stops above `most`, and is then too low.
   std::int32_t CostOf(std::int32_t bin, std::int64_t most) {
     const std::int32_t difference = mirror_ * (bin - Predicted());
     CodeNode(difference != 0, 0);
@@ -227,7 +225,7 @@ class RangePart {
       return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
   }
-  /// Chance of a node, found once for all bins that are tried out; nodes of a side come in order.
+  /// Chance of a node, computed once for all bins that are tried; nodes of a side come in order.
   std::int32_t ChanceOf(unsigned node) {
     if ((asked_ >> node & 1) != 0) return chances_[node];
     asked_ |= 1U << node;
@@ -307,7 +305,7 @@ class RangePart {
   std::uint32_t event_set_ = 0;
   std::array<Counter*, kContexts> rows_{};  // of the nodes of each context
   std::array<Centre, kCentres> centres_;
-  std::uint32_t asked_ = 0;  // bits of nodes, where bins are tried out
+  std::uint32_t asked_ = 0;  // bits of nodes whose chance is known
   std::array<std::int32_t, kSmallNodes> chances_{};
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto kMargin = static_cast<std::ptrdiff_t>(AlignedRow<Azimuth>::kMargin);
 
-/// How many of all the opinions are asked.
+/// Numbers of contexts, centres and candidates of an effort.
 struct Effort1 {
   static constexpr unsigned kLevelContexts = 6;
   static constexpr unsigned kMaskContexts = 3;
@@ -38,14 +38,14 @@ struct Effort3 : Effort2 {
   static constexpr bool kSearches = true;
 };
 
-/// A stream that has ended gives bits of its own for ever; nobody needs the rest of its slice.
+/// A stream that has ended gives bits without end, so decoding stops there.
 bool Overran(const BinaryDecoder& coder) { return coder.overran(); }
 template <class Coder>
 bool Overran(const Coder& /*coder*/) {
   return false;
 }
 
-/// Stands where nothing is searched.
+/// Replaces a search.
 struct NoSearch {
   NoSearch(Model* /*model*/, std::int64_t /*step_mm*/, std::vector<SearchStep>* /*steps*/) {}
 };
@@ -99,7 +99,7 @@ bool SliceCoder::CodeBins(Model* model, SliceBins* slice, Coder* coder) {
   return true;
 }
 
-/// As CodeBins(), but pixels that know where they look are coded by that.
+/// Codes pixels with a known range by that, and others as CodeBins() does.
 template <class Effort, class Coder>
 bool SliceCoder::CodeRecalledBins(Model* model, SliceBins* slice, Coder* coder,
                                   const Recollection& recollection) {
@@ -158,7 +158,7 @@ bool SliceCoder::CodeLevels(Model* model, SliceBins* slice, Coder* coder) {
     Azimuth* const above = above_.At(beam);
     const std::size_t row = std::size_t{beam} * slice->columns;
     const auto at = [](const Azimuth& azimuth) {
-      // Bins of this pass are one more than they are, so that 0 means none.
+      // Bins of this pass are raised by one, so that 0 means no return.
       return LevelAt{azimuth.values[0] - 1, azimuth.level, azimuth.level_residual};
     };
     typename Part::Around around{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A slice of bins and levels through a binary coder: the same walk encodes and decodes.
+// Codes a slice of bins and levels with a binary coder. The same code encodes and decodes.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,10 +18,10 @@ namespace lidar::codec::mixing {
 
 struct TemporalModel;
 
-/// How the newest pixel of an azimuth differed from what was recalled of it.
+/// Difference of the newest pixel of an azimuth from its recalled value.
 struct Surprise {
   std::uint8_t shift = 3;  // 0 to 6: by -3 to 3 bins; kChanged: by more
-  bool returns = false;    // a return where there was none before, or none where there was one
+  bool returns = false;    // a return is new, or is missing
 
   static constexpr std::uint8_t kChanged = 7;
 };
@@ -35,15 +35,15 @@ struct SliceBins {
   bool has_gaps = true;              // false: every pixel has a return
   std::vector<std::int32_t> bins;    // kNoReturn, or below kMaxBins
   std::vector<std::uint8_t> levels;  // empty without level_bits
-  /// How many bins past that of `bins` returns may take as well; an encoder takes those that cost
-  /// least. Empty: none.
+  /// Number of bins behind that of `bins` that a return may take; the encoder takes the cheapest.
+  /// Empty: none.
   std::vector<std::uint8_t> spare;
 };
 constexpr std::int32_t kNoReturn = -1;
 
-/// What the pixels of a slice have seen before, and how to make use of it.
+/// Memory of a slice's pixels, and the model that uses it.
 struct Memory {
-  const PixelMemory* pixels = nullptr;  // as many as the slice has; null: none
+  const PixelMemory* pixels = nullptr;  // of all pixels of the slice, or null
   TemporalModel* model = nullptr;       // learns from the slice
 };
 struct Recollection {
@@ -51,10 +51,10 @@ struct Recollection {
   RangeGrid grid;  // of the slice
 };
 
-/// How a search came to a bin.
+/// A step of a search.
 struct SearchStep {
   std::int32_t bin;
-  std::uint32_t before;  // place of the step before, from 1 on; 0: none
+  std::uint32_t before;  // index of the step before + 1; 0: none
 };
 
 /// Lowest effort at which an encoder can choose between bins.

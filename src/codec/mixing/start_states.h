@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a slice begins with: counters and weights that were trained on real scans. They are part of
-// the format (docs/mixing-coder.md).
+// Initial counters and weights of a slice, trained on real scans. They are part of the format
+// (docs/mixing-coder.md).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace lidar::codec::mixing {
 constexpr std::uint8_t kTableVersion = 2;
 constexpr unsigned kEfforts = 3;
 
-/// Classes of the width of a bin, each with counters of its own: the last one of each [mm].
+/// Classes of the width of a bin, each with counters of its own: the largest of each [mm].
 constexpr std::array<std::int64_t, 4> kStepClassEnds = {11, 29, 69, 139};
 constexpr unsigned kStepClasses = kStepClassEnds.size() + 1;
 unsigned StepClassOf(std::int64_t step_mm);
@@ -23,7 +23,7 @@ unsigned StepClassOf(std::int64_t step_mm);
 constexpr unsigned kLevelClasses = 2;
 inline unsigned LevelClassOf(unsigned bits) { return bits > 6 ? 1 : 0; }
 
-/// All that is trained.
+/// The trained states.
 struct StartStates {
   std::array<BinCounters, kStepClasses> counters;
   std::array<BinWeights, kEfforts> weights;
@@ -32,14 +32,14 @@ struct StartStates {
 
   /// Chances of a half, and even weights.
   void Reset();
-  /// The nearest that a table can say, that has seen so little that a slice can still change it.
+  /// Rounds to the values of a table, with so few bits seen that a slice can change them.
   void Round();
   /// Appends the table of rounded states.
   void Write(std::vector<std::uint8_t>* out) const;
-  /// False for anything but a whole table.
+  /// Returns false for anything but a whole table.
   bool Read(ByteView table);
 
-  /// What a slice begins with; without levels, those of `model` stay as they are.
+  /// Sets `model` to the initial states. Without levels, their models stay.
   void CopyTo(unsigned effort, std::int64_t step_mm, unsigned level_bits, Model* model) const {
     model->counters = counters[StepClassOf(step_mm)];
     model->weights = weights[effort - 1];
@@ -52,7 +52,7 @@ struct StartStates {
 /// The states of this version, from the table in the program.
 const StartStates& Trained();
 
-/// That table (start_table.txt), as StartStates::Write() gave it.
+/// The table (start_table.txt) that StartStates::Write() made.
 std::vector<std::uint8_t> CommittedTable();
 
 }  // namespace lidar::codec::mixing

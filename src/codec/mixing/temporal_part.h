@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes pixels by what they have seen before.
+// Codes pixels by the ranges that they saw before.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ class TemporalPart {
         model_(*model),
         coder_(*coder) {}
 
-  /// `pixels` are those of the row, `count` of them, and `above` the first azimuth of it.
+  /// `pixels` are the `count` pixels of the row, and `above` is its first azimuth.
   void StartRow(const PixelMemory* pixels, std::uint32_t count, Surprise* above) {
     pixels_ = pixels;
     count_ = count;
@@ -33,7 +33,7 @@ class TemporalPart {
     north_west_ = above[-1];
     west_bit_ = false;
   }
-  /// Call this for each pixel, before anything else.
+  /// Call it first for each pixel.
   void Look(std::uint32_t i) {
     const PixelMemory& p = pixels_[i];
     constexpr std::uint64_t kScale = std::uint64_t{kStep} * RangeGrid::kParts / PixelMemory::kPerMm;
@@ -49,7 +49,7 @@ class TemporalPart {
                                   : 4;
     index_ = i;
   }
-  /// What the memory says about the bin is worth more than what its neighbours do.
+  /// Returns true if the memory predicts the bin better than its neighbours.
   bool Knows() const {
     return known_ &&
            (west_.shift != Surprise::kChanged || above_[index_].shift != Surprise::kChanged);
@@ -80,7 +80,7 @@ class TemporalPart {
     return mixer.Code(bit, &model_.mask_weights[(h & 7) * 2 + west], &coder_);
   }
 
-  /// Codes a pixel that Knows(). Returns kFarAway where the bin is not near what was recalled.
+  /// Codes a pixel that Knows(). Returns kFarAway if the bin is not near the recalled one.
   std::int32_t CodeBin(std::int32_t bin, const Surroundings& around) {
     base_ = value_ / kStep;
     const std::int32_t phase = value_ - CentreOf(base_);
@@ -98,7 +98,7 @@ class TemporalPart {
     return Keep(base_ + mirror_ * signed_size, signed_size);
   }
 
-  /// The pixel has a return in `bin`, whichever way it was coded.
+  /// Notes the bin of the pixel, however it was coded.
   void SeeBin(std::int32_t bin) {
     Surprise s;
     if (known_) {
@@ -202,7 +202,7 @@ class TemporalPart {
   // Set for each pixel.
   std::uint32_t index_ = 0;
   bool known_ = false;
-  std::int32_t value_ = 0;  // that is recalled, in 1/16 bin
+  std::int32_t value_ = 0;  // recalled, in 1/16 bin
   std::uint32_t spread_class_ = 0;
   std::uint32_t count_class_ = 0;
   std::int32_t base_ = 0;

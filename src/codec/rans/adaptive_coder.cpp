@@ -9,7 +9,7 @@
 namespace lidar::codec {
 namespace {
 
-/// The residual of `value`, its sign changed where the prediction says so.
+/// Returns the residual of `value`, with the sign changed if the prediction asks for that.
 Residual ResidualOf(std::int32_t value, const Prediction& p) {
   const std::int32_t difference = value - p.value;
   const std::int32_t sign = difference >> 31;
@@ -21,8 +21,8 @@ Coded ValueOf(const Residual& residual, const Prediction& p) {
   return {Sum(p.value, Difference(residual.magnitude ^ sign, sign)), residual.magnitude};
 }
 
-/// The columns of the `count` bytes of `mask` that are 1; gives their number. `columns` has room
-/// for eight more.
+/// Writes the columns of the 1s in `count` bytes of `mask`, and returns their number. `columns` has
+/// room for eight more.
 std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns) {
   constexpr std::uint32_t kAtOnce = 8;
   std::uint16_t* next = columns;
@@ -53,7 +53,7 @@ void AdaptiveCoder::Reset(const BlockShape& shape) {
 }
 
 /// Calls code_row(beam, row, first) for each row that has returns; `first` is the index of its
-/// first one. False as soon as a call returns false.
+/// first one. Ends with false if a call returns false.
 template <class CodeRow>
 bool AdaptiveCoder::ForEachRow(const BlockShape& shape, CodeRow&& code_row) {
   Reset(shape);

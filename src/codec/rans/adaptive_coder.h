@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Prediction of a block's integers, and the adaptive rANS coder of what it leaves.
+// Prediction of a block's integers, and the adaptive rANS coder of the residuals.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -27,8 +27,8 @@ class AdaptiveCoder {
   /// Adds the symbols that Encode() would write.
   void Count(const BlockShape& shape, const IntegerLists& lists, SymbolCounts* values,
              SymbolCounts* levels);
-  /// Fills the ranges of `image`, and its intensity where it has room for one. False where the
-  /// stream cannot be one of Encode(), or the ranges are not below kMaxBins.
+  /// Fills the ranges of `image`, and its intensity if it has room for one. Returns false if the
+  /// stream is none of Encode(), or a range is not below kMaxBins.
   bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
               RangeImage* image);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the adaptive models know before the first return of a block.
+// The adaptive models before the first return of a block.
 #pragma once
 #include <array>
 

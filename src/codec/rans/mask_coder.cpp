@@ -6,12 +6,12 @@
 namespace lidar::codec {
 namespace {
 
-// Chance of a return in 1/64, where the pixels above (1), to the left (2) and above right (4) have
-// one. Only a start: the models learn from there. Part of the format.
+// Initial chance of a return in 1/64, by the returns above (1), to the left (2) and above right
+// (4). Part of the format.
 constexpr std::array<std::uint32_t, 8> kChance = {2, 24, 36, 55, 15, 32, 47, 63};
 
-/// The models before the first pixel. A context is, from bit 0: the pixel above to the left, the
-/// four above, the one right of those, and the two to the left.
+/// The models before the first pixel. The bits of a context from bit 0: the pixel above to the
+/// left, the four above, the one to their right, and the two to the left.
 std::array<NibbleModel, 256> MakeInitialModels() {
   std::array<NibbleModel, 256> models;
   for (unsigned context = 0; context < models.size(); ++context) {
@@ -41,7 +41,7 @@ unsigned PackEight(const std::uint8_t* bytes) {
   return static_cast<unsigned>(eight * 0x0102040810204080U >> 56);
 }
 
-/// The opposite, for four.
+/// Spreads four bits to bytes.
 void Unpack(unsigned four, std::uint8_t* bytes) {
   const std::uint32_t spread = four * 0x00204081U & 0x01010101U;
   for (unsigned i = 0; i < 4; ++i) bytes[i] = static_cast<std::uint8_t>(spread >> (8 * i));
@@ -56,14 +56,14 @@ void MaskCoder::Reset(const AzimuthAlignment& alignment, std::uint32_t columns) 
   row_.assign(std::size_t{Groups(columns)} * kGroup, 0);
 }
 
-/// Calls code(lane, model, pixels) for all groups of a row in the order of coding; it gives the
-/// bits of the group. What has become of `row_` then is remembered.
+/// Calls code(lane, model, pixels) for all groups of a row in the order of coding; it returns the
+/// bits of the group. The resulting `row_` is remembered.
 template <class CodeFour>
 [[gnu::always_inline]] inline void MaskCoder::CodeRow(std::uint32_t beam, std::uint32_t columns,
                                                       CodeFour&& code) {
   std::uint8_t* above = above_.At(beam);
   const RowLanes lanes(Groups(columns));
-  unsigned left[kRansLanes];  // the two pixels to the left, where they are known: bits 6 and 7
+  unsigned left[kRansLanes];  // the two pixels to the left, if known: bits 6 and 7
   for (unsigned lane = 0; lane < kRansLanes; ++lane) {
     const std::uint8_t* start = above + kGroup * (lane < lanes.lanes ? lanes.Start(lane) : 0);
     left[lane] = static_cast<unsigned>(start[-1] << 6 | start[-2] << 7);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which pixels have a return: four at a time, in the context of their neighbours.
+// Codes which pixels have a return: four at a time, in the context of their neighbours.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ class MaskCoder {
   /// `mask` has alignment.beams() rows of `columns`.
   void Encode(const Mask& mask, const AzimuthAlignment& alignment, std::uint32_t columns,
               RansEncoder* encoder);
-  /// Fills `mask`, which has that size already; false where the stream ends before.
+  /// Fills `mask`, which has its size. Returns false if the stream ends before.
   bool Decode(const AzimuthAlignment& alignment, std::uint32_t columns, RansDecoder* decoder,
               Mask* mask);
   /// Pieces of RansEncoder that a mask takes.
@@ -38,7 +38,7 @@ class MaskCoder {
   static constexpr unsigned kContexts = 256;
   std::array<NibbleModel, kContexts> models_;
   AlignedRow<std::uint8_t> above_;
-  std::vector<std::uint8_t> row_;  // the one that is coded, and room to its next multiple of four
+  std::vector<std::uint8_t> row_;  // the coded row, with room to the next multiple of four
 };
 
 }  // namespace lidar::codec

@@ -8,7 +8,7 @@
 namespace lidar::codec {
 namespace {
 
-/// What a stream says of the size of a state, and the bytes that this stands for.
+/// Code of a state's size in a stream, and its number of bytes.
 unsigned SizeCode(std::uint64_t state) {
   unsigned bytes = kRansShortestState;
   while (bytes < kRansStateBytes && state >> (8 * bytes) != 0) ++bytes;
@@ -24,8 +24,8 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
   const auto pieces = static_cast<std::size_t>(next_ - pieces_.data());
   std::array<std::uint64_t, kRansLanes> states;
   states.fill(kRansLow);
-  // At most one word a piece, and one that is written but not kept. They are decoded in the
-  // opposite order, so they grow downwards.
+  // A piece takes one word at most, and one more is written but not kept. Decoding goes the other
+  // way, so words grow downwards.
   if (words_.size() < pieces + 1) words_.resize(pieces + 1);
   std::uint32_t* const words_end = words_.data() + words_.size();
   std::uint32_t* word = words_end;
@@ -35,7 +35,7 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
     const unsigned count = piece.bits >> 2 & 63;
     std::uint64_t& state = states[piece.bits & 3];
     std::uint64_t x = state;
-    // Whether the state would outgrow its bits with this piece.
+    // True if the state would outgrow its bits with this piece.
     const bool full = x >= size << (kRansLowBits + kRansWordBits - kProbabilityBits - count);
     word[-1] = static_cast<std::uint32_t>(x);
     word -= full ? 1 : 0;
@@ -57,8 +57,7 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
 }
 
 RansDecoder::RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded) {
-  // Bytes behind the end: the states of the shortest stream there is, and the words that are read
-  // ahead.
+  // Bytes behind the end: the states of the shortest stream, and the words that are read ahead.
   constexpr std::size_t kStates = 1 + kRansLanes * kRansStateBytes;
   padded->assign(bytes.size + kStates + (ahead + 2) * sizeof(std::uint32_t), 0);
   if (bytes.size > 0) std::memcpy(padded->data(), bytes.data, bytes.size);

@@ -12,22 +12,20 @@
 namespace lidar::codec {
 
 /// J. Duda, "Asymmetric numeral systems" (2013), with states of 56 bits, refilled by 32 bits at a
-/// time. Four chains of symbols, the lanes, have a state each: a processor works on all of them at
-/// once, because none waits for another.
+/// time. Four independent chains of symbols, the lanes, have a state each, so that a processor
+/// works on all of them at once.
 constexpr unsigned kRansLanes = 4;
 constexpr unsigned kRansLowBits = 24;
 constexpr std::uint64_t kRansLow = std::uint64_t{1} << kRansLowBits;
 constexpr unsigned kRansWordBits = 32;
 constexpr unsigned kRansStateBytes = (kRansLowBits + kRansWordBits) / 8;
-/// Bytes of a state where it is written shortest: none for a lane that was not used, else from here
-/// to kRansStateBytes.
+/// Fewest bytes of a written state, up to kRansStateBytes. An unused lane has none.
 constexpr unsigned kRansShortestState = kRansStateBytes - 2;
-/// Bits that may follow a symbol, and bits on their own: a state of kRansLow can give no more.
+/// Most bits behind a symbol, and most bits on their own, that a state of kRansLow can give.
 constexpr unsigned kMaxJointBits = kRansLowBits - kProbabilityBits;
 constexpr unsigned kMaxPlainBits = kRansLowBits;
 
-/// Collects symbols and bits in the order in which they will be decoded; Finish() codes them
-/// backwards.
+/// Collects symbols and bits in the order of decoding; Finish() codes them backwards.
 class RansEncoder {
  private:
   struct Piece {
@@ -74,7 +72,7 @@ class RansEncoder {
   Piece* next_ = nullptr;
 };
 
-/// Copies are cheap: a loop works on one of its own, which can live in registers.
+/// Copies are cheap: a loop uses its own, which can live in registers.
 class RansDecoder {
  public:
   /// `padded` keeps the words, with room for `ahead` calls of GetBits() past the end. Callers ask
@@ -102,14 +100,14 @@ class RansDecoder {
     std::uint64_t x = states_[lane];
     const auto bits = static_cast<std::uint32_t>(x) & mask;
     x >>= count;
-    // One state in ten needs a refill, so a jump would be mispredicted. States are below 2^63.
+    // A state in ten needs a refill, so a jump would be mispredicted. States are below 2^63.
     const std::uint64_t refill = (x - kRansLow) >> 63;
     states_[lane] = x << (kRansWordBits * refill) | (LoadWord() & (0 - refill));
     position_ += sizeof(std::uint32_t) * refill;
     return bits;
   }
-  /// True where all symbols were read and the stream was one of RansEncoder: the states are back
-  /// where the encoder began and every word was used. A damaged stream hardly ever passes.
+  /// Returns true if the states are back at the encoder's first ones and each word was used. A
+  /// damaged stream hardly ever passes.
   bool AtEnd() const;
 
  private:

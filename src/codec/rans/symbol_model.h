@@ -10,7 +10,7 @@
 
 namespace lidar::codec {
 
-/// What a symbol stands for: a sign (0 or -1), and one of 2^bits magnitudes from `base` on.
+/// Values of a symbol: a sign (0 or -1), and one of 2^bits magnitudes from `base` on.
 struct ResidualClass {
   std::int16_t base;
   std::int8_t bits;
@@ -22,8 +22,8 @@ struct Residual {
   std::int32_t sign;  // 0 or -1
 };
 
-/// The classes are 0, and with each sign 1, 2, 3-4, 5-8, 9-16, 17-32, and 33 or more. From 33 on,
-/// another symbol tells the length of the rest.
+/// The classes are 0, and with each sign 1, 2, 3-4, 5-8, 9-16, 17-32, and 33 or more. From 33 on a
+/// second symbol has the length of the rest.
 constexpr std::uint32_t kLongMagnitude = 33;
 constexpr unsigned kFirstLongSymbol = 13;
 constexpr std::array<ResidualClass, kNibbles> kResidualClasses = {{{0, 0, 0, 0},
@@ -43,7 +43,7 @@ constexpr std::array<ResidualClass, kNibbles> kResidualClasses = {{{0, 0, 0, 0},
                                                                    {33, 0, -1, 0},
                                                                    {0, 0, 0, 0}}};
 
-/// The positive class of every magnitude up to kLongMagnitude.
+/// Positive class of each magnitude up to kLongMagnitude.
 struct ClassOfMagnitude {
   constexpr ClassOfMagnitude() {
     for (unsigned m = 0; m <= kLongMagnitude; ++m)
@@ -55,14 +55,14 @@ struct ClassOfMagnitude {
 };
 inline constexpr ClassOfMagnitude kClassOfMagnitude;
 
-/// How often each symbol was coded, to make InitialModels of.
+/// Counts of each symbol, for InitialModels.
 struct SymbolCounts {
   std::array<std::array<std::uint64_t, kNibbles>, kContexts> residuals{};
   std::array<std::uint64_t, kNibbles> longs{};
 };
 
-/// Every residual is one symbol and some bits, possibly none. Only the rare long ones take another
-/// path, so a processor has hardly a jump to mispredict.
+/// A residual is a symbol and some bits. Only rare long ones take another path, so a processor has
+/// hardly a jump to mispredict.
 class SymbolModel {
  public:
   /// Pieces of RansEncoder that a residual may take.
@@ -110,7 +110,7 @@ class SymbolModel {
   static unsigned BitLength(std::uint32_t v) {
     return v == 0 ? 0 : 32 - static_cast<unsigned>(__builtin_clz(v));
   }
-  /// The bits that fit go with the length, the higher ones by themselves.
+  /// Codes as many bits as fit with the length, and the higher ones by themselves.
   void EncodeLong(std::uint32_t rest, unsigned lane, RansEncoder::Writer* writer) {
     const unsigned length = std::min(BitLength(rest), kLongest);
     const unsigned bits = PlainBits(length);
@@ -128,7 +128,7 @@ class SymbolModel {
     if (length > 0 && length < kLongest) rest |= 1U << (length - 1);
     return static_cast<std::int32_t>(rest);
   }
-  /// How many bits of a rest of that length are written: the highest one is known to be 1.
+  /// Number of written bits of a rest of that length; the highest one is 1.
   static unsigned PlainBits(unsigned length) {
     if (length == kLongest) return kLongestBits;
     return length > 0 ? length - 1 : 0;
