@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds beams that turn on and on while they swing up and down: those of sensors whose scans do not
-// repeat.
+// Finds beams that turn while they swing up and down: those of sensors whose scans do not repeat.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,9 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Returns the path of `points` that are in the order of firing, beams in turn, and places them on
-/// it; nothing where azimuths are not at even steps. The search is short where they swing as often
-/// as in the table `last`, which may be null.
+/// Returns the path of `points`, which are in the order of firing, and places them on it. Returns
+/// nothing if azimuths are not at even steps. The table `last`, or null, shortens the search.
 std::optional<BeamTable> FindPath(const std::vector<Sighting>& points, const BeamTable* last,
                                   std::vector<PlacedPoint>* placed);
 

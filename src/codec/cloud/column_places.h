@@ -7,15 +7,15 @@
 
 namespace lidar::codec::cloud {
 
-/// Moves each beam so that it is in the middle of its columns.
+/// Moves each beam to the middle of its columns.
 void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table);
-/// Gives the columns places of their own where that saves more than it takes.
+/// Gives the columns places of their own if that saves more bits than it takes.
 void FindPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
-/// The same for beams whose azimuths a sensor rounds to multiples of an angle, which is about as
-/// large as a step: all see the same multiples, each later or earlier. False where they do not.
+/// Finds places for azimuths that a sensor rounds to multiples of `quantum`, about as large as a
+/// step. All beams see the same multiples, each with a delay. Returns false if they do not.
 bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, double step,
                        BeamTable* table);
-/// Finds beams that see points at uneven steps, again and again.
+/// Finds beams whose steps are uneven in a periodic way.
 void FindSwings(const std::vector<BeamAzimuths>& beams, BeamTable* table);
 
 /// An azimuth less the offset of its beam.
@@ -23,7 +23,18 @@ struct StraightAzimuth {
   std::int32_t azimuth;
   std::uint32_t beam;
 };
-/// Moves the columns to where those of the next cloud are. False where they cannot be found so.
+/// Moves the columns to those of the next cloud. Returns false if they are not found so.
 bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);
+
+// Parts of the functions above:
+
+/// Adds the firings that saw nothing.
+std::vector<std::uint32_t> WithGapsFilled(const std::vector<std::uint32_t>& places, double step,
+                                          std::uint32_t grains);
+/// Sets the delays so that column 0 of all beams looks ahead.
+void AlignDelays(BeamTable* table);
+inline bool Swings(const BeamTable::Beam& beam) { return beam.swings != BeamTable::Beam{}.swings; }
+/// Turns the swings to their present firings.
+void TurnSwings(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);
 
 }  // namespace lidar::codec::cloud
