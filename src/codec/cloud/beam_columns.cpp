@@ -29,7 +29,7 @@ std::vector<BeamAzimuths> AzimuthsOf(const std::vector<Sighting>& points, const 
   return all;
 }
 
-/// Takes what the beam adds from its azimuths.
+/// Subtracts what the beam adds to its azimuths.
 void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   for (BeamAzimuth& a : *azimuths) {
     const double angle = SideAngle(beam, static_cast<double>(a.rho_m));
@@ -37,7 +37,7 @@ void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   }
 }
 
-/// Sensors measure whole millimetres, or several, from some place of their own.
+/// Finds the reach: sensors measure whole millimetres, or several, from a place of their own.
 void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
   constexpr double kClear = 0.8;  // of 1
   const BeamLocator locator(*table);
@@ -122,7 +122,7 @@ std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
   };
   constexpr double kClearly = 0.9;
   const FoundBeams meeting = FindMeetingBeams(points);
-  // A beam that bends looks like several where elevations are rounded.
+  // A bending beam looks like several if elevations are rounded.
   const FoundBeams bending = FindBendingBeams(points);
   if (good(bending, kClearly) && 2 * bending.beams.size() < meeting.beams.size())
     return FindBentColumns(bending, AzimuthsOf(points, bending));

@@ -8,7 +8,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Returns nothing where most points lie on no beam, or in no columns.
+/// Returns nothing if most points lie on no beam, or in no columns.
 std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points);
 
 }  // namespace lidar::codec::cloud

@@ -49,7 +49,7 @@ void PlaceInColumns(const BeamTable& table, std::vector<PlacedPoint>* placed) {
   }
 }
 
-/// The part of the points that lie near their pixels.
+/// Returns the part of the points near their pixels.
 double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>& placed) {
   constexpr double kNear = 0.01;  // [m]
   std::size_t near = 0;
@@ -60,7 +60,7 @@ double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>
   return points.empty() ? 0 : static_cast<double>(near) / static_cast<double>(points.size());
 }
 
-/// Turns all beams to where most points lie between columns.
+/// Turns all beams by the most common distance from columns.
 void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
   const double columns = 2 * M_PI * table->turn / BeamTable::kParts / kTurn;
   std::complex<double> phases;
@@ -72,7 +72,7 @@ void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
 
 }  // namespace
 
-/// Finds the path of the points. False where most are not on it.
+/// Finds the path of the points. Returns false if most are not on it.
 bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points, const BeamTable* last,
                                 std::vector<PlacedPoint>* placed) {
   constexpr double kMost = 0.8;
@@ -84,7 +84,7 @@ bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points, const BeamT
   return true;
 }
 
-/// False where they do not fit as they did.
+/// Returns false if the points fit worse than before.
 bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed) {
   constexpr double kAlike = 0.97;
   if (table_->has_path()) return PlaceOnNewPath(points, &*table_, placed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Keeps the beams of a stream's clouds: finding them takes long, seeing that they fit does not.
+// Keeps the beams of a stream's clouds: a search takes long, a check does not.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,22 +12,21 @@ namespace lidar::codec::cloud {
 /// A point and the pixel of its beam and column.
 struct PlacedPoint {
   double along_m = 0;         // of the beam
-  double above_m = 0;         // how far the point is above it
-  std::int32_t azimuth = 0;   // without what the beam's side adds, less its offset
-  std::int32_t residual = 0;  // how far that is from the column's
-  std::int32_t bend = 0;      // where beams bend, how far its elevation is above the beam's
+  double above_m = 0;         // height of the point above it
+  std::int32_t azimuth = 0;   // less the offset of the beam, and less what its side adds
+  std::int32_t residual = 0;  // distance from the column's azimuth
+  std::int32_t bend = 0;      // elevation above the beam's, if beams bend
   std::uint32_t beam = 0;
   std::uint32_t column = 0;
 };
 
 class BeamKeeper {
  public:
-  /// An image has no more pixels, and a search would take seconds.
+  /// An image has no more pixels, and a search of more points takes seconds.
   static constexpr std::size_t kMostPoints = 1U << 20;
 
-  /// Places the points of a cloud in the beams of the clouds before if they fit, else in those that
-  /// it finds. Returns null where it finds none. It looks for others less and less often while none
-  /// fit.
+  /// Places the points of a cloud in the beams of the clouds before if they fit, else in new ones.
+  /// Returns null if it finds none. Searches become rarer while none succeed.
   const BeamTable* Place(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed);
 
  private:
@@ -37,7 +36,7 @@ class BeamKeeper {
                       std::vector<PlacedPoint>* placed);
 
   std::optional<BeamTable> table_;
-  double fit_ = 0;      // part of the points that are near their pixels
+  double fit_ = 0;      // part of the points near their pixels
   unsigned fails_ = 0;  // clouds in a row that did not fit
 };
 

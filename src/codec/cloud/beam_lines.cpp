@@ -8,7 +8,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Elevations of one beam, in units: those of neighbours are further apart.
+/// Limits of the elevations of a beam, in units. Those of neighbours are further apart.
 constexpr double kGap = 60;         // 0.005 degrees
 constexpr double kWidest = 350;     // 0.03 degrees
 constexpr std::size_t kFewest = 8;  // points
@@ -18,26 +18,26 @@ struct Seen {
   std::uint32_t point;
 };
 
-// Lines are first looked for on a grid of heights and tangents.
+// Grid of heights and tangents for the first search.
 constexpr double kMostHeight = 0.5;  // [m]
 constexpr double kHeightStep = 0.01;
 constexpr double kMostTangent = 1.5;
 constexpr double kTangentStep = 0.0004;
 constexpr auto kTangents = static_cast<std::size_t>(2 * kMostTangent / kTangentStep);
-constexpr std::size_t kWindow = 125;  // tangents that have one height
+constexpr std::size_t kWindow = 125;  // tangents of one height
 constexpr std::size_t kWindows = kTangents / kWindow;
 constexpr double kNearest = 1;  // [m]
 
 using Histogram = std::vector<std::uint32_t>;
 
-/// Where a line of this height through the point is in a histogram; kTangents: nowhere.
+/// Bin of the line of this height through the point; kTangents: none.
 std::size_t ClassOf(const Sighting& s, double height_m, double classes_per_tangent) {
   const double tangent = (s.z_m - height_m) / s.rho_m;
   if (std::abs(tangent) >= kMostTangent) return SIZE_MAX;
   return static_cast<std::size_t>((tangent + kMostTangent) * classes_per_tangent);
 }
 
-/// The height at which the tangents of each window are the sharpest.
+/// Finds the height with the sharpest tangents, for each window.
 std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
   std::vector<double> heights(kWindows, 0);
   std::vector<double> best(kWindows, 0);
@@ -62,7 +62,7 @@ std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
   return heights;
 }
 
-/// Peaks of the tangents, each window by its height.
+/// Finds peaks of the tangents at the height of each window.
 std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
   constexpr std::size_t kFiner = 2;
   constexpr double kPerTangent = kFiner / kTangentStep;
@@ -98,7 +98,7 @@ std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
   return lines;
 }
 
-/// Gives each point to the line that is nearest, if it is as near as `reach_m`.
+/// Gives each point to the nearest line within `reach_m`.
 void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
   auto& beams = found->beams;
   for (FoundBeam& beam : beams) beam.points.clear();
@@ -111,7 +111,7 @@ void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* fou
     const auto below =
         std::lower_bound(beams.begin(), beams.end(), tangent,
                          [](const FoundBeam& b, double t) { return b.line.tangent > t; });
-    // Heights differ, so lines may be nearer than their tangents say.
+    // Heights differ, so a line may be nearer than one with a closer tangent.
     constexpr std::ptrdiff_t kAround = 4;
     const std::ptrdiff_t at = below - beams.begin();
     const auto size = static_cast<std::ptrdiff_t>(beams.size());
@@ -131,9 +131,9 @@ void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* fou
   }
 }
 
-/// The line of least squares; its height stays where the points do not say it.
+/// Fits a line by least squares. The old height is a prior.
 void Refit(const std::vector<Sighting>& points, FoundBeam* beam) {
-  constexpr double kPrior = 0.01;  // points' worth of a square metre
+  constexpr double kPrior = 0.01;  // weight of a square metre, in points
   const auto n = static_cast<double>(beam->points.size());
   double rho = 0;
   double z = 0;
@@ -165,7 +165,7 @@ std::vector<Sighting> Others(const std::vector<Sighting>& points, const FoundBea
   return others;
 }
 
-/// Drops beams of fewer points, and sorts the others.
+/// Drops beams of too few points, and sorts the others.
 void DropWeakBeams(std::size_t fewest, FoundBeams* found) {
   auto& beams = found->beams;
   beams.erase(std::remove_if(beams.begin(), beams.end(),
@@ -178,7 +178,7 @@ void DropWeakBeams(std::size_t fewest, FoundBeams* found) {
             [](const FoundBeam& a, const FoundBeam& b) { return a.line.tangent > b.line.tangent; });
 }
 
-/// Beams that were found twice become one.
+/// Merges beams that were found twice.
 void MergeTwins(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
   auto& beams = found->beams;
   for (std::size_t i = 1; i < beams.size();) {
@@ -200,7 +200,7 @@ void MergeTwins(const std::vector<Sighting>& points, double reach_m, FoundBeams*
   }
 }
 
-/// Beams that bend are peaks of the elevations.
+/// Finds bending beams as peaks of the elevations.
 class BendingBeams {
  public:
   explicit BendingBeams(const std::vector<Sighting>& points) : points_(points) {
@@ -252,7 +252,7 @@ class BendingBeams {
     if (i == 0) return 0;
     return i == peaks_.size() || peaks_[i - 1] - at < at - peaks_[i] ? i - 1 : i;
   }
-  /// The tangent of the middle point.
+  /// Returns the tangent of the middle point.
   double MiddleOf(std::vector<std::uint32_t> beam) const {
     if (beam.empty()) return 0;
     const auto middle = beam.begin() + static_cast<std::ptrdiff_t>(beam.size() / 2);
@@ -300,7 +300,7 @@ FoundBeams FindBendingBeams(const std::vector<Sighting>& points) {
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
   FoundBeams found;
   for (const BeamLine& line : FirstLines(points)) found.beams.push_back({line, {}});
-  // Lines between two heights are found once the others are gone.
+  // Lines between two heights are found after the others are removed.
   for (const double reach_m : {0.04, 0.02}) {
     Assign(points, reach_m, &found);
     for (FoundBeam& beam : found.beams)

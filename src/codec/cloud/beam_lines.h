@@ -14,7 +14,7 @@ struct BeamLine {
   double tangent = 0;
   double height_m = 0;
 
-  /// How far a point lies above the line.
+  /// Height of a point above the line.
   double Above(const Sighting& s) const {
     return (s.z_m - height_m - tangent * s.rho_m) / std::sqrt(1 + tangent * tangent);
   }
@@ -30,11 +30,11 @@ struct FoundBeams {
   std::size_t points = 0;        // of all beams
 };
 
-/// Beams that meet in the origin: their elevations are exact.
+/// Finds beams that meet in the origin: their elevations are exact.
 FoundBeams FindMeetingBeams(const std::vector<Sighting>& points);
-/// Beams that pass the origin at up to 0.5 m.
+/// Finds beams that pass the origin at up to 0.5 m.
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points);
-/// Beams that meet in the origin and bend: peaks of the elevations.
+/// Finds beams that meet in the origin and bend: peaks of the elevations.
 FoundBeams FindBendingBeams(const std::vector<Sighting>& points);
 
 }  // namespace lidar::codec::cloud

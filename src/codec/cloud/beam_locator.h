@@ -13,12 +13,12 @@ class BeamLocator {
   struct Found {
     std::uint32_t beam = 0;
     double along_m = 0;  // of the beam
-    double above_m = 0;  // how far the point is above it
+    double above_m = 0;  // height of the point above it
   };
 
   explicit BeamLocator(const BeamTable& table);
 
-  /// The beam that is nearest.
+  /// Returns the nearest beam.
   Found Find(const Sighting& s) const {
     const double tangent = (s.z_m - middle_height_m_) / std::max(s.rho_m, 1e-6);
     const std::uint32_t guess = buckets_[BucketOf(tangent)];
@@ -48,7 +48,7 @@ class BeamLocator {
   };
   static constexpr std::uint32_t kBuckets = 8'192;
 
-  /// From 1 to -1, for all tangents.
+  /// Maps all tangents to 1 to -1.
   static double Squeezed(double tangent) { return tangent / (1 + std::abs(tangent)); }
   static std::uint32_t BucketOf(double tangent) {
     return static_cast<std::uint32_t>((1 - Squeezed(tangent)) * (0.4999 * kBuckets));
@@ -56,7 +56,7 @@ class BeamLocator {
 
   std::vector<Line> lines_;
   double middle_height_m_ = 0;
-  std::uint32_t around_ = 0;            // beams that may be nearer than the one by the tangent
+  std::uint32_t around_ = 0;            // beams around the one by the tangent that may be nearer
   std::vector<std::uint16_t> buckets_;  // the last beam above each
 };
 

@@ -14,7 +14,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// What the range coder needs: beams that look where they are, column by column.
+/// Makes the sensor model that the range coder needs, whose columns are those of the table.
 SensorModel ModelOf(const BeamTable& table) {
   SensorModel model;
   model.columns_per_scan = table.columns();
@@ -30,7 +30,7 @@ std::vector<std::int32_t> BinsOf(const RangeImage& image, const RangeGrid& grid)
   return bins;
 }
 
-/// Costs little to find: the guess whose residuals are short.
+/// Chooses the guess with the shorter residuals.
 ResidualGuess BestGuess(const RangeImage& image, std::uint32_t tangent_um,
                         const std::vector<std::int32_t>& residuals) {
   std::array<double, kResidualGuesses> costs{};
@@ -75,7 +75,7 @@ std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::in
   return extras;
 }
 
-/// The ranges of `image` that a decoder of the block has.
+/// Returns the ranges of `image` as a decoder gets them.
 bool ComeBack(const RangeImage& image, const RangeSettings& settings,
               const std::vector<std::uint8_t>& block, const SensorModel& model, RangeImage* decoded,
               RangeGrid* grid) {
@@ -86,7 +86,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
       if (range != 0) range = grid->RangeOf(grid->BinOf(range));
     return true;
   }
-  // Bins may have been chosen.
+  // The encoder may have chosen other bins.
   RangeDecoder decoder(model);
   IntensityScale scale;
   ByteReader reader(block.data(), block.size());
@@ -95,7 +95,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
   return true;
 }
 
-/// Codes them as near as the settings ask for, if they do.
+/// Codes residuals as exactly as the settings ask, if they do.
 void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
                      std::vector<std::int32_t>* residuals, mixing::BinaryEncoder* bits) {
   if (settings->tangent_um == 0) return;
@@ -126,7 +126,7 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   RangeEncoder encoder(model);
   const RangeSettings settings = SettingsOf(errors, levels, effort, image);
   if (!encoder.Encode(image, settings, &block)) return false;
-  // What follows is coded by the ranges that come back.
+  // The next parts are coded by the decoded ranges.
   RangeImage decoded;
   RangeGrid grid;
   if (!ComeBack(image, settings, block, model, &decoded, &grid)) return false;
@@ -158,7 +158,7 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
 
 namespace {
 
-/// A section as it comes out of its bytes.
+/// A parsed section.
 struct DecodedSection {
   BeamTable table;
   ResidualSettings azimuths;
@@ -170,11 +170,11 @@ struct DecodedSection {
   std::vector<std::int32_t> bends;
   std::vector<BeamTable::Slope> slopes;  // of the beams
   std::vector<ExtraBin> extras;
-  bool by_four = false;  // what codes them
+  bool by_four = false;  // further returns are coded by four neighbours
   std::size_t returns = 0;
 };
 
-/// Takes `flag` from the guess; `is_set` may be null where there is none.
+/// Removes `flag` from the guess, and puts it into `is_set`, which may be null.
 bool ReadSettings(ByteReader* reader, ResidualSettings* settings, unsigned flag, bool* is_set) {
   bool ok = true;
   settings->tangent_um = ReadVarint(reader, &ok);
@@ -185,7 +185,7 @@ bool ReadSettings(ByteReader* reader, ResidualSettings* settings, unsigned flag,
   return ok && reader->ok() && guess < kResidualGuesses;
 }
 
-/// Residuals are 0 where the settings ask for none.
+/// Residuals are 0 if the settings ask for none.
 bool DecodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                      std::vector<std::int32_t>* residuals, mixing::BinaryDecoder* bits) {
   residuals->assign(image.size(), 0);
@@ -231,7 +231,7 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
   return section->extras.size() == extras && bits.AtEnd();
 }
 
-/// False where a range is none.
+/// Returns false for an invalid range.
 bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t range_mm,
                  std::uint8_t level, XyzCloud* cloud, PointPlaces* places) {
   if (range_mm == 0 || range_mm > RangeGrid::kMaxRangeMm) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The part of a coded cloud that beams see: an image of ranges, and what it leaves open.
+// The part of a coded cloud that beams see: an image of ranges, and what the image lacks.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -16,16 +16,16 @@ namespace lidar::codec::cloud {
 /// Levels of the points of a list, at full resolution; null: geometry only.
 struct PointLevels {
   const std::vector<std::uint8_t>* levels = nullptr;
-  IntensityScale scale;  // what they become
+  IntensityScale scale;  // scale of the coded levels
 };
 
-/// Appends the section; false where the range coder refuses the image.
+/// Appends the section. Returns false if the range coder refuses the image.
 bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
                        unsigned effort, PixelList* list, std::vector<std::uint8_t>* out);
 
-/// Appends the points of the section that `reader` comes to, beam by beam, columns in order, and
-/// returns of a pixel one after the other, and sets their places if they are asked for. False, with
-/// both undefined, for a section that is damaged or of more than `max_points`.
+/// Appends the points of the next section of `reader`, beam by beam, columns in order, and returns
+/// of a pixel in a row. Sets their places unless null. Returns false, with both undefined, for a
+/// section that is damaged or of more than `max_points`.
 bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
                        XyzCloud* cloud, PointPlaces* places = nullptr);
 

@@ -25,7 +25,7 @@ std::int32_t ReadSigned(ByteReader* reader, bool* ok) {
 constexpr unsigned kOffsetsFlag = 1;
 constexpr unsigned kGrainsFlag = 2;
 constexpr unsigned kReachesFlag = 4;
-constexpr unsigned kPeriodShift = 3;  // one less
+constexpr unsigned kPeriodShift = 3;  // stored less one
 constexpr unsigned kBendsFlag = 32;
 constexpr unsigned kPathFlag = 64;
 

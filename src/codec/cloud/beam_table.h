@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where the beams of a spinning sensor look, found in the points of its clouds.
+// Directions of the beams of a spinning sensor, found in the points of its clouds.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -23,45 +23,46 @@ constexpr double kRadians = 2 * M_PI / kTurn;
 struct Sighting {
   explicit Sighting(const Point& point);
   double range_m;
-  double rho_m;  // of it, along the ground
+  double rho_m;  // range along the ground
   double z_m;
   std::int32_t azimuth;  // counter-clockwise, below kTurn
 };
 
 /// The points of a beam lie on a line in the plane of `rho` and z, one for each column of a turn,
-/// at the azimuth of the column, less what a beam that passes the origin adds. Points of beams that
-/// bend lie near the line only.
+/// at the azimuth of the column. A beam that passes the origin adds to the azimuth. Points of
+/// bending beams are only near the line.
 struct BeamTable {
   static constexpr std::uint32_t kMostPeriod = 4;
   struct Beam {
     std::int32_t elevation = 0;
-    std::int32_t offset = 0;                         // azimuth of column 0
-    std::int32_t height_um = 0;                      // of the line above the origin
-    std::int32_t side_um = 0;                        // how far it passes the origin, to the left
-    std::array<std::int32_t, kMostPeriod> swings{};  // of every `period` columns, in turn
-    std::int32_t reach_um = 0;                       // of range 0 along the beam
-    std::uint32_t delay = 0;             // columns that the beam is late; below columns()
-    std::array<std::int32_t, 2> rise{};  // of a path's swing: times cosine, times sine
+    std::int32_t offset = 0;     // azimuth of column 0
+    std::int32_t height_um = 0;  // of the line above the origin
+    std::int32_t side_um = 0;    // distance at which it passes the origin, to the left
+    std::array<std::int32_t, kMostPeriod>
+        swings{};                        // of the next `period` columns, again and again
+    std::int32_t reach_um = 0;           // of range 0 along the beam
+    std::uint32_t delay = 0;             // delay of the beam in columns; below columns()
+    std::array<std::int32_t, 2> rise{};  // factors of the cosine and sine of a path's swing
   };
   static constexpr std::uint32_t kParts = 256;
   static constexpr std::uint32_t kMostBeams = 1'024;
   static constexpr std::uint32_t kMostColumns = 16'384;
   static constexpr std::int32_t kMostOffsetUm = 1'000'000;
   static constexpr std::uint32_t kMostGrains = 1U << 18;
-  /// Swings are multiples of it: 0.0014 degrees.
+  /// Unit of swings: 0.0014 degrees.
   static constexpr std::int32_t kSwingUnit = 16;
-  /// Units of the elevations and offsets of beams that bend: residuals of the points add the rest.
+  /// Unit of the elevations and offsets of bending beams. Residuals of the points add the rest.
   static constexpr std::int32_t kBentElevation = 128;
   static constexpr std::int32_t kBentOffset = 32;
 
   std::uint32_t turn = 0;             // columns of a turn, in 1/kParts
-  std::uint32_t period = 1;           // of the swings; 1: there are none
+  std::uint32_t period = 1;           // of the swings; 1: no swings
   std::vector<Beam> beams;            // top to bottom
   std::uint32_t grains = 0;           // of a turn; 0: the columns are even
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
-  bool bends = false;                 // each point has an elevation of its own
-  // Beams on a path turn by `rate` a column, on and on, and swing up and down once in 2^kSwingBits
-  // / swing_rate columns.
+  bool bends = false;                 // each point has its own elevation
+  // Beams on a path turn by `rate` a column, and swing up and down once in 2^kSwingBits /
+  // swing_rate columns.
   static constexpr unsigned kRateBits = 11;
   static constexpr std::int32_t kMostRate = (1 << 27) - 1;
   static constexpr unsigned kSwingBits = 28;
@@ -73,17 +74,17 @@ struct BeamTable {
   bool has_offsets() const;
   bool has_reaches() const;
   bool has_path() const { return rate != 0; }
-  /// From one column to the next, in units.
+  /// Step of the columns, in units.
   std::int32_t step() const {
     return has_path() ? std::abs(rate) >> kRateBits
                       : static_cast<std::int32_t>(std::uint64_t{kTurn} * kParts / turn);
   }
-  /// Index of the place that a beam has in a column.
+  /// Index of a beam's place in a column.
   std::uint32_t FiringOf(std::uint32_t beam, std::uint32_t column) const {
     column += beams[beam].delay;
     return column >= columns() ? column - columns() : column;
   }
-  /// The azimuth, which is not wrapped.
+  /// Returns the azimuth without wrapping.
   std::int32_t AzimuthOf(std::uint32_t beam, std::uint32_t column) const {
     if (has_path()) {
       const std::int64_t angle = std::int64_t{rate} * column >> kRateBits;
@@ -104,7 +105,7 @@ struct BeamTable {
     return b.elevation + static_cast<std::int32_t>(std::lround(b.rise[0] * std::cos(phase) +
                                                                b.rise[1] * std::sin(phase)));
   }
-  /// The direction of an elevation.
+  /// Direction of an elevation.
   struct Slope {
     explicit Slope(std::int32_t elevation)
         : cosine(std::cos(elevation * kRadians)), sine(std::sin(elevation * kRadians)) {}
@@ -116,11 +117,11 @@ struct BeamTable {
 
   /// Writes all but the places.
   void Write(ByteWriter* writer) const;
-  /// Returns nothing for numbers that no encoder writes. Where there are grains, places are all 0.
+  /// Returns nothing for numbers that no encoder writes. With grains, all places are 0.
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 
-/// What a beam that passes the origin adds to the azimuth of a point.
+/// Returns what a beam that passes the origin adds to the azimuth of a point.
 inline double SideAngle(const BeamTable::Beam& beam, double rho_m) {
   return beam.side_um == 0 ? 0 : 1e-6 * beam.side_um / std::max(rho_m, 1e-3) / kRadians;
 }
@@ -129,7 +130,7 @@ inline double SideAngle(const BeamTable::Beam& beam, double rho_m) {
 class ColumnFinder {
  public:
   explicit ColumnFinder(const BeamTable& table);
-  /// The column whose azimuth is nearest.
+  /// Returns the column with the nearest azimuth.
   std::uint32_t ColumnOf(std::uint32_t beam, std::int32_t azimuth) const;
 
  private:
@@ -139,7 +140,7 @@ class ColumnFinder {
   std::vector<std::uint16_t> buckets_;  // the first place at or behind each
 };
 
-/// The angle, wrapped to -kTurn / 2 to kTurn / 2.
+/// Wraps an angle to -kTurn / 2 to kTurn / 2.
 inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }

@@ -10,8 +10,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Grids are as much finer than they need be, and errors as much larger than they are: for what
-/// floats round off.
+/// Margin for the rounding of floats: grids are finer, and errors count as larger.
 constexpr double kRoom = 1e-4;
 
 double HalfOf(unsigned depth) { return static_cast<double>(std::uint64_t{1} << (depth - 1)); }
@@ -41,7 +40,7 @@ std::vector<std::uint32_t> Sums(const std::vector<std::uint32_t>& counts) {
   return first;
 }
 
-/// Which points may take which cells.
+/// Points and the cells that they may take.
 class Choices {
  public:
   Choices(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
@@ -63,9 +62,9 @@ class Choices {
   }
 
   const std::vector<std::uint64_t>& codes() const { return codes_; }
-  /// How many points that no cell has taken may take this one.
+  /// Returns how many of the remaining points may take this cell.
   std::uint32_t left(std::uint32_t cell) const { return left_[cell]; }
-  /// Gives the cell all that are left, and appends them to `order`.
+  /// Gives the cell all its remaining points, and appends them to `order`.
   void Take(std::uint32_t cell, std::vector<std::uint32_t>* order) {
     for (std::uint32_t k = first_of_cell_[cell]; k < first_of_cell_[cell + 1]; ++k) {
       const std::uint32_t point = points_[k];
@@ -78,7 +77,7 @@ class Choices {
   }
 
  private:
-  /// Of the cells around only those on the side of the point can be near enough.
+  /// Visits the neighbouring cells on the point's side; others are too far.
   void AddPoint(const Point& point, const CellGrid& grid, unsigned depth) {
     const CellPosition own = OwnCell(point, grid, depth);
     AddChoice(own);
@@ -93,7 +92,7 @@ class Choices {
       off[k] = away * away;
       beside[k] = (1 - std::abs(away)) * (1 - std::abs(away));
     }
-    // What floats round off decides beyond this.
+    // The rounding of floats decides beyond this.
     constexpr double kNever = 0.7515;
     const double bound = grid.error_m() * grid.error_m();
     for (unsigned i = 1; i < 8; ++i) {
@@ -184,7 +183,7 @@ void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, uns
 void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered) {
   Choices choices(points, grid, depth);
-  // Cells by how many points they may take, lists from the back; counts only fall.
+  // Lists of cells by the number of points that they may take; the numbers only fall.
   std::vector<std::vector<std::uint32_t>> queues;
   for (std::uint32_t i = 0; i < choices.codes().size(); ++i) {
     const std::uint32_t count = choices.left(i);

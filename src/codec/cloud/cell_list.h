@@ -7,7 +7,7 @@
 
 namespace lidar::codec::cloud {
 
-/// A grid has 2^depth cells along each axis. Its middle, where the sensor is, is a corner of eight.
+/// A grid has 2^depth cells along each axis. The sensor is in its middle, a corner of eight cells.
 constexpr unsigned kMostDepth = 21;
 
 using CellPosition = std::array<std::uint32_t, 3>;  // from 0 to 2^depth - 1

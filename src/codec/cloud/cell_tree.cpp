@@ -48,12 +48,12 @@ struct Direction {
   std::int64_t z = 0;
 };
 
-/// The cells about the children of a node, 4 x 4 x 4: the one at (x, y, z) is bit x + 4 y + 16 z,
-/// and children are those from 1 to 2.
+/// The 4 x 4 x 4 cells around the children of a node: (x, y, z) is bit x + 4 y + 16 z. The children
+/// have coordinates 1 and 2.
 using CellBits = std::uint64_t;
 constexpr std::array<unsigned, 8> kChildAt = {21, 22, 25, 26, 37, 38, 41, 42};
 
-/// Which neighbours of a node touch a child.
+/// Neighbours of a node that touch a child.
 constexpr std::array<std::uint32_t, 8> NodesByChild() {
   std::array<std::uint32_t, 8> nodes{};
   for (unsigned child = 0; child < 8; ++child)
@@ -67,7 +67,7 @@ constexpr std::array<std::uint32_t, 8> NodesByChild() {
 }
 constexpr std::array<std::uint32_t, 8> kNodesBy = NodesByChild();
 
-/// Children of a node, the first of them at bit 0.
+/// Children of a node, the first at bit 0.
 constexpr std::array<CellBits, 256> SpreadChildren() {
   std::array<CellBits, 256> spread{};
   for (unsigned children = 0; children < 256; ++children)
@@ -77,7 +77,7 @@ constexpr std::array<CellBits, 256> SpreadChildren() {
 }
 constexpr std::array<CellBits, 256> kSpread = SpreadChildren();
 
-/// A neighbour of a node: how far its children are from its own, and which are next to those.
+/// A neighbour of a node: offset of its children from the node's own, and those next to them.
 struct Neighbour {
   int shift = 0;
   unsigned inside = 0;
@@ -100,7 +100,7 @@ constexpr std::array<Neighbour, 27> FindNeighbours() {
 }
 constexpr std::array<Neighbour, 27> kNeighbours = FindNeighbours();
 
-/// Numbers of which each bit is a digit in base 3, the lowest bit the lowest digit, or the highest.
+/// Numbers in base 3 whose digits are bits, from the lowest bit or from the highest.
 template <unsigned kDigits>
 constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
   std::array<std::uint32_t, 1U << kDigits> numbers{};
@@ -112,7 +112,7 @@ constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
 constexpr auto kFaces3 = Base3<6>(true);
 constexpr auto kLayer3 = Base3<8>(false);
 
-/// The 27 cells about one, x fastest: bit 13 is itself.
+/// The 27 cells around a cell, x fastest; bit 13 is the cell itself.
 std::uint32_t About(CellBits cells, unsigned at) {
   const CellBits from = cells >> (at - 21);
   const auto plane = [&](unsigned z) {
@@ -133,7 +133,7 @@ std::uint32_t Ones(std::uint32_t bits) {
   return ((bits + (bits >> 4)) & 0x0F0F0F0F) * 0x01010101 >> 24;
 }
 
-/// What is known of the 26 cells about one.
+/// States of the 26 cells around a cell.
 struct Tally {
   static constexpr std::uint32_t kItself = 1U << 13;
 
@@ -150,7 +150,7 @@ struct Tally {
     edges_open = Ones(open & kAllEdges);
     corners_on = Ones(mask & kAllCorners);
   }
-  std::uint32_t mask = 0;   // which are occupied
+  std::uint32_t mask = 0;   // occupied ones
   std::uint32_t faces = 0;  // states of the six: 0 empty, 1 occupied, 2 unknown
   std::uint32_t layer = 0;  // states of the eight of the same height
   std::uint32_t faces_on = 0;
@@ -179,7 +179,7 @@ struct CellTree::Model {
 struct CellTree::Surroundings {
   CellBits occupied = 0;
   CellBits unknown = 0;
-  std::uint32_t nodes = 0;  // which of the 26 neighbours of the node are occupied
+  std::uint32_t nodes = 0;  // occupied ones of the 26 neighbours of the node
 };
 
 CellTree::CellTree() = default;
@@ -203,7 +203,7 @@ void CellTree::FillLevels(const CellList& cells) {
   }
 }
 
-/// Fills in the cells of neighbours that are coded already, and the presence of the others.
+/// Fills in the cells of coded neighbours, and the presence of others.
 void CellTree::Look(const Place& place, Surroundings* around) const {
   constexpr std::uint64_t kOneEach = NodeMap::kStepX + NodeMap::kStepY + NodeMap::kStepZ;
   const std::uint64_t corner = NodeMap::KeyOf(place.position) - kOneEach;
@@ -313,7 +313,7 @@ bool CellTree::CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& 
   return true;
 }
 
-/// What is like the count of a cell.
+/// Context of a cell's count.
 struct CellTree::CountContext {
   std::uint32_t last = 0;   // of the cell before
   std::uint32_t mean = 0;   // of neighbours, in halves
@@ -337,7 +337,7 @@ std::uint32_t CellTree::CodeCount(std::uint32_t count, const CountContext& conte
     mixer.Ask([&](unsigned k) __attribute__((always_inline)) { return &model_->counts[k][at[k]]; });
     return mixer.Code(bit, &model_->count_weights[node], coder);
   };
-  // Small ones one by one; the rest as in an Exp-Golomb code.
+  // Small counts are unary, others an Exp-Golomb code.
   constexpr std::uint32_t kSmall = 12;
   std::uint32_t value = 1;
   while (value < kSmall && code(count > value, value)) ++value;

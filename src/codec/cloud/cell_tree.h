@@ -13,9 +13,9 @@
 
 namespace lidar::codec::cloud {
 
-/// What bounds the work of a decoder.
+/// Bounds of a decoder's work.
 struct CellLimits {
-  std::size_t points = 0;  // exactly so many
+  std::size_t points = 0;  // exact number
   std::size_t nodes = 0;   // of all levels
 };
 
@@ -27,10 +27,10 @@ class CellTree {
   CellTree& operator=(CellTree&&) noexcept;
   ~CellTree();
 
-  /// Codes all of `cells`, which a decoder fills but for `depth`. False for a damaged stream.
+  /// Codes all of `cells`; a decoder fills all but `depth`. Returns false for a damaged stream.
   template <class Coder>
   bool Code(CellList* cells, const CellLimits& limits, Coder* coder);
-  /// How many nodes the last Code() visited.
+  /// Number of nodes that the last Code() visited.
   std::size_t nodes() const { return nodes_; }
 
  private:
@@ -38,7 +38,7 @@ class CellTree {
   struct Model;
   struct Surroundings;
   struct CountContext;
-  /// A node and where it is.
+  /// A node and its place.
   struct Place {
     CellPosition position;
     std::uint32_t node = 0;   // of its level

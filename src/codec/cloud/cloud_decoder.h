@@ -17,15 +17,15 @@ class CloudDecoder {
  public:
   explicit CloudDecoder(std::uint32_t max_points) : max_points_(max_points) {}
 
-  /// False, with the cloud undefined, for a stream that is damaged, of another version, or of more
-  /// than max_points.
+  /// Returns false, with the cloud undefined, for a stream that is damaged, of another version, or
+  /// of more than max_points.
   bool Decode(ByteView stream);
-  /// The points decoded last: those of beams, beam by beam and column by column; cell by cell, the
-  /// cells in the order of their Morton codes, then those too far away for cells.
+  /// The points decoded last: those of beams by beam and column, those of cells by Morton code,
+  /// then those too far away for cells.
   const XyzCloud& cloud() const { return cloud_; }
-  /// The section of what comes back exactly, part of the stream; null if there is none.
+  /// The section of exact fields within the stream, or null.
   ByteView exact_section() const { return exact_section_; }
-  /// The places of the points, if there is such a section.
+  /// The places of the points, if there is that section.
   const PointPlaces& places() const { return places_; }
   double step_m() const { return static_cast<double>(header_.grid.step_m); }
   double error_m() const { return header_.grid.error_m(); }

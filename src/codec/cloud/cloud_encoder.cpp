@@ -32,12 +32,12 @@ IntensityScale ScaleOf(const XyzCloud& cloud, unsigned bits) {
   return {IntensityScale::Fitting(largest), bits};
 }
 
-/// Shares the error between ranges and azimuths so that the cloud should be smallest.
+/// Shares the error between ranges and azimuths so that the cloud becomes small.
 PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   // A part of the points suffices.
   constexpr std::size_t kSample = 8'192;
   cloud.stride = cloud.points->size() / kSample + 1;
-  // Bits of what fits no pixel, and of a residual.
+  // Bits of a point without a pixel, and of a residual.
   constexpr double kRestBits = 10;
   constexpr double kResidualBits = 0.8;
   const bool bends = cloud.table->bends;
@@ -47,14 +47,14 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   PixelErrors best;
   double least = 0;
   for (const double part : {1.0, 0.95, 0.9, -0.95, -0.85}) {
-    // Beams that bend need residuals.
+    // Bending beams need residuals.
     if (bends && part > 0) continue;
     PixelErrors errors;
     errors.error_m = error_m;
     const auto grid = RangeGrid::ForError(std::abs(part) * error_m, unit_mm);
     errors.range_m = grid.error_m();
     if (part < 0) {
-      // A tenth is left for what integers round off.
+      // A tenth is left for the rounding to integers.
       const double both_m = 0.9 * std::sqrt(error_m * error_m - errors.range_m * errors.range_m);
       const double each_m = bends ? both_m / std::sqrt(2.0) : both_m;
       errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * each_m), 1U);
@@ -70,8 +70,8 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   return best;
 }
 
-/// If points lie closer together than cells, cells are cheaper than ranges: up to so many errors
-/// from the sensor.
+/// Distance from the sensor, in errors, up to which cells are cheaper than ranges, as points are
+/// closer together than cells.
 constexpr double kUsualReach = 50;
 constexpr std::array<double, 8> kReaches = {0, 15, 25, 35, kUsualReach, 70, 100, 150};
 
@@ -127,7 +127,7 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
   cloud_ = std::move(thinned);
 }
 
-/// Parts points that the grid can hold from those that are too far away.
+/// Separates points that the grid can hold from those too far away.
 void CloudEncoder::SortOut(CloudHeader* header) {
   near_.clear();
   levels_.clear();
@@ -188,8 +188,8 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
   candidate->nodes = tree_.nodes();
 }
 
-/// Codes the points of near_ with these indices. Fewer cells have more various counts: which is
-/// smaller depends on the cloud.
+/// Codes the points of near_ with these indices. Fewer cells have more varied counts, so the cloud
+/// decides which is smaller.
 void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate) {
   candidate->header.points = static_cast<std::uint32_t>(ids.size());
   if (ids.empty()) return;
@@ -208,7 +208,7 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
   candidate->nodes = other.nodes;
 }
 
-/// False where most points lie in no pixel.
+/// Returns false if most points lie in no pixel.
 bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                                Candidate* candidate) {
   if (!FillPixels({&sightings_, &placed_, &table}, errors, nearest_m, &pixels_)) return false;
@@ -226,8 +226,7 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
 /// Exact fields of points in cells cost more than what cells save.
 double CloudEncoder::LargestReach() const { return choice_.empty() ? kReaches.back() : 0; }
 
-/// Codes what is to come back exactly of the points in `table`, which are those of pixels_, and of
-/// the others.
+/// Codes the exact fields of the points in `table`, which are those of pixels_, and of the others.
 void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) const {
   if (choice_.empty()) return;
   PointPlaces places;
@@ -264,8 +263,8 @@ void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) con
   EncodeExactPart(places, part, &candidate->exact);
 }
 
-/// Codes the beams as each effort does; what is near goes to cells up to where the lowest has
-/// least.
+/// Codes the beams as each effort does. Near points go to cells, up to the distance at which the
+/// lowest effort's size is least.
 bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors,
                                         Candidate* best) {
   const unsigned effort = effort_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Encodes clouds without a sensor model, whatever the order of their points.
+// Encodes clouds without a sensor model, with points in any order.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -17,7 +17,7 @@
 
 namespace lidar::codec::cloud {
 
-/// What of the points comes back exactly.
+/// Fields that come back exactly.
 struct ExactChoice {
   std::vector<PointField> fields;  // of the layout
   bool keeps_order = false;
@@ -28,34 +28,34 @@ struct ExactChoice {
   }
 };
 
-/// A stream, and so a format. For one thread at a time.
+/// Encodes a stream of one format. For one thread at a time.
 class CloudEncoder {
  public:
-  /// Returns nothing where `layout` lacks x, y and z as F32 side by side.
+  /// Returns nothing if `layout` lacks x, y and z as F32 side by side.
   static std::optional<CloudEncoder> Create(const CloudLayout& layout, ExactChoice exact = {});
 
   /// Takes the points that are finite and not all zero, for Encode().
   void Load(ByteView raw, bool with_intensity);
-  /// What is loaded has so many.
+  /// Number of loaded points.
   std::size_t returns() const { return cloud_.size(); }
   /// Longest side of the points' box [m].
   double extent_m() const;
   bool has_intensity() const { return !cloud_.intensity.empty(); }
   /// Names the coder for statistics and predictors.
   std::string Mode() const { return "xyz-cloud" + std::to_string(effort_); }
-  /// How much is tried: at 0 every point that no beam sees has its own cell, from 1 on points share
-  /// few, and at EffortControl::kHighest all ways are tried.
+  /// Effort: at 0 a point without a beam has its own cell, from 1 on points share few cells, and at
+  /// EffortControl::kHighest all ways are tried.
   void set_effort(unsigned effort) { effort_ = effort; }
-  /// Forgets all but `kept` of the loaded points.
+  /// Keeps `kept` of the loaded points.
   void Thin(const std::vector<bool>& kept);
 
-  /// Encodes what is loaded, as often as wanted.
+  /// Encodes the loaded points; may be called again.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
 
  private:
   CloudEncoder(CloudLayout layout, ExactChoice exact)
       : layout_(std::move(layout)), choice_(std::move(exact)) {}
-  /// A way of coding what is loaded.
+  /// A coding of the loaded points.
   struct Candidate {
     CloudHeader header;
     std::vector<std::uint8_t> beams;         // the section

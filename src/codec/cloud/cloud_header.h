@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What stands before the bits of a coded cloud (docs/cloud-coder.md).
+// The header of a coded cloud (docs/cloud-coder.md).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -27,8 +27,8 @@ struct CloudHeader {
   static std::optional<CloudHeader> Read(ByteReader* reader);
 };
 
-/// A slice of so many bytes has no more nodes than this. A node costs a decoder a microsecond, and
-/// may cost its sender a hundredth of a bit.
+/// Most nodes of a slice of so many bytes. A node costs a decoder a microsecond, but may cost its
+/// sender a hundredth of a bit.
 constexpr std::size_t MostNodes(std::size_t slice_bytes) {
   constexpr std::size_t kFree = 4'096;
   constexpr std::size_t kNodesPerByte = 64;

@@ -14,7 +14,7 @@ constexpr std::uint32_t kDriftGrains = 36'000;  // 0.01 degrees
 constexpr double kDriftGrain = static_cast<double>(kTurn) / kDriftGrains;
 constexpr double kSector = static_cast<double>(kTurn) / kSectors;
 
-/// The middle of the widest gap between points.
+/// Returns the middle of the widest gap between points.
 std::int32_t WidestGap(const std::vector<BeamAzimuths>& beams) {
   std::vector<std::int32_t> all;
   for (const BeamAzimuths& azimuths : beams)
@@ -33,7 +33,7 @@ std::int32_t WidestGap(const std::vector<BeamAzimuths>& beams) {
   return middle & (kTurn - 1);
 }
 
-/// How far columns are from even ones, by sectors.
+/// Distance of columns from even ones, by sectors.
 class Drift {
  public:
   bool known(double azimuth) const { return counts_[SectorOf(azimuth)] > 0; }
@@ -45,7 +45,7 @@ class Drift {
     const std::size_t sector = SectorOf(azimuth);
     return counts_[sector] == 0 ? 0 : sums_[sector] / static_cast<double>(counts_[sector]);
   }
-  /// All sectors; an unknown one has the drift of the known one before, or behind.
+  /// Returns all sectors. An unknown one has the drift of the known one before, or behind.
   std::vector<double> Curve() const {
     std::vector<double> curve(kSectors);
     double last = 0;
@@ -78,13 +78,13 @@ class Drift {
   std::vector<std::size_t> counts_ = std::vector<std::size_t>(kSectors, 0);
 };
 
-/// A point's azimuth, and how far it is from an even column.
+/// A point's azimuth, and its distance from an even column.
 struct Drifted {
   double azimuth;
   double drift;
 };
 
-/// Follows the columns of a beam from point to point, over gaps as other beams do.
+/// Follows the columns of a beam from point to point. Other beams bridge gaps.
 std::vector<Drifted> FollowBeam(const BeamAzimuths& azimuths, std::int32_t first, double step,
                                 const Drift& known) {
   std::vector<double> sorted;

@@ -8,7 +8,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Places of all columns, and the offsets of all beams. False where the columns are too many.
+/// Sets the places of all columns and the offsets of all beams. Returns false for too many columns.
 bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
 
 }  // namespace lidar::codec::cloud

@@ -14,7 +14,7 @@ namespace {
 constexpr std::int32_t kLeastStep = kTurn / static_cast<std::int32_t>(BeamTable::kMostColumns);
 constexpr std::int32_t kMostStep = kTurn / 64;
 
-/// The step that most neighbours of a beam have, in units; 0: none.
+/// Returns the most common step of neighbours of a beam, in units; 0: none.
 std::int32_t UsualStep(const BeamAzimuths& azimuths) {
   constexpr std::int32_t kClass = 64;  // 0.0055 degrees
   std::map<std::int32_t, std::size_t> histogram;
@@ -34,7 +34,7 @@ std::int32_t UsualStep(const BeamAzimuths& azimuths) {
 
 std::complex<double> PhaseOf(double columns) { return std::polar(1.0, 2 * M_PI * columns); }
 
-/// How well the points of all beams lie in columns.
+/// Returns how well the points of all beams lie in columns, up to 1.
 double Alignment(const std::vector<BeamAzimuths>& beams, double step) {
   constexpr std::size_t kSample = 150;  // of each beam
   double sum = 0;

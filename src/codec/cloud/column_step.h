@@ -8,20 +8,20 @@
 
 namespace lidar::codec::cloud {
 
-/// A direction of a beam's point.
+/// The azimuth of a beam's point.
 struct BeamAzimuth {
   std::int32_t azimuth;
   float rho_m;
 };
-/// Those of a beam, rising.
+/// The azimuths of a beam, rising.
 using BeamAzimuths = std::vector<BeamAzimuth>;
 
-/// The smallest step that is usual for beams of a tenth of the points, in units; 0: none.
+/// Returns the smallest step that is usual for beams with a tenth of the points; 0: none.
 std::int32_t UsualStep(const std::vector<BeamAzimuths>& beams);
-/// The mean step of neighbours that are one or a few steps apart; 0: none.
+/// Returns the mean step of neighbours that are one or a few steps apart; 0: none.
 double MeanStep(const std::vector<BeamAzimuths>& beams, std::int32_t usual);
-/// The step near `step` whose columns fit best all around the turn: a whole number of columns is
-/// preferred.
+/// Returns the step near `step` whose columns fit best all around the turn. A whole number of
+/// columns is preferred.
 double AlignedStep(const std::vector<BeamAzimuths>& beams, double step);
 
 /// Columns of a turn in 1/BeamTable::kParts.
@@ -29,9 +29,9 @@ inline std::uint32_t TurnOf(double step) {
   return static_cast<std::uint32_t>(std::lround(kTurn / step * BeamTable::kParts));
 }
 
-/// Where most azimuths of a beam lie between columns, in columns.
+/// Returns the most common place of a beam's azimuths between columns, in columns.
 double PhaseAt(const BeamAzimuths& azimuths, double step);
-/// The same where they lie anywhere, more or less.
+/// Returns the mean place, for azimuths that are spread.
 double MeanPhase(const BeamAzimuths& azimuths, double step);
 
 struct Side {
@@ -39,9 +39,10 @@ struct Side {
   double alignment = 0;  // of 1
 };
 
-/// How far the beam passes the origin, if its points lie at multiples of `step`.
+/// Returns the distance at which the beam passes the origin, if its points lie at multiples of
+/// `step`.
 Side SideOf(const BeamAzimuths& azimuths, double step);
-/// The angle whose multiples the azimuths are: a column, or what the sensor rounds them to.
+/// Returns the angle whose multiples the azimuths are: a column, or the sensor's rounding.
 double QuantumOf(const std::vector<BeamAzimuths>& beams, std::int32_t usual, double step);
 
 }  // namespace lidar::codec::cloud

@@ -18,13 +18,12 @@ class ExactDecoder {
   ExactDecoder(std::vector<PointField> fields, std::uint32_t max_points)
       : fields_(std::move(fields)), geometry_(max_points) {}
 
-  /// Returns false, with the cloud undefined, for what CloudDecoder refuses, and for a slice whose
-  /// fields have other types or are damaged.
+  /// Returns false, with the cloud undefined, for bytes that CloudDecoder refuses, and for fields
+  /// of other types or damaged ones.
   bool Decode(ByteView stream);
   const CloudDecoder& geometry() const { return geometry_; }
   std::size_t size() const { return geometry_.cloud().size(); }
-  /// Writes the points in the order in which they were, if the slice keeps it, and those fields
-  /// that `layout` has.
+  /// Writes the points in their old order, if the slice keeps it, with the fields of `layout`.
   void Write(const CloudLayout& layout, std::uint8_t* raw) const;
 
  private:

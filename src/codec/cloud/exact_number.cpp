@@ -40,7 +40,7 @@ unsigned BitsIn(FieldType type) { return static_cast<unsigned>(8 * SizeOf(type))
 
 std::uint64_t MaskOf(FieldType type) { return UINT64_MAX >> (64 - BitsIn(type)); }
 
-/// The place among all floats in their order: -0 is before 0.
+/// Returns the place in the order of all floats: -0 is before 0.
 std::int64_t Ordinal(std::uint64_t bits, FieldType type) {
   const std::uint64_t sign = std::uint64_t{1} << (BitsIn(type) - 1);
   const auto size = static_cast<std::int64_t>(bits & (sign - 1));

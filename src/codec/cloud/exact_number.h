@@ -31,19 +31,19 @@ struct NumberForm {
   static constexpr std::int64_t kParts = 16;
 
   FieldType type = FieldType::kU8;
-  unsigned decimals = 0;  // that all numbers have; 0: they are integers, or any floats
+  unsigned decimals = 0;  // of all numbers; 0: integers, or any floats
   int scale = 0;          // of any floats
 
   bool is_float() const { return type == FieldType::kF32 || type == FieldType::kF64; }
   std::int64_t RankOf(std::uint64_t bits) const;
   std::uint64_t WithRank(std::int64_t rank) const;
-  /// The level of the number with this rank.
+  /// Returns the level of the number with this rank.
   std::int64_t LevelOf(std::int64_t rank) const;
-  /// The rank of the number that is nearest to `level`.
+  /// Returns the rank of the number nearest to `level`.
   std::int64_t RankAt(std::int64_t level) const;
 };
 
-/// The forms that can hold `numbers`, one or two.
+/// Returns the forms that can hold `numbers`, one or two.
 std::vector<NumberForm> FormsFor(FieldType type, const std::vector<std::uint64_t>& numbers);
 
 }  // namespace lidar::codec::cloud

@@ -20,8 +20,8 @@ namespace {
 
 using Model = NumberModel<3>;
 
-/// A number of a field is predicted by the last one of the beam, by the levels of firing and beam,
-/// or by that of the beam so many firings ago: some drivers count time anew with each packet.
+/// A number is predicted by the last one of the beam, by the levels of firing and beam, or by the
+/// beam's level some firings ago: some drivers restart time with each packet.
 constexpr std::uint32_t kByBeam = 0;
 constexpr std::uint32_t kByFiring = 1;
 constexpr std::uint32_t kMostFiringsAgo = 64;
@@ -31,12 +31,12 @@ struct FieldCode {
   std::uint32_t guess = kByBeam;
 };
 
-/// The key by which points are sorted to find their order.
+/// The key that points are sorted by to find their order.
 constexpr unsigned kAsVisited = 0;
 constexpr unsigned kAsDecoded = 1;
 constexpr unsigned kByFirstField = 2;
 
-/// What stands before the bits.
+/// The header.
 struct ExactHeader {
   FiringOrder firing;  // if there are beams
   std::vector<FieldCode> fields;
@@ -89,7 +89,7 @@ class RankMeter {
   double bits_ = 0;
 };
 
-/// The points of a slice and how they are visited.
+/// The points of a slice and the order of visits.
 struct Visited {
   const PointPlaces& places;
   const FiringOrder& firing;
@@ -148,7 +148,7 @@ bool CodeField(const Visited& v, const FieldCode& code, std::size_t count, Ranks
   return true;
 }
 
-/// All points in the order of `key`.
+/// Returns all points in the order of `key`.
 std::vector<std::uint32_t> Sequence(const Visited& v, unsigned key,
                                     const std::vector<ExactField>& fields) {
   std::vector<std::uint32_t> sequence = v.visit;
@@ -164,7 +164,7 @@ std::vector<std::uint32_t> Sequence(const Visited& v, unsigned key,
   return sequence;
 }
 
-/// The place in the sequence of each point as they were.
+/// Returns the place in the sequence of each point of the old order.
 std::vector<std::uint32_t> PlacesInSequence(const std::vector<std::uint32_t>& sequence,
                                             const std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> places(order.size());
@@ -172,13 +172,13 @@ std::vector<std::uint32_t> PlacesInSequence(const std::vector<std::uint32_t>& se
   return places;
 }
 
-/// Which places of a sequence are free. A call takes next to constant time, whatever was taken.
+/// The free places of a sequence. A call takes nearly constant time.
 class FreePlaces {
  public:
   explicit FreePlaces(std::uint32_t count) : next_(std::size_t{count} + 1) {
     std::iota(next_.begin(), next_.end(), 0U);
   }
-  /// The first free place from `place` on, or the end.
+  /// Returns the first free place from `place` on, or the end.
   std::uint32_t From(std::uint32_t place) {
     while (next_[place] != place) place = next_[place] = next_[next_[place]];
     return place;
@@ -223,7 +223,7 @@ bool CodeOrder(const std::vector<std::uint32_t>& sequence, std::vector<std::uint
   return true;
 }
 
-/// Codes what each beam has of its own.
+/// Codes the values of each beam.
 template <class Coder>
 bool CodeSlots(std::uint32_t columns, FiringOrder* firing, Coder* coder) {
   const auto model = std::make_unique<Model>();
@@ -381,7 +381,7 @@ FieldCode BestCode(const Visited& visited, const ExactField& field) {
   return best;
 }
 
-/// The key that leaves fewest steps.
+/// Returns the key with the fewest steps.
 unsigned BestOrderKey(const Visited& visited, const ExactPart& part) {
   unsigned best = kAsVisited;
   std::size_t least = SIZE_MAX;

@@ -26,7 +26,7 @@ class FiringGuess {
     }
     return Plus(base_, beams_[beam].offset);
   }
-  /// `level` is the true one of the point that LevelOf() was asked for last.
+  /// Learns the true level of the point of the last LevelOf().
   void Learn(std::uint32_t beam, std::uint32_t firing, std::int64_t level) {
     Beam& b = beams_[beam];
     const std::int64_t off = Minus(level, Plus(base_, b.offset));
@@ -59,12 +59,12 @@ class FiringGuess {
     bool is_known = false;
   };
   std::vector<Beam> beams_;
-  std::int64_t base_ = 0;      // that the last guess took
+  std::int64_t base_ = 0;      // used by the last guess
   std::int64_t base_now_ = 0;  // of the firing of the last point
   std::int64_t first_base_ = 0;
   std::uint32_t firing_ = 0;
   std::uint32_t first_firing_ = 0;
-  std::int64_t count_ = 0;  // of points of the firing
+  std::int64_t count_ = 0;  // points of the firing
   bool begun_ = false;
   bool starts_ = true;  // the point is the first of its firing
 };
@@ -75,7 +75,7 @@ class RepeatGuess {
   RepeatGuess(std::uint32_t beams, std::uint32_t period)
       : period_(period), levels_(std::size_t{beams} * period) {}
 
-  /// Where the level stands, empty before the first one; null without a period.
+  /// Returns the place of the level, empty at first; null without a period.
   std::optional<std::int64_t>* At(std::uint32_t beam, std::uint32_t firing) {
     if (levels_.empty()) return nullptr;
     return &levels_[std::size_t{beam} * period_ + firing % period_];

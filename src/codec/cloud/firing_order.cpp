@@ -9,7 +9,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// When a beam looked where.
+/// A time and a column of a beam.
 struct Shot {
   std::int64_t clock = 0;
   std::uint32_t column = 0;
@@ -35,15 +35,15 @@ bool Descends(const Shots& shots) {
   return 2 * falls > shots.size();
 }
 
-/// The last shot that is not after `clock`, or the first.
+/// Returns the last shot that is not after `clock`, or the first.
 const Shot& LastAt(const Shots& shots, std::int64_t clock) {
   const auto after = std::upper_bound(shots.begin(), shots.end(), clock,
                                       [](std::int64_t t, const Shot& s) { return t < s.clock; });
   return after == shots.begin() ? shots.front() : *(after - 1);
 }
 
-/// How many columns the firings of `shots` are behind those of `reference`, by most of them, and by
-/// how many.
+/// Returns by how many columns most firings of `shots` are behind those of `reference`, and the
+/// number of those firings.
 std::pair<std::uint32_t, std::size_t> DelayOf(const Shots& shots, const Shots& reference,
                                               std::uint32_t columns) {
   std::map<std::uint32_t, std::size_t> votes;
@@ -55,7 +55,7 @@ std::pair<std::uint32_t, std::size_t> DelayOf(const Shots& shots, const Shots& r
   return *most;
 }
 
-/// Beams in the order of their mean clocks after the shot of `reference` in the same firing.
+/// Sorts beams by the mean time after the shot of `reference` in the same firing.
 void RankBeams(const std::vector<Shots>& beams, const Shots& reference, std::uint32_t columns,
                FiringOrder* order) {
   std::vector<std::int64_t> clock_of(columns, INT64_MIN);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The order in which a sensor fires: what it does at once has fields in common.
+// The order in which a sensor fires. Points of a firing have similar fields.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace lidar::codec::cloud {
 /// The pixel that a decoded point comes from.
 struct PointPlace {
   static constexpr std::uint32_t kNoBeam = UINT32_MAX;
-  std::uint32_t beam = kNoBeam;  // of none: it comes from cells, or from far away
+  std::uint32_t beam = kNoBeam;  // kNoBeam: from cells, or far away
   std::uint32_t column = 0;
 
   bool is_loose() const { return beam == kNoBeam; }
@@ -26,9 +26,9 @@ struct PointPlaces {
 };
 
 struct FiringOrder {
-  /// When a beam fires.
+  /// Time of a beam within the firings.
   struct Slot {
-    std::uint32_t delay = 0;  // columns that its firings are behind its own; below the columns
+    std::uint32_t delay = 0;  // columns by which its firings are behind its own; below columns
     std::uint32_t rank = 0;   // in a firing
   };
   std::uint32_t first = 0;  // firing
@@ -40,11 +40,11 @@ struct FiringOrder {
     const std::uint32_t firing = (place.column + slots[place.beam].delay) % columns;
     return (descends ? first + columns - firing : firing + columns - first) % columns;
   }
-  /// The points of beams in the order of their firings, then the loose ones.
+  /// Returns the points of beams in the order of their firings, then the loose ones.
   std::vector<std::uint32_t> Visit(const PointPlaces& places) const;
 };
 
-/// Finds the order by `clock`, which rises with the time of each point; `fit` becomes the part of
+/// Finds the order by `clock`, which rises with the time of each point. Sets `fit` to the part of
 /// the points that keep to it.
 FiringOrder FindFiringOrder(const PointPlaces& places, const std::vector<std::int64_t>& clock,
                             double* fit);

@@ -17,15 +17,15 @@ using mixing::Weights;
 constexpr unsigned kNodes = 256;
 constexpr unsigned kClasses = 32;  // of a level
 
-/// One level after another, from its highest bit on.
+/// Codes levels one by one, from the highest bit on.
 class LevelModel {
  public:
   explicit LevelModel(unsigned bits) : bits_(bits), coarse_(bits > 5 ? bits - 5 : 0) {
     for (Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
   }
 
-  /// `last` is the level before, `mean` that of what lies near; `place` is 0 for the first point of
-  /// a cell.
+  /// `last` is the level before, and `mean` that of the neighbours. `place` is 0 for the first
+  /// point of a cell.
   template <class Coder>
   unsigned Code(unsigned level, unsigned last, unsigned mean, unsigned place, Coder* coder) {
     const std::array<std::uint32_t, 4> contexts = {
@@ -49,7 +49,7 @@ class LevelModel {
   std::array<Weights, kNodes> weights_{};
 };
 
-/// The mean level of the neighbours of a cell that are coded already.
+/// Returns the mean level of the coded neighbours of a cell.
 unsigned MeanOf(const NodeMap& map, std::uint64_t key, const std::vector<std::uint8_t>& means,
                 unsigned otherwise) {
   unsigned known = 0;

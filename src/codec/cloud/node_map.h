@@ -34,7 +34,7 @@ class NodeMap {
   static constexpr std::uint64_t kStepX = std::uint64_t{1} << 44;
   static constexpr std::uint64_t kStepY = std::uint64_t{1} << 22;
   static constexpr std::uint64_t kStepZ = 1;
-  /// One more than a position, so that its neighbours have keys of their own.
+  /// Positions plus one, so that neighbours of position 0 have keys, too.
   static std::uint64_t KeyOf(const CellPosition& p) {
     return (p[0] + 1) * kStepX + (p[1] + 1) * kStepY + (p[2] + 1) * kStepZ;
   }

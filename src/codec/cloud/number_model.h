@@ -8,7 +8,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Signed integers by contexts: is it 0, its sign, how long, and the rest of its digits.
+/// Codes signed integers by contexts: zero or not, sign, length, and further bits.
 template <unsigned kContexts>
 class NumberModel {
  public:
@@ -21,13 +21,13 @@ class NumberModel {
     for (mixing::Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
   }
 
-  /// kTooLarge for a damaged stream.
+  /// Returns kTooLarge for a damaged stream.
   template <class Coder>
   std::int32_t Code(std::int32_t number, const Contexts& contexts, Coder* coder) {
     if (!CodeBit(number != 0, 0, contexts, coder)) return 0;
     const bool negative = CodeBit(number < 0, 1, contexts, coder);
     const auto size = static_cast<std::uint32_t>(negative ? -number : number);
-    // As in an Exp-Golomb code.
+    // This is an Exp-Golomb code.
     const auto wanted = static_cast<unsigned>(mixing::BitLength(size | 1) - 1);
     unsigned length = 0;
     while (CodeBit(length < wanted, (negative ? 32 : 2) + length, contexts, coder))

@@ -9,14 +9,14 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// How far a point is from its beam and column [m].
+/// Distance of a point from its beam and column [m].
 struct Distances {
   double along = 0;
   double up = 0;
   double side = 0;
 };
 
-/// What coordinates round off, as PointErrors::rounding_m has it.
+/// Rounding of coordinates, as in PointErrors::rounding_m.
 double Rounding(double range_m) {
   return 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * range_m;
 }
@@ -26,7 +26,7 @@ bool Within(const Distances& off, double error_m, double range_m) {
   return off.along * off.along + off.up * off.up + off.side * off.side <= most * most;
 }
 
-/// Whether points come back within the error.
+/// Checks that points come back within the error.
 class PixelCheck {
  public:
   PixelCheck(const PlacedCloud& cloud, const PixelErrors& errors)
@@ -36,7 +36,7 @@ class PixelCheck {
         errors_(errors),
         half_step_(table_.step() / 2 + 1) {}
 
-  /// As the first return of its pixel.
+  /// Checks the first return of a pixel.
   bool Fits(std::size_t point) const {
     const PlacedPoint& p = placed_[point];
     constexpr double kFarthest = 1e5;
@@ -47,7 +47,7 @@ class PixelCheck {
     }
     return Fits(point, {std::abs(static_cast<double>(p.residual)) + 0.5, OwnBend(p)});
   }
-  /// As a further return: in the direction of `first`, the first return of its pixel.
+  /// Checks a further return, in the direction of the first return `first`.
   bool FitsWith(std::size_t point, std::size_t first) const {
     const PlacedPoint& p = placed_[point];
     const PlacedPoint& other = placed_[first];
@@ -67,7 +67,7 @@ class PixelCheck {
   }
 
  private:
-  /// How far a point may come back from its own, in units.
+  /// Largest distance of a decoded point, in units.
   struct Angles {
     double azimuth;
     double elevation;
@@ -84,12 +84,12 @@ class PixelCheck {
     off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }
-  /// What rounding a residual adds. Its class is that of the range that comes back.
+  /// Error by the rounding of a residual. Its class is that of the decoded range.
   double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
     return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;
   }
-  /// What the range that comes back makes of the angle at which the beam passes the origin.
+  /// Error of the angle of a beam that passes the origin, by the decoded range.
   double SideError(const BeamTable::Beam& beam, double rho_m) const {
     if (beam.side_um == 0) return 0;
     const double off = errors_.range_m + 1e-3;
@@ -103,7 +103,7 @@ class PixelCheck {
   std::int32_t half_step_;
 };
 
-/// The image has the columns that see something.
+/// Sets the columns of the image that see something.
 bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
                 const std::vector<std::uint32_t>& fitting, PixelList* list) {
   std::uint32_t first = table.columns() - 1;

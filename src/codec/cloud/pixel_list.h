@@ -17,11 +17,11 @@ struct ExtraReturn {
   std::uint32_t point = 0;  // index
 };
 
-/// How exactly pixels are to come back.
+/// Errors that pixels may have.
 struct PixelErrors {
   double error_m = 0;            // of the whole
   double range_m = 0;            // of ranges
-  std::uint32_t tangent_um = 0;  // of azimuths; 0: those of the columns will do
+  std::uint32_t tangent_um = 0;  // of azimuths; 0: those of the columns suffice
   std::uint32_t bend_um = 0;     // of elevations; 0: beams do not bend
 };
 
@@ -35,30 +35,30 @@ struct PixelList {
   std::size_t returns = 0;          // in pixels
 };
 
-/// The width of a class of residuals, in units, so that no azimuth is off by more than
-/// `tangent_um` at `range_mm`.
+/// Width of a class of residuals, in units: no azimuth is off by more than `tangent_um` at
+/// `range_mm`.
 inline std::int32_t ResidualWidth(std::uint32_t tangent_um, std::uint32_t range_mm) {
   // 2 2^22 / (2000 pi)
   const std::uint64_t width = std::uint64_t{tangent_um} * 1'335 / (range_mm == 0 ? 1 : range_mm);
   return static_cast<std::int32_t>(width < 1 ? 1 : width > kTurn ? kTurn : width);
 }
 
-/// An image has at most so many pixels, returns or not.
+/// Most pixels of an image.
 constexpr std::size_t kMostPixels = 1U << 20;
 
-/// What a cloud is in the beams of a table.
+/// A cloud in the beams of a table.
 struct PlacedCloud {
   const std::vector<Sighting>* points;
   const std::vector<PlacedPoint>* placed;
   const BeamTable* table;
-  std::size_t stride = 1;  // only every so manieth point counts
+  std::size_t stride = 1;  // one point in `stride` counts
 };
 
-/// How many of the points are in a pixel.
+/// Returns how many of the points are in a pixel.
 std::size_t CountFitting(const PlacedCloud& cloud, const PixelErrors& errors);
-/// The ranges of these, in mm.
+/// Returns the ranges of these points [mm].
 std::vector<std::uint32_t> FittingRanges(const PlacedCloud& cloud, const PixelErrors& errors);
-/// Points nearer than `nearest_m` are left to the rest. False where the image would be too large.
+/// Points nearer than `nearest_m` are left to the rest. Returns false if the image is too large.
 bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double nearest_m,
                 PixelList* list);
 

@@ -104,7 +104,7 @@ class ExtraCoder {
         coder_(*coder),
         above_(columns, 0) {}
 
-  /// False for a damaged stream.
+  /// Returns false for a damaged stream.
   bool Code(std::size_t limit, std::vector<ExtraBin>* extras) {
     std::size_t at = 0;
     for (std::uint32_t pixel = 0; pixel < bins_.size(); ++pixel) {
@@ -129,7 +129,7 @@ class ExtraCoder {
   static std::uint32_t LengthOf(std::int32_t v) {
     return static_cast<std::uint32_t>(BitLength(static_cast<std::uint32_t>(std::abs(v))));
   }
-  /// How much farther a neighbour is; kNoReturn if it has none.
+  /// Returns how much farther a neighbour is; kNoReturn: it has no return.
   std::int32_t StepTo(std::uint32_t pixel, std::int64_t distance) const {
     const std::int64_t at = pixel + distance;
     if (at < 0 || at >= static_cast<std::int64_t>(bins_.size())) return kNoReturn;
@@ -166,12 +166,12 @@ class ExtraCoder {
                  : typename Model::Contexts{nearby_ * 16 + jumps_, nearby_, jumps_};
     return counts_->CodeBit(more, std::min(count, 3U), contexts, &coder_);
   }
-  /// False for a damaged stream.
+  /// Returns false for a damaged stream.
   bool CodeReturn(std::uint32_t pixel, ExtraBin* extra) {
     constexpr std::uint32_t kNearNode = 4;
     constexpr std::uint32_t kNear = Model::kValues / 2;  // the first context
     const std::uint32_t far = FarthestClass();
-    // A pulse that an edge cuts sees both sides of it.
+    // A pulse at an edge sees both sides.
     const bool near =
         by_four_ && farthest_ != 0 &&
         counts_->CodeBit(
@@ -207,7 +207,7 @@ class ExtraCoder {
   std::uint32_t left_ = 0;
   std::uint32_t nearby_ = 0;
   std::uint32_t jumps_ = 0;
-  std::int32_t farthest_ = 0;  // step to a neighbour, of those that are no surface with the pixel
+  std::int32_t farthest_ = 0;  // largest step to a neighbour on another surface
   std::int32_t last_ = 0;
 };
 

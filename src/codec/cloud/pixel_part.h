@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes what an image of first returns leaves open: how far each azimuth is from its column, and
-// the further returns of a pixel.
+// Codes what an image of first returns lacks: the distance of each azimuth from its column, and the
+// further returns of a pixel.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,22 +9,22 @@
 
 namespace lidar::codec::cloud {
 
-/// What the residual of a pixel is first compared with.
+/// The first guess of a pixel's residual.
 enum class ResidualGuess : std::uint8_t { kNone = 0, kColumn = 1, kLast = 2, kBeforeLast = 3 };
 constexpr unsigned kResidualGuesses = 4;
 
-/// What comes back of a pixel's azimuth.
+/// Decoded residual of a pixel's azimuth.
 struct ResidualSettings {
   std::uint32_t tangent_um = 0;
   ResidualGuess guess = ResidualGuess::kNone;
 };
 
-/// Codes the places of a table's columns; false for a damaged stream.
+/// Codes the places of a table's columns. Returns false for a damaged stream.
 template <class Coder>
 bool CodePlaces(BeamTable* table, Coder* coder);
 
-/// Codes the residuals of all pixels that have a range in `image`, which are the ranges that come
-/// back; `residuals` become those that come back. False for a damaged stream.
+/// Codes the residuals of all pixels that have a decoded range in `image`, and sets `residuals` to
+/// the decoded ones. Returns false for a damaged stream.
 template <class Coder>
 bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                    std::vector<std::int32_t>* residuals, Coder* coder);
@@ -32,16 +32,16 @@ bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
 /// A further return, by the bins of the image's grid.
 struct ExtraBin {
   std::uint32_t pixel = 0;
-  std::int32_t bin = 0;  // less that of the pixel's first return
+  std::int32_t bin = 0;  // less the bin of the first return
   std::uint8_t level = 0;
 };
 struct ExtraSettings {
   unsigned level_bits = 0;
-  bool by_four = true;    // neighbours, else by the two of encoders of before
-  std::size_t limit = 0;  // further returns, at most
+  bool by_four = true;    // neighbours; false: by two, as earlier encoders
+  std::size_t limit = 0;  // most further returns
 };
-/// Codes the further returns of `bins`, the bins of all pixels (-1: no return). False for a damaged
-/// stream.
+/// Codes the further returns of `bins`, the bins of all pixels (-1: no return). Returns false for a
+/// damaged stream.
 template <class Coder>
 bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns,
                 const ExtraSettings& settings, std::vector<ExtraBin>* extras, Coder* coder);
