@@ -391,6 +391,38 @@ TEST(LidarTestSrc, ItsImuGivesTheSameSamplesAgain) {
     EXPECT_EQ(BytesOf(first.samples[i]), BytesOf(again.samples[i]));
 }
 
+using Offsets = std::vector<GstClockTime>;  // of capture times from PTS
+void KeepOffsets(GstElement*, GstPad* pad, Offsets* offsets) {
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo* info, gpointer kept) {
+        GstBuffer* buffer = GST_PAD_PROBE_INFO_BUFFER(info);
+        static_cast<Offsets*>(kept)->push_back(gst_lidar_buffer_get_capture_time(buffer) -
+                                               GST_BUFFER_PTS(buffer));
+        return GST_PAD_PROBE_OK;
+      },
+      offsets, nullptr);
+}
+
+TEST(LidarTestSrc, ALiveImuHasTheClockOfTheClouds) {
+  Offsets offsets;
+  const Harness h(gst_harness_new_with_padnames("lidartestsrc", nullptr, "src"));
+  gst_util_set_object_arg(G_OBJECT(h->element), "mode", "512x10");
+  g_object_set(h->element, "imu", TRUE, "is-live", TRUE, nullptr);
+  g_signal_connect(h->element, "pad-added", G_CALLBACK(KeepOffsets), &offsets);
+  gst_harness_use_testclock(h.get());
+  gst_harness_play(h.get());
+  for (std::size_t i = 1; i <= 10; ++i) {
+    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+    EXPECT_EQ(offsets.size(), i - 1) << "samples leave with the slice in which they were taken";
+    ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+    const BufferPtr cloud = Pull(h);
+    ASSERT_EQ(offsets.size(), i);
+    EXPECT_EQ(offsets.back(),
+              gst_lidar_buffer_get_capture_time(cloud.get()) - GST_BUFFER_PTS(cloud.get()));
+  }
+}
+
 TEST(LidarTestSrc, HasNoImuUnlessItIsWanted) {
   const Harness h = Launch("num-buffers=2");
   gst_harness_play(h.get());
