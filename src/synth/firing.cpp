@@ -12,15 +12,16 @@ constexpr DriverLayout kLivox = {
     "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,tag:U8:16,line:U8:17,timestamp:F64:18", 1e-9};
 
 // These follow the user manuals of the VLP-16 (63-9243), Pandar XT32, AT128 and Mid-360. Makers
-// publish neither how the AT128's mirrors bend its beams nor the path of a Mid-360: these are
-// similar.
+// publish neither how the AT128's mirrors bend its beams nor the path of a Mid-360: the former is a
+// guess, the latter has the turns, swings and fan of a recorded path (mid180.csv of
+// github.com/sara-sliprobotics/Mid360_simulation_plugin).
 constexpr Firing kFirings[] = {
-    {"vlp-16", 16, 2, -15, 2, 0, 2304, 1808, 0, 360, 1, 0, 0, 0.01, 2, 0.5, 100, 50, kVelodyne},
-    {"xt32", 32, 1, 15, -1, 0, 1512, 2000, 0, 360, 1, 0, 0, 0.01, 4, 0.05, 120, 80, kHesai},
-    {"at128", 128, 4, 12.5, -0.2, 1.25, 0, 1200, -60, 120, 1, 0.3, 0.5, 0.01, 4, 0.5, 200, 180,
-     kHesai},
-    {"mid-360", 4, 1, 22.05, 0.3, 0, 5000, 5000, 0, 360, 7.31, 29, 71.87, 0, 1, 0.1, 70, 40,
-     kLivox}};
+    {"vlp-16", 16, 2, -15, 2, 0, 2304, 1808, 0, 360, 1, 0, 0, 0, 0.01, 2, 0.5, 100, 50, kVelodyne},
+    {"xt32", 32, 1, 15, -1, 0, 1512, 2000, 0, 360, 1, 0, 0, 0, 0.01, 4, 0.05, 120, 80, kHesai},
+    {"at128", 128, 4,   12.5, -0.2, 1.25, 0,   1200, -60, 120,
+     1,       0.3, 0.5, 0,    0.01, 4,    0.5, 200,  180, kHesai},
+    {"mid-360", 4,    1,     22.3, 0, 0, 5000, 5000, 0,  360,
+     17.75,     25.7, 1.014, 1.9,  0, 1, 0.1,  70,   40, kLivox}};
 
 }  // namespace
 

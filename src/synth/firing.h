@@ -26,6 +26,7 @@ struct Firing {
   double first_azimuth, view;  // where a sweep begins, and its span
   double sweeps;               // per scan; scans differ if this is no whole number
   double swing, swings;        // amplitude and number per scan of the elevations' swings
+  double fan;                  // from one laser to the next, in a plane that does not turn
   double azimuth_unit;         // of the reported azimuths; 0: exact
   std::uint32_t range_unit_mm;
   double min_range_m, max_range_m, range_of_10_percent_m;

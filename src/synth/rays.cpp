@@ -38,9 +38,13 @@ Vec3 Rays::Fire(std::uint64_t scan, std::uint32_t laser, std::uint32_t column) c
   const double sweeps = scans * f.sweeps;
   double azimuth =
       f.first_azimuth + f.view * (sweeps - std::floor(sweeps)) + laser % f.banks * f.bank_azimuth;
+  const double off = f.fan * (laser - (f.lasers - 1) / 2.0);
+  const double rise = off * std::sin(azimuth * kDegree);
+  azimuth += off * std::cos(azimuth * kDegree);
   if (f.azimuth_unit > 0) azimuth = std::round(azimuth / f.azimuth_unit) * f.azimuth_unit;
   const double elevation =
-      (f.ElevationOf(laser) + f.swing * std::sin(360 * kDegree * scans * f.swings)) * kDegree;
+      (f.ElevationOf(laser) + rise + f.swing * std::sin(360 * kDegree * scans * f.swings)) *
+      kDegree;
   const double horizontal = std::cos(elevation);
   return {static_cast<float>(horizontal * std::cos(azimuth * kDegree)),
           static_cast<float>(-horizontal * std::sin(azimuth * kDegree)),

@@ -113,14 +113,14 @@ double DriveOf(const std::string& model, const char* deskew, const std::string& 
 TEST_F(Odometry, FollowsCloudsOfDriversByTheTimesOfTheirPoints) {
   EXPECT_NEAR(DriveOf("vlp-16", "true"), 10, 0.1);
   EXPECT_NEAR(DriveOf("xt32", "true"), 10, 0.1);
-  EXPECT_NEAR(DriveOf("mid-360", "true"), 10, 0.1);
-  EXPECT_GT(std::abs(DriveOf("mid-360", "false") - 10), 0.2);
+  EXPECT_NEAR(DriveOf("mid-360", "true"), 10, 0.05);
+  EXPECT_GT(std::abs(DriveOf("mid-360", "false") - 10), 0.1);
 }
 
 TEST_F(Odometry, FollowsCodedCloudsByTheTimesThatComeBack) {
   const std::string decoder = " ! lidardec ! ";
-  EXPECT_NEAR(DriveOf("mid-360", "true", "lidarenc effort=1 fields=timestamp" + decoder), 10, 0.1);
-  EXPECT_GT(std::abs(DriveOf("mid-360", "true", "lidarenc effort=1" + decoder) - 10), 0.2);
+  EXPECT_NEAR(DriveOf("mid-360", "true", "lidarenc effort=1 fields=timestamp" + decoder), 10, 0.05);
+  EXPECT_GT(std::abs(DriveOf("mid-360", "true", "lidarenc effort=1" + decoder) - 10), 0.1);
 }
 
 TEST_F(Odometry, BeginsAtItsInitialPose) {

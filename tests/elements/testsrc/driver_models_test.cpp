@@ -118,10 +118,20 @@ TEST_P(DriverModel, FiresEveryLaserInTurnOverTheWholeScan) {
 
 TEST_P(DriverModel, PointsLieWhereTheTableSays) {
   Pull();
+  const std::uint32_t others = firing_.lasers - 1;
+  std::size_t fans = 0;
   for (std::size_t i = 0; i < info_.width; i += 7) {
     const Polar p = PolarAt(i);
     const double ring_elevation = firing_.first_elevation + firing_.elevation_step * RingAt(i);
-    ASSERT_NEAR(p.elevation_deg, ring_elevation, firing_.swing + 1e-3) << i;
+    const double fan = firing_.fan * others;
+    ASSERT_NEAR(p.elevation_deg, ring_elevation, firing_.swing + fan / 2 + 1e-3) << i;
+    const std::size_t last = i + others;
+    if (fan > 0 && last < info_.width && RingAt(i) == 0 && RingAt(last) == others &&
+        TimeAt(last) - TimeAt(i) < 2e-5) {
+      const double rise = PolarAt(last).elevation_deg - p.elevation_deg;
+      ASSERT_NEAR(rise, fan * std::sin(p.azimuth_deg * M_PI / 180), 0.5) << i;
+      ++fans;
+    }
     const double units = p.range_m * 1000 / firing_.range_unit_mm;
     ASSERT_NEAR(units, std::round(units), 0.02) << i;
     if (firing_.azimuth_unit > 0) {
@@ -129,6 +139,7 @@ TEST_P(DriverModel, PointsLieWhereTheTableSays) {
       ASSERT_NEAR(steps, std::round(steps), 0.01) << i;
     }
   }
+  EXPECT_EQ(fans > 100, firing_.fan > 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DriverModel, ::testing::Values("vlp-16", "xt32", "at128", "mid-360"));
