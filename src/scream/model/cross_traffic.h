@@ -107,7 +107,7 @@ class CrossTraffic {
   /// A start, or a step of the capacity, must be over before the decision.
   void Decide(int weight) {
     const auto share = this->share();
-    const bool same = !share || (*share > (found_ ? kShareToLose : kShareToFind)) == found_;
+    const bool same = !share || (*share > kShareToFind) == found_;
     against_ = same ? 0 : against_ + weight;
     if (against_ < kDecisionWeight) return;
     found_ = !found_;
@@ -129,7 +129,6 @@ class CrossTraffic {
   static constexpr double kEvidence = 30;
   static constexpr double kMostEvidence = 2 * kEvidence;
   static constexpr double kShareToFind = 0.2;
-  static constexpr double kShareToLose = 0.15;
   std::optional<Packet> last_;
   Time counted_{};
   double waited_ms_ = 0;         // wait of the packet before,

@@ -169,9 +169,8 @@ Duration PathModel::BusyQdelay(Time now) const {
                        : FromSeconds(Seconds(p_.qdelay_target_lo) * p_.busy_qdelay_unmarked);
 }
 
-bool PathModel::Queueing(Time now, Duration qdelay) const {
-  const bool believed = !L4sWorks(now) || 3 * busy_run_.marked() >= busy_run_.packets();
-  return busy_run_.packets() >= kQueueingPackets && believed && queue_delay_.qdelay() > qdelay;
+bool PathModel::Queueing(Duration qdelay) const {
+  return busy_run_.packets() >= kQueueingPackets && queue_delay_.qdelay() > qdelay;
 }
 
 Duration PathModel::UnreportedTime() const {

@@ -85,9 +85,8 @@ class PathModel {
   /// Queueing delay of a packet that shows a busy link. Without marks a queue only counts as
   /// congestion if the draft counts it.
   Duration BusyQdelay(Time now) const;
-  /// Returns true if the queue exceeds `qdelay` and packets keep coming out of it. On a path with
-  /// marks they must be marked, too, as delay alone may be a longer route.
-  bool Queueing(Time now, Duration qdelay) const;
+  /// Returns true if the queue exceeds `qdelay` and packets keep coming out of it.
+  bool Queueing(Duration qdelay) const;
   /// Least time between reactions: min(VIRTUAL_RTT, s_rtt).
   Duration ReactionInterval() const { return std::min(p_.virtual_rtt, rtt_.smoothed()); }
   /// Round trip, but at least VIRTUAL_RTT and a frame: marks of a frame source come once a frame.

@@ -28,7 +28,7 @@ class CapacityDrop {
     if (!p_.extensions.capacity || !capacity) return std::nullopt;
     // The newest train counts more than a time in which the queue stood.
     if (const auto now_carried = path.train().rate()) capacity = std::max(*capacity, *now_carried);
-    if (!path.Queueing(now, path.BusyQdelay(now))) return std::nullopt;
+    if (!path.Queueing(path.BusyQdelay(now))) return std::nullopt;
     if (now - last_drop_ < path.ReactionInterval()) return std::nullopt;
     // Packets that arrive spaced as they left may show only our own rate beside others.
     if (path.L4sWorks(now) && path.busy_run().growth() < p_.drop_growth) return std::nullopt;

@@ -22,7 +22,7 @@ class SendWindow {
     double overhead = p_.ref_wnd_overhead_min + range * path.queue_delay().ref_wnd_delay_scale();
     if (p_.extensions.capacity) {
       if (path.L4sWorks(now)) overhead = std::min(overhead, p_.open_overhead);
-      if (path.Queueing(now, 2 * path.BusyQdelay(now))) overhead = p_.bounded_overhead;
+      if (path.Queueing(2 * path.BusyQdelay(now))) overhead = p_.bounded_overhead;
       overhead *= 1 + Seconds(path.UnreportedTime()) / Seconds(path.rtt().smoothed());
     }
     return ref_wnd * overhead;
