@@ -17,6 +17,29 @@
 namespace lidar::gst {
 namespace caps_text {
 
+/// Returns nothing if a value of the array is of another type.
+inline std::optional<ScalarCaps::Value> ToDoubles(const GValue* array) {
+  ScalarCaps::Doubles values;
+  for (guint i = 0; i < gst_value_array_get_size(array); ++i) {
+    const GValue* value = gst_value_array_get_value(array, i);
+    if (G_VALUE_TYPE(value) != G_TYPE_DOUBLE) return std::nullopt;
+    values.push_back(g_value_get_double(value));
+  }
+  return ScalarCaps::Value(std::move(values));
+}
+
+inline void SetDoubles(GstStructure* s, const gchar* name, const ScalarCaps::Doubles& values) {
+  GValue array = G_VALUE_INIT;
+  gst_value_array_init(&array, static_cast<guint>(values.size()));
+  for (const double v : values) {
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, G_TYPE_DOUBLE);
+    g_value_set_double(&value, v);
+    gst_value_array_append_and_take_value(&array, &value);
+  }
+  gst_structure_take_value(s, name, &array);
+}
+
 /// Returns nothing for a value of another type.
 inline std::optional<ScalarCaps::Value> ToScalar(const GValue* value) {
   using Value = ScalarCaps::Value;
@@ -31,6 +54,7 @@ inline std::optional<ScalarCaps::Value> ToScalar(const GValue* value) {
   if (type == GST_TYPE_FRACTION)
     return Value(ScalarCaps::Fraction{gst_value_get_fraction_numerator(value),
                                       gst_value_get_fraction_denominator(value)});
+  if (type == GST_TYPE_ARRAY) return ToDoubles(value);
   if (type == G_TYPE_STRING && g_value_get_string(value) != nullptr)
     return Value(std::string(g_value_get_string(value)));
   if (type != GST_TYPE_BUFFER || gst_value_get_buffer(value) == nullptr) return std::nullopt;
@@ -61,6 +85,7 @@ inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Valu
                                            : gst_buffer_new_memdup(v.data(), v.size()));
           set(GST_TYPE_BUFFER, buffer.get());
         }
+        if constexpr (std::is_same_v<T, ScalarCaps::Doubles>) SetDoubles(s, name, v);
       },
       value);
 }
@@ -84,7 +109,8 @@ inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* 
     const gchar* name = gst_structure_nth_field_name(s, static_cast<guint>(i));
     auto value = caps_text::ToScalar(gst_structure_get_value(s, name));
     if (!value) {
-      reason = std::string("the field ") + name + " is no string, number, fraction, flag or buffer";
+      reason = std::string("the field ") + name +
+               " is no string, number, fraction, flag, buffer or array of doubles";
       return std::nullopt;
     }
     scalar.fields.push_back({name, *std::move(value)});

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "gst/common/caps_text.h"
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/base/imu_sample.h"
@@ -21,16 +22,8 @@ inline CapsPtr ImuCaps() {
 using ImuToSensor = std::array<double, 16>;  // row-major [m]
 inline CapsPtr ImuCaps(const ImuToSensor& imu_to_sensor) {
   CapsPtr caps = ImuCaps();
-  GValue list = G_VALUE_INIT;
-  gst_value_array_init(&list, 16);
-  for (const double v : imu_to_sensor) {
-    GValue value = G_VALUE_INIT;
-    g_value_init(&value, G_TYPE_DOUBLE);
-    g_value_set_double(&value, v);
-    gst_value_array_append_and_take_value(&list, &value);
-  }
-  gst_caps_set_value(caps.get(), "imu-to-sensor", &list);
-  g_value_unset(&list);
+  caps_text::SetDoubles(gst_caps_get_structure(caps.get(), 0), "imu-to-sensor",
+                        {imu_to_sensor.begin(), imu_to_sensor.end()});
   return caps;
 }
 

@@ -15,12 +15,14 @@ namespace {
 using Value = ScalarCaps::Value;
 using Fraction = ScalarCaps::Fraction;
 using Bytes = ScalarCaps::Bytes;
+using Doubles = ScalarCaps::Doubles;
 
 constexpr std::string_view kPrefix = "application/x-";
 // Types, ordered as Value.
 constexpr std::array<std::string_view, std::variant_size_v<Value>> kTypeNames = {
-    "string",  "boolean", "int",    "uint",     "gint64",
-    "guint64", "float",   "double", "fraction", "buffer"};
+    "string", "boolean", "int",      "uint",   "gint64", "guint64",
+    "float",  "double",  "fraction", "buffer", "double"};
+constexpr std::size_t kDoubles = kTypeNames.size() - 1;  // the array, of the type of its values
 
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
@@ -185,6 +187,20 @@ class Reader {
   std::string_view text_;
 };
 
+/// The values after the opening bracket, up to the closing one.
+std::optional<Value> TakeDoubles(Reader* r) {
+  Doubles values;
+  do {
+    r->SkipSpaces();
+    const auto value = ParseNumber<double>(r->TakeBare());
+    if (!value || values.size() == ScalarCaps::kMaxDoubles) return std::nullopt;
+    values.push_back(*value);
+  } while (r->Take(','));
+  r->SkipSpaces();
+  if (!r->Take('>')) return std::nullopt;
+  return Value(std::move(values));
+}
+
 std::optional<ScalarCaps::Field> TakeField(Reader* r) {
   ScalarCaps::Field field{std::string(r->TakeBare()), {}};
   if (!IsName(field.name) || !r->Take('=') || !r->Take('(')) return std::nullopt;
@@ -194,11 +210,13 @@ std::optional<ScalarCaps::Field> TakeField(Reader* r) {
   std::optional<Value> value;
   if (is_string && r->Take('"')) {
     value = r->TakeQuoted();
+  } else if (*type == kTypeNames[kDoubles] && r->Take('<')) {
+    value = TakeDoubles(r);
   } else {
     const std::string_view bare = r->TakeBare();
     if (is_string && (bare.empty() || bare == "NULL")) return std::nullopt;
     value = ParseValue(static_cast<std::size_t>(type - kTypeNames.begin()), bare,
-                       std::make_index_sequence<kTypeNames.size()>());
+                       std::make_index_sequence<kDoubles>());
   }
   if (!value || (is_string && !IsPrintable(std::get<std::string>(*value)))) return std::nullopt;
   field.value = *std::move(value);
@@ -237,6 +255,15 @@ void AppendNumber(T value, std::string* text) {
           std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr - digits.data()));
 }
 
+void AppendDoubles(const Doubles& values, std::string* text) {
+  *text += "< ";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) *text += ", ";
+    AppendNumber(values[i], text);
+  }
+  *text += " >";
+}
+
 void AppendValue(const Value& value, std::string* text) {
   std::visit(
       [&](const auto& v) {
@@ -247,6 +274,8 @@ void AppendValue(const Value& value, std::string* text) {
           *text += v ? "true" : "false";
         } else if constexpr (std::is_same_v<T, Bytes>) {
           AppendBytes(v, text);
+        } else if constexpr (std::is_same_v<T, Doubles>) {
+          AppendDoubles(v, text);
         } else if constexpr (std::is_same_v<T, Fraction>) {
           AppendNumber(v.numerator, text);
           *text += '/';
@@ -264,10 +293,15 @@ std::optional<std::string> WrongIn(const Value& value) {
     if (!IsPrintable(*text)) return "has characters that cannot be printed";
   if (const auto* fraction = std::get_if<Fraction>(&value))
     if (!IsFraction(*fraction)) return "is no fraction";
+  const auto is_finite = [](double v) { return std::isfinite(v); };
   const auto* one = std::get_if<float>(&value);
   const auto* two = std::get_if<double>(&value);
-  if ((one != nullptr && !std::isfinite(*one)) || (two != nullptr && !std::isfinite(*two)))
+  const auto* more = std::get_if<Doubles>(&value);
+  if ((one != nullptr && !std::isfinite(*one)) || (two != nullptr && !std::isfinite(*two)) ||
+      (more != nullptr && !std::all_of(more->begin(), more->end(), is_finite)))
     return "is not finite";
+  if (more != nullptr && (more->empty() || more->size() > ScalarCaps::kMaxDoubles))
+    return "has not 1 to " + std::to_string(ScalarCaps::kMaxDoubles) + " values";
   return std::nullopt;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps of a stream whose fields are scalars, and their text: a bounded part of GStreamer's syntax
-// (docs/wire-format.md), parsed in linear time.
+// Caps of a stream whose fields are scalars or short arrays of doubles, and their text: a bounded
+// part of GStreamer's syntax (docs/wire-format.md), parsed in linear time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -21,8 +21,9 @@ struct ScalarCaps {
     }
   };
   using Bytes = std::vector<std::uint8_t>;
+  using Doubles = std::vector<double>;
   using Value = std::variant<std::string, bool, std::int32_t, std::uint32_t, std::int64_t,
-                             std::uint64_t, float, double, Fraction, Bytes>;
+                             std::uint64_t, float, double, Fraction, Bytes, Doubles>;
   struct Field {
     std::string name;
     Value value;
@@ -30,6 +31,7 @@ struct ScalarCaps {
   };
 
   static constexpr std::size_t kMaxFields = 64;
+  static constexpr std::size_t kMaxDoubles = 16;       // of one field: a transform
   static constexpr std::size_t kMaxName = 64;          // of a field, and of the media type [bytes]
   static constexpr std::size_t kMaxText = 128U << 10;  // [bytes]
 

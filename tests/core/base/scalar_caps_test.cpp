@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace lidar {
@@ -46,7 +47,9 @@ TEST(ScalarCaps, EachTypeComesBackAtItsLimits) {
                  {"i", std::numeric_limits<float>::denorm_min()},
                  {"j", std::numeric_limits<double>::max()},
                  {"k", ScalarCaps::Fraction{-2'147'483'647, 2'147'483'647}},
-                 {"l", ScalarCaps::Bytes()}};
+                 {"l", ScalarCaps::Bytes()},
+                 {"m", ScalarCaps::Doubles(16, -1.0 / 3)},
+                 {"n", ScalarCaps::Doubles{0.5}}};
   const auto text = caps.ToText();
   ASSERT_TRUE(text);
   EXPECT_EQ(ScalarCaps::Parse(*text), caps);
@@ -72,6 +75,12 @@ INSTANTIATE_TEST_SUITE_P(
                       With("n=(fraction)1"), With("n=(fraction)1/0"), With("n=(fraction)1/-1"),
                       With("n=(fraction)-2147483648/1"), With("n=(buffer)abc"),
                       With("n=(buffer)ag"), With("n=(buffer)\"ab\"")));
+INSTANTIATE_TEST_SUITE_P(Arrays, OutsideOfTheGrammar,
+                         ::testing::Values(With("n=(double)<"), With("n=(double)<  >"),
+                                           With("n=(double)< 1"), With("n=(double)< 1, >"),
+                                           With("n=(double)< 1 2 >"), With("n=(double)< nan >"),
+                                           With("n=(double)< < 1 > >"), With("n=(float)< 1 >"),
+                                           With("n=(string)< a >")));
 INSTANTIATE_TEST_SUITE_P(
     Strings, OutsideOfTheGrammar,
     ::testing::Values(With("n=(string)"), With("n=(string)NULL"), With("n=(string)\""),
@@ -82,6 +91,18 @@ INSTANTIATE_TEST_SUITE_P(
                       With("n=(string)\"\\355\\240\\200\""),
                       With("n=(string)\"\\364\\220\\200\\200\""), With("n=(string)\"\\303\""),
                       With("n=(string)\"a\"b"), With("n=(string)\"\xC3\xBC\"")));
+
+TEST(ScalarCaps, AnArrayHasAtMostSixteenDoubles) {
+  const auto text = [](std::size_t count) {
+    std::string values = "1";
+    for (std::size_t i = 1; i < count; ++i) values += ", 1";
+    return With("n=(double)< " + values + " >");
+  };
+  const auto caps = ScalarCaps::Parse(text(16));
+  ASSERT_TRUE(caps);
+  EXPECT_EQ(*caps->Find("n"), ScalarCaps::Value(ScalarCaps::Doubles(16, 1)));
+  EXPECT_FALSE(ScalarCaps::Parse(text(17)));
+}
 
 TEST(ScalarCaps, NestingIsRefusedHoweverDeep) {
   // Each level doubles the time of gst_caps_from_string().
@@ -123,6 +144,10 @@ TEST(ScalarCaps, WhatCannotBeWrittenSaysWhy) {
   EXPECT_EQ(why("application/x-a", {"n", std::numeric_limits<double>::infinity()}),
             "n is not finite");
   EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Fraction{1, 0}}), "n is no fraction");
+  for (const auto count : {0U, 17U})
+    EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Doubles(count)}),
+              "n has not 1 to 16 values");
+  EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Doubles{1, std::nan("")}}), "n is not finite");
   EXPECT_EQ(why("application/x-a", {"n", std::string("a\nb")}),
             "n has characters that cannot be printed");
   EXPECT_EQ(why("application/x-a", {"n", std::string(1U << 20, 'a')}),

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gst/common/imu_caps.h"
 #include "gst/lidar/gstlidar.h"
 
 namespace lidar::gst {
@@ -25,6 +26,15 @@ CapsPtr OfEachType() {
       G_TYPE_UINT64, guint64{9}, "float", G_TYPE_FLOAT, 0.5, "double", G_TYPE_DOUBLE, -0.25,
       "framerate", GST_TYPE_FRACTION, 10, 1, "sensor-model", GST_TYPE_BUFFER, bytes.get(), "none",
       GST_TYPE_BUFFER, none.get(), nullptr));
+}
+
+TEST_F(CapsText, OfAnArrayOfDoublesIsWhatGStreamerWritesAndComesBack) {
+  const CapsPtr caps = ImuCaps({1, 0, 0, 0.25, 0, -1, 0, -0.5, 0, 0, 1, 3, 0, 0, 0, 1});
+  const StringPtr text(gst_caps_to_string(caps.get()));
+  EXPECT_EQ(CapsToText(caps.get()).value_or(""), text.get());
+  const CapsPtr back = CapsFromText(text.get());
+  ASSERT_TRUE(back);
+  EXPECT_TRUE(gst_caps_is_equal(back.get(), caps.get()));
 }
 
 TEST_F(CapsText, IsWhatGStreamerWrites) {
@@ -56,14 +66,16 @@ TEST_P(OtherCaps, AreRefusedWithTheReason) {
 constexpr const char* kNotOne = "they are not those of one stream in the system's memory";
 INSTANTIATE_TEST_SUITE_P(
     All, OtherCaps,
-    ::testing::Values(Refused{"ANY", kNotOne}, Refused{"EMPTY", kNotOne},
-                      Refused{"application/x-a; application/x-b", kNotOne},
-                      Refused{"application/x-a(memory:GLMemory)", kNotOne},
-                      Refused{"video/x-raw", "video/x-raw does not begin with application/x-"},
-                      Refused{"application/x-a, n=(int)[ 1, 2 ]",
-                              "the field n is no string, number, fraction, flag or buffer"},
-                      Refused{"application/x-a, n=(int)< 1, 2 >",
-                              "the field n is no string, number, fraction, flag or buffer"}));
+    ::testing::Values(
+        Refused{"ANY", kNotOne}, Refused{"EMPTY", kNotOne},
+        Refused{"application/x-a; application/x-b", kNotOne},
+        Refused{"application/x-a(memory:GLMemory)", kNotOne},
+        Refused{"video/x-raw", "video/x-raw does not begin with application/x-"},
+        Refused{"application/x-a, n=(int)[ 1, 2 ]",
+                "the field n is no string, number, fraction, flag, buffer or array of doubles"},
+        Refused{"application/x-a, n=(double)<  >", "n has not 1 to 16 values"},
+        Refused{"application/x-a, n=(int)< 1, 2 >",
+                "the field n is no string, number, fraction, flag, buffer or array of doubles"}));
 
 }  // namespace
 }  // namespace lidar::gst

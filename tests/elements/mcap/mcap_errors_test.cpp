@@ -169,8 +169,8 @@ TEST_F(McapErrors, CapsThatCouldNotBePlayedAreNotRecorded) {
   gst_message_parse_error(message.get(), &raw, nullptr);
   const gst::ErrorPtr error(raw);
   EXPECT_STREQ(error->message,
-               "Cannot be recorded: the field levels is no string, number, fraction, flag or "
-               "buffer.");
+               "Cannot be recorded: the field levels is no string, number, fraction, flag, "
+               "buffer or array of doubles.");
   gst_element_set_bus(h->element, nullptr);
   gst_object_unref(bus);
 }

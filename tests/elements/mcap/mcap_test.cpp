@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What goes into mcapsink comes out of mcapsrc.
+#include "gst/common/imu_caps.h"
 #include "src/base/byte_writer.h"
 #include "src/cdr/point_cloud2.h"
 #include "src/mcap/writer.h"
@@ -84,11 +85,10 @@ TEST_F(Mcap, SamplesOfAnImuComeBackOneByOne) {
     w.Le64(kCapture + i * 10 * GST_MSECOND);
     for (unsigned k = 0; k < 6; ++k) w.LeF32(static_cast<float>(i) + 0.1F * static_cast<float>(k));
   }
-  const auto read = ThroughFile(
-      Path("imu.mcap"),
-      "application/x-imu,sample-size=32,"
-      "fields=(string)\"t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28\"",
-      {Bytes(packet, 0)});
+  const gst::CapsPtr caps =
+      gst::ImuCaps({1, 0, 0, 0.006, 0, 1, 0, -0.012, 0, 0, 1, 0.008, 0, 0, 0, 1});
+  const gst::StringPtr text(gst_caps_to_string(caps.get()));
+  const auto read = ThroughFile(Path("imu.mcap"), text.get(), {Bytes(packet, 0)});
   ASSERT_EQ(read.size(), 4U);
   std::string all;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -177,7 +177,8 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
   EXPECT_TRUE(gst_caps_is_equal(back->caps(), format->caps()));
   EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));  // whole scans?
   EXPECT_FALSE(FormatOf("application/x-voxels, alignment=slice, levels=(uint)<1,2>", &why));
-  EXPECT_EQ(why, "the field levels is no string, number, fraction, flag or buffer");
+  EXPECT_EQ(why,
+            "the field levels is no string, number, fraction, flag, buffer or array of doubles");
 }
 
 TEST_F(NatsParts, NestedTextIsRefusedAtOnce) {
