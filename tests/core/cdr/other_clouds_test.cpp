@@ -40,7 +40,10 @@ TEST(LivoxMessages, BecomeTheCloudThatTheDriverMakesOfThem) {
   ASSERT_TRUE(made);
   EXPECT_EQ(made->cloud.header.frame_id, "livox_frame");
   EXPECT_EQ(made->cloud.layout.width, 5U);
+  EXPECT_EQ(made->cloud.layout.height, 1U);
   EXPECT_EQ(made->cloud.layout.point_step, 26U);
+  EXPECT_EQ(made->cloud.layout.row_step, 5U * 26);
+  EXPECT_TRUE(made->cloud.is_dense);
   ASSERT_EQ(made->cloud.layout.fields.size(), 7U);
   EXPECT_EQ(made->cloud.layout.fields[5].name, "line");
   ASSERT_EQ(made->points.size(), 130U);
@@ -79,6 +82,11 @@ TEST(CompressedClouds, ComeBack) {
   cloud.cloud.data = View(data);
   cloud.cloud.is_dense = true;
   cloud.format = "zstd";
+  for (const bool dense : {true, false}) {
+    cloud.cloud.is_dense = dense;
+    EXPECT_EQ(ReadCompressedCloud(View(WriteCompressedCloud(cloud)))->cloud.is_dense, dense);
+  }
+  cloud.cloud.is_dense = true;
   const Bytes message = WriteCompressedCloud(cloud);
   const auto read = ReadCompressedCloud(View(message));
   ASSERT_TRUE(read);

@@ -406,5 +406,15 @@ TEST(RosTypes, StandInTheOrderOfTheirEnumeration) {
   for (const RosTypeInfo& info : kRosTypes) EXPECT_EQ(InfoOf(info.type).name, info.name);
 }
 
+TEST(PointConverter, PacksPointsThatAreLargerThanOurElementsTake) {
+  for (const std::uint32_t step : {PointFields::kMaxPointStep, PointFields::kMaxPointStep + 1}) {
+    const RosLayout layout{1,     1,    {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}},
+                           false, step, step};
+    const auto converter = PointConverter::Make(layout);
+    ASSERT_TRUE(converter);
+    EXPECT_EQ(converter->points().point_step, step > PointFields::kMaxPointStep ? 12 : step);
+  }
+}
+
 }  // namespace
 }  // namespace lidar::cdr

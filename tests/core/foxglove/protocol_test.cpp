@@ -43,6 +43,17 @@ TEST(Advertise, TellsWhatAStreamOfSlicesIs) {
               "recording":false})"));
 }
 
+TEST(Advertise, TellsOfAStreamWithoutRangesAndOfItsRecording) {
+  SliceStreamInfo stream;
+  stream.framerate_n = 30'000;
+  stream.framerate_d = 1'001;
+  stream.recording = true;
+  const auto text = json::parse(DescribeSlices(stream));
+  EXPECT_EQ(text["geometry"], "xyz");
+  EXPECT_EQ(text["framerate"], json::parse("[30000, 1001]"));
+  EXPECT_EQ(text["recording"], true);
+}
+
 TEST(Advertise, SurvivesTextsThatAreNone) {
   SliceStreamInfo stream;
   stream.fields = "x\xff\xfe\"}]";

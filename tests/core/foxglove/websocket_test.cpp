@@ -135,6 +135,16 @@ INSTANTIATE_TEST_SUITE_P(
             CloseCode::kTooLarge}),
     [](const auto& bad) { return std::string(bad.param.name); });
 
+TEST(MessageReader, TakesTheOpcodesOfTheProtocolAndNoOther) {
+  for (std::uint8_t code = 0; code < 16; ++code) {
+    MessageReader reader(kMax);
+    reader.Append(ViewOf(Masked(static_cast<Opcode>(code), "a")));
+    const bool begins = code == 1 || code == 2 || (code >= 8 && code <= 10);
+    EXPECT_EQ(reader.Next().has_value(), begins) << int{code};
+    EXPECT_EQ(reader.error().has_value(), !begins) << int{code};
+  }
+}
+
 TEST(Frames, OfTheServerAreWholeAndNotMasked) {
   EXPECT_EQ(TextFrame("hi"), (std::vector<std::uint8_t>{0x81, 2, 'h', 'i'}));
   EXPECT_EQ(CloseFrame(CloseCode::kGoingAway), (std::vector<std::uint8_t>{0x88, 2, 0x03, 0xE9}));
