@@ -210,6 +210,22 @@ TEST(McapOfOthers, AnIndexThatPointsOutOfTheFileIsNotTaken) {
   EXPECT_EQ(ReadFileIndex(&input).chunks.size(), 1U);
 }
 
+TEST(McapOfOthers, ASummaryWhoseChecksumDoesNotFitIsNoIndex) {
+  FileMaker maker(WriterSettings{});
+  const auto a = maker.AddChannel("a");
+  for (std::uint64_t i = 0; i < 3; ++i) ASSERT_TRUE(maker.Add(a, i * 2 * kSecond, "x"));
+  ASSERT_TRUE(maker.writer().Finish());
+  const std::size_t summary = maker.ends()[2];  // behind the last chunk
+  const Bytes& whole = maker.file();
+  for (std::size_t at = summary + 40; at + 40 < whole.size(); at += 7) {
+    Bytes file = whole;
+    file[at] ^= 0x10;
+    const auto reader = Open(file);
+    EXPECT_FALSE(reader->index().complete) << at;
+    EXPECT_EQ(ReadAll(reader.get()).size(), 3U) << at;
+  }
+}
+
 TEST(McapOfOthers, ChunksWithoutMessagesHaveNoTime) {
   FileIndex index;
   index.chunks = {{0, 0, 8, 10, false}, {3, 5, 18, 10, false}, {4, 4, 28, 10, false}};

@@ -135,5 +135,102 @@ TEST_F(Growing, IsScannedAnewWhereAnotherFileHasItsName) {
   EXPECT_EQ(test::ReadAll(second.get()).size(), 30U);
 }
 
+/// Changes a byte in the middle of the first chunk.
+Bytes Damaged(Bytes file) {
+  const ChunkPlace chunk = test::Open(file)->index().chunks.front();
+  file[static_cast<std::size_t>(chunk.offset + chunk.size - 5)] ^= 0x55;
+  return file;
+}
+
+TEST_F(Growing, CountsTheDamageOfAllItsFilesAlsoBehindASeek) {
+  Record(0, 3);
+  for (const char* name : {"a1.mcap", "a2.mcap"}) Save(name, Damaged(maker_.file()));
+  const auto playback = Playback::Open(folder_ + "/a%d.mcap", &cancelled_, &why_);
+  ASSERT_NE(playback, nullptr) << why_;
+  EXPECT_EQ(Count(playback.get()), 4U);
+  EXPECT_EQ(playback->damaged_chunks(), 2U);
+  playback->Seek(0);
+  EXPECT_EQ(playback->damaged_chunks(), 2U);
+}
+
+TEST_F(Growing, CountsFilesThatBreakOffAndThoseThatCannotBeRead) {
+  Record(0, 2);
+  Save("a1.mcap", maker_.file());
+  Save("a2.mcap", Bytes(100, 'x'));
+  ASSERT_TRUE(maker_.writer().Finish());
+  Save("a3.mcap", maker_.file());
+  Save("a4.mcap", Bytes(kMagic.begin(), kMagic.end()));
+  const auto playback = Playback::Open(folder_ + "/a%d.mcap", &cancelled_, &why_);
+  ASSERT_NE(playback, nullptr) << why_;
+  for (int refreshes = 0; refreshes < 2; ++refreshes) {
+    EXPECT_EQ(playback->unclosed_files(), 1U);
+    EXPECT_EQ(playback->unreadable_files(), 2U);
+    EXPECT_EQ(why_, "it holds no messages");
+    ASSERT_TRUE(playback->Refresh(&why_));
+  }
+}
+
+TEST_F(Growing, LastsFromItsEarliestToItsLatestFileWhateverTheirOrder) {
+  Record(5, 8);
+  Save("a1.mcap", maker_.file());
+  FileMaker early{WriterSettings{}};
+  const auto channel = early.AddChannel("points");
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(early.Add(channel, Time(i), "message"));
+  ASSERT_TRUE(early.writer().Finish());
+  Save("a2.mcap", early.file());
+  const auto playback = Playback::Open(folder_ + "/a%d.mcap", &cancelled_, &why_);
+  ASSERT_NE(playback, nullptr) << why_;
+  EXPECT_EQ(playback->start_time(), Time(0));
+  EXPECT_EQ(playback->end_time(), Time(7));
+}
+
+TEST_F(Growing, ASeekIntoAnyOfItsFilesBeginsWithTheMessageOfItsTime) {
+  Record(0, 3);
+  Save("a1.mcap", maker_.file());
+  FileMaker next{WriterSettings{}};
+  const auto channel = next.AddChannel("points");
+  for (int i = 3; i < 6; ++i) ASSERT_TRUE(next.Add(channel, Time(i), "message"));
+  ASSERT_TRUE(next.writer().Finish());
+  Save("a2.mcap", next.file());
+  const auto playback = Playback::Open(folder_ + "/a%d.mcap", &cancelled_, &why_);
+  ASSERT_NE(playback, nullptr) << why_;
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(Count(playback.get(), Time(i)), static_cast<std::size_t>(6 - i));
+    EXPECT_EQ(Count(playback.get(), Time(i) + 1), static_cast<std::size_t>(5 - i));
+  }
+}
+
+TEST_F(Growing, IsReadAnewWhereAnotherFileOfItsSizeHasItsName) {
+  for (const bool closed : {false, true}) {
+    const std::string name = closed ? "closed.mcap" : "open.mcap";
+    std::size_t size = 0;
+    std::unique_ptr<Playback> playback;
+    for (const int first : {0, 50}) {
+      WriterSettings settings;
+      settings.compression = Compression::kNone;
+      FileMaker maker{settings};
+      const auto channel = maker.AddChannel("points");
+      for (int i = first; i < first + 3; ++i) {
+        ASSERT_TRUE(maker.Add(channel, Time(i), "message"));
+        ASSERT_TRUE(maker.writer().Flush());
+      }
+      if (closed) {
+        ASSERT_TRUE(maker.writer().Finish());
+      }
+      if (first > 0) {
+        ASSERT_EQ(maker.file().size(), size);
+      }
+      size = maker.file().size();
+      Save(name, maker.file());
+      fs::last_write_time(folder_ + "/" + name,
+                          fs::file_time_type::clock::now() - std::chrono::seconds(100 - first));
+      if (!playback) playback = Playback::Open(folder_ + "/" + name, &cancelled_, &why_);
+      ASSERT_TRUE(playback && playback->Refresh(&why_)) << why_;
+      EXPECT_EQ(playback->start_time(), Time(first));
+      EXPECT_EQ(Count(playback.get(), Time(first + 1)), 2U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lidar::mcap
