@@ -212,6 +212,18 @@ TEST(ScanCounter, HasNoGapsWhereTheSourceSkipsScansOrRepeatsItsIds) {
   EXPECT_EQ(Placed(&scans, 15, 0, 2).slice.scan_number, 1U);  // a source without scan ids
 }
 
+TEST(ScanCounter, ASliceThatComesAgainIsOfTheNextScan) {
+  ScanCounter scans(7);
+  EXPECT_EQ(Placed(&scans, 0, 0, 1).slice.scan_number, 7U);
+  const Unit again = Placed(&scans, 0, 0, 1);
+  EXPECT_EQ(again.slice.scan_number, 8U);
+  EXPECT_EQ(again.unit, UnitType::kSlice);
+  EXPECT_EQ(Placed(&scans, 0, 2, 4).slice.scan_number, 8U);
+  const Unit later = Placed(&scans, 0, 2, 4);  // without slice 3, 0 and 1
+  EXPECT_EQ(later.slice.scan_number, 9U);
+  EXPECT_EQ(later.info.skipped & 0b111U, 0b111U);
+}
+
 TEST(ScanCounter, TellsWhichOfTheSlicesBeforeWereLeftOut) {
   ScanCounter scans(0);
   EXPECT_EQ(Placed(&scans, 1, 1, 4).unit, UnitType::kSlice);  // what came before is unknown

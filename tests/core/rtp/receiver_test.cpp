@@ -115,6 +115,33 @@ TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
 }
 INSTANTIATE_TEST_SUITE_P(Scans, Outage, ::testing::Values(1, 2, 3, 10, 100, 600, 6'000));
 
+TEST(Receiver, KeepsAllItsCountsThroughOutagesAndRestarts) {
+  SenderOptions options;
+  auto all = Sender(options).Scans(0, 40);
+  options.ssrc += 1;
+  options.config_id += 1;
+  const auto other = Sender(options).Scans(60, 40);
+  all.insert(all.end(), other.begin(), other.end());
+  Receiver receiver(milliseconds(100));
+  ReceiverAccounts last;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].scan >= 10 && all[i].scan < 30) continue;  // an outage
+    const bool repeats = i % 10 == 3;
+    for (int times = repeats ? 2 : 1; times > 0; --times) Deliver(&receiver, all[i]);
+    const ReceiverAccounts now = receiver.accounts();
+    EXPECT_GE(now.packets.duplicate, last.packets.duplicate) << i;
+    EXPECT_GE(now.slices.slices_received, last.slices.slices_received) << i;
+    EXPECT_GE(now.configs_received, last.configs_received) << i;
+    last = now;
+  }
+  EXPECT_EQ(last.outages, 1U);
+  EXPECT_EQ(last.restarts, 1U);
+  EXPECT_EQ(last.configs_received, 2U);
+  EXPECT_GT(last.packets.duplicate, 30U);
+  receiver.Finish();
+  EXPECT_EQ(receiver.accounts().packets.duplicate, last.packets.duplicate);
+}
+
 TEST(Receiver, GivesOutSlicesThatComeAloneAndFarApart) {
   SenderOptions options;
   options.slice_size = 1'500;  // two packets
