@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A payloader or depayloader that was stopped, or flushed, is as a new one.
+#include <gtest/gtest.h>
+
+#include "tests/elements/rtplidar/slices.h"
+#include "tests/support/run_trace.h"
+
+namespace lidar::test {
+namespace {
+
+void Give(GstHarness* h, GstBuffer* buffer) { gst_pad_push(h->srcpad, buffer); }
+
+/// Some slices, one without bytes, and bounds. What is put together for a packet is under way.
+void PayRun(GstHarness* h, bool aggregate) {
+  g_object_set(h->element, "aggregate", aggregate, nullptr);
+  const GstLidarBitrateBounds bounds{1'000, 2'000, 3'000};
+  gst_pad_push_event(h->srcpad, gst_lidar_event_new_bitrate_bounds(&bounds));
+  for (guint scan = 0; scan < 12; ++scan)
+    for (guint i = 0; i < kSlices; ++i) Give(h, EncodedSlice(scan, i, 200 + 100 * i));
+  Give(h, EncodedSlice(12, 0, 0));
+  Give(h, EncodedSlice(13, 0, 150));
+}
+
+class PaySecondRun : public ::testing::TestWithParam<bool> {
+ protected:
+  Harness h_{gst_harness_new("rtplidarpay")};
+  RunTrace trace_{h_.get(), false};  // numbers begin at random
+};
+
+TEST_P(PaySecondRun, IsAsTheFirst) {
+  Lines first;
+  for (int run = 0; run < 2; ++run) {
+    trace_.Begin(EncodedCaps());
+    PayRun(h_.get(), GetParam());
+    Lines lines = trace_.Take();
+    // The fields of every payloader have random numbers.
+    if (lines.back().rfind("stats", 0) == 0) lines.pop_back();
+    for (std::string& line : lines)
+      if (line.rfind("event caps", 0) == 0) line.resize(line.find("ssrc"));
+    for (const char* name : {"scans-sent", "slices-sent", "packets-sent", "configs-sent",
+                             "slice-bytes", "payload-bytes", "empty-dropped"}) {
+      lines.push_back(name + std::string(" ") + std::to_string(Stat(h_.get(), name)));
+      EXPECT_GT(Stat(h_.get(), name), 0U) << name;
+    }
+    if (run == 0) first = lines;
+    EXPECT_EQ(lines, first);
+    trace_.Stop();
+    trace_.Take();
+  }
+}
+
+TEST_P(PaySecondRun, BeginsWithTheConfigBehindAFlush) {
+  trace_.Begin(EncodedCaps());
+  PayRun(h_.get(), GetParam());
+  trace_.Flush();
+  PullAll(h_.get());
+  Give(h_.get(), EncodedSlice(14, kSlices - 1, 200));
+  const auto packets = PullAll(h_.get());
+  ASSERT_EQ(packets.size(), 2U);
+  EXPECT_TRUE(packets[0].IsConfig());
+  EXPECT_FALSE(packets[1].IsConfig());
+}
+
+INSTANTIATE_TEST_SUITE_P(AloneAndTogether, PaySecondRun, ::testing::Bool());
+
+/// Losses, garbage, packets of others and of another type; a slice is under way at the end.
+class DepaySecondRun : public ::testing::Test {
+ protected:
+  void Run() {
+    for (const char* garbage : {"x", "no RTP"})
+      Give(h_.get(), gst_buffer_new_memdup(garbage, strlen(garbage)));
+    for (const auto& packet : wrong_type_) Give(h_.get(), gst_buffer_copy_deep(packet.get()));
+    for (std::size_t i = 0; i + 1 < packets_.size(); ++i) {
+      if (i % 17 == 9) continue;
+      Give(h_.get(), gst_buffer_copy_deep(packets_[i].get()));
+      if (i % 13 == 5) Give(h_.get(), gst_buffer_copy_deep(packets_[i].get()));
+      if (i < rivals_.size()) Give(h_.get(), gst_buffer_copy_deep(rivals_[i].get()));
+    }
+  }
+  static std::vector<gst::BufferPtr> OfAnotherType() {
+    auto packets = Packets(6);
+    for (auto& packet : packets) {
+      GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+      packet.reset(gst_buffer_make_writable(packet.release()));
+      gst_rtp_buffer_map(packet.get(), GST_MAP_READWRITE, &rtp);
+      gst_rtp_buffer_set_payload_type(&rtp, 111);
+      gst_rtp_buffer_unmap(&rtp);
+    }
+    return packets;
+  }
+
+  const std::vector<gst::BufferPtr> packets_ = Packets(50);
+  const std::vector<gst::BufferPtr> rivals_ = Packets(45);
+  const std::vector<gst::BufferPtr> wrong_type_ = OfAnotherType();
+  Harness h_{gst_harness_new("rtplidardepay")};
+  RunTrace trace_{h_.get()};
+};
+
+TEST_F(DepaySecondRun, IsAsTheFirst) {
+  Lines first;
+  for (int run = 0; run < 2; ++run) {
+    trace_.Begin(kRtpCaps);
+    Run();
+    const Lines lines = trace_.Take();
+    const auto warnings = std::count_if(lines.begin(), lines.end(), [](const auto& line) {
+      return line.rfind("message warning", 0) == 0;
+    });
+    EXPECT_EQ(warnings, 2);  // of the type, and of the other sender
+    if (run == 0) first = lines;
+    EXPECT_EQ(lines, first);
+    trace_.Stop();
+    trace_.Take();
+  }
+}
+
+TEST_F(DepaySecondRun, GivesTheSameSlicesBehindAFlush) {
+  trace_.Begin(kRtpCaps);
+  Run();
+  const Lines first = trace_.TakeBuffers();
+  trace_.Flush();
+  trace_.Take();
+  Run();
+  EXPECT_EQ(trace_.TakeBuffers(), first);
+}
+
+TEST_F(DepaySecondRun, CountsWhatWasUnderWayAtTheStop) {
+  trace_.Begin(kRtpCaps);
+  Run();
+  const guint64 incomplete = Stat(h_.get(), "scans-incomplete");
+  trace_.Stop();
+  EXPECT_EQ(Stat(h_.get(), "scans-incomplete"), incomplete + 1);
+}
+
+TEST_F(DepaySecondRun, CountsEachPacketThatIsNoRtp) {
+  trace_.Begin(kRtpCaps);
+  for (int i = 0; i < 3; ++i) Give(h_.get(), gst_buffer_new_memdup("x", 1));
+  EXPECT_EQ(Stat(h_.get(), "packets-invalid"), 3U);
+}
+
+}  // namespace
+}  // namespace lidar::test

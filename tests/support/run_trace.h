@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What an element puts out and says, as text: one run can be compared with another.
+#pragma once
+#include <algorithm>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "gst/common/buffer_map.h"
+#include "gst/lidar/gstlidar.h"
+#include "src/base/crc.h"
+#include "tests/support/harness.h"
+
+namespace lidar::test {
+
+using Lines = std::vector<std::string>;
+
+class RunTrace {
+ public:
+  /// Watches the element of `h`, which must outlive this object. The bytes of its buffers count
+  /// only `with_bytes`: some elements number their streams at random.
+  explicit RunTrace(GstHarness* h, bool with_bytes = true)
+      : h_(h), with_bytes_(with_bytes), bus_(gst_bus_new()) {
+    gst_element_set_bus(h->element, bus_);
+    constexpr auto kAll =
+        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST |
+                                     GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM);
+    probe_ = gst_pad_add_probe(h->sinkpad, kAll, OnData, this, nullptr);
+  }
+  ~RunTrace() {
+    gst_pad_remove_probe(h_->sinkpad, probe_);
+    gst_element_set_bus(h_->element, nullptr);
+    gst_object_unref(bus_);
+  }
+  RunTrace(const RunTrace&) = delete;
+  RunTrace& operator=(const RunTrace&) = delete;
+
+  /// Starts the element, with the events that come before the first buffer.
+  void Begin(const std::string& caps) {
+    gst_harness_play(h_);
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("run"));
+    PushCaps(caps);
+    PushSegment();
+  }
+  void PushCaps(const std::string& text) {
+    const gst::CapsPtr caps(gst_caps_from_string(text.c_str()));
+    gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
+  }
+  void PushSegment() {
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+  }
+  void Flush() {
+    gst_pad_push_event(h_->srcpad, gst_event_new_flush_start());
+    gst_pad_push_event(h_->srcpad, gst_event_new_flush_stop(TRUE));
+    PushSegment();
+  }
+  void Stop() { gst_element_set_state(h_->element, GST_STATE_NULL); }
+
+  /// The lines since the last call: buffers, events, messages, and last the stats.
+  Lines Take() {
+    Lines taken;
+    {
+      const std::lock_guard lock(mutex_);
+      taken.swap(lines_);
+      first_capture_ = GST_CLOCK_TIME_NONE;
+    }
+    while (const gst::MessagePtr message{gst_bus_pop(bus_)}) AddMessage(message.get(), &taken);
+    while (GstBuffer* buffer = gst_harness_try_pull(h_)) gst_buffer_unref(buffer);
+    if (g_object_class_find_property(G_OBJECT_GET_CLASS(h_->element), "stats") == nullptr)
+      return taken;
+    GstStructure* stats = nullptr;
+    g_object_get(h_->element, "stats", &stats, nullptr);
+    const gst::StructurePtr owner(stats);
+    const gst::StringPtr text(gst_structure_to_string(stats));
+    taken.push_back(std::string("stats ") + text.get());
+    return taken;
+  }
+  Lines TakeBuffers() {
+    Lines taken = Take();
+    taken.erase(std::remove_if(taken.begin(), taken.end(),
+                               [](const auto& line) { return line.rfind("buffer", 0) != 0; }),
+                taken.end());
+    return taken;
+  }
+
+ private:
+  static std::string Text(GstClockTime time) {
+    return GST_CLOCK_TIME_IS_VALID(time) ? std::to_string(time) : "none";
+  }
+  static GstPadProbeReturn OnData(GstPad*, GstPadProbeInfo* info, gpointer data) {
+    auto* self = static_cast<RunTrace*>(data);
+    const std::lock_guard lock(self->mutex_);
+    if (info->type & GST_PAD_PROBE_TYPE_BUFFER) self->Add(GST_PAD_PROBE_INFO_BUFFER(info));
+    if (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) {
+      GstBufferList* list = GST_PAD_PROBE_INFO_BUFFER_LIST(info);
+      for (guint i = 0; i < gst_buffer_list_length(list); ++i)
+        self->Add(gst_buffer_list_get(list, i));
+    }
+    if (info->type & GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM)
+      self->lines_.push_back(TextOf(GST_PAD_PROBE_INFO_EVENT(info)));
+    return GST_PAD_PROBE_OK;
+  }
+  void Add(GstBuffer* buffer) {
+    constexpr guint kFlags = GST_BUFFER_FLAG_DISCONT | GST_BUFFER_FLAG_CORRUPTED |
+                             GST_BUFFER_FLAG_MARKER | GST_BUFFER_FLAG_GAP |
+                             GST_BUFFER_FLAG_DELTA_UNIT | GST_BUFFER_FLAG_DROPPABLE;
+    std::string line = "buffer at " + Text(GST_BUFFER_PTS(buffer)) + " for " +
+                       Text(GST_BUFFER_DURATION(buffer)) + " offset " +
+                       std::to_string(GST_BUFFER_OFFSET(buffer)) + " flags " +
+                       std::to_string(GST_BUFFER_FLAGS(buffer) & kFlags) + " size " +
+                       std::to_string(gst_buffer_get_size(buffer));
+    const gst::BufferMap map(buffer, GST_MAP_READ);
+    if (with_bytes_ && map) line += " crc " + std::to_string(Crc32(map.view()));
+    GstLidarSlice s{};
+    if (gst_lidar_buffer_get_slice(buffer, &s))
+      line += " slice " + std::to_string(s.scan_id) + " " + std::to_string(s.slice_index) + " of " +
+              std::to_string(s.slice_count) + " from " + std::to_string(s.first_column);
+    const GstClockTime capture = gst_lidar_buffer_get_capture_time(buffer);
+    if (!GST_CLOCK_TIME_IS_VALID(first_capture_)) first_capture_ = capture;
+    // Some elements take the time of day for the first buffer.
+    if (GST_CLOCK_TIME_IS_VALID(capture))
+      line += " captured " + std::to_string(GST_CLOCK_DIFF(first_capture_, capture));
+    lines_.push_back(std::move(line));
+  }
+  static std::string TextOf(GstEvent* event) {
+    std::string line = std::string("event ") + GST_EVENT_TYPE_NAME(event);
+    GstCaps* caps = nullptr;
+    const GstSegment* s = nullptr;
+    GstClockTime at = 0;
+    GstClockTime lasts = 0;
+    switch (GST_EVENT_TYPE(event)) {
+      case GST_EVENT_CAPS: {
+        gst_event_parse_caps(event, &caps);
+        const gst::StringPtr text(gst_caps_to_string(caps));
+        return line + " " + text.get();
+      }
+      case GST_EVENT_SEGMENT:
+        gst_event_parse_segment(event, &s);
+        return line + " " + gst_format_get_name(s->format) + " from " + Text(s->start) + " base " +
+               Text(s->base) + " time " + Text(s->time);
+      case GST_EVENT_GAP:
+        gst_event_parse_gap(event, &at, &lasts);
+        return line + " at " + Text(at) + " for " + Text(lasts);
+      case GST_EVENT_CUSTOM_DOWNSTREAM:
+      case GST_EVENT_CUSTOM_DOWNSTREAM_STICKY: {
+        const gst::StringPtr text(gst_structure_to_string(gst_event_get_structure(event)));
+        return line + " " + text.get();
+      }
+      default:
+        return line;
+    }
+  }
+  static void AddMessage(GstMessage* message, Lines* lines) {
+    GError* raw = nullptr;
+    switch (GST_MESSAGE_TYPE(message)) {
+      case GST_MESSAGE_ERROR:
+        gst_message_parse_error(message, &raw, nullptr);
+        break;
+      case GST_MESSAGE_WARNING:
+        gst_message_parse_warning(message, &raw, nullptr);
+        break;
+      case GST_MESSAGE_LATENCY:
+        break;
+      default:
+        return;  // of GStreamer's own
+    }
+    const gst::ErrorPtr error(raw);
+    lines->push_back(std::string("message ") + GST_MESSAGE_TYPE_NAME(message) + " " +
+                     (raw != nullptr ? raw->message : ""));
+  }
+
+  GstHarness* const h_;
+  const bool with_bytes_;
+  GstBus* const bus_;
+  gulong probe_ = 0;
+  std::mutex mutex_;  // guards the lines
+  Lines lines_;
+  GstClockTime first_capture_ = GST_CLOCK_TIME_NONE;
+};
+
+}  // namespace lidar::test
