@@ -70,6 +70,46 @@ TEST_F(Filter, SlicesKeepTheirPlaceAndModelsTheirBeams) {
   EXPECT_EQ(slice.first_column, 4U);
 }
 
+TEST_F(Filter, AModelGoesWherePointsAreNoLongerWhereItSays) {
+  CloudInfo info;
+  info.width = 4;
+  info.height = 2;
+  info.point_step = 12;
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+  info.sensor_model.emplace();
+  info.sensor_model->columns_per_scan = 512;
+  info.sensor_model->beams = {{1, 10, 0}, {-1, -10, 4}};
+  const CapsPtr caps(info.ToCaps());
+  const StringPtr text(gst_caps_to_string(caps.get()));
+  for (const char* moves : {"transform=1,0,0,0,0,0", "column-step=2", "invalid=remove"}) {
+    Start(moves, text.get());
+    ASSERT_EQ(Push(std::vector<std::uint8_t>(96, 1)), GST_FLOW_OK);
+    EXPECT_FALSE(Info()->sensor_model) << moves;
+  }
+  for (const char* stays : {"max-range=50", "crop-box=-9,-9,-9,9,9,9", "invalid=nan"}) {
+    Start(stays, text.get());
+    ASSERT_EQ(Push(std::vector<std::uint8_t>(96, 1)), GST_FLOW_OK);
+    EXPECT_TRUE(Info()->sensor_model) << stays;
+  }
+}
+
+TEST_F(Filter, CountsOnThroughAChangeOfItsSettings) {
+  Start("invalid=remove max-range=1", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  std::vector<std::uint8_t> far_away;
+  ByteWriter w(&far_away);
+  for (int i = 0; i < 6; ++i) w.LeF32(7);
+  for (const double range : {1.0, 2.0, 3.0}) {
+    g_object_set(h_->element, "max-range", range, nullptr);
+    ASSERT_EQ(Push(far_away), GST_FLOW_OK);
+  }
+  GstStructure* raw = nullptr;
+  g_object_get(h_->element, "stats", &raw, nullptr);
+  const StructurePtr stats(raw);
+  guint64 removed = 0;
+  gst_structure_get_uint64(raw, "points-removed", &removed);
+  EXPECT_EQ(removed, 6U);
+}
+
 TEST_F(Filter, SendsCapsOnceWhileTheyStayTheSame) {
   Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(Push(std::vector<std::uint8_t>(12, 1)), GST_FLOW_OK);
@@ -99,6 +139,10 @@ TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
   for (int i = 0; i < 6; ++i) v.LeF32(7);
   ASSERT_EQ(Push(far_away), GST_FLOW_OK);
   EXPECT_EQ(gst_harness_buffers_received(h_.get()), 1U);
+  int gaps = 0;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    gaps += GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP ? 1 : 0;
+  EXPECT_EQ(gaps, 1);
   GstStructure* raw = nullptr;
   g_object_get(h_->element, "stats", &raw, nullptr);
   const StructurePtr stats(raw);
@@ -185,6 +229,7 @@ TEST_F(Filter, SaysWhatIsWrong) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"transform=1,2,3", "transform wants 16 numbers, or x, y, z, roll, pitch, yaw"},
       {"crop-box=1,2,3", "crop-box wants six numbers: the least x, y, z, then the largest"},
+      {"crop-box=1,2,3,4,5,6,7", "crop-box wants six numbers: the least x, y, z, then the largest"},
       {"crop-box=5,0,0,1,1,1", "crop-box wants six numbers: the least x, y, z, then the largest"},
       {"apply-pose=true target-frame=map", "apply-pose and target-frame exclude each other"},
       {"fields=x,q", "there is no field q among x:F32:0,y:F32:4,z:F32:8"},

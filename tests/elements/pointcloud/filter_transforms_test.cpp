@@ -219,5 +219,43 @@ TEST_F(FilterByTransforms, TheFrameStaysWherePointsDo) {
   EXPECT_EQ(FrameOut(), "");
 }
 
+TEST_F(FilterByTransforms, CloudsWaitAgainBehindAFlush) {
+  Start("target-frame=map tf-timeout=60000000000");
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  {
+    const Waiter cloud([this] { EXPECT_EQ(PushAt(100), GST_FLOW_OK); });
+    EXPECT_TRUE(cloud.AwaitSleep());
+    Tell(fixed_.get(), "map", "os", 0, 10);
+  }
+  EXPECT_EQ(PulledX(), 11);
+}
+
+TEST_F(FilterByTransforms, NobodyWaitsForTransformsOfAPadThatIsGone) {
+  Start("target-frame=map tf-timeout=60000000000");
+  for (const test::Harness* h : {&fixed_, &moving_})
+    EXPECT_TRUE(gst_harness_push_event(h->get(), gst_event_new_eos()));
+  const PadPtr pad(gst_element_request_pad_simple(h_->element, "tf_%u"));
+  gst_element_release_request_pad(h_->element, pad.get());
+  const gint64 begin = g_get_monotonic_time();
+  EXPECT_EQ(PushAt(100), GST_FLOW_OK);
+  EXPECT_EQ(Stat("clouds-without-transform"), 1U);
+  EXPECT_LT(g_get_monotonic_time() - begin, 50 * G_USEC_PER_SEC);
+}
+
+TEST_F(FilterByTransforms, APoseWithoutATimeIsRefused) {
+  Start("target-frame=odom tf-timeout=0", "base");
+  const test::Harness poses(gst_harness_new_with_element(h_->element, "tf_%u", nullptr));
+  gst_harness_set_src_caps_str(poses.get(), "application/x-odometry,child-frame-id=base");
+  const std::vector<std::uint8_t> bytes(64);
+  EXPECT_EQ(gst_harness_push(poses.get(), gst_buffer_new_memdup(bytes.data(), bytes.size())),
+            GST_FLOW_OK);
+  EXPECT_EQ(Stat("transforms-refused"), 1U);
+  EXPECT_EQ(Stat("transforms"), 0U);
+}
+
 }  // namespace
 }  // namespace lidar::gst
