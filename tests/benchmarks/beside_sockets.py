@@ -18,6 +18,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import build_tree  # noqa: E402
+
 CASES = ["cubic_fifo_15ms_8M", "cubic_fifo_5ms_20M", "cubic_fifo_10ms_20M", "cubic_fifo_5ms_50M",
          "cubic_fifo_10ms_50M", "cubic_fifo_20ms_20M", "cubic_fifo_100ms_20M", "cubic_pi2_20M", "prague_ramp_4M",
          "prague_ramp_8M", "prague_ramp_20M", "prague_step_1ms_20M", "prague_step_3ms_20M", "prague_dualpi2_20M"]
@@ -155,7 +158,7 @@ def main():
     parser.add_argument("--runs", type=int, default=1, help="of each case")
     parser.add_argument("--json", help="write the figures there")
     args = parser.parse_args()
-    os.environ["GST_PLUGIN_PATH_1_0"] = ":".join(str(p.parent) for p in (args.build / "gst").glob("*/libgst*.so"))
+    os.environ.update(build_tree.environment(args.build))
     cases = args.cases or CASES
     if args.udp_prague is None and any(case.startswith("udpprague_") for case in cases):
         parser.error("udpprague needs --udp-prague FOLDER: build https://github.com/L4STeam/udp_prague there")

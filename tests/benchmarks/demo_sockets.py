@@ -9,13 +9,15 @@ real-time priority (chrt -r 10) on a machine that does nothing else.
 import argparse
 import json
 import lzma
-import os
 import pathlib
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import build_tree  # noqa: E402
 
 # name: options of the demo
 STEPS_AND_DRIVE = {"default": [], "drive": ["--drive"]}
@@ -81,10 +83,7 @@ def run(args, options, duration, report):
     """The summary of one run."""
     command = [args.build / "src/tools/lidar-demo", "run", "--no-plots", "--duration", duration, "--max-error",
                args.max_error, "--output", report, *options, *args.more]
-    build = args.build.resolve()
-    plugins = sorted({str(p.parent) for part in ("gst", "ext") for p in (build / part).rglob("libgst*.so")})
-    environment = os.environ | {"GST_PLUGIN_PATH_1_0": ":".join(plugins), "GST_REGISTRY": str(build / "benchmarks.bin")}
-    done = subprocess.run([str(word) for word in command], env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run([str(word) for word in command], env=build_tree.environment(args.build), capture_output=True, text=True, check=False)
     summary = report / "summary.json"
     if not summary.exists():
         sys.exit(f"{' '.join(map(str, command))} failed:\n{done.stderr}")

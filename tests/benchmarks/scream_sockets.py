@@ -18,6 +18,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import build_tree  # noqa: E402
+
 RAMP = ["--aqm", "ramp"]
 STEPS = ["--steps", "12,4,8,3,15,6,10", "--step-time", "8", "--once", "--rtt", "40"] + RAMP
 # name: (description, link options, ECN, frames/s, seconds, settle)
@@ -232,8 +235,7 @@ def main():
     unknown = [s for s in args.scenarios if s not in SCENARIOS]
     if unknown:
         parser.error("no such scenario: " + " ".join(unknown))
-    plugins = [str(p.parent) for p in (args.build / "gst").glob("*/libgst*.so")]
-    os.environ["GST_PLUGIN_PATH_1_0"] = ":".join(plugins)
+    os.environ.update(build_tree.environment(args.build))
     with contextlib.ExitStack() as stack:
         needs_host = args.mixed_flows or any(p[0] == "reference" for p in pairs)
         host = stack.enter_context(SenderHost()) if needs_host else None

@@ -5,12 +5,15 @@
 usage: srtp_overhead.py [BUILD_DIR] [SECONDS]; the least of ROUNDS pairs of gst-launch-1.0 processes
 """
 import os
-import re
+import pathlib
 import socket
 import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import build_tree  # noqa: E402
 
 BUILD = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else "build")
 SECONDS = int(sys.argv[2]) if len(sys.argv) > 2 else 10
@@ -21,16 +24,8 @@ CAPS = ("application/x-rtp,media=video,clock-rate=90000,encoding-name=RAW,sampli
         "width=(string)320,height=(string)240,payload=96")
 
 
-def environment():
-    plugins = {os.path.dirname(os.path.join(folder, name))
-               for part in ("gst", "ext") for folder, _, names in os.walk(os.path.join(BUILD, part))
-               for name in names if re.fullmatch(r"libgst\w*\.so", name)}
-    return dict(os.environ, GST_PLUGIN_PATH_1_0=":".join(sorted(plugins)),
-                GST_REGISTRY=os.path.join(BUILD, "benchmark-registry.bin"))
-
-
 def launch(pipeline):
-    return subprocess.Popen(["gst-launch-1.0", "-q", "-e"] + pipeline.split(), env=environment(),
+    return subprocess.Popen(["gst-launch-1.0", "-q", "-e"] + pipeline.split(), env=build_tree.environment(BUILD),
                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 

@@ -9,6 +9,7 @@ capture. Run it with real-time priority (chrt -r 10) on a machine that does noth
 import argparse
 import collections
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -19,6 +20,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import build_tree  # noqa: E402
 from ports import free_port  # noqa: E402
 
 MAX_AGE_NS = 200_000_000
@@ -119,6 +121,11 @@ def records(folder, name):
             continue
 
 
+def last_words(folder, name):
+    lines = (folder / f"{name}.log").read_text().splitlines()
+    return "\n".join([f"The {name}'s last lines:", *lines[-5:]])
+
+
 def judge(folder):
     """Figures of one run."""
     captured, decoded, encoded, counts = {}, {}, 0, {}
@@ -134,6 +141,8 @@ def judge(folder):
     for r in records(folder, "receiver"):
         if r["type"] == "decoded":
             decoded.setdefault((r["scan"], r["slice"]), r["unix_ns"])
+    if not captured or not decoded:
+        sys.exit(f"No cloud came through.\n{last_words(folder, 'sender')}\n{last_words(folder, 'receiver')}")
     first, last = min(captured.values()), max(captured.values())
     scans = collections.defaultdict(list)
     for key, due in captured.items():
@@ -168,6 +177,7 @@ def bound(args, used, files, rate):
 
 def main():
     args = parse_arguments()
+    os.environ.update(build_tree.environment(args.build))
     with tempfile.TemporaryDirectory() as name:
         folder = args.output or pathlib.Path(name)
         folder.mkdir(parents=True, exist_ok=True)

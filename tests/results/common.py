@@ -7,10 +7,14 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "tests/support"))
+import build_tree  # noqa: E402
+
 DATA = ROOT / "tests/data/ouster"
 SOURCES = {
     "OS0-32": f"{DATA}/OS-0-32-U1_v2.2.0_1024x10.pcap",
@@ -44,12 +48,9 @@ def program(name):
 @functools.lru_cache
 def environment():
     """The plugins and programs of the build tree first, with a registry of their own."""
-    plugins = {str(path.parent) for part in ("gst", "ext") for path in (build / part).rglob("libgst*.so")}
     programs = {str(path.parent) for path in (build / "src").rglob("ouster-replay")}
     return {
-        **os.environ,
-        "GST_PLUGIN_PATH_1_0": ":".join(sorted(plugins)),
-        "GST_REGISTRY": str(build / "results-registry.bin"),
+        **build_tree.environment(build, "results-registry.bin"),
         "PATH": ":".join([*programs, os.environ["PATH"]]),
         "BUILD_DIR": str(build),
     }
