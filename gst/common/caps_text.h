@@ -76,7 +76,7 @@ inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Valu
         if constexpr (std::is_same_v<T, std::uint32_t>) set(G_TYPE_UINT, guint{v});
         if constexpr (std::is_same_v<T, std::int64_t>) set(G_TYPE_INT64, gint64{v});
         if constexpr (std::is_same_v<T, std::uint64_t>) set(G_TYPE_UINT64, guint64{v});
-        if constexpr (std::is_same_v<T, float>) set(G_TYPE_FLOAT, gdouble{v});
+        if constexpr (std::is_same_v<T, float>) set(G_TYPE_FLOAT, static_cast<gdouble>(v));
         if constexpr (std::is_same_v<T, double>) set(G_TYPE_DOUBLE, gdouble{v});
         if constexpr (std::is_same_v<T, ScalarCaps::Fraction>)
           set(GST_TYPE_FRACTION, gint{v.numerator}, gint{v.denominator});
