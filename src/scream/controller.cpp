@@ -79,6 +79,12 @@ void Controller::OnDropped(Time now, StreamId id, std::size_t packets) {
   counters_.packets_dropped += packets;
 }
 
+void Controller::OnUnneeded(Time now, StreamId id) {
+  now = Advance(now);
+  if (Stream* stream = streams_.Find(id)) stream->OnUnneeded(now);
+  ++counters_.packets_dropped;
+}
+
 FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedback) {
   now = Advance(now);
   if (outage_.active()) history_.Expire(now);

@@ -74,6 +74,8 @@ class Controller {
   void OnSent(Time now, StreamId stream, const SentPacket& packet);
   /// The caller dropped the first `packets` of the stream's queue.
   void OnDropped(Time now, StreamId stream, std::size_t packets);
+  /// The packet at the head of the queue was not sent, as another path delivered it.
+  void OnUnneeded(Time now, StreamId stream);
   /// Takes parsed feedback of the peer. The caller has checked its source address.
   FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback);
   /// Call it at NextTimer() or later; more calls do no harm.

@@ -81,7 +81,15 @@ void Stream::OnSent(Time now, std::uint32_t ssrc, DataSize size) {
   sent_rate_.Add(now, size);
   ++counters_.packets_sent;
   counters_.bytes_sent += size;
-  if (queue_.empty()) return;
+  if (!queue_.empty()) TakeHead(now);
+}
+
+void Stream::OnUnneeded(Time now) {
+  ++counters_.packets_dropped;
+  if (!queue_.empty()) TakeHead(now);
+}
+
+void Stream::TakeHead(Time now) {
   if (queue_.front().group) begun_group_ = queue_.front().group;
   queued_ -= queue_.front().size;
   queue_.pop_front();

@@ -22,6 +22,8 @@ class Stream {
   /// Takes the packet at the head of the queue.
   void OnSent(Time now, std::uint32_t ssrc, DataSize size);
   void OnDropped(Time now, std::size_t packets);
+  /// Another path delivered the packet at the head. The rest of its group is still of use.
+  void OnUnneeded(Time now);
   /// Returns the number of useless packets at the head; the queue leaves at `rate`. An access unit,
   /// or a whole group of them, is late if its last packet would leave later than max_queue_delay
   /// after the middle of its capture. The rest of a unit that has begun to leave may take
@@ -81,6 +83,7 @@ class Stream {
     Time first{}, last{};
     Duration span() const { return last - first; }
   };
+  void TakeHead(Time now);
   void OnFrame(Time now);
   std::size_t StuckPackets(Time now) const;
   void NoteGroup(Time now, const QueuedPacket& packet);

@@ -237,6 +237,14 @@ TEST_F(ScanTest, SlicesThatFollowADroppedOneOfTheirScanGoTheSameWay) {
   EXPECT_EQ(stream_.LatePackets(kStart + 101ms, DataRate::Infinite()), 6U);
 }
 
+TEST_F(ScanTest, SlicesThatFollowOneWhichAnotherPathDeliveredAreSent) {
+  Scan(kStart, 1);
+  for (int i = 0; i < 2; ++i) stream_.OnUnneeded(kStart);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1ms, DataRate::Infinite()), 0U);
+  EXPECT_EQ(stream_.statistics(kStart).packets_dropped, 2U);
+  EXPECT_EQ(stream_.queued(), DataSize::Bytes(6000));
+}
+
 TEST_F(StreamTest, TheRestOfAFrameThatStuckIsLateAndTheYoungerFrameBehindItIsNot) {
   Frame(kStart, 3, 1);
   Frame(kStart + 900ms, 2, 2);
