@@ -255,12 +255,13 @@ std::uint16_t Scheduler::OnSent(Time now, std::size_t link, PacketId id) {
   return l.ledger.OnSent(now, id, entry == nullptr || entry->ends_slice);
 }
 
-void Scheduler::OnDropped(Time, std::size_t link, PacketId id) {
+bool Scheduler::OnDropped(Time, std::size_t link, PacketId id) {
   Entry* entry = Find(id);
-  if (entry == nullptr || !entry->waits[link]) return;
+  if (entry == nullptr || !entry->waits[link]) return false;
   entry->waits.reset(link);
   links_[link].queued -= entry->size;
   if (entry->arrived) ++links_[link].counters.cancelled;
+  return entry->arrived;
 }
 
 std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(

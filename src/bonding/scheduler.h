@@ -97,8 +97,9 @@ class Scheduler {
   bool Wants(Time now, std::size_t link, PacketId id) const;
   /// Notes that the packet leaves. Returns its number for the link's congestion control.
   std::uint16_t OnSent(Time now, std::size_t link, PacketId id);
-  /// Notes that the caller dropped the packet, because it is late or Wants() was false.
-  void OnDropped(Time now, std::size_t link, PacketId id);
+  /// Notes that the caller dropped the packet, because it is late or Wants() was false. Returns
+  /// true if another link delivered it.
+  bool OnDropped(Time now, std::size_t link, PacketId id);
 
   /// Converts a report of the link's receiver to the link's numbers. Returns nothing if the report
   /// is impossible.

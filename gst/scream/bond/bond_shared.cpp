@@ -36,9 +36,9 @@ class BondLink : public TxLink {
     const std::lock_guard lock(bond_->mutex);
     return bond_->scheduler.OnSent(now, index_, {ssrc, seq});
   }
-  void OnDropped(Time now, guint32 ssrc, guint16 seq) override {
+  bool OnDropped(Time now, guint32 ssrc, guint16 seq) override {
     const std::lock_guard lock(bond_->mutex);
-    bond_->scheduler.OnDropped(now, index_, {ssrc, seq});
+    return bond_->scheduler.OnDropped(now, index_, {ssrc, seq});
   }
   std::optional<scream::CongestionFeedback> OnFeedback(
       Time now, const scream::CongestionFeedback& report) override {

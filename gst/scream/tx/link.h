@@ -20,8 +20,8 @@ class TxLink {
   virtual bool Wants(Time now, guint32 ssrc, guint16 seq) = 0;
   /// A packet leaves. Returns the number under which the controller counts it.
   virtual guint16 OnSent(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// A packet was dropped.
-  virtual void OnDropped(Time now, guint32 ssrc, guint16 seq) = 0;
+  /// A packet was dropped. Returns true if another link delivered it.
+  virtual bool OnDropped(Time now, guint32 ssrc, guint16 seq) = 0;
   /// Converts a report to these numbers. Returns nothing if it names packets that this link never
   /// sent.
   virtual std::optional<scream::CongestionFeedback> OnFeedback(

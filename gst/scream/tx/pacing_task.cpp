@@ -139,14 +139,16 @@ void PacingTask::DropLate(TxStream& stream, Time now) {
   if (stream.is_video) stream.key_unit_due = true;
 }
 
-/// Drops packets that another link has delivered meanwhile.
+/// Drops packets that another link has delivered meanwhile, or that are late on all links.
 void PacingTask::DropUnwanted(TxStream& stream, Time now) {
   TxState& s = state();
   while (!stream.queue.empty() && stream.queue.front().buffer) {
     const RtpHeader header = stream.queue.front().header;
     if (s.link->Wants(now, header.ssrc, header.seq)) return;
-    s.link->OnDropped(now, header.ssrc, header.seq);
-    s.controller->OnDropped(now, stream.id, 1);
+    if (s.link->OnDropped(now, header.ssrc, header.seq))
+      s.controller->OnUnneeded(now, stream.id);
+    else
+      s.controller->OnDropped(now, stream.id, 1);
     stream.queue.pop_front();
   }
 }

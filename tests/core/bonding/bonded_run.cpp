@@ -93,8 +93,13 @@ class SimLink {
   void Send(Time now, Scheduler* scheduler, Network* network) {
     Drop(now, controller_.LatePackets(now, stream_), scheduler);
     for (;;) {
-      while (!fifo_.empty() && !scheduler->Wants(now, index_, {kStreamSsrc, fifo_.front().seq}))
-        Drop(now, 1, scheduler);
+      while (!fifo_.empty() && !scheduler->Wants(now, index_, {kStreamSsrc, fifo_.front().seq})) {
+        if (scheduler->OnDropped(now, index_, {kStreamSsrc, fifo_.front().seq}))
+          controller_.OnUnneeded(now, stream_);
+        else
+          controller_.OnDropped(now, stream_, 1);
+        fifo_.pop_front();
+      }
       const auto d = controller_.NextSend(now);
       if (!d || d->time > now) return;
       WirePacket p = fifo_.front();

@@ -180,7 +180,7 @@ TEST_F(TwoLinks, SendsNothingThatArrivedOnTheOtherLink) {
   scheduler_.OnSent(now_, 1, id);
   scheduler_.OnFeedback(now_, 1, Arrived(1));
   EXPECT_FALSE(scheduler_.Wants(now_, 0, id));
-  scheduler_.OnDropped(now_, 0, id);
+  EXPECT_TRUE(scheduler_.OnDropped(now_, 0, id));
   EXPECT_EQ(scheduler_.counters(0).cancelled, 1U);
   EXPECT_EQ(scheduler_.counters(1).saved, 1U);
 }
@@ -188,8 +188,8 @@ TEST_F(TwoLinks, SendsNothingThatArrivedOnTheOtherLink) {
 TEST_F(TwoLinks, CountsNoCopyAsCancelledThatIsLate) {
   const PacketId id{kMedia, 1};
   ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, 1}), SetOf({0, 1}));
-  scheduler_.OnDropped(now_ + 300ms, 0, id);
-  scheduler_.OnDropped(now_ + 300ms, 0, id);
+  EXPECT_FALSE(scheduler_.OnDropped(now_ + 300ms, 0, id));
+  EXPECT_FALSE(scheduler_.OnDropped(now_ + 300ms, 0, id)) << "again";
   EXPECT_EQ(scheduler_.counters(0).cancelled, 0U);
 }
 
