@@ -28,16 +28,17 @@ def pairs_of(text):
     body = []
     for encoder in dict.fromkeys(row[1] for row in rows):
         own = [row for row in rows if row[1] == encoder]
-        percent = [[float(row[i]) for row in own] for i in (3, 4)]
-        delays = [list(zip(*(map(int, row[i].split(",")) for row in own))) for i in (5, 6)]
+        percent = [[float(row[i]) for row in own] for i in (3, 4, 5)]
+        delays = [list(zip(*(map(int, row[i].split(",")) for row in own))) for i in (6, 7)]
         body.append([
             encoder, f"{statistics.mean(float(row[2]) for row in own):.2f}",
             *(f"{statistics.mean(of):.1f}, {min(of):.1f}" for of in percent),
             *(f"{statistics.mean(of):.0f}, {max(of)}" for both in delays for of in both),
-            f"{statistics.mean(float(row[7]) for row in own):.0f}",
+            f"{statistics.mean(float(row[8]) for row in own):.0f}",
         ])
     head = [
-        "encoder", "Mbit/s", "in time [%]", "bound [%]", "p95 [ms]", "bound's", "p99 [ms]", "bound's", "sent twice [%]",
+        "encoder", "Mbit/s", "in time [%]", "bound [%]", "bound outside gaps [%]", "p95 [ms]", "bound's", "p99 [ms]",
+        "bound's", "sent twice [%]",
     ]
     return common.table(head, body)
 
