@@ -77,21 +77,10 @@ class DepaySecondRun : public ::testing::Test {
       if (i < rivals_.size()) Give(h_.get(), gst_buffer_copy_deep(rivals_[i].get()));
     }
   }
-  static std::vector<gst::BufferPtr> OfAnotherType() {
-    auto packets = Packets(6);
-    for (auto& packet : packets) {
-      GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
-      packet.reset(gst_buffer_make_writable(packet.release()));
-      gst_rtp_buffer_map(packet.get(), GST_MAP_READWRITE, &rtp);
-      gst_rtp_buffer_set_payload_type(&rtp, 111);
-      gst_rtp_buffer_unmap(&rtp);
-    }
-    return packets;
-  }
 
   const std::vector<gst::BufferPtr> packets_ = Packets(50);
   const std::vector<gst::BufferPtr> rivals_ = Packets(45);
-  const std::vector<gst::BufferPtr> wrong_type_ = OfAnotherType();
+  const std::vector<gst::BufferPtr> wrong_type_ = WithType(Packets(6), 111);
   Harness h_{gst_harness_new("rtplidardepay")};
   RunTrace trace_{h_.get()};
 };
@@ -135,6 +124,16 @@ TEST_F(DepaySecondRun, CountsEachPacketThatIsNoRtp) {
   trace_.Begin(kRtpCaps);
   for (int i = 0; i < 3; ++i) Give(h_.get(), gst_buffer_new_memdup("x", 1));
   EXPECT_EQ(Stat(h_.get(), "packets-invalid"), 3U);
+}
+
+TEST_F(DepaySecondRun, CountsTheSlicesThatNobodyTakesAnew) {
+  for (int run = 0; run < 2; ++run) {
+    gst_harness_set_sink_caps_str(h_.get(), "application/x-other");
+    trace_.Begin(kRtpCaps);
+    for (const auto& packet : packets_) Give(h_.get(), gst_buffer_copy_deep(packet.get()));
+    EXPECT_EQ(Stat(h_.get(), "slices-not-accepted"), 200U) << run;
+    trace_.Stop();
+  }
 }
 
 }  // namespace

@@ -309,5 +309,45 @@ TEST(RtpLidarDepay, KeepsTheBaseClassStatistics) {
   EXPECT_EQ(clock_rate, 90'000U);
 }
 
+TEST(RtpLidarDepay, WarnsOfNoOtherTypeBesideItsOwn) {
+  const Harness h = Depay();
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  Push(h.get(), Packets(2));
+  Push(h.get(), WithType(Packets(20), 111));
+  EXPECT_GT(Stat(h.get(), "packets-wrong-payload-type"), 20U);
+  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
+  gst_element_set_bus(h->element, nullptr);
+  gst_object_unref(bus);
+}
+
+TEST(RtpLidarDepay, WaitsForLatePacketsAsLongAsItWasSetBeforeTheStart) {
+  for (const guint64 wait : {guint64{0}, guint64{GST_SECOND}}) {
+    Harness h(gst_harness_new("rtplidardepay"));
+    gst_element_set_state(h->element, GST_STATE_NULL);
+    g_object_set(h->element, "max-reorder-time", wait, nullptr);
+    gst_element_set_state(h->element, GST_STATE_PLAYING);
+    gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+    auto packets = Packets(4);
+    std::rotate(packets.begin() + 5, packets.begin() + 6, packets.end() - 4);
+    Push(h.get(), packets);
+    EXPECT_EQ(Stat(h.get(), "slices-lost"), wait == 0 ? 1U : 0U);
+  }
+}
+
+TEST(RtpLidarDepay, GivesBackAFramerateThatIsNoWholeNumber) {
+  std::string caps = EncodedCaps();
+  const std::string rate = "(fraction)10/1";
+  caps.replace(caps.find(rate), rate.size(), "(fraction)30000/1001");
+  Harness pay(gst_harness_new("rtplidarpay"));
+  gst_harness_set_src_caps_str(pay.get(), caps.c_str());
+  gst_harness_push(pay.get(), EncodedSlice(0, 0));
+  const Harness h = Depay();
+  Push(h.get(), Pull(pay.get()));
+  const gst::CapsPtr out(gst_pad_get_current_caps(h->sinkpad));
+  const gst::CapsPtr expected(gst_caps_from_string(caps.c_str()));
+  EXPECT_TRUE(gst_caps_is_equal(out.get(), expected.get()));
+}
+
 }  // namespace
 }  // namespace lidar::test

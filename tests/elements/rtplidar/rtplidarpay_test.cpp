@@ -291,5 +291,48 @@ TEST(RtpLidarPay, SendsTheConfigAgainAfterEveryRestart) {
   }
 }
 
+TEST(RtpLidarPay, GivesEachPacketTheTimesOfItsSlice) {
+  const Harness h = Pay();
+  gst_harness_push(h.get(), EncodedSlice(0, 1));
+  for (const Rtp& p : PullAll(h.get())) {
+    EXPECT_EQ(GST_BUFFER_PTS(p.buffer.get()), 25 * GST_MSECOND);
+    EXPECT_EQ(GST_BUFFER_DURATION(p.buffer.get()), 25 * GST_MSECOND);
+  }
+}
+
+TEST(RtpLidarPay, RepeatsTheConfigWhereTimeGoesBack) {
+  const Harness h = Pay();
+  gst_harness_push(h.get(), EncodedSlice(100, 0));
+  PullAll(h.get());
+  gst_harness_push(h.get(), EncodedSlice(0, 0));
+  EXPECT_TRUE(PullAll(h.get()).front().IsConfig());
+  gst_harness_push(h.get(), EncodedSlice(0, 1));
+  EXPECT_FALSE(PullAll(h.get()).front().IsConfig());
+}
+
+TEST(RtpLidarPay, SaysThatASliceIsTooLarge) {
+  const Harness h = Pay();
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h->element, bus);
+  EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0, gsize{4} << 20)), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 1, (gsize{4} << 20) + 1)), GST_FLOW_ERROR);
+  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  gst_object_unref(bus);
+  ASSERT_TRUE(message);
+  GError* raw = nullptr;
+  gst_message_parse_error(message.get(), &raw, nullptr);
+  const gst::ErrorPtr error(raw);
+  EXPECT_STREQ(error->message, "A slice of 4194305 bytes cannot be sent.");
+}
+
+TEST(RtpLidarPay, RefusesASensorModelThatIsNone) {
+  Harness h(gst_harness_new("rtplidarpay"));
+  gst_harness_set_src_caps_str(
+      h.get(),
+      "application/x-draco,geometry=xyz,alignment=slice,fields=(string)\"x:F32:0,y:F32:4,z:F32:8\","
+      "framerate=10/1,sensor-model=(string)none");
+  EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
+}
+
 }  // namespace
 }  // namespace lidar::test

@@ -115,4 +115,16 @@ inline std::vector<gst::BufferPtr> Pull(GstHarness* h) {
   return out;
 }
 
+/// The packets with another payload type.
+inline std::vector<gst::BufferPtr> WithType(std::vector<gst::BufferPtr> packets, guint8 type) {
+  for (auto& packet : packets) {
+    GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
+    packet.reset(gst_buffer_make_writable(packet.release()));
+    gst_rtp_buffer_map(packet.get(), GST_MAP_READWRITE, &rtp);
+    gst_rtp_buffer_set_payload_type(&rtp, type);
+    gst_rtp_buffer_unmap(&rtp);
+  }
+  return packets;
+}
+
 }  // namespace lidar::test
