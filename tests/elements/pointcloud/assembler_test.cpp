@@ -453,5 +453,56 @@ TEST(AssemblerOfTheTestSource, GivesTheScansThatTheSourceWouldHaveGiven) {
             scans("lidartestsrc model=os1-32 mode=512x10 num-buffers=2 slices-per-scan=1"));
 }
 
+TEST_F(Assembler, ASliceOfAnotherSizeIsInvalid) {
+  const gsize size = SliceInfo().FrameSize();
+  Push(MakeSlice({0, 0}, size - 1));
+  Push(MakeSlice({0, 0}, size + 1));
+  EXPECT_EQ(Stat("invalid-slices"), 2U);
+  Push(MakeSlice({0, 0}, size));
+  EXPECT_EQ(Stat("invalid-slices"), 2U);
+}
+
+TEST_F(Assembler, AScanOfDenseSlicesIsNotDense) {
+  CloudInfo info = SliceInfo();
+  info.is_dense = true;
+  SetCaps(info);
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
+  Pull();
+  EXPECT_FALSE(OutInfo().is_dense);
+}
+
+TEST_F(Assembler, AnOpenScanLeavesInTheSegmentThatItBeganIn) {
+  Push(Slice(0, 0));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  EXPECT_EQ(Waiting(), 0U);  // the same segment
+  segment.base = GST_SECOND;
+  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  ASSERT_EQ(Waiting(), 1U);
+  EXPECT_TRUE(IsCorrupted(Pull()));
+}
+
+TEST_F(Assembler, EachRunWarnsOnceOfSlicesWithoutTheirMeta) {
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(h_->element, bus);
+  for (int run = 0; run < 2; ++run) {
+    for (int i = 0; i < 2; ++i)
+      Push(BufferPtr(gst_buffer_new_allocate(nullptr, SliceInfo().FrameSize(), nullptr)));
+    int warnings = 0;
+    while (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) ++warnings;
+    EXPECT_EQ(warnings, 1) << run;
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    gst_element_set_state(h_->element, GST_STATE_PLAYING);
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("again"));
+    SetCaps(SliceInfo());
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+  }
+  gst_element_set_bus(h_->element, nullptr);
+  gst_object_unref(bus);
+}
+
 }  // namespace
 }  // namespace lidar::gst

@@ -134,5 +134,22 @@ TEST_F(FileParse, ADamagedFileIsAnErrorThatSaysWhy) {
             "The caps of the cloud are missing.");
 }
 
+TEST_F(FileParse, FilesOfOtherFieldsHaveOtherCaps) {
+  const auto write = [this](const std::string& name, const std::string& more,
+                            const std::string& point) {
+    std::ofstream(Path(name)) << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                 "property float y\nproperty float z\n"
+                              << more << "end_header\n"
+                              << point;
+  };
+  write("b0.ply", "", "1 2 3\n");
+  write("b1.ply", "property float intensity\n", "1 2 3 4\n");
+  const auto read = Play("multifilesrc" + At("b%d.ply") + " ! pointcloudparse ! fakesink name=see");
+  EXPECT_EQ(read.error, "");
+  ASSERT_EQ(read.buffers.at("see").size(), 2U);
+  EXPECT_EQ(read.buffers.at("see")[1].bytes.size(), 16U);
+  EXPECT_NE(read.caps.at("see").find("intensity:F32:12"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lidar::test

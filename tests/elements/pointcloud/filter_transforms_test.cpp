@@ -250,7 +250,10 @@ TEST_F(FilterByTransforms, APoseWithoutATimeIsRefused) {
   Start("target-frame=odom tf-timeout=0", "base");
   const test::Harness poses(gst_harness_new_with_element(h_->element, "tf_%u", nullptr));
   gst_harness_set_src_caps_str(poses.get(), "application/x-odometry,child-frame-id=base");
-  const std::vector<std::uint8_t> bytes(64);
+  std::vector<std::uint8_t> bytes;
+  ByteWriter w(&bytes);
+  for (const double v : {5., 0., 0., 0., 0., 0., 1.}) w.LeF64(v);
+  w.Le64(GST_LIDAR_TRACKING_OK);
   EXPECT_EQ(gst_harness_push(poses.get(), gst_buffer_new_memdup(bytes.data(), bytes.size())),
             GST_FLOW_OK);
   EXPECT_EQ(Stat("transforms-refused"), 1U);

@@ -193,6 +193,86 @@ TEST_F(MergedByHand, EachPadHasItsOwnTransform) {
   ExpectCloud({1, 1}, 200);
 }
 
+TEST_F(MergedByHand, APadMayGetCloudsOfAnotherLayout) {
+  Push(first_, 1, 100);
+  Push(second_, 2, 100);
+  ExpectCloud({1, 2}, 100);
+  gst_harness_set_src_caps_str(second_.get(),
+                               "application/x-pointcloud2,width=1,height=1,point-step=16,"
+                               "fields=(string)\"intensity:F32:0,x:F32:4,y:F32:8,z:F32:12\","
+                               "is-bigendian=false,is-dense=true");
+  const float point[4] = {99, 5, 1, 0};
+  GstBuffer* buffer = gst_buffer_new_memdup(point, sizeof point);
+  GST_BUFFER_PTS(buffer) = 200 * GST_MSECOND;
+  GST_BUFFER_DURATION(buffer) = 100 * GST_MSECOND;
+  ASSERT_EQ(gst_harness_push(second_.get(), buffer), GST_FLOW_OK);
+  Push(first_, 3, 200);
+  ExpectCloud({3, 5}, 200);
+}
+
+TEST_F(MergedByHand, AGapOfASensorLeavesTheCloudOfTheOther) {
+  ASSERT_TRUE(gst_harness_push_event(second_.get(),
+                                     gst_event_new_gap(100 * GST_MSECOND, 100 * GST_MSECOND)));
+  Push(first_, 1, 100);
+  ExpectCloud({1}, 100);
+}
+
+TEST_F(MergedByHand, ASecondRunBeginsWithItsCaps) {
+  for (int run = 0; run < 2; ++run) {
+    for (GstHarness* h : {first_.get(), second_.get()}) {
+      gst_pad_push_event(h->srcpad, gst_event_new_stream_start("run"));
+      gst_harness_set_src_caps_str(h, kCaps);
+      GstSegment segment;
+      gst_segment_init(&segment, GST_FORMAT_TIME);
+      gst_pad_push_event(h->srcpad, gst_event_new_segment(&segment));
+    }
+    Push(first_, 1, 100);
+    Push(second_, 2, 100);
+    ExpectCloud({1, 2}, 100);
+    int caps = 0;
+    while (const gst::EventPtr event{gst_harness_try_pull_event(first_.get())})
+      caps += GST_EVENT_TYPE(event.get()) == GST_EVENT_CAPS ? 1 : 0;
+    EXPECT_EQ(caps, 1) << run;
+    gst_element_set_state(element_.get(), GST_STATE_NULL);
+    gst_element_set_state(element_.get(), GST_STATE_PLAYING);
+  }
+}
+
+TEST_F(MergedByHand, APadThatGoesIsToldOf) {
+  std::string gone;
+  const gulong handler =
+      g_signal_connect(element_.get(), "child-removed",
+                       G_CALLBACK(+[](GstChildProxy*, GObject*, gchar* name, gpointer to) {
+                         *static_cast<std::string*>(to) += name;
+                       }),
+                       &gone);
+  const gst::PadPtr pad(gst_element_request_pad_simple(element_.get(), "sink_7"));
+  gst_element_release_request_pad(element_.get(), pad.get());
+  EXPECT_EQ(gone, "sink_7");
+  g_signal_handler_disconnect(element_.get(), handler);
+}
+
+TEST_F(MergedByHand, WarnsOfSlicesOnce) {
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element_.get(), bus);
+  for (guint i = 0; i < 3; ++i) {
+    const float xyz[3] = {1, 1, 0};
+    GstBuffer* buffer = gst_buffer_new_memdup(xyz, sizeof xyz);
+    GST_BUFFER_PTS(buffer) = i * 100 * GST_MSECOND;
+    GST_BUFFER_DURATION(buffer) = 100 * GST_MSECOND;
+    const GstLidarSlice slice{0, i, 4, 0};
+    gst_lidar_buffer_set_slice(buffer, &slice);
+    ASSERT_EQ(gst_harness_push(first_.get(), buffer), GST_FLOW_OK);
+    Push(second_, 2, i * 100);
+    gst_buffer_unref(gst_harness_pull(first_.get()));
+  }
+  int warnings = 0;
+  while (const gst::MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) ++warnings;
+  EXPECT_EQ(warnings, 1);
+  gst_element_set_bus(element_.get(), nullptr);
+  gst_object_unref(bus);
+}
+
 TEST_F(MergedByHand, PadsAreChildrenByTheirOrder) {
   EXPECT_EQ(gst_child_proxy_get_children_count(GST_CHILD_PROXY(element_.get())), 2U);
   for (guint i = 0; i < 2; ++i) {

@@ -34,7 +34,7 @@ class ParseUnderWay : public Parse {
     self->PushClouds(2);
     gint64 start = 0;
     GstSeekFlags flags = GST_SEEK_FLAG_NONE;
-    gst_event_parse_seek(raw, nullptr, nullptr, &flags, nullptr, &start, nullptr, nullptr);
+    gst_event_parse_seek(raw, nullptr, nullptr, &flags, nullptr, &start, nullptr, &self->to_);
     self->from_ = static_cast<guint64>(start);
     if (flags & GST_SEEK_FLAG_FLUSH) {
       gst_pad_push_event(pad, gst_event_new_flush_start());
@@ -44,6 +44,7 @@ class ParseUnderWay : public Parse {
     return TRUE;
   }
   guint64 from_ = 0;  // where the last seek began
+  gint64 to_ = 0;     // where it ended
   void PushBytesFrom(guint64 start, guint32 seqnum) {
     GstSegment segment;
     gst_segment_init(&segment, GST_FORMAT_BYTES);
@@ -80,6 +81,46 @@ TEST_F(ParseUnderWay, ASeekWithoutAFlushGoesOnWhereTheLastCloudEnded) {
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH, 2 * gint64{GST_SECOND}));
   PushClouds(1);
   EXPECT_EQ(RunningTime(), 0U);
+}
+
+TEST_F(ParseUnderWay, ASeekAsksForNoCloudBehindItsStop) {
+  PushClouds(1);
+  for (const guint64 ms : {401U, 499U, 500U, 501U}) {
+    ASSERT_TRUE(gst_pad_push_event(
+        h_->sinkpad,
+        gst_event_new_seek(1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET, 0,
+                           GST_SEEK_TYPE_SET, static_cast<gint64>(ms * GST_MSECOND))));
+    EXPECT_EQ(static_cast<guint64>(to_) / kCloud, ms > 500 ? 6U : 5U) << ms;
+  }
+}
+
+TEST_F(ParseUnderWay, WhatASeekCausesHasItsNumber) {
+  PushClouds(1);
+  const EventPtr seek(gst_event_new_seek(1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET,
+                                         0, GST_SEEK_TYPE_NONE, 0));
+  gst_event_set_seqnum(seek.get(), 4711);
+  ASSERT_TRUE(gst_pad_push_event(h_->sinkpad, gst_event_ref(seek.get())));
+  PushClouds(1);
+  const EventPtr segment(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
+  EXPECT_EQ(gst_event_get_seqnum(segment.get()), 4711U);
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())}) continue;
+  GstEvent* done = gst_event_new_segment_done(GST_FORMAT_BYTES, 160);
+  gst_event_set_seqnum(done, 4712);
+  gst_pad_push_event(h_->srcpad, done);
+  guint32 number = 0;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    if (GST_EVENT_TYPE(event.get()) == GST_EVENT_SEGMENT_DONE)
+      number = gst_event_get_seqnum(event.get());
+  EXPECT_EQ(number, 4712U);
+}
+
+TEST_F(ParseUnderWay, CannotBeSoughtWhereItsSourceCannot) {
+  PushClouds(1);
+  const QueryPtr query(gst_query_new_seeking(GST_FORMAT_TIME));
+  ASSERT_TRUE(gst_pad_peer_query(h_->sinkpad, query.get()));
+  gboolean seekable = TRUE;
+  gst_query_parse_seeking(query.get(), nullptr, &seekable, nullptr, nullptr);
+  EXPECT_FALSE(seekable);
 }
 
 TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {

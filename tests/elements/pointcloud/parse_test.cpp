@@ -194,5 +194,92 @@ TEST(ParseFile, EachFileOfASeriesIsACloud) {
   }
 }
 
+TEST_F(Parse, AStreamWithoutACloudHasASegmentAllTheSame) {
+  Start(kKitti);
+  gst_pad_push_event(h_->srcpad, gst_event_new_eos());
+  std::vector<std::string> names;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    names.emplace_back(GST_EVENT_TYPE_NAME(event.get()));
+  EXPECT_EQ(names, (std::vector<std::string>{"stream-start", "segment", "eos"}));
+}
+
+TEST_F(Parse, ASegmentEndsTheCloudBeforeIt) {
+  Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+  Push(Bytes(100, 1));
+  PushSegment(GST_FORMAT_BYTES);
+  Push(Bytes(100, 2));
+  Push(Bytes(60, 2));
+  ASSERT_EQ(gst_harness_buffers_in_queue(h_.get()), 1U);
+  const BufferPtr cloud = Pull();
+  const BufferMap map(cloud.get(), GST_MAP_READ);
+  EXPECT_EQ(map.data()[0], 2);
+}
+
+TEST_F(Parse, ACloudWithoutATimeGetsThatOfItsPlace) {
+  Start(kKitti);
+  PushSegment(GST_FORMAT_TIME);
+  for (guint i = 0; i < 3; ++i) {
+    Push(Bytes(160));
+    EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), i * 100 * GST_MSECOND);
+  }
+}
+
+TEST_F(Parse, ASliceKeepsItsPlaceInItsScan) {
+  Start(kKitti);
+  BufferPtr slice = Bytes(160);
+  const GstLidarSlice given{7, 1, 4, 128};
+  gst_lidar_buffer_set_slice(slice.get(), &given);
+  Push(std::move(slice));
+  GstLidarSlice meta{};
+  ASSERT_TRUE(gst_lidar_buffer_get_slice(Pull().get(), &meta));
+  EXPECT_EQ(meta.scan_id, 7U);
+  EXPECT_EQ(meta.slice_index, 1U);
+  EXPECT_EQ(meta.slice_count, 4U);
+  EXPECT_EQ(meta.first_column, 128U);
+}
+
+TEST_F(Parse, EachRunHasCaptureTimesOfItsOwn) {
+  for (int run = 0; run < 2; ++run) {
+    const auto now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+    Start(kKitti);
+    Push(Bytes(160));
+    EXPECT_GE(gst_lidar_buffer_get_capture_time(Pull().get()), now);
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    gst_element_set_state(h_->element, GST_STATE_PLAYING);
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("again"));
+    const CapsPtr caps(gst_caps_from_string(kKitti));
+    gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
+    PushSegment(GST_FORMAT_BYTES);
+    const auto later = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+    Push(Bytes(160));
+    EXPECT_GE(gst_lidar_buffer_get_capture_time(Pull().get()), later);
+  }
+}
+
+TEST(ParseFile, ASecondFileIsTakenWholeAfterAFirst) {
+  const std::string path = ::testing::TempDir() + "again.bin";
+  const ElementPtr pipeline(gst_parse_launch(
+      ("filesrc location=" + path + " ! " + kKitti + " ! pointcloudparse ! fakesink name=sink")
+          .c_str(),
+      nullptr));
+  const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "sink"));
+  for (const std::size_t points : {1'000U, 3'000U, 500U}) {
+    std::ofstream(path, std::ios::binary) << std::string(16 * points, 'a');
+    gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+    GstBus* bus = gst_element_get_bus(pipeline.get());
+    const MessagePtr message(gst_bus_timed_pop_filtered(
+        bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
+    gst_object_unref(bus);
+    ASSERT_TRUE(message);
+    GstSample* raw = nullptr;
+    g_object_get(sink.get(), "last-sample", &raw, nullptr);
+    ASSERT_NE(raw, nullptr);
+    EXPECT_EQ(gst_buffer_get_size(gst_sample_get_buffer(raw)), 16 * points);
+    gst_sample_unref(raw);
+    gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  }
+  std::remove(path.c_str());
+}
+
 }  // namespace
 }  // namespace lidar::gst
