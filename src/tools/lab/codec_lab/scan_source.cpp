@@ -139,6 +139,9 @@ class SyntheticFirings final : public ScanStream {
         const synth::Vec3 direction = rays.Direction(next_, beam, column);
         timed.scan.xyz.insert(timed.scan.xyz.end(), {range_m * direction.x, range_m * direction.y,
                                                      range_m * direction.z});
+        timed.scan.rings.push_back(static_cast<std::uint16_t>(beam));
+        const auto firing = static_cast<float>(column * rays.beams() + beam);
+        timed.scan.phases.push_back(firing / static_cast<float>(columns_ * rays.beams()));
       }
     ++next_;
     return timed;

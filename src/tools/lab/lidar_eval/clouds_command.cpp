@@ -2,6 +2,7 @@
 // lidar-eval clouds: clouds without a sensor model, ours beside Draco.
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <memory>
 #include <random>
@@ -49,7 +50,6 @@ double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
 
 /// As a driver publishes them: column by column, without missing returns and ranges.
 std::vector<float> PointsOf(const Scan& scan) {
-  if (!scan.organised()) return scan.xyz;
   const RangeProjection& projection = scan.geometry->projection;
   std::vector<float> xyz;
   for (std::uint32_t column = 0; column < projection.columns(); ++column)
@@ -65,26 +65,49 @@ std::vector<float> PointsOf(const Scan& scan) {
 /// Takes the scans' ranges and models from them.
 void Flatten(ScanSet* set) {
   for (Scan& scan : set->scans) {
+    if (!scan.organised()) continue;
     Scan flat;
     flat.xyz = PointsOf(scan);
     scan = std::move(flat);
   }
 }
 
-void Shuffle(std::vector<float>* xyz) {
+void Shuffle(Scan* scan) {
   std::mt19937 random(1);
-  for (std::size_t i = xyz->size() / 3; i > 1; --i)
-    std::swap_ranges(xyz->begin() + static_cast<std::ptrdiff_t>(3 * (i - 1)),
-                     xyz->begin() + static_cast<std::ptrdiff_t>(3 * i),
-                     xyz->begin() + static_cast<std::ptrdiff_t>(3 * (random() % i)));
+  for (std::size_t i = scan->xyz.size() / 3; i > 1; --i) {
+    const std::size_t other = random() % i;
+    std::swap_ranges(&scan->xyz[3 * (i - 1)], &scan->xyz[3 * (i - 1)] + 3, &scan->xyz[3 * other]);
+    if (scan->phases.empty()) continue;
+    std::swap(scan->rings[i - 1], scan->rings[other]);
+    std::swap(scan->phases[i - 1], scan->phases[other]);
+  }
 }
+
+/// Points as a driver publishes them, with laser and time where the scan has both.
+struct RawCloud {
+  explicit RawCloud(const Scan& scan) {
+    const bool has_times = !scan.phases.empty() && !scan.rings.empty();
+    layout.fields =
+        *PointFields::Parse(has_times ? "x:F32:0,y:F32:4,z:F32:8,timestamp:F32:12,line:U8:16"
+                                      : "x:F32:0,y:F32:4,z:F32:8");
+    layout.point_step = layout.fields.MinimumStep();
+    bytes.resize(scan.xyz.size() / 3 * layout.point_step);
+    for (std::size_t i = 0; 3 * i < scan.xyz.size(); ++i) {
+      std::uint8_t* point = &bytes[i * layout.point_step];
+      std::memcpy(point, &scan.xyz[3 * i], 3 * sizeof(float));
+      if (!has_times) continue;
+      std::memcpy(point + 12, &scan.phases[i], sizeof(float));
+      point[16] = static_cast<std::uint8_t>(scan.rings[i]);
+    }
+  }
+  codec::CloudLayout layout;
+  std::vector<std::uint8_t> bytes;
+};
 
 /// The coders of a stream.
 struct CloudCoders {
-  explicit CloudCoders(unsigned effort)
-      : encoder(*codec::cloud::CloudEncoder::Create(
-            {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8"), 12})),
-        decoder(UINT32_MAX) {
+  CloudCoders(const codec::CloudLayout& layout, unsigned effort)
+      : encoder(*codec::cloud::CloudEncoder::Create(layout)), decoder(UINT32_MAX) {
     encoder.set_effort(effort);
   }
   codec::cloud::CloudEncoder encoder;
@@ -92,14 +115,14 @@ struct CloudCoders {
 };
 
 /// The first of `repeats` runs is the size; the fastest ones are the times.
-void AddCost(const std::vector<float>& xyz, double error_m, unsigned repeats, CloudCoders* coders,
+void AddCost(const Scan& scan, double error_m, unsigned repeats, CloudCoders* coders,
              CloudCost* cost) {
+  const RawCloud raw(scan);
   double encode_s = 0;
   double decode_s = 0;
   for (unsigned i = 0; i < repeats; ++i) {
     const double start = CpuSeconds();
-    coders->encoder.Load({reinterpret_cast<const std::uint8_t*>(xyz.data()), 4 * xyz.size()},
-                         false);
+    coders->encoder.Load({raw.bytes.data(), raw.bytes.size()}, false);
     codec::EncodedSlice slice;
     if (coders->encoder.Encode({error_m, 0, 0}, &slice) != codec::SliceResult::kEncoded)
       throw std::runtime_error("the cloud cannot be encoded");
@@ -114,7 +137,7 @@ void AddCost(const std::vector<float>& xyz, double error_m, unsigned repeats, Cl
     cost->points += slice.returns;
     cost->bytes += slice.bytes.size();
     cost->largest_error_m =
-        std::max(cost->largest_error_m, LargestGap(xyz, coders->decoder.cloud().xyz));
+        std::max(cost->largest_error_m, LargestGap(scan.xyz, coders->decoder.cloud().xyz));
   }
   cost->encode_s += encode_s;
   cost->decode_s += decode_s;
@@ -135,7 +158,7 @@ void Evaluate(ScanSet set, const CloudsOptions& o) {
   Flatten(&set);
   std::size_t points = 0;
   for (Scan& scan : set.scans) {
-    if (o.shuffle) Shuffle(&scan.xyz);
+    if (o.shuffle) Shuffle(&scan);
     points += scan.xyz.size() / 3;
   }
   std::printf("%s: %zu scans, %zu points%s\n", set.name.c_str(), set.scans.size(), points,
@@ -148,8 +171,8 @@ void Evaluate(ScanSet set, const CloudsOptions& o) {
     PrintDraco(set, error_m);
     for (const unsigned effort : o.efforts) {
       CloudCost cost;
-      CloudCoders coders(effort);
-      for (const Scan& scan : set.scans) AddCost(scan.xyz, error_m, o.repeats, &coders, &cost);
+      CloudCoders coders(RawCloud(set.scans.front()).layout, effort);
+      for (const Scan& scan : set.scans) AddCost(scan, error_m, o.repeats, &coders, &cost);
       const auto each = 1 / static_cast<double>(cost.points);
       std::printf("  %5.0f mm  effort %u  %7.3f %10.3f %9.0f %9.0f\n", 1e3 * error_m, effort,
                   8 * each * static_cast<double>(cost.bytes), 1e3 * cost.largest_error_m,
