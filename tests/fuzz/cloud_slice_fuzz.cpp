@@ -15,6 +15,12 @@ using namespace lidar::codec;
 
 constexpr std::uint32_t kMaxPoints = 4'096;
 
+/// Names a field so that the encoder looks for paths where it may.
+std::string NameOf(FieldType type, const PointFields& others) {
+  const char* name = type == FieldType::kU8 ? "line" : "timestamp";
+  return others.Find(name) == nullptr ? name : "f" + std::to_string(others.all().size());
+}
+
 /// Points with the fields that the slice says it has.
 CloudLayout LayoutFor(ByteView section) {
   PointFields fields;
@@ -22,7 +28,7 @@ CloudLayout LayoutFor(ByteView section) {
   const auto types = cloud::ExactTypesOf(section);
   // Three names are taken.
   for (std::size_t k = 0; types && k < types->size() && k + 3 < PointFields::kMaxFields; ++k)
-    fields.Add("f" + std::to_string(k), (*types)[k]);
+    fields.Add(NameOf((*types)[k], fields), (*types)[k]);
   return {fields, fields.MinimumStep()};
 }
 

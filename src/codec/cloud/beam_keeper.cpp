@@ -7,8 +7,8 @@
 
 #include "src/codec/cloud/beam_columns.h"
 #include "src/codec/cloud/beam_locator.h"
-#include "src/codec/cloud/beam_path.h"
 #include "src/codec/cloud/column_places.h"
+#include "src/codec/cloud/path_fit.h"
 
 namespace lidar::codec::cloud {
 namespace {
@@ -73,10 +73,11 @@ void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
 }  // namespace
 
 /// Finds the path of the points. Returns false if most are not on it.
-bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points, const BeamTable* last,
+bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points,
+                                const std::vector<Pulse>& pulses,
                                 std::vector<PlacedPoint>* placed) {
   constexpr double kMost = 0.8;
-  auto table = FindPath(points, last, placed);
+  auto table = FindPath(points, pulses, placed);
   if (!table) return false;
   fit_ = FitOf(points, *placed);
   if (fit_ < kMost) return false;
@@ -85,9 +86,10 @@ bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points, const BeamT
 }
 
 /// Returns false if the points fit worse than before.
-bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed) {
+bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
+                            std::vector<PlacedPoint>* placed) {
   constexpr double kAlike = 0.97;
-  if (table_->has_path()) return PlaceOnNewPath(points, &*table_, placed);
+  if (table_->has_path()) return PlaceOnNewPath(points, pulses, placed);
   PlaceOnBeams(points, *table_, placed);
   PlaceInColumns(*table_, placed);
   if ((table_->grains == 0 || table_->bends) && FitOf(points, *placed) >= kAlike * fit_)
@@ -109,9 +111,10 @@ bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, std::vector<Pla
 }
 
 const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
+                                   const std::vector<Pulse>& pulses,
                                    std::vector<PlacedPoint>* placed) {
   if (points.size() > kMostPoints) return nullptr;
-  if (table_ && PlaceByOld(points, placed)) {
+  if (table_ && PlaceByOld(points, pulses, placed)) {
     fails_ = 0;
     return &*table_;
   }
@@ -120,8 +123,8 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   const bool is_power = (fails_ & (fails_ - 1)) == 0;
   if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0)
     return table_ ? &*table_ : nullptr;
+  if (PlaceOnNewPath(points, pulses, placed)) return &*table_;
   table_ = FindBeams(points);
-  if (!table_ && PlaceOnNewPath(points, nullptr, placed)) return &*table_;
   if (!table_) return nullptr;
   PlaceOnBeams(points, *table_, placed);
   PlaceInColumns(*table_, placed);

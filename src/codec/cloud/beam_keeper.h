@@ -12,12 +12,18 @@ namespace lidar::codec::cloud {
 /// A point and the pixel of its beam and column.
 struct PlacedPoint {
   double along_m = 0;         // of the beam
-  double above_m = 0;         // height of the point above it
+  double above_m = 0;         // height of the point above it; 0 if beams bend
   std::int32_t azimuth = 0;   // less the offset of the beam, and less what its side adds
   std::int32_t residual = 0;  // distance from the column's azimuth
-  std::int32_t bend = 0;      // elevation above the beam's, if beams bend
+  std::int32_t bend = 0;      // elevation above the beam's, if beams bend or are on a path
   std::uint32_t beam = 0;
   std::uint32_t column = 0;
+};
+
+/// When a point was measured, and by which laser.
+struct Pulse {
+  std::uint32_t line = 0;
+  double time = 0;  // in any unit
 };
 
 class BeamKeeper {
@@ -26,13 +32,16 @@ class BeamKeeper {
   static constexpr std::size_t kMostPoints = 1U << 20;
 
   /// Places the points of a cloud in the beams of the clouds before if they fit, else in new ones.
-  /// Returns null if it finds none. Searches become rarer while none succeed.
-  const BeamTable* Place(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed);
+  /// Returns null if it finds none. Searches become rarer while none succeed. `pulses` are those of
+  /// the points, or none, and then it finds no path.
+  const BeamTable* Place(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
+                         std::vector<PlacedPoint>* placed);
 
  private:
-  bool PlaceByOld(const std::vector<Sighting>& points, std::vector<PlacedPoint>* placed);
+  bool PlaceByOld(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
+                  std::vector<PlacedPoint>* placed);
 
-  bool PlaceOnNewPath(const std::vector<Sighting>& points, const BeamTable* last,
+  bool PlaceOnNewPath(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
                       std::vector<PlacedPoint>* placed);
 
   std::optional<BeamTable> table_;

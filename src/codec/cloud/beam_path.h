@@ -1,17 +1,54 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds beams that turn while they swing up and down: those of sensors whose scans do not repeat.
+// Beams on a path: those of sensors whose scans do not repeat. Each turns on curves of its own.
 #pragma once
-#include <optional>
+#include <array>
+#include <cstdint>
 #include <vector>
-
-#include "src/codec/cloud/beam_keeper.h"
-#include "src/codec/cloud/beam_table.h"
 
 namespace lidar::codec::cloud {
 
-/// Returns the path of `points`, which are in the order of firing, and places them on it. Returns
-/// nothing if azimuths are not at even steps. The table `last`, or null, shortens the search.
-std::optional<BeamTable> FindPath(const std::vector<Sighting>& points, const BeamTable* last,
-                                  std::vector<PlacedPoint>* placed);
+/// Degrees of the polynomials that are factors of 1, of the cosine and sine of the turn, and of
+/// those of twice the turn.
+constexpr std::array<unsigned, 3> kPathDegrees = {15, 7, 3};
+constexpr unsigned kPathTerms = 40;
+constexpr std::uint32_t kMostPathBeams = 16;
+
+/// Factors of the terms, in kPathUnit.
+using PathCurve = std::array<std::int32_t, kPathTerms>;
+constexpr std::int32_t kPathUnit = 4;
+
+/// What a beam adds to the azimuth of the turn, and its elevation.
+struct PathBeam {
+  PathCurve azimuth{};
+  PathCurve elevation{};
+};
+
+struct PathDirection {
+  std::int32_t azimuth = 0;  // without wrapping
+  std::int32_t elevation = 0;
+};
+
+class BeamPath {
+ public:
+  static constexpr unsigned kRateBits = 11;
+  static constexpr std::int32_t kMostRate = (1 << 27) - 1;
+
+  /// Azimuths turn by `rate` a column.
+  BeamPath(std::int32_t rate, std::uint32_t columns) : rate_(rate), columns_(columns) {}
+
+  using Terms = std::array<double, kPathTerms>;
+  Terms TermsAt(std::uint32_t column) const;
+  /// Returns the azimuth of the turn without wrapping.
+  std::int64_t TurnAt(std::uint32_t column) const {
+    return std::int64_t{rate_} * column >> kRateBits;
+  }
+  /// Returns the directions of `count` columns, beam by beam.
+  std::vector<PathDirection> Trace(const std::vector<PathBeam>& beams, std::uint32_t first,
+                                   std::uint32_t count) const;
+
+ private:
+  std::int32_t rate_;  // units in 1/2^kRateBits
+  std::uint32_t columns_;
+};
 
 }  // namespace lidar::codec::cloud

@@ -116,6 +116,7 @@ void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* 
 bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
                        unsigned effort, PixelList* list, std::vector<std::uint8_t>* out) {
   RangeImage& image = list->image;
+  table.bends = errors.bend_um > 0;
   const SensorModel model = ModelOf(table);
   if (levels.levels != nullptr) {
     image.intensity.assign(image.size(), 0);
@@ -138,6 +139,7 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   std::vector<std::uint8_t> stream;
   mixing::BinaryEncoder bits(&stream);
   if (table.grains > 0) CodePlaces(&table, &bits);
+  if (table.has_path()) CodePath(&table.path, &bits);
   EncodeResiduals(decoded, &azimuths, &list->residuals, &bits);
   EncodeResiduals(decoded, &elevations, &list->bends, &bits);
   if (!extras.empty())
@@ -168,7 +170,8 @@ struct DecodedSection {
   RangeImage image;
   std::vector<std::int32_t> residuals;
   std::vector<std::int32_t> bends;
-  std::vector<BeamTable::Slope> slopes;  // of the beams
+  std::vector<BeamTable::Slope> slopes;   // of the beams
+  std::vector<PathDirection> directions;  // of the pixels, on a path
   std::vector<ExtraBin> extras;
   bool by_four = false;  // further returns are coded by four neighbours
   std::size_t returns = 0;
@@ -219,6 +222,7 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
   if (!ok || !reader->ok() || section->returns + extras > max_points) return false;
   mixing::BinaryDecoder bits(stream);
   if (section->table.grains > 0 && !CodePlaces(&section->table, &bits)) return false;
+  if (section->table.has_path() && !CodePath(&section->table.path, &bits)) return false;
   if (!DecodeResiduals(section->image, section->azimuths, &section->residuals, &bits) ||
       !DecodeResiduals(section->image, section->elevations, &section->bends, &bits)) {
     return false;
@@ -238,11 +242,14 @@ bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t
   const auto beam = static_cast<std::uint32_t>(pixel / section.image.columns);
   const std::uint32_t column =
       section.image.first_column + static_cast<std::uint32_t>(pixel % section.image.columns);
-  const std::int32_t azimuth = section.table.AzimuthOf(beam, column) + section.residuals[pixel];
-  const BeamTable::Slope slope =
-      section.table.bends || section.table.has_path()
-          ? BeamTable::Slope(section.table.ElevationOf(beam, column) + section.bends[pixel])
-          : section.slopes[beam];
+  const bool has_path = section.table.has_path();
+  const PathDirection direction = has_path ? section.directions[pixel]
+                                           : PathDirection{section.table.AzimuthOf(beam, column),
+                                                           section.table.beams[beam].elevation};
+  const BeamTable::Slope slope = section.table.bends || has_path
+                                     ? BeamTable::Slope(direction.elevation + section.bends[pixel])
+                                     : section.slopes[beam];
+  const std::int32_t azimuth = direction.azimuth + section.residuals[pixel];
   const Point point = section.table.At(beam, azimuth, slope, range_mm);
   cloud->xyz.insert(cloud->xyz.end(), point.begin(), point.end());
   if (places != nullptr) places->points.push_back({beam, column});
@@ -261,6 +268,10 @@ bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const Intensi
   }
   for (const BeamTable::Beam& beam : section.table.beams)
     section.slopes.emplace_back(beam.elevation);
+  if (section.table.has_path())
+    section.directions =
+        BeamPath(section.table.rate, section.table.columns())
+            .Trace(section.table.path, section.image.first_column, section.image.columns);
   if (places != nullptr) *places = {section.table.rows(), section.table.columns(), {}};
   const RangeImage& image = section.image;
   auto extra = section.extras.begin();

@@ -118,7 +118,7 @@ void BeamTable::Write(ByteWriter* writer) const {
   if (grains > 0) WriteVarint(grains, writer);
   if (has_path()) {
     WriteSigned(rate, writer);
-    WriteVarint(swing_rate, writer);
+    return;
   }
   std::int32_t above = kTurn / 4;
   std::int32_t left = 0;
@@ -143,7 +143,6 @@ void BeamTable::Write(ByteWriter* writer) const {
     if (grains > 0 && !bends) WriteVarint(beam.delay, writer);
     for (std::uint32_t i = 0; i < period && period > 1; ++i)
       WriteSigned(beam.swings[i] / kSwingUnit, writer);
-    for (std::uint32_t i = 0; i < 2 && has_path(); ++i) WriteSigned(beam.rise[i], writer);
   }
 }
 
@@ -166,8 +165,12 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
   }
   if ((flags & kPathFlag) != 0) {
     table.rate = ReadSigned(reader, &ok);
-    table.swing_rate = ReadVarint(reader, &ok);
-    if (!table.has_path() || table.grains > 0 || table.period > 1) return std::nullopt;
+    table.beams.resize(rows);
+    table.path.resize(rows);
+    if (!ok || !table.has_path() || std::abs(table.rate) > BeamPath::kMostRate ||
+        rows > kMostPathBeams || (flags & ~kBendsFlag) != kPathFlag)
+      return std::nullopt;
+    return table;
   }
   std::int64_t elevation = kTurn / 4;
   Beam beam;
@@ -193,10 +196,6 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
       const std::int32_t swing = ReadSigned(reader, &ok);
       fits = fits && std::abs(swing) <= kTurn / kSwingUnit;
       beam.swings[k] = fits ? swing * kSwingUnit : 0;
-    }
-    for (std::uint32_t k = 0; k < 2 && table.has_path(); ++k) {
-      beam.rise[k] = ReadSigned(reader, &ok);
-      fits = fits && std::abs(beam.rise[k]) <= kTurn / 4;
     }
     if (!ok || !reader->ok() || elevation < -kTurn / 4 || beam.offset >= kTurn || !fits)
       return std::nullopt;

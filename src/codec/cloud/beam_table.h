@@ -10,6 +10,7 @@
 
 #include "src/base/byte_reader.h"
 #include "src/base/byte_writer.h"
+#include "src/codec/cloud/beam_path.h"
 #include "src/codec/cloud/cell_cover.h"
 
 namespace lidar::codec::cloud {
@@ -39,10 +40,9 @@ struct BeamTable {
     std::int32_t height_um = 0;  // of the line above the origin
     std::int32_t side_um = 0;    // distance at which it passes the origin, to the left
     std::array<std::int32_t, kMostPeriod>
-        swings{};                        // of the next `period` columns, again and again
-    std::int32_t reach_um = 0;           // of range 0 along the beam
-    std::uint32_t delay = 0;             // delay of the beam in columns; below columns()
-    std::array<std::int32_t, 2> rise{};  // factors of the cosine and sine of a path's swing
+        swings{};               // of the next `period` columns, again and again
+    std::int32_t reach_um = 0;  // of range 0 along the beam
+    std::uint32_t delay = 0;    // delay of the beam in columns; below columns()
   };
   static constexpr std::uint32_t kParts = 256;
   static constexpr std::uint32_t kMostBeams = 1'024;
@@ -61,13 +61,9 @@ struct BeamTable {
   std::uint32_t grains = 0;           // of a turn; 0: the columns are even
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
   bool bends = false;                 // each point has its own elevation
-  // Beams on a path turn by `rate` a column, and swing up and down once in 2^kSwingBits /
-  // swing_rate columns.
-  static constexpr unsigned kRateBits = 11;
-  static constexpr std::int32_t kMostRate = (1 << 27) - 1;
-  static constexpr unsigned kSwingBits = 28;
-  std::int32_t rate = 0;  // units in 1/2^kRateBits; 0: no path
-  std::uint32_t swing_rate = 0;
+  // Beams on a path have no other fields than these.
+  std::int32_t rate = 0;       // of the turn, for BeamPath; 0: no path
+  std::vector<PathBeam> path;  // as many as beams
 
   std::uint32_t columns() const { return (turn + kParts - 1) / kParts; }
   std::uint32_t rows() const { return static_cast<std::uint32_t>(beams.size()); }
@@ -76,7 +72,7 @@ struct BeamTable {
   bool has_path() const { return rate != 0; }
   /// Step of the columns, in units.
   std::int32_t step() const {
-    return has_path() ? std::abs(rate) >> kRateBits
+    return has_path() ? std::abs(rate) >> BeamPath::kRateBits
                       : static_cast<std::int32_t>(std::uint64_t{kTurn} * kParts / turn);
   }
   /// Index of a beam's place in a column.
@@ -84,26 +80,14 @@ struct BeamTable {
     column += beams[beam].delay;
     return column >= columns() ? column - columns() : column;
   }
-  /// Returns the azimuth without wrapping.
+  /// Returns the azimuth without wrapping, if there is no path.
   std::int32_t AzimuthOf(std::uint32_t beam, std::uint32_t column) const {
-    if (has_path()) {
-      const std::int64_t angle = std::int64_t{rate} * column >> kRateBits;
-      return static_cast<std::int32_t>((beams[beam].offset + angle) & (kTurn - 1));
-    }
     column = FiringOf(beam, column);
     const std::uint64_t angle = places.empty() ? std::uint64_t{column} * kParts * kTurn / turn
                                                : std::uint64_t{places[column]} * kTurn / grains;
     std::int32_t azimuth = beams[beam].offset + static_cast<std::int32_t>(angle);
     if (period > 1) azimuth += beams[beam].swings[column % period];
     return azimuth;
-  }
-  std::int32_t ElevationOf(std::uint32_t beam, std::uint32_t column) const {
-    const Beam& b = beams[beam];
-    if (!has_path()) return b.elevation;
-    constexpr std::uint32_t kPart = (1U << kSwingBits) - 1;
-    const double phase = 2 * M_PI / (kPart + 1) * (swing_rate * column & kPart);
-    return b.elevation + static_cast<std::int32_t>(std::lround(b.rise[0] * std::cos(phase) +
-                                                               b.rise[1] * std::sin(phase)));
   }
   /// Direction of an elevation.
   struct Slope {
@@ -115,9 +99,10 @@ struct BeamTable {
   Point At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope,
            std::uint32_t range_mm) const;
 
-  /// Writes all but the places.
+  /// Writes all but the places and the curves.
   void Write(ByteWriter* writer) const;
-  /// Returns nothing for numbers that no encoder writes. With grains, all places are 0.
+  /// Returns nothing for numbers that no encoder writes. With grains, all places are 0,
+  /// on a path all curves.
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "src/base/byte_writer.h"
+#include "src/cloud/field_number.h"
 #include "src/codec/cloud/level_tree.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/mixing/binary_coder.h"
@@ -40,6 +41,7 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   // Bits of a point without a pixel, and of a residual.
   constexpr double kRestBits = 10;
   constexpr double kResidualBits = 0.8;
+  const bool has_path = cloud.table->has_path();
   const bool bends = cloud.table->bends;
   const std::uint32_t unit_mm =
       CommonUnit(FittingRanges(cloud, {error_m, 0, 0, bends ? 1U : 0U}), 1);
@@ -56,9 +58,9 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
     if (part < 0) {
       // A tenth is left for the rounding to integers.
       const double both_m = 0.9 * std::sqrt(error_m * error_m - errors.range_m * errors.range_m);
-      const double each_m = bends ? both_m / std::sqrt(2.0) : both_m;
+      const double each_m = bends || has_path ? both_m / std::sqrt(2.0) : both_m;
       errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * each_m), 1U);
-      if (bends) errors.bend_um = errors.tangent_um;
+      if (bends || has_path) errors.bend_um = errors.tangent_um;
     }
     const auto fitting = static_cast<double>(CountFitting(cloud, errors));
     const double bits = kRestBits * (all - fitting) +
@@ -85,6 +87,7 @@ std::optional<CloudEncoder> CloudEncoder::Create(const CloudLayout& layout, Exac
 void CloudEncoder::Load(ByteView raw, bool with_intensity) {
   std::vector<std::uint32_t> rows;
   ReadXyz(raw, layout_, with_intensity && HasIntensity(layout_.fields), &cloud_, &rows);
+  LoadPulses(raw, rows);
   exact_.clear();
   for (const PointField& field : choice_.fields) {
     ExactField& exact = exact_.emplace_back();
@@ -94,6 +97,18 @@ void CloudEncoder::Load(ByteView raw, bool with_intensity) {
     for (std::size_t i = 0; i < rows.size(); ++i)
       std::memcpy(&exact.numbers[i],
                   raw.data + std::size_t{rows[i]} * layout_.point_step + field.offset, size);
+  }
+}
+
+/// Takes the lines and times of sensors whose scans do not repeat.
+void CloudEncoder::LoadPulses(ByteView raw, const std::vector<std::uint32_t>& rows) {
+  pulses_.clear();
+  const PointField* line = layout_.fields.Find("line");
+  const PointField* time = layout_.fields.Find("timestamp");
+  if (line == nullptr || line->type != FieldType::kU8 || time == nullptr) return;
+  for (const std::uint32_t row : rows) {
+    const std::uint8_t* point = raw.data + std::size_t{row} * layout_.point_step;
+    pulses_.push_back({point[line->offset], ReadNumber(point + time->offset, time->type)});
   }
 }
 
@@ -118,13 +133,16 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
       if (kept[i]) field.numbers[count++] = field.numbers[i];
     field.numbers.resize(count);
   }
+  std::vector<Pulse> pulses;
   XyzCloud thinned;
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     if (!kept[i]) continue;
+    if (!pulses_.empty()) pulses.push_back(pulses_[i]);
     thinned.xyz.insert(thinned.xyz.end(), &cloud_.xyz[3 * i], &cloud_.xyz[3 * i] + 3);
     if (!cloud_.intensity.empty()) thinned.intensity.push_back(cloud_.intensity[i]);
   }
   cloud_ = std::move(thinned);
+  pulses_ = std::move(pulses);
 }
 
 /// Separates points that the grid can hold from those too far away.
@@ -296,7 +314,10 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   const BeamTable* table = nullptr;
   if (near_.size() <= BeamKeeper::kMostPoints) {
     for (const Point& point : near_) sightings_.emplace_back(point);
-    table = keeper_.Place(sightings_, &placed_);
+    sighted_.clear();
+    for (std::size_t i = 0; i < near_ids_.size() && !pulses_.empty(); ++i)
+      sighted_.push_back(pulses_[near_ids_[i]]);
+    table = keeper_.Place(sightings_, sighted_, &placed_);
   }
   if (table != nullptr) {
     const PixelErrors errors = CheapestErrors({&sightings_, &placed_, table}, error_m);

@@ -67,6 +67,7 @@ class CloudEncoder {
 
     std::size_t size() const { return beams.size() + cells.size() + exact.size(); }
   };
+  void LoadPulses(ByteView raw, const std::vector<std::uint32_t>& rows);
   void SortOut(CloudHeader* header);
   void EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate);
   void CodeCells(const std::vector<Point>& points, const std::vector<std::uint32_t>& ids, bool few,
@@ -85,11 +86,13 @@ class CloudEncoder {
   unsigned effort_ = 1;
   XyzCloud cloud_;
   std::vector<ExactField> exact_;        // fields of cloud_
+  std::vector<Pulse> pulses_;            // of cloud_; empty: there is no line or time
   std::vector<Point> near_;              // on the grid
   std::vector<std::uint8_t> levels_;     // of near_, at full resolution; empty: geometry only
   std::vector<std::uint32_t> near_ids_;  // of cloud_
   std::vector<std::uint32_t> far_ids_;
   std::vector<Sighting> sightings_;  // of near_
+  std::vector<Pulse> sighted_;       // pulses of near_, or none
   std::vector<PlacedPoint> placed_;  // the same
   BeamKeeper keeper_;
   CoveredPoints covered_;

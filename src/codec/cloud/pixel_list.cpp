@@ -80,7 +80,8 @@ class PixelCheck {
     const Sighting& s = points_[point];
     Distances off;
     off.along = errors_.range_m + std::abs(1e-3 * RangeMm(p) - p.along_m);
-    off.up = std::abs(p.above_m) + angles.elevation * kRadians * s.range_m;
+    const double above_m = errors_.bend_um > 0 ? 0 : std::abs(p.above_m);
+    off.up = above_m + angles.elevation * kRadians * s.range_m;
     off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }

@@ -53,6 +53,31 @@ bool CodePlaces(BeamTable* table, Coder* coder) {
 }
 
 template <class Coder>
+bool CodePath(std::vector<PathBeam>* path, Coder* coder) {
+  const auto model = std::make_unique<NumberModel<3>>();
+  PathBeam last;
+  for (PathBeam& beam : *path) {
+    std::uint32_t part = 0;
+    for (const auto curve : {&PathBeam::azimuth, &PathBeam::elevation}) {
+      std::uint32_t length = 0;  // of the number before
+      for (std::uint32_t term = 0; term < kPathTerms; ++term) {
+        std::int32_t& factor = (beam.*curve)[term];
+        const std::int32_t guess = (last.*curve)[term];
+        const std::uint32_t own = part * kPathTerms + term;
+        const auto number = model->Code(factor - guess, {own, length, part * 32 + length}, coder);
+        factor = guess + number;
+        if (coder->overran() || std::abs(factor) > kTurn / kPathUnit) return false;
+        length =
+            static_cast<std::uint32_t>(BitLength(static_cast<std::uint32_t>(std::abs(number))));
+      }
+      ++part;
+    }
+    last = beam;
+  }
+  return true;
+}
+
+template <class Coder>
 bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                    std::vector<std::int32_t>* residuals, Coder* coder) {
   const auto model = std::make_unique<NumberModel<4>>();
@@ -223,6 +248,8 @@ using mixing::BinaryDecoder;
 using mixing::BinaryEncoder;
 template bool CodePlaces(BeamTable*, BinaryEncoder*);
 template bool CodePlaces(BeamTable*, BinaryDecoder*);
+template bool CodePath(std::vector<PathBeam>*, BinaryEncoder*);
+template bool CodePath(std::vector<PathBeam>*, BinaryDecoder*);
 template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vector<std::int32_t>*,
                             BinaryEncoder*);
 template bool CodeResiduals(const RangeImage&, const ResidualSettings&, std::vector<std::int32_t>*,

@@ -23,6 +23,10 @@ struct ResidualSettings {
 template <class Coder>
 bool CodePlaces(BeamTable* table, Coder* coder);
 
+/// Codes the curves of a table's path. Returns false for a damaged stream.
+template <class Coder>
+bool CodePath(std::vector<PathBeam>* path, Coder* coder);
+
 /// Codes the residuals of all pixels that have a decoded range in `image`, and sets `residuals` to
 /// the decoded ones. Returns false for a damaged stream.
 template <class Coder>

@@ -13,10 +13,10 @@
 #include "src/cloud/cloud_files.h"
 #include "src/cloud/nearest_point.h"
 #include "src/codec/cloud/beam_columns.h"
-#include "src/codec/cloud/beam_path.h"
 #include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
+#include "src/codec/cloud/path_fit.h"
 
 namespace lidar::codec::cloud {
 namespace {
@@ -336,75 +336,149 @@ TEST(CloudCodec, KeepsBeamsThatBendFromScanToScan) {
     EXPECT_LE(bits, 1.2);
 }
 
-/// What four lasers that fire in turn see of a room and its sky while they turn by 7.3 turns a scan
-/// and swing up and down.
-PlainPoints PathScan(unsigned scan) {
+/// A cloud as livox_ros_driver2 publishes it, but for the tag.
+struct PathPoint {
+  float x, y, z;
+  float intensity;
+  double timestamp;  // [ns]
+  std::uint8_t line;
+};
+using PathCloud = std::vector<PathPoint>;
+
+CloudLayout PathLayout() {
+  return {
+      *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,timestamp:F64:16,line:U8:24"),
+      sizeof(PathPoint)};
+}
+
+/// What four lasers see of a room and its sky by way of a mirror that turns by 7.3 turns a scan and
+/// tilts up and down. `shake_deg` are errors of the directions.
+PathCloud PathScan(unsigned scan, double shake_deg = 0) {
   constexpr int kFirings = 8'000;
-  PlainPoints points;
+  std::mt19937 random(scan);
+  std::uniform_real_distribution<double> shake(-shake_deg * M_PI / 180, shake_deg * M_PI / 180);
+  PathCloud points;
   for (int firing = 0; firing < kFirings; ++firing) {
     const double scans = scan + 1.0 * firing / kFirings;
-    const double azimuth = -2 * M_PI * 7.3 * scans;
-    const double elevation = 0.005 * (firing % 4) + 0.1 + 0.5 * std::sin(2 * M_PI * 31.2 * scans);
-    if (elevation > 0.4) continue;
+    const double turn = -2 * M_PI * 7.3 * scans;
+    const double tilt = 0.6 + 0.2 * std::sin(2 * M_PI * 1.1 * scans);
+    const double fan = 0.03 * (firing % 4 - 1.5);
+    const std::array<double, 3> normal = {std::sin(tilt) * std::cos(turn),
+                                          std::sin(tilt) * std::sin(turn), -std::cos(tilt)};
+    const double along = 2 * (std::sin(fan) * normal[0] + std::cos(fan) * normal[2]);
+    const std::array<double, 3> beam = {std::sin(fan) - along * normal[0], -along * normal[1],
+                                        std::cos(fan) - along * normal[2]};
+    const double elevation = std::asin(beam[2]) + shake(random);
+    const double azimuth = std::atan2(beam[1], beam[0]) + shake(random);
+    if (elevation > 0.6) continue;
     const double wall = std::min(10 / std::abs(std::cos(azimuth)), 6 / std::abs(std::sin(azimuth)));
     const double range = 1e-3 * std::round(1e3 * wall / std::cos(elevation));
     const double rho = range * std::cos(elevation);
     points.push_back(
         {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
-         static_cast<float>(range * std::sin(elevation)), static_cast<float>(points.size() % 256)});
+         static_cast<float>(range * std::sin(elevation)), static_cast<float>(points.size() % 256),
+         1.7e18 + 1e8 * scans, static_cast<std::uint8_t>(firing % 4)});
   }
   return points;
 }
 
-TEST(CloudCodec, FollowsAPathThatDoesNotRepeat) {
-  const auto bits = BitsOfStream({PathScan(0), PathScan(1), PathScan(2)});
-  for (const double b : bits) EXPECT_LE(b, 2.12);
-  const Coded coded = RoundTrip(PathScan(0), {0.02, 0, 8}, 3);
-  EXPECT_EQ(coded.cloud.size(), PathScan(0).size());
-  EXPECT_EQ(coded.cloud.intensity.size(), PathScan(0).size());
+PlainPoints PlainOf(const PathCloud& cloud) {
+  PlainPoints points;
+  for (const PathPoint& p : cloud) points.push_back({p.x, p.y, p.z, p.intensity});
+  return points;
 }
 
+/// Encodes clouds of a stream within 2 cm.
+std::vector<EncodedSlice> EncodePaths(const std::vector<PathCloud>& clouds, unsigned effort = 1) {
+  auto encoder = CloudEncoder::Create(PathLayout());
+  encoder->set_effort(effort);
+  std::vector<EncodedSlice> slices(clouds.size());
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    encoder->Load({reinterpret_cast<const std::uint8_t*>(clouds[i].data()),
+                   clouds[i].size() * sizeof(PathPoint)},
+                  false);
+    EXPECT_EQ(encoder->Encode({0.02, 0, 0}, &slices[i]), SliceResult::kEncoded);
+    CloudDecoder decoder(kMaxPoints);
+    EXPECT_TRUE(decoder.Decode({slices[i].bytes.data(), slices[i].bytes.size()}));
+    EXPECT_EQ(decoder.cloud().size(), clouds[i].size());
+    EXPECT_LE(LargestDistance(PlainOf(clouds[i]), decoder.cloud()), 0.02 + 1e-5);
+  }
+  return slices;
+}
+
+double BitsOf(const EncodedSlice& slice) {
+  return 8.0 * static_cast<double>(slice.bytes.size()) / static_cast<double>(slice.returns);
+}
+
+TEST(CloudCodec, FollowsAPathThatDoesNotRepeat) {
+  for (const unsigned effort : {1U, 3U})
+    for (const EncodedSlice& slice : EncodePaths({PathScan(0), PathScan(1), PathScan(2)}, effort))
+      EXPECT_LE(BitsOf(slice), 2.8);
+}
+
+TEST(CloudCodec, SortsThePointsOfAPathByTheirTimes) {
+  PathCloud shuffled = PathScan(0);
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(5));
+  EXPECT_EQ(EncodePaths({shuffled})[0].bytes, EncodePaths({PathScan(0)})[0].bytes);
+}
+
+TEST(CloudCodec, CodesHowPointsLeaveTheirPath) {
+  const PathCloud cloud = PathScan(0, 0.05);
+  const double in_cells = BitsPerPoint(RoundTrip(PlainOf(cloud), {0.02, 0, 0}, 1));
+  EXPECT_LE(BitsOf(EncodePaths({cloud})[0]), 0.6 * in_cells);
+}
+
+TEST(CloudCodec, TakesCloudsWhoseLinesAndTimesSayNothing) {
+  std::vector<PathCloud> clouds(4, PathScan(0));
+  for (std::size_t i = 0; i < clouds[0].size(); ++i) {
+    clouds[0][i].timestamp = std::numeric_limits<double>::quiet_NaN();
+    clouds[1][i].timestamp = 0;
+    clouds[2][i].line = static_cast<std::uint8_t>(i);
+    clouds[3][i].timestamp = i % 2 == 0 ? 1e300 : -1e300;
+  }
+  EncodePaths(clouds);
+}
+
+/// What FindPath() takes of a cloud.
+struct PathSightings {
+  explicit PathSightings(const PathCloud& cloud) {
+    for (const PathPoint& p : cloud) {
+      points.emplace_back(Point{p.x, p.y, p.z});
+      pulses.push_back({p.line, p.timestamp});
+    }
+  }
+  std::vector<Sighting> points;
+  std::vector<Pulse> pulses;
+};
+
 TEST(BeamTable, FindsThePathOfBeamsAndWritesIt) {
-  std::vector<Sighting> sightings;
-  for (const auto& p : PathScan(0)) sightings.emplace_back(Point{p[0], p[1], p[2]});
+  const PathSightings seen(PathScan(0));
   std::vector<PlacedPoint> placed;
-  const auto table = FindPath(sightings, nullptr, &placed);
+  const auto table = FindPath(seen.points, seen.pulses, &placed);
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows(), 4U);
   EXPECT_NEAR(table->columns(), 2'000, 8);
   for (std::size_t i = 0; i < placed.size(); ++i) {
+    EXPECT_EQ(placed[i].beam, seen.pulses[i].line);
     EXPECT_NEAR(placed[i].above_m, 0, 0.002);
-    EXPECT_LE(std::abs(placed[i].residual), 4);
+    EXPECT_NEAR(placed[i].residual * kRadians * seen.points[i].rho_m, 0, 0.02);
   }
   const auto again = ThroughBytes(*table);
   ASSERT_TRUE(again);
-  for (std::uint32_t beam = 0; beam < 4; ++beam) {
-    EXPECT_EQ(again->ElevationOf(beam, 999), table->ElevationOf(beam, 999));
-    EXPECT_EQ(again->AzimuthOf(beam, 999), table->AzimuthOf(beam, 999));
-  }
+  EXPECT_EQ(again->rate, table->rate);
+  EXPECT_EQ(again->rows(), 4U);
 }
 
-TEST(BeamTable, RefusesAPathThatDoesNotTurnOrSwingsPastTheZenith) {
-  // Columns, beams, flags, rate, swing; elevation, offset, cosine, sine.
-  const auto read = [](std::uint8_t rate, std::uint8_t rise) {
-    const std::vector<std::uint8_t> bytes = {0x80, 0x80, 1,    1,    64,   rate, 3,
-                                             0,    0,    0x80, 0x80, 0x80, rise, 0};
+TEST(BeamTable, RefusesAPathThatDoesNotTurnOrHasTooManyBeams) {
+  // Columns, beams, flags, rate.
+  const auto read = [](std::uint8_t beams, std::uint8_t rate) {
+    const std::vector<std::uint8_t> bytes = {0x80, 0x80, 1, beams, 64, rate};
     ByteReader reader(bytes.data(), bytes.size());
     return BeamTable::Read(&reader).has_value();
   };
-  EXPECT_TRUE(read(2, 1));
-  EXPECT_FALSE(read(0, 1));
-  EXPECT_FALSE(read(2, 2));
-}
-
-TEST(BeamTable, FindsNoPathInAnotherOrder) {
-  PlainPoints points = PathScan(0);
-  std::shuffle(points.begin(), points.end(), std::mt19937(5));
-  std::vector<Sighting> sightings;
-  for (const auto& p : points) sightings.emplace_back(Point{p[0], p[1], p[2]});
-  std::vector<PlacedPoint> placed;
-  EXPECT_FALSE(FindPath(sightings, nullptr, &placed));
-  EXPECT_EQ(RoundTrip(points, {0.02, 0, 0}, 1).cloud.size(), points.size());
+  EXPECT_TRUE(read(16, 2));
+  EXPECT_FALSE(read(16, 0));
+  EXPECT_FALSE(read(17, 2));
 }
 
 TEST(CloudCodec, TakesNoMoreAtAHigherEffort) {
@@ -588,17 +662,21 @@ TEST(LargeClouds, TakeTenMillionPoints) {
   EXPECT_EQ(decoder.cloud().size(), points.size());
 }
 
-PlainPoints JitteringScan() { return SpinningScan(0.1); }
-PlainPoints BentScan() { return ScanOf("at128"); }
-PlainPoints FirstPathScan() { return PathScan(0); }
-
-class DamagedClouds : public ::testing::TestWithParam<PlainPoints (*)()> {};
-TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
-  PlainPoints points = GetParam()();
+/// Encodes the first 4,000 points, and one far away.
+EncodedSlice SliceOf(PlainPoints points) {
   points.resize(4'000);
   points.push_back({1e30F, 1, 2, 3});
-  const auto bytes = RoundTrip(points, {0.02, 0, 4}, 1).slice.bytes;
-  const auto most = static_cast<std::uint32_t>(points.size());
+  return RoundTrip(points, {0.02, 0, 4}, 1).slice;
+}
+EncodedSlice JitteringSlice() { return SliceOf(SpinningScan(0.1)); }
+EncodedSlice BentSlice() { return SliceOf(ScanOf("at128")); }
+EncodedSlice PathSlice() { return EncodePaths({PathScan(0, 0.05)})[0]; }
+
+class DamagedClouds : public ::testing::TestWithParam<EncodedSlice (*)()> {};
+TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
+  const EncodedSlice slice = GetParam()();
+  const auto& bytes = slice.bytes;
+  const auto most = static_cast<std::uint32_t>(slice.returns);
   CloudDecoder decoder(most);
   for (std::size_t n = 0; n < bytes.size(); n += n < 64 ? 1 : 397)
     EXPECT_FALSE(decoder.Decode({bytes.data(), n})) << n;
@@ -615,7 +693,7 @@ TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
   EXPECT_FALSE(strict.Decode({bytes.data(), bytes.size()}));
 }
 INSTANTIATE_TEST_SUITE_P(All, DamagedClouds,
-                         ::testing::Values(JitteringScan, BentScan, FirstPathScan));
+                         ::testing::Values(JitteringSlice, BentSlice, PathSlice));
 
 }  // namespace
 }  // namespace lidar::codec::cloud
