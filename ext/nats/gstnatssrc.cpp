@@ -3,6 +3,7 @@
  * SECTION:element-natssrc
  *
  * The stream that a natssink publishes on a subject of NATS, as it comes or as JetStream kept it.
+ * Elements downstream may ask for earlier buffers.
  *
  * |[
  * gst-launch-1.0 natssrc subject=fleet.r7.lidar.front ! lidardec ! fakesink
@@ -15,6 +16,7 @@
 #include <mutex>
 #include <utility>
 
+#include "ext/nats/history.h"
 #include "ext/nats/message.h"
 #include "ext/nats/nats_settings.h"
 #include "ext/nats/source_account.h"
@@ -30,6 +32,7 @@ namespace {
 
 using namespace lidar::gst;
 using lidar::nats::Delivery;
+using lidar::nats::History;
 using lidar::nats::ReadMessage;
 using lidar::nats::SourceCounters;
 using lidar::nats::StreamFormat;
@@ -64,8 +67,9 @@ const std::array<Stat<SourceCounters>, 12> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards settings; never held while waiting or posting
+  std::mutex mutex;  // guards settings and history; never held while waiting or posting
   NatsSrcSettings settings;
+  std::shared_ptr<History> history;  // from start to stop
   lidar::nats::SourceAccount account;
 
   std::atomic<bool> flushing{false};
@@ -197,7 +201,12 @@ static gboolean Start(GstBaseSrc* base) {
   std::string why;
   state.subscriber = Subscriber::Open(
       ToSubscriber(state.now), [watch = state.watch](const auto& now) { watch->Note(now); }, &why);
-  if (state.subscriber) return TRUE;
+  if (state.subscriber) {
+    const std::lock_guard lock(state.mutex);
+    state.history = std::make_shared<History>(state.now.nats.connection, state.now.nats.subject,
+                                              state.now.nats.stream);
+    return TRUE;
+  }
   state.watch.reset();
   GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ, ("NATS cannot be used: %s.", why.c_str()),
                     (nullptr));
@@ -207,6 +216,10 @@ static gboolean Start(GstBaseSrc* base) {
 static gboolean Stop(GstBaseSrc* base) {
   State& state = StateOf(base);
   state.watch->Silence();
+  {
+    const std::lock_guard lock(state.mutex);
+    state.history.reset();
+  }
   state.delivery = {};
   state.subscriber.reset();
   state.watch.reset();
@@ -366,6 +379,19 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   return GST_FLOW_FLUSHING;
 }
 
+/// Answers in the thread of an element downstream that wants what JetStream keeps of the stream.
+static gboolean Query(GstBaseSrc* base, GstQuery* query) {
+  const auto question = ParseHistoryQuestion(query);
+  if (!question) return GST_BASE_SRC_CLASS(gst_lidar_nats_src_parent_class)->query(base, query);
+  State& state = StateOf(base);
+  std::unique_lock lock(state.mutex);
+  const std::shared_ptr<History> history = state.history;
+  lock.unlock();
+  const auto answer = history ? history->Answer(*question) : std::nullopt;
+  if (answer) SetHistoryAnswer(query, *answer);
+  return answer.has_value();
+}
+
 static gboolean Unlock(GstBaseSrc* base) {
   StateOf(base).flushing = true;
   return TRUE;
@@ -390,6 +416,7 @@ static void gst_lidar_nats_src_class_init(GstLidarNatsSrcClass* klass) {
   auto* src = GST_BASE_SRC_CLASS(klass);
   src->start = Start;
   src->stop = Stop;
+  src->query = Query;
   src->unlock = Unlock;
   src->unlock_stop = UnlockStop;
   src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };

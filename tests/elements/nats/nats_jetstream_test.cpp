@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gst/common/history_query.h"
 #include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {
@@ -71,6 +72,23 @@ class DurableConsumer {
   natsConnection* nc_ = nullptr;
   nats::JetStreamPtr js_;
 };
+
+/// What the source `n` says of its past, read to its end in pieces of `most_bytes`.
+std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuestion question,
+                                gst::HistoryAnswer* last) {
+  const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
+  std::vector<Kept> out;
+  do {
+    const gst::QueryPtr query = gst::NewHistoryQuery(question);
+    if (!gst_pad_query(pad.get(), query.get())) break;
+    *last = gst::ParseHistoryAnswer(query.get());
+    for (const gst::SamplePtr& sample : last->samples)
+      out.push_back(Keep(gst_sample_get_buffer(sample.get())));
+    question.time = GST_CLOCK_TIME_NONE;
+    question.position = last->position;
+  } while (!last->ended && question.most_bytes > 0);
+  return out;
+}
 
 /// Has `receiver` play so slowly that messages are sent again, and then take all there is.
 bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* receiver) {
@@ -314,6 +332,37 @@ TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {
                       "! natssink name=n jetstream=box url=" + plain.url());
   sender.Play();
   EXPECT_NE(sender.WaitForWarning().find("The stream box cannot be made"), std::string::npos);
+}
+
+TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
+  const auto sent = PublishSlices(300, At(kBox));
+  NatsPipeline receiver("natssrc name=n" + At("subject=r1.front") + "! fakesink name=see");
+  receiver.Play();
+  gst::HistoryAnswer last;
+  const auto all = AskForHistory(receiver, {0, 0, 100'000}, &last);
+  ExpectSameStream(all, sent);
+  EXPECT_EQ(last.from, sent.front().capture_time);
+  EXPECT_EQ(last.to, sent.back().capture_time);
+  EXPECT_EQ(last.damaged, 0U);
+  // No earlier ones than those of the second before, as libnats writes no others.
+  const GstClockTime half = sent[150].capture_time;
+  const auto later = AskForHistory(receiver, {half, 0, 100'000}, &last);
+  ASSERT_FALSE(later.empty());
+  EXPECT_LE(later.front().capture_time, half);
+  EXPECT_EQ(later.back().capture_time, sent.back().capture_time);
+  EXPECT_TRUE(AskForHistory(receiver, {GST_CLOCK_TIME_NONE, last.position, 1'000}, &last).empty());
+  EXPECT_TRUE(last.ended);
+}
+
+TEST_F(NatsJetStream, HasNoPastOfAStreamThatItDoesNotKeep) {
+  PublishSlices(8, At(kBox));
+  NatsPipeline receiver("natssrc name=n" + At("subject=r2.front") + "! fakesink name=see");
+  receiver.Play();
+  const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
+  const gst::QueryPtr query = gst::NewHistoryQuery({});
+  EXPECT_FALSE(gst_pad_query(pad.get(), query.get()));
+  server_.Kill();
+  EXPECT_FALSE(gst_pad_query(pad.get(), query.get()));
 }
 
 }  // namespace

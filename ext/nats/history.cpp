@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "ext/nats/history.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ext/nats/jetstream.h"
+#include "ext/nats/message.h"
+#include "gst/lidar/gstlidar.h"
+
+namespace lidar::nats {
+namespace {
+
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr int kMostMessages = 4'096;  // of a piece
+
+struct StreamNames {
+  jsStreamNamesList* list = nullptr;
+  ~StreamNames() { jsStreamNamesList_Destroy(list); }
+};
+struct Messages {
+  natsMsgList list{};
+  ~Messages() { natsMsgList_Destroy(&list); }
+};
+
+guint64 StoredAt(std::int64_t time) {
+  return static_cast<guint64>(std::max<std::int64_t>(time, 0));
+}
+
+guint64 CapturedAt(GstBuffer* buffer, guint64 stored) {
+  const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
+  return GST_CLOCK_TIME_IS_VALID(captured) ? captured : stored;
+}
+
+jsConsumerConfig FromStart() {
+  jsConsumerConfig config;
+  jsConsumerConfig_Init(&config);
+  config.DeliverPolicy = js_DeliverAll;
+  return config;
+}
+
+jsConsumerConfig FromPosition(guint64 position) {
+  jsConsumerConfig config = FromStart();
+  if (position == 0) return config;
+  config.DeliverPolicy = js_DeliverByStartSequence;
+  config.OptStartSeq = position;
+  return config;
+}
+
+/// libnats 3.4 writes .012 s as .12 s, so the time becomes the whole second before it.
+jsConsumerConfig FromTime(guint64 stored) {
+  jsConsumerConfig config = FromStart();
+  const auto seconds = static_cast<std::int64_t>(stored) / kSecondNs;
+  if (seconds == 0) return config;
+  config.DeliverPolicy = js_DeliverByStartTime;
+  config.OptStartTime = seconds * kSecondNs;
+  return config;
+}
+
+}  // namespace
+
+History::History(ConnectionSettings connection, std::string subject, std::string stream)
+    : settings_(std::move(connection)), subject_(std::move(subject)), stream_(std::move(stream)) {}
+
+std::optional<gst::HistoryAnswer> History::Answer(const gst::HistoryQuestion& question) {
+  const std::lock_guard lock(mutex_);
+  if (!Find()) return std::nullopt;
+  gst::HistoryAnswer answer;
+  const auto first = First();
+  const auto last = Last();
+  if (!first || !last) return answer;
+  answer.from = first->captured;
+  answer.to = std::max(last->captured, first->captured);
+  if (question.most_bytes == 0) return answer;
+  const bool has_time = GST_CLOCK_TIME_IS_VALID(question.time);
+  // JetStream knows when it stored a message, and the robot's clock may be ahead of the server's.
+  const guint64 ahead = last->captured - std::min(last->captured, last->stored);
+  answer.position = has_time ? 0 : question.position;
+  Take(Fetch(has_time ? FromTime(question.time - std::min(question.time, ahead))
+                      : FromPosition(question.position),
+             question.most_bytes),
+       &answer);
+  return answer;
+}
+
+/// Returns true once the server is there and has the stream.
+bool History::Find() {
+  std::string why;
+  if (!connection_) connection_ = Connection::Open(settings_, nullptr, &why);
+  if (!connection_ || !connection_->state().connected()) return false;
+  if (!js_) js_ = OpenJetStream(connection_->get());
+  if (!js_ || !stream_.empty()) return js_ != nullptr;
+  jsOptions options;
+  jsOptions_Init(&options);
+  options.Wait = kRequestTimeoutMs;
+  options.Stream.Info.SubjectsFilter = subject_.c_str();
+  jsErrCode code{};
+  StreamNames names;
+  if (js_StreamNames(&names.list, js_.get(), &options, &code) == NATS_OK && names.list->Count > 0)
+    stream_ = names.list->List[0];
+  return !stream_.empty();
+}
+
+std::optional<History::Stored> History::Last() {
+  natsMsg* raw = nullptr;
+  jsErrCode code{};
+  const natsStatus s =
+      js_GetLastMsg(&raw, js_.get(), stream_.c_str(), subject_.c_str(), nullptr, &code);
+  const MessagePtr message(raw);
+  if (s != NATS_OK) return std::nullopt;
+  const guint64 stored = StoredAt(natsMsg_GetTime(raw));
+  const auto read = Read(raw);
+  return Stored{stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
+}
+
+std::optional<History::Stored> History::First() {
+  const auto messages = Fetch(FromStart(), 1);
+  if (messages.empty()) return std::nullopt;
+  jsMsgMetaData* raw = nullptr;
+  if (natsMsg_GetMetaData(&raw, messages.front().get()) != NATS_OK) return std::nullopt;
+  const MetaDataPtr meta(raw);
+  const guint64 stored = StoredAt(meta->Timestamp);
+  const auto read = Read(messages.front().get());
+  return Stored{stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
+}
+
+/// Returns messages of about `most_bytes`, at least one if there is any.
+std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, guint64 most_bytes) {
+  jsSubOptions options;
+  jsSubOptions_Init(&options);
+  options.Stream = stream_.c_str();
+  options.Config = start;
+  options.Config.AckPolicy = js_AckNone;
+  options.Config.MemoryStorage = true;
+  options.Config.Replicas = 1;
+  jsErrCode code{};
+  natsSubscription* raw = nullptr;
+  if (js_PullSubscribe(&raw, js_.get(), subject_.c_str(), nullptr, nullptr, &options, &code) !=
+      NATS_OK)
+    return {};
+  const SubscriptionPtr subscription(raw);
+  // The server gives nothing instead of a message that is larger.
+  const std::int64_t largest = 2 * natsConnection_GetMaxPayload(connection_->get());
+  jsFetchRequest request;
+  jsFetchRequest_Init(&request);
+  request.Batch = most_bytes == 1 ? 1 : kMostMessages;
+  request.MaxBytes = std::max(static_cast<std::int64_t>(most_bytes), largest);
+  request.Expires = kRequestTimeoutMs * 1'000'000;
+  request.NoWait = true;
+  Messages messages;
+  natsSubscription_FetchRequest(&messages.list, raw, &request);
+  std::vector<MessagePtr> out;
+  for (int i = 0; i < messages.list.Count; ++i)
+    out.emplace_back(std::exchange(messages.list.Msgs[i], nullptr));
+  return out;
+}
+
+void History::Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* answer) {
+  for (const MessagePtr& message : messages) {
+    jsMsgMetaData* raw = nullptr;
+    if (natsMsg_GetMetaData(&raw, message.get()) != NATS_OK) continue;
+    const MetaDataPtr meta(raw);
+    answer->position = meta->Sequence.Stream + 1;
+    answer->ended = meta->NumPending == 0;
+    auto read = Read(message.get());
+    const auto format = read ? FormatOf(read->format_id) : nullptr;
+    if (!format || !format->Fits(gst_buffer_get_size(read->buffer.get()))) {
+      ++answer->damaged;
+      continue;
+    }
+    GstBuffer* buffer = read->buffer.get();
+    GST_BUFFER_OFFSET(buffer) = meta->Sequence.Stream;
+    gst_lidar_buffer_set_capture_time(buffer, CapturedAt(buffer, StoredAt(meta->Timestamp)));
+    answer->samples.emplace_back(gst_sample_new(buffer, format->caps(), nullptr, nullptr));
+  }
+}
+
+/// Returns null if the stream does not have the format, either.
+StreamFormat::Ptr History::FormatOf(const std::string& id) {
+  if (auto known = book_.Find(id)) return known;
+  natsMsg* raw = nullptr;
+  jsErrCode code{};
+  const std::string subject = ConfigSubject(subject_, id);
+  if (js_GetLastMsg(&raw, js_.get(), stream_.c_str(), subject.c_str(), nullptr, &code) != NATS_OK)
+    return nullptr;
+  const MessagePtr message(raw);
+  book_.Note(subject, {natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))});
+  return book_.Find(id);
+}
+
+}  // namespace lidar::nats

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What JetStream keeps of a subject, read piece by piece for others than the stream's own source.
+#pragma once
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ext/nats/connection.h"
+#include "ext/nats/format_book.h"
+#include "gst/common/history_query.h"
+
+namespace lidar::nats {
+
+/// Any thread may ask; one at a time gets its answer, which takes a few requests of the server.
+class History {
+ public:
+  /// `stream` is that of JetStream; empty: the one that keeps the subject.
+  History(ConnectionSettings connection, std::string subject, std::string stream);
+
+  /// Returns nothing if no stream of the server keeps the subject, or the server is away.
+  std::optional<gst::HistoryAnswer> Answer(const gst::HistoryQuestion& question);
+
+ private:
+  struct Stored {
+    guint64 stored = 0;    // time [ns since 1970]
+    guint64 captured = 0;  // the same if it is not known
+  };
+  bool Find();
+  std::optional<Stored> Last();
+  std::optional<Stored> First();
+  std::vector<MessagePtr> Fetch(jsConsumerConfig start, guint64 most_bytes);
+  void Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* answer);
+  StreamFormat::Ptr FormatOf(const std::string& id);
+
+  const ConnectionSettings settings_;
+  const std::string subject_;
+  std::mutex mutex_;  // guards what follows
+  std::string stream_;
+  std::unique_ptr<Connection> connection_;
+  JetStreamPtr js_;
+  FormatBook book_;
+};
+
+}  // namespace lidar::nats
