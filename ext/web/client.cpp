@@ -185,7 +185,8 @@ bool Client::TakeSlice() {
                                             slice.count,
                                             slice.first_column,
                                             slice.is_recoded,
-                                            next.replay},
+                                            next.replay,
+                                            slice.is_pose},
                                            now_ns);
   Begin(foxglove::HeadOf(next.subscription, slice.unix_ns), {about.data(), about.size()},
         {next.slice, &slice.payload});

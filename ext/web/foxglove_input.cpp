@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 
+#include "ext/web/poses.h"
 #include "ext/web/slice_stream.h"
 #include "gst/common/buffer_map.h"
 #include "gst/common/element_class.h"
@@ -26,7 +27,6 @@ using lidar::web::Hub;
 using lidar::web::InputSettings;
 using lidar::web::SharedTopic;
 
-constexpr const char* kFixedFrame = "odom";
 constexpr const char* kTransforms = "/tf";
 constexpr const char* kPoses = "/pose";
 constexpr const char* kCamera = "/camera";
@@ -152,14 +152,22 @@ bool OpenVideo(GstBaseSink* sink, const std::string& name) {
   return true;
 }
 
+/// Waits for the source's server, once, if it has one that keeps the stream.
+lidar::web::UpstreamArchive::Ask AskUpstream(GstBaseSink* sink) {
+  const std::shared_ptr<GstPad> pad(GST_PAD(gst_object_ref(GST_BASE_SINK_PAD(sink))),
+                                    gst_object_unref);
+  return [pad](GstQuery* query) { return gst_pad_peer_query(pad.get(), query) != FALSE; };
+}
+
 bool OpenSlices(GstBaseSink* sink, const InputSettings& settings, const GstCaps* caps) {
   State& state = StateOf(sink);
   Hub& hub = *state.used;
   std::string why;
-  state.slices = lidar::web::SliceStream::Open(
-      hub.server.get(), caps,
-      {TopicName(settings, "/points"), settings.frame_id, settings.recording, hub.max_points},
-      {hub.points, hub.malformed}, &why);
+  state.slices =
+      lidar::web::SliceStream::Open(hub.server.get(), caps,
+                                    {TopicName(settings, "/points"), settings.frame_id,
+                                     settings.recording, AskUpstream(sink), hub.max_points},
+                                    {hub.points, hub.malformed}, &why);
   if (state.slices) return true;
   GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("Not the caps of slices to show: %s.", why.c_str()),
                     ("%" GST_PTR_FORMAT, static_cast<gconstpointer>(caps)));
@@ -229,16 +237,9 @@ guint64 TimeOf(GstBaseSink* sink, GstBuffer* buffer) {
   return static_cast<guint64>(g_get_real_time()) * GST_USECOND - AgeOf(sink, buffer);
 }
 
-Pose PoseOf(const GstLidarPose& meta) {
-  Pose pose;
-  std::copy_n(meta.position, pose.position.size(), pose.position.begin());
-  std::copy_n(meta.orientation, pose.orientation.size(), pose.orientation.begin());
-  return pose;
-}
-
 void PublishPose(State* state, guint64 unix_ns, const std::string& frame_id, const Pose& pose) {
   auto& server = *state->used->server;
-  const Header header{unix_ns, kFixedFrame};
+  const Header header{unix_ns, lidar::web::kFixedFrame};
   if (state->transforms->wanted())
     server.Publish(state->transforms,
                    {unix_ns, lidar::foxglove::EncodeTransform(header, frame_id, pose)});
@@ -264,7 +265,7 @@ void PublishPoseOfCloud(GstBaseSink* sink, GstBuffer* buffer, const Header& head
     }
     state.transforms->set_depth(kMaxDepth);
   }
-  PublishPose(&state, header.unix_ns, header.frame_id, PoseOf(meta));
+  PublishPose(&state, header.unix_ns, header.frame_id, lidar::web::PoseOf(meta));
 }
 
 bool RenderCloud(State* state, const Header& header, const BufferMap& map) {

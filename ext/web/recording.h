@@ -1,61 +1,49 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The slices of a stream in the files that mcapsink has written, or still writes.
+// Reads a recording in pieces, as viewers go back into it.
 #pragma once
-#include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "ext/web/slice_caps.h"
+#include "ext/web/archive.h"
 #include "ext/web/topic.h"
-#include "src/mcap/playback.h"
 
 namespace lidar::web {
 
-/// The element's user names the files; nothing that a viewer sends does. One thread reads at a
-/// time.
+/// For one thread at a time.
 class Recording {
  public:
-  /// `location` is that of mcapsink; `caps` those of the stream.
-  Recording(std::string location, SliceCaps caps)
-      : location_(std::move(location)), caps_(std::move(caps)) {}
+  explicit Recording(std::unique_ptr<Archive> archive) : archive_(std::move(archive)) {}
 
-  /// Times are log times [ns], which are close to capture times.
+  /// Times [ns] are close to capture times.
   struct Piece {
     std::uint64_t from_ns = 0;  // of the whole recording; both are 0 if nothing can be read
     std::uint64_t to_ns = 0;
-    std::vector<SharedSliceMessage> slices;
-    std::uint64_t next_ns = 0;  // begin of the next piece
-    bool ended = false;         // no more slices follow yet
-    std::uint64_t damaged = 0;  // chunks and messages that were left out
-    std::string why;            // for a user, if nothing can be read
+    std::vector<SharedSliceMessage> slices;  // and poses
+    std::uint64_t last_ns = 0;               // of the last slice
+    std::uint64_t next = 0;                  // position of the next piece
+    bool ended = false;                      // no more slices follow yet
+    std::uint64_t damaged = 0;               // parts that were left out
+    std::string why;                         // for a user, if nothing can be read
   };
   /// Returns the times of the recording, without slices.
   Piece Look();
   /// Returns the two scans before `time_ns`, the slices that they refer to, and those that follow.
   Piece Jump(std::uint64_t time_ns);
-  /// Returns the slices from `next_ns` on.
-  Piece GoOn(std::uint64_t next_ns);
+  /// Returns the slices from a position on.
+  Piece GoOn(std::uint64_t position);
   /// Ends reading soon. Any thread may call it.
-  void Cancel() { cancelled_ = true; }
+  void Cancel() { archive_->Cancel(); }
 
   /// Size of a piece, without referred slices.
   static constexpr std::size_t kPiece = std::size_t{512} << 10;
 
  private:
   bool Open(Piece* piece);
-  void Read(std::uint64_t first_ns, std::uint64_t from_ns, Piece* piece);
-  SharedSliceMessage ReadSlice(const mcap::Message& message) const;
-  bool IsOurs(const mcap::Schema& schema, const mcap::Channel& channel);
+  void Read(std::uint64_t from_ns, Piece* piece);
 
-  const std::string location_;
-  const SliceCaps caps_;
-  std::atomic<bool> cancelled_{false};
-  std::unique_ptr<mcap::Playback> playback_;
-  std::map<std::string, bool> known_caps_;  // as text; true: of our stream
-  std::string topic_;                       // the first one of our stream
+  const std::unique_ptr<Archive> archive_;
 };
 
 }  // namespace lidar::web

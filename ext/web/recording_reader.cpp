@@ -71,8 +71,8 @@ void RecordingReader::Run() {
     lock.unlock();
     const auto began = Clock::now();
     Recording::Piece piece = job.kind == Kind::kLook   ? job.recording->Look()
-                             : job.kind == Kind::kJump ? job.recording->Jump(job.time_ns)
-                                                       : job.recording->GoOn(job.time_ns);
+                             : job.kind == Kind::kJump ? job.recording->Jump(job.at)
+                                                       : job.recording->GoOn(job.at);
     const auto spent = Clock::now() - began;
     lock.lock();
     current_.reset();

@@ -20,7 +20,7 @@ class RecordingReader {
     std::uint64_t asker = 0;  // id chosen by the caller
     std::shared_ptr<Recording> recording;
     Kind kind = Kind::kLook;
-    std::uint64_t time_ns = 0;
+    std::uint64_t at = 0;  // time [ns] of kJump, position of kGoOn
   };
   using OnPiece = std::function<void(const Job& job, const Recording::Piece& piece)>;
 

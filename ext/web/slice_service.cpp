@@ -110,10 +110,10 @@ void SliceService::OnPiece(const RecordingReader::Job& job, const Recording::Pie
       Replay& replay = *viewer.replay;
       replay.is_reading = false;
       replay.ended = piece.ended;
-      replay.next_ns = piece.next_ns;
+      replay.next = piece.next;
       replay.damaged += piece.damaged;
       replay.waiting.insert(replay.waiting.end(), piece.slices.begin(), piece.slices.end());
-      if (!piece.slices.empty()) replay.last_ns = piece.slices.back()->unix_ns;
+      if (piece.last_ns != 0) replay.last_ns = piece.last_ns;
       Describe(stream, viewer, client);
       return ServeReplay(stream, client, &viewer);
     }
@@ -150,7 +150,7 @@ void SliceService::ServeReplay(const Stream& stream, Client* client, Viewer* vie
   if (replay.is_reading || replay.ended || BytesOf(replay.waiting) > Recording::kPiece) return;
   replay.is_reading = true;
   reader_.Ask(
-      {viewer->asker, stream.topic->recording(), RecordingReader::Kind::kGoOn, replay.next_ns});
+      {viewer->asker, stream.topic->recording(), RecordingReader::Kind::kGoOn, replay.next});
 }
 
 bool SliceService::IsLate(Client* client) const {

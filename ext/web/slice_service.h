@@ -42,7 +42,7 @@ class SliceService {
   struct Replay {
     std::uint16_t number = 0;                 // the viewer's
     std::deque<viewer::SharedSlice> waiting;  // read and not sent
-    std::uint64_t next_ns = 0;                // begin of the next piece
+    std::uint64_t next = 0;                   // position of the next piece
     std::uint64_t last_ns = 0;                // of the last slice that was read
     std::uint64_t damaged = 0;                // parts that were left out
     bool is_reading = true;

@@ -6,10 +6,10 @@
 #include <optional>
 #include <system_error>
 
+#include "ext/web/file_archive.h"
 #include "ext/web/recording.h"
 #include "src/codec/cloud/exact_decoder.h"
 #include "src/codec/slice_decoder.h"
-#include "src/codec/slice_links.h"
 #include "src/foxglove/messages.h"
 #include "src/viewer/recoder.h"
 
@@ -117,10 +117,10 @@ bool SliceStream::OpenTopics(SliceCaps caps, std::string* why) {
   has_ranges_ = about.has_ranges;
   about.frame_id = settings_.frame_id;
   about.clouds = settings_.topic;
-  about.recording = !settings_.recording.empty();
   std::shared_ptr<Recording> recording;
-  if (about.recording)
-    recording = std::make_shared<Recording>(settings_.recording, std::move(caps));
+  if (auto archive = MakeArchive(std::move(caps)))
+    recording = std::make_shared<Recording>(std::move(archive));
+  about.recording = recording != nullptr;
   clouds_ = server_->Open(settings_.topic, foxglove::Schema::kPointCloud);
   if (clouds_)
     slices_ = server_->Open(settings_.topic + kSlicesEnding, foxglove::Schema::kSlice,
@@ -128,6 +128,15 @@ bool SliceStream::OpenTopics(SliceCaps caps, std::string* why) {
   if (slices_) return true;
   *why = "the topic \"" + settings_.topic + "\" is already used for something else";
   return false;
+}
+
+/// Returns null if the stream has no past.
+std::unique_ptr<Archive> SliceStream::MakeArchive(SliceCaps caps) const {
+  if (!settings_.recording.empty())
+    return std::make_unique<FileArchive>(settings_.recording, std::move(caps));
+  if (!UpstreamArchive::IsThere(settings_.ask_upstream)) return nullptr;
+  return std::make_unique<UpstreamArchive>(settings_.ask_upstream, std::move(caps),
+                                           settings_.frame_id);
 }
 
 SliceStream::~SliceStream() {
@@ -144,12 +153,7 @@ SliceStream::~SliceStream() {
 }
 
 bool SliceStream::Push(SliceMessage slice) {
-  if (has_ranges_) {
-    auto blocks = codec::LinksOf({slice.payload.data(), slice.payload.size()});
-    if (!blocks) return false;
-    slice.blocks = *std::move(blocks);
-  }
-  slice.size = DataSize::Bytes(static_cast<std::int64_t>(slice.payload.size()));
+  if (!slice.ReadLinks(has_ranges_)) return false;
   clouds_->set_depth(std::min<std::size_t>(slice.count, 64));
   const auto shared = std::make_shared<const SliceMessage>(std::move(slice));
   server_->PublishSlice(slices_, shared);

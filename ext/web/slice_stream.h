@@ -10,6 +10,7 @@
 
 #include "ext/web/server.h"
 #include "ext/web/slice_caps.h"
+#include "ext/web/upstream_archive.h"
 #include "src/viewer/backlog.h"
 
 namespace lidar::web {
@@ -20,7 +21,8 @@ class SliceStream {
     std::string topic;           // of the decoded clouds; slices have it with kSlicesEnding
     std::string frame_id;        // of both channels
     std::string recording = {};  // location of mcapsink's files of the stream; empty: none
-    guint max_points = 0;        // of a decoded message; 0: no limit
+    UpstreamArchive::Ask ask_upstream = {};  // for a history, without a recording; null: none
+    guint max_points = 0;                    // of a decoded message; 0: no limit
   };
   struct Counters {
     std::atomic<guint64>& points;     // decoded points sent to clients
@@ -45,6 +47,7 @@ class SliceStream {
 
   SliceStream(Server* server, Settings settings, Counters counters);
   bool OpenTopics(SliceCaps caps, std::string* why);
+  std::unique_ptr<Archive> MakeArchive(SliceCaps caps) const;
   void Wake();
   void Run();
   void Publish(const SliceMessage& slice, bool recodes);

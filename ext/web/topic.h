@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/codec/slice_links.h"
 #include "src/foxglove/protocol.h"
 #include "src/viewer/feed.h"
 
@@ -22,11 +23,23 @@ struct Message {
 };
 using SharedMessage = std::shared_ptr<const Message>;
 
-/// A coded slice, as it goes to viewers.
+/// A coded slice, as it goes to viewers; of a recording also a pose between two slices.
 struct SliceMessage final : viewer::Slice {
   std::uint64_t unix_ns = 0;
   std::uint32_t first_column = 0;
+  bool is_pose =
+      false;  // the payload is a foxglove.FrameTransform, and `id` that of the slice before
   std::vector<std::uint8_t> payload;
+
+  /// Sets what others need to know of the payload. Returns false if no decoder takes it.
+  bool ReadLinks(bool has_ranges) {
+    size = DataSize::Bytes(static_cast<std::int64_t>(payload.size()));
+    if (!has_ranges) return true;
+    auto links = codec::LinksOf({payload.data(), payload.size()});
+    if (!links) return false;
+    blocks = *std::move(links);
+    return true;
+  }
 };
 using SharedSliceMessage = std::shared_ptr<const SliceMessage>;
 

@@ -188,7 +188,8 @@ MessageHead HeadOf(std::uint32_t subscription_id, std::uint64_t unix_ns) {
 
 SliceHead HeadOfSlice(const SliceInfo& slice, std::uint64_t sent_unix_ns) {
   constexpr std::uint8_t kVersion = 1;
-  SliceHead head{kVersion, static_cast<std::uint8_t>(slice.is_recoded ? 1 : 0)};
+  const int flags = (slice.is_recoded ? 1 : 0) | (slice.is_pose ? 2 : 0);
+  SliceHead head{kVersion, static_cast<std::uint8_t>(flags)};
   PutLe(slice.name.index, 2, &head[2]);
   PutLe(slice.count, 2, &head[4]);
   PutLe(slice.replay, 2, &head[6]);

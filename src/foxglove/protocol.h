@@ -93,13 +93,14 @@ Request ParseRequest(std::string_view text);
 using MessageHead = std::array<std::uint8_t, 13>;
 MessageHead HeadOf(std::uint32_t subscription_id, std::uint64_t unix_ns);
 
-/// The bytes between the head and a slice.
+/// The bytes between the head and a slice, or a pose.
 struct SliceInfo {
   SliceName name;
   std::uint32_t count = 1;  // number of slices in the scan
   std::uint32_t first_column = 0;
   bool is_recoded = false;
   std::uint16_t replay = 0;  // number of the replay; 0: live
+  bool is_pose = false;      // of a replay: no slice, but a foxglove.FrameTransform
 };
 using SliceHead = std::array<std::uint8_t, 24>;
 SliceHead HeadOfSlice(const SliceInfo& slice, std::uint64_t sent_unix_ns);

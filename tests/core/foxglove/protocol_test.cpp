@@ -65,8 +65,9 @@ TEST(Advertise, SurvivesTextsThatAreNone) {
 }
 
 TEST(SliceHead, HasTheLayoutOfThePage) {
-  const SliceHead head = HeadOfSlice({{0x01020304, 5}, 16, 1023, true, 0x0203}, 0x0807060504030201);
-  const SliceHead expected = {1,    1, 5, 0, 16, 0, 3, 2, 4, 3, 2, 1,
+  const SliceHead head =
+      HeadOfSlice({{0x01020304, 5}, 16, 1023, true, 0x0203, true}, 0x0807060504030201);
+  const SliceHead expected = {1,    3, 5, 0, 16, 0, 3, 2, 4, 3, 2, 1,
                               0xFF, 3, 0, 0, 1,  2, 3, 4, 5, 6, 7, 8};
   EXPECT_EQ(head, expected);
 }

@@ -5,7 +5,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 
+#include "gst/common/history_query.h"
 #include "tests/elements/web/slice_viewer.h"
 
 namespace lidar::test {
@@ -205,17 +207,38 @@ TEST_F(Recordings, CostOtherViewersNothing) {
   }
 }
 
-TEST_F(Recordings, OfAnotherSensorAreNotShown) {
-  const auto others = gst::ElementPtr(gst_parse_launch(
-      ("lidartestsrc model=os1-64 mode=512x10 num-buffers=80 ! lidarenc ! mcapsink location=" +
-       path())
-          .c_str(),
-      nullptr));
-  gst_element_set_state(others.get(), GST_STATE_PLAYING);
-  GstBus* bus = gst_element_get_bus(others.get());
+/// Runs a pipeline to its end.
+void RunToTheEnd(const std::string& description) {
+  const gst::ElementPtr pipeline(gst_parse_launch(description.c_str(), nullptr));
+  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+  GstBus* bus = gst_element_get_bus(pipeline.get());
   gst_message_unref(gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS));
   gst_object_unref(bus);
-  gst_element_set_state(others.get(), GST_STATE_NULL);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
+TEST_F(Recordings, HaveThePosesOfTheSensorBetweenTheSlices) {
+  RunToTheEnd(
+      "lidartestsrc model=os0-32 mode=512x10 slices-per-scan=1 speed=5 num-buffers=30 "
+      "! lidarodometry name=o mcapsink name=m location=" +
+      path() + " o.src ! queue ! lidarenc ! m. o.odometry ! queue ! m.");
+  OpenEdge();
+  Push(1);
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, AwaitStatus(&viewer, 0)["from"].get<double>() + 1);
+  for (int i = 0; i < 15; ++i) viewer.Draw();
+  ASSERT_GE(viewer.poses.size(), 12U);
+  for (const Received& pose : viewer.poses) {
+    EXPECT_EQ(SliceReader(pose).replay, 1U);
+    EXPECT_LE(pose.unix_ns, viewer.last.unix_ns);
+  }
+  EXPECT_NE(viewer.poses.front().payload.find("lidar"), std::string::npos);
+}
+
+TEST_F(Recordings, OfAnotherSensorAreNotShown) {
+  RunToTheEnd(
+      "lidartestsrc model=os1-64 mode=512x10 num-buffers=80 ! lidarenc ! mcapsink location=" +
+      path());
   Edge edge("sink_0::recording=" + path());
   edge.Push();
   Viewer viewer(&edge.sink);
@@ -235,6 +258,117 @@ TEST_F(Recordings, AreNotThereForAStreamWithoutOne) {
   Push(1);
   viewer.Draw();
   EXPECT_EQ(SliceReader(viewer.last).replay, 0U);
+}
+
+/// A source of slices and poses that keeps what it sent, as natssrc knows to be kept by JetStream.
+class KeptStream {
+ public:
+  explicit KeptStream(GstPad* pad) : pad_(pad) {
+    gst_pad_set_query_function_full(
+        pad,
+        [](GstPad* of, GstObject* parent, GstQuery* query) -> gboolean {
+          const auto question = gst::ParseHistoryQuestion(query);
+          if (!question) return gst_pad_query_default(of, parent, query);
+          return static_cast<KeptStream*>(of->querydata)->Answer(*question, query);
+        },
+        this, nullptr);
+  }
+  ~KeptStream() { gst_pad_set_query_function(pad_, gst_pad_query_default); }
+
+  void Keep(GstBuffer* buffer, const gst::CapsPtr& caps) {
+    GstBuffer* kept = gst_buffer_copy(buffer);
+    const std::lock_guard lock(mutex_);
+    GST_BUFFER_OFFSET(kept) = buffers_.size() + 1;
+    GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK};
+    if (buffers_.size() % kScanSlices == 0) gst_lidar_buffer_set_pose(kept, &pose);
+    buffers_.emplace_back(gst_sample_new(kept, caps.get(), nullptr, nullptr));
+    gst_buffer_unref(kept);
+  }
+  /// The server is gone.
+  void End() {
+    const std::lock_guard lock(mutex_);
+    is_there_ = false;
+  }
+
+ private:
+  static std::uint64_t TimeOf(const gst::SamplePtr& sample) {
+    return gst_lidar_buffer_get_capture_time(gst_sample_get_buffer(sample.get()));
+  }
+  bool Answer(const gst::HistoryQuestion& question, GstQuery* query) {
+    const std::lock_guard lock(mutex_);
+    if (!is_there_) return false;
+    gst::HistoryAnswer answer;
+    if (!buffers_.empty()) answer.from = TimeOf(buffers_.front());
+    if (!buffers_.empty()) answer.to = TimeOf(buffers_.back());
+    // Some before the time, as JetStream gives them.
+    const bool by_time = GST_CLOCK_TIME_IS_VALID(question.time);
+    const auto first = std::find_if(buffers_.begin(), buffers_.end(), [&](const auto& sample) {
+      return by_time ? TimeOf(sample) + GST_SECOND >= question.time
+                     : GST_BUFFER_OFFSET(gst_sample_get_buffer(sample.get())) >= question.position;
+    });
+    guint64 size = 0;
+    auto next = first;
+    for (; next != buffers_.end() && size < std::min<guint64>(question.most_bytes, 20'000);
+         ++next) {
+      size += gst_buffer_get_size(gst_sample_get_buffer(next->get()));
+      answer.samples.emplace_back(gst_sample_ref(next->get()));
+    }
+    answer.position = static_cast<guint64>(next - buffers_.begin()) + 1;
+    answer.ended = next == buffers_.end();
+    gst::SetHistoryAnswer(query, answer);
+    return true;
+  }
+
+  GstPad* const pad_;
+  std::mutex mutex_;
+  std::vector<gst::SamplePtr> buffers_;
+  bool is_there_ = true;
+};
+
+class Histories : public ::testing::Test {
+ protected:
+  void Push(guint n) {
+    for (guint i = 0; i < n; ++i) {
+      gst::BufferPtr buffer(gst_buffer_make_writable(edge_.robot.Next().release()));
+      gst_lidar_buffer_set_capture_time(buffer.get(), kFirst_ns + pushed_++ * kSlice_ns);
+      kept_.Keep(buffer.get(), edge_.robot.caps());
+      edge_.Push(std::move(buffer));
+    }
+  }
+
+  Edge edge_{"", "effort=2", 700};
+  KeptStream kept_{edge_.sink.harness()->srcpad};
+  std::uint64_t pushed_ = 0;
+};
+
+TEST_F(Histories, OfASourceAreRecordings) {
+  Push(400);
+  Viewer viewer(&edge_.sink);
+  EXPECT_NEAR(AwaitStatus(&viewer, 0)["from"], Seconds(kFirst_ns), 1e-3);
+  const std::uint64_t time = kFirst_ns + 200 * kSlice_ns;
+  Replay(&viewer, 3, Seconds(time));
+  EXPECT_NEAR(AwaitStatus(&viewer, 3)["to"], Seconds(kFirst_ns + 399 * kSlice_ns), 1e-3);
+  std::uint64_t last = 0;
+  while (last < kFirst_ns + 399 * kSlice_ns) {
+    viewer.Draw();
+    EXPECT_EQ(SliceReader(viewer.last).replay, 3U);
+    EXPECT_GT(viewer.last.unix_ns, last);
+    last = viewer.last.unix_ns;
+  }
+  EXPECT_GE(viewer.poses.size(), 200 / kScanSlices);
+  EXPECT_TRUE(WaitUntil([&] { return viewer.peer.recording["end"].is_number(); }));
+}
+
+TEST_F(Histories, WhoseServerIsGoneSaySo) {
+  Push(kScanSlices);
+  kept_.End();
+  Viewer viewer(&edge_.sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns));
+  EXPECT_EQ(AwaitStatus(&viewer, 1)["to"], 0);
+  viewer.peer.SendText(R"({"op":"live","subscriptionId":9})");
+  viewer.peer.Sync();
+  Push(1);
+  viewer.Draw();
 }
 
 TEST_F(Recordings, SurviveAViewerThatJumpsWithoutEnd) {

@@ -99,9 +99,10 @@ class Viewer {
         {*fields, fields->MinimumStep()}, static_cast<std::uint32_t>(model->beams.size()), *model};
     decoder_.emplace(format_, 1U << 20);
   }
-  /// The next slice; it decodes.
+  /// The next slice; it decodes. Poses of a replay come before it.
   void Draw(bool acknowledge = true) {
-    last = peer.Next();
+    for (last = peer.Next(); (SliceReader(last).flags & 2) != 0; last = peer.Next())
+      poses.push_back(last);
     const SliceReader slice(last);
     EXPECT_TRUE(decoder_->Decode(slice.slice)) << slice.scan << "." << slice.index;
     if (slice.flags == 0) ++own;
@@ -119,6 +120,7 @@ class Viewer {
 
   Peer peer;
   Received last;
+  std::vector<Received> poses;
   unsigned own = 0;
   unsigned recoded = 0;
 

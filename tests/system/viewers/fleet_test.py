@@ -3,7 +3,7 @@
 """Robots of a fleet behind one foxglovesink: lidar-edge, NATS, natssrc, and a viewer for each token.
 
 A token opens its own robot, one that is changed, over or of another robot nothing; a robot that talks nonsense
-disturbs nobody.
+disturbs nobody; viewers go back into what JetStream keeps.
 """
 import base64
 import hashlib
@@ -54,11 +54,12 @@ class Fleet:
         nats, self.port = free_port(), free_port()
         self.robot_ports = {robot: free_port(socket.SOCK_DGRAM) for robot in ROBOTS}
         config = {
-            "nats": {"url": f"nats://127.0.0.1:{nats}"},
+            "nats": {"url": f"nats://127.0.0.1:{nats}", "jetstream": "fleet"},
             "robots": [{"name": r, "sensor": "front", "port": p} for r, p in self.robot_ports.items()],
         }
         (folder / "edge.json").write_text(json.dumps(config))
-        self.processes = [self.run(shutil.which("nats-server", path="/usr/sbin:/usr/local/bin"), "-p", str(nats))]
+        server = shutil.which("nats-server", path="/usr/sbin:/usr/local/bin")
+        self.processes = [self.run(server, "-a", "127.0.0.1", "-p", str(nats), "-js", "-sd", str(folder))]
         wait_for(nats)
         self.processes.append(self.run(os.environ["LIDAR_EDGE"], folder / "edge.json"))
         pads = " ".join(f"sink_{i}::topic=/{r}/points" for i, r in enumerate(ROBOTS))
@@ -89,15 +90,26 @@ class Fleet:
             process.wait()
 
     def viewer(self, robot, topics):
-        """A viewer of the robot that has got slices, or none after a while."""
+        """A viewer of the robot that has got slices."""
         viewer = Viewer(self.port, topic=f"/{robot}/points/slices", path=f"/?token={token(topics)}")
-        until = time.monotonic() + 30
-        while not viewer.slices and time.monotonic() < until:
-            viewer.run(0.2)
+        viewer.until(f"slices of {robot}", lambda: viewer.slices)
         return viewer
 
     def status(self, text):
         return Socket(self.port, path=f"/?token={text}").status
+
+
+def go_back(viewer):
+    """Into what came before the viewer did, and back to live."""
+    viewer.until("what JetStream keeps", lambda: viewer.recording and viewer.recording["to"] > viewer.recording["from"] + 2)
+    begin = viewer.recording["from"]
+    viewer.forget()
+    viewer.ask("replay", number=1, time=begin)
+    viewer.until("two seconds of scans", lambda: len({s[0] for s in viewer.slices if s[5] == 1}) >= 20)
+    assert next(s[2] for s in viewer.slices if s[5] == 1) > 2, "slices of before"
+    viewer.until("the end of the replay", lambda: viewer.recording["number"] == 1 and viewer.recording["end"])
+    viewer.ask("live")
+    viewer.until("live slices", lambda: viewer.slices[-1][5] == 0)
 
 
 def main():
@@ -106,12 +118,11 @@ def main():
         return SKIPPED
     with tempfile.TemporaryDirectory() as name, Fleet(pathlib.Path(name)) as fleet:
         own = fleet.viewer("r7", ["/r7/*"])
-        assert own.slices, "slices of r7"
         both = fleet.viewer("r8", ["/r7/*", "/r8/*"])
-        assert both.slices, "slices of r8"
         assert {f"/{r}/points" for r in ROBOTS} <= set(both.channels), both.channels.keys()
         own.run(0.2)
         assert all(topic.startswith("/r7/") for topic in own.channels), own.channels.keys()
+        go_back(own)
         # The number of another channel is easily guessed.
         other = both.channels["/r8/points/slices"]["id"]
         own.forget()

@@ -12,7 +12,7 @@ import threading
 import time
 
 HEAD = struct.Struct("<BIQ")  # opcode, subscription, time of capture
-SLICE = struct.Struct("<BBHHHIIQ")  # version, flags, index, count, 0, scan, first column, sent
+SLICE = struct.Struct("<BBHHHIIQ")  # version, flags, index, count, replay, scan, first column, sent
 FRAME_SECONDS = 1 / 60
 
 
@@ -90,8 +90,9 @@ class Viewer:
     def __init__(self, port, topic="/points/slices", **kwargs):
         self.socket = Socket(port, **kwargs)
         self.topic = topic
-        self.slices = []  # (scan, index, age [s], bytes, is recoded)
+        self.slices = []  # (scan, index, age [s], bytes, is recoded, number of the replay)
         self.channels = {}
+        self.recording = None  # the last word about it
 
     def run(self, seconds):
         until = time.monotonic() + seconds
@@ -108,6 +109,8 @@ class Viewer:
                 self.socket.send(json.dumps(drawn))
 
     def on_text(self, message):
+        if message["op"] == "recording":
+            self.recording = message
         if message["op"] != "advertise":
             return
         for channel in message["channels"]:
@@ -120,9 +123,19 @@ class Viewer:
         _, subscription, captured = HEAD.unpack_from(payload)
         if subscription != self.SUBSCRIPTION:
             return None
-        _, flags, index, _, _, scan, _, _ = SLICE.unpack_from(payload, HEAD.size)
-        self.slices.append((scan, index, time.time() - captured / 1e9, len(payload), flags & 1))
+        _, flags, index, _, replay, scan, _, _ = SLICE.unpack_from(payload, HEAD.size)
+        self.slices.append((scan, index, time.time() - captured / 1e9, len(payload), flags & 1, replay))
         return scan, index
+
+    def until(self, what, holds, seconds=30):
+        """Runs until it holds."""
+        end = time.monotonic() + seconds
+        while not holds():
+            assert time.monotonic() < end, what
+            self.run(0.2)
+
+    def ask(self, op, **rest):
+        self.socket.send(json.dumps({"op": op, "subscriptionId": self.SUBSCRIPTION, **rest}))
 
     def slice_bytes(self):
         return sum(s[3] - HEAD.size - SLICE.size for s in self.slices)

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Reads what a recording holds of a stream: its slices, and poses of their sensor.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ext/web/topic.h"
+
+namespace lidar::web {
+
+/// For one thread at a time. Times are close to capture times [ns].
+class Archive {
+ public:
+  struct Times {
+    std::uint64_t from_ns = 0;
+    std::uint64_t to_ns = 0;
+  };
+  struct Item {
+    std::uint64_t time_ns = 0;
+    std::uint64_t position = 0;           // behind it
+    std::size_t read = 0;                 // bytes that it cost
+    std::shared_ptr<SliceMessage> slice;  // null: of another stream, or damaged
+    bool is_damaged = false;
+  };
+
+  virtual ~Archive() = default;
+  /// Returns the times of all that can be read now. Returns nothing if that is nothing; `why` then
+  /// says so for a user.
+  virtual std::optional<Times> Look(std::string* why) = 0;
+  /// Continues at a time, or behind the item that had the `position`.
+  virtual void Seek(std::uint64_t time_ns) = 0;
+  virtual void GoOn(std::uint64_t position) = 0;
+  /// Returns nothing if no more follow yet, or soon after Cancel().
+  virtual std::optional<Item> Next() = 0;
+  /// Lets go of files and buffers until the next Seek() or GoOn().
+  virtual void Rest() = 0;
+  /// Counts parts that were left out, beside damaged items.
+  virtual std::uint64_t damaged() const = 0;
+
+  /// Any thread may call it.
+  void Cancel() { cancelled_ = true; }
+
+ protected:
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace lidar::web

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a source upstream knows to be kept of the stream: natssrc, by JetStream.
+#pragma once
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "ext/web/archive.h"
+#include "ext/web/slice_caps.h"
+#include "gst/common/history_query.h"
+
+namespace lidar::web {
+
+class UpstreamArchive final : public Archive {
+ public:
+  /// Asks upstream; returns false if no element answers.
+  using Ask = std::function<bool(GstQuery*)>;
+  /// `frame_id` is the sensor's.
+  UpstreamArchive(Ask ask, SliceCaps caps, std::string frame_id)
+      : ask_(std::move(ask)), caps_(std::move(caps)), frame_id_(std::move(frame_id)) {}
+
+  /// Returns true if a source upstream knows of a history.
+  static bool IsThere(const Ask& ask);
+
+  std::optional<Times> Look(std::string* why) override;
+  void Seek(std::uint64_t time_ns) override;
+  void GoOn(std::uint64_t position) override;
+  std::optional<Item> Next() override;
+  void Rest() override { items_.clear(); }
+  std::uint64_t damaged() const override { return damaged_; }
+
+ private:
+  void Read();
+  void Take(GstSample* sample);
+  bool IsOurs(GstCaps* caps);
+
+  const Ask ask_;
+  const SliceCaps caps_;
+  const std::string frame_id_;
+  gst::HistoryQuestion question_;
+  std::uint64_t from_ns_ = 0;  // of Seek()
+  bool ended_ = true;
+  std::deque<Item> items_;
+  std::uint64_t damaged_ = 0;
+  gst::CapsPtr known_caps_;
+  bool are_ours_ = false;  // the known caps
+};
+
+}  // namespace lidar::web
