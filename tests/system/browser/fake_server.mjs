@@ -41,6 +41,22 @@ export const sliceChannel = (id, topic, { about }) => ({
 export const jsonChannel = (id, topic, schemaName) =>
   ({ id, topic, encoding: 'json', schemaName, schemaEncoding: 'jsonschema', schema: '' });
 
+/** A foxglove.FrameTransform without rotation. */
+function transform(ns, child, position) {
+  const varint = (v) => (v < 128n ? [Number(v)] : [Number(v & 127n) | 128, ...varint(v >> 7n)]);
+  const bytes = (field, content) => Buffer.concat([Buffer.from([(field << 3) | 2, content.length]), content]);
+  const double = (value, i) => {
+    const out = Buffer.alloc(9);
+    out.writeUInt8(((i + 1) << 3) | 1, 0);
+    out.writeDoubleLE(value, 1);
+    return out;
+  };
+  const time = Buffer.from([8, ...varint(ns / 1_000_000_000n), 16, ...varint(ns % 1_000_000_000n)]);
+  const rotation = double(1, 3);
+  const parts = [bytes(1, time), bytes(3, Buffer.from(child)), bytes(4, Buffer.concat(position.map(double))), bytes(5, rotation)];
+  return Buffer.concat(parts);
+}
+
 export class FakeServer {
   static async start(port, channels, { token = null } = {}) {
     const server = new FakeServer();
@@ -105,6 +121,17 @@ export class FakeServer {
   describe(channel, status) {
     const subscriptionId = this.subscribed.get(channel);
     this.client.send(JSON.stringify({ op: 'recording', subscriptionId, number: 0, damaged: 0, end: null, ...status }));
+  }
+
+  /** Where the sensor was at `ms`, in a replay. */
+  sendPose(channel, position, ms, replay) {
+    const head = Buffer.alloc(24);
+    head.writeUInt8(1, 0);
+    head.writeUInt8(2, 1);
+    head.writeUInt16LE(replay, 6);
+    const at = BigInt(Math.round(ms * 1e6));
+    const pose = transform(at, 'lidar', position);
+    return this.send(channel, Buffer.concat([head, pose]), at);
   }
 
   /** Slice `i` of what was recorded, `age` ms after its capture, of a replay if it has a number. */

@@ -170,6 +170,7 @@ async function openRecorded(options = {}) {
   return { ...opened, to, describe, replay, play };
 }
 const stateOf = (page) => page.textContent('#state span');
+const says = (page, words) => until(words, async () => (await stateOf(page)) === words);
 /** Waits for a picture of a time after `time`, and not of what is live. */
 const shows = (page, time) =>
   until(`the picture at ${time}`, async () => {
@@ -185,11 +186,11 @@ test('the page goes back into a recording of the server, and returns to live at 
   await page.fill('#timeline input', '-600');
   const { number, time } = await until('a request', replay);
   assert.ok(Math.abs(time - to + 600) < 0.1);
-  await until('words that say so', async () => (await stateOf(page)) === 'Loading the recording');
+  await says(page, 'Loading the recording');
   assert.match(await page.textContent('#timeline output'), /^10:00 min ago/);
   play(0, 80);
   await shows(page, time - 0.02);
-  assert.equal(await stateOf(page), 'Recorded');
+  await says(page, 'Recorded');
   assert.ok(Math.abs((await points(page)) - whole) < 0.2 * whole, 'the scan is not whole');
   // What is live, and what another replay was sent, is not shown.
   server.sendSlice(2, recorded, 9);
@@ -197,10 +198,10 @@ test('the page goes back into a recording of the server, and returns to live at 
   await shows(page, time + 0.6);
   assert.ok((await shownAt(page)) < time + 0.81);
   await until('all of them', () => server.told.some(({ scan, slice }) => scan === 9 && slice === 7));
-  await until('words that say so', async () => (await stateOf(page)) === 'Loading the recording');
+  await says(page, 'Loading the recording');
   describe({ number, end: time + 0.7 });
   await until('what is live', () => server.told.some(({ op }) => op === 'live'));
-  assert.equal(await stateOf(page), 'Live');
+  await says(page, 'Live');
   server.sendSlice(2, recorded, 10);
   await until('what is new', async () => (await shownAt(page)) > time + 500);
   assert.deepEqual(complaints, []);
@@ -218,7 +219,7 @@ test('a recording is held, stepped through by keys and buttons, and no more of i
   play(0, 240); // 3 s
   await shows(page, first.time - 0.02);
   assert.ok((await shownAt(page)) <= first.time);
-  assert.equal(await stateOf(page), 'Recorded, paused');
+  await says(page, 'Recorded, paused');
   const { scan, slice } = await until('acknowledgements', () => acknowledged(server));
   const due = 16 + 80; // 0.2 s before, and a second ahead
   assert.ok(scan * 8 + slice >= due - 2 && scan * 8 + slice <= due + 1, `slice ${scan * 8 + slice} is acknowledged`);
@@ -235,7 +236,7 @@ test('a recording is held, stepped through by keys and buttons, and no more of i
   await shows(page, last.time + 0.2);
   await page.keyboard.press('l');
   await until('what is live', () => server.told.some(({ op }) => op === 'live'));
-  assert.equal(await stateOf(page), 'Live');
+  await says(page, 'Live');
   assert.deepEqual(complaints, []);
   await close();
 });
@@ -318,6 +319,45 @@ for (const [format, coder] of Object.entries(CAMERAS)) {
     await close();
   });
 }
+
+test('a camera goes back with the cloud, and returns to live', limits, async () => {
+  const frames = recordVideo(CAMERAS.vp8);
+  const camera = { ...jsonChannel(3, '/camera', 'foxglove.CompressedVideo'), encoding: 'protobuf' };
+  const { server, page, complaints, close } = await open([sliceChannel(2, '/points', recorded), camera]);
+  await until('subscriptions', () => server.subscribed.has(2) && server.subscribed.has(3));
+  const begun = Date.now() - 5000;
+  for (let i = 0; i < 400; ++i) server.sendSlice(2, recorded, i, 5000 - 12.5 * i);
+  frames.forEach((data, i) => server.send(3, videoMessage('vp8', data, begun + 400 * i)));
+  await until('all', () => acknowledged(server)?.scan === 49 && acknowledged(server)?.slice === 7);
+  await page.click('#pause');
+  const shown = () => page.evaluate(() => window.lidarPage.video.shown);
+  for (const ago of [2.5, 1, 4.9]) {
+    const before = await shownAt(page);
+    await page.fill('#timeline input', `-${ago}`);
+    await until('another cloud', async () => (await shownAt(page)) !== before);
+    const time = await shownAt(page);
+    await until('the picture of that time', async () => time - (await shown()) >= 0 && time - (await shown()) < 0.4);
+  }
+  await page.click('#live');
+  assert.ok(!(await page.isVisible('#video')));
+  server.send(3, videoMessage('vp8', frames[0], Date.now()));
+  await until('what is new', async () => (await shown()) * 1000 > begun + 4500);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a replay has the poses that the recording has', limits, async () => {
+  const { server, page, complaints, close, replay, play } = await openRecorded();
+  await page.fill('#timeline input', '-600');
+  const { number, time } = await until('a request', replay);
+  server.sendPose(2, [7, 0, 0], 1000 * time - 200, number);
+  server.sendPose(2, [9, 0, 0], 1000 * time - 200, number + 1); // of another replay
+  play(0, 80);
+  await shows(page, time - 0.02);
+  await until('the place', async () => (await page.evaluate(() => window.lidarPage.scene.sensor.x)) === 7);
+  assert.deepEqual(complaints, []);
+  await close();
+});
 
 test('statistics of two links are two lines, and a fast link flattens nothing', limits, async () => {
   const { server, page, complaints, close } = await open([jsonChannel(1, '/statistics', 'lidar.Statistics')]);

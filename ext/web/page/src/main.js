@@ -39,6 +39,7 @@ const page = {
   charts: new Charts(document.getElementById('charts')),
   scene: new Scene(document.getElementById('scene')),
   poses: new Poses(),
+  recordedPoses: new Poses(), // of the replay
   links: new Links(),
   video: new Video(document.getElementById('video')),
 };
@@ -52,12 +53,18 @@ page.slices = new Slices(
       setSpan();
     },
     arrived: (channel, header) => page.replay.arrived(channel, header),
+    pose: ({ replay }, bytes) => {
+      if (replay === page.replay.number) page.recordedPoses.add(frameTransform(bytes));
+    },
   },
   () => page.connection,
 );
 page.replay = new Replay(
   {
-    begin: (number) => page.slices.replay(number),
+    begin: (number) => {
+      page.recordedPoses = new Poses();
+      page.slices.replay(number);
+    },
     end: () => page.slices.replay(0),
     show: (time) => page.slices.show(time, true),
     known: setSpan,
@@ -72,6 +79,7 @@ page.timeline = new Timeline(document.getElementById('timeline'), {
   past: showTime,
   live: () => {
     page.slices.show(null);
+    page.video.live();
     page.replay.end();
     page.choose();
     showTime();
@@ -112,7 +120,7 @@ function addCloud(cloud, decoded) {
 
 function show({ time, frame, place }, { points, has }) {
   tools.learn(points, has);
-  const matrix = page.poses.at(frame, time);
+  const matrix = (page.replay.isOn ? page.recordedPoses : page.poses).at(frame, time);
   tools.hasPoses(matrix !== null);
   page.scene.add(points, time, matrix, place, !page.timeline.isPast);
 }
@@ -337,7 +345,9 @@ let drawnCharts = 0;
 function frame(now) {
   page.timeline.tick((now - drawn) / 1000, page.paused || page.replay.wanted !== null);
   page.scene.draw();
-  if (!page.timeline.isPast) page.video.draw(page.scene.fresh.time);
+  const { time } = page.scene.fresh;
+  if (!page.timeline.isPast) page.video.draw(time);
+  else if (time !== null) page.video.replay(time);
   afterDrawing();
   // Where the browser itself was busy, clouds may have come that it has not told of yet.
   page.quietMs += Math.min(now - drawn, BUSY_MS);

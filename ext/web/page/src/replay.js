@@ -104,11 +104,12 @@ export class Replay {
     this.release();
   }
 
-  /** A slice is where it can be shown from. */
+  /** A slice is where it can be shown from, or a pose. */
   arrived(channel, header) {
     const stream = this.streams.get(channel);
     if (!stream || header.replay !== this.number) return this.tell(channel, header);
-    stream.newest = Math.max(stream.newest ?? 0, header.captured);
+    // A pose comes without the worker, before the slices in front of it.
+    if (!header.isPose) stream.newest = Math.max(stream.newest ?? 0, header.captured);
     stream.unshown.push(header);
     this.release();
   }

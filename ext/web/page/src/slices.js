@@ -21,6 +21,7 @@ export function readHeader(bytes) {
   if (view.getUint8(0) !== VERSION) return null;
   return {
     recoded: (view.getUint8(1) & 1) !== 0,
+    isPose: (view.getUint8(1) & 2) !== 0,
     slice: view.getUint16(2, true),
     slices: view.getUint16(4, true),
     replay: view.getUint16(6, true),
@@ -42,7 +43,7 @@ class Stream {
 export class Slices {
   /**
    * `on.points(about, header, decoded, clock)` of slices as they come; `on.arrived(channel, header)`
-   * of those of a replay; `on.picture(picture)` of what was asked for by show(), and `on.span([from,
+   * of those of a replay, and `on.pose(header, bytes)` of poses between them; `on.picture(picture)` of what was asked for by show(), and `on.span([from,
    * to])` of the times that can be; `connection()` gives the one that streams come by.
    */
   constructor(on, connection) {
@@ -82,6 +83,10 @@ export class Slices {
     if (!header) return;
     const stream = this.streams.get(channel) ?? this.open(channel);
     header.captured = Number(captured) * 1e-9;
+    if (header.isPose) {
+      this.on.pose(header, bytes.subarray(HEADER));
+      return this.on.arrived(channel, header);
+    }
     if (header.replay === 0) stream.clock.arrived(header.sent);
     const offset = bytes.byteOffset + HEADER;
     this.worker.postMessage({ stream: stream.id, header, data: bytes.buffer, offset }, [bytes.buffer]);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The camera beside the cloud: frames of foxglove.CompressedVideo, decoded by WebCodecs, and shown
-// when the cloud of their time is.
+// when the cloud of their time is, as they come or once more.
 
 const CODECS = { h264: 'avc1.42E01F', vp8: 'vp8' };
 const MOST_WAITING = 8;
 const MOST_HELD = 4; // pictures: a decoder has few
-const FAR_S = 1; // rather another clock
+const FAR_S = 1; // rather another clock, or a jump
+const MOST_BYTES = 32 << 20; // of coded frames
 
 /** Whether an H.264 access unit (Annex B) begins anew, or a VP8 frame does. */
 export function isKey(format, data) {
@@ -19,15 +20,30 @@ export class Video {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext('2d');
-    this.format = null;
     this.held = []; // decoded pictures, the oldest first
+    this.clear();
   }
 
   /** Another robot is to be shown. */
   clear() {
+    this.kept = []; // coded frames, the oldest first
+    this.bytes = 0;
+    this.first = 0; // the number of kept[0]
+    this.live();
+  }
+
+  /** What comes is shown again. */
+  live() {
+    this.next = null; // number of the kept frame to be decoded next
+    this.at = null; // the time that is shown; null: the newest
+    this.reset();
+  }
+
+  reset() {
     this.canvas.hidden = true;
     this.held.splice(0).forEach((picture) => picture.close());
-    this.needsKey = true;
+    this.format = null;
+    if (this.decoder?.state === 'configured') this.decoder.close();
   }
 
   start(format) {
@@ -42,7 +58,18 @@ export class Video {
 
   add({ time, format, data }) {
     if (!(format in CODECS) || typeof VideoDecoder !== 'function') return;
-    const key = isKey(format, data);
+    const frame = { time, format, data, key: isKey(format, data) };
+    this.keep(frame);
+    if (this.at === null) this.decode(frame);
+  }
+
+  keep(frame) {
+    this.kept.push(frame);
+    this.bytes += frame.data.length;
+    for (; this.bytes > MOST_BYTES; ++this.first) this.bytes -= this.kept.shift().data.length;
+  }
+
+  decode({ time, format, data, key }) {
     if (format !== this.format) {
       if (!key) return;
       this.start(format);
@@ -53,6 +80,25 @@ export class Video {
     this.needsKey = false;
     const timestamp = Math.round(time * 1e6);
     this.decoder.decode(new EncodedVideoChunk({ type: key ? 'key' : 'delta', timestamp, data }));
+  }
+
+  /** Shows the picture of a time that was, as far as there are frames of it. */
+  replay(time) {
+    const isJump = this.next === null || time < this.at || time > this.at + FAR_S || this.next < this.first;
+    this.at = time;
+    if (isJump) this.jump(time);
+    if (this.next === null) return;
+    for (let frame; (frame = this.kept[this.next - this.first])?.time <= time; ++this.next) {
+      if (this.decoder?.decodeQueueSize >= MOST_WAITING) break;
+      this.decode(frame);
+    }
+    this.draw(time);
+  }
+
+  jump(time) {
+    this.reset();
+    const key = this.kept.findLastIndex((frame) => frame.key && frame.time <= time);
+    this.next = key < 0 ? null : this.first + key;
   }
 
   /** Shows the newest picture that is no later than the cloud of `time` [s]; any, where there is none. */
