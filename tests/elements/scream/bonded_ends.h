@@ -107,6 +107,8 @@ class Router {
   std::atomic<bool> swaps{false};
   /// Link 1 loses what the sender sends.
   std::atomic<bool> loses{false};
+  /// Link 1 loses what the receiver sends.
+  std::atomic<bool> mutes{false};
   /// The receiver sees link 1 at another address each time so many milliseconds have passed.
   std::atomic<int> moves_each_ms{0};
   std::atomic<int> moves{0};
@@ -166,7 +168,8 @@ class Router {
     char bytes[2'000];
     const ssize_t n = recv(backs_[link], bytes, sizeof bytes, 0);
     const int to = swaps ? 1 - link : link;
-    if (n > 0 && senders_[to].sin_port != 0) Send(doors_[to], bytes, n, senders_[to]);
+    if (n > 0 && !(mutes && link == 1) && senders_[to].sin_port != 0)
+      Send(doors_[to], bytes, n, senders_[to]);
   }
 
   const sockaddr_in receiver_;

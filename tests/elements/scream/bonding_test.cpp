@@ -97,6 +97,22 @@ TEST(Bonding, GoesOnWhereTheFeedbackOfTwoLinksIsSwapped) {
   EXPECT_GT(ignored[0] + ignored[1], 0U) << "packets that a link never sent";
 }
 
+TEST(Bonding, GoesOnWhereFeedbackOfALinkNeverComes) {
+  BondReceiver receiver;
+  Router router(receiver.port);
+  router.mutes = true;
+  Pipeline sender(Bonded(router.Addresses()));
+  sender.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  const ElementPtr out = sender.Get("out");
+  const auto accepted = OfLinks(out.get(), "feedback-accepted");
+  EXPECT_GT(accepted[0], 10U);
+  EXPECT_EQ(accepted[1], 0U);
+  EXPECT_EQ(OfLinks(out.get(), "packets-first")[1], 0U) << "it has proved nothing";
+}
+
 TEST(Bonding, GoesOnWhereTheAddressOfALinkChangesEachSecond) {
   BondReceiver receiver;
   Router router(receiver.port);
@@ -146,6 +162,32 @@ TEST(Bonding, ShowsEachLinksFigures) {
   EXPECT_TRUE(links[1].True("in-gap"));
   EXPECT_GT(links[0]["packets-acked"], links[1]["packets-acked"] + 50);
   EXPECT_EQ(all["packets-sent"], links[0]["packets-sent"]) << "the first link's";
+}
+
+TEST(Bonding, CarriesSlicesThatReferToOnesWhichArrivedByAnyLink) {
+  Pipeline receiver(
+      "screamsrc name=in port=0 ! rtplidardepay ! lidardec name=decoder ! fakesink sync=false");
+  receiver.Play();
+  const std::string to = "127.0.0.1:" + BoundPort(receiver);
+  Pipeline sender(
+      "lidartestsrc name=src is-live=true model=os1-32 mode=512x10 slices-per-scan=8 "
+      "! lidarenc name=encoder effort=1 max-error=0.05 ! rtplidarpay ! screamsink "
+      "bonding-addresses=\"" +
+      to + "@127.0.0.1," + to + "@127.0.0.2\"");
+  sender.Play();
+  const ElementPtr encoder = sender.Get("encoder");
+  const auto refers = [&] { return Stats(encoder.get()).Text("mode") == "range-temporal1"; };
+  for (int i = 0; i < 2'000 && !refers(); ++i) g_usleep(10'000);
+  EXPECT_TRUE(refers());
+  const ElementPtr decoder = receiver.Get("decoder");
+  const guint64 from = Stats(decoder.get())["slices"];
+  for (int i = 0; i < 2'000 && Stats(decoder.get())["slices"] < from + 80; ++i) g_usleep(10'000);
+  sender.SendEos();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.Ends());
+  EXPECT_GE(Stats(decoder.get())["slices"], from + 80);
+  EXPECT_EQ(Stats(decoder.get())["slices-unreferenced"], 0U);
+  EXPECT_EQ(Stats(decoder.get())["slices-dropped"], 0U);
 }
 
 TEST(Bonding, GivesAVideoEncoderItsBitrate) {
