@@ -77,7 +77,7 @@ void PrintPair(std::uint64_t seed, bool adapts, Duration duration) {
   const auto percent = [&bound](std::uint64_t scans) {
     return 100 * static_cast<double>(scans) / static_cast<double>(bound.scans);
   };
-  std::printf("| %ju, %ju | %s | %.2f | %.1f | %.1f | %.1f | %.0f, %.0f | %.0f, %.0f | %.0f |\n",
+  std::printf("| %ju, %ju | %s | %.2f | %.2f | %.2f | %.2f | %.0f, %.0f | %.0f, %.0f | %.0f |\n",
               static_cast<std::uintmax_t>(seed), static_cast<std::uintmax_t>(seed + 1),
               adapts ? "adapts" : "what 5 cm need", Rate(run.media_bytes, duration),
               100 * run.Share(), percent(bound.complete), percent(outside.complete),

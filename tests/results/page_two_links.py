@@ -32,7 +32,7 @@ def pairs_of(text):
         delays = [list(zip(*(map(int, row[i].split(",")) for row in own))) for i in (6, 7)]
         body.append([
             encoder, f"{statistics.mean(float(row[2]) for row in own):.2f}",
-            *(f"{statistics.mean(of):.1f}, {min(of):.1f}" for of in percent),
+            *(f"{statistics.mean(of):.2f}, {min(of):.2f}" for of in percent),
             *(f"{statistics.mean(of):.0f}, {max(of)}" for both in delays for of in both),
             f"{statistics.mean(float(row[8]) for row in own):.0f}",
         ])
