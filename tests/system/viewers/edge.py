@@ -12,18 +12,15 @@ import subprocess
 import sys
 import time
 
-
-def free_port(kind=socket.SOCK_STREAM):
-    with socket.socket(socket.AF_INET, kind) as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from ports import free_port
 
 
 class Edge:
     """Serves a synthetic sensor over SCReAM to viewers at `port`."""
 
     def __init__(self, model="os1-64", coder="", mbit=2, sink=""):
-        self.port, media = free_port(), free_port(socket.SOCK_DGRAM)
+        self.port, media = free_port("tcp"), free_port("udp")
         # A tee serves its branches in turn: what foxglovesink holds up comes late to the second.
         pipeline = (
             f"screamsrc port={media} ! rtplidardepay ! tee name=t t. ! identity ! foxglovesink port={self.port} {sink} "
