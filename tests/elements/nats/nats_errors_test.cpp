@@ -272,6 +272,12 @@ INSTANTIATE_TEST_SUITE_P(
                      "NATS cannot be used: cannot read /none."},
         WrongSetting{"natssink name=n tls-cert-file=/etc/passwd",
                      "NATS cannot be used: tls-cert-file and tls-key-file belong together."},
+        WrongSetting{"natssink name=n tls-key-file=/etc/passwd",
+                     "NATS cannot be used: tls-cert-file and tls-key-file belong together."},
+        WrongSetting{"natssink name=n token=t credentials-file=/etc/passwd",
+                     "NATS cannot be used: token and credentials-file exclude each other."},
+        WrongSetting{"natssink name=n jetstream=s jetstream-subjects=*.b",
+                     "jetstream-subjects \"*.b\" begins with a wildcard."},
         WrongSetting{"natssrc name=n durable=d ! fakesink", "durable needs jetstream."},
         WrongSetting{"natssrc name=n jetstream=s queue-group=q ! fakesink",
                      "queue-group with jetstream needs durable."}));

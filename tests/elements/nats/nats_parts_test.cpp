@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ext/nats/answers.h"
+#include "ext/nats/connection.h"
 #include "ext/nats/format_book.h"
 #include "ext/nats/jetstream.h"
 #include "ext/nats/message.h"
@@ -142,8 +143,11 @@ TEST_F(NatsParts, AFormatKnowsHowLargeItsBuffersAre) {
   EXPECT_FALSE(imu->Fits(97));
   const auto pose = FormatOf("application/x-odometry", &why);
   ASSERT_TRUE(pose);
-  EXPECT_TRUE(pose->Fits(64));
-  EXPECT_FALSE(pose->Fits(65));
+  const auto read = StreamFormat::FromText(pose->text());
+  for (const std::size_t size : {0U, 63U, 64U, 65U, 351U, 352U, 353U}) {
+    EXPECT_EQ(pose->Fits(size), size == 64 || size == 352) << size;
+    EXPECT_EQ(read->Fits(size), pose->Fits(size)) << size;
+  }
   EXPECT_FALSE(FormatOf("application/x-imu", &why));
   EXPECT_FALSE(FormatOf("application/x-pointcloud2, width=(int)4", &why));
   EXPECT_FALSE(FormatOf("video/x-raw", &why));
@@ -312,7 +316,11 @@ TEST_F(NatsParts, NamesThatTheServerWouldMisreadAreRefused) {
                           "_INBOX.x", "gr\xc3\xbc"})
     EXPECT_NE(CheckSubject(bad), "") << bad;
   EXPECT_NE(CheckSubject(std::string(300, 'a')), "");
+  EXPECT_EQ(CheckSubject(std::string(200, 'a')), "");
+  EXPECT_NE(CheckSubject(std::string(201, 'a')), "");
   EXPECT_EQ(CheckName("black-box_2"), "");
+  EXPECT_EQ(CheckName(std::string(64, 'a')), "");
+  EXPECT_NE(CheckName(std::string(65, 'a')), "");
   for (const char* bad : {"a.b", "a b", "a*", "a/b", "a>"}) EXPECT_NE(CheckName(bad), "") << bad;
 }
 
@@ -332,6 +340,40 @@ TEST_F(NatsParts, AnswersAreKnownByTheirWords) {
   EXPECT_TRUE(Covers(subjects->All(), subjects->Of(17)));
   for (const char* text : {"", "-1", "1x", " 1", "99999999999999999999"})
     EXPECT_FALSE(ToNumber(text)) << text;
+}
+
+TEST_F(NatsParts, AnAnswerOfJetStreamNamesItsStreamOrIsAnError) {
+  const auto error_of = [](const std::string& text) {
+    natsMsg* raw = nullptr;
+    EXPECT_EQ(natsMsg_Create(&raw, "a", nullptr, text.data(), static_cast<int>(text.size())),
+              NATS_OK);
+    const MessagePtr answer(raw);
+    return ErrorOfAck(raw);
+  };
+  EXPECT_EQ(error_of(R"({"stream":"s","seq":1})"), "");
+  for (const char* bad : {"", "{}", R"({"error":{"code":503}})", R"({"stream":"s","error":{}})"})
+    EXPECT_EQ(error_of(bad), std::string("JetStream refuses a message: ") + bad);
+  EXPECT_EQ(error_of(std::string(300, 'x')).size(), 200 + error_of("").size());
+}
+
+TEST_F(NatsParts, OnlyMessagesThatAreKeptHaveAnId) {
+  const gst::BufferPtr buffer = Bytes(10);
+  for (const char* reply : {static_cast<const char*>(nullptr), "answers.17"}) {
+    const MessagePtr message = WriteMessage("a.b", reply, kId, {1, 17}, buffer.get());
+    const char* id = nullptr;
+    const natsStatus found = natsMsgHeader_Get(message.get(), "Nats-Msg-Id", &id);
+    EXPECT_EQ(found == NATS_OK, reply != nullptr);
+    if (found == NATS_OK) {
+      EXPECT_EQ(id, PlaceText({1, 17}));
+    }
+  }
+}
+
+TEST(NatsUrls, AreShownWithoutTheirUsers) {
+  EXPECT_EQ(WithoutUser("nats://host:4222"), "nats://host:4222");
+  EXPECT_EQ(WithoutUser("nats://me:p@ss@host:4222,tls://you@other"),
+            "nats://host:4222, tls://other");
+  EXPECT_EQ(WithoutUser("me:secret@host"), "host");
 }
 
 TEST(SourceAccount, CountsWhatIsMissingUntilItComes) {
