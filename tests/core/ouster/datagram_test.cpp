@@ -241,7 +241,47 @@ TEST_P(Fragments, WithoutEndHoldNoMoreThanSomeMemory) {
   }
 }
 
+TEST_P(Fragments, BehindTheEndDiscardTheirDatagram) {
+  const auto longer = Cut(Udp(Payload(4000)), 1480);
+  const auto shorter = Cut(Udp(Payload(1592)), 1480);
+  UdpExtractor extractor;
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(shorter[1])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(longer[2])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(shorter[0])));
+}
+
 INSTANTIATE_TEST_SUITE_P(BothVersions, Fragments, ::testing::Bool());
+
+TEST(Datagrams, StandBehindTheExtensionsOfIpv6) {
+  const Bytes payload = Payload(100);
+  for (const std::uint8_t type : Bytes{0, 43, 60}) {
+    for (const std::uint8_t units : Bytes{0, 1, 5}) {
+      Bytes body = {17, units};
+      body.resize(8 + std::size_t{units} * 8);
+      const Bytes udp = Udp(payload);
+      body.insert(body.end(), udp.begin(), udp.end());
+      Bytes packet = Ipv6(body);
+      packet[6] = type;
+      UdpExtractor extractor;
+      const auto datagram = extractor.Extract(LinkType::kRaw, View(packet));
+      ASSERT_TRUE(datagram) << int{type} << " " << int{units};
+      EXPECT_EQ(datagram->payload, payload);
+    }
+  }
+}
+
+TEST(Datagrams, AreAsLongAsTheirHeaderAtLeast) {
+  for (std::uint8_t length = 0; length < 12; ++length) {
+    Bytes udp = Udp(Payload(4));
+    udp[5] = length;
+    UdpExtractor extractor;
+    const auto datagram = extractor.Extract(LinkType::kRaw, View(Ipv4(udp)));
+    ASSERT_EQ(datagram.has_value(), length >= 8) << int{length};
+    if (datagram) {
+      EXPECT_EQ(datagram->payload.size(), length - 8U);
+    }
+  }
+}
 
 TEST(Datagrams, ACutFrameGivesNone) {
   const Bytes whole = Ethernet(Ipv4(Udp(Payload(100))), 0x0800);

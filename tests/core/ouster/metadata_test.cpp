@@ -63,6 +63,9 @@ TEST(Metadata, TellsThatTheStreamIsSentNowhere) {
   json root = Load("windowed_frame1_0.json");
   std::string error;
   EXPECT_FALSE(Parse(root, &error)->switched_off);
+  root["config_params"]["udp_port_lidar"] = 0;
+  EXPECT_TRUE(Parse(root, &error)->switched_off);
+  root["config_params"]["udp_port_lidar"] = 7502;
   root["config_params"]["udp_dest"] = "";
   auto m = Parse(root, &error);
   ASSERT_TRUE(m) << error;
@@ -77,6 +80,41 @@ TEST(Metadata, TellsThatTheStreamIsSentNowhere) {
   EXPECT_NE(error.find("switched off"), std::string::npos);
 }
 
+TEST(Metadata, TakesTheRateOfTheModeWhereItHasNone) {
+  json root = Load("windowed_frame1_0.json");
+  root["config_params"]["lidar_mode"] = "512x20";
+  root["lidar_data_format"]["fps"] = 0;
+  std::string error;
+  const auto m = Parse(root, &error);
+  ASSERT_TRUE(m) << error;
+  EXPECT_DOUBLE_EQ(m->scans_per_second, 20);
+}
+
+TEST(Metadata, KnowsWhereTheBeamsOfEachSensorBegin) {
+  json root = Load("windowed_frame1_0.json");
+  root["beam_intrinsics"].erase("lidar_origin_to_beam_origin_mm");
+  root["beam_intrinsics"].erase("beam_to_lidar_transform");
+  for (const auto& [line, origin_m] :
+       {std::pair("OS-0-128", 0.02767), std::pair("OS-1-32-G", 0.015806),
+        std::pair("OS-2-64", 0.013762), std::pair("another", 0.012163)}) {
+    root["sensor_info"]["prod_line"] = line;
+    std::string error;
+    const auto m = Parse(root, &error);
+    ASSERT_TRUE(m) << error;
+    EXPECT_NEAR(m->model.beam_to_lidar_x_m, origin_m, 1e-9) << line;
+  }
+}
+
+TEST(Metadata, OfScansLargerThanAnySensorsIsRefused) {
+  json root = Load("windowed_frame1_0.json");
+  root["lidar_data_format"]["columns_per_frame"] = SensorModel::kMaxColumns;
+  root["lidar_data_format"]["pixels_per_column"] = SensorModel::kMaxBeams;
+  root["lidar_data_format"]["columns_per_packet"] = 1;
+  std::string error;
+  EXPECT_FALSE(Parse(root, &error));
+  EXPECT_EQ(error, "lidar_data_format gives scans larger than any sensor's");
+}
+
 TEST(Metadata, PixelsMayHaveAnglesOfTheirOwn) {
   Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
   const std::size_t pixels = std::size_t{32} * 1024;
@@ -89,6 +127,8 @@ TEST(Metadata, PixelsMayHaveAnglesOfTheirOwn) {
   ASSERT_TRUE(back) << error;
   EXPECT_EQ(back->pixel_angles.azimuth_deg, m.pixel_angles.azimuth_deg);
   EXPECT_EQ(back->pixel_angles.altitude_deg, m.pixel_angles.altitude_deg);
+  EXPECT_DOUBLE_EQ(back->model.beams[3].azimuth_deg, 60 - 512 * 0.125);  // of the middle column
+  EXPECT_DOUBLE_EQ(back->model.beams[3].altitude_deg, 13);
   const PixelProjection projection(*back);
   // Beam 16 lies flat; column 480 looks along x, which lidar_to_sensor turns around.
   const auto p = projection.Point(16, 480, 10'000);
@@ -122,6 +162,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Damage{"/lidar_data_format/columns_per_frame", "0"},
                       Damage{"/lidar_data_format/columns_per_frame", "-512"},
                       Damage{"/lidar_data_format/columns_per_frame", "1e300"},
+                      Damage{"/lidar_data_format/columns_per_frame", "512.5"},
+                      Damage{"/lidar_data_format/columns_per_packet", "16.5"},
                       Damage{"/lidar_data_format/columns_per_frame", "\"512\""},
                       Damage{"/lidar_data_format/columns_per_frame", ""},
                       Damage{"/lidar_data_format/fps", "0"},
