@@ -24,14 +24,14 @@ void PlaceOnBeams(const std::vector<Sighting>& points, const BeamTable& table,
     const Sighting& s = points[i];
     const BeamLocator::Found found = locator.Find(s);
     const BeamTable::Beam& beam = table.beams[found.beam];
-    std::int32_t azimuth = s.azimuth - beam.offset;
-    if (has_sides) azimuth -= static_cast<std::int32_t>(std::lround(SideAngle(beam, s.rho_m)));
+    std::int32_t azimuth = s.azimuth;
+    if (has_sides) azimuth -= ToNearest(SideAngle(beam, s.rho_m));
     PlacedPoint& p = (*placed)[i];
     p.along_m = found.along_m;
     p.above_m = found.above_m;
     if (table.bends) {
       const double angle = std::atan2(found.above_m, found.along_m);
-      p.bend = static_cast<std::int32_t>(std::lround(angle / kRadians));
+      p.bend = ToNearest(angle / kRadians);
       p.along_m = std::hypot(found.along_m, found.above_m);
       p.above_m = 0;
     }
@@ -40,12 +40,17 @@ void PlaceOnBeams(const std::vector<Sighting>& points, const BeamTable& table,
   }
 }
 
+/// Returns the azimuth less the offset of the beam.
+std::int32_t StraightOf(const PlacedPoint& p, const BeamTable& table) {
+  return (p.azimuth - table.beams[p.beam].offset) & (kTurn - 1);
+}
+
 void PlaceInColumns(const BeamTable& table, std::vector<PlacedPoint>* placed) {
   const ColumnFinder finder(table);
   for (PlacedPoint& p : *placed) {
-    const std::int32_t azimuth = p.azimuth + table.beams[p.beam].offset;
-    p.column = finder.ColumnOf(p.beam, azimuth);
-    p.residual = Wrapped(azimuth - table.AzimuthOf(p.beam, p.column));
+    const ColumnFinder::Found found = finder.Find(p.beam, StraightOf(p, table));
+    p.column = found.column;
+    p.residual = found.residual;
   }
 }
 
@@ -91,23 +96,21 @@ bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, const std::vect
   constexpr double kAlike = 0.97;
   if (table_->has_path()) return PlaceOnNewPath(points, pulses, placed);
   PlaceOnBeams(points, *table_, placed);
-  PlaceInColumns(*table_, placed);
-  if ((table_->grains == 0 || table_->bends) && FitOf(points, *placed) >= kAlike * fit_)
-    return true;
-  if (table_->bends) {
-    ShiftColumns(*placed, &*table_);
-    PlaceOnBeams(points, *table_, placed);
+  const auto fit_in_columns = [&] {
     PlaceInColumns(*table_, placed);
     return FitOf(points, *placed) >= kAlike * fit_;
+  };
+  const bool may_stay = table_->grains == 0 || table_->bends;
+  if (may_stay && fit_in_columns()) return true;
+  if (table_->bends) {
+    ShiftColumns(*placed, &*table_);
+    return fit_in_columns();
   }
   std::vector<StraightAzimuth> straight;
   straight.reserve(placed->size());
-  for (const PlacedPoint& p : *placed) straight.push_back({p.azimuth, p.beam});
+  for (const PlacedPoint& p : *placed) straight.push_back({StraightOf(p, *table_), p.beam});
   const bool updated = UpdateColumns(straight, &*table_);
-  PlaceOnBeams(points, *table_, placed);
-  PlaceInColumns(*table_, placed);
-  if (!updated) return false;
-  return FitOf(points, *placed) >= kAlike * fit_;
+  return fit_in_columns() && updated;
 }
 
 const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,

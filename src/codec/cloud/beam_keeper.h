@@ -13,7 +13,7 @@ namespace lidar::codec::cloud {
 struct PlacedPoint {
   double along_m = 0;         // of the beam
   double above_m = 0;         // height of the point above it; 0 if beams bend
-  std::int32_t azimuth = 0;   // less the offset of the beam, and less what its side adds
+  std::int32_t azimuth = 0;   // less what the side of the beam adds
   std::int32_t residual = 0;  // distance from the column's azimuth
   std::int32_t bend = 0;      // elevation above the beam's, if beams bend or are on a path
   std::uint32_t beam = 0;

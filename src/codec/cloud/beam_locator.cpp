@@ -19,8 +19,8 @@ BeamLocator::BeamLocator(const BeamTable& table) {
   buckets_.assign(kBuckets, 0);
   std::uint32_t next = 0;
   for (std::uint32_t beam = 0; beam < lines_.size(); ++beam) {
-    const double tangent = lines_[beam].sine / std::max(lines_[beam].cosine, 1e-9);
-    for (const std::uint32_t at = BucketOf(tangent); next <= at; ++next)
+    const std::uint32_t at = BucketOf(lines_[beam].sine, std::max(lines_[beam].cosine, 1e-9));
+    for (; next <= at; ++next)
       buckets_[next] = static_cast<std::uint16_t>(beam == 0 ? 0 : beam - 1);
   }
   for (; next < kBuckets; ++next) buckets_[next] = static_cast<std::uint16_t>(lines_.size() - 1);

@@ -20,8 +20,8 @@ class BeamLocator {
 
   /// Returns the nearest beam.
   Found Find(const Sighting& s) const {
-    const double tangent = (s.z_m - middle_height_m_) / std::max(s.rho_m, 1e-6);
-    const std::uint32_t guess = buckets_[BucketOf(tangent)];
+    const std::uint32_t guess =
+        buckets_[BucketOf(s.z_m - middle_height_m_, std::max(s.rho_m, 1e-6))];
     const std::uint32_t first = guess < around_ ? 0 : guess - around_;
     const std::uint32_t end =
         std::min(guess + around_ + 2, static_cast<std::uint32_t>(lines_.size()));
@@ -48,10 +48,9 @@ class BeamLocator {
   };
   static constexpr std::uint32_t kBuckets = 8'192;
 
-  /// Maps all tangents to 1 to -1.
-  static double Squeezed(double tangent) { return tangent / (1 + std::abs(tangent)); }
-  static std::uint32_t BucketOf(double tangent) {
-    return static_cast<std::uint32_t>((1 - Squeezed(tangent)) * (0.4999 * kBuckets));
+  /// Maps all directions to 1 to -1, as the tangent rises.
+  static std::uint32_t BucketOf(double z, double rho) {
+    return static_cast<std::uint32_t>((1 - z / (rho + std::abs(z))) * (0.4999 * kBuckets));
   }
 
   std::vector<Line> lines_;

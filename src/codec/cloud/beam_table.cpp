@@ -29,6 +29,41 @@ constexpr unsigned kPeriodShift = 3;  // stored less one
 constexpr unsigned kBendsFlag = 32;
 constexpr unsigned kPathFlag = 64;
 
+/// Arc tangents of k / kParts.
+class ArcTable {
+ public:
+  static constexpr int kParts = 64;
+  constexpr ArcTable() {
+    for (int k = 1; k <= kParts; ++k) {
+      const double last = (k - 1.0) / kParts;
+      angles_[k] = angles_[k - 1] + OfSmall(1.0 / kParts / (1 + last * k / kParts));
+    }
+  }
+  /// The arc tangent of a number up to 1 / kParts, as exact as a double.
+  static constexpr double OfSmall(double t) {
+    const double s = t * t;
+    return t * (1 - s * (1.0 / 3 - s * (1.0 / 5 - s * (1.0 / 7 - s / 9))));
+  }
+  constexpr double operator[](int k) const { return angles_[k]; }
+
+ private:
+  double angles_[kParts + 1] = {};
+};
+constexpr ArcTable kArcs;
+
+/// Returns std::atan2(y, x), which takes four times as long. Both are floats.
+double AngleOf(double y, double x) {
+  const double wide = std::max(std::abs(x), std::abs(y));
+  const double narrow = std::min(std::abs(x), std::abs(y));
+  if (!(wide > 0)) return 0;
+  const int k = static_cast<int>(narrow / wide * ArcTable::kParts + 0.5);
+  const double part = k * (1.0 / ArcTable::kParts);
+  double angle = kArcs[k] + ArcTable::OfSmall((narrow - part * wide) / (wide + part * narrow));
+  if (std::abs(y) > std::abs(x)) angle = M_PI / 2 - angle;
+  if (x < 0) angle = M_PI - angle;
+  return y < 0 ? -angle : angle;
+}
+
 }  // namespace
 
 Sighting::Sighting(const Point& point) {
@@ -37,7 +72,7 @@ Sighting::Sighting(const Point& point) {
   z_m = static_cast<double>(point[2]);
   rho_m = std::sqrt(x * x + y * y);
   range_m = std::sqrt(x * x + y * y + z_m * z_m);
-  azimuth = static_cast<std::int32_t>(std::lround(std::atan2(y, x) / kRadians)) & (kTurn - 1);
+  azimuth = ToNearest(AngleOf(y, x) / kRadians) & (kTurn - 1);
 }
 
 bool BeamTable::has_offsets() const {
@@ -45,51 +80,61 @@ bool BeamTable::has_offsets() const {
                      [](const Beam& b) { return b.height_um != 0 || b.side_um != 0; });
 }
 
-ColumnFinder::ColumnFinder(const BeamTable& table) : table_(table) {
-  for (const std::uint32_t place : table.places)
-    angles_.push_back(static_cast<std::int32_t>(std::uint64_t{place} * kTurn / table.grains));
-  if (angles_.empty()) return;
+ColumnAngles::ColumnAngles(const BeamTable& table) : table_(table), angles_(table.columns()) {
+  BeamTable one;
+  one.turn = table.turn;
+  one.grains = table.grains;
+  one.places = table.places;
+  one.rate = table.rate;
+  one.beams.resize(1);
+  for (std::uint32_t i = 0; i < angles_.size(); ++i) angles_[i] = one.AzimuthOf(0, i);
+}
+
+ColumnFinder::ColumnFinder(const BeamTable& table) : table_(table), angles_(table) {
+  if (table.places.empty()) return;
+  const std::vector<std::int32_t>& angles = angles_.firings();
+  buckets_.reserve(1U << (kTurnBits - kShift));
   std::uint32_t place = 0;
   for (std::int32_t i = 0; i < 1 << (kTurnBits - kShift); ++i) {
-    while (place < table.columns() && angles_[place] < i << kShift) ++place;
+    while (place < table.columns() && angles[place] < i << kShift) ++place;
     buckets_.push_back(static_cast<std::uint16_t>(place));
   }
 }
 
-std::uint32_t ColumnFinder::ColumnOf(std::uint32_t beam, std::int32_t azimuth) const {
+ColumnFinder::Found ColumnFinder::Find(std::uint32_t beam, std::int32_t azimuth) const {
   const BeamTable::Beam& b = table_.beams[beam];
-  const std::int32_t away = (azimuth - b.offset) & (kTurn - 1);
+  const std::int32_t away = azimuth & (kTurn - 1);
+  const std::vector<std::int32_t>& angles = angles_.firings();
   const std::uint32_t columns = table_.columns();
-  if (angles_.empty() && table_.period == 1) {
-    const std::uint64_t parts = std::uint64_t{static_cast<std::uint32_t>(away)} * table_.turn;
+  const auto place = static_cast<std::uint32_t>(away);
+  const std::uint64_t parts = std::uint64_t{place} * table_.turn;
+  if (buckets_.empty() && table_.period == 1) {
     const std::uint64_t half = std::uint64_t{kTurn} * BeamTable::kParts / 2;
-    const auto column = static_cast<std::uint32_t>((parts + half) >> (kTurnBits + 8));
-    return column >= columns ? 0 : column;
+    const auto nearest = static_cast<std::uint32_t>((parts + half) >> (kTurnBits + 8));
+    const std::uint32_t column = nearest >= columns ? 0 : nearest;
+    return {column, Wrapped(away - angles[table_.FiringOf(beam, column)])};
   }
-  std::uint32_t first =
-      angles_.empty()
-          ? static_cast<std::uint32_t>(
-                std::uint64_t{static_cast<std::uint32_t>(away)} * table_.turn >> (kTurnBits + 8))
-          : buckets_[static_cast<std::uint32_t>(away) >> kShift];
   // A bucket holds less than one column.
+  const std::uint32_t first = buckets_.empty() ? static_cast<std::uint32_t>(parts >> (kTurnBits + 8))
+                                               : buckets_[place >> kShift];
   const std::uint32_t around = table_.period > 1 ? 2 : 1;
-  first += columns - around;
+  std::uint32_t firing = first + 2 * columns - around;
+  while (firing >= columns) firing -= columns;
+  std::uint32_t phase = table_.period > 1 ? firing % table_.period : 0;
   std::uint32_t best = 0;
-  std::int32_t least = kTurn;
+  std::int32_t residual = kTurn;
   for (std::uint32_t step = 0; step <= 2 * around; ++step) {
-    std::uint32_t firing = first + step;
-    while (firing >= columns) firing -= columns;
-    std::int32_t at = angles_.empty()
-                          ? static_cast<std::int32_t>(std::uint64_t{firing} * BeamTable::kParts *
-                                                      kTurn / table_.turn)
-                          : angles_[firing];
-    if (table_.period > 1) at += b.swings[firing % table_.period];
-    const std::int32_t off = std::abs(Wrapped(away - at));
-    if (off >= least) continue;
-    least = off;
-    best = firing;
+    std::int32_t at = angles[firing];
+    if (table_.period > 1) at += b.swings[phase];
+    const std::int32_t off = Wrapped(away - at);
+    if (std::abs(off) < std::abs(residual)) {
+      residual = off;
+      best = firing;
+    }
+    if (++phase >= table_.period) phase = 0;
+    if (++firing == columns) firing = phase = 0;
   }
-  return best >= b.delay ? best - b.delay : best + columns - b.delay;
+  return {best >= b.delay ? best - b.delay : best + columns - b.delay, residual};
 }
 
 bool BeamTable::has_reaches() const {

@@ -111,23 +111,51 @@ inline double SideAngle(const BeamTable::Beam& beam, double rho_m) {
   return beam.side_um == 0 ? 0 : 1e-6 * beam.side_um / std::max(rho_m, 1e-3) / kRadians;
 }
 
-/// Finds the columns of azimuths.
-class ColumnFinder {
- public:
-  explicit ColumnFinder(const BeamTable& table);
-  /// Returns the column with the nearest azimuth.
-  std::uint32_t ColumnOf(std::uint32_t beam, std::int32_t azimuth) const;
-
- private:
-  static constexpr unsigned kShift = kTurnBits - 14;  // to buckets
-  const BeamTable& table_;
-  std::vector<std::int32_t> angles_;    // of the places
-  std::vector<std::uint16_t> buckets_;  // the first place at or behind each
-};
-
 /// Wraps an angle to -kTurn / 2 to kTurn / 2.
 inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }
+
+/// Rounds as std::lround(), which is a call.
+inline std::int32_t ToNearest(double value) {
+  return static_cast<std::int32_t>(value < 0 ? value - 0.5 : value + 0.5);
+}
+
+/// Azimuths of a table's pixels without a division for each.
+class ColumnAngles {
+ public:
+  explicit ColumnAngles(const BeamTable& table);
+  /// Returns what BeamTable::AzimuthOf() does, less the offset of the beam, modulo a turn.
+  std::int32_t Of(std::uint32_t beam, std::uint32_t column) const {
+    const std::uint32_t firing = table_.FiringOf(beam, column);
+    if (table_.period == 1) return angles_[firing];
+    return angles_[firing] + table_.beams[beam].swings[firing % table_.period];
+  }
+  /// Angles of the firings, without swings.
+  const std::vector<std::int32_t>& firings() const { return angles_; }
+
+ private:
+  const BeamTable& table_;
+  std::vector<std::int32_t> angles_;
+};
+
+/// Finds the columns of azimuths.
+class ColumnFinder {
+ public:
+  /// A column and how far it is off.
+  struct Found {
+    std::uint32_t column = 0;
+    std::int32_t residual = 0;
+  };
+  explicit ColumnFinder(const BeamTable& table);
+  /// Returns the column with the nearest azimuth. `azimuth` is without the offset of the beam.
+  Found Find(std::uint32_t beam, std::int32_t azimuth) const;
+
+ private:
+  static constexpr unsigned kShift = kTurnBits - 14;  // to buckets
+  const BeamTable& table_;
+  ColumnAngles angles_;
+  std::vector<std::uint16_t> buckets_;  // the first place at or behind each; empty: even columns
+};
 
 }  // namespace lidar::codec::cloud

@@ -15,12 +15,18 @@ constexpr double kRoom = 1e-4;
 
 double HalfOf(unsigned depth) { return static_cast<double>(std::uint64_t{1} << (depth - 1)); }
 
+/// Is std::floor(), which is a call.
+double Floor(double value) {
+  const auto whole = static_cast<double>(static_cast<std::int64_t>(value));
+  return whole > value ? whole - 1 : whole;
+}
+
 CellPosition OwnCell(const Point& point, const CellGrid& grid, unsigned depth) {
   const double half = HalfOf(depth);
   const double step = static_cast<double>(grid.step_m);
   CellPosition cell;
   for (unsigned k = 0; k < 3; ++k)
-    cell[k] = static_cast<std::uint32_t>(std::floor(static_cast<double>(point[k]) / step) + half);
+    cell[k] = static_cast<std::uint32_t>(Floor(static_cast<double>(point[k]) / step) + half);
   return cell;
 }
 

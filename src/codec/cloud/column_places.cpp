@@ -32,8 +32,7 @@ double ResidualBits(const std::vector<BeamAzimuths>& beams, const BeamTable& tab
   double bits = 0;
   for (std::uint32_t b = 0; b < beams.size(); ++b)
     for (const BeamAzimuth& a : beams[b]) {
-      const std::uint32_t column = finder.ColumnOf(b, a.azimuth);
-      const double off = std::abs(Wrapped(a.azimuth - table.AzimuthOf(b, column)));
+      const double off = std::abs(finder.Find(b, a.azimuth - table.beams[b].offset).residual);
       const double off_cm = 100 * off * kRadians * static_cast<double>(a.rho_m);
       bits += std::log2(1 + off_cm);
     }
@@ -81,7 +80,8 @@ class DelaySearch {
     const ColumnFinder finder(table_);
     columns_.resize(beams.size());
     for (std::uint32_t b = 0; b < beams.size(); ++b)
-      for (const BeamAzimuth& a : beams[b]) columns_[b].push_back(finder.ColumnOf(b, a.azimuth));
+      for (const BeamAzimuth& a : beams[b])
+        columns_[b].push_back(finder.Find(b, a.azimuth - table_.beams[b].offset).column);
   }
   void Run() {
     std::size_t largest = 0;
@@ -216,8 +216,7 @@ void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table) {
   for (std::uint32_t b = 0; b < table->rows(); ++b) {
     std::vector<std::int32_t> residuals;
     for (const BeamAzimuth& a : beams[b]) {
-      const std::uint32_t column = finder.ColumnOf(b, a.azimuth);
-      const std::int32_t off = Wrapped(a.azimuth - table->AzimuthOf(b, column));
+      const std::int32_t off = finder.Find(b, a.azimuth - table->beams[b].offset).residual;
       if (std::abs(off) < reach) residuals.push_back(off);
     }
     if (residuals.empty()) continue;

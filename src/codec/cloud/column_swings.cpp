@@ -24,9 +24,9 @@ Swing FindSwing(const BeamAzimuths& azimuths, std::uint32_t beam, const BeamTabl
   std::vector<double> histogram(period * kParts, 0);
   const ColumnFinder finder(table);
   for (const BeamAzimuth& a : azimuths) {
-    const std::uint32_t column = finder.ColumnOf(beam, a.azimuth);
-    const double off = Wrapped(a.azimuth - table.AzimuthOf(beam, column)) / step;
-    const double at = (table.FiringOf(beam, column) % period + off + 0.5 / kParts) * kParts;
+    const ColumnFinder::Found found = finder.Find(beam, a.azimuth - table.beams[beam].offset);
+    const double off = found.residual / step;
+    const double at = (table.FiringOf(beam, found.column) % period + off + 0.5 / kParts) * kParts;
     const auto size = static_cast<std::int64_t>(histogram.size());
     const auto place = static_cast<std::int64_t>(std::floor(at));
     histogram[static_cast<std::size_t>((place + size) % size)] += 1;
@@ -110,9 +110,7 @@ void TurnSwings(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) 
     for (std::size_t i = 0; i < azimuths.size() && counted < 2'000; i += 7) {
       const StraightAzimuth& a = azimuths[i];
       if (!Swings(table->beams[a.beam])) continue;
-      const std::int32_t azimuth = a.azimuth + table->beams[a.beam].offset;
-      const std::uint32_t column = finder.ColumnOf(a.beam, azimuth);
-      sum += std::min(std::abs(Wrapped(azimuth - turned.AzimuthOf(a.beam, column))), 512);
+      sum += std::min(std::abs(finder.Find(a.beam, a.azimuth).residual), 512);
       ++counted;
     }
     if (turn > 0 && sum >= least) continue;
