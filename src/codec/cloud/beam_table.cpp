@@ -85,12 +85,13 @@ ColumnAngles::ColumnAngles(const BeamTable& table) : table_(table), angles_(tabl
   one.turn = table.turn;
   one.grains = table.grains;
   one.places = table.places;
-  one.rate = table.rate;
   one.beams.resize(1);
   for (std::uint32_t i = 0; i < angles_.size(); ++i) angles_[i] = one.AzimuthOf(0, i);
 }
 
 ColumnFinder::ColumnFinder(const BeamTable& table) : table_(table), angles_(table) {
+  for (const BeamTable::Beam& beam : table.beams)
+    swings_.push_back(table.period > 1 && beam.Swings());
   if (table.places.empty()) return;
   const std::vector<std::int32_t>& angles = angles_.firings();
   buckets_.reserve(1U << (kTurnBits - kShift));
@@ -115,17 +116,19 @@ ColumnFinder::Found ColumnFinder::Find(std::uint32_t beam, std::int32_t azimuth)
     return {column, Wrapped(away - angles[table_.FiringOf(beam, column)])};
   }
   // A bucket holds less than one column.
-  const std::uint32_t first = buckets_.empty() ? static_cast<std::uint32_t>(parts >> (kTurnBits + 8))
-                                               : buckets_[place >> kShift];
-  const std::uint32_t around = table_.period > 1 ? 2 : 1;
+  const std::uint32_t first = buckets_.empty()
+                                  ? static_cast<std::uint32_t>(parts >> (kTurnBits + 8))
+                                  : buckets_[place >> kShift];
+  const bool swings = swings_[beam];
+  const std::uint32_t around = swings ? 2 : 1;
   std::uint32_t firing = first + 2 * columns - around;
   while (firing >= columns) firing -= columns;
-  std::uint32_t phase = table_.period > 1 ? firing % table_.period : 0;
+  std::uint32_t phase = swings ? firing % table_.period : 0;
   std::uint32_t best = 0;
   std::int32_t residual = kTurn;
   for (std::uint32_t step = 0; step <= 2 * around; ++step) {
     std::int32_t at = angles[firing];
-    if (table_.period > 1) at += b.swings[phase];
+    if (swings) at += b.swings[phase];
     const std::int32_t off = Wrapped(away - at);
     if (std::abs(off) < std::abs(residual)) {
       residual = off;

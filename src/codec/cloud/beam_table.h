@@ -43,6 +43,8 @@ struct BeamTable {
         swings{};               // of the next `period` columns, again and again
     std::int32_t reach_um = 0;  // of range 0 along the beam
     std::uint32_t delay = 0;    // delay of the beam in columns; below columns()
+
+    bool Swings() const { return swings != decltype(swings){}; }
   };
   static constexpr std::uint32_t kParts = 256;
   static constexpr std::uint32_t kMostBeams = 1'024;
@@ -156,6 +158,7 @@ class ColumnFinder {
   const BeamTable& table_;
   ColumnAngles angles_;
   std::vector<std::uint16_t> buckets_;  // the first place at or behind each; empty: even columns
+  std::vector<bool> swings_;            // has the beam swings?
 };
 
 }  // namespace lidar::codec::cloud

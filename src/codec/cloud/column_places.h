@@ -33,7 +33,6 @@ std::vector<std::uint32_t> WithGapsFilled(const std::vector<std::uint32_t>& plac
                                           std::uint32_t grains);
 /// Sets the delays so that column 0 of all beams looks ahead.
 void AlignDelays(BeamTable* table);
-inline bool Swings(const BeamTable::Beam& beam) { return beam.swings != BeamTable::Beam{}.swings; }
 /// Turns the swings to their present firings.
 void TurnSwings(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);
 

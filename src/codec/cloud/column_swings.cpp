@@ -109,7 +109,7 @@ void TurnSwings(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) 
     std::size_t counted = 0;
     for (std::size_t i = 0; i < azimuths.size() && counted < 2'000; i += 7) {
       const StraightAzimuth& a = azimuths[i];
-      if (!Swings(table->beams[a.beam])) continue;
+      if (!table->beams[a.beam].Swings()) continue;
       sum += std::min(std::abs(finder.Find(a.beam, a.azimuth).residual), 512);
       ++counted;
     }

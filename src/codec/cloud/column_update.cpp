@@ -36,7 +36,7 @@ std::vector<std::uint32_t> VotedPlaces(const std::vector<StraightAzimuth>& azimu
   std::vector<std::uint32_t> votes(table.grains, 0);
   std::size_t all = 0;
   for (const StraightAzimuth& a : azimuths) {
-    if (table.period > 1 && Swings(table.beams[a.beam])) continue;
+    if (table.period > 1 && table.beams[a.beam].Swings()) continue;
     const std::uint64_t grain =
         (std::uint64_t{static_cast<std::uint32_t>(a.azimuth)} * table.grains + kTurn / 2) / kTurn;
     ++votes[grain == table.grains ? 0 : grain];
