@@ -67,6 +67,24 @@ class RangeGrid {
   std::uint32_t BinOf(std::uint32_t range_mm) const {
     return static_cast<std::uint32_t>(std::uint64_t{range_mm / unit_mm_} * kParts / parts_);
   }
+  /// BinOf() of many ranges, without divisions.
+  class BinFinder {
+   public:
+    explicit BinFinder(const RangeGrid& grid)
+        : per_mm_(1.0 / grid.unit_mm_), per_part_(1.0 / grid.parts_) {}
+    /// `range_mm` is up to kMaxRangeMm.
+    std::uint32_t Of(std::uint32_t range_mm) const {
+      // A half keeps quotients away from the next integer by more than rounding moves them.
+      const auto cells =
+          static_cast<std::int32_t>((static_cast<std::int32_t>(range_mm) + 0.5) * per_mm_);
+      return static_cast<std::uint32_t>(
+          static_cast<std::int32_t>((cells * double{kParts} + 0.5) * per_part_));
+    }
+
+   private:
+    double per_mm_;
+    double per_part_;
+  };
   std::uint32_t RangeOf(std::uint32_t bin) const {
     return static_cast<std::uint32_t>(Middle<std::uint64_t>(bin));
   }

@@ -23,33 +23,56 @@ SensorModel ModelOf(const BeamTable& table) {
 }
 
 std::vector<std::int32_t> BinsOf(const RangeImage& image, const RangeGrid& grid) {
-  std::vector<std::int32_t> bins;
-  bins.reserve(image.size());
-  for (const std::uint32_t range : image.ranges)
-    bins.push_back(range == 0 ? -1 : static_cast<std::int32_t>(grid.BinOf(range)));
+  const RangeGrid::BinFinder finder(grid);
+  std::vector<std::int32_t> bins(image.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const std::uint32_t range = image.ranges[i];
+    bins[i] = range == 0 ? -1 : static_cast<std::int32_t>(finder.Of(range));
+  }
   return bins;
 }
+
+/// A sum of logarithms, which are taken of products: one for some thirty factors.
+class LogSum {
+ public:
+  /// `factor` is from 1 to 2^23.
+  void Add(double factor) {
+    constexpr double kLarge = 0x1p900;
+    product_ *= factor;
+    if (product_ < kLarge) return;
+    bits_ += std::log2(product_);
+    product_ = 1;
+  }
+  double bits() const { return bits_ + std::log2(product_); }
+
+ private:
+  double product_ = 1;
+  double bits_ = 0;
+};
 
 /// Chooses the guess with the shorter residuals.
 ResidualGuess BestGuess(const RangeImage& image, std::uint32_t tangent_um,
                         const std::vector<std::int32_t>& residuals) {
-  std::array<double, kResidualGuesses> costs{};
+  std::array<LogSum, kResidualGuesses> costs{};
   std::vector<std::int32_t> of_column(image.columns, 0);
   for (std::uint32_t beam = 0; beam < image.beams; ++beam) {
     std::array<std::int32_t, 2> last{};
     for (std::uint32_t column = 0; column < image.columns; ++column) {
       const std::size_t pixel = std::size_t{beam} * image.columns + column;
       if (image.ranges[pixel] == 0) continue;
-      const double width = ResidualWidth(tangent_um, image.ranges[pixel]);
+      const double per_width = 1.0 / ResidualWidth(tangent_um, image.ranges[pixel]);
       const std::array<std::int32_t, kResidualGuesses> guesses = {0, of_column[column], last[0],
                                                                   last[1]};
       for (unsigned k = 0; k < kResidualGuesses; ++k)
-        costs[k] += std::log2(1 + std::abs(residuals[pixel] - guesses[k]) / width);
+        costs[k].Add(1 + std::abs(residuals[pixel] - guesses[k]) * per_width);
       last = {residuals[pixel], last[0]};
       of_column[column] = residuals[pixel];
     }
   }
-  const auto best = std::min_element(costs.begin(), costs.end()) - costs.begin();
+  const auto best =
+      std::min_element(costs.begin(), costs.end(),
+                       [](const LogSum& a, const LogSum& b) { return a.bits() < b.bits(); }) -
+      costs.begin();
   return static_cast<ResidualGuess>(best);
 }
 
@@ -81,9 +104,14 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
               RangeGrid* grid) {
   if (settings.effort < EffortControl::kHighest) {
     *grid = settings.grid;
-    *decoded = image;
-    for (std::uint32_t& range : decoded->ranges)
-      if (range != 0) range = grid->RangeOf(grid->BinOf(range));
+    const RangeGrid::BinFinder bins(*grid);
+    decoded->beams = image.beams;
+    decoded->columns = image.columns;
+    decoded->ranges.resize(image.size());
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      const std::uint32_t range = image.ranges[i];
+      decoded->ranges[i] = range == 0 ? 0 : grid->RangeOf(bins.Of(range));
+    }
     return true;
   }
   // The encoder may have chosen other bins.
@@ -130,8 +158,13 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   // The next parts are coded by the decoded ranges.
   RangeImage decoded;
   RangeGrid grid;
-  if (!ComeBack(image, settings, block, model, &decoded, &grid)) return false;
-  const auto bins = BinsOf(decoded, grid);
+  const bool has_extras = !list->extras.empty();
+  if ((has_extras || errors.tangent_um > 0 || errors.bend_um > 0) &&
+      !ComeBack(image, settings, block, model, &decoded, &grid)) {
+    return false;
+  }
+  std::vector<std::int32_t> bins;
+  if (has_extras) bins = BinsOf(decoded, grid);
   auto extras = ExtraBins(*list, bins, grid, levels);
 
   ResidualSettings azimuths{errors.tangent_um, ResidualGuess::kNone};
@@ -236,16 +269,17 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
 }
 
 /// Returns false for an invalid range.
-bool AppendPixel(const DecodedSection& section, std::size_t pixel, std::uint32_t range_mm,
-                 std::uint8_t level, XyzCloud* cloud, PointPlaces* places) {
+bool AppendPixel(const DecodedSection& section, const ColumnAngles& angles, std::size_t pixel,
+                 std::uint32_t range_mm, std::uint8_t level, XyzCloud* cloud, PointPlaces* places) {
   if (range_mm == 0 || range_mm > RangeGrid::kMaxRangeMm) return false;
   const auto beam = static_cast<std::uint32_t>(pixel / section.image.columns);
   const std::uint32_t column =
       section.image.first_column + static_cast<std::uint32_t>(pixel % section.image.columns);
   const bool has_path = section.table.has_path();
-  const PathDirection direction = has_path ? section.directions[pixel]
-                                           : PathDirection{section.table.AzimuthOf(beam, column),
-                                                           section.table.beams[beam].elevation};
+  const PathDirection direction =
+      has_path ? section.directions[pixel]
+               : PathDirection{section.table.beams[beam].offset + angles.Of(beam, column),
+                               section.table.beams[beam].elevation};
   const BeamTable::Slope slope = section.table.bends || has_path
                                      ? BeamTable::Slope(direction.elevation + section.bends[pixel])
                                      : section.slopes[beam];
@@ -273,18 +307,20 @@ bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const Intensi
         BeamPath(section.table.rate, section.table.columns())
             .Trace(section.table.path, section.image.first_column, section.image.columns);
   if (places != nullptr) *places = {section.table.rows(), section.table.columns(), {}};
+  const ColumnAngles angles(section.table);
   const RangeImage& image = section.image;
+  cloud->xyz.reserve(cloud->xyz.size() + 3 * (section.returns + section.extras.size()));
   auto extra = section.extras.begin();
   const auto last_bin = static_cast<std::int64_t>(section.grid.BinOf(RangeGrid::kMaxRangeMm));
   for (std::size_t i = 0; i < image.size(); ++i) {
     if (image.ranges[i] == 0) continue;
     const std::uint8_t level = image.intensity.empty() ? std::uint8_t{0} : image.intensity[i];
-    if (!AppendPixel(section, i, image.ranges[i], level, cloud, places)) return false;
+    if (!AppendPixel(section, angles, i, image.ranges[i], level, cloud, places)) return false;
     for (; extra != section.extras.end() && extra->pixel == i; ++extra) {
       const std::int64_t bin = std::int64_t{section.grid.BinOf(image.ranges[i])} + extra->bin;
       if (bin < 0 || bin > last_bin) return false;
       const std::uint32_t range = section.grid.RangeOf(static_cast<std::uint32_t>(bin));
-      if (!AppendPixel(section, i, range, extra->level, cloud, places)) return false;
+      if (!AppendPixel(section, angles, i, range, extra->level, cloud, places)) return false;
     }
   }
   return true;

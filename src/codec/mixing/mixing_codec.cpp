@@ -65,9 +65,9 @@ struct MixingEncoder::State : MixingCoderState {
     slice.has_gaps = false;
     slice.bins.resize(image.size());
     const std::uint32_t most = static_cast<std::uint32_t>(mixing::kMaxBins);
+    const RangeGrid::BinFinder bins(settings.grid);
     for (std::size_t i = 0; i < image.size(); ++i) {
-      const std::uint32_t bin =
-          settings.grid.BinOf(std::min(image.ranges[i], RangeGrid::kMaxRangeMm));
+      const std::uint32_t bin = bins.Of(std::min(image.ranges[i], RangeGrid::kMaxRangeMm));
       if (bin >= most) return false;
       const bool is_gap = image.ranges[i] == 0;
       slice.has_gaps = slice.has_gaps || is_gap;

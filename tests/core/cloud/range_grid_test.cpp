@@ -22,6 +22,17 @@ TEST(RangeGrids, TakeAnyStepDownToTheSensorsUnit) {
   EXPECT_EQ(RangeGrid::ForStep(1e9, 8).parts(), RangeGrid(8, RangeGrid::kMaxCells).parts());
 }
 
+TEST(RangeGrids, FindTheBinsOfManyRangesAsThoseOfOne) {
+  for (const std::uint32_t unit : {1U, 3U, 4U, 8U, 1'000U})
+    for (const std::uint32_t parts : {256U, 257U, 41U * 256, 65'535U * 256}) {
+      const RangeGrid grid = RangeGrid::OfParts(unit, parts);
+      const RangeGrid::BinFinder finder(grid);
+      for (std::uint32_t range = 0; range < 70'000; ++range)
+        for (const std::uint32_t r : {range, RangeGrid::kMaxRangeMm - range})
+          ASSERT_EQ(finder.Of(r), grid.BinOf(r)) << r << " of " << unit << ", " << parts;
+    }
+}
+
 class GridErrors : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(GridErrors, AreReachedAndNeverPassed) {
