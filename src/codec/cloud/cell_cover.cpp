@@ -13,8 +13,6 @@ namespace {
 /// Margin for the rounding of floats: grids are finer, and errors count as larger.
 constexpr double kRoom = 1e-4;
 
-double HalfOf(unsigned depth) { return static_cast<double>(std::uint64_t{1} << (depth - 1)); }
-
 /// Is std::floor(), which is a call.
 double Floor(double value) {
   const auto whole = static_cast<double>(static_cast<std::int64_t>(value));
@@ -22,21 +20,13 @@ double Floor(double value) {
 }
 
 CellPosition OwnCell(const Point& point, const CellGrid& grid, unsigned depth) {
-  const double half = HalfOf(depth);
+  const double half = CellGrid::HalfOf(depth);
   const double step = static_cast<double>(grid.step_m);
   CellPosition cell;
   for (unsigned k = 0; k < 3; ++k)
-    cell[k] = static_cast<std::uint32_t>(Floor(static_cast<double>(point[k]) / step) + half);
+    cell[k] = static_cast<std::uint32_t>(
+        static_cast<std::int64_t>(Floor(static_cast<double>(point[k]) / step) + half));
   return cell;
-}
-
-double SquareDistance(const Point& a, const Point& b) {
-  double square = 0;
-  for (unsigned k = 0; k < 3; ++k) {
-    const double d = static_cast<double>(a[k]) - static_cast<double>(b[k]);
-    square += d * d;
-  }
-  return square;
 }
 
 /// Numbers from `first[i]` to `first[i + 1]` belong to i.
@@ -49,7 +39,8 @@ std::vector<std::uint32_t> Sums(const std::vector<std::uint32_t>& counts) {
 /// Points and the cells that they may take.
 class Choices {
  public:
-  Choices(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
+  Choices(const std::vector<Point>& points, const CellGrid& grid, unsigned depth)
+      : square_bound_(grid.error_m() * grid.error_m()) {
     constexpr std::size_t kMeanChoices = 3;
     map_.Reset(kMeanChoices * points.size());
     first_of_point_.reserve(points.size() + 1);
@@ -64,7 +55,7 @@ class Choices {
     for (std::uint32_t i = 0; i < points.size(); ++i)
       for (std::uint32_t k = first_of_point_[i]; k < first_of_point_[i + 1]; ++k)
         points_[next[cells_[k]]++] = i;
-    taken_.assign(points.size(), false);
+    taken_.assign(points.size(), 0);
   }
 
   const std::vector<std::uint64_t>& codes() const { return codes_; }
@@ -74,8 +65,8 @@ class Choices {
   void Take(std::uint32_t cell, std::vector<std::uint32_t>* order) {
     for (std::uint32_t k = first_of_cell_[cell]; k < first_of_cell_[cell + 1]; ++k) {
       const std::uint32_t point = points_[k];
-      if (taken_[point]) continue;
-      taken_[point] = true;
+      if (taken_[point] != 0) continue;
+      taken_[point] = 1;
       order->push_back(point);
       for (std::uint32_t c = first_of_point_[point]; c < first_of_point_[point + 1]; ++c)
         --left_[cells_[c]];
@@ -87,28 +78,22 @@ class Choices {
   void AddPoint(const Point& point, const CellGrid& grid, unsigned depth) {
     const CellPosition own = OwnCell(point, grid, depth);
     AddChoice(own);
-    const Point middle = grid.Middle(own, depth);
-    std::array<double, 3> off{};  // squares, in cells
-    std::array<double, 3> beside{};
     CellPosition side = own;
+    std::array<std::array<double, 3>, 2> squares{};  // of the distances along each axis
     for (unsigned k = 0; k < 3; ++k) {
-      const double away = (static_cast<double>(point[k]) - static_cast<double>(middle[k])) /
-                          static_cast<double>(grid.step_m);
-      side[k] = away < 0 ? own[k] - 1 : own[k] + 1;
-      off[k] = away * away;
-      beside[k] = (1 - std::abs(away)) * (1 - std::abs(away));
+      const auto at = static_cast<double>(point[k]);
+      const double off = at - grid.Middle(own[k], depth);
+      side[k] = off < 0 ? own[k] - 1 : own[k] + 1;
+      const double beside = at - grid.Middle(side[k], depth);
+      squares[0][k] = off * off;
+      squares[1][k] = beside * beside;
     }
-    // The rounding of floats decides beyond this.
-    constexpr double kNever = 0.7515;
-    const double bound = grid.error_m() * grid.error_m();
     for (unsigned i = 1; i < 8; ++i) {
-      const double square = ((i & 1) != 0 ? beside[0] : off[0]) +
-                            ((i & 2) != 0 ? beside[1] : off[1]) +
-                            ((i & 4) != 0 ? beside[2] : off[2]);
-      if (square > kNever) continue;
-      const CellPosition cell = {(i & 1) != 0 ? side[0] : own[0], (i & 2) != 0 ? side[1] : own[1],
-                                 (i & 4) != 0 ? side[2] : own[2]};
-      if (SquareDistance(point, grid.Middle(cell, depth)) <= bound) AddChoice(cell);
+      const unsigned x = i & 1;
+      const unsigned y = i >> 1 & 1;
+      const unsigned z = i >> 2;
+      if (squares[x][0] + squares[y][1] + squares[z][2] > square_bound_) continue;
+      AddChoice({x != 0 ? side[0] : own[0], y != 0 ? side[1] : own[1], z != 0 ? side[2] : own[2]});
     }
   }
   void AddChoice(const CellPosition& cell) {
@@ -124,6 +109,7 @@ class Choices {
     cells_.push_back(index);
   }
 
+  double square_bound_;  // of the distance from a cell's middle
   NodeMap map_;
   std::vector<std::uint64_t> codes_;  // of cells
   std::vector<std::uint32_t> left_;
@@ -131,7 +117,33 @@ class Choices {
   std::vector<std::uint32_t> cells_;  // point by point
   std::vector<std::uint32_t> first_of_cell_;
   std::vector<std::uint32_t> points_;  // cell by cell
-  std::vector<bool> taken_;
+  std::vector<std::uint8_t> taken_;
+};
+
+/// Lists of cells by the number of points that they may take, last in, first out. The numbers only
+/// fall.
+class CellQueues {
+ public:
+  explicit CellQueues(const Choices& choices) : next_(choices.codes().size()) {
+    for (std::uint32_t i = 0; i < next_.size(); ++i) Push(i, choices.left(i));
+  }
+  std::uint32_t most() const { return static_cast<std::uint32_t>(first_.size()) - 1; }
+  bool empty(std::uint32_t count) const { return first_[count] == kEnd; }
+  void Push(std::uint32_t cell, std::uint32_t count) {
+    if (count >= first_.size()) first_.resize(count + 1, kEnd);
+    next_[cell] = first_[count];
+    first_[count] = cell;
+  }
+  std::uint32_t Pop(std::uint32_t count) {
+    const std::uint32_t cell = first_[count];
+    first_[count] = next_[cell];
+    return cell;
+  }
+
+ private:
+  static constexpr std::uint32_t kEnd = UINT32_MAX;
+  std::vector<std::uint32_t> first_ = {kEnd};  // by number of points
+  std::vector<std::uint32_t> next_;            // by cell
 };
 
 }  // namespace
@@ -146,11 +158,8 @@ double CellGrid::error_m() const {
 }
 
 Point CellGrid::Middle(const CellPosition& cell, unsigned depth) const {
-  const double half = HalfOf(depth);
   Point point;
-  for (unsigned k = 0; k < 3; ++k)
-    point[k] = static_cast<float>((static_cast<double>(cell[k]) - half + 0.5) *
-                                  static_cast<double>(step_m));
+  for (unsigned k = 0; k < 3; ++k) point[k] = static_cast<float>(Middle(cell[k], depth));
   return point;
 }
 
@@ -166,8 +175,13 @@ bool CellGrid::Reaches(double farthest_m) const {
 }
 
 bool CellGrid::Holds(const Point& point) const {
-  const Point middle = Middle(OwnCell(point, *this, kMostDepth), kMostDepth);
-  return SquareDistance(point, middle) <= error_m() * error_m();
+  const CellPosition own = OwnCell(point, *this, kMostDepth);
+  double square = 0;
+  for (unsigned k = 0; k < 3; ++k) {
+    const double off = static_cast<double>(point[k]) - Middle(own[k], kMostDepth);
+    square += off * off;
+  }
+  return square <= error_m() * error_m();
 }
 
 void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
@@ -189,13 +203,7 @@ void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, uns
 void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered) {
   Choices choices(points, grid, depth);
-  // Lists of cells by the number of points that they may take; the numbers only fall.
-  std::vector<std::vector<std::uint32_t>> queues;
-  for (std::uint32_t i = 0; i < choices.codes().size(); ++i) {
-    const std::uint32_t count = choices.left(i);
-    if (count >= queues.size()) queues.resize(count + 1);
-    queues[count].push_back(i);
-  }
+  CellQueues queues(choices);
   struct Taken {
     std::uint64_t code;
     std::size_t first;  // of its points
@@ -204,12 +212,11 @@ void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, uns
   std::vector<Taken> taken;
   std::vector<std::uint32_t> order;
   order.reserve(points.size());
-  for (std::size_t count = queues.size(); count-- > 1;) {
-    while (!queues[count].empty()) {
-      const std::uint32_t cell = queues[count].back();
-      queues[count].pop_back();
+  for (std::uint32_t count = queues.most(); count > 0; --count) {
+    while (!queues.empty(count)) {
+      const std::uint32_t cell = queues.Pop(count);
       const std::uint32_t left = choices.left(cell);
-      if (left > 0 && left < count) queues[left].push_back(cell);
+      if (left > 0 && left < count) queues.Push(cell, left);
       if (left < count) continue;
       const std::size_t first = order.size();
       choices.Take(cell, &order);

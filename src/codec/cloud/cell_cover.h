@@ -23,8 +23,17 @@ struct CellGrid {
   static CellGrid ForError(double error_m);
   /// Largest distance of a point from the middle of its cell.
   double error_m() const;
+  /// Half of the cells along an axis.
+  static double HalfOf(unsigned depth) {
+    return static_cast<double>(std::uint64_t{1} << (depth - 1));
+  }
   /// Middle of a cell, as decoders compute it.
   Point Middle(const CellPosition& cell, unsigned depth) const;
+  /// Coordinate of the middle, a float.
+  double Middle(std::uint32_t at, unsigned depth) const {
+    return static_cast<double>(static_cast<float>((static_cast<double>(at) - HalfOf(depth) + 0.5) *
+                                                  static_cast<double>(step_m)));
+  }
   /// Depth of a tree that holds all coordinates up to `farthest_m`; above kMostDepth: none does.
   unsigned DepthFor(double farthest_m) const;
   /// Returns true if a depth holds all coordinates up to `farthest_m`.
