@@ -8,39 +8,17 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes signed integers by contexts: zero or not, sign, length, and further bits.
-template <unsigned kContexts>
-class NumberModel {
+/// Codes bits of `kNodes` kinds by contexts.
+template <unsigned kContexts, std::uint32_t kNodes>
+class BitModel {
  public:
-  static constexpr std::uint32_t kNodes = 128;
   static constexpr std::uint32_t kValues = 512;  // of a context
-  static constexpr std::int32_t kTooLarge = 1 << 26;
   using Contexts = std::array<std::uint32_t, kContexts>;
 
-  NumberModel() {
+  BitModel() {
     for (mixing::Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
   }
 
-  /// Returns kTooLarge for a damaged stream.
-  template <class Coder>
-  std::int32_t Code(std::int32_t number, const Contexts& contexts, Coder* coder) {
-    if (!CodeBit(number != 0, 0, contexts, coder)) return 0;
-    const bool negative = CodeBit(number < 0, 1, contexts, coder);
-    const auto size = static_cast<std::uint32_t>(negative ? -number : number);
-    // This is an Exp-Golomb code.
-    const auto wanted = static_cast<unsigned>(mixing::BitLength(size | 1) - 1);
-    unsigned length = 0;
-    while (CodeBit(length < wanted, (negative ? 32 : 2) + length, contexts, coder))
-      if (++length == 26) return kTooLarge;
-    std::uint32_t value = 1;
-    for (unsigned place = length; place-- > 0;) {
-      const bool top = place + 1 == length;
-      const std::uint32_t node = 64 + (top ? length : 32 + place);
-      value = value << 1 | (CodeBit((size >> place & 1) != 0, node, contexts, coder) ? 1U : 0U);
-    }
-    const auto result = static_cast<std::int32_t>(value);
-    return negative ? -result : result;
-  }
   template <class Coder>
   bool CodeBit(bool bit, std::uint32_t node, const Contexts& contexts, Coder* coder) {
     mixing::BitMixer<kContexts, 0> mixer;
@@ -53,6 +31,37 @@ class NumberModel {
  private:
   std::array<std::array<mixing::Counter, kValues * kNodes>, kContexts> counters_{};
   std::array<mixing::Weights, kNodes> weights_{};
+};
+
+/// Codes signed integers by contexts: zero or not, sign, length, and further bits.
+template <unsigned kContexts>
+class NumberModel : public BitModel<kContexts, 128> {
+ public:
+  static constexpr std::uint32_t kNodes = 128;
+  static constexpr std::int32_t kTooLarge = 1 << 26;
+  using Contexts = typename BitModel<kContexts, kNodes>::Contexts;
+
+  /// Returns kTooLarge for a damaged stream.
+  template <class Coder>
+  std::int32_t Code(std::int32_t number, const Contexts& contexts, Coder* coder) {
+    if (!this->CodeBit(number != 0, 0, contexts, coder)) return 0;
+    const bool negative = this->CodeBit(number < 0, 1, contexts, coder);
+    const auto size = static_cast<std::uint32_t>(negative ? -number : number);
+    // This is an Exp-Golomb code.
+    const auto wanted = static_cast<unsigned>(mixing::BitLength(size | 1) - 1);
+    unsigned length = 0;
+    while (this->CodeBit(length < wanted, (negative ? 32 : 2) + length, contexts, coder))
+      if (++length == 26) return kTooLarge;
+    std::uint32_t value = 1;
+    for (unsigned place = length; place-- > 0;) {
+      const bool top = place + 1 == length;
+      const std::uint32_t node = 64 + (top ? length : 32 + place);
+      value =
+          value << 1 | (this->CodeBit((size >> place & 1) != 0, node, contexts, coder) ? 1U : 0U);
+    }
+    const auto result = static_cast<std::int32_t>(value);
+    return negative ? -result : result;
+  }
 };
 
 }  // namespace lidar::codec::cloud

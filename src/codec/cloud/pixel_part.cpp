@@ -127,21 +127,28 @@ class ExtraCoder {
         level_bits_(settings.level_bits),
         by_four_(settings.by_four),
         coder_(*coder),
-        above_(columns, 0) {}
+        above_(columns, 0) {
+    if (level_bits_ > 0) levels_ = std::make_unique<Model>();
+  }
 
   /// Returns false for a damaged stream.
   bool Code(std::size_t limit, std::vector<ExtraBin>* extras) {
     std::size_t at = 0;
+    std::uint32_t column = columns_ - 1;
     for (std::uint32_t pixel = 0; pixel < bins_.size(); ++pixel) {
-      StartPixel(pixel);
-      if (bins_[pixel] < 0) continue;
+      if (++column == columns_) column = left_ = 0;
+      if (bins_[pixel] < 0) {
+        left_ = above_[column] = 0;
+        continue;
+      }
+      Look(pixel, column);
       std::uint32_t count = 0;
       for (; CodeMore(at < extras->size() && (*extras)[at].pixel == pixel, count); ++count, ++at) {
         if (at == limit) return false;
         if constexpr (Coder::kDecodes) extras->push_back({pixel, 0, 0});
         if (!CodeReturn(pixel, &(*extras)[at]) || coder_.overran()) return false;
       }
-      left_ = above_[pixel % columns_] = count > 0 ? 1 : 0;
+      left_ = above_[column] = count > 0 ? 1 : 0;
       if (coder_.overran()) return false;
     }
     return at == extras->size();
@@ -149,6 +156,7 @@ class ExtraCoder {
 
  private:
   using Model = NumberModel<3>;
+  using CountModel = BitModel<3, 8>;
   static constexpr std::int32_t kNoReturn = INT32_MAX;
 
   static std::uint32_t LengthOf(std::int32_t v) {
@@ -161,13 +169,8 @@ class ExtraCoder {
     const std::int32_t bin = bins_[static_cast<std::size_t>(at)];
     return bin < 0 ? kNoReturn : bin - bins_[pixel];
   }
-  void StartPixel(std::uint32_t pixel) {
-    const std::uint32_t column = pixel % columns_;
-    if (column == 0) left_ = 0;
-    if (bins_[pixel] < 0) {
-      left_ = above_[column] = 0;
-      return;
-    }
+  /// Sets the contexts of a pixel with a return.
+  void Look(std::uint32_t pixel, std::uint32_t column) {
     const std::int64_t row = columns_;
     const std::array<std::int64_t, 4> neighbours = {-1, -row, 1, row};
     jumps_ = 0;
@@ -225,9 +228,9 @@ class ExtraCoder {
   unsigned level_bits_;
   bool by_four_;
   Coder& coder_;
-  std::unique_ptr<Model> counts_ = std::make_unique<Model>();
+  std::unique_ptr<CountModel> counts_ = std::make_unique<CountModel>();
   std::unique_ptr<Model> distances_ = std::make_unique<Model>();
-  std::unique_ptr<Model> levels_ = std::make_unique<Model>();
+  std::unique_ptr<Model> levels_;    // null without levels
   std::vector<std::uint8_t> above_;  // of each column: had the last pixel further returns?
   std::uint32_t left_ = 0;
   std::uint32_t nearby_ = 0;
