@@ -108,19 +108,21 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
   const std::size_t count = raw.size / layout.point_step;
   const std::uint32_t xyz_offset = layout.fields.Find("x")->offset;
   const PointField* intensity = with_intensity ? layout.fields.Find("intensity") : nullptr;
-  cloud->xyz.reserve(3 * count);
+  cloud->xyz.resize(3 * count);
+  float* next = cloud->xyz.data();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* point = raw.data + i * layout.point_step;
     float p[3];
     std::memcpy(p, point + xyz_offset, sizeof p);
     const bool missing = p[0] == 0 && p[1] == 0 && p[2] == 0;
     if (missing || !std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
-    cloud->xyz.insert(cloud->xyz.end(), p, p + 3);
+    next = std::copy(p, p + 3, next);
     if (rows != nullptr) rows->push_back(static_cast<std::uint32_t>(i));
     if (intensity == nullptr) continue;
     const auto value = Load<float>(point + intensity->offset);
     cloud->intensity.push_back(std::isfinite(value) && value > 0 ? value : 0.0F);
   }
+  cloud->xyz.resize(static_cast<std::size_t>(next - cloud->xyz.data()));
 }
 
 void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,

@@ -62,9 +62,11 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
       errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * each_m), 1U);
       if (bends || has_path) errors.bend_um = errors.tangent_um;
     }
+    const double fitting_bits = (part < 0 ? kResidualBits : 0) - std::log2(grid.step_m());
+    // Counting takes long, and is needless where all points in pixels would take more.
+    if (best.error_m > 0 && all * std::min(fitting_bits, kRestBits) >= least) continue;
     const auto fitting = static_cast<double>(CountFitting(cloud, errors));
-    const double bits = kRestBits * (all - fitting) +
-                        fitting * ((part < 0 ? kResidualBits : 0) - std::log2(grid.step_m()));
+    const double bits = kRestBits * (all - fitting) + fitting * fitting_bits;
     if (best.error_m > 0 && bits >= least) continue;
     best = errors;
     least = bits;
@@ -152,6 +154,8 @@ void CloudEncoder::SortOut(CloudHeader* header) {
   near_ids_.clear();
   far_ids_.clear();
   const IntensityScale fine(header->intensity.full(), kFineIntensityBits);
+  near_.reserve(cloud_.size());
+  near_ids_.reserve(cloud_.size());
   float most = 0;
   for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
     const Point point = {cloud_.xyz[3 * i], cloud_.xyz[3 * i + 1], cloud_.xyz[3 * i + 2]};
@@ -188,8 +192,9 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
   mixing::BinaryEncoder encoder(&candidate->cells);
   tree_.Code(&covered_.cells, {points.size(), SIZE_MAX}, &encoder);
   std::vector<std::uint32_t>& points_in_order = candidate->cell_points;
-  points_in_order.clear();
-  for (const std::uint32_t i : covered_.order) points_in_order.push_back(ids[i]);
+  points_in_order.resize(covered_.order.size());
+  for (std::size_t i = 0; i < points_in_order.size(); ++i)
+    points_in_order[i] = ids[covered_.order[i]];
   if (!levels_.empty()) {
     const auto level_of = [&](std::uint32_t i) { return header.intensity.Coarsen(levels_[i]); };
     auto first = points_in_order.begin();
@@ -313,6 +318,7 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   sightings_.clear();
   const BeamTable* table = nullptr;
   if (near_.size() <= BeamKeeper::kMostPoints) {
+    sightings_.reserve(near_.size());
     for (const Point& point : near_) sightings_.emplace_back(point);
     sighted_.clear();
     for (std::size_t i = 0; i < near_ids_.size() && !pulses_.empty(); ++i)
