@@ -103,7 +103,7 @@ bool LidarEncCoder::Decode(ByteView stream, GArray* points) {
                    sizeof(GstLidarPoint)};
   if (!encoder_) {
     codec::cloud::ExactDecoder decoder(exact_.fields, static_cast<std::uint32_t>(returns()));
-    if (!decoder.Decode(stream)) return false;
+    if (!decoder.Decode(stream) || !cloud_->HasComeBack(decoder.part())) return false;
     g_array_set_size(points, static_cast<guint>(decoder.size()));
     decoder.Write(format.layout, reinterpret_cast<guint8*>(points->data));
     return true;

@@ -284,6 +284,7 @@ void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) con
   candidate->numbers = part.Numbers(part.order.size());
   candidate->header.has_exact_part = true;
   EncodeExactPart(places, part, &candidate->exact);
+  candidate->order = std::move(part.order);
 }
 
 /// Codes the beams as each effort does. Near points go to cells, up to the distance at which the
@@ -358,6 +359,19 @@ void CloudEncoder::Write(const Candidate& candidate, EncodedSlice* slice) const 
   while (work > MostNodes(slice->bytes.size())) slice->bytes.push_back(0);
 }
 
+bool CloudEncoder::HasComeBack(const ExactPart& decoded) const {
+  if (decoded.fields.size() != exact_.size() || (choice_.keeps_order && decoded.order != order_)) {
+    return false;
+  }
+  for (std::size_t k = 0; k < exact_.size(); ++k) {
+    const std::vector<std::uint64_t>& numbers = decoded.fields[k].numbers;
+    if (numbers.size() != order_.size()) return false;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (numbers[i] != exact_[k].numbers[order_[i]]) return false;
+  }
+  return true;
+}
+
 SliceResult CloudEncoder::Encode(const SliceSettings& settings, EncodedSlice* slice) {
   *slice = {};
   if (cloud_.size() == 0 || cloud_.size() > kMostPoints) return SliceResult::kEmpty;
@@ -367,7 +381,9 @@ SliceResult CloudEncoder::Encode(const SliceSettings& settings, EncodedSlice* sl
   if (header.grid.error_m() > settings.max_error_m) return SliceResult::kOutOfReach;
   header.intensity = ScaleOf(cloud_, settings.intensity_bits);
   SortOut(&header);
-  Write(EncodeSmallest(header, header.grid.error_m()), slice);
+  Candidate candidate = EncodeSmallest(header, header.grid.error_m());
+  Write(candidate, slice);
+  order_ = std::move(candidate.order);
   slice->returns = cloud_.size();
   slice->step_m = static_cast<double>(header.grid.step_m);
   slice->error_m = header.grid.error_m();

@@ -51,6 +51,9 @@ class CloudEncoder {
 
   /// Encodes the loaded points; may be called again.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
+  /// Returns true if `decoded`, of the last slice, has the exact fields and the order of the loaded
+  /// points.
+  bool HasComeBack(const ExactPart& decoded) const;
 
  private:
   CloudEncoder(CloudLayout layout, ExactChoice exact)
@@ -62,6 +65,7 @@ class CloudEncoder {
     std::vector<std::uint8_t> cells;         // the stream
     std::vector<std::uint8_t> exact;         // the section
     std::vector<std::uint32_t> cell_points;  // indices of near_, as a decoder gives them
+    std::vector<std::uint32_t> order;        // indices of cloud_, the same, with an exact section
     std::size_t nodes = 0;
     std::size_t numbers = 0;
 
@@ -87,6 +91,7 @@ class CloudEncoder {
   XyzCloud cloud_;
   std::vector<ExactField> exact_;        // fields of cloud_
   std::vector<Pulse> pulses_;            // of cloud_; empty: there is no line or time
+  std::vector<std::uint32_t> order_;     // of the last candidate
   std::vector<Point> near_;              // on the grid
   std::vector<std::uint8_t> levels_;     // of near_, at full resolution; empty: geometry only
   std::vector<std::uint32_t> near_ids_;  // of cloud_

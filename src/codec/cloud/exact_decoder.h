@@ -22,6 +22,8 @@ class ExactDecoder {
   /// of other types or damaged ones.
   bool Decode(ByteView stream);
   const CloudDecoder& geometry() const { return geometry_; }
+  /// Exact fields and order of the points.
+  const ExactPart& part() const { return part_; }
   std::size_t size() const { return geometry_.cloud().size(); }
   /// Writes the points in their old order, if the slice keeps it, with the fields of `layout`.
   void Write(const CloudLayout& layout, std::uint8_t* raw) const;

@@ -291,6 +291,32 @@ TEST(ExactPart, BelongsToThePointsThatAreKeptOfAThinnedCloud) {
   ExpectSame(expected, wish, Decoded(cloud, wish, slice.bytes));
 }
 
+TEST(CloudEncoder, SeesWhereFieldsOrOrderDoNotComeBack) {
+  const Cloud cloud = Shuffled(SpinningScan());
+  for (const bool keeps_order : {false, true}) {
+    const Wish wish = {{"ring", "time"}, keeps_order};
+    auto encoder = CloudEncoder::Create(cloud.layout, ChoiceOf(cloud, wish));
+    encoder->Load(cloud.view(), false);
+    EncodedSlice slice;
+    ASSERT_EQ(encoder->Encode({0.02, 0, 0}, &slice), SliceResult::kEncoded);
+    ExactDecoder decoder(ChoiceOf(cloud, wish).fields, kMostDecoded);
+    ASSERT_TRUE(decoder.Decode({slice.bytes.data(), slice.bytes.size()}));
+    EXPECT_TRUE(encoder->HasComeBack(decoder.part()));
+    for (std::size_t field = 0; field < 2; ++field) {
+      ExactPart other = decoder.part();
+      ++other.fields[field].numbers[cloud.size() / 2];
+      EXPECT_FALSE(encoder->HasComeBack(other));
+    }
+    ExactPart fewer = decoder.part();
+    fewer.fields.pop_back();
+    EXPECT_FALSE(encoder->HasComeBack(fewer));
+    if (!keeps_order) continue;
+    ExactPart turned = decoder.part();
+    std::swap(turned.order.front(), turned.order.back());
+    EXPECT_FALSE(encoder->HasComeBack(turned));
+  }
+}
+
 TEST(ExactDecoder, RefusesSlicesWhoseFieldsAreOthers) {
   const Cloud cloud = SpinningScan();
   const auto decodes = [&](const Wish& has, const Wish& expected) {
