@@ -235,7 +235,7 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   const auto scan = stream.collector.Take();
   if (!scan) return;
   const gint64 begin_us = g_get_monotonic_time();
-  for (const TurnSample& turn : state.imu.Take()) stream.odometry->OnTurn(turn.time, turn.rate);
+  for (const MotionSample& s : state.imu.Take()) stream.odometry->OnTurn(s.time, s.rate, s.force);
   const Estimate estimate = stream.odometry->OnScan(scan->start, scan->duration, scan->points);
   const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - begin_us) * GST_USECOND;
   stream.tracking = estimate.tracking;

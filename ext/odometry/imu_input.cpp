@@ -42,14 +42,16 @@ bool ImuInput::Add(ByteView bytes) {
   if (!known_ || bytes.size % kImuSampleSize != 0) return false;
   for (const cdr::Imu& imu : cdr::ReadImuSamples(bytes)) {
     const auto& g = imu.angular_velocity;
-    samples_.push_back({imu.header.stamp, to_sensor_ * Eigen::Vector3d(g[0], g[1], g[2])});
+    const auto& a = imu.linear_acceleration;
+    samples_.push_back({imu.header.stamp, to_sensor_ * Eigen::Vector3d(g[0], g[1], g[2]),
+                        to_sensor_ * Eigen::Vector3d(a[0], a[1], a[2])});
   }
   if (samples_.size() > kMostSamples)
     samples_.erase(samples_.begin(), samples_.end() - static_cast<std::ptrdiff_t>(kMostSamples));
   return true;
 }
 
-std::vector<TurnSample> ImuInput::Take() {
+std::vector<MotionSample> ImuInput::Take() {
   std::lock_guard lock(mutex_);
   return std::exchange(samples_, {});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Passes angular velocities from the thread of an IMU to the thread of the scans.
+// Passes samples from the thread of an IMU to the thread of the scans.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,9 +12,11 @@
 
 namespace lidar::gst {
 
-struct TurnSample {
+/// The sample of an IMU in the sensor's frame.
+struct MotionSample {
   Time time{};
-  Eigen::Vector3d rate;  // in the sensor's frame [rad/s]
+  Eigen::Vector3d rate;   // [rad/s]
+  Eigen::Vector3d force;  // [m/s^2]
 };
 
 /// The streams of the IMU and of the scans may call it at the same time.
@@ -26,7 +28,7 @@ class ImuInput {
   /// Returns false if `samples` ends within a sample, or if there are no caps yet.
   bool Add(ByteView samples);
   /// Returns the samples since the last call.
-  std::vector<TurnSample> Take();
+  std::vector<MotionSample> Take();
   void Clear();
 
   static constexpr std::size_t kMostSamples = 8192;  // the oldest samples beyond it are dropped
@@ -35,7 +37,7 @@ class ImuInput {
   std::mutex mutex_;
   bool known_ = false;
   Eigen::Matrix3d to_sensor_ = Eigen::Matrix3d::Identity();
-  std::vector<TurnSample> samples_;
+  std::vector<MotionSample> samples_;
 };
 
 }  // namespace lidar::gst

@@ -117,27 +117,36 @@ std::optional<Eigen::Quaterniond> Odometry::KnownTurn(Time from, Time to) const 
   return back ? std::optional(back->conjugate()) : std::nullopt;
 }
 
-Pose Odometry::MotionBetween(Time from, Time to) const {
-  Pose motion;
-  for (Time at = from; at != to;) {
-    const Time end = at < to ? std::min(at + kTurnStep, to) : std::max(at - kTurnStep, to);
-    Twist step = velocity_ * Seconds(end - at);
-    if (const auto turn = KnownTurn(at, end))
+Moving Odometry::Glide(const Moving& at, Time from, Time to) const {
+  Moving moving = at;
+  for (Time now = from; now != to;) {
+    const Time end = now < to ? std::min(now + kTurnStep, to) : std::max(now - kTurnStep, to);
+    Twist step = at.velocity * Seconds(end - now);
+    if (const auto turn = KnownTurn(now, end))
       step.tail<3>() = Log({*turn, Eigen::Vector3d::Zero()}).tail<3>();
-    motion = motion * Exp(step);
-    at = end;
+    moving.pose = moving.pose * Exp(step);
+    now = end;
   }
-  return motion;
+  return moving;
 }
 
-Pose Odometry::PredictAt(Time t) const {
-  return last_time_ ? pose_ * MotionBetween(*last_time_, t) : pose_;
+Moving Odometry::Advance(const Moving& at, Time from, Time to) const {
+  const auto moved = turns_.Move(at, from, to);
+  return moved ? *moved : Glide(at, from, to);
 }
 
-std::vector<Pose> Odometry::SweepAround(Time middle, Duration duration) const {
+Moving Odometry::StateAt(Time t) const {
+  const Moving last{pose_, velocity_};
+  return last_time_ ? Advance(last, *last_time_, t) : last;
+}
+
+std::vector<Pose> Odometry::SweepAround(const Moving& state, Time middle, Duration duration) const {
   std::vector<Pose> moved;
-  for (int i = 0; settings_.deskew && i <= kPhases; ++i)
-    moved.push_back(MotionBetween(middle, middle + duration * (2 * i - kPhases) / (2 * kPhases)));
+  const Pose back = state.pose.Inverse();
+  for (int i = 0; settings_.deskew && i <= kPhases; ++i) {
+    const Time t = middle + duration * (2 * i - kPhases) / (2 * kPhases);
+    moved.push_back(back * Advance(state, middle, t).pose);
+  }
   return moved;
 }
 
@@ -168,10 +177,11 @@ Surface Odometry::ThinOut(const Surface& fine) const {
   return thin;
 }
 
-Surface Odometry::SelectPoints(const TimedPoints& scan, Time middle, Duration duration) const {
+Surface Odometry::SelectPoints(const TimedPoints& scan, const Moving& state, Time middle,
+                               Duration duration) const {
   const double nearest = settings_.min_range_m * settings_.min_range_m;
   const double farthest = settings_.max_range_m * settings_.max_range_m;
-  const Sweep sweep(scan, SweepAround(middle, duration));
+  const Sweep sweep(scan, SweepAround(state, middle, duration));
   Points selected;
   std::vector<std::size_t> origins;  // indices of the points in the scan
   selected.reserve(scan.points.size());
@@ -244,12 +254,12 @@ Pose Odometry::GuessFirstMotion(const Points& points) const {
 /// Straightens the first scan again: skewed by an unknown motion it would bend the map for ever.
 void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle) {
   const Duration gap = middle - *last_time_;
-  Pose found = GuessFirstMotion(SelectPoints(second, middle, duration).points);
+  Pose found = GuessFirstMotion(SelectPoints(second, StateAt(middle), middle, duration).points);
   for (int round = 0; round < kFirstRounds; ++round) {
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
-    StartMap(SelectPoints(*first_scan_, *last_time_, duration));
+    StartMap(SelectPoints(*first_scan_, StateAt(*last_time_), *last_time_, duration));
     // The same velocity straightens both scans, which improves the next estimate of it.
-    const Points points = ThinOut(SelectPoints(second, middle, duration)).points;
+    const Points points = ThinOut(SelectPoints(second, StateAt(middle), middle, duration)).points;
     found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
                   settings_.registration)
                 .pose;
@@ -267,8 +277,9 @@ Estimate Odometry::OnScan(Time start, Duration duration, const TimedPoints& scan
   }
   const bool begins = !last_time_ || broken || map_.empty();
   if (!begins && first_scan_) StraightenFirstScan(duration, scan, middle);
-  Surface fine = SelectPoints(scan, middle, duration);
-  Estimate estimate = begins ? Begin(scan, fine) : Match(middle, scan, fine);
+  const Moving predicted = begins ? Moving{pose_, velocity_} : StateAt(middle);
+  Surface fine = SelectPoints(scan, predicted, middle, duration);
+  Estimate estimate = begins ? Begin(scan, fine) : Match(middle, predicted, scan, fine);
   last_time_ = estimate.time = middle;
   last_scan_ = std::move(fine.points);
   estimate.pose = pose_;
@@ -327,9 +338,10 @@ bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) con
          Angle(correction) <= kMostTurnAcceleration * square;
 }
 
-Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fine) {
+Estimate Odometry::Match(Time middle, const Moving& predicted, const TimedPoints& scan,
+                         const Surface& fine) {
   const Duration gap = middle - *last_time_;
-  const Pose guess = PredictAt(middle);
+  const Pose& guess = predicted.pose;
   const auto turn = KnownTurn(*last_time_, middle);
   confidence_.Predict(pose_.Inverse() * guess, gap, turn.has_value());
   const Alignment found = AlignFrom(guess, gap, scan, fine);
@@ -340,17 +352,19 @@ Estimate Odometry::Match(Time middle, const TimedPoints& scan, const Surface& fi
   if (!Fits(found, guess, gap)) {
     estimate.tracking = Tracking::kLost;
     pose_ = guess;
+    velocity_ = predicted.velocity;
     lost_for_ += gap;
     Lose(scan, fine, &estimate);
     return estimate;
   }
   estimate.tracking = found.degenerate ? Tracking::kDegenerate : Tracking::kTracking;
   threshold_.Add(guess.Inverse() * found.pose);
-  Follow(found, guess, middle, fine);
+  Follow(found, predicted, middle, fine);
   return estimate;
 }
 
-void Odometry::Follow(const Alignment& found, const Pose& guess, Time middle, const Surface& fine) {
+void Odometry::Follow(const Alignment& found, const Moving& predicted, Time middle,
+                      const Surface& fine) {
   lost_scans_ = 0;
   lost_for_ = Duration{0};
   ++fitting_scans_;
@@ -359,11 +373,14 @@ void Odometry::Follow(const Alignment& found, const Pose& guess, Time middle, co
   const Duration gap = middle - *last_time_;
   turns_.Teach(*last_time_, middle, (pose_.Inverse() * found.pose).rotation,
                Exp(velocity_ * Seconds(gap)).rotation);
+  const Moving before{pose_, velocity_};
+  velocity_ = predicted.velocity;
   if (const auto turn = KnownTurn(*last_time_, middle))
     velocity_.tail<3>() = Log({*turn, Eigen::Vector3d::Zero()}).tail<3>() / Seconds(gap);
-  velocity_ +=
-      confidence_.Observe(found.information, found.unobserved, Log(guess.Inverse() * found.pose));
+  const Twist correction = Log(predicted.pose.Inverse() * found.pose);
+  velocity_ += confidence_.Observe(found.information, found.unobserved, correction);
   pose_ = found.pose;
+  turns_.TeachForce(*last_time_, middle, before, {pose_, velocity_});
   if (IsFarFromTheLastInMap()) AddToMap(fine);
   map_.Forget(pose_.position);
 }

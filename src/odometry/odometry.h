@@ -68,12 +68,15 @@ class Odometry {
   /// a gap of more than kLongestGap, begins a new map at the last pose. Points that are not finite
   /// or out of range are left out.
   Estimate OnScan(Time start, Duration duration, const TimedPoints& scan);
-  /// Takes a gyroscope's sample: angular velocity in the sensor's frame [rad/s], with gravity and
-  /// bias uncorrected. Samples may come before or after the scan of their time. Samples that
-  /// precede their scan straighten it and predict its orientation.
-  void OnTurn(Time time, const Eigen::Vector3d& rate) { turns_.Add(time, rate); }
-  /// Predicts the pose at `t` by constant velocity, and by the gyroscope if it has samples.
-  Pose PredictAt(Time t) const;
+  /// Takes a sample of an IMU: angular velocity [rad/s] and felt force [m/s^2] in the sensor's
+  /// frame, with gravity and bias uncorrected. Samples may come before or after the scan of their
+  /// time. Samples that precede their scan straighten it and predict its pose.
+  void OnTurn(Time time, const Eigen::Vector3d& rate,
+              const Eigen::Vector3d& force = Eigen::Vector3d::Zero()) {
+    turns_.Add(time, rate, force);
+  }
+  /// Predicts the pose at `t` by constant velocity, and by the IMU if it has samples.
+  Pose PredictAt(Time t) const { return StateAt(t).pose; }
 
   const LocalMap& map() const { return map_; }
   /// Returns the thinned out points of the last scan, in the sensor's frame at its middle.
@@ -82,12 +85,17 @@ class Odometry {
 
  private:
   RegistrationSettings SettingsFor(const TimedPoints& scan, const Pose& guess) const;
-  /// The motion of the sensor between two times, in its frame at the first.
-  Pose MotionBetween(Time from, Time to) const;
+  /// Predicts the state at `t` from the last scan's.
+  Moving StateAt(Time t) const;
+  /// Moves the sensor from its state at `from`: by the IMU, or Glide() at constant velocity.
+  Moving Advance(const Moving& at, Time from, Time to) const;
+  Moving Glide(const Moving& at, Time from, Time to) const;
   /// Returns the gyroscope's turn if the gyroscope is trusted and has samples.
   std::optional<Eigen::Quaterniond> KnownTurn(Time from, Time to) const;
-  std::vector<Pose> SweepAround(Time middle, Duration duration) const;
-  Surface SelectPoints(const TimedPoints& scan, Time middle, Duration duration) const;
+  std::vector<Pose> SweepAround(const Moving& state, Time middle, Duration duration) const;
+  /// `state` is that in the middle of the scan.
+  Surface SelectPoints(const TimedPoints& scan, const Moving& state, Time middle,
+                       Duration duration) const;
   Surface ThinOut(const Surface& fine) const;
   void AddToMap(const Surface& fine);
   bool IsFarFromTheLastInMap() const;
@@ -97,12 +105,13 @@ class Odometry {
   /// Begin() takes the first scan of a map, and Match() aligns each later scan. Follow() takes a
   /// scan that fits, and Lose() one that does not. Both move the pose; OnScan() does the rest.
   Estimate Begin(const TimedPoints& scan, const Surface& fine);
-  Estimate Match(Time middle, const TimedPoints& scan, const Surface& fine);
+  Estimate Match(Time middle, const Moving& predicted, const TimedPoints& scan,
+                 const Surface& fine);
   Alignment AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
                       const Surface& fine);
   bool ShowsThePlace(const Alignment& found, const Pose& guess) const;
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
-  void Follow(const Alignment& found, const Pose& guess, Time middle, const Surface& fine);
+  void Follow(const Alignment& found, const Moving& predicted, Time middle, const Surface& fine);
   void Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate);
   Matrix6 CovarianceInMap() const;
 

@@ -29,6 +29,12 @@ struct Pose {
   }
 };
 
+/// A sensor on its way.
+struct Moving {
+  Pose pose;
+  Twist velocity = Twist::Zero();  // per second, in the sensor's frame
+};
+
 /// The motion at constant velocity for one unit of time; Sola et al., "A micro Lie theory", (172).
 Pose Exp(const Twist& twist);
 /// Inverse of Exp(), for rotations below half a turn.

@@ -21,6 +21,15 @@ constexpr double kMemory = 0.9;
 /// Error of an alignment itself [rad].
 constexpr double kNoise = 0.003;
 constexpr int kLeastTaught = 5;  // scans
+/// Least part of a scan's error that enters the force at rest. Its first estimate is the mean.
+constexpr double kRestShare = 0.02;
+constexpr int kLeastForcesTaught = 10;  // scans
+/// Greatest squared error of trusted forces, relative to that of the mean velocity. A scan that
+/// forces did not straighten is off itself; forces of reversed axes have four times the error.
+constexpr double kMostForceError = 2;
+/// Half of gravity [m/s^2]: a unit without an accelerometer, or in other units, feels less at rest.
+constexpr double kLeastRest = 5;
+constexpr double kMostForce = 1000;  // [m/s^2]: that of a crash
 
 Eigen::Vector3d LogOf(const Eigen::Quaterniond& turn) {
   return Log({turn, Eigen::Vector3d::Zero()}).tail<3>();
@@ -33,45 +42,58 @@ Eigen::Quaterniond ExpOf(const Eigen::Vector3d& turn) {
 
 }  // namespace
 
-void TurnHistory::Add(Time time, const Eigen::Vector3d& rate) {
+void TurnHistory::Add(Time time, const Eigen::Vector3d& rate, const Eigen::Vector3d& force) {
   if (!rate.allFinite() || rate.norm() > kMostRate) return;
+  if (!force.allFinite() || force.norm() > kMostForce) return;
   if (!samples_.empty() && time <= samples_.back().time) {
     if (samples_.back().time - time < kNewClock) return;
     samples_.clear();
   }
-  samples_.push_back({time, rate});
+  samples_.push_back({time, rate, force});
   while (samples_.size() > kMostSamples || time - samples_.front().time > kKept)
     samples_.pop_front();
 }
 
-Eigen::Vector3d TurnHistory::RateAt(Time t) const {
+TurnHistory::Sample TurnHistory::SampleAt(Time t) const {
   const auto after = std::lower_bound(samples_.begin(), samples_.end(), t,
                                       [](const Sample& s, Time at) { return s.time < at; });
-  if (after == samples_.end()) return samples_.back().rate;
-  if (after == samples_.begin()) return after->rate;
+  if (after == samples_.end()) return samples_.back();
+  if (after == samples_.begin()) return *after;
   const Sample& before = *(after - 1);
   const double part = Seconds(t - before.time) / Seconds(after->time - before.time);
-  return before.rate + part * (after->rate - before.rate);
+  return {t, before.rate + part * (after->rate - before.rate),
+          before.force + part * (after->force - before.force)};
 }
 
 std::optional<Eigen::Quaterniond> TurnHistory::Between(Time from, Time to) const {
+  const auto span = SpanBetween(from, to);
+  return span ? std::optional(span->turn) : std::nullopt;
+}
+
+std::optional<TurnHistory::Span> TurnHistory::SpanBetween(Time from, Time to) const {
   if (samples_.empty() || from < samples_.front().time - kLongestStep ||
       to > samples_.back().time + kLongestStep)
     return std::nullopt;
   auto next = std::upper_bound(samples_.begin(), samples_.end(), from,
                                [](Time at, const Sample& s) { return at < s.time; });
-  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d rate = RateAt(from);
+  Span span;
+  Sample sample = SampleAt(from);
   for (Time at = from; at < to;) {
     const Time end = next == samples_.end() ? to : std::min(to, next->time);
     if (end - at > kLongestStep) return std::nullopt;
-    const Eigen::Vector3d last = RateAt(end);
-    turn = turn * ExpOf(((rate + last) / 2 - bias_) * Seconds(end - at));
-    rate = last;
+    const Sample last = SampleAt(end);
+    const double step = Seconds(end - at);
+    const Eigen::Quaterniond before = span.turn;
+    span.turn = span.turn * ExpOf(((sample.rate + last.rate) / 2 - bias_) * step);
+    const Eigen::Vector3d pushed = (before * sample.force + span.turn * last.force) / 2 * step;
+    span.way += (span.velocity + pushed / 2) * step;
+    span.velocity += pushed;
+    sample = last;
     at = end;
     if (next != samples_.end()) ++next;
   }
-  return turn.normalized();
+  span.turn.normalize();
+  return span;
 }
 
 void TurnHistory::Teach(Time from, Time to, const Eigen::Quaterniond& found,
@@ -84,6 +106,61 @@ void TurnHistory::Teach(Time from, Time to, const Eigen::Quaterniond& found,
   ++taught_;
   bias_ += std::max(kBiasShare, 1.0 / (kOffsetScans + taught_)) * off / Seconds(to - from);
   if (bias_.norm() > kMostBias) bias_ *= kMostBias / bias_.norm();
+}
+
+/// Returns the state after a span; gravity pulls against the force at rest.
+Moving TurnHistory::After(const Moving& at, const Span& span, double seconds) const {
+  const Eigen::Vector3d rest = at.pose.rotation.conjugate() * rest_;
+  const Eigen::Vector3d start = at.velocity.head<3>();
+  Moving after = at;
+  after.pose =
+      at.pose * Pose{span.turn, start * seconds + span.way - rest * (seconds * seconds / 2)};
+  after.velocity.head<3>() = span.turn.conjugate() * (start + span.velocity - rest * seconds);
+  return after;
+}
+
+std::optional<Moving> TurnHistory::Move(const Moving& at, Time from, Time to) const {
+  if (!force_trusted()) return std::nullopt;
+  auto span = SpanBetween(std::min(from, to), std::max(from, to));
+  if (!span) return std::nullopt;
+  if (to >= from) return After(at, *span, Seconds(to - from));
+  // The same span, seen from its end.
+  const double seconds = Seconds(from - to);
+  const Eigen::Quaterniond back = span->turn.conjugate();
+  span->way = back * (span->velocity * seconds - span->way);
+  span->velocity = back * -span->velocity;
+  span->turn = back;
+  return After(at, *span, -seconds);
+}
+
+void TurnHistory::TeachForce(Time from, Time to, const Moving& before, const Moving& found) {
+  const auto span = SpanBetween(from, to);
+  if (!span || to <= from) {
+    reached_.reset();
+    return;
+  }
+  const double seconds = Seconds(to - from);
+  const auto velocity = [](const Moving& state) {
+    return Eigen::Vector3d(state.pose.rotation * state.velocity.head<3>());
+  };
+  const Eigen::Matrix3d frame = before.pose.rotation.toRotationMatrix();
+  const Eigen::Vector3d way = found.pose.position - before.pose.position;
+  const Eigen::Vector3d pushed_way = frame * span->way - rest_ * (seconds * seconds / 2);
+  const Eigen::Vector3d pushed = frame * span->velocity - rest_ * seconds;
+  if (reached_ && forces_taught_ >= kLeastTaught) {
+    force_squares_ =
+        kMemory * force_squares_ + (reached_->velocity * seconds + pushed_way - way).squaredNorm();
+    mean_squares_ = kMemory * mean_squares_ + (reached_->mean * seconds - way).squaredNorm();
+  }
+  reached_ = Reached{way / seconds, (way - pushed_way) / seconds + pushed};
+  const Eigen::Vector3d rest =
+      (frame * span->velocity - (velocity(found) - velocity(before))) / seconds;
+  rest_ += std::max(kRestShare, 1.0 / ++forces_taught_) * (rest - rest_);
+}
+
+bool TurnHistory::force_trusted() const {
+  return trusted() && forces_taught_ >= kLeastForcesTaught && rest_.norm() >= kLeastRest &&
+         force_squares_ <= kMostForceError * mean_squares_;
 }
 
 bool TurnHistory::trusted() const {

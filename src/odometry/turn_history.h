@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The turns of the sensor, from its gyroscope.
+// The motion of the sensor, from its gyroscope and its accelerometer.
 #pragma once
 #include <deque>
 #include <optional>
@@ -9,14 +9,17 @@
 
 namespace lidar::odometry {
 
-/// Angular velocities of the last seconds, without their bias, which the odometry teaches. They are
-/// used while they predict turns at least as well as a steady turn does. So turned axes, wrong
-/// units and a stuck sensor do harm for a few scans at most.
+/// Samples of the last seconds, without their bias, which the odometry teaches. Angular velocities
+/// are used while they predict turns at least as well as a steady turn does, and accelerations
+/// while they predict the way better than its mean velocity does. So turned axes, wrong units and a
+/// stuck sensor do harm for a few scans at most.
 class TurnHistory {
  public:
-  /// Takes an angular velocity in the sensor's frame [rad/s]. Drops a sample that is not finite or
-  /// not later than the one before. A clock that goes back by a second clears the history.
-  void Add(Time time, const Eigen::Vector3d& rate);
+  /// Takes an angular velocity [rad/s] and the force that a mass feels [m/s^2], in the sensor's
+  /// frame. Drops a sample that is not finite or not later than the one before. A clock that goes
+  /// back by a second clears the history.
+  void Add(Time time, const Eigen::Vector3d& rate,
+           const Eigen::Vector3d& force = Eigen::Vector3d::Zero());
   /// Returns the turn from `from` to `to`, which is not earlier, or nothing if samples are missing
   /// between them.
   std::optional<Eigen::Quaterniond> Between(Time from, Time to) const;
@@ -24,6 +27,13 @@ class TurnHistory {
   /// the last angular velocity.
   void Teach(Time from, Time to, const Eigen::Quaterniond& found, const Eigen::Quaterniond& steady);
   bool trusted() const;
+  /// Moves the sensor from its state at `from` to `to`, which may be earlier. Returns nothing if
+  /// samples are missing between them or accelerations are not trusted.
+  std::optional<Moving> Move(const Moving& at, Time from, Time to) const;
+  /// Compares the samples with the way from `before` to `found`, the states at `from` and `to`, and
+  /// with the way at the mean velocity of the call before.
+  void TeachForce(Time from, Time to, const Moving& before, const Moving& found);
+  bool force_trusted() const;
   const Eigen::Vector3d& bias() const { return bias_; }
 
   static constexpr Duration kKept = std::chrono::seconds(10);
@@ -33,9 +43,18 @@ class TurnHistory {
   struct Sample {
     Time time{};
     Eigen::Vector3d rate;
+    Eigen::Vector3d force;
   };
+  /// What the sensor does between two times, in its frame at the first.
+  struct Span {
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // integral of the force
+    Eigen::Vector3d way = Eigen::Vector3d::Zero();       // and the integral of that
+  };
+  std::optional<Span> SpanBetween(Time from, Time to) const;
   /// Interpolates between samples. Before the first and after the last it returns that one.
-  Eigen::Vector3d RateAt(Time t) const;
+  Sample SampleAt(Time t) const;
+  Moving After(const Moving& at, const Span& span, double seconds) const;
 
   std::deque<Sample> samples_;
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();
@@ -43,6 +62,19 @@ class TurnHistory {
   double own_squares_ = 0;
   double steady_squares_ = 0;
   int taught_ = 0;
+  /// The force at rest, in the frame of the poses: gravity, and the accelerometer's offset.
+  Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();
+  /// Velocities in the frame of the poses: the mean of the last way, and that at its end by the
+  /// forces. The odometry's velocity would not do, as it is filtered.
+  struct Reached {
+    Eigen::Vector3d mean;
+    Eigen::Vector3d velocity;
+  };
+  std::optional<Reached> reached_;
+  // Decaying sums of squared errors of the way [m^2].
+  double force_squares_ = 0;
+  double mean_squares_ = 0;
+  int forces_taught_ = 0;
 };
 
 }  // namespace lidar::odometry

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace lidar::odometry {
@@ -77,6 +78,8 @@ TEST(TurnHistory, DropsWhatNoGyroscopeMeasures) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   turns.Add(Time{}, {nan, 0, 0});
   turns.Add(Time{} + kStep, {0, 0, 1e9});
+  turns.Add(Time{} + kStep, {0, 0, 0}, {0, nan, 0});
+  turns.Add(Time{} + kStep, {0, 0, 0}, {0, 0, 1e9});
   EXPECT_FALSE(turns.Between(Time{}, Time{} + kStep));
 }
 
@@ -111,6 +114,78 @@ TEST(TurnHistory, BelievesNoBiasThatNoGyroscopeHas) {
   for (int i = 0; i < 99; ++i)
     turns.Teach(Time{} + i * kScan, Time{} + (i + 1) * kScan, Turn(0), Turn(0));
   EXPECT_LE(turns.bias().norm(), 0.2 + 1e-9);
+}
+
+/// A sensor on a road with bumps of five a second, at 10 m/s.
+struct BumpyRoad {
+  static constexpr double kTurns = 31.4;  // [rad/s]
+  static constexpr double kHeight = 0.04;
+  static constexpr double kGravity = 9.8;
+
+  static Moving At(double t) {
+    Moving at;
+    at.pose.position = {10 * t, 0, kHeight * std::sin(kTurns * t)};
+    at.velocity.head<3>() << 10, 0, kHeight * kTurns * std::cos(kTurns * t);
+    return at;
+  }
+  /// The third axis of the accelerometer is multiplied by `axis`.
+  static void Drive(double axis, TurnHistory* turns) {
+    for (int i = 0; i <= 1000; ++i) {
+      const double t = 0.002 * i;
+      const double up = kGravity - kHeight * kTurns * kTurns * std::sin(kTurns * t);
+      turns->Add(Time{} + i * milliseconds(2), {0, 0, 0}, {0, 0, axis * up});
+    }
+    for (int i = 0; i < 19; ++i) {
+      turns->Teach(Time{} + i * kScan, Time{} + (i + 1) * kScan, Turn(0), Turn(0));
+      turns->TeachForce(Time{} + i * kScan, Time{} + (i + 1) * kScan, At(0.1 * i),
+                        At(0.1 * i + 0.1));
+    }
+  }
+};
+
+TEST(TurnHistory, FollowsBumpsByTheirForcesInBothDirectionsOfTime) {
+  TurnHistory turns;
+  BumpyRoad::Drive(1, &turns);
+  ASSERT_TRUE(turns.force_trusted());
+  for (const int ms : {1830, 1870, 1900, 1960}) {
+    const Moving there = BumpyRoad::At(0.001 * ms);
+    const auto moved =
+        turns.Move(BumpyRoad::At(1.9), Time{} + milliseconds(1900), Time{} + milliseconds(ms));
+    ASSERT_TRUE(moved);
+    EXPECT_LT((moved->pose.position - there.pose.position).norm(), 0.002) << ms;
+    EXPECT_LT((moved->velocity - there.velocity).norm(), 0.05) << ms;
+  }
+}
+
+TEST(TurnHistory, TurnsForcesWithTheSensor) {
+  // A circle of 5 m at 10 m/s, in the plane of the first two axes.
+  TurnHistory turns;
+  const auto at = [](double t) {
+    Moving state;
+    state.pose = {Turn(2 * t), {5 * std::sin(2 * t), 5 - 5 * std::cos(2 * t), 0}};
+    state.velocity.head<3>() << 10, 0, 0;
+    return state;
+  };
+  for (int i = 0; i <= 1000; ++i)
+    turns.Add(Time{} + i * milliseconds(2), {0, 0, 2}, {0, 20, BumpyRoad::kGravity});
+  for (int i = 0; i < 19; ++i) {
+    turns.Teach(Time{} + i * kScan, Time{} + (i + 1) * kScan, Turn(0.2), Turn(0.2));
+    turns.TeachForce(Time{} + i * kScan, Time{} + (i + 1) * kScan, at(0.1 * i), at(0.1 * i + 0.1));
+  }
+  for (const int ms : {1500, 1850, 1950}) {
+    const auto moved = turns.Move(at(1.9), Time{} + milliseconds(1900), Time{} + milliseconds(ms));
+    ASSERT_TRUE(moved);
+    EXPECT_LT((moved->pose.position - at(0.001 * ms).pose.position).norm(), 0.002) << ms;
+    EXPECT_LT((moved->velocity - at(0.001 * ms).velocity).norm(), 0.01) << ms;
+  }
+}
+
+TEST(TurnHistory, DoesNotTrustForcesOfReversedAxes) {
+  TurnHistory turns;
+  BumpyRoad::Drive(-1, &turns);
+  EXPECT_TRUE(turns.trusted());
+  EXPECT_FALSE(turns.force_trusted());
+  EXPECT_FALSE(turns.Move(BumpyRoad::At(1), Time{} + seconds(1), Time{} + milliseconds(1100)));
 }
 
 TEST(TurnHistory, KeepsTenSeconds) {

@@ -164,7 +164,8 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
     if (lossy) errors.Add(PointsOf(timed->scan, {}).points, points.points);
     if (imu)
       for (const ImuSample& s : imu->Until((timed->start + timed->duration).time_since_epoch()))
-        odometry.OnTurn(s.time, Eigen::Map<const Eigen::Vector3d>(s.angular_velocity.data()));
+        odometry.OnTurn(s.time, Eigen::Map<const Eigen::Vector3d>(s.angular_velocity.data()),
+                        Eigen::Map<const Eigen::Vector3d>(s.acceleration.data()));
     const std::clock_t begin = std::clock();
     const odometry::Estimate e = odometry.OnScan(timed->start, timed->duration, points);
     result.cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
