@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "src/codec/cloud/median.h"
+
 namespace lidar::codec::cloud {
 namespace {
 
@@ -103,13 +105,6 @@ std::vector<Drifted> FollowBeam(const BeamAzimuths& azimuths, std::int32_t first
     followed.push_back({azimuth, azimuth - column * step});
   }
   return followed;
-}
-
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::int32_t RoundedOffset(double offset) {

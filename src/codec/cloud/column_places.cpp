@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "src/codec/cloud/median.h"
 
 namespace lidar::codec::cloud {
 namespace {
@@ -96,11 +99,10 @@ class DelaySearch {
         fits_[b] = BestFit(b);
         misses.push_back(fits_[b].miss);
       }
-      const auto middle = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
-      std::nth_element(misses.begin(), middle, misses.end());
+      const double median = MedianOf(std::move(misses));
       std::vector<std::size_t> good;
       for (std::size_t b = 0; b < beams_.size(); ++b)
-        if (fits_[b].miss <= 2 * *middle) good.push_back(b);
+        if (fits_[b].miss <= 2 * median) good.push_back(b);
       Average(good);
     }
     Write();
@@ -129,9 +131,7 @@ class DelaySearch {
     std::vector<double> offs;
     for (std::size_t i = 0; i < beams_[b].size(); i += stride)
       offs.push_back(Off(b, i, delay, rough));
-    const auto middle = offs.begin() + static_cast<std::ptrdiff_t>(offs.size() / 2);
-    std::nth_element(offs.begin(), middle, offs.end());
-    Fit fit{delay, rough + *middle, 0};
+    Fit fit{delay, rough + MedianOf(offs), 0};
     for (const double off : offs)
       fit.miss +=
           std::min(std::abs(off + rough - fit.offset), 512.0) / static_cast<double>(offs.size());
@@ -220,9 +220,8 @@ void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table) {
       if (std::abs(off) < reach) residuals.push_back(off);
     }
     if (residuals.empty()) continue;
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    table->beams[b].offset = (table->beams[b].offset + *middle) & (kTurn - 1);
+    const std::int32_t median = MedianOf(std::move(residuals));
+    table->beams[b].offset = (table->beams[b].offset + median) & (kTurn - 1);
   }
 }
 

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "src/codec/cloud/median.h"
+
 namespace lidar::codec::cloud {
 namespace {
 
@@ -34,13 +36,6 @@ std::vector<Line> LinesOf(const std::vector<Pulse>& pulses) {
     if (!std::is_sorted(line.begin(), line.end(), is_earlier))
       std::stable_sort(line.begin(), line.end(), is_earlier);
   return lines;
-}
-
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Calls `call` with each two samples of a line that follow each other.
