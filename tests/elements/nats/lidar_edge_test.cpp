@@ -269,6 +269,18 @@ TEST_F(LidarEdge, TakesEncryptedRobotsToAServerThatWantsCredentials) {
   EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
 }
 
+/// Each slice once, in any order.
+void ExpectSameSlices(std::vector<Kept> got, std::vector<Kept> sent) {
+  ASSERT_EQ(got.size(), sent.size());
+  const auto earlier = [](const Kept& a, const Kept& b) {
+    return std::pair(a.slice.scan_id, a.slice.slice_index) <
+           std::pair(b.slice.scan_id, b.slice.slice_index);
+  };
+  std::sort(got.begin(), got.end(), earlier);
+  std::sort(sent.begin(), sent.end(), earlier);
+  for (std::size_t i = 0; i < got.size(); ++i) EXPECT_TRUE(got[i].SameAs(sent[i])) << i;
+}
+
 /// Whether a buffer of the consumer is one of the robot's.
 bool Has(const NatsPipeline& consumer, const NatsPipeline& robot) {
   const auto sent = robot.buffers();
@@ -325,6 +337,44 @@ TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
   const auto at = answer->find("\nlidar_edge_stray_datagrams ");
   ASSERT_NE(at, std::string::npos);
   EXPECT_GT(std::atof(answer->c_str() + at + 28), 0);
+}
+
+TEST_F(LidarEdge, ARobotOfTwoAddressesOnTheSharedPortIsOneRobot) {
+  server_.Start();
+  const int port = FreePort();
+  StartEdge({{"nats", {{"url", server_.url()}}},
+             {"port", port},
+             {"robots",
+              {{{"name", "r1"}, {"ssrc", "7"}, {"record", server_.folder() + "/r1-%05d.mcap"}},
+               {{"name", "r2"}, {"ssrc", "8"}, {"record", server_.folder() + "/r2-%05d.mcap"}}}}});
+  const auto consumer = Consumer("fleet.r1.lidar.lidar");
+  const std::string to = "127.0.0.1:" + std::to_string(port);
+  const auto robot = Robot(
+      port,
+      "max-queue-delay=5000000000 bonding-addresses=\"" + to + "@127.0.0.1," + to + "@127.0.0.2\"",
+      "rtplidarpay ssrc=7");
+  const auto metric = [&](const char* name) { return Metric(name, "r1").value_or(0); };
+  // Copies count from when the second address has shown that it is the robot's.
+  ASSERT_TRUE(Eventually([&] { return metric("lidar_screamsrc_packets_copies") > 0; }));
+  const double foreign = metric("lidar_screamsrc_packets_foreign");
+  ASSERT_TRUE(consumer->WaitForBuffers(40));
+  ASSERT_TRUE(GoesOn("r1"));
+  EXPECT_EQ(metric("lidar_screamsrc_packets_foreign"), foreign);
+  EXPECT_EQ(metric("lidar_edge_sessions"), 1);
+  EXPECT_EQ(metric("lidar_edge_failures"), 0);
+  EXPECT_EQ(metric("lidar_edge_penalties"), 0);
+  EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
+  EXPECT_NE(Metrics().value_or("").find("\nlidar_edge_stray_datagrams 0\n"), std::string::npos);
+  robot->SendEos();
+  EXPECT_EQ(robot->WaitForEnd(), "");
+  EXPECT_TRUE(Eventually([&] { return metric("lidar_edge_sessions") >= 2; }));
+  EXPECT_TRUE(EndsByItself());
+  EXPECT_EQ(Recordings("r1"), 1U) << "the goodbye of one address is that of both";
+  EXPECT_EQ(Recordings("r2"), 0U);
+  ExpectSameSlices(
+      Play("mcapsrc location=" + server_.folder() + "/r1-00000.mcap ! fakesink name=see")
+          .buffers["see"],
+      robot->buffers());
 }
 
 }  // namespace

@@ -164,6 +164,28 @@ TEST(Bonding, ShowsEachLinksFigures) {
   EXPECT_EQ(all["packets-sent"], links[0]["packets-sent"]) << "the first link's";
 }
 
+TEST(Bonding, WhatOneLinkDeliveredLeavesTheQueueOfTheOtherAndWhatNoneDidStays) {
+  BondReceiver receiver;
+  Router router(receiver.port);
+  Pipeline sender(
+      Bonded(router.Addresses(), "bonding-method=broadcast max-queue-delay=5000000000"));
+  const ElementPtr out = sender.Get("out");
+  const auto of_link = [&](const char* field, std::size_t i) {
+    return OfLinks(out.get(), field)[i];
+  };
+  sender.Play();
+  while (receiver.passed < 40) g_usleep(10'000);
+  router.loses = true;  // link 1: its window fills, and its copies wait
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 150U);
+  EXPECT_GT(of_link("copies-cancelled", 1), 50U);
+  for (const std::size_t i : {0U, 1U}) {
+    EXPECT_EQ(of_link("packets-dropped", i), of_link("copies-cancelled", i)) << i;
+    EXPECT_EQ(of_link("packets-sent", i) + of_link("copies-cancelled", i), 150U) << i;
+  }
+}
+
 TEST(Bonding, CarriesSlicesThatReferToOnesWhichArrivedByAnyLink) {
   Pipeline receiver(
       "screamsrc name=in port=0 ! rtplidardepay ! lidardec name=decoder ! fakesink sync=false");
