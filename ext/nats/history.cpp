@@ -78,7 +78,7 @@ std::optional<gst::HistoryAnswer> History::Answer(const gst::HistoryQuestion& qu
   answer.position = has_time ? 0 : question.position;
   Take(Fetch(has_time ? FromTime(question.time - std::min(question.time, ahead))
                       : FromPosition(question.position),
-             question.most_bytes),
+             kMostMessages, question.most_bytes),
        &answer);
   return answer;
 }
@@ -114,7 +114,7 @@ std::optional<History::Stored> History::Last() {
 }
 
 std::optional<History::Stored> History::First() {
-  const auto messages = Fetch(FromStart(), 1);
+  const auto messages = Fetch(FromStart(), 1, 0);
   if (messages.empty()) return std::nullopt;
   jsMsgMetaData* raw = nullptr;
   if (natsMsg_GetMetaData(&raw, messages.front().get()) != NATS_OK) return std::nullopt;
@@ -124,8 +124,8 @@ std::optional<History::Stored> History::First() {
   return Stored{stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
 }
 
-/// Returns messages of about `most_bytes`, at least one if there is any.
-std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, guint64 most_bytes) {
+/// Returns up to `most` messages of about `most_bytes`, at least one if there is any.
+std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64 most_bytes) {
   jsSubOptions options;
   jsSubOptions_Init(&options);
   options.Stream = stream_.c_str();
@@ -143,7 +143,7 @@ std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, guint64 most_byte
   const std::int64_t largest = 2 * natsConnection_GetMaxPayload(connection_->get());
   jsFetchRequest request;
   jsFetchRequest_Init(&request);
-  request.Batch = most_bytes == 1 ? 1 : kMostMessages;
+  request.Batch = most;
   request.MaxBytes = std::max(static_cast<std::int64_t>(most_bytes), largest);
   request.Expires = kRequestTimeoutMs * 1'000'000;
   request.NoWait = true;

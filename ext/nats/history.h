@@ -30,7 +30,7 @@ class History {
   bool Find();
   std::optional<Stored> Last();
   std::optional<Stored> First();
-  std::vector<MessagePtr> Fetch(jsConsumerConfig start, guint64 most_bytes);
+  std::vector<MessagePtr> Fetch(jsConsumerConfig start, int most, guint64 most_bytes);
   void Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* answer);
   StreamFormat::Ptr FormatOf(const std::string& id);
 
