@@ -27,8 +27,7 @@ using SharedMessage = std::shared_ptr<const Message>;
 struct SliceMessage final : viewer::Slice {
   std::uint64_t unix_ns = 0;
   std::uint32_t first_column = 0;
-  bool is_pose =
-      false;  // the payload is a foxglove.FrameTransform, and `id` that of the slice before
+  bool is_pose = false;  // the payload is a foxglove.FrameTransform, `id` that of the slice before
   std::vector<std::uint8_t> payload;
 
   /// Sets what others need to know of the payload. Returns false if no decoder takes it.
