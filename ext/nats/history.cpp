@@ -11,7 +11,6 @@
 namespace lidar::nats {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr int kMostMessages = 4'096;  // of a piece
 
 struct StreamNames {
@@ -50,10 +49,10 @@ jsConsumerConfig FromPosition(guint64 position) {
 /// libnats 3.4 writes .012 s as .12 s, so the time becomes the whole second before it.
 jsConsumerConfig FromTime(guint64 stored) {
   jsConsumerConfig config = FromStart();
-  const auto seconds = static_cast<std::int64_t>(stored) / kSecondNs;
+  const guint64 seconds = stored / GST_SECOND;
   if (seconds == 0) return config;
   config.DeliverPolicy = js_DeliverByStartTime;
-  config.OptStartTime = seconds * kSecondNs;
+  config.OptStartTime = static_cast<std::int64_t>(seconds * GST_SECOND);
   return config;
 }
 
