@@ -99,7 +99,7 @@ def gyroscope():
         body.append([f"os0-32, {scene}", f"{speed} m/s", seed, roughness, *(f"{m:.3f} m" for m in (smooth, without, measured)),
                      f"{measured / smooth:.1f}"])
     return common.table(
-        ["sensor, scene", "speed", "seed", "roughness", "ATE, smooth", "rough, with a gap", "the same with gyroscope", "ratio to smooth"], body)
+        ["sensor, scene", "speed", "seed", "roughness", "ATE, smooth", "rough, with a gap", "the same with IMU", "ratio to smooth"], body)
 
 
 def drives():
