@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "ext/web/poses.h"
 #include "gst/common/caps_text.h"
 #include "src/cdr/coded_slice.h"
 #include "src/cdr/messages.h"
 #include "src/cdr/ros_types.h"
 #include "src/codec/slice_links.h"
-#include "src/foxglove/messages.h"
 
 namespace lidar::web {
 namespace {
@@ -20,13 +20,8 @@ constexpr std::size_t kMostKnownCaps = 64;
 std::shared_ptr<SliceMessage> ReadPose(const mcap::Message& message) {
   const auto odometry = cdr::ReadOdometry(message.data);
   if (!odometry) return nullptr;
-  auto pose = std::make_shared<SliceMessage>();
-  pose->is_pose = true;
-  pose->unix_ns = message.header.log_time;
-  pose->payload = foxglove::EncodeTransform({pose->unix_ns, odometry->header.frame_id},
-                                            odometry->child_frame_id,
-                                            {odometry->position, odometry->orientation});
-  return pose;
+  return PoseMessage({message.header.log_time, odometry->header.frame_id}, odometry->child_frame_id,
+                     {odometry->position, odometry->orientation});
 }
 
 }  // namespace

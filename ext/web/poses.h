@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Poses on buffers, as Foxglove has them.
+// Poses as Foxglove has them.
 #pragma once
 #include <algorithm>
+#include <memory>
+#include <string>
 
+#include "ext/web/topic.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/foxglove/messages.h"
 
@@ -15,6 +18,17 @@ inline foxglove::Pose PoseOf(const GstLidarPose& meta) {
   std::copy_n(meta.position, pose.position.size(), pose.position.begin());
   std::copy_n(meta.orientation, pose.orientation.size(), pose.orientation.begin());
   return pose;
+}
+
+/// A pose between the slices of a replay, at the time of the header.
+inline std::shared_ptr<SliceMessage> PoseMessage(const foxglove::Header& header,
+                                                 const std::string& child,
+                                                 const foxglove::Pose& pose) {
+  auto message = std::make_shared<SliceMessage>();
+  message->is_pose = true;
+  message->unix_ns = header.unix_ns;
+  message->payload = foxglove::EncodeTransform(header, child, pose);
+  return message;
 }
 
 }  // namespace lidar::web

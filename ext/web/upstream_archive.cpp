@@ -16,11 +16,7 @@ std::shared_ptr<SliceMessage> ReadPose(GstBuffer* buffer, std::uint64_t unix_ns,
                                        const std::string& child) {
   GstLidarPose meta;
   if (!gst_lidar_buffer_get_pose(buffer, &meta)) return nullptr;
-  auto pose = std::make_shared<SliceMessage>();
-  pose->is_pose = true;
-  pose->unix_ns = unix_ns;
-  pose->payload = foxglove::EncodeTransform({unix_ns, kFixedFrame}, child, PoseOf(meta));
-  return pose;
+  return PoseMessage({unix_ns, kFixedFrame}, child, PoseOf(meta));
 }
 
 /// Returns null if the slice is damaged.
