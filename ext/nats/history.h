@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What JetStream keeps of a subject, read piece by piece for others than the stream's own source.
+// Reads what JetStream keeps of a subject, piece by piece, for elements downstream of the source.
 #pragma once
 #include <memory>
 #include <mutex>

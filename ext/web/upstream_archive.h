@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a source upstream knows to be kept of the stream: natssrc, by JetStream.
+// Reads what a source upstream can still get of the stream, as natssrc can from JetStream.
 #pragma once
 #include <deque>
 #include <functional>

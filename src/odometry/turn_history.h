@@ -11,8 +11,8 @@ namespace lidar::odometry {
 
 /// Samples of the last seconds, without their bias, which the odometry teaches. Angular velocities
 /// are used while they predict turns at least as well as a steady turn does, and accelerations
-/// while they predict the way better than its mean velocity does. So turned axes, wrong units and a
-/// stuck sensor do harm for a few scans at most.
+/// while they predict the way about as well as its mean velocity does. So turned axes, wrong units
+/// and a stuck sensor do harm for a few scans at most.
 class TurnHistory {
  public:
   /// Takes an angular velocity [rad/s] and the force that a mass feels [m/s^2], in the sensor's
@@ -45,7 +45,7 @@ class TurnHistory {
     Eigen::Vector3d rate;
     Eigen::Vector3d force;
   };
-  /// What the sensor does between two times, in its frame at the first.
+  /// The motion between two times, in the sensor's frame at the first.
   struct Span {
     Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // integral of the force

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What an element puts out and says, as text: one run can be compared with another.
+// The output, events and messages of an element as text, so that two runs can be compared.
 #pragma once
 #include <algorithm>
 #include <mutex>

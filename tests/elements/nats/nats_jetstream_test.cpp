@@ -73,7 +73,7 @@ class DurableConsumer {
   nats::JetStreamPtr js_;
 };
 
-/// What the source `n` says of its past, read to its end in pieces of `most_bytes`.
+/// Reads the past of the source `n` to its end, in pieces of `most_bytes`.
 std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuestion question,
                                 gst::HistoryAnswer* last) {
   const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));

@@ -439,7 +439,7 @@ TEST(CloudCodec, TakesCloudsWhoseLinesAndTimesSayNothing) {
   EncodePaths(clouds);
 }
 
-/// What FindPath() takes of a cloud.
+/// The part of a cloud that FindPath() takes.
 struct PathSightings {
   explicit PathSightings(const PathCloud& cloud) {
     for (const PathPoint& p : cloud) {
