@@ -278,6 +278,13 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   State& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_STREAM_START:
+      // The next file of a concat: it has a size, and a type where no caps name one.
+      state.file_size.reset();
+      if (gst_pad_has_current_caps(pad)) break;
+      state.type.reset();
+      state.info.reset();
+      break;
     case GST_EVENT_CAPS:
       return HandleCaps(self, event);
     case GST_EVENT_SEGMENT:

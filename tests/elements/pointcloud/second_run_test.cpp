@@ -158,5 +158,96 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"PlyFiles", "plyenc", kPoints, WriteFiles}),
     [](const auto& which) { return which.param.name; });
 
+/// Files of one point each, by their type, and the caps that come before; none: by their content.
+struct FileCase {
+  const char* name;
+  const char* caps;
+  std::string file;
+};
+
+std::vector<FileCase> FileCases() {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n1 2 3\n";
+  const std::string pcd =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\n"
+      "HEIGHT 1\nPOINTS 1\nDATA ascii\n4 5 6\n";
+  std::vector<std::uint8_t> kitti;
+  ByteWriter w(&kitti);
+  for (const float v : {7.0F, 8.0F, 9.0F, 0.5F}) w.LeF32(v);
+  return {{"ply", nullptr, ply},
+          {"pcd", nullptr, pcd},
+          {"kitti", nullptr, std::string(kitti.begin(), kitti.end())},
+          {"ply by caps", "application/x-ply", ply},
+          {"pcd by caps", "application/x-pcd", pcd},
+          {"raw", kPoints, std::string(24, '\1')}};
+}
+
+class FileAfterAnother : public ::testing::Test {
+ protected:
+  FileAfterAnother() : h_(gst_harness_new_with_padnames("pointcloudparse", "sink", "src")) {
+    trace_.emplace(h_.get());
+  }
+  ~FileAfterAnother() override { trace_.reset(); }
+  void PlayFile(const FileCase& which) {
+    gst_harness_play(h_.get());
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start(which.name));
+    if (which.caps != nullptr) trace_->PushCaps(which.caps);
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_BYTES);
+    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+    for (int i = 0; i < 2; ++i)
+      Push(h_.get(), gst::BufferPtr(gst_buffer_new_memdup(which.file.data(), which.file.size())));
+  }
+  /// Stops the source as well, whose caps would stand.
+  void StopAll() {
+    trace_->Stop();
+    gst_pad_set_active(h_->srcpad, FALSE);
+    gst_pad_set_active(h_->srcpad, TRUE);
+    trace_->Take();
+  }
+  static bool IsBuffer(const std::string& line) { return line.rfind("buffer", 0) == 0; }
+  static Lines BytesOf(Lines buffers) {
+    for (std::string& line : buffers)
+      line = line.substr(line.find(" size"), line.find(" slice") - line.find(" size"));
+    return buffers;
+  }
+
+  Harness h_;
+  std::optional<RunTrace> trace_;
+};
+
+TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondRun) {
+  for (const FileCase& first : FileCases())
+    for (const FileCase& second : FileCases()) {
+      SCOPED_TRACE(std::string(second.name) + " after " + first.name);
+      PlayFile(first);
+      StopAll();
+      PlayFile(second);
+      const Lines after = trace_->Take();
+      StopAll();
+      PlayFile(second);
+      EXPECT_EQ(after, trace_->Take());
+      EXPECT_EQ(std::count_if(after.begin(), after.end(), IsBuffer), 2);
+      StopAll();
+    }
+}
+
+TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondStream) {
+  for (const FileCase& first : FileCases())
+    for (const FileCase& second : FileCases()) {
+      if ((second.caps == nullptr) != (first.caps == nullptr)) continue;  // caps hold on
+      SCOPED_TRACE(std::string(second.name) + " behind " + first.name);
+      PlayFile(second);
+      const Lines alone = BytesOf(trace_->TakeBuffers());
+      StopAll();
+      PlayFile(first);
+      trace_->Take();
+      PlayFile(second);
+      EXPECT_EQ(BytesOf(trace_->TakeBuffers()), alone);
+      StopAll();
+    }
+}
+
 }  // namespace
 }  // namespace lidar::test
