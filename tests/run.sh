@@ -173,15 +173,16 @@ run() {
   for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog; done
 }
 
-# The pipelines stream in real time, so they run one by one. Those of the suite beside wait for much of
-# their time or are not judged by it, so they run beside the others, with what time those leave.
+# The pipelines stream in real time, so no more of them run at a time than there are cores. Those of the
+# suite beside wait for much of their time or are not judged by it, so they run beside the others, with
+# what time those leave.
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
   nice -n 10 meson test -C "$dir" --no-rebuild "${patient[@]}" --suite beside --logbase beside --print-errorlogs \
     >"$dir/beside.log" 2>&1 &
   local beside=$!
-  run "$dir" pipelines --num-processes 1
+  run "$dir" pipelines
   wait "$beside"
   [ $? -lt 128 ] || failed=$((failed + 1))
   shorten <"$dir/beside.log"
