@@ -9,12 +9,15 @@
 #include <utility>
 #include <vector>
 
+#include "gst/common/certificates.h"
 #include "gst/common/refs.h"
 #include "src/tools/common/elements.h"
 #include "src/tools/common/program.h"
 
 namespace {
 
+using lidar::gst::CertificateIn;
+using lidar::gst::Certificates;
 using lidar::gst::ElementPtr;
 using lidar::gst::MessagePtr;
 using lidar::gst::StringPtr;
@@ -26,11 +29,6 @@ struct Options {
   std::string peer_certificate;
   std::string stats;
   std::vector<std::string> pipeline;
-};
-
-struct Certificates {
-  std::string own;   // certificate and private key, PEM
-  std::string peer;  // the certificate to trust, without line breaks
 };
 
 /// A handshake and its result. Threads of the pipeline set the flags.
@@ -52,35 +50,6 @@ struct Session {
 constexpr GstClockTime kPoll = 100 * GST_MSECOND;
 // Pause between handshakes. It limits the restarts that other packets can cause.
 constexpr gulong kPauseUs = 200'000;
-
-/// Returns the text between the lines that begin and end the first certificate, without white
-/// space.
-std::string CertificateIn(const std::string& pem) {
-  static const std::string kBegin = "-----BEGIN CERTIFICATE-----";
-  const auto begin = pem.find(kBegin);
-  const auto end = pem.find("-----END CERTIFICATE-----");
-  std::string body;
-  if (begin == std::string::npos || end == std::string::npos || end < begin) return body;
-  for (std::size_t i = begin + kBegin.size(); i < end; ++i)
-    if (!g_ascii_isspace(pem[i])) body += pem[i];
-  return body;
-}
-
-bool ReadPem(const std::string& path, const char* must_have, std::string* pem) {
-  gchar* text = nullptr;
-  GError* error = nullptr;
-  if (!g_file_get_contents(path.c_str(), &text, nullptr, &error)) {
-    std::fprintf(stderr, "%s\n", error->message);
-    g_error_free(error);
-    return false;
-  }
-  *pem = text;
-  g_free(text);
-  if (!CertificateIn(*pem).empty() && pem->find(must_have) != std::string::npos) return true;
-  std::fprintf(stderr, "%s is not PEM with a certificate%s.\n", path.c_str(),
-               std::string(must_have) == "PRIVATE KEY" ? " and its private key" : "");
-  return false;
-}
 
 /// The certificate comes in the handshake, before keys. After the flag no packet passes.
 void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
@@ -261,11 +230,12 @@ int main(int argc, char** argv) {
   lidar::tools::Parse(&app, argc, argv);
   options.pipeline = app.remaining();
   Certificates certificates;
-  std::string peer;
-  if (!ReadPem(options.certificate, "PRIVATE KEY", &certificates.own) ||
-      !ReadPem(options.peer_certificate, "CERTIFICATE", &peer))
+  std::string error;
+  if (!lidar::gst::ReadCertificates(options.certificate, options.peer_certificate, &certificates,
+                                    &error)) {
+    std::fprintf(stderr, "%s.\n", error.c_str());
     return kUsage;
-  certificates.peer = CertificateIn(peer);
+  }
   gst_init(nullptr, nullptr);
   const int result = Sessions(options, certificates).Run();
   gst_deinit();
