@@ -54,6 +54,12 @@ bool IsRtcp(ByteView datagram) {
          datagram.data[1] <= 223;
 }
 
+bool IsDtls(GstBuffer* datagram) {
+  guint8 first = 0;
+  gst_buffer_extract(datagram, 0, &first, 1);
+  return first >= 20 && first <= 63;
+}
+
 bool IsRtcp(GstBuffer* datagram) {
   guint8 head[8];
   return gst_buffer_extract(datagram, 0, head, sizeof head) == sizeof head &&

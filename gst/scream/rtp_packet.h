@@ -27,6 +27,8 @@ std::optional<RtpHeader> ReadRtpHeader(GstBuffer* buffer);
 /// Returns true if a datagram on an RTP port is RTCP (RFC 5761: packet types 192 to 223).
 bool IsRtcp(ByteView datagram);
 bool IsRtcp(GstBuffer* datagram);
+/// Returns true if it is DTLS (RFC 7983: a first byte from 20 to 63).
+bool IsDtls(GstBuffer* datagram);
 
 /// Builds an empty receiver report and a BYE for `ssrcs`, at most 31 of them.
 std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);

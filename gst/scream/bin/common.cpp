@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/bin/common.h"
 
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include "gst/common/buffer_map.h"
+#include "gst/net/datagram.h"
+
 namespace lidar::gst {
 
 GstElement* AddChild(GstElement* bin, const char* factory) {
@@ -35,6 +41,24 @@ void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool
     if (child != nullptr) GiveSocket(child, nullptr);
   const std::lock_guard lock(state.mutex);
   state.used.Close(close_given);
+}
+
+void SendDatagram(GSocket* socket, GSocketAddress* to, const std::string& interface,
+                  GstBuffer* datagram) {
+  const int fd = g_socket_get_fd(socket);
+  const unsigned index = interface.empty() ? 0 : net::InterfaceIndex(fd, interface);
+  const BufferMap map(datagram, GST_MAP_READ);
+  if (!map || (index == 0 && !interface.empty())) return;
+  NativeAddress address = ToNative(to, g_socket_get_family(socket));
+  iovec bytes{const_cast<guint8*>(map.data()), map.size()};
+  msghdr message{};
+  message.msg_name = address.get();
+  message.msg_namelen = address.length;
+  message.msg_iov = &bytes;
+  message.msg_iovlen = 1;
+  net::SendControl control;
+  net::SetControl(0, address, index, &control, &message);
+  sendmsg(fd, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 guint OverheadOf(GSocketAddress* peer) {

@@ -38,6 +38,10 @@ void EndSrtp(BinState& state);
 /// Takes the socket from the children, ends SRTP and closes the socket. A socket of the user is
 /// closed only if the user asked for it.
 void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given);
+/// Sends a datagram by the interface (empty: by the routes), or drops it where the socket has no
+/// room.
+void SendDatagram(GSocket* socket, GSocketAddress* to, const std::string& interface,
+                  GstBuffer* datagram);
 /// Bytes of the UDP and IP headers of a packet to `peer`.
 guint OverheadOf(GSocketAddress* peer);
 /// Returns `stats` of the child, or NULL without a child. Transfer full.

@@ -133,7 +133,7 @@ static Property<SinkSettings> OfTx(const char* name) {
                              ChildOf<GstLidarScreamSink, &GstLidarScreamSink::tx>, &TxDefaults());
 }
 
-static const std::array<Property<SinkSettings>, 25> kProperties = {{
+static const std::array<Property<SinkSettings>, 27> kProperties = {{
     Within<&SinkSettings::target>(UdpTargetRows(), "host"),
     Within<&SinkSettings::target>(UdpTargetRows(), "port"),
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
@@ -167,6 +167,8 @@ static const std::array<Property<SinkSettings>, 25> kProperties = {{
     Within<&SinkSettings::srtp>(SrtpRows(), "srtp-key"),
     Within<&SinkSettings::srtp>(SrtpRows(), "srtp-cipher"),
     Within<&SinkSettings::srtp>(SrtpRows(), "srtp-auth"),
+    Within<&SinkSettings::srtp>(SrtpRows(), "dtls-certificate"),
+    Within<&SinkSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
 /// Returns true if `buffer` comes from the receiver. A multicast group has many receivers.
@@ -202,22 +204,24 @@ static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer
   return GST_PAD_PROBE_DROP;
 }
 
+static std::vector<PadPtr> SinkPadsOf(GstLidarScreamSink* self) {
+  std::vector<PadPtr> pads;
+  GST_OBJECT_LOCK(self);
+  for (GList* p = GST_ELEMENT(self)->sinkpads; p != nullptr; p = p->next)
+    pads.emplace_back(GST_PAD(gst_object_ref(p->data)));
+  GST_OBJECT_UNLOCK(self);
+  return pads;
+}
+
 /// Calls a function for each pad of the bin and the pad it stands for.
 static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(GstPad*)>& retarget) {
-  GST_OBJECT_LOCK(self);
-  GList* pads = g_list_copy_deep(
-      GST_ELEMENT(self)->sinkpads,
-      [](gconstpointer p, gpointer) -> gpointer { return gst_object_ref(const_cast<gpointer>(p)); },
-      nullptr);
-  GST_OBJECT_UNLOCK(self);
-  for (GList* p = pads; p != nullptr; p = p->next) {
-    const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(p->data)));
+  for (const PadPtr& pad : SinkPadsOf(self)) {
+    const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad.get())));
     if (!target) continue;
-    gst_ghost_pad_set_target(GST_GHOST_PAD(p->data), nullptr);
+    gst_ghost_pad_set_target(GST_GHOST_PAD(pad.get()), nullptr);
     const PadPtr next = retarget(target.get());
-    gst_ghost_pad_set_target(GST_GHOST_PAD(p->data), next.get());
+    gst_ghost_pad_set_target(GST_GHOST_PAD(pad.get()), next.get());
   }
-  g_list_free_full(pads, gst_object_unref);
 }
 
 /// Puts a bond between the pads and the screamtx of each link.
@@ -260,7 +264,8 @@ static std::shared_ptr<SinkLinks> LinksOf(GstLidarScreamSink* self) {
   return self->state->links;
 }
 
-static std::vector<SrtpPlace> SrtpPlacesOf(GstLidarScreamSink* self) {
+/// `open` are all links.
+static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenLink>& open) {
   std::vector<SrtpPlace> places;
   const std::shared_ptr<SinkLinks> links = LinksOf(self);
   const auto add = [&](const SinkLinks::Chain& c) {
@@ -268,7 +273,26 @@ static std::vector<SrtpPlace> SrtpPlacesOf(GstLidarScreamSink* self) {
   };
   if (!links) add({self->tx, self->sink, self->src});
   for (std::size_t i = 0; links && i < links->chains().size(); ++i) add(links->chains()[i]);
-  return places;
+  const auto send_dtls = [open](GstBuffer* datagram, const DtlsKeys::Addresses&) {
+    for (const OpenLink& link : open)
+      SendDatagram(link.socket.get(), link.peer.get(), link.address.interface, datagram);
+  };
+  return {GST_ELEMENT(self), true, std::move(places), send_dtls};
+}
+
+/// Drops packets until there is a key: screamtx would count them as lost.
+static void DropUntilKeyed(GstLidarScreamSink* self, GstPad* pad) {
+  using HasKey = std::shared_ptr<const std::atomic<bool>>;
+  std::unique_lock lock(self->state->mutex);
+  const HasKey has_key = self->state->srtp ? self->state->srtp->has_key() : nullptr;
+  lock.unlock();
+  if (!has_key || *has_key) return;
+  gst_pad_add_probe(
+      pad, static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      [](GstPad*, GstPadProbeInfo*, gpointer flag) {
+        return **static_cast<HasKey*>(flag) ? GST_PAD_PROBE_REMOVE : GST_PAD_PROBE_DROP;
+      },
+      new HasKey(has_key), [](gpointer flag) { delete static_cast<HasKey*>(flag); });
 }
 
 /// Opens the socket for both ways and hands it to the children.
@@ -292,18 +316,21 @@ static bool Open(GstLidarScreamSink* self) {
   GiveSocket(self->src, socket.get());
   if (links.size() > 1) Bond(self, links, s.bond);
   std::shared_ptr<SrtpLayer> srtp;
-  if (!StartSrtp(s.srtp, {GST_ELEMENT(self), true, SrtpPlacesOf(self)}, &srtp)) return false;
+  const std::vector<OpenLink> all = links.empty() ? std::vector<OpenLink>{first} : links;
+  if (!StartSrtp(s.srtp, SrtpPlacesOf(self, all), &srtp)) return false;
   // Several links share packets that are protected before screamtx.
   const bool adds = srtp && links.size() < 2;
   const guint overhead = OverheadOf(peer.get()) + (adds ? srtp->overhead() : 0);
   g_object_set(self->tx, "packet-overhead", overhead, nullptr);
   if (srtp && !adds) LinksOf(self)->Protect(srtp);
-  const std::lock_guard lock(state.mutex);
+  std::unique_lock lock(state.mutex);
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;
   state.used = {std::move(socket), false};
   state.peer = std::move(peer);
   state.foreign = 0;
+  lock.unlock();
+  for (const PadPtr& pad : SinkPadsOf(self)) DropUntilKeyed(self, pad.get());
   return true;
 }
 
@@ -347,8 +374,10 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   if (!target) return nullptr;
   const StringPtr pad_name(gst_pad_get_name(target.get()));
   const std::shared_ptr<SinkLinks> links = LinksOf(self);
-  return AddGhostSink(element, gst_lidar_scream_sink_pad_get_type(), templ, pad_name.get(),
-                      links ? links->Add(target.get()) : target.get());
+  GstPad* ghost = AddGhostSink(element, gst_lidar_scream_sink_pad_get_type(), templ, pad_name.get(),
+                               links ? links->Add(target.get()) : target.get());
+  DropUntilKeyed(self, ghost);
+  return ghost;
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {

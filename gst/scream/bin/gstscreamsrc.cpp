@@ -71,7 +71,7 @@ static Property<SrcSettings> OfRx(const char* name) {
                             ChildOf<GstLidarScreamSrc, &GstLidarScreamSrc::rx>);
 }
 
-static const std::array<Property<SrcSettings>, 20> kProperties = {{
+static const std::array<Property<SrcSettings>, 22> kProperties = {{
     Within<&SrcSettings::listen>(UdpListenRows(), "address"),
     Within<&SrcSettings::listen>(UdpListenRows(), "port"),
     Within<&SrcSettings::listen>(UdpListenRows(), "multicast-group"),
@@ -94,6 +94,8 @@ static const std::array<Property<SrcSettings>, 20> kProperties = {{
     Within<&SrcSettings::srtp>(SrtpRows(), "srtp-key"),
     Within<&SrcSettings::srtp>(SrtpRows(), "srtp-cipher"),
     Within<&SrcSettings::srtp>(SrtpRows(), "srtp-auth"),
+    Within<&SrcSettings::srtp>(SrtpRows(), "dtls-certificate"),
+    Within<&SrcSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
 /// Opens the socket for both ways and hands it to the children.
@@ -109,11 +111,13 @@ static bool Open(GstLidarScreamSrc* self) {
   GiveSocket(self->src, used.socket.get());
   GiveSocket(self->sink, used.socket.get());
   std::shared_ptr<SrtpLayer> srtp;
-  if (!StartSrtp(
-          s.srtp,
-          {GST_ELEMENT(self), false, {{self->rx, "rtcp_src", "sink", self->sink, self->src}}},
-          &srtp))
-    return false;
+  SrtpPlaces places{
+      GST_ELEMENT(self), false, {{self->rx, "rtcp_src", "sink", self->sink, self->src}}, nullptr};
+  places.send_dtls = [socket = used.socket](GstBuffer* datagram, const DtlsKeys::Addresses& to) {
+    for (const SocketAddressPtr& address : to)
+      SendDatagram(socket.get(), address.get(), "", datagram);
+  };
+  if (!StartSrtp(s.srtp, places, &srtp)) return false;
   const std::lock_guard lock(state.mutex);
   state.srtp = std::move(srtp);
   state.srtp_key = s.srtp.key;

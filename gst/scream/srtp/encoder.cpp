@@ -13,8 +13,7 @@ constexpr guint kWindow = 4'096;  // packets
 
 }  // namespace
 
-std::unique_ptr<SrtpEncoder> SrtpEncoder::Create(GstElement* bin, const SrtpPolicy& policy,
-                                                 const SrtpKey& key) {
+std::unique_ptr<SrtpEncoder> SrtpEncoder::Create(GstElement* bin, const SrtpPolicy& policy) {
   GstElement* element = gst_element_factory_make("srtpenc", nullptr);
   if (element == nullptr) return nullptr;
   for (const char* name : {"rtp-cipher", "rtcp-cipher"})
@@ -25,7 +24,6 @@ std::unique_ptr<SrtpEncoder> SrtpEncoder::Create(GstElement* bin, const SrtpPoli
   gst_element_set_locked_state(element, TRUE);
   gst_bin_add(GST_BIN(bin), element);
   std::unique_ptr<SrtpEncoder> encoder(new SrtpEncoder(bin, element));
-  encoder->SetKey(key);
   gst_element_set_state(element, GST_STATE_PLAYING);
   return encoder;
 }
@@ -66,12 +64,15 @@ void SrtpEncoder::SetKey(const SrtpKey& key) {
   const BufferPtr buffer(gst_buffer_new_memdup(key.data(), key.size()));
   const std::lock_guard lock(mutex_);
   g_object_set(element_, "key", buffer.get(), nullptr);
+  has_key_ = true;
 }
 
 BufferPtr SrtpEncoder::Protect(GstBuffer* packet) {
+  BufferPtr owner(packet);
   const bool rtcp = IsRtcp(packet);
   GstPad* sink = (rtcp ? rtcp_ : rtp_).sink.get();
   const std::lock_guard lock(mutex_);
+  if (!has_key_) return nullptr;  // srtpenc would make one up
   if (!gst_pad_has_current_caps(sink)) {
     GstSegment segment;
     gst_segment_init(&segment, GST_FORMAT_TIME);
@@ -81,7 +82,7 @@ BufferPtr SrtpEncoder::Protect(GstBuffer* packet) {
     gst_pad_send_event(sink, gst_event_new_caps(caps.get()));
     gst_pad_send_event(sink, gst_event_new_segment(&segment));
   }
-  gst_pad_chain(sink, packet);
+  gst_pad_chain(sink, owner.release());
   return std::move(out_);
 }
 

@@ -16,15 +16,14 @@ namespace lidar::gst {
 class SrtpEncoder {
  public:
   /// Null if the srtp plugin is missing.
-  static std::unique_ptr<SrtpEncoder> Create(GstElement* bin, const SrtpPolicy& policy,
-                                             const SrtpKey& key);
+  static std::unique_ptr<SrtpEncoder> Create(GstElement* bin, const SrtpPolicy& policy);
   ~SrtpEncoder();
   SrtpEncoder(const SrtpEncoder&) = delete;
   SrtpEncoder& operator=(const SrtpEncoder&) = delete;
 
   void SetKey(const SrtpKey& key);
-  /// Returns the protected RTP or RTCP packet with its metas; NULL if srtpenc refuses it. Takes the
-  /// buffer.
+  /// Returns the protected RTP or RTCP packet with its metas; NULL if srtpenc refuses it, or before
+  /// a key was set. Takes the buffer.
   BufferPtr Protect(GstBuffer* packet);
 
  private:
@@ -41,6 +40,7 @@ class SrtpEncoder {
   Way rtp_;
   Way rtcp_;
   std::mutex mutex_;  // held while the element works; it only pushes to the relays
+  bool has_key_ = false;
   BufferPtr out_;
 };
 

@@ -113,6 +113,10 @@ SrtpInput::Head SrtpInput::HeadOf(GstBuffer* datagram) {
 }
 
 GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
+  if (on_dtls_ && IsDtls(datagram)) {
+    on_dtls_(datagram);
+    return GST_FLOW_OK;
+  }
   UpdateKeys();
   ++received_;
   const Head head = HeadOf(datagram);
@@ -128,7 +132,7 @@ GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
   ++refused_;
   const auto found = streams_.find(head.stream());
   const bool known = found != streams_.end() && found->second.known;
-  if (!known && refused_ >= kFailuresUntilWarning) Warn();
+  if (!known && !keys_.empty() && refused_ >= kFailuresUntilWarning) Warn();
   return GST_FLOW_OK;
 }
 

@@ -34,6 +34,7 @@ struct SrtpCounts {
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
+  using OnDtls = std::function<void(GstBuffer*)>;
 
   /// The streaming thread calls `on_new_key` once the other end uses a newer key.
   SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_key);
@@ -43,6 +44,8 @@ class SrtpInput {
 
   /// Links two pads that have no link. Returns false if they do not fit.
   bool Link(GstPad* socket, GstPad* target);
+  /// Gives datagrams of DTLS to `on_dtls`, which are refused without it. Call it before Link().
+  void SetDtls(OnDtls on_dtls) { on_dtls_ = std::move(on_dtls); }
   /// All threads may call it. Returns false without the srtp plugin. A fifth key replaces the
   /// oldest.
   bool AddKey(const SrtpKey& key);
@@ -120,6 +123,7 @@ class SrtpInput {
   GstElement* bin_;
   SrtpPolicy policy_;
   OnNewKey on_new_key_;
+  OnDtls on_dtls_;
   PadPtr entry_;
   PadPtr exit_;
 

@@ -20,6 +20,29 @@ std::string DigestOf(const SrtpKey& key) {
   return digest.get();
 }
 
+bool ReadKey(const SrtpSettings& settings, const SrtpPolicy& policy, SrtpKey* key,
+             std::string* error) {
+  const auto read = ReadSrtpKey(settings.key, policy, error);
+  if (read) *key = *read;
+  return read.has_value();
+}
+
+bool ReadForDtls(const SrtpSettings& settings, Certificates* certificates, std::string* error) {
+  *error = "dtls-certificate and dtls-peer-certificate take the place of srtp-key";
+  if (!settings.key.empty()) return false;
+  *error = "DTLS has aes-128-icm and hmac-sha1-80 only";
+  const SrtpSettings usual;
+  if (settings.cipher != usual.cipher || settings.auth != usual.auth) return false;
+  *error = "the dtls plugin is missing; install gstreamer1.0-plugins-bad";
+  GstElementFactory* factory = gst_element_factory_find("dtlsdec");
+  if (factory == nullptr) return false;
+  gst_object_unref(factory);
+  *error = "dtls-certificate and dtls-peer-certificate are needed both";
+  if (settings.dtls_certificate.empty() || settings.dtls_peer_certificate.empty()) return false;
+  return ReadCertificates(settings.dtls_certificate, settings.dtls_peer_certificate, certificates,
+                          error);
+}
+
 }  // namespace
 
 SrtpLayer::SrtpLayer(const SrtpPolicy& policy, const SrtpPlaces& places)
@@ -34,21 +57,51 @@ std::unique_ptr<SrtpLayer> SrtpLayer::Create(const SrtpSettings& settings, const
                                              std::string* error) {
   const auto policy = SrtpPolicyOf(settings, error);
   if (!policy) return nullptr;
-  const auto key = ReadSrtpKey(settings.key, *policy, error);
-  if (!key) return nullptr;
+  SrtpKey key;
+  Certificates certificates;
+  if (settings.by_dtls() ? !ReadForDtls(settings, &certificates, error)
+                         : !ReadKey(settings, *policy, &key, error))
+    return nullptr;
   std::unique_ptr<SrtpLayer> layer(new SrtpLayer(*policy, places));
-  layer->encoder_ = SrtpEncoder::Create(places.bin, *policy, *key);
+  layer->encoder_ = SrtpEncoder::Create(places.bin, *policy);
   *error = "the srtp plugin is missing; install gstreamer1.0-plugins-bad";
-  if (!layer->encoder_ || !layer->AddKey(*key)) return nullptr;
+  if (!layer->encoder_ || !layer->AddKey(key)) return nullptr;
+  for (const auto& input : layer->inputs_)
+    if (settings.by_dtls())
+      input->SetDtls([l = layer.get()](GstBuffer* datagram) { l->dtls_->Take(datagram); });
   *error = "the elements of the srtp plugin cannot be linked";
   if (!layer->Link()) return nullptr;
-  layer->digests_.push_back(DigestOf(*key));
+  if (settings.by_dtls()) layer->StartDtls(certificates);
   return layer;
 }
 
+/// The end that sends media uses the key at once; the other end uses its first one at once, and
+/// others after the media do. An empty key is none.
 bool SrtpLayer::AddKey(const SrtpKey& key) {
-  return std::all_of(inputs_.begin(), inputs_.end(),
-                     [&key](const auto& input) { return input->AddKey(key); });
+  if (key.empty()) return true;
+  if (!std::all_of(inputs_.begin(), inputs_.end(),
+                   [&key](const auto& input) { return input->AddKey(key); }))
+    return false;
+  if (places_.sends_media || !*has_key_) encoder_->SetKey(key);
+  *has_key_ = true;
+  const std::lock_guard lock(mutex_);
+  digests_.push_back(DigestOf(key));
+  if (digests_.size() > kRememberedKeys) digests_.pop_front();
+  return true;
+}
+
+void SrtpLayer::StartDtls(const Certificates& certificates) {
+  DtlsKeys::Calls calls;
+  calls.send = places_.send_dtls;
+  calls.on_key = [this](const SrtpKey& key) { AddKey(key); };
+  calls.traffic = [this] {
+    const SrtpCounts in = counts();
+    return SrtpTraffic{protected_, in.received - in.refused};
+  };
+  calls.warn = [bin = places_.bin](const char* what, const char* to_do) {
+    GST_ELEMENT_WARNING(bin, RESOURCE, NOT_AUTHORIZED, ("%s", what), ("%s", to_do));
+  };
+  dtls_ = std::make_unique<DtlsKeys>(certificates, places_.sends_media, std::move(calls));
 }
 
 SrtpCounts SrtpLayer::counts() const {
@@ -63,7 +116,14 @@ SrtpCounts SrtpLayer::counts() const {
   return sum;
 }
 
+BufferPtr SrtpLayer::Protect(GstBuffer* packet) {
+  if (!IsRtcp(packet)) ++protected_;
+  return encoder_->Protect(packet);
+}
+
 bool SrtpLayer::ChangeKey(const std::string& source, std::string* error) {
+  *error = "DTLS agrees on the keys";
+  if (dtls_) return false;
   const auto key = ReadSrtpKey(source, policy_, error);
   if (!key) return false;
   {
@@ -79,12 +139,8 @@ bool SrtpLayer::ChangeKey(const std::string& source, std::string* error) {
       *error = "two new keys wait already for the sender to use them";
       return false;
     }
-    digests_.push_back(digest);
-    if (digests_.size() > kRememberedKeys) digests_.pop_front();
   }
-  AddKey(*key);
-  if (places_.sends_media) encoder_->SetKey(*key);
-  return true;
+  return AddKey(*key);
 }
 
 bool SrtpLayer::Link() {
@@ -130,6 +186,8 @@ GstPadProbeReturn SrtpLayer::OnOut(GstPad*, GstPadProbeInfo* info, gpointer data
 }
 
 SrtpLayer::~SrtpLayer() {
+  dtls_.reset();
+  *has_key_ = true;
   for (std::size_t i = 0; i < probes_.size(); ++i)
     gst_pad_remove_probe(PadOf(places_.links[i].sender, places_.links[i].out).get(), probes_[i]);
   inputs_.clear();

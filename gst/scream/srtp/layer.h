@@ -3,7 +3,9 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <atomic>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -11,6 +13,7 @@
 
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/scream/srtp/dtls_keys.h"
 #include "gst/scream/srtp/encoder.h"
 #include "gst/scream/srtp/input.h"
 #include "gst/scream/srtp/key.h"
@@ -29,11 +32,13 @@ struct SrtpPlaces {
   GstElement* bin;
   bool sends_media;
   std::vector<SrtpPlace> links;
+  /// As DtlsKeys::Calls says; any thread calls it.
+  std::function<void(GstBuffer*, const DtlsKeys::Addresses&)> send_dtls;
 };
 
 /// Lives from READY to NULL of its bin. All SSRCs use the same key. The layer protects packets that
-/// leave by `out`; RTP over several links is protected once for all links, by Protect(). The input
-/// of each link has its own replay windows.
+/// leave by `out`, none before it has a key; RTP over several links is protected once for all
+/// links, by Protect(). The input of each link has its own replay windows.
 class SrtpLayer {
  public:
   /// Returns null and sets `error` if the key, the cipher or the srtp plugin is unusable.
@@ -45,9 +50,14 @@ class SrtpLayer {
 
   /// Sums over all inputs.
   SrtpCounts counts() const;
+  /// All zero without DTLS.
+  DtlsCounts dtls_counts() const { return dtls_ ? dtls_->counts() : DtlsCounts{}; }
+  bool by_dtls() const { return dtls_ != nullptr; }
+  /// Becomes true with the first key, and with the end of the layer, which it outlives.
+  std::shared_ptr<const std::atomic<bool>> has_key() const { return has_key_; }
   /// Bytes added to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
-  BufferPtr Protect(GstBuffer* packet) { return encoder_->Protect(packet); }
+  BufferPtr Protect(GstBuffer* packet);
   /// Adds the key that `source` names. The end that sends media uses it at once; the other end uses
   /// it after the media do. Returns false and sets `error` for no key, or one that was used before.
   bool ChangeKey(const std::string& source, std::string* error);
@@ -55,6 +65,7 @@ class SrtpLayer {
  private:
   SrtpLayer(const SrtpPolicy& policy, const SrtpPlaces& places);
   bool AddKey(const SrtpKey& key);
+  void StartDtls(const Certificates& certificates);
   bool Link();
   bool IsDone(GstBuffer* packet) const;
   static GstPadProbeReturn OnOut(GstPad* pad, GstPadProbeInfo* info, gpointer self);
@@ -64,19 +75,23 @@ class SrtpLayer {
   std::unique_ptr<SrtpEncoder> encoder_;
   std::vector<std::unique_ptr<SrtpInput>> inputs_;  // one per link
   std::vector<gulong> probes_;                      // one per link
+  std::shared_ptr<std::atomic<bool>> has_key_ = std::make_shared<std::atomic<bool>>(false);
+  std::atomic<std::uint64_t> protected_{0};  // packets of media
 
   std::mutex mutex_;                 // guards digests_
   std::deque<std::string> digests_;  // of all keys so far
+
+  std::unique_ptr<DtlsKeys> dtls_;  // uses all of the above
 };
 
-/// srtp-key (write-only), srtp-cipher and srtp-auth.
-const std::array<Property<SrtpSettings>, 3>& SrtpRows();
+/// srtp-key (write-only), srtp-cipher, srtp-auth, dtls-certificate and dtls-peer-certificate.
+const std::array<Property<SrtpSettings>, 5>& SrtpRows();
 /// Creates the layer if `settings` ask for it. Returns false and posts an error if that fails.
 bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer);
 /// Gives a running layer its new key. Returns false and posts a warning if that fails.
 bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key);
-/// Adds srtp-received, srtp-refused and srtp-key-changes; nothing without a layer.
+/// Adds the counters of SRTP, and of DTLS where it is used; nothing without a layer.
 void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats);
 
 }  // namespace lidar::gst

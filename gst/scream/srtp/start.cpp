@@ -5,8 +5,8 @@
 
 namespace lidar::gst {
 
-const std::array<Property<SrtpSettings>, 3>& SrtpRows() {
-  static const std::array<Property<SrtpSettings>, 3> rows = {{
+const std::array<Property<SrtpSettings>, 5>& SrtpRows() {
+  static const std::array<Property<SrtpSettings>, 5> rows = {{
       {"srtp-key",
        "SRTP master key and salt: hexadecimal digits, or file:PATH or env:NAME where they stand, "
        "so that no list of processes shows them; empty for no SRTP. Set while playing, it is a new "
@@ -16,13 +16,19 @@ const std::array<Property<SrtpSettings>, 3>& SrtpRows() {
        "aes-128-icm (60 digits of key), aes-256-icm (92), aes-128-gcm (56) or aes-256-gcm (88)",
        &SrtpSettings::cipher},
       {"srtp-auth", "hmac-sha1-80 or hmac-sha1-32; of no meaning with gcm", &SrtpSettings::auth},
+      {"dtls-certificate",
+       "File with our certificate and its private key, PEM: DTLS agrees on SRTP keys, in the place "
+       "of srtp-key",
+       &SrtpSettings::dtls_certificate},
+      {"dtls-peer-certificate", "File with the certificate of the only peer to trust, PEM",
+       &SrtpSettings::dtls_peer_certificate},
   }};
   return rows;
 }
 
 bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer) {
-  if (settings.key.empty()) return true;
+  if (settings.key.empty() && !settings.by_dtls()) return true;
   std::string error;
   *layer = SrtpLayer::Create(settings, places, &error);
   if (*layer) return true;
@@ -46,7 +52,12 @@ void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats) {
       {"srtp-copies", &SrtpCounts::copies},
       {"srtp-key-changes", &SrtpCounts::key_changes},
   }};
+  static const std::array<Stat<DtlsCounts>, 2> kDtlsStats = {{
+      {"dtls-handshakes", &DtlsCounts::handshakes},
+      {"dtls-refused", &DtlsCounts::refused},
+  }};
   if (layer != nullptr) AddStats(stats, kStats, layer->counts());
+  if (layer != nullptr && layer->by_dtls()) AddStats(stats, kDtlsStats, layer->dtls_counts());
 }
 
 }  // namespace lidar::gst

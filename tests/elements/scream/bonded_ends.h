@@ -103,6 +103,8 @@ class Router {
            "@127.0.0.2";
   }
 
+  /// Link 1 dies after so many datagrams, both ways together.
+  std::atomic<int> left{1 << 30};
   /// Feedback of each link goes to the other one.
   std::atomic<bool> swaps{false};
   /// Link 1 loses what the sender sends.
@@ -157,18 +159,19 @@ class Router {
       close(std::exchange(backs_[1], Bind()));
     }
   }
+  bool Lives(int link) { return link != 1 || left-- > 0; }
   void PassMedia(int link) {
     char bytes[2'000];
     socklen_t size = sizeof senders_[link];
     const ssize_t n = recvfrom(doors_[link], bytes, sizeof bytes, 0,
                                reinterpret_cast<sockaddr*>(&senders_[link]), &size);
-    if (n > 0 && !(loses && link == 1)) Send(backs_[link], bytes, n, receiver_);
+    if (n > 0 && !(loses && link == 1) && Lives(link)) Send(backs_[link], bytes, n, receiver_);
   }
   void PassFeedback(int link) {
     char bytes[2'000];
     const ssize_t n = recv(backs_[link], bytes, sizeof bytes, 0);
     const int to = swaps ? 1 - link : link;
-    if (n > 0 && !(mutes && link == 1) && senders_[to].sin_port != 0)
+    if (n > 0 && !(mutes && link == 1) && Lives(link) && senders_[to].sin_port != 0)
       Send(doors_[to], bytes, n, senders_[to]);
   }
 

@@ -9,13 +9,10 @@
 
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/srtp/input.h"
+#include "tests/elements/scream/frozen_clock.h"
 #include "tests/elements/scream/srtp_protector.h"
 
-namespace {
-
-gint64 frozen_at = 0;  // [us]; 0: the clock runs
-
-}  // namespace
+using lidar::test::frozen_at;
 
 /// Stands before GLib's in this program.
 extern "C" gint64 g_get_monotonic_time() {

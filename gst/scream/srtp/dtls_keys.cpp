@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/srtp/dtls_keys.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "gst/common/buffer_map.h"
+#include "gst/scream/rtp_packet.h"
+
+namespace lidar::gst {
+namespace {
+
+constexpr std::chrono::milliseconds kDtlsTick{100};
+// A client's handshake begins anew after it, as the pauses of DTLS double, and so does one after
+// packets that stay without an answer.
+constexpr gint64 kPatienceUs = 5 * G_USEC_PER_SEC;
+constexpr gint64 kPauseUs = G_USEC_PER_SEC;  // between handshakes that fail
+// A server may have to repeat its last datagram.
+constexpr gint64 kServerKeepsUs = 10 * G_USEC_PER_SEC;
+
+constexpr gsize kRecordHeader = 13;
+constexpr gsize kHandshakeHeader = 12;
+
+/// Returns what a hello that begins a handshake says, or an empty text. Record numbers differ where
+/// it is repeated.
+std::string HelloIn(GstBuffer* datagram) {
+  constexpr guint8 kHandshakeRecord = 22, kClientHello = 1;
+  const BufferMap map(datagram, GST_MAP_READ);
+  if (!map || map.size() < kRecordHeader + kHandshakeHeader) return "";
+  const guint8* d = map.data();
+  const bool is_first_epoch = d[3] == 0 && d[4] == 0;
+  const guint8* offset = d + kRecordHeader + 6;
+  const bool is_whole = offset[0] == 0 && offset[1] == 0 && offset[2] == 0;
+  if (d[0] != kHandshakeRecord || !is_first_epoch || d[kRecordHeader] != kClientHello || !is_whole)
+    return "";
+  return std::string(reinterpret_cast<const char*>(d) + kRecordHeader, map.size() - kRecordHeader);
+}
+
+}  // namespace
+
+DtlsKeys::DtlsKeys(const Certificates& certificates, bool is_client, Calls calls)
+    : certificates_(certificates), is_client_(is_client), calls_(std::move(calls)) {
+  thread_ = g_thread_new(
+      "dtls",
+      [](gpointer self) -> gpointer {
+        static_cast<DtlsKeys*>(self)->Run();
+        return nullptr;
+      },
+      this);
+}
+
+DtlsKeys::~DtlsKeys() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+    wake_.notify_one();
+  }
+  g_thread_join(thread_);
+}
+
+void DtlsKeys::Take(GstBuffer* datagram) {
+  const std::lock_guard lock(mutex_);
+  if (waiting_.size() >= kMaxWaiting) return;
+  waiting_.emplace_back(gst_buffer_ref(datagram));
+  wake_.notify_one();
+}
+
+void DtlsKeys::Run() {
+  std::unique_lock lock(mutex_);
+  while (!stop_) {
+    std::deque<BufferPtr> taken = std::exchange(waiting_, {});
+    lock.unlock();
+    for (const BufferPtr& datagram : taken) {
+      Process(datagram.get());
+      Settle(g_get_monotonic_time());
+    }
+    if (is_client_) BeginAsClient(g_get_monotonic_time());
+    Settle(g_get_monotonic_time());
+    lock.lock();
+    wake_.wait_for(lock, kDtlsTick, [this] { return stop_ || !waiting_.empty(); });
+  }
+}
+
+void DtlsKeys::Process(GstBuffer* datagram) {
+  GSocketAddress* from = SourceOf(datagram);
+  if (from == nullptr) return;
+  Session* session = nullptr;
+  if (is_client_) {
+    session = sessions_.empty() ? nullptr : &sessions_.back();
+  } else {
+    session = SessionOf(HelloIn(datagram), from);
+  }
+  if (session != nullptr) session->handshake->Take(datagram);
+}
+
+/// Another address that brings the same hello to a server is another link of the same peer.
+DtlsKeys::Session* DtlsKeys::SessionOf(const std::string& hello, GSocketAddress* from) {
+  const gint64 now = g_get_monotonic_time();
+  const auto is_of = [from](const Session& session) {
+    const std::lock_guard lock(session.route->mutex);
+    const Addresses& known = session.route->addresses;
+    return std::any_of(known.begin(), known.end(),
+                       [from](const auto& a) { return SameAddress(a.get(), from); });
+  };
+  Session* session = nullptr;
+  for (Session& s : sessions_)
+    if (hello.empty() ? is_of(s) : s.hello == hello) session = &s;
+  if (hello.empty()) return session;
+  if (session == nullptr && MayBegin(now)) session = Begin(now, hello);
+  if (session == nullptr || is_of(*session)) return session;
+  const std::lock_guard lock(session->route->mutex);
+  if (session->route->addresses.size() >= kMaxAddresses) return nullptr;
+  session->route->addresses.push_back(RefAddress(from));
+  return session;
+}
+
+bool DtlsKeys::MayBegin(gint64 now) {
+  const double refill = static_cast<double>(now - filled_at_) * kHellosPerSecond / 1e6;
+  allowance_ = std::min(allowance_ + refill, kHellosPerSecond);
+  filled_at_ = now;
+  if (allowance_ < 1) return false;
+  --allowance_;
+  return true;
+}
+
+DtlsKeys::Session* DtlsKeys::Begin(gint64 now, std::string hello) {
+  if (sessions_.size() >= kMaxHandshakes) sessions_.pop_front();
+  Session session;
+  session.hello = std::move(hello);
+  session.route = std::make_shared<Route>();
+  session.began = now;
+  session.handshake = DtlsHandshake::Start(certificates_, is_client_,
+                                           [this, route = session.route](GstBuffer* datagram) {
+                                             const std::lock_guard lock(route->mutex);
+                                             calls_.send(datagram, route->addresses);
+                                           });
+  if (!session.handshake) return nullptr;
+  sessions_.push_back(std::move(session));
+  return &sessions_.back();
+}
+
+void DtlsKeys::BeginAsClient(gint64 now) {
+  const SrtpTraffic traffic = calls_.traffic();
+  if (heard_at_ != 0 && (traffic.passed > seen_.passed || traffic.sent == seen_.sent)) {
+    heard_at_ = now;
+    seen_ = traffic;
+    sessions_.clear();
+  }
+  const bool is_silent = heard_at_ == 0 || now - heard_at_ > kPatienceUs;
+  if (!is_silent || !sessions_.empty() || now < paused_until_) return;
+  paused_until_ = now + kPauseUs;
+  Begin(now, "");
+}
+
+/// Takes keys, and ends what is over.
+void DtlsKeys::Settle(gint64 now) {
+  for (Session& session : sessions_) {
+    const auto state = session.handshake->state();
+    if (state == DtlsHandshake::State::kDone && !session.has_key) {
+      session.has_key = true;
+      ++handshakes_;
+      told_of_stranger_ = told_of_silence_ = false;
+      calls_.on_key(session.handshake->key());
+      heard_at_ = now;
+      seen_ = calls_.traffic();
+    } else if (state == DtlsHandshake::State::kRefused) {
+      ++refused_;
+      if (!std::exchange(told_of_stranger_, true))
+        calls_.warn("The other end has another certificate than the one to trust, and is refused.",
+                    "dtls-peer-certificate names the one to trust");
+    }
+  }
+  const auto is_over = [&](const Session& session) {
+    const auto state = session.handshake->state();
+    if (state == DtlsHandshake::State::kRefused || state == DtlsHandshake::State::kFailed)
+      return true;
+    const gint64 age = now - session.began;
+    if (!is_client_) return age > kServerKeepsUs;
+    if (!session.has_key && age > kPatienceUs && !std::exchange(told_of_silence_, true))
+      calls_.warn("The other end does not answer the DTLS handshake; it is tried again.",
+                  "is it there, with dtls-certificate, and does it trust our certificate?");
+    return session.has_key || age > kPatienceUs;
+  };
+  sessions_.erase(std::remove_if(sessions_.begin(), sessions_.end(), is_over), sessions_.end());
+}
+
+}  // namespace lidar::gst

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Agrees on SRTP keys by DTLS over the sockets and links that carry the media (RFC 5764).
+#pragma once
+#include <gst/gst.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "gst/common/certificates.h"
+#include "gst/common/refs.h"
+#include "gst/net/udp_socket.h"
+#include "gst/scream/srtp/handshake.h"
+#include "gst/scream/srtp/key.h"
+
+namespace lidar::gst {
+
+struct DtlsCounts {
+  std::uint64_t handshakes = 0;  // that brought a key
+  std::uint64_t refused = 0;     // with another certificate than the one to trust
+};
+
+/// Numbers of packets that were protected, and that passed.
+struct SrtpTraffic {
+  std::uint64_t sent = 0;
+  std::uint64_t passed = 0;
+};
+
+/// The end that sends media is the client: it says hello over all its links, again until there is a
+/// key, and anew where its packets stay without an answer, as after a restart of the other end. The
+/// server answers to each address that brought the same hello. So one live link is enough. Repeated
+/// datagrams do no harm in DTLS. A thread of its own does all that takes time.
+class DtlsKeys {
+ public:
+  static constexpr std::size_t kMaxHandshakes = 4;  // of a server at a time
+  static constexpr double kHellosPerSecond = 5;     // that begin a handshake of a server
+  static constexpr std::size_t kMaxAddresses = 4;   // of a handshake
+  static constexpr std::size_t kMaxWaiting = 64;    // datagrams
+
+  using Addresses = std::vector<SocketAddressPtr>;
+  struct Calls {
+    /// Sends a datagram to the addresses; a client's has none, and goes over all links.
+    std::function<void(GstBuffer*, const Addresses&)> send;
+    std::function<void(const SrtpKey&)> on_key;
+    std::function<SrtpTraffic()> traffic;
+    /// Says what is wrong, and what to do about it.
+    std::function<void(const char* what, const char* to_do)> warn;
+  };
+
+  /// The server's handshakes are made as hellos come.
+  DtlsKeys(const Certificates& certificates, bool is_client, Calls calls);
+  ~DtlsKeys();
+  DtlsKeys(const DtlsKeys&) = delete;
+  DtlsKeys& operator=(const DtlsKeys&) = delete;
+
+  /// Takes a datagram that has its source's address; any thread.
+  void Take(GstBuffer* datagram);
+  DtlsCounts counts() const { return {handshakes_, refused_}; }
+
+ private:
+  /// The addresses of one peer, which the encoder's thread reads.
+  struct Route {
+    std::mutex mutex;
+    Addresses addresses;
+  };
+  struct Session {
+    std::string hello;  // of a server's peer
+    std::shared_ptr<Route> route;
+    std::unique_ptr<DtlsHandshake> handshake;
+    gint64 began = 0;  // monotonic time [us]
+    bool has_key = false;
+  };
+
+  void Run();
+  void Process(GstBuffer* datagram);
+  Session* SessionOf(const std::string& hello, GSocketAddress* from);
+  Session* Begin(gint64 now, std::string hello);
+  void BeginAsClient(gint64 now);
+  void Settle(gint64 now);
+  bool MayBegin(gint64 now);
+
+  Certificates certificates_;
+  bool is_client_;
+  Calls calls_;
+
+  std::mutex mutex_;  // guards the next three
+  std::condition_variable wake_;
+  std::deque<BufferPtr> waiting_;
+  bool stop_ = false;
+
+  // Used by the thread only:
+  std::deque<Session> sessions_;  // oldest first
+  double allowance_ = kHellosPerSecond;
+  gint64 filled_at_ = 0;
+  gint64 heard_at_ = 0;  // last sign of the other end; 0 before the first key
+  gint64 paused_until_ = 0;
+  SrtpTraffic seen_;
+  bool told_of_stranger_ = false;
+  bool told_of_silence_ = false;
+
+  std::atomic<std::uint64_t> handshakes_{0};
+  std::atomic<std::uint64_t> refused_{0};
+  GThread* thread_;
+};
+
+}  // namespace lidar::gst

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "gst/scream/srtp/handshake.h"
+
+#include <string>
+#include <utility>
+
+namespace lidar::gst {
+
+DtlsHandshake::DtlsHandshake(const Certificates& certificates, bool is_client, Send send)
+    : trusted_(certificates.peer), is_client_(is_client), send_(std::move(send)) {
+  const auto make = [](const char* factory) {
+    GstElement* element = gst_element_factory_make(factory, nullptr);
+    return ElementPtr(element != nullptr ? GST_ELEMENT(gst_object_ref_sink(element)) : nullptr);
+  };
+  decoder_ = make("dtlsdec");
+  encoder_ = make("dtlsenc");
+  if (!decoder_ || !encoder_) return;
+  // The id pairs the two elements in a table of the process.
+  const StringPtr id(g_uuid_string_random());
+  g_object_set(decoder_.get(), "pem", certificates.own.c_str(), nullptr);
+  g_object_set(decoder_.get(), "connection-id", id.get(), nullptr);
+  g_object_set(encoder_.get(), "connection-id", id.get(), "is-client",
+               static_cast<gboolean>(is_client), nullptr);
+}
+
+std::unique_ptr<DtlsHandshake> DtlsHandshake::Start(const Certificates& certificates,
+                                                    bool is_client, Send send) {
+  std::unique_ptr<DtlsHandshake> made(new DtlsHandshake(certificates, is_client, std::move(send)));
+  if (!made->decoder_ || !made->encoder_ || !made->Start()) return nullptr;
+  return made;
+}
+
+bool DtlsHandshake::Start() {
+  relay_.reset(GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK))));
+  gst_pad_set_element_private(relay_.get(), this);
+  gst_pad_set_chain_function(relay_.get(), [](GstPad* pad, GstObject*, GstBuffer* datagram) {
+    const BufferPtr owner(datagram);
+    static_cast<DtlsHandshake*>(gst_pad_get_element_private(pad))->send_(datagram);
+    return GST_FLOW_OK;
+  });
+  gst_pad_set_event_function(relay_.get(), [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
+    gst_event_unref(event);
+    return TRUE;
+  });
+  gst_pad_set_active(relay_.get(), TRUE);
+  sink_.reset(gst_element_get_static_pad(decoder_.get(), "sink"));
+  const PadPtr out(gst_element_get_static_pad(encoder_.get(), "src"));
+  gst_pad_link(out.get(), relay_.get());
+  // Both ends use the client's key, which the server decodes with.
+  GstElement* has_key = is_client_ ? encoder_.get() : decoder_.get();
+  g_signal_connect(
+      has_key, "on-key-received", G_CALLBACK(+[](GstElement* element, DtlsHandshake* self) {
+        GstBuffer* key = nullptr;
+        g_object_get(element, self->is_client_ ? "encoder-key" : "decoder-key", &key, nullptr);
+        const BufferPtr owner(key);
+        self->OnKey(key);
+      }),
+      this);
+  // The encoder finds the connection that the decoder makes.
+  for (GstElement* element : {decoder_.get(), encoder_.get()})
+    if (gst_element_set_state(element, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE) return false;
+  return true;
+}
+
+DtlsHandshake::~DtlsHandshake() {
+  for (GstElement* element : {encoder_.get(), decoder_.get()})
+    if (element != nullptr) gst_element_set_state(element, GST_STATE_NULL);
+  if (relay_) gst_pad_set_active(relay_.get(), FALSE);
+}
+
+/// The peer's certificate came before the key.
+void DtlsHandshake::OnKey(GstBuffer* key) {
+  gchar* pem = nullptr;
+  g_object_get(decoder_.get(), "peer-pem", &pem, nullptr);
+  const StringPtr owner(pem);
+  if (pem == nullptr || CertificateIn(pem) != trusted_) {
+    state_ = State::kRefused;
+    return;
+  }
+  key_.resize(gst_buffer_get_size(key));
+  gst_buffer_extract(key, 0, key_.data(), key_.size());
+  state_ = State::kDone;
+}
+
+void DtlsHandshake::Take(GstBuffer* datagram) {
+  if (!gst_pad_has_current_caps(sink_.get())) {
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    const CapsPtr caps(gst_caps_new_empty_simple("application/x-dtls"));
+    gst_pad_send_event(sink_.get(), gst_event_new_stream_start("dtls"));
+    gst_pad_send_event(sink_.get(), gst_event_new_caps(caps.get()));
+    gst_pad_send_event(sink_.get(), gst_event_new_segment(&segment));
+  }
+  // The decoder works in place.
+  const GstFlowReturn flow = gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
+  if (flow != GST_FLOW_OK && state_ == State::kOpen) state_ = State::kFailed;
+}
+
+}  // namespace lidar::gst

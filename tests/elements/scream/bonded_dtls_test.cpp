@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// screamsink and screamsrc that agree on a key by DTLS, over two links and over one.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/elements/scream/bonded_ends.h"
+#include "tests/support/test_certificates.h"
+
+namespace lidar::test {
+namespace {
+
+const TestCertificates& Papers() {
+  static const TestCertificates made({"robot", "edge", "stranger"});
+  return made;
+}
+std::string OfEdge() { return Papers().Trusting("edge", "robot"); }
+std::string OfRobot() { return Papers().Trusting("robot", "edge"); }
+
+guint64 PacketsOf(GstElement* sink) {
+  const auto first = OfLinks(sink, "packets-first");
+  return std::accumulate(first.begin(), first.end(), guint64{0});
+}
+
+/// Plays until so many packets came through, which ends both.
+void Stream(Pipeline& sender, BondReceiver& receiver, guint packets) {
+  g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
+  sender.Play();
+  const gint64 until = g_get_monotonic_time() + 20 * G_USEC_PER_SEC;
+  while (receiver.passed < packets && g_get_monotonic_time() < until) g_usleep(10'000);
+  sender.SendEos();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_GE(receiver.passed, packets);
+}
+
+/// Datagrams that the second link carries before it dies: no hello, part of it, more of the
+/// handshake, the handshake and some packets.
+class BondedDtls : public ::testing::TestWithParam<int> {};
+
+TEST_P(BondedDtls, GoesOnOverOneLinkWhereTheOtherDies) {
+  BondReceiver receiver(OfEdge());
+  Router router(receiver.port);
+  router.left = GetParam();
+  Pipeline sender(Bonded(router.Addresses(), OfRobot()));
+  const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
+  Stream(sender, receiver, 100);
+  EXPECT_EQ(receiver.passed, PacketsOf(out.get())) << "each packet that was taken";
+  EXPECT_EQ(Stats(out.get())["dtls-handshakes"], 1U);
+  EXPECT_EQ(Stats(in.get())["dtls-handshakes"], 1U);
+  EXPECT_EQ(Stats(out.get())["srtp-refused"], 0U);
+  EXPECT_GT(Stats(out.get())["feedback-accepted"], 10U);
+}
+INSTANTIATE_TEST_SUITE_P(After, BondedDtls, ::testing::Values(0, 1, 5, 12, 100));
+
+TEST(Dtls, BothLinksCarryWhatOneHandshakeProtects) {
+  BondReceiver receiver(OfEdge());
+  const std::string to = "127.0.0.1:" + receiver.port;
+  Pipeline sender(
+      Bonded(to + "@127.0.0.1," + to + "@127.0.0.2", "bonding-method=broadcast" + OfRobot()));
+  const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
+  Stream(sender, receiver, 100);
+  EXPECT_EQ(receiver.passed, PacketsOf(out.get()));
+  for (const guint64 accepted : OfLinks(out.get(), "feedback-accepted")) EXPECT_GT(accepted, 10U);
+  EXPECT_EQ(OfLinks(out.get(), "packets-lost"), (std::vector<guint64>{0, 0}));
+  EXPECT_GT(Stats(in.get())["srtp-copies"], 50U);
+}
+
+TEST(Dtls, TakesTheEdgeThatRestartsByAnotherHandshake) {
+  auto receiver = std::make_unique<BondReceiver>(OfEdge());
+  Router router(receiver->port);
+  Pipeline sender(Bonded(router.Addresses(), OfRobot()));
+  const ElementPtr out = sender.Get("out");
+  g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
+  sender.Play();
+  while (receiver->passed < 50) g_usleep(10'000);
+  const ElementPtr in = receiver->pipeline.Get("in");
+  g_object_set(in.get(), "port", std::stoi(receiver->port), nullptr);
+  gst_element_set_state(in.get(), GST_STATE_NULL);
+  const guint before = receiver->passed;
+  gst_element_set_state(in.get(), GST_STATE_PLAYING);
+  const gint64 until = g_get_monotonic_time() + 20 * G_USEC_PER_SEC;
+  while (receiver->passed < before + 50 && g_get_monotonic_time() < until) g_usleep(10'000);
+  EXPECT_GE(receiver->passed, before + 50);
+  EXPECT_EQ(Stats(out.get())["dtls-handshakes"], 2U);
+}
+
+TEST(Dtls, RefusesAStrangerAndStillTakesTheRobot) {
+  BondReceiver receiver(OfEdge());
+  const ElementPtr in = receiver.pipeline.Get("in");
+  const std::string to = "127.0.0.1:" + receiver.port;
+  {
+    Pipeline stranger(kBondedAudio + "screamsink port=" + receiver.port +
+                      Papers().Trusting("stranger", "edge"));
+    g_object_set(stranger.Get("src").get(), "num-buffers", -1, nullptr);
+    stranger.Play();
+    ASSERT_TRUE(receiver.pipeline.Wait(GST_MESSAGE_WARNING));
+    EXPECT_GE(Stats(in.get())["dtls-refused"], 1U);
+  }
+  EXPECT_EQ(receiver.passed, 0U);
+  EXPECT_EQ(Stats(in.get())["dtls-handshakes"], 0U);
+  Pipeline sender(kBondedAudio + "screamsink name=out port=" + receiver.port + OfRobot());
+  Stream(sender, receiver, 100);
+  EXPECT_EQ(Stats(in.get())["dtls-handshakes"], 1U);
+}
+
+TEST(Dtls, ARobotRefusesAnotherEdge) {
+  BondReceiver receiver(Papers().Trusting("stranger", "robot"));
+  Pipeline sender(kBondedAudio + "screamsink name=out port=" + receiver.port + OfRobot());
+  g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
+  sender.Play();
+  ASSERT_TRUE(sender.Wait(GST_MESSAGE_WARNING));
+  EXPECT_EQ(Stats(sender.Get("out").get())["dtls-handshakes"], 0U);
+  EXPECT_EQ(Stats(sender.Get("out").get())["packets-sent"], 0U) << "nothing leaves without a key";
+}
+
+TEST(Dtls, FailsWithAWordWhereItCannotStart) {
+  const std::string no_file = Papers().Public("nobody"), key = std::string(60, '5');
+  const std::pair<std::string, const char*> wrong[] = {
+      {"dtls-certificate=" + Papers().WithKey("robot"), "both"},
+      {OfRobot() + "srtp-key=" + key, "place of srtp-key"},
+      {OfRobot() + "srtp-cipher=aes-256-icm", "aes-128-icm"},
+      {"dtls-certificate=" + no_file + " dtls-peer-certificate=" + no_file, "nobody"},
+      {"dtls-certificate=" + Papers().Public("robot") +
+           " dtls-peer-certificate=" + Papers().Public("edge"),
+       "private key"},
+  };
+  for (const auto& [properties, word] : wrong) {
+    Pipeline sender(kBondedAudio + "screamsink port=5004 " + properties);
+    sender.Play();
+    const MessagePtr message = sender.Wait(GST_MESSAGE_ERROR);
+    ASSERT_TRUE(message) << properties;
+    GError* error = nullptr;
+    gst_message_parse_error(message.get(), &error, nullptr);
+    const ErrorPtr owner(error);
+    EXPECT_NE(std::string(error->message).find(word), std::string::npos) << error->message;
+  }
+}
+
+TEST(Dtls, AKeyIsNotTakenFromElsewhere) {
+  BondReceiver receiver(OfEdge());
+  g_object_set(receiver.pipeline.Get("in").get(), "srtp-key", std::string(60, '5').c_str(),
+               nullptr);
+  EXPECT_TRUE(receiver.pipeline.Wait(GST_MESSAGE_WARNING));
+}
+
+}  // namespace
+}  // namespace lidar::test

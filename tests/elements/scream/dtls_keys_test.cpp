@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// DTLS handshakes of two ends whose datagrams the test carries.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "gst/scream/srtp/dtls_keys.h"
+#include "tests/elements/scream/frozen_clock.h"
+#include "tests/elements/scream/rtp_support.h"
+#include "tests/support/test_certificates.h"
+
+namespace lidar::gst {
+namespace {
+
+using test::FromBytes;
+using test::frozen_at;
+using test::ToBytes;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::size_t kRandomOfHello = 13 + 12 + 2;  // behind the headers and the version
+
+/// A datagram, and the port at the server's side from which it comes or to which it goes.
+struct Carried {
+  guint16 port;
+  Bytes bytes;
+};
+
+/// Datagrams that wait for the test to carry them.
+class Wire {
+ public:
+  void Put(Carried datagram) {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(datagram));
+  }
+  std::vector<Carried> Take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(waiting_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Carried> waiting_;
+};
+
+class DtlsEnds : public ::testing::Test {
+ protected:
+  ~DtlsEnds() override { frozen_at = 0; }
+
+  std::unique_ptr<DtlsKeys> Start(bool is_client, Wire* out, std::atomic<unsigned>* keys) {
+    static const test::TestCertificates papers({"robot", "edge"});
+    Certificates certificates;
+    std::string error;
+    EXPECT_TRUE(ReadCertificates(papers.WithKey(is_client ? "robot" : "edge"),
+                                 papers.Public(is_client ? "edge" : "robot"), &certificates,
+                                 &error))
+        << error;
+    DtlsKeys::Calls calls;
+    calls.send = [out, is_client](GstBuffer* datagram, const DtlsKeys::Addresses& to) {
+      if (is_client) out->Put({0, ToBytes(datagram)});
+      for (const SocketAddressPtr& address : to)
+        out->Put({g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address.get())),
+                  ToBytes(datagram)});
+    };
+    calls.on_key = [this, is_client, keys](const SrtpKey& key) {
+      (is_client ? client_key_ : server_key_) = key;
+      ++*keys;
+    };
+    calls.traffic = [this] { return SrtpTraffic{sent_, passed_}; };
+    calls.warn = [](const char*, const char*) {};
+    return std::make_unique<DtlsKeys>(certificates, is_client, calls);
+  }
+  void StartClient() { client_ = Start(true, &up_, &client_keys_); }
+  void StartServer() { server_ = Start(false, &down_, &server_keys_); }
+
+  void Give(DtlsKeys& end, const Carried& datagram) {
+    const BufferPtr buffer(FromBytes(datagram.bytes));
+    test::SetSource(buffer.get(), "192.0.2.1", datagram.port);
+    end.Take(buffer.get());
+  }
+  /// Calls `carry` until it returns true.
+  static bool Carry(const std::function<bool()>& carry) {
+    for (int i = 0; i < 20'000; ++i) {
+      if (carry()) return true;
+      g_usleep(1'000);
+    }
+    return false;
+  }
+  /// The client's first hello, which may be of several datagrams.
+  std::vector<Bytes> HelloOfClient() {
+    std::vector<Bytes> hello;
+    StartClient();
+    EXPECT_TRUE(Carry([&] {
+      for (Carried& d : up_.Take()) hello.push_back(std::move(d.bytes));
+      return hello.size() >= 2;
+    }));
+    client_.reset();
+    return hello;
+  }
+  /// Ports that are answered to, once the server has taken all that it was given.
+  std::set<guint16> Answered() {
+    std::set<guint16> ports;
+    for (int still = 0; still < 200; ++still) {
+      g_usleep(1'000);
+      for (const Carried& d : down_.Take()) {
+        ports.insert(d.port);
+        still = 0;
+      }
+    }
+    return ports;
+  }
+
+  Wire up_, down_;
+  SrtpKey server_key_, client_key_;
+  std::atomic<unsigned> server_keys_{0}, client_keys_{0};
+  std::atomic<std::uint64_t> sent_{0}, passed_{0};
+  std::unique_ptr<DtlsKeys> server_, client_;
+};
+
+TEST_F(DtlsEnds, AgreeWhereEachOfTwoLinksLosesEveryThirdDatagram) {
+  StartServer();
+  StartClient();
+  unsigned sent = 0, received = 0;
+  EXPECT_TRUE(Carry([&] {
+    for (const Carried& d : up_.Take())
+      for (unsigned link = 0; link < 2; ++link)
+        if ((sent++ / 2 + link) % 3 != 0)
+          Give(*server_, {static_cast<guint16>(5'001 + link), d.bytes});
+    for (const Carried& d : down_.Take())
+      if (++received % 3 != 0) Give(*client_, d);
+    return client_keys_ == 1 && server_keys_ == 1;
+  }));
+  EXPECT_EQ(client_key_, server_key_);
+  EXPECT_EQ(client_key_.size(), 30U);
+}
+
+TEST_F(DtlsEnds, AgreeAnewWhereWhatIsSentStaysWithoutAnAnswer) {
+  StartServer();
+  StartClient();
+  const auto agree = [this](unsigned keys) {
+    return Carry([&] {
+      for (Carried& d : up_.Take()) Give(*server_, {5'001, d.bytes});
+      for (const Carried& d : down_.Take()) Give(*client_, d);
+      return client_keys_ == keys && server_keys_ == keys;
+    });
+  };
+  ASSERT_TRUE(agree(1));
+  frozen_at = g_get_monotonic_time();
+  const SrtpKey first = client_key_;
+  frozen_at += 60 * G_USEC_PER_SEC;
+  g_usleep(300'000);
+  EXPECT_TRUE(up_.Take().empty()) << "nothing was sent, so no answer is missing";
+  passed_ = 10;
+  sent_ = 10;
+  frozen_at += 60 * G_USEC_PER_SEC;
+  g_usleep(300'000);
+  EXPECT_TRUE(up_.Take().empty()) << "it was answered";
+  sent_ = 20;
+  g_usleep(300'000);
+  frozen_at += 4 * G_USEC_PER_SEC;
+  g_usleep(300'000);
+  EXPECT_TRUE(up_.Take().empty()) << "an answer may still come";
+  frozen_at += 2 * G_USEC_PER_SEC;
+  EXPECT_TRUE(agree(2));
+  EXPECT_NE(client_key_, first);
+}
+
+TEST_F(DtlsEnds, AServerAnswersToFourAddressesOfOneHello) {
+  const auto hello = HelloOfClient();
+  StartServer();
+  for (const Bytes& part : hello)
+    for (guint16 port = 5'001; port <= 5'006; ++port) Give(*server_, {port, part});
+  EXPECT_EQ(Answered(), (std::set<guint16>{5'001, 5'002, 5'003, 5'004}));
+}
+
+TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
+  auto hello = HelloOfClient();
+  frozen_at = g_get_monotonic_time();
+  StartServer();
+  const auto flood = [&] {
+    for (guint16 port = 5'001; port <= 5'020; ++port) {
+      ++hello.front()[kRandomOfHello];
+      for (const Bytes& part : hello) Give(*server_, {port, part});
+    }
+    return Answered();
+  };
+  EXPECT_EQ(flood(), (std::set<guint16>{5'001, 5'002, 5'003, 5'004, 5'005}));
+  EXPECT_EQ(flood(), std::set<guint16>{});
+  frozen_at += G_USEC_PER_SEC / 5;
+  EXPECT_EQ(flood(), std::set<guint16>{5'001});
+}
+
+TEST_F(DtlsEnds, AServerAnswersToNothingButAHello) {
+  const auto hello = HelloOfClient();
+  StartServer();
+  for (std::size_t size = 0; size < 30; ++size)
+    Give(*server_, {5'001, Bytes(hello.front().data(), hello.front().data() + size)});
+  for (std::size_t n = 1; n < hello.size(); ++n) Give(*server_, {5'001, hello[n]});
+  for (std::uint8_t type = 20; type < 64; ++type) {
+    Bytes other = hello.front();
+    other[0] = type;
+    if (type != 22) Give(*server_, {5'001, other});
+  }
+  EXPECT_EQ(Answered(), std::set<guint16>{});
+}
+
+}  // namespace
+}  // namespace lidar::gst

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The monotonic clock of a program whose srtp_input_test.cpp replaces GLib's.
+#pragma once
+#include <glib.h>
+
+#include <atomic>
+
+namespace lidar::test {
+
+inline std::atomic<gint64> frozen_at{0};  // [us]; 0: the clock runs
+
+}  // namespace lidar::test
