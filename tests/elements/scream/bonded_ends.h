@@ -105,6 +105,8 @@ class Router {
 
   /// Link 1 dies after so many datagrams, both ways together.
   std::atomic<int> left{1 << 30};
+  /// No link carries anything.
+  std::atomic<bool> dark{false};
   /// Feedback of each link goes to the other one.
   std::atomic<bool> swaps{false};
   /// Link 1 loses what the sender sends.
@@ -159,7 +161,7 @@ class Router {
       close(std::exchange(backs_[1], Bind()));
     }
   }
-  bool Lives(int link) { return link != 1 || left-- > 0; }
+  bool Lives(int link) { return !dark && (link != 1 || left-- > 0); }
   void PassMedia(int link) {
     char bytes[2'000];
     socklen_t size = sizeof senders_[link];

@@ -186,6 +186,33 @@ TEST(Bonding, WhatOneLinkDeliveredLeavesTheQueueOfTheOtherAndWhatNoneDidStays) {
   }
 }
 
+TEST(Bonding, WhatIsLateOnAllLinksLeavesTheirQueuesAndNewerPacketsGoOn) {
+  BondReceiver receiver;
+  Router router(receiver.port);
+  Pipeline sender(
+      Bonded(router.Addresses(), "bonding-method=broadcast max-queue-delay=5000000000"));
+  const ElementPtr out = sender.Get("out");
+  g_object_set(sender.Get("src").get(), "num-buffers", 400, nullptr);
+  const auto late = [&](std::size_t i) {
+    return OfLinks(out.get(), "packets-dropped")[i] - OfLinks(out.get(), "copies-cancelled")[i];
+  };
+  sender.Play();
+  while (receiver.passed < 40) g_usleep(10'000);
+  router.dark = true;  // the windows fill, and packets wait on both links
+  for (int i = 0; i < 300 && (late(0) < 20 || late(1) < 20); ++i) g_usleep(10'000);
+  router.dark = false;
+  EXPECT_GE(std::min(late(0), late(1)), 20U);
+  const guint before = receiver.passed;
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_GT(receiver.passed, before + 50);
+  EXPECT_LE(receiver.passed, 400 - std::min(late(0), late(1)));
+  for (const std::size_t i : {0U, 1U})
+    EXPECT_EQ(OfLinks(out.get(), "packets-sent")[i] + OfLinks(out.get(), "packets-dropped")[i],
+              400U)
+        << i;
+}
+
 TEST(Bonding, CarriesSlicesThatReferToOnesWhichArrivedByAnyLink) {
   Pipeline receiver(
       "screamsrc name=in port=0 ! rtplidardepay ! lidardec name=decoder ! fakesink sync=false");
