@@ -88,6 +88,51 @@ TEST(PointErrors, OfAPointThatIsGoneIsTheDistanceToTheNextOneWhereTheyMayMerge) 
   EXPECT_DOUBLE_EQ(errors.max_m, 2);
 }
 
+/// Points at random, with errors of centimetres, and those mirrored or scaled.
+class PointErrorsOf : public ::testing::TestWithParam<PointOrder> {
+ protected:
+  static std::vector<DecodedPoint> Changed(std::vector<DecodedPoint> points, float factor) {
+    for (DecodedPoint& p : points)
+      for (float& c : p.position) c *= factor;
+    return points;
+  }
+  std::vector<DecodedPoint> before_ = Lattice();
+  std::vector<DecodedPoint> after_ = Lattice();
+  PointErrorsOf() {
+    for (std::size_t i = 0; i < after_.size(); ++i)
+      after_[i].position[i % 3] += static_cast<float>(i % 7) / 128;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, PointErrorsOf,
+                         ::testing::Values(PointOrder::kPixels, PointOrder::kKept,
+                                           PointOrder::kAny));
+
+TEST_P(PointErrorsOf, AMirroredCloudAreTheSame) {
+  const PointErrors one = Measure(before_, after_, GetParam());
+  const PointErrors other = Measure(Changed(before_, -1), Changed(after_, -1), GetParam());
+  EXPECT_EQ(one.points, 500U);
+  EXPECT_EQ(one.max_m, other.max_m);
+  EXPECT_EQ(one.mean_m, other.mean_m);
+  EXPECT_EQ(one.rounding_m, other.rounding_m);
+  EXPECT_EQ(one.missing, other.missing);
+}
+
+TEST_P(PointErrorsOf, ACloudOfTwiceTheSizeAreTwiceAsLarge) {
+  const PointErrors one = Measure(before_, after_, GetParam());
+  const PointErrors other = Measure(Changed(before_, 2), Changed(after_, 2), GetParam());
+  EXPECT_DOUBLE_EQ(2 * one.max_m, other.max_m);
+  EXPECT_DOUBLE_EQ(2 * one.mean_m, other.mean_m);
+  EXPECT_DOUBLE_EQ(2 * one.rounding_m, other.rounding_m);
+}
+
+TEST_P(PointErrorsOf, TheWayBackAreThoseOfTheWayThere) {
+  const PointErrors one = Measure(before_, after_, GetParam());
+  const PointErrors other = Measure(after_, before_, GetParam());
+  EXPECT_DOUBLE_EQ(one.max_m, 6.0 / 128);
+  EXPECT_DOUBLE_EQ(one.max_m, other.max_m);
+  EXPECT_DOUBLE_EQ(one.mean_m, other.mean_m);
+}
+
 TEST(PointErrors, AreNotConfusedByAnotherOrder) {
   const auto cloud = Lattice();
   const std::vector<DecodedPoint> turned(cloud.rbegin(), cloud.rend());
