@@ -68,6 +68,45 @@ TEST(FitAdaptive, TakesSizesForProportionalToReturnsThatHardlyVary) {
   EXPECT_LT(ErrorOf(AdaptiveModel(*fit), samples).mean, 1e-6);
 }
 
+TEST(FitAdaptive, AModeThatIsNotKnownIsTakenForTheOneOfMostSamples) {
+  auto samples = Samples(400, [](Sample* s) {
+    s->settings.intensity_bits = 0;
+    const double x = std::log2(s->settings.step_m / 0.01);
+    s->geometry_bytes = std::exp2((s->slice.mode == "xyz-kd6" ? 11.0 : 9.0) - 0.4 * x +
+                                  std::log2(s->slice.returns / 1000.0));
+  });
+  for (const char* rare : {"xyz-kd6", "range-adaptive"}) {
+    std::size_t left = 40;
+    std::vector<Sample> uneven;
+    for (const Sample& s : samples) {
+      if (s.slice.mode == rare && left == 0) continue;
+      if (s.slice.mode == rare) --left;
+      uneven.push_back(s);
+    }
+    const auto fit = FitAdaptive(uneven);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->fallback.step[0], rare == std::string("xyz-kd6") ? 9 : 11, 1e-6);
+  }
+}
+
+/// Predicts a byte for each.
+class OneByte : public SizeModel {
+ public:
+  PredictedSize Predict(const SliceFeatures&, const Settings&) const override { return {1, 0}; }
+  Settings Choose(const SliceFeatures&, double, const SettingLimits&) const override { return {}; }
+  void OnEncoded(const SliceFeatures&, const Settings&, const EncodedSize&) override {}
+};
+
+TEST(FitErrors, AreTheMeanAndThe95thPercentileWhateverTheirOrder) {
+  std::vector<Sample> samples(101);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i * 37 % 101].geometry_bytes = 1 / (1 + 0.01 * static_cast<double>(i));  // i % too much
+  const FitError error = ErrorOf(OneByte(), samples);
+  EXPECT_NEAR(error.mean, 0.5, 1e-9);
+  EXPECT_NEAR(error.percentile_95, 0.95, 1e-9);
+  EXPECT_EQ(ErrorOf(OneByte(), {}).percentile_95, 0);
+}
+
 TEST(FitAdaptive, RefusesSizesThatGrowWithTheStepAndTooFewSamples) {
   const auto growing = [](Sample* s) { s->geometry_bytes = 1000 + 1e6 * s->settings.step_m; };
   EXPECT_FALSE(FitAdaptive(Samples(400, growing)));

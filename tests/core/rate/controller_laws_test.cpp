@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Laws that hold for any model, target and scene, with a model whose sizes are exact.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "src/rate/adaptive_model.h"
+#include "src/rate/paper_model.h"
+#include "src/rate/rate_controller.h"
+#include "src/rate/rate_loop.h"
+
+namespace lidar::rate {
+namespace {
+
+/// A return takes a byte at 1 cm, and an eighth of a byte for each bit of its intensity.
+class ExactModel : public SizeModel {
+ public:
+  PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const override {
+    return {slice.returns * std::sqrt(0.01 / settings.step_m),
+            slice.returns * settings.intensity_bits / 8.0};
+  }
+  Settings Choose(const SliceFeatures& slice, double bytes,
+                  const SettingLimits& limits) const override {
+    const double geometry = bytes - slice.returns * limits.intensity_bits / 8.0;
+    const double root = geometry > 0 ? slice.returns / geometry : 1e9;
+    return {std::clamp(0.01 * root * root, limits.finest_step_m, limits.coarsest_step_m),
+            limits.intensity_bits, limits.level};
+  }
+  void OnEncoded(const SliceFeatures&, const Settings&, const EncodedSize&) override {}
+};
+
+constexpr std::uint32_t kSlicesOfScan = 4;
+constexpr double kScanBytes = 4'000;  // of the target
+
+ControllerParameters WithoutIntensity() {
+  ControllerParameters p;
+  p.limits.finest_step_m = 0.001;
+  p.limits.coarsest_step_m = 0.04;  // half a byte a return
+  p.min_intensity_bits = 0;
+  return p;
+}
+
+class Accounts : public ::testing::Test {
+ protected:
+  Accounts() { controller_.SetTarget(DataRate::BitsPerSecond(kScanBytes * 8 * 10)); }
+  static SliceFeatures Features(std::uint32_t scan, std::uint32_t index,
+                                std::uint32_t returns = 500) {
+    SliceFeatures f;
+    f.scan_id = scan;
+    f.slice_index = index;
+    f.slice_count = kSlicesOfScan;
+    f.returns = returns;
+    f.mode = "range-exact";
+    return f;
+  }
+  std::optional<Settings> Encoded(double bytes, double step_m) {
+    return controller_.OnEncoded({DataSize::Bytes(static_cast<std::int64_t>(bytes)), step_m, 1});
+  }
+  RateController controller_{WithoutIntensity(), std::make_unique<ExactModel>()};
+};
+
+TEST_F(Accounts, SayWhatTheTargetGaveLessWhatWasSent) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> off(0.99, 1.01);  // below what causes a second try
+  double given = 0;
+  double sent = 0;
+  for (std::uint32_t scan = 0; scan < 50; ++scan)
+    for (std::uint32_t i = 0; i < kSlicesOfScan; ++i) {
+      const Decision d = controller_.NextSlice(Features(scan, i));
+      ASSERT_TRUE(d.budget);
+      given += kScanBytes / kSlicesOfScan;
+      const double bytes = std::floor(static_cast<double>(d.budget->bytes()) * off(random));
+      EXPECT_FALSE(Encoded(bytes, d.settings.step_m));
+      sent += bytes;
+      EXPECT_NEAR(controller_.stats().saved_bytes, given - sent, 1e-6);
+    }
+  EXPECT_EQ(controller_.stats().slices, 50 * kSlicesOfScan);
+  EXPECT_EQ(controller_.stats().slices_reencoded, 0U);
+  EXPECT_NEAR(sent / given, 1, 0.01);
+}
+
+TEST_F(Accounts, ASecondTryIsForWhatMissesItsBudgetByMuchAndGoesTheRightWay) {
+  std::uint32_t scan = 0;
+  std::uint64_t tries = 0;
+  for (const double part : {0.1, 0.5, 0.9, 0.97, 1.0, 1.005, 1.05, 1.5, 4.0}) {
+    const Decision d = controller_.NextSlice(Features(scan++, 0, 2'000));
+    ASSERT_TRUE(d.budget);
+    const auto budget = static_cast<double>(d.budget->bytes());
+    // The slice takes `part` of its budget at this step.
+    const double step = 0.004;
+    const auto again = Encoded(part * budget, step);
+    const double tolerance = std::max(0.015 * budget, 0.01 * kScanBytes);
+    const bool misses = part * budget > budget + tolerance || part * budget < budget - 3 * tolerance;
+    EXPECT_EQ(again.has_value(), misses) << part;
+    if (again) {
+      ++tries;
+      EXPECT_FALSE(Encoded(budget, again->step_m)) << "only one";
+    }
+    EXPECT_EQ(controller_.stats().slices_reencoded, tries);
+  }
+  EXPECT_GE(tries, 4U);
+}
+
+TEST_F(Accounts, BoundsAreToldAfterAScanWhoseLastSliceWasNotCoded) {
+  for (std::uint32_t scan = 0; scan < 2; ++scan)
+    for (std::uint32_t i = 0; i < kSlicesOfScan; ++i) {
+      const Decision d = controller_.NextSlice(Features(scan, i));
+      if (scan == 1) {
+        EXPECT_EQ(controller_.TakeChangedBounds().has_value(), i == 0);
+        continue;
+      }
+      if (i + 1 < kSlicesOfScan) Encoded(500, d.settings.step_m);
+    }
+}
+
+TEST_F(Accounts, WithoutTheLoopEachSliceGetsItsShareWhateverWasSent) {
+  ControllerParameters open = WithoutIntensity();
+  open.closed_loop = false;
+  controller_.SetParameters(open);
+  for (std::uint32_t scan = 0; scan < 5; ++scan)
+    for (std::uint32_t i = 0; i < kSlicesOfScan; ++i) {
+      const Decision d = controller_.NextSlice(Features(scan, i, 100 + 400 * i));
+      ASSERT_TRUE(d.budget);
+      EXPECT_FALSE(d.skip);
+      EXPECT_EQ(d.budget->bytes(), 1'000);
+      EXPECT_FALSE(Encoded(scan % 2 == 0 ? 5'000 : 10, d.settings.step_m)) << "no second try";
+    }
+}
+
+TEST(ScanPlans, KeepTheIntensityBetweenItsLimitsAtAnyBudget) {
+  for (unsigned most = 0; most <= 8; ++most)
+    for (unsigned least = 0; least <= 10; ++least)
+      for (double budget = 1; budget < 300; budget *= 1.5)
+        for (const unsigned last : {0U, least, most}) {
+          ScanPlanInputs in;
+          in.needed.coarsest = 60;
+          for (unsigned bits = 0; bits < in.needed.intensity.size(); ++bits)
+            in.needed.intensity[bits] = 10.0 * bits;
+          in.budget = budget;
+          in.measured = true;
+          in.intensity_bits = most;
+          in.min_intensity_bits = least;
+          in.last_intensity_bits = last;
+          const ScanPlan plan = PlanScan(in, DegradationPreference::kMaintainAccuracy);
+          EXPECT_LE(plan.intensity_bits, most);
+          EXPECT_GE(plan.intensity_bits, std::min(least, most));
+          const bool fits = in.needed.AtCoarsest(plan.intensity_bits) <= budget;
+          EXPECT_TRUE(fits || plan.intensity_bits == std::min(least, most));
+          EXPECT_EQ(plan.degraded, !fits);
+        }
+}
+
+/// What it is asked for, as text of step and bits; its slices have no intensity.
+class RangesOnly : public SliceCoder {
+ public:
+  LoadedSlice loaded() const override { return {1'000, 50, 32, false, 3, "range-plain"}; }
+  StepRange Steps(double max_error_m) const override { return {0.001, 2 * max_error_m, 0}; }
+  void Thin(const std::vector<bool>&) override {}
+  CodingResult Encode(double, const Settings& settings, CodedSlice* slice) override {
+    bits = settings.intensity_bits;
+    *slice = {1'000, 1'000, settings.step_m, settings.step_m / 2};
+    return CodingResult::kEncoded;
+  }
+  unsigned bits = 99;
+};
+
+TEST(LoopOfRanges, PlansNoIntensityWhereThereIsNone) {
+  RateLoop loop(std::make_unique<ExactModel>());
+  RangesOnly coder;
+  LoopSettings settings;
+  settings.intensity_bits = 8;
+  for (std::uint32_t scan = 0; scan < 3; ++scan) {
+    const LoopResult result =
+        loop.Encode({scan, 0, 1, 10}, settings, DataRate::BitsPerSecond(8e4), &coder);
+    EXPECT_EQ(coder.bits, 0U);
+    EXPECT_EQ(result.intensity_bits, 0U);
+  }
+  const RateBounds bounds = loop.controller().bounds();
+  EXPECT_EQ(bounds.min, bounds.nominal) << "no bits to leave out";
+}
+
+TEST(TrackersOfSlices, AnotherNumberOfSlicesReplacesNoneOfThese) {
+  SliceTracker tracker;
+  for (std::uint32_t i = 0; i < 4; ++i) tracker.Observe(i, 4, {1, 10.0 + i}, 0);
+  for (const std::uint32_t count : {2U, 3U, 8U}) tracker.Replace(1, count, {5, 99});
+  EXPECT_DOUBLE_EQ(tracker.Predict(1, 4)->residual, 11);
+  tracker.Replace(1, 4, {5, 99});
+  EXPECT_DOUBLE_EQ(tracker.Predict(1, 4)->residual, 99);
+}
+
+TEST(DemandTables, BeginAnewWithAnotherNumberOfSlices) {
+  for (const std::uint32_t before : {2U, 3U, 8U}) {
+    DemandTable used;
+    for (std::uint32_t i = 0; i < before; ++i) used.Set(i, before, {100, 1'000, {}});
+    DemandTable fresh;
+    for (DemandTable* table : {&used, &fresh})
+      for (const std::uint32_t i : {0U, 2U}) table->Set(i, 5, {4.0 + i, 40.0 + i, {0, 2}});
+    for (std::uint32_t first = 0; first < 5; ++first) {
+      EXPECT_DOUBLE_EQ(used.Sum(first).coarsest, fresh.Sum(first).coarsest);
+      EXPECT_DOUBLE_EQ(used.Sum(first).finest, fresh.Sum(first).finest);
+      EXPECT_DOUBLE_EQ(used.Sum(first).intensity[1], fresh.Sum(first).intensity[1]);
+      EXPECT_DOUBLE_EQ(used.EvenShare(first, 50), fresh.EvenShare(first, 50));
+    }
+  }
+}
+
+/// The grid's steps are near each other, so that several are within a tenth of the wanted size.
+TEST(ChosenSteps, AreThoseOfTheNearestSizeThatIsNotFarAbove) {
+  AdaptiveCoefficients c;
+  c.fallback.step = {10, -0.5, 0, 0};
+  const AdaptiveModel model(c);
+  SliceFeatures slice;
+  slice.returns = 1'000;
+  SettingLimits limits;
+  limits.finest_step_m = 0.02;
+  limits.step_unit_m = 0.001;
+  limits.coarsest_step_m = 0.06;
+  for (double bytes = 300; bytes < 900; bytes += 7) {
+    double best = limits.coarsest_step_m;
+    for (int i = 40; i >= 0; --i) {
+      const double step = 0.02 + 0.001 * i;
+      const double size = model.Predict(slice, {step, 0, 0}).total();
+      const double least = model.Predict(slice, {best, 0, 0}).total();
+      if (size <= 1.06 * bytes && std::abs(size - bytes) < std::abs(least - bytes)) best = step;
+    }
+    EXPECT_NEAR(model.Choose(slice, bytes, limits).step_m, best, 1e-9) << bytes;
+  }
+}
+
+/// Two coders of one geometry take turns; their coefficients are the same.
+TEST(ModesOfOneGeometry, LearnAsASingleOne) {
+  const AdaptiveCoefficients c{{}, {{11, -0.5, 0, 0}, -3, 5, 1, {6, 1}, 1}};
+  AdaptiveModel single(c);
+  AdaptiveModel turns(c);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> size(1'000, 6'000);
+  for (std::uint32_t scan = 0; scan < 40; ++scan)
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      SliceFeatures slice;
+      slice.scan_id = scan;
+      slice.slice_index = i;
+      slice.slice_count = 4;
+      slice.returns = 3'000;
+      slice.mode = "range-a";
+      SliceFeatures other = slice;
+      if (scan / 3 % 2 == 1) other.mode = "range-b";
+      const Settings settings{scan % 2 == 0 ? 0.02 : 0.03, 4, 0};
+      EXPECT_DOUBLE_EQ(single.Predict(slice, settings).total(),
+                       turns.Predict(other, settings).total());
+      const EncodedSize encoded{DataSize::Bytes(static_cast<std::int64_t>(size(random))),
+                                settings.step_m, scan % 5 == 4 ? 0.5 : 1};
+      single.OnEncoded(slice, settings, encoded);
+      turns.OnEncoded(other, settings, encoded);
+    }
+}
+
+TEST(LevelsOfThePaper, AreChosenForXyzOnly) {
+  PaperPolynomial p;
+  p.alpha[0] = 1'000;  // bytes = 1000 q - 100 c
+  p.alpha[1] = -100;
+  const PaperModel model({{{"xyz", p}, {"range", p}}});
+  SettingLimits limits;
+  limits.finest_step_m = 1e-5;
+  limits.coarsest_step_m = 1;
+  limits.level = 7;
+  bool any_other = false;
+  for (double bytes = 8'000; bytes < 20'000; bytes += 130) {
+    SliceFeatures slice;
+    slice.returns = 1'000;
+    slice.extent_m = 100;
+    slice.mode = "range-adaptive";
+    EXPECT_EQ(model.Choose(slice, bytes, limits).level, 7U);
+    slice.mode = "xyz-kd6";
+    any_other = any_other || model.Choose(slice, bytes, limits).level != 7;
+  }
+  EXPECT_TRUE(any_other);
+}
+
+}  // namespace
+}  // namespace lidar::rate
