@@ -128,7 +128,8 @@ TEST_P(PcdEncoding, KeepsEveryNumberOfEveryPointInItsPlace) {
 
 TEST_P(PcdEncoding, LacksNothingOfWhatItSays) {
   const Encodings all = Encode(4);
-  const std::string data = GetParam() == "ascii"    ? all.text.substr(0, all.text.rfind('\t', all.text.size() - 3))
+  const std::string data = GetParam() == "ascii"
+                               ? all.text.substr(0, all.text.rfind('\t', all.text.size() - 3))
                            : GetParam() == "binary" ? all.binary.substr(0, all.binary.size() - 1)
                                                     : Packed(all.planes.substr(1));
   std::string why;
@@ -172,9 +173,9 @@ TEST(CaptureTimeOfAFile, IsSecondsAndNineDigitsOrNone) {
     EXPECT_EQ(of("1764000000.000000123\r", ply), 1'764'000'000'000'000'123U);
     EXPECT_EQ(of("0.999999999", ply), 999'999'999U);
     EXPECT_EQ(of("9223372035.000000000", ply), 9'223'372'035'000'000'000U);
-    for (const char* other : {"1764000000", "1764000000.5", "1764000000.0000001234",
-                              "1764000000.12345678", ".123456789", "-1.123456789",
-                              "9223372037.000000000", "1764000000.12345678x", ""})
+    for (const char* other :
+         {"1764000000", "1764000000.5", "1764000000.0000001234", "1764000000.12345678",
+          ".123456789", "-1.123456789", "9223372037.000000000", "1764000000.12345678x", ""})
       EXPECT_EQ(of(other, ply), std::nullopt) << other;
   }
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace lidar::rate {
 namespace {
@@ -49,6 +51,27 @@ TEST(AdaptiveModel, LearnsNothingFromASliceThatIsLargerThanItsReturnsUncoded) {
   EXPECT_DOUBLE_EQ(Bytes(model, slice), before);
   model.OnEncoded(slice, kTwoCentimetres, encoded(63));
   EXPECT_GT(Bytes(model, slice), 2 * before);
+}
+
+TEST(AdaptiveModel, LearnsNothingFromWhatIsNoMeasure) {
+  const SliceFeatures slice = Slice(2, 0);
+  SliceFeatures few = slice;
+  few.returns = 63;  // headers are most of its bytes
+  const EncodedSize good{DataSize::Bytes(30'000), 0.02, 1};
+  const std::vector<std::pair<SliceFeatures, EncodedSize>> none = {
+      {few, {DataSize::Bytes(1'000), 0.02, 1}},
+      {slice, {DataSize::Bytes(1), 0.02, 1}},
+      {slice, {DataSize::Bytes(30'000), 0, 1}},
+      {slice, {DataSize::Bytes(30'000), -0.02, 1}},
+      {slice, {DataSize::Bytes(30'000), std::nan(""), 1}}};
+  for (const auto& [features, encoded] : none) {
+    AdaptiveModel model = Taught();
+    const double before = Bytes(model, slice);
+    model.OnEncoded(features, kTwoCentimetres, encoded);
+    EXPECT_DOUBLE_EQ(Bytes(model, slice), before);
+    model.OnEncoded(slice, kTwoCentimetres, good);
+    EXPECT_GT(Bytes(model, slice), 2 * before);
+  }
 }
 
 TEST(AdaptiveModel, PassesASurpriseOnToTheNextSlice) {

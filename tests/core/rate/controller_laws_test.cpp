@@ -92,10 +92,14 @@ TEST_F(Accounts, ASecondTryIsForWhatMissesItsBudgetByMuchAndGoesTheRightWay) {
     const double step = 0.004;
     const auto again = Encoded(part * budget, step);
     const double tolerance = std::max(0.015 * budget, 0.01 * kScanBytes);
-    const bool misses = part * budget > budget + tolerance || part * budget < budget - 3 * tolerance;
+    const bool misses =
+        part * budget > budget + tolerance || part * budget < budget - 3 * tolerance;
     EXPECT_EQ(again.has_value(), misses) << part;
     if (again) {
       ++tries;
+      const double aim = 2'000 * std::sqrt(0.01 / again->step_m);
+      EXPECT_LE(aim, budget + 1) << "rather too little than too much";
+      EXPECT_GE(aim, 0.9 * budget);
       EXPECT_FALSE(Encoded(budget, again->step_m)) << "only one";
     }
     EXPECT_EQ(controller_.stats().slices_reencoded, tries);
@@ -129,6 +133,72 @@ TEST_F(Accounts, WithoutTheLoopEachSliceGetsItsShareWhateverWasSent) {
     }
 }
 
+/// Targets from far below the minimum to far above, for each preference.
+TEST(CountersOfScans, AreWhatWasDecided) {
+  for (const auto preference :
+       {DegradationPreference::kMaintainAccuracy, DegradationPreference::kMaintainFramerate,
+        DegradationPreference::kBalanced}) {
+    ControllerParameters p = WithoutIntensity();
+    p.degradation = preference;
+    RateController controller(p, std::make_unique<ExactModel>());
+    std::uint64_t slices_skipped = 0;
+    std::uint64_t scans_skipped = 0;
+    std::uint64_t scans_thinned = 0;
+    for (std::uint32_t scan = 0; scan < 60; ++scan) {
+      controller.SetTarget(DataRate::BitsPerSecond(2'000 * (1 + scan * scan)));
+      for (std::uint32_t i = 0; i < kSlicesOfScan; ++i) {
+        SliceFeatures f;
+        f.scan_id = scan;
+        f.slice_index = i;
+        f.slice_count = kSlicesOfScan;
+        f.returns = 5'000;
+        const Decision d = controller.NextSlice(f);
+        slices_skipped += d.skip ? 1 : 0;
+        if (i == 0) scans_skipped += d.skip ? 1 : 0;
+        if (i == 0 && !d.skip) scans_thinned += d.keep_fraction < 1 ? 1 : 0;
+        if (d.skip) continue;
+        const double bytes = 5'000 * d.keep_fraction * std::sqrt(0.01 / d.settings.step_m);
+        controller.OnEncoded({DataSize::Bytes(static_cast<std::int64_t>(bytes)), d.settings.step_m,
+                              d.keep_fraction});
+      }
+    }
+    EXPECT_EQ(controller.stats().slices_skipped, slices_skipped);
+    EXPECT_EQ(controller.stats().scans_skipped, scans_skipped);
+    EXPECT_EQ(controller.stats().scans_thinned, scans_thinned);
+    EXPECT_EQ(controller.stats().slices, 60 * kSlicesOfScan);
+    EXPECT_GT(scans_skipped + scans_thinned, 5U);
+  }
+}
+
+class BoundsOfRates : public ::testing::TestWithParam<double> {};  // scans a second
+INSTANTIATE_TEST_SUITE_P(All, BoundsOfRates, ::testing::Values(5.0, 10.0, 20.0));
+
+TEST_P(BoundsOfRates, AreWhatAScanTakesAtItsLimitsAndAreToldOnce) {
+  ControllerParameters p = WithoutIntensity();
+  p.limits.intensity_bits = 8;
+  p.min_intensity_bits = 4;
+  RateController controller(p, std::make_unique<ExactModel>());
+  int told = 0;
+  for (std::uint32_t scan = 0; scan < 10; ++scan)
+    for (std::uint32_t i = 0; i < kSlicesOfScan; ++i) {
+      SliceFeatures f;
+      f.scan_id = scan;
+      f.slice_index = i;
+      f.slice_count = kSlicesOfScan;
+      f.scans_per_second = GetParam();
+      f.returns = 5'000;
+      controller.NextSlice(f);
+      controller.OnEncoded({DataSize::Bytes(5'000), 0.04, 1});
+      if (controller.TakeChangedBounds()) ++told;
+    }
+  EXPECT_EQ(told, 1) << "a scene that stands still";
+  const double rate = 8 * GetParam() * kSlicesOfScan * 5'000;
+  const RateBounds bounds = controller.bounds();
+  EXPECT_NEAR(bounds.min.bits_per_second(), rate * (0.5 + 0.5), 1);
+  EXPECT_NEAR(bounds.nominal.bits_per_second(), rate * (0.5 + 1), 1);
+  EXPECT_NEAR(bounds.max.bits_per_second(), rate * (std::sqrt(10) + 1), 1);
+}
+
 TEST(ScanPlans, KeepTheIntensityBetweenItsLimitsAtAnyBudget) {
   for (unsigned most = 0; most <= 8; ++most)
     for (unsigned least = 0; least <= 10; ++least)
@@ -152,7 +222,7 @@ TEST(ScanPlans, KeepTheIntensityBetweenItsLimitsAtAnyBudget) {
         }
 }
 
-/// What it is asked for, as text of step and bits; its slices have no intensity.
+/// Notes what it is asked for. Its slices have no intensity.
 class RangesOnly : public SliceCoder {
  public:
   LoadedSlice loaded() const override { return {1'000, 50, 32, false, 3, "range-plain"}; }
@@ -160,10 +230,12 @@ class RangesOnly : public SliceCoder {
   void Thin(const std::vector<bool>&) override {}
   CodingResult Encode(double, const Settings& settings, CodedSlice* slice) override {
     bits = settings.intensity_bits;
+    level = settings.level;
     *slice = {1'000, 1'000, settings.step_m, settings.step_m / 2};
     return CodingResult::kEncoded;
   }
   unsigned bits = 99;
+  unsigned level = 99;
 };
 
 TEST(LoopOfRanges, PlansNoIntensityWhereThereIsNone) {
@@ -179,6 +251,19 @@ TEST(LoopOfRanges, PlansNoIntensityWhereThereIsNone) {
   }
   const RateBounds bounds = loop.controller().bounds();
   EXPECT_EQ(bounds.min, bounds.nominal) << "no bits to leave out";
+}
+
+TEST(LoopOfRanges, AsksTheCoderForItsLevelAndPlansForItsRate) {
+  for (const double scans_per_second : {5.0, 20.0}) {
+    RateLoop loop(std::make_unique<ExactModel>());
+    RangesOnly coder;
+    loop.Encode({0, 0, 1, scans_per_second}, {}, std::nullopt, &coder);
+    EXPECT_EQ(coder.level, 3U);
+    EXPECT_NEAR(loop.controller().bounds().nominal.bits_per_second(),
+                8 * scans_per_second * 1'000 * std::sqrt(0.01 / 0.04), 1);
+    loop.Encode({1, 0, 1, scans_per_second}, {}, DataRate::BitsPerSecond(1e5), &coder);
+    EXPECT_EQ(coder.level, 3U);
+  }
 }
 
 TEST(TrackersOfSlices, AnotherNumberOfSlicesReplacesNoneOfThese) {
@@ -276,6 +361,30 @@ TEST(LevelsOfThePaper, AreChosenForXyzOnly) {
     any_other = any_other || model.Choose(slice, bytes, limits).level != 7;
   }
   EXPECT_TRUE(any_other);
+}
+
+/// Polynomials that are negative in parts, as fits are far from their samples.
+TEST(ModelOfThePaper, StaysWithinTheLimitsAndPredictsNoNegativeSize) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> alpha(-500, 500);
+  for (int n = 0; n < 200; ++n) {
+    PaperPolynomial p;
+    for (double& a : p.alpha) a = alpha(random);
+    p.beta = alpha(random);
+    const PaperModel model({{{"xyz", p}, {"range", p}}});
+    SliceFeatures slice;
+    slice.returns = 2'000;
+    slice.extent_m = 60;
+    slice.mode = n % 2 == 0 ? "xyz-kd6" : "range-adaptive";
+    SettingLimits limits;
+    limits.finest_step_m = 0.002;
+    limits.coarsest_step_m = 0.08;
+    const Settings chosen = model.Choose(slice, 10 * alpha(random), limits);
+    EXPECT_GE(chosen.step_m, limits.finest_step_m);
+    EXPECT_LE(chosen.step_m, limits.coarsest_step_m);
+    for (const double step : {0.002, 0.01, 0.08})
+      EXPECT_GE(model.Predict(slice, {step, 0, 7}).total(), 0);
+  }
 }
 
 }  // namespace

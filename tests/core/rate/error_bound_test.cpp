@@ -76,6 +76,16 @@ TEST(ErrorBound, AnErrorBelowTheResolutionGivesTheSensorsOwnUnit) {
   EXPECT_DOUBLE_EQ(ErrorBound::Range(1).CoarsestStep(-1), 0.001);
 }
 
+TEST(ErrorBound, TheFinestStepIsTheSensorsUnitOrAMillimetreAndSmallErrorsReachIt) {
+  EXPECT_DOUBLE_EQ(ErrorBound::Xyz().FinestStep(), 0.001);
+  EXPECT_DOUBLE_EQ(ErrorBound::Xyz().step_unit(), 0);
+  for (const unsigned unit_mm : {1U, 2U, 8U}) {
+    const ErrorBound range = ErrorBound::Range(unit_mm);
+    EXPECT_DOUBLE_EQ(range.FinestStep(), 0.001 * unit_mm);
+    EXPECT_DOUBLE_EQ(range.CoarsestStep(0), range.FinestStep());
+  }
+}
+
 TEST(ErrorBound, MeanErrorIsThatOfPointsSpreadEvenly) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> at(-0.5, 0.5);

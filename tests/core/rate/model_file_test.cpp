@@ -45,6 +45,22 @@ TEST(ModelFile, RoundTripsToTheSamePredictions) {
   }
 }
 
+TEST(ModelFile, MayHoldEitherModelOrBothAndNotNone) {
+  for (const bool adaptive : {false, true})
+    for (const bool paper : {false, true}) {
+      ModelFile file = Example();
+      if (!adaptive) file.adaptive.reset();
+      if (!paper) file.paper.reset();
+      std::string error;
+      const auto back = ParseModelFile(WriteModelFile(file), &error);
+      ASSERT_EQ(back.has_value(), adaptive || paper) << error;
+      if (!back) continue;
+      EXPECT_EQ(back->adaptive.has_value(), adaptive);
+      EXPECT_EQ(back->paper.has_value(), paper);
+      EXPECT_EQ(WriteModelFile(*back), WriteModelFile(file));
+    }
+}
+
 TEST(ModelFile, IsRefusedAtEveryTruncation) {
   std::string whole = WriteModelFile(Example());
   while (whole.back() == '\n') whole.pop_back();
@@ -82,6 +98,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{R"({"format": 3, "version": 1})", "not a rate model"},
         BadFile{R"({"format": "gst-lidar-rate-model", "version": 2})", "version 2"},
         BadFile{R"({"format": "gst-lidar-rate-model", "version": "1"})", "positive integer"},
+        BadFile{R"({"format": "gst-lidar-rate-model", "version": 0})", "positive integer"},
+        BadFile{R"({"format": "gst-lidar-rate-model", "version": -1})", "positive integer"},
+        BadFile{R"({"format": "gst-lidar-rate-model", "version": 1.5})", "positive integer"},
         BadFile{"{" HEADER "}", "neither"},
         BadFile{"{" HEADER R"(, "adaptive": 5})", "adaptive is missing or not an object"},
         BadFile{"{" HEADER R"(, "adaptive": {"modes": {}}})", "adaptive.fallback"},

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "src/rate/adaptive_model.h"
+#include "src/rate/model_file.h"
+
 namespace lidar::rate {
 namespace {
 
@@ -86,6 +89,23 @@ TEST(FitAdaptive, AModeThatIsNotKnownIsTakenForTheOneOfMostSamples) {
     const auto fit = FitAdaptive(uneven);
     ASSERT_TRUE(fit);
     EXPECT_NEAR(fit->fallback.step[0], rare == std::string("xyz-kd6") ? 9 : 11, 1e-6);
+  }
+}
+
+TEST(FitAdaptive, MakesModelsThatCanBeReadWhateverTheSamples) {
+  for (const double power : {-2.0, -0.5, 0.0, 1.0, 3.0}) {  // of the bits of intensity
+    const auto samples = Samples(400, [power](Sample* s) {
+      s->geometry_bytes = s->slice.returns * std::sqrt(0.01 / s->settings.step_m);
+      s->intensity_bytes = s->settings.intensity_bits == 0
+                               ? 0
+                               : s->slice.returns * std::pow(s->settings.intensity_bits, power);
+    });
+    const auto fit = FitAdaptive(samples);
+    ASSERT_TRUE(fit) << power;
+    ModelFile file;
+    file.adaptive = *fit;
+    std::string error;
+    EXPECT_TRUE(ParseModelFile(WriteModelFile(file), &error)) << power << ": " << error;
   }
 }
 

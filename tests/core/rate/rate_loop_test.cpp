@@ -114,6 +114,28 @@ TEST_F(RateLoopTest, SkipsScansOrThinsRowsBelowTheMinimum) {
   EXPECT_LT(result.keep_fraction, 1);
 }
 
+TEST_F(RateLoopTest, LearnsFromThinnedScansWhatAWholeOneTakes) {
+  settings_.degradation = DegradationPreference::kMaintainFramerate;
+  Encode(0);
+  const double whole = loop_.controller().bounds().min.bits_per_second();
+  for (std::uint32_t scan = 1; scan < 30; ++scan) {
+    coder_.kept = coder_.rows;
+    const LoopResult result = Encode(scan, DataRate::BitsPerSecond(whole / 4));
+    EXPECT_TRUE(result.skipped || result.keep_fraction < 1);
+  }
+  EXPECT_NEAR(loop_.controller().bounds().min.bits_per_second() / whole, 1, 0.25);
+}
+
+TEST_F(RateLoopTest, SaysInEachResultWhatItWasMadeWith) {
+  for (const double target : {1.0, 5e3, 5e4, 1e9}) {
+    settings_.max_error_m = 0.03;
+    const LoopResult result =
+        Encode(static_cast<std::uint32_t>(target), DataRate::BitsPerSecond(target));
+    EXPECT_EQ(result.mode, "fake");
+    EXPECT_DOUBLE_EQ(result.max_error_m, 0.03) << target;
+  }
+}
+
 TEST_F(RateLoopTest, PassesOnWhatTheCoderCouldNotEncode) {
   for (const CodingResult bad : {CodingResult::kEmpty, CodingResult::kOutOfReach}) {
     coder_.result = bad;
