@@ -11,7 +11,7 @@
 namespace lidar::test {
 
 constexpr std::uint32_t kHostileMaxPoints = 4096;
-constexpr int kMutations = 1000;
+constexpr int kMutations = 400;
 
 /// Organised slices of RoomSensor().
 inline codec::CloudFormat RoomFormat() { return {OrganisedLayout(), 32, RoomSensor()}; }

@@ -76,7 +76,7 @@ TEST_P(Efforts, KeepTheErrorNextToAReturnAtTenKilometres) {
 }
 
 TEST_P(Efforts, AreTheSameCloudFromAnyNumberOfThreads) {
-  const RangeImage image = test::RoomScan(test::RoomSensor(128), 100, 256);  // four blocks at most
+  const RangeImage image = test::RoomScan(test::RoomSensor(128), 100, 128);  // two blocks at most
   const auto one = CodedRanges(image, 1, GetParam());
   for (const unsigned threads : {2U, 64U}) {
     const auto several = CodedRanges(image, threads, GetParam());

@@ -25,7 +25,7 @@ constexpr std::uint32_t kReceiver = 77;
 struct LinkTest {
   unsigned effort = 2;
   unsigned threads = 1;
-  std::uint32_t beams = 16;
+  std::uint32_t beams = 8;
   std::uint32_t slices = kSlices;
   Duration key_interval = 10s;
   std::function<bool(std::uint32_t scan, std::uint32_t index)> loses = [](auto, auto) {
@@ -187,11 +187,11 @@ TEST_P(EffortsAndThreads, SaveBitsWhereTheSensorStandsStill) {
   test.threads = GetParam().second;
   if (test.threads > 1) {
     test.slices = 1;
-    test.beams = 128;
+    test.beams = 64;
   }
   Loop loop(test);
-  EXPECT_TRUE(AllDecoded(loop.Scans(8)));
-  const auto later = loop.Scans(8);
+  EXPECT_TRUE(AllDecoded(loop.Scans(6)));
+  const auto later = loop.Scans(4);
   EXPECT_TRUE(AllDecoded(later));
   EXPECT_LT(static_cast<double>(Bytes(later, &Sent::bytes)),
             0.9 * static_cast<double>(Bytes(later, &Sent::plain_bytes)));

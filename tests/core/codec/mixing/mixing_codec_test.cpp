@@ -214,11 +214,11 @@ TEST(MixingCodecOf, DependsOnNoSliceBefore) {
 }
 
 TEST(MixingCodecOf, DamagedPayloadsGiveAnImageOrNothing) {
-  const SensorModel sensor = Sensor(16, 128);
+  const SensorModel sensor = Sensor(16, 64);
   const MixingSettings settings{RangeGrid::ForError(0.02, 1), IntensityScale(FullScale::kByte, 5),
                                 2};
   MixingEncoder encoder(sensor);
-  const RangeImage image = Room(16, 128, 1, 1);
+  const RangeImage image = Room(16, 64, 1, 1);
   std::vector<std::uint8_t> payload;
   encoder.Encode(image, settings, &payload);
   MixingDecoder decoder(sensor);
