@@ -149,7 +149,7 @@ TEST(MixingCodecOf, RefusesWhatDoesNotFit) {
 /// A payload that a decoder would follow to the end of any image: each pixel is what it expects.
 std::vector<std::uint8_t> AsExpected(std::size_t bytes) {
   std::vector<std::uint8_t> payload(bytes, 0xFF);
-  payload[0] = 0x10 | 4 | 3;  // the version, gaps, effort 3
+  payload[0] = mixing::kTableVersion << 4 | 4 | 3;  // the version, gaps, effort 3
   return payload;
 }
 
@@ -177,7 +177,7 @@ TEST(MixingCodecOf, AReturnIsNeverAtTheSensor) {
   image.columns = 16;
   for (std::size_t bytes = 2; bytes < 40; ++bytes) {
     auto payload = AsExpected(bytes);
-    payload[0] = 0x10 | 3;  // no gaps: a bin of 0 for each pixel
+    payload[0] = mixing::kTableVersion << 4 | 3;  // no gaps: a bin of 0 for each pixel
     EXPECT_FALSE(decoder.Decode({payload.data(), bytes}, RangeGrid(1, 1), 0, &image)) << bytes;
   }
 }
