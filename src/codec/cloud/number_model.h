@@ -3,12 +3,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "src/codec/mixing/bit_mixer.h"
 
 namespace lidar::codec::cloud {
 
-/// Codes bits of `kNodes` kinds by contexts.
+/// Codes bits of `kNodes` kinds by contexts. Counters are made when their context first comes, as
+/// small clouds have few.
 template <unsigned kContexts, std::uint32_t kNodes>
 class BitModel {
  public:
@@ -17,19 +19,40 @@ class BitModel {
 
   BitModel() {
     for (mixing::Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
+    counters_.reserve(kContexts * kValues);  // they stay where they are
   }
 
   template <class Coder>
   bool CodeBit(bool bit, std::uint32_t node, const Contexts& contexts, Coder* coder) {
+    return CodeBit(bit, node, Find(contexts), coder);
+  }
+
+ protected:
+  using Counters = std::array<mixing::Counter, kNodes>;
+  using Found = std::array<Counters*, kContexts>;
+
+  Found Find(const Contexts& contexts) {
+    Found found;
+    for (unsigned k = 0; k < kContexts; ++k) {
+      std::uint16_t& place = places_[k][contexts[k] % kValues];
+      if (place == 0) {
+        counters_.emplace_back();
+        place = static_cast<std::uint16_t>(counters_.size());
+      }
+      found[k] = &counters_[place - 1U];
+    }
+    return found;
+  }
+  template <class Coder>
+  bool CodeBit(bool bit, std::uint32_t node, const Found& found, Coder* coder) {
     mixing::BitMixer<kContexts, 0> mixer;
-    mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
-      return &counters_[k][(contexts[k] % kValues) * kNodes + node];
-    });
+    mixer.Ask([&](unsigned k) __attribute__((always_inline)) { return &(*found[k])[node]; });
     return mixer.Code(bit, &weights_[node], coder);
   }
 
  private:
-  std::array<std::array<mixing::Counter, kValues * kNodes>, kContexts> counters_{};
+  std::array<std::array<std::uint16_t, kValues>, kContexts> places_{};  // plus one; 0: none yet
+  std::vector<Counters> counters_;
   std::array<mixing::Weights, kNodes> weights_{};
 };
 
@@ -44,20 +67,20 @@ class NumberModel : public BitModel<kContexts, 128> {
   /// Returns kTooLarge for a damaged stream.
   template <class Coder>
   std::int32_t Code(std::int32_t number, const Contexts& contexts, Coder* coder) {
-    if (!this->CodeBit(number != 0, 0, contexts, coder)) return 0;
-    const bool negative = this->CodeBit(number < 0, 1, contexts, coder);
+    const auto found = this->Find(contexts);
+    if (!this->CodeBit(number != 0, 0, found, coder)) return 0;
+    const bool negative = this->CodeBit(number < 0, 1, found, coder);
     const auto size = static_cast<std::uint32_t>(negative ? -number : number);
     // This is an Exp-Golomb code.
     const auto wanted = static_cast<unsigned>(mixing::BitLength(size | 1) - 1);
     unsigned length = 0;
-    while (this->CodeBit(length < wanted, (negative ? 32 : 2) + length, contexts, coder))
+    while (this->CodeBit(length < wanted, (negative ? 32 : 2) + length, found, coder))
       if (++length == 26) return kTooLarge;
     std::uint32_t value = 1;
     for (unsigned place = length; place-- > 0;) {
       const bool top = place + 1 == length;
       const std::uint32_t node = 64 + (top ? length : 32 + place);
-      value =
-          value << 1 | (this->CodeBit((size >> place & 1) != 0, node, contexts, coder) ? 1U : 0U);
+      value = value << 1 | (this->CodeBit((size >> place & 1) != 0, node, found, coder) ? 1U : 0U);
     }
     const auto result = static_cast<std::int32_t>(value);
     return negative ? -result : result;
