@@ -25,18 +25,20 @@ class BeamLocator {
     const std::uint32_t first = guess < around_ ? 0 : guess - around_;
     const std::uint32_t end =
         std::min(guess + around_ + 2, static_cast<std::uint32_t>(lines_.size()));
-    Found best = On(first, s);
+    std::uint32_t best = first;
+    double least = std::abs(AboveOf(first, s));
+    // The compiler makes no branches of this, which processors would guess badly.
     for (std::uint32_t i = first + 1; i < end; ++i) {
-      const Found found = On(i, s);
-      if (std::abs(found.above_m) < std::abs(best.above_m)) best = found;
+      const double above = std::abs(AboveOf(i, s));
+      best = above < least ? i : best;
+      least = std::min(above, least);
     }
-    return best;
+    return On(best, s);
   }
   Found On(std::uint32_t beam, const Sighting& s) const {
     const Line& line = lines_[beam];
     const double z = s.z_m - line.height_m;
-    return {beam, s.rho_m * line.cosine + z * line.sine - line.reach_m,
-            z * line.cosine - s.rho_m * line.sine};
+    return {beam, s.rho_m * line.cosine + z * line.sine - line.reach_m, AboveOf(beam, s)};
   }
 
  private:
@@ -48,6 +50,10 @@ class BeamLocator {
   };
   static constexpr std::uint32_t kBuckets = 8'192;
 
+  double AboveOf(std::uint32_t beam, const Sighting& s) const {
+    const Line& line = lines_[beam];
+    return (s.z_m - line.height_m) * line.cosine - s.rho_m * line.sine;
+  }
   /// Maps all directions to 1 to -1, as the tangent rises.
   static std::uint32_t BucketOf(double z, double rho) {
     return static_cast<std::uint32_t>((1 - z / (rho + std::abs(z))) * (0.4999 * kBuckets));
