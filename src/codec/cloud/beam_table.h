@@ -91,10 +91,9 @@ struct BeamTable {
     if (period > 1) azimuth += beams[beam].swings[column % period];
     return azimuth;
   }
-  /// Direction of an elevation.
+  /// Direction of an angle [units].
   struct Slope {
-    explicit Slope(std::int32_t elevation)
-        : cosine(std::cos(elevation * kRadians)), sine(std::sin(elevation * kRadians)) {}
+    explicit Slope(double angle);
     double cosine;
     double sine;
   };
@@ -110,7 +109,8 @@ struct BeamTable {
 
 /// Returns what a beam that passes the origin adds to the azimuth of a point.
 inline double SideAngle(const BeamTable::Beam& beam, double rho_m) {
-  return beam.side_um == 0 ? 0 : 1e-6 * beam.side_um / std::max(rho_m, 1e-3) / kRadians;
+  constexpr double kUnits = 1e-6 / kRadians;
+  return beam.side_um == 0 ? 0 : kUnits * beam.side_um / std::max(rho_m, 1e-3);
 }
 
 /// Wraps an angle to -kTurn / 2 to kTurn / 2.
