@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "src/codec/cloud/node_map.h"
@@ -41,8 +42,7 @@ class Choices {
  public:
   Choices(const std::vector<Point>& points, const CellGrid& grid, unsigned depth)
       : square_bound_(grid.error_m() * grid.error_m()) {
-    constexpr std::size_t kMeanChoices = 3;
-    map_.Reset(kMeanChoices * points.size());
+    map_.Reset(points.size());
     first_of_point_.reserve(points.size() + 1);
     for (const Point& point : points) {
       first_of_point_.push_back(static_cast<std::uint32_t>(cells_.size()));
@@ -172,6 +172,12 @@ unsigned CellGrid::DepthFor(double farthest_m) const {
 
 bool CellGrid::Reaches(double farthest_m) const {
   return farthest_m / static_cast<double>(step_m) + 2 <= HalfOf(kMostDepth);
+}
+
+double CellGrid::SurelyHolds() const {
+  // A middle is rounded by half of this part along each axis.
+  constexpr double kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
+  return static_cast<double>(step_m) * kRoom / kRounding - static_cast<double>(step_m);
 }
 
 bool CellGrid::Holds(const Point& point) const {

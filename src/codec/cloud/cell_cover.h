@@ -40,6 +40,8 @@ struct CellGrid {
   bool Reaches(double farthest_m) const;
   /// Returns true if floats are fine enough for the error at the point, which a depth can hold.
   bool Holds(const Point& point) const;
+  /// Distance up to which floats are fine enough at all points.
+  double SurelyHolds() const;
 };
 
 /// Points by cells.

@@ -36,7 +36,10 @@ struct Direction {
   }
   /// Tangent of the elevation in 1/parts, within +-limit.
   std::int64_t Tangent(std::int64_t parts, std::int64_t limit) const {
-    return std::clamp(z * parts / std::max<std::int64_t>(rho, 1), -limit, limit);
+    // Doubles hold these quotients exactly enough for the integers below them, and divide faster.
+    const auto quotient = static_cast<std::int64_t>(
+        static_cast<double>(z * parts) / static_cast<double>(std::max<std::int64_t>(rho, 1)));
+    return std::clamp(quotient, -limit, limit);
   }
   std::uint32_t RangeClass() const {
     const auto r = static_cast<std::uint64_t>(std::max(rho, z < 0 ? -z : z));

@@ -157,11 +157,13 @@ void CloudEncoder::SortOut(CloudHeader* header) {
   near_.reserve(cloud_.size());
   near_ids_.reserve(cloud_.size());
   float most = 0;
+  const double surely = header->grid.SurelyHolds();
   for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
     const Point point = {cloud_.xyz[3 * i], cloud_.xyz[3 * i + 1], cloud_.xyz[3 * i + 2]};
     float farthest = 0;
     for (const float v : point) farthest = std::max(farthest, std::abs(v));
-    if (!header->grid.Reaches(static_cast<double>(farthest)) || !header->grid.Holds(point)) {
+    const auto farthest_m = static_cast<double>(farthest);
+    if (farthest_m > surely && (!header->grid.Reaches(farthest_m) || !header->grid.Holds(point))) {
       far_ids_.push_back(i);
       continue;
     }

@@ -9,7 +9,7 @@
 
 namespace lidar::codec::cloud {
 
-/// An open hash table that is never more than half full.
+/// An open hash table that is never more than half full: it grows.
 class NodeMap {
  public:
   static constexpr std::uint32_t kAbsent = UINT32_MAX;
@@ -19,8 +19,11 @@ class NodeMap {
     while (std::size_t{1} << bits < 2 * nodes) ++bits;
     shift_ = 64 - bits;
     slots_.assign(std::size_t{1} << bits, {0, kAbsent});
+    room_ = slots_.size() / 2;
   }
   void Add(std::uint64_t key, std::uint32_t index) {
+    if (room_ == 0) Grow();
+    --room_;
     std::size_t at = SlotOf(key);
     while (slots_[at].index != kAbsent) at = (at + 1) & (slots_.size() - 1);
     slots_[at] = {key, index};
@@ -40,6 +43,13 @@ class NodeMap {
   }
 
  private:
+  void Grow() {
+    std::vector<Slot> old;
+    old.swap(slots_);
+    Reset(old.size());
+    for (const Slot& slot : old)
+      if (slot.index != kAbsent) Add(slot.key, slot.index);
+  }
   struct Slot {
     std::uint64_t key;
     std::uint32_t index;
@@ -49,6 +59,7 @@ class NodeMap {
   }
 
   std::vector<Slot> slots_;
+  std::size_t room_ = 0;
   unsigned shift_ = 60;
 };
 

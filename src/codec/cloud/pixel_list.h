@@ -39,7 +39,11 @@ struct PixelList {
 /// `range_mm`.
 inline std::int32_t ResidualWidth(std::uint32_t tangent_um, std::uint32_t range_mm) {
   // 2 2^22 / (2000 pi)
-  const std::uint64_t width = std::uint64_t{tangent_um} * 1'335 / (range_mm == 0 ? 1 : range_mm);
+  const std::uint64_t far_um = std::uint64_t{tangent_um} * 1'335;
+  const std::uint32_t away_mm = range_mm == 0 ? 1 : range_mm;
+  // Divisions of 32 bits are faster.
+  const std::uint64_t width =
+      far_um <= UINT32_MAX ? static_cast<std::uint32_t>(far_um) / away_mm : far_um / away_mm;
   return static_cast<std::int32_t>(width < 1 ? 1 : width > kTurn ? kTurn : width);
 }
 
