@@ -158,7 +158,10 @@ TEST(PlyElements, OnlyTheFirstVerticesCount) {
 
 TEST(CaptureTimeOfAFile, IsSecondsAndNineDigitsOrNone) {
   const auto of = [](const std::string& time, bool ply) {
-    const std::string comment = "capture time [s since 1970-01-01T00:00:00Z]: " + time + "\n";
+    const char* mark = ply ? "comment " : "# ";  // other comments stand around it
+    const std::string comment = "of a sensor\n" + std::string(mark) +
+                                "capture time [s since 1970-01-01T00:00:00Z]: " + time + "\n" +
+                                mark + "made by hand\n";
     const std::string pcd_rest = "FIELDS x\nSIZE 4\nTYPE F\nPOINTS 1\nDATA ascii\n1\n";
     const std::string ply_rest = "element vertex 1\nproperty float x\nend_header\n1\n";
     const std::string file =

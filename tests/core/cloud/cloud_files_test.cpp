@@ -394,6 +394,11 @@ TEST(CloudFiles, AreKnownByHowTheyBegin) {
   EXPECT_EQ(TypeOfCloudFile(View("ply\r\nformat")), CloudFileType::kPly);
   EXPECT_EQ(TypeOfCloudFile(View("")), std::nullopt);
   EXPECT_EQ(TypeOfCloudFile(View("VERSION 2")), std::nullopt);
+  EXPECT_EQ(TypeOfCloudFile(View("# .PCD v.5")), CloudFileType::kPcd);
+  EXPECT_EQ(TypeOfCloudFile(View("#.PCD v.7")), CloudFileType::kPcd);
+  EXPECT_EQ(TypeOfCloudFile(View("ply\n")), CloudFileType::kPly);
+  for (const char* none : {"ply", "ply format", " ply\n", "# PCD", "LASV", "las", "FIELDS x"})
+    EXPECT_EQ(TypeOfCloudFile(View(none)), std::nullopt) << none;
 }
 
 TEST(CloudFiles, DamageIsSurvived) {

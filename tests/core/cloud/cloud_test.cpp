@@ -42,6 +42,34 @@ INSTANTIATE_TEST_SUITE_P(All, BadFields,
                          ::testing::Values("", "x", "x:F32", "x:F99:0", ":F32:0", "x:F32:-1",
                                            "x:F32:0,x:F32:4", "x:F32:4294967295", "x:F32:0,,",
                                            "x:F32:0z", "x\xff:F32:0", "x\n:F32:0"));
+TEST(PointFields, MayReachTheirLimitsAndNotPassThem) {
+  const auto of = [](std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i)
+      text += (i > 0 ? ",f" : "f") + std::to_string(i) + ":U8:" + std::to_string(i);
+    return PointFields::Parse(text);
+  };
+  ASSERT_TRUE(of(PointFields::kMaxFields));
+  EXPECT_EQ(of(PointFields::kMaxFields)->all().size(), PointFields::kMaxFields);
+  EXPECT_FALSE(of(PointFields::kMaxFields + 1));
+  const auto at = [](const char* type, std::size_t offset) {
+    return PointFields::Parse(std::string("x:") + type + ":" + std::to_string(offset));
+  };
+  for (const auto& [type, size] : std::vector<std::pair<const char*, std::size_t>>{{"I8", 1},
+                                                                                   {"U8", 1},
+                                                                                   {"I16", 2},
+                                                                                   {"U16", 2},
+                                                                                   {"I32", 4},
+                                                                                   {"U32", 4},
+                                                                                   {"F32", 4},
+                                                                                   {"F64", 8}}) {
+    ASSERT_TRUE(at(type, PointFields::kMaxPointStep - size)) << type;
+    EXPECT_EQ(at(type, PointFields::kMaxPointStep - size)->MinimumStep(),
+              PointFields::kMaxPointStep);
+    EXPECT_FALSE(at(type, PointFields::kMaxPointStep - size + 1)) << type;
+  }
+}
+
 TEST(PointFields, ANameHoldsNoZero) {
   EXPECT_FALSE(PointFields::Parse(std::string_view("x\0y:F32:0", 9)));
 }

@@ -101,6 +101,20 @@ TEST_F(McapErrors, TheLocationIsCheckedBeforeTheFirstBuffer) {
   EXPECT_TRUE(Files().empty());
 }
 
+/// A user learns of it before the drive, not with its first slice.
+TEST_F(McapErrors, AWrongLocationFailsTheStart) {
+  for (const std::string& location :
+       {std::string(), std::string("/nowhere/a.mcap"), folder_, Path("a-%s.mcap"),
+        Path("b-%d-%d.mcap"), Path("a-%d/b.mcap")}) {
+    const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
+    g_object_set(sink.get(), "location", location.c_str(), nullptr);
+    EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE)
+        << location;
+    gst_element_set_state(sink.get(), GST_STATE_NULL);
+  }
+  EXPECT_TRUE(Files().empty());
+}
+
 TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
   EXPECT_EQ(Play("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap")).error,
             "Cannot be recorded: clouds, coded slices, IMU samples and odometry can be recorded, "

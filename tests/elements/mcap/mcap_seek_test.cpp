@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Seeks and segments of mcapsrc.
+#include <atomic>
 #include <condition_variable>
 #include <limits>
 #include <mutex>
@@ -119,6 +120,36 @@ TEST_F(McapSeek, SaysHowFarOneMaySeekAndWhatIsPlayed) {
     EXPECT_EQ(rate, 2);
     EXPECT_EQ(start, 300 * GST_MSECOND);
     EXPECT_EQ(stop, end < 0 ? length : end);
+  }
+}
+
+/// Each sink of a pipeline sends the seek to its own branch.
+TEST_F(McapSeek, IsDoneOnceHoweverManySinksSendIt) {
+  const std::string sensor = kSensor + " num-buffers=16 ! lidarenc ! m. ";
+  Play("mcapsink name=m" + At("a.mcap") + sensor + sensor + sensor);
+  Pipeline p("mcapsrc name=s" + At("a.mcap") +
+             " s.src_0 ! queue ! fakesink name=see0 s.src_1 ! queue ! fakesink name=see1 s.src_2 ! "
+             "queue ! fakesink name=see2");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  std::atomic<int> flushes{0};
+  for (const char* name : {"src_0", "src_1", "src_2"}) {
+    const gst::PadPtr pad(gst_element_get_static_pad(p.Find("s").get(), name));
+    gst_pad_add_probe(
+        pad.get(), GST_PAD_PROBE_TYPE_EVENT_FLUSH,
+        [](GstPad*, GstPadProbeInfo* info, gpointer count) {
+          if (GST_EVENT_TYPE(info->data) == GST_EVENT_FLUSH_STOP)
+            ++*static_cast<std::atomic<int>*>(count);
+          return GST_PAD_PROBE_OK;
+        },
+        &flushes, nullptr);
+  }
+  for (int seek = 1; seek <= 3; ++seek) {
+    p.Forget();
+    ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                        (50 - 10 * seek) * GST_MSECOND));
+    ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+    EXPECT_EQ(flushes, 3 * seek) << "one for each pad";
   }
 }
 

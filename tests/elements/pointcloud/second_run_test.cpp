@@ -207,6 +207,12 @@ class FileAfterAnother : public ::testing::Test {
     trace_->Take();
   }
   static bool IsBuffer(const std::string& line) { return line.rfind("buffer", 0) == 0; }
+  static std::vector<int> SizesOf(const Lines& buffers) {
+    std::vector<int> sizes;
+    for (const std::string& line : buffers)
+      sizes.push_back(std::stoi(line.substr(line.find(" size ") + 6)));
+    return sizes;
+  }
   static Lines BytesOf(Lines buffers) {
     for (std::string& line : buffers)
       line = line.substr(line.find(" size"), line.find(" slice") - line.find(" size"));
@@ -247,6 +253,87 @@ TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondStream) {
       EXPECT_EQ(BytesOf(trace_->TakeBuffers()), alone);
       StopAll();
     }
+}
+
+/// A source that knows the size of its file, and reads it in blocks.
+class FileInBlocks : public FileAfterAnother {
+ protected:
+  FileInBlocks() {
+    gst_pad_set_element_private(h_->srcpad, this);
+    gst_pad_set_query_function(h_->srcpad, [](GstPad* pad, GstObject* parent, GstQuery* query) {
+      if (GST_QUERY_TYPE(query) != GST_QUERY_DURATION)
+        return gst_pad_query_default(pad, parent, query);
+      const auto* self = static_cast<FileInBlocks*>(gst_pad_get_element_private(pad));
+      gst_query_set_duration(query, GST_FORMAT_BYTES, static_cast<gint64>(self->size_));
+      return gboolean{TRUE};
+    });
+  }
+  void PlayBlocks(const std::string& file) {
+    size_ = file.size();
+    gst_harness_play(h_.get());
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("file"));
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_BYTES);
+    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+    for (std::size_t at = 0; at < file.size(); at += 500) {
+      const std::string block = file.substr(at, 500);
+      Push(h_.get(), gst::BufferPtr(gst_buffer_new_memdup(block.data(), block.size())));
+    }
+  }
+  std::size_t size_ = 0;
+};
+
+TEST_F(FileInBlocks, IsReadToItsEndWhateverTheSizeOfTheOneBefore) {
+  const auto ply = [](int points) {
+    std::string file = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(points) +
+                       "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    for (int i = 0; i < points; ++i) file += std::to_string(i) + " 2 3\n";
+    return file;
+  };
+  for (const bool stops : {false, true})
+    for (const auto& [first, second] :
+         std::vector<std::pair<int, int>>{{200, 400}, {400, 200}, {300, 300}}) {
+      PlayBlocks(ply(first));
+      EXPECT_EQ(SizesOf(trace_->TakeBuffers()), (std::vector<int>{12 * first}));
+      if (stops) StopAll();
+      PlayBlocks(ply(second));
+      EXPECT_EQ(SizesOf(trace_->TakeBuffers()), (std::vector<int>{12 * second}));
+      StopAll();
+    }
+}
+
+/// Two points in each kind of file.
+TEST_F(FileAfterAnother, IsTheSameCloudInEveryEncoding) {
+  std::vector<std::uint8_t> little;
+  std::vector<std::uint8_t> big;
+  ByteWriter w(&little);
+  std::string text;
+  for (const float v : {1.5F, -2.25F, 3.0F, 40.0F, 1e-3F, -0.125F}) {
+    const std::size_t begin = little.size();
+    w.LeF32(v);
+    big.insert(big.end(), little.rbegin(), little.rbegin() + 4);
+    text += std::to_string(v) + (begin == 8 ? "\n" : " ");
+  }
+  const std::string pcd =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
+      "HEIGHT 1\nPOINTS 2\nDATA ";
+  const auto ply = [](const char* format) {
+    return std::string("ply\nformat ") + format +
+           " 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+           "end_header\n";
+  };
+  const std::string bytes(little.begin(), little.end());
+  const Lines expected(2, " size 24 crc " + std::to_string(Crc32({little.data(), little.size()})));
+  for (const FileCase& file : std::vector<FileCase>{
+           {"pcd text", nullptr, pcd + "ascii\n" + text},
+           {"pcd binary", nullptr, pcd + "binary\n" + bytes},
+           {"ply text", nullptr, ply("ascii") + text},
+           {"ply little", nullptr, ply("binary_little_endian") + bytes},
+           {"ply big", nullptr, ply("binary_big_endian") + std::string(big.begin(), big.end())}}) {
+    PlayFile(file);
+    EXPECT_EQ(BytesOf(trace_->TakeBuffers()), expected) << file.name;
+    StopAll();
+  }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Transforms that ros2src takes, and clouds that they place.
+#include <set>
+
 #include "src/cdr/messages.h"
 #include "tests/elements/ros2/ros2_support.h"
 
@@ -80,6 +82,29 @@ TEST_F(Ros2Transforms, TakesStaticTransformsFromBeforeItWasThere) {
   const BufferPtr buffer = Pull();
   ASSERT_TRUE(buffer);
   EXPECT_EQ(Field("static"), "true");
+}
+
+TEST_F(Ros2Transforms, TakesAllStaticTransformsOfAllThatKeepSome) {
+  constexpr int kEach = 10;  // what a peer keeps
+  std::vector<std::unique_ptr<FastPeer>> peers;
+  for (int peer = 0; peer < 3; ++peer) {
+    peers.push_back(std::make_unique<FastPeer>(TestDomain()));
+    peers.back()->Advertise<PeerTransforms>("rt/tf_static", kTransformsType,
+                                            Qos::kReliableTransient);
+    for (int i = 0; i < kEach; ++i)
+      ASSERT_TRUE(peers.back()->Publish(
+          Transforms("base", ("link" + std::to_string(peer * kEach + i)).c_str(), 1, 1)));
+  }
+  Start("ros2src", "topic=/tf_static type=tf depth=1");
+  std::set<std::string> links;
+  for (int i = 0; i < 3 * kEach; ++i) {
+    const BufferPtr buffer = Pull();
+    ASSERT_TRUE(buffer) << i;
+    links.insert(cdr::ReadTransforms(gst::BufferMap(buffer.get(), GST_MAP_READ).view())
+                     ->front()
+                     .child_frame_id);
+  }
+  EXPECT_EQ(links.size(), 3U * kEach);
 }
 
 TEST_F(Ros2Transforms, TellsOfStaticTransformsThatNobodyKeeps) {

@@ -209,6 +209,25 @@ TEST_F(Ros2Src, TellsOfPublishersThatItsReliabilityDoesNotFit) {
   EXPECT_NE(text.find("best-effort"), std::string::npos) << text;
 }
 
+/// What was told of in one run is told of in the next, and its counters begin anew.
+TEST_F(Ros2Src, TellsInEachRunOfWhatDoesNotFit) {
+  FastPeer best_effort(TestDomain());
+  best_effort.Advertise<PeerCloud>("rt/points", kCloudType, Qos::kBestEffort);
+  FastPeer other(TestDomain());
+  other.Advertise<PeerBytes>("rt/points", "std_msgs::msg::dds_::String_", Qos::kReliable);
+  Start("ros2src", "topic=/points qos=reliable");
+  for (int run = 0; run < 2; ++run) {
+    std::string complaints;
+    for (int i = 0; i < 2; ++i) complaints += NextOwnComplaint();
+    EXPECT_NE(complaints.find("best-effort"), std::string::npos) << run << complaints;
+    EXPECT_NE(complaints.find("String_"), std::string::npos) << run << complaints;
+    EXPECT_EQ(Stat("publishers-of-other-types"), 1U) << run;
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    while (NextComplaint(0) != "") continue;
+    gst_harness_play(h_.get());
+  }
+}
+
 TEST_F(Ros2Src, TakesImuSamples) {
   Start("ros2src", "topic=/imu type=imu qos=reliable");
   peer_ = std::make_unique<FastPeer>(TestDomain());
