@@ -90,5 +90,135 @@ TEST_F(Connection, ThatHasDrawnWhatItDidNotReadEnds) {
   EXPECT_EQ(closed_, 1);
 }
 
+/// A frame of the server, of less than 64 KiB or of any size.
+struct ServerFrame {
+  unsigned opcode = 0;
+  std::string payload;
+};
+
+/// A peer that speaks the protocol.
+class Conversation : public Connection {
+ protected:
+  /// All that comes until nothing is under way.
+  std::vector<ServerFrame> Frames() {
+    std::array<char, 1 << 16> bytes{};
+    for (int idle = 0; idle < 3;) {
+      const ssize_t size = recv(peer_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+      if (size > 0) read_.append(bytes.data(), static_cast<std::size_t>(size));
+      if (size > 0) bytes_ += static_cast<std::uint64_t>(size);
+      idle = size > 0 || g_main_context_iteration(nullptr, FALSE) ? 0 : idle + 1;
+    }
+    std::vector<ServerFrame> frames;
+    for (;;) {
+      ByteReader r(reinterpret_cast<const std::uint8_t*>(read_.data()), read_.size());
+      const unsigned first = r.U8();
+      std::uint64_t size = r.U8();
+      if (size == 126) size = r.Be16();
+      if (size == 127) size = r.Be64();
+      const ByteView payload = r.Bytes(static_cast<std::size_t>(size));
+      if (!r.ok()) return frames;
+      EXPECT_EQ(first & 0xF0U, 0x80U) << "whole frames";
+      frames.push_back({first & 0xFU, std::string(payload.begin(), payload.end())});
+      read_.erase(0, r.position());
+    }
+  }
+  /// A masked frame, as clients send them; the mask is zero.
+  void Say(unsigned opcode, const std::string& payload) {
+    std::string frame{static_cast<char>(0x80U | opcode), static_cast<char>(0x80U | payload.size())};
+    frame += std::string(4, '\0') + payload;
+    ASSERT_EQ(write(peer_, frame.data(), frame.size()), static_cast<ssize_t>(frame.size()));
+  }
+  static SharedMessage Text(const std::string& text) {
+    auto message = std::make_shared<Message>();
+    message->payload.assign(text.begin(), text.end());
+    return message;
+  }
+  static SharedSliceMessage SliceOf(const std::string& text) {
+    auto slice = std::make_shared<SliceMessage>();
+    slice->payload.assign(text.begin(), text.end());
+    return slice;
+  }
+  /// The ends of the frames' payloads, which tell them apart.
+  static std::vector<std::string> EndsOf(const std::vector<ServerFrame>& frames) {
+    std::vector<std::string> ends;
+    for (const ServerFrame& f : frames) ends.push_back(f.payload.substr(f.payload.size() - 2));
+    return ends;
+  }
+
+  std::string read_;
+  std::uint64_t bytes_ = 0;
+};
+
+TEST_F(Conversation, AnswersAPingWithWhatItSaid) {
+  for (const std::size_t size : {0U, 1U, 16U, 125U}) {
+    const std::string said(size, static_cast<char>('a' + size % 7));
+    Say(9, said);
+    const auto frames = Frames();
+    ASSERT_EQ(frames.size(), 1U) << size;
+    EXPECT_EQ(frames[0].opcode, 10U);
+    EXPECT_EQ(frames[0].payload, said);
+  }
+  EXPECT_EQ(client_->counters().messages, 0U);
+}
+
+TEST_F(Conversation, EndsWithTheReasonAsAnAnswer) {
+  Say(8, std::string("\x03\xe9", 2));
+  const auto frames = Frames();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].opcode, 8U);
+  EXPECT_EQ(frames[0].payload, std::string("\x03\xe8", 2));  // 1000
+  EXPECT_EQ(closed_, 1);
+  client_->SendText("too late");
+  EXPECT_TRUE(Frames().empty());
+}
+
+TEST_F(Conversation, ThatIsClosedByUsNamesTheReason) {
+  client_->Close(foxglove::CloseCode::kTokenOver);
+  const auto frames = Frames();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].opcode, 8U);
+  EXPECT_EQ(frames[0].payload, std::string("\x11\x31", 2));  // 4401
+  EXPECT_EQ(closed_, 1);
+}
+
+TEST_F(Conversation, CountsWhatThePeerGot) {
+  client_->SendText("about");
+  client_->Send({1, 1, Text("m1")}, 4);
+  client_->SendSlice(2, 2, SliceOf("s1"));
+  Say(9, "ping");
+  client_->Send({1, 1, Large()}, 4);
+  client_->Send({3, 3, Text(std::string(70'000, 'x'))}, 4);
+  EXPECT_EQ(Frames().size(), 6U);
+  EXPECT_EQ(client_->counters().messages, 4U) << "data only";
+  EXPECT_EQ(client_->counters().bytes, bytes_);
+}
+
+/// While a large frame is under way, all others wait.
+TEST_F(Conversation, SendsControlsThenSlicesThenMessages) {
+  client_->Send({1, 1, Large()}, 1);
+  client_->Send({1, 1, Text("m1")}, 4);
+  client_->SendSlice(2, 2, SliceOf("s1"));
+  client_->SendText("c1");
+  client_->Send({3, 3, Text("m2")}, 4);
+  client_->SendSlice(2, 2, SliceOf("s2"));
+  client_->SendText("c2");
+  const auto ends = EndsOf(Frames());
+  const std::vector<std::string> behind(ends.begin() + 1, ends.end());
+  EXPECT_EQ(behind, (std::vector<std::string>{"c1", "c2", "s1", "s2", "m1", "m2"}));
+}
+
+TEST_F(Conversation, ForgetsOfAChannelAllThatWaitsAndOfOthersNothing) {
+  client_->Send({1, 1, Large()}, 1);
+  for (const std::uint32_t channel : {2U, 3U, 2U, 4U}) {
+    const std::string number = std::to_string(channel);
+    client_->SendSlice(channel, channel, SliceOf("s" + number));
+    client_->Send({channel, channel, Text("m" + number)}, 4);
+  }
+  client_->Forget(2);
+  const auto ends = EndsOf(Frames());
+  const std::vector<std::string> behind(ends.begin() + 1, ends.end());
+  EXPECT_EQ(behind, (std::vector<std::string>{"s3", "s4", "m3", "m4"}));
+}
+
 }  // namespace
 }  // namespace lidar::web
