@@ -225,5 +225,54 @@ TEST(Window, PadsToTheFullTurnAndCompletesWithTheLastColumnOfTheWindow) {
   EXPECT_EQ(batcher.stats().lost_packets, 0U);
 }
 
+/// Columns of a window, which may go over the begin of a scan.
+class AnyWindow : public ::testing::TestWithParam<std::pair<std::uint32_t, std::uint32_t>> {
+ protected:
+  static std::vector<Slice> Run(const Metadata& metadata, BatcherStats* stats) {
+    std::string error;
+    ScanBatcher batcher(metadata, *PointWriter::Create(metadata, {}, &error), {8, 4});
+    std::vector<Slice> slices;
+    for (const auto& p : test::LoadPackets("OS-1-128_v2.3.0_1024x10_lb_n3.pcap", metadata)) {
+      batcher.Push(*LidarPacket::Parse({p.data(), p.size()}, metadata.format));
+      while (auto slice = batcher.Pop()) slices.push_back(*std::move(slice));
+    }
+    batcher.Flush();
+    while (auto slice = batcher.Pop()) slices.push_back(*std::move(slice));
+    *stats = batcher.stats();
+    return slices;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, AnyWindow,
+                         ::testing::Values(std::pair(0U, 1024U), std::pair(1U, 256U),
+                                           std::pair(512U, 512U), std::pair(900U, 300U),
+                                           std::pair(1023U, 2U), std::pair(1000U, 24U),
+                                           std::pair(600U, 1000U), std::pair(37U, 1U)));
+
+TEST_P(AnyWindow, HasItsColumnsAsTheWholeScanHasThemAndNoOthers) {
+  Metadata metadata = test::LoadMetadata("OS-1-128_v2.3.0_1024x10.json");
+  BatcherStats stats;
+  const auto whole = Run(metadata, &stats);
+  const auto [first, count] = GetParam();
+  metadata.window = {first, count};
+  const auto windowed = Run(metadata, &stats);
+  EXPECT_EQ(stats.lost_packets, 0U);
+  EXPECT_EQ(stats.incomplete_slices, 0U);
+  ASSERT_EQ(windowed.size(), whole.size());
+  for (std::size_t s = 0; s < whole.size(); ++s) {
+    EXPECT_EQ(windowed[s].scan_id, whole[s].scan_id);
+    EXPECT_EQ(windowed[s].index, whole[s].index);
+    const std::size_t beams = metadata.format.beams;
+    const std::size_t step = whole[s].points.size() / beams / whole[s].width;
+    std::vector<std::uint8_t> expected = whole[s].points;
+    for (std::uint32_t c = 0; c < whole[s].width; ++c)
+      if ((whole[s].first_column + c + 1024 - first) % 1024 >= count)
+        for (std::size_t beam = 0; beam < beams; ++beam)
+          std::fill_n(
+              expected.begin() + static_cast<std::ptrdiff_t>((beam * whole[s].width + c) * step),
+              step, std::uint8_t{0});
+    EXPECT_EQ(windowed[s].points, expected) << "slice " << s;
+  }
+}
+
 }  // namespace
 }  // namespace lidar::ouster

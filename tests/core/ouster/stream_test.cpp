@@ -185,6 +185,33 @@ TEST_F(Stream, TimesNeverGoBackWhenTheSensorsClockDoes) {
   EXPECT_EQ(stream->stats().clock_jumps, 1U);
 }
 
+/// Packets that are under way for up to 60 ms, longer than a slice takes.
+TEST_F(Stream, TimesNeverGoBackWhateverTheJitterAndSlicesEndWithTheirLastPacket) {
+  for (const TimeSource times : {TimeSource::kSensor, TimeSource::kArrival}) {
+    StreamOptions options;
+    options.times = times;
+    auto stream = Make(options);
+    Time last{};
+    std::uint32_t random = 7;
+    Time arrival{};
+    std::size_t slices = 0;
+    for (std::size_t i = 0; i < packets_.size(); ++i) {
+      random = random * 1'664'525 + 1'013'904'223;
+      const Duration sent = 1562500ns * static_cast<std::int64_t>(i + 1);
+      arrival = std::max(arrival, Time(sent + 1ms * (i < 4 ? 60 : random >> 28)));
+      const Time utc = arrival + kUtcStart;
+      stream->Push({packets_[i].data(), packets_[i].size()}, {arrival, utc});
+      while (auto slice = stream->Pop()) {
+        EXPECT_GE(slice->local, last);
+        EXPECT_EQ(slice->completed, utc);
+        last = slice->local;
+        ++slices;
+      }
+    }
+    EXPECT_EQ(slices, 24U);
+  }
+}
+
 TEST_F(Stream, PacketsThatDoNotFitAreCountedAndLeftOut) {
   auto stream = Make();
   const Arrival now{Time{1s}, Time{1s}};
