@@ -61,7 +61,7 @@ without_dear=("${dear[@]/#/--no-suite=}")
 # Tests of elements wait for half of their time, so more of them run at a time than there are cores.
 waiting=(--num-processes $((2 * $(nproc))))
 # A time limit is for tests that hang: a busy machine only takes longer.
-patient=(--timeout-multiplier 6)
+patient=(--timeout-multiplier 20)
 
 # A compiler's own list of headers tells ccache what to look at, so what is not there yet is not preprocessed twice.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
@@ -194,8 +194,7 @@ run_pipelines() {
 run_sanitized() {
   local dir=$1 rest
   forget "$dir" rest
-  # They are given no time while others need it, so their limits are wider still.
-  meson test -C "$dir" --no-rebuild --suite core --suite fuzz --logbase rest --print-errorlogs --timeout-multiplier 20 \
+  meson test -C "$dir" --no-rebuild "${patient[@]}" --suite core --suite fuzz --logbase rest --print-errorlogs \
     "${without_dear[@]}" >"$dir/rest.log" 2>&1 &
   rest=$!
   chrt --idle -p 0 "$rest"

@@ -22,7 +22,8 @@ import tempfile
 import time
 
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
-START_SECONDS, QUIET_SECONDS, PLAY_SECONDS, WRITE_SECONDS = 60, 4, 1.5, 30
+QUIET_SECONDS, PLAY_SECONDS, WRITE_SECONDS = 4, 1.5, 30
+PATIENCE = 180  # seconds, of a machine that others use
 AT_A_TIME = 4
 FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
@@ -56,7 +57,7 @@ def with_ports(command, first):
 def output_for_a_while(process, quiet, play_seconds):
     """What the process prints until it ends or is told to stop, and whether it was stopped before it played."""
     output, plays = b"", False
-    until = time.monotonic() + (QUIET_SECONDS if quiet else START_SECONDS)
+    until = time.monotonic() + (QUIET_SECONDS if quiet else PATIENCE)
     while select.select([process.stdout], [], [], max(0, until - time.monotonic()))[0]:
         printed = os.read(process.stdout.fileno(), 65536)
         if not printed:
@@ -86,7 +87,7 @@ def run(command, folder, first_port):
         process, quiet=" -q " in shown, play_seconds=WRITE_SECONDS if writes else PLAY_SECONDS
     )
     try:
-        output += process.communicate(timeout=10)[0]
+        output += process.communicate(timeout=PATIENCE)[0]
     except subprocess.TimeoutExpired:
         process.kill()
         return "does not stop on SIGINT"
@@ -99,7 +100,7 @@ def run(command, folder, first_port):
     if bad:
         return "\n".join(bad[:5])
     if never_played:
-        return f"does not play within {START_SECONDS} s\n" + "\n".join(output.splitlines()[-5:])
+        return f"does not play within {PATIENCE} s\n" + "\n".join(output.splitlines()[-5:])
     if process.returncode not in (0, -signal.SIGINT):
         return f"exit code {process.returncode}\n" + "\n".join(output.splitlines()[-5:])
     return None

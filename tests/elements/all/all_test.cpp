@@ -10,6 +10,8 @@
 
 #include "gst/common/refs.h"
 
+#include "tests/support/patience.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -191,7 +193,7 @@ TEST_P(TypicalPipelines, PlayFourTimesInARow) {
     ASSERT_NE(gst_element_set_state(pipeline.get(), GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
     // Every other time it is torn down on its way up.
     if (cycle % 2 == 0) {
-      EXPECT_EQ(gst_element_get_state(pipeline.get(), nullptr, nullptr, 10 * GST_SECOND),
+      EXPECT_EQ(gst_element_get_state(pipeline.get(), nullptr, nullptr, test::kPatience_ns),
                 GST_STATE_CHANGE_SUCCESS);
     }
     EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "tests/elements/coders/coder_harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
@@ -352,7 +353,7 @@ TEST(Decoders, TellTheAgeOfTheNewestSlice) {
   g_object_get(decoder.get(), "age", &age, nullptr);
   EXPECT_EQ(age, GST_CLOCK_TIME_NONE);
   gst_element_set_state(pipeline.get(), GST_STATE_PAUSED);
-  ASSERT_EQ(gst_element_get_state(pipeline.get(), nullptr, nullptr, 10 * GST_SECOND),
+  ASSERT_EQ(gst_element_get_state(pipeline.get(), nullptr, nullptr, test::kPatience_ns),
             GST_STATE_CHANGE_SUCCESS);
   const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "s"));
   GstSample* sample = nullptr;

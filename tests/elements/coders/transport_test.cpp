@@ -6,13 +6,14 @@
 
 #include "tests/elements/coders/coder_harness.h"
 #include "tests/elements/scream/pipeline.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
 
 /// The port that a screamsrc with port=0 has bound.
 guint PortOf(GstElement* source) {
-  gst_element_get_state(source, nullptr, nullptr, 5 * GST_SECOND);
+  gst_element_get_state(source, nullptr, nullptr, test::kPatience_ns);
   GSocket* socket = nullptr;
   g_object_get(source, "used-socket", &socket, nullptr);
   EXPECT_NE(socket, nullptr);

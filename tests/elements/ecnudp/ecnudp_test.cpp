@@ -13,6 +13,7 @@
 
 #include "tests/elements/ecnudp/ecnudp_support.h"
 #include "tests/support/ipv6.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
@@ -261,7 +262,8 @@ TEST(EcnUdpSrc, SilenceIsReportedAfterTheTimeout) {
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(src->element, bus);
   gst_harness_play(src.get());
-  const MessagePtr message(gst_bus_timed_pop_filtered(bus, 5 * GST_SECOND, GST_MESSAGE_ELEMENT));
+  const MessagePtr message(
+      gst_bus_timed_pop_filtered(bus, test::kPatience_ns, GST_MESSAGE_ELEMENT));
   ASSERT_TRUE(message);
   EXPECT_TRUE(gst_message_has_name(message.get(), "GstEcnUdpSrcTimeout"));
   gst_element_set_state(src->element, GST_STATE_NULL);

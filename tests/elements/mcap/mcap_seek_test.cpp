@@ -8,6 +8,7 @@
 #include "ext/mcap/seeking.h"
 #include "gst/common/seek_range.h"
 #include "tests/elements/mcap/recording.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -176,7 +177,8 @@ class Gate {
   }
   bool AwaitBuffer(GstClockTime pts) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, kLimit, [&] { return !shown_.empty() && shown_.back() >= pts; });
+    return changed_.wait_for(lock, kPatience,
+                             [&] { return !shown_.empty() && shown_.back() >= pts; });
   }
   std::vector<GstClockTime> shown() const {
     const std::lock_guard lock(mutex_);
@@ -184,8 +186,6 @@ class Gate {
   }
 
  private:
-  static constexpr std::chrono::seconds kLimit{30};
-
   void Take(GstPadProbeInfo* info) {
     std::unique_lock lock(mutex_);
     if ((info->type & GST_PAD_PROBE_TYPE_BUFFER) == 0) {
@@ -195,7 +195,7 @@ class Gate {
     const GstClockTime pts = GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info));
     shown_.push_back(pts);
     changed_.notify_all();
-    changed_.wait_for(lock, kLimit, [&] { return pts < closed_from_; });
+    changed_.wait_for(lock, kPatience, [&] { return pts < closed_from_; });
   }
 
   mutable std::mutex mutex_;  // guards what follows

@@ -16,6 +16,7 @@
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 
@@ -126,19 +127,19 @@ class Pipeline {
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
     return outcome();
   }
-  /// Until a number of the statistics is there; false after 30 s.
+  /// Until a number of the statistics is there; false where that takes too long.
   bool AwaitStat(const char* name, guint64 least) {
-    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
+    const gint64 end = g_get_monotonic_time() + kPatience_us;
     for (; outcome_.stats[name] < least && g_get_monotonic_time() < end; TakeStats())
       g_usleep(2000);
     return outcome_.stats[name] >= least;
   }
-  /// False at an error, and after 20 s.
+  /// False at an error, and where nothing comes.
   bool Wait(GstMessageType until) {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     bool good = false;
     for (bool ended = false; !ended;) {
-      const gst::MessagePtr message(gst_bus_timed_pop(bus, 20 * GST_SECOND));
+      const gst::MessagePtr message(gst_bus_timed_pop(bus, kPatience_ns));
       if (!message) {
         ADD_FAILURE() << "nothing happens";
         break;

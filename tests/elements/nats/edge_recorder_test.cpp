@@ -2,6 +2,7 @@
 // lidar-edge: a recorder that fails harms nothing beside it.
 #include "src/tools/apps/edge/pipeline.h"
 #include "tests/elements/nats/nats_server.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -36,7 +37,7 @@ TEST_F(EdgeRecorder, ThatFailsAtTheEndDoesNotCutTheStreamShort) {
   FailRecorder();
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
   int errors = 0;
-  EXPECT_TRUE(edge::Drain(pipeline_.get(), 30 * GST_SECOND, [&](GstMessage*) {
+  EXPECT_TRUE(edge::Drain(pipeline_.get(), kPatience_ns, [&](GstMessage*) {
     ++errors;
     edge::RemoveRecorder(pipeline_.get());
   }));

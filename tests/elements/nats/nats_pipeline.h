@@ -7,6 +7,7 @@
 
 #include "tests/elements/mcap/recording.h"
 #include "tests/elements/nats/nats_server.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 
@@ -46,16 +47,15 @@ class NatsPipeline {
   /// The text of the error; empty at EOS.
   std::string WaitForEnd() {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-        bus_, GST_SECOND * static_cast<GstClockTime>(kPatience.count()),
-        static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+        bus_, kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
     if (!message) return "nothing happens";
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
     return Text(message.get(), gst_message_parse_error);
   }
   /// The text of the next warning.
   std::string WaitForWarning() {
-    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-        bus_, GST_SECOND * static_cast<GstClockTime>(kPatience.count()), GST_MESSAGE_WARNING));
+    const gst::MessagePtr message(
+        gst_bus_timed_pop_filtered(bus_, kPatience_ns, GST_MESSAGE_WARNING));
     return message ? Text(message.get(), gst_message_parse_warning) : "";
   }
 

@@ -19,19 +19,9 @@
 
 #include "gst/common/refs.h"
 
+#include "tests/support/patience.h"
+
 namespace lidar::test {
-
-constexpr std::chrono::seconds kPatience{30};
-
-/// True once `holds` is, false where that takes too long.
-inline bool Eventually(const std::function<bool()>& holds) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
-}
 
 class NatsServer {
  public:

@@ -11,6 +11,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 #include "tests/support/harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
@@ -135,7 +136,7 @@ class ImuOfADrive : public ::testing::Test {
     gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
     const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline_.get()));
     const MessagePtr end(gst_bus_timed_pop_filtered(
-        bus.get(), 60 * GST_SECOND,
+        bus.get(), test::kPatience_ns,
         static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
     ASSERT_TRUE(end);
     ASSERT_EQ(GST_MESSAGE_TYPE(end.get()), GST_MESSAGE_EOS);

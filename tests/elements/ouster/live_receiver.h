@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 
@@ -38,14 +39,14 @@ class Receiver {
   Receiver& operator=(const Receiver&) = delete;
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
-  /// The next buffer, or none within half a minute.
-  gst::BufferPtr Pull() { return Pull(g_get_monotonic_time() + kPatience); }
+  /// The next buffer, or none.
+  gst::BufferPtr Pull() { return Pull(g_get_monotonic_time() + kPatience_us); }
   void Drain() {
     while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
   }
-  /// Takes buffers until one is as wanted; false where none is within half a minute.
+  /// Takes buffers until one is as wanted; false where none is.
   bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
-    const gint64 end = g_get_monotonic_time() + kPatience;
+    const gint64 end = g_get_monotonic_time() + kPatience_us;
     while (const gst::BufferPtr buffer = Pull(end))
       if (wanted(buffer.get())) return true;
     return false;
@@ -56,11 +57,11 @@ class Receiver {
     EXPECT_TRUE(info);
     return info.value_or(gst::CloudInfo{});
   }
-  /// The next element message of that name, within half a minute.
+  /// The next element message of that name.
   gst::MessagePtr Await(const char* name) {
     for (;;) {
       gst::MessagePtr message(gst_bus_timed_pop_filtered(
-          bus_, 30 * GST_SECOND,
+          bus_, kPatience_ns,
           static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR)));
       if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return nullptr;
       if (gst_message_has_name(message.get(), name)) return message;
@@ -77,7 +78,7 @@ class Receiver {
   }
   std::string AwaitError() {
     const gst::MessagePtr message(
-        gst_bus_timed_pop_filtered(bus_, 30 * GST_SECOND, GST_MESSAGE_ERROR));
+        gst_bus_timed_pop_filtered(bus_, kPatience_ns, GST_MESSAGE_ERROR));
     if (!message) return "no error";
     GError* raw = nullptr;
     gst_message_parse_error(message.get(), &raw, nullptr);
@@ -88,8 +89,6 @@ class Receiver {
   guint16 port() const { return port_; }
 
  private:
-  static constexpr gint64 kPatience = 30 * G_USEC_PER_SEC;  // the machine may be busy
-
   gst::BufferPtr Pull(gint64 end) {
     for (;;) {
       gst::BufferPtr buffer(gst_harness_try_pull(harness_.get()));

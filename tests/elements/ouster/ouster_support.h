@@ -18,6 +18,7 @@
 #include "src/ouster/metadata.h"
 #include "src/ouster/pcap_reader.h"
 #include "tests/support/harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 
@@ -127,10 +128,10 @@ inline Ending Run(const std::string& description) {
   if (parse_error) return {parse_error->message, {}};
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   GstBus* bus = gst_element_get_bus(pipeline.get());
-  Ending ending{"no end within 20 s", {}};
+  Ending ending{"no end", {}};
   for (bool ended = false; !ended;) {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, 20 * GST_SECOND,
+        bus, kPatience_ns,
         static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING | GST_MESSAGE_EOS)));
     ended = !message || GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_WARNING;
     if (!message) break;

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -242,7 +243,7 @@ void WatchSink(GstElement* pipeline, const char* name, Seen* seen) {
 void AwaitEnd(GstElement* pipeline) {
   GstBus* bus = gst_element_get_bus(pipeline);
   const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-      bus, 30 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+      bus, kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
   gst_object_unref(bus);
   ASSERT_TRUE(message);
   ASSERT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_EOS);

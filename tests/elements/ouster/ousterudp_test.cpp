@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -95,8 +96,7 @@ TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(h->element, bus);
   for (int i = 0; i < 6; ++i) sender_->Send(std::vector<std::uint8_t>(6464));
-  const gst::MessagePtr warning(
-      gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_WARNING));
+  const gst::MessagePtr warning(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_WARNING));
   ASSERT_TRUE(warning);
   const std::string text = TextOf(warning.get());
   EXPECT_NE(text.find("Packets of 6464 bytes come where the metadata asks for"), std::string::npos)
@@ -118,8 +118,7 @@ TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
   const gst::ElementPtr pipeline(gst_parse_launch(launch.c_str(), nullptr));
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   GstBus* bus = gst_element_get_bus(pipeline.get());
-  const gst::MessagePtr warning(
-      gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_WARNING));
+  const gst::MessagePtr warning(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_WARNING));
   gst_object_unref(bus);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   ASSERT_TRUE(warning);

@@ -6,6 +6,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "tests/elements/pointcloud/parse_fixture.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
@@ -251,7 +252,7 @@ class ParseSeek : public ::testing::Test {
     gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     const MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, 30 * GST_SECOND, static_cast<GstMessageType>(type | GST_MESSAGE_ERROR)));
+        bus, test::kPatience_ns, static_cast<GstMessageType>(type | GST_MESSAGE_ERROR)));
     gst_object_unref(bus);
     EXPECT_TRUE(message && GST_MESSAGE_TYPE(message.get()) == type);
     gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
@@ -260,8 +261,7 @@ class ParseSeek : public ::testing::Test {
 
   /// The source posts its message before it pushes the event.
   gint64 AwaitEndOfSegment() const {
-    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
-    while (end_of_segment_ < 0 && g_get_monotonic_time() < end) g_usleep(1000);
+    test::Eventually([&] { return end_of_segment_ >= 0; });
     return end_of_segment_;
   }
 

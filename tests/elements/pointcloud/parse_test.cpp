@@ -5,6 +5,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "tests/elements/pointcloud/parse_fixture.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
@@ -162,7 +163,7 @@ TEST(ParseFile, AFileThatIsTooLargeForOneCloudIsAnErrorAtOnce) {
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   GstBus* bus = gst_element_get_bus(pipeline.get());
   const gst::MessagePtr message(
-      gst_bus_timed_pop_filtered(bus, 20 * GST_SECOND, GST_MESSAGE_ERROR));
+      gst_bus_timed_pop_filtered(bus, test::kPatience_ns, GST_MESSAGE_ERROR));
   gst_object_unref(bus);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   std::remove(path.c_str());
@@ -268,7 +269,7 @@ TEST(ParseFile, ASecondFileIsTakenWholeAfterAFirst) {
     gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
     GstBus* bus = gst_element_get_bus(pipeline.get());
     const MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
+        bus, test::kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
     gst_object_unref(bus);
     ASSERT_TRUE(message);
     GstSample* raw = nullptr;

@@ -18,11 +18,11 @@
 #include "gst/lidar/gstlidar.h"
 #include "tests/elements/ros2/fast_peer.h"
 #include "tests/support/harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 
 constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
-constexpr std::chrono::milliseconds kPatience{30'000};
 
 /// A domain of this program's own, until it ends. Domains 1 to 9 have the UDP ports 7650 to 9899:
 /// below those that the kernel hands out and those of other tests. The TCP port of a domain's first
@@ -130,17 +130,13 @@ class Ros2Test : public ::testing::Test {
   }
   /// False where it takes too long.
   bool WaitForStat(const char* name, guint64 least) {
-    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
-    while (Stat(name) < least && g_get_monotonic_time() < end) g_usleep(5000);
-    return Stat(name) >= least;
+    return Eventually([&] { return Stat(name) >= least; });
   }
   bool WaitForNone(const char* name) {
-    const gint64 end = g_get_monotonic_time() + 30 * G_USEC_PER_SEC;
-    while (Stat(name) > 0 && g_get_monotonic_time() < end) g_usleep(5000);
-    return Stat(name) == 0;
+    return Eventually([&] { return Stat(name) == 0; });
   }
   /// The text of the next warning or error, or nothing.
-  std::string NextComplaint(GstClockTime timeout = 30 * GST_SECOND) {
+  std::string NextComplaint(GstClockTime timeout = kPatience_ns) {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(
         bus_, timeout, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)));
     if (!message) return "";

@@ -9,13 +9,13 @@
 
 #include "gst/common/refs.h"
 
+#include "tests/support/patience.h"
+
 namespace lidar::test {
 
 using gst::ElementPtr;
 using gst::ErrorPtr;
 using gst::MessagePtr;
-
-constexpr GstClockTime kPatience = 20 * GST_SECOND;
 
 class Pipeline {
  public:
@@ -37,7 +37,7 @@ class Pipeline {
   void SendEos() { gst_element_send_event(element_.get(), gst_event_new_eos()); }
   MessagePtr Wait(GstMessageType types) {
     GstBus* bus = gst_element_get_bus(element_.get());
-    MessagePtr message(gst_bus_timed_pop_filtered(bus, kPatience, types));
+    MessagePtr message(gst_bus_timed_pop_filtered(bus, kPatience_ns, types));
     gst_object_unref(bus);
     return message;
   }

@@ -6,6 +6,7 @@
 
 #include "tests/elements/scream/pipeline.h"
 #include "tests/elements/scream/rtp_support.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -15,17 +16,6 @@ using gst::ErrorPtr;
 using gst::MessagePtr;
 using gst::PadPtr;
 using gst::StringPtr;
-
-/// Waits for what has to happen soon.
-template <typename Condition>
-bool Comes(const Condition& condition) {
-  const gint64 deadline = g_get_monotonic_time() + 20 * G_USEC_PER_SEC;
-  while (!condition()) {
-    if (g_get_monotonic_time() > deadline) return false;
-    g_usleep(1000);
-  }
-  return true;
-}
 
 guint PortOf(GstElement* source) {
   GSocket* socket = nullptr;
@@ -130,7 +120,7 @@ TEST(ScreamBins, TheReceiverKnowsWhatTheSenderSees) {
     Receiver receiver(std::string(kAudioCaps) + key);
     Pipeline sender(kAudio + Sink(receiver.port, "sender-report-interval=100000000") + key);
     sender.Play();
-    ASSERT_TRUE(Comes([&] { return Stats(receiver.in.get())["sender-rtt"] > 0; })) << key;
+    ASSERT_TRUE(Eventually([&] { return Stats(receiver.in.get())["sender-rtt"] > 0; })) << key;
     const Stats rx(receiver.in.get());
     EXPECT_GT(rx["sender-reports"], 0U);
     EXPECT_GT(rx["sender-target-bitrate"], 0U);
@@ -144,7 +134,7 @@ TEST(ScreamBins, EndBothEndsWhenTheApplicationEndsTheSender) {
   Pipeline sender(kAudio + Sink(receiver.port));
   sender.Play();
   ASSERT_TRUE(sender.Wait(GST_MESSAGE_STREAM_START));
-  ASSERT_TRUE(Comes([&] { return Stats(receiver.in.get())["packets-received"] > 0; }));
+  ASSERT_TRUE(Eventually([&] { return Stats(receiver.in.get())["packets-received"] > 0; }));
   sender.SendEos();
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.pipeline.Ends());
@@ -194,12 +184,12 @@ TEST(ScreamBins, InputThatIsNotLiveTakesItsTimeAfterAFlushingSeekToo) {
       Sink(receiver.port));
   sender.Play();
   const ElementPtr out = sender.Get("out");
-  EXPECT_TRUE(Comes([&] { return Stats(out.get())["packets-sent"] > 80; }));
+  EXPECT_TRUE(Eventually([&] { return Stats(out.get())["packets-sent"] > 80; }));
   EXPECT_TRUE(
       gst_element_seek_simple(sender.Get("pay").get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
   const gint64 start = g_get_monotonic_time();
   const auto sent = Stats(out.get())["packets-sent"];
-  EXPECT_TRUE(Comes([&] { return Stats(out.get())["packets-sent"] >= sent + 100; }));
+  EXPECT_TRUE(Eventually([&] { return Stats(out.get())["packets-sent"] >= sent + 100; }));
   const auto after = static_cast<double>(Stats(out.get())["packets-sent"] - sent);
   const double seconds = static_cast<double>(g_get_monotonic_time() - start) / 1e6;
   EXPECT_LE(after, 100 * seconds + 25);  // packets of 10 ms, and what the queue may hold
@@ -221,7 +211,7 @@ TEST(ScreamBins, FeedbackFromAnotherAddressIsIgnoredAndCounted) {
   Pipeline sender(kAudio + Sink(receiver.port, "bind-address=127.0.0.1"));
   sender.Play();
   ASSERT_TRUE(sender.Wait(GST_MESSAGE_STREAM_START));
-  ASSERT_TRUE(Comes([&] { return Stats(receiver.in.get())["packets-received"] > 0; }));
+  ASSERT_TRUE(Eventually([&] { return Stats(receiver.in.get())["packets-received"] > 0; }));
   const ElementPtr udp = sender.Get("ecnudpsink");
   const guint port = PortOf(udp.get());
   Pipeline liar(
@@ -231,7 +221,7 @@ TEST(ScreamBins, FeedbackFromAnotherAddressIsIgnoredAndCounted) {
   liar.Play();
   EXPECT_TRUE(liar.Ends());
   ASSERT_TRUE(
-      Comes([&] { return Stats(sender.Get("out").get())["feedback-foreign-address"] >= 5; }));
+      Eventually([&] { return Stats(sender.Get("out").get())["feedback-foreign-address"] >= 5; }));
   EXPECT_EQ(Stats(sender.Get("out").get())["rtcp-malformed"], 0U);
 }
 
@@ -253,12 +243,12 @@ TEST(ScreamBins, AReceiverThatRestartsIsFoundAgain) {
   Pipeline sender(kAudio + Sink(port));
   sender.Play();
   const auto received = [&] { return Stats(receiver->in.get())["packets-received"]; };
-  ASSERT_TRUE(Comes([&] { return received() >= 10; }));
+  ASSERT_TRUE(Eventually([&] { return received() >= 10; }));
   receiver.reset();
   receiver = std::make_unique<Receiver>(std::string(kAudioCaps) + " port=" + std::to_string(port));
   ASSERT_EQ(receiver->port, port);
   const guint64 accepted = Stats(sender.Get("out").get())["feedback-accepted"];
-  EXPECT_TRUE(Comes([&] { return received() >= 50; }));
+  EXPECT_TRUE(Eventually([&] { return received() >= 50; }));
   EXPECT_GT(Stats(sender.Get("out").get())["feedback-accepted"], accepted);
 }
 

@@ -7,6 +7,7 @@
 
 #include "gst/scream/key_request.h"
 #include "tests/elements/scream/screamtx_fixture.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -346,8 +347,7 @@ TEST_F(ScreamTx, TakesLiesForNoSignOfAReceiver) {
     Feed(lie);
     time.Advance(50 * GST_MSECOND);
   }
-  EXPECT_TRUE(
-      gst::MessagePtr(gst_bus_timed_pop_filtered(bus, 30 * GST_SECOND, GST_MESSAGE_WARNING)));
+  EXPECT_TRUE(gst::MessagePtr(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_WARNING)));
   gst_element_set_state(element, GST_STATE_NULL);
   gst_element_set_bus(element, nullptr);
   gst_object_unref(bus);
@@ -383,8 +383,7 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
   EXPECT_EQ(ecns.front(), GST_LIDAR_ECN_ECT1);
   EXPECT_EQ(ecns.back(), GST_LIDAR_ECN_NOT_ECT);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
-  const gst::MessagePtr message(
-      gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_ELEMENT));
+  const gst::MessagePtr message(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_ELEMENT));
   ASSERT_TRUE(message);
   EXPECT_TRUE(gst_message_has_name(message.get(), "scream-ecn-state-changed"));
   gst_element_set_state(element, GST_STATE_NULL);

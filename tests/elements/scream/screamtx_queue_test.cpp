@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tests/elements/scream/screamtx_fixture.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -195,7 +196,7 @@ TEST_F(ScreamTxOf, ALiveStreamThatFollowsOneThatIsNotEntersAtOnce) {
   live_ = true;
   ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("live")));
   auto pushed = PushAt(1, 3600 * GST_SECOND);
-  EXPECT_TRUE(IsIn(pushed, std::chrono::seconds(30)));
+  EXPECT_TRUE(IsIn(pushed, kPatience));
   if (!IsIn(pushed, std::chrono::seconds(0))) gst_harness_crank_single_clock_wait(rtp.get());
   EXPECT_EQ(pushed.get(), GST_FLOW_OK);
 }

@@ -4,6 +4,7 @@
 
 #include "src/scream/feedback/sender_report.h"
 #include "tests/elements/scream/screamtx_fixture.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -190,7 +191,7 @@ TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
   for (int i = 0; i < 5; ++i) {
     time.Advance(100 * GST_MSECOND);
     const gst::MessagePtr message(
-        gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_ELEMENT));
+        gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_ELEMENT));
     ASSERT_TRUE(message);
     EXPECT_TRUE(gst_message_has_name(message.get(), "application/x-screamtx-stats"));
   }

@@ -12,6 +12,7 @@
 #include "src/base/imu_sample.h"
 #include "src/cloud/range_projection.h"
 #include "tests/support/harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
@@ -295,7 +296,7 @@ TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {
       gst_parse_launch("lidartestsrc ! application/x-pointcloud2,height=7 ! fakesink", nullptr));
   gst_element_set_state(pipeline.get(), GST_STATE_PAUSED);
   GstBus* bus = gst_element_get_bus(pipeline.get());
-  const MessagePtr message(gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, GST_MESSAGE_ERROR));
+  const MessagePtr message(gst_bus_timed_pop_filtered(bus, test::kPatience_ns, GST_MESSAGE_ERROR));
   gst_object_unref(bus);
   EXPECT_TRUE(message);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
@@ -324,7 +325,7 @@ Played PlayWithImu(GstElement* pipeline) {
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline));
   const MessagePtr end(
-      gst_bus_timed_pop_filtered(bus.get(), 20 * GST_SECOND,
+      gst_bus_timed_pop_filtered(bus.get(), test::kPatience_ns,
                                  static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
   EXPECT_TRUE(end && GST_MESSAGE_TYPE(end.get()) == GST_MESSAGE_EOS);
   const PadPtr pad(gst_element_get_static_pad(samples.get(), "sink"));

@@ -14,6 +14,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/base/byte_reader.h"
 #include "tests/support/harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 
@@ -68,10 +69,7 @@ class Sink {
   Harness harness_;
 };
 
-/// Of a busy machine. Whoever waits for so long hangs.
-constexpr gint64 kPatience_us = 60 * gint64{G_USEC_PER_SEC};
-
-/// Runs the default context until `done`; false after kPatience_us.
+/// Runs the default context until `done`; false where that takes too long.
 inline bool WaitUntil(const std::function<bool()>& done) {
   const gint64 until = g_get_monotonic_time() + kPatience_us;
   while (!done()) {

@@ -28,6 +28,7 @@ struct Options {
   std::string certificate;
   std::string peer_certificate;
   std::string stats;
+  double duration_s = 0;
   std::vector<std::string> pipeline;
 };
 
@@ -138,13 +139,16 @@ bool IsOfDtls(GstObject* source) {
 
 enum class End { kOver, kFailed, kNoHandshake };
 
-/// Plays until EOS, an error, or `*run` is false. EOS does not pass dtlssrtpenc, whose handshake
-/// never ends.
-End Play(Session* session, const bool* run, std::string* why) {
+/// Plays until EOS, an error, `*run` is false, or there have been keys for `duration_s`, if that is
+/// not 0. EOS does not pass dtlssrtpenc, whose handshake never ends.
+End Play(Session* session, double duration_s, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);
-  while (*run && !session->refused) {
+  gint64 end = G_MAXINT64;
+  while (*run && !session->refused && g_get_monotonic_time() < end) {
     g_main_context_iteration(nullptr, FALSE);
+    if (duration_s > 0 && end == G_MAXINT64 && session->has_keys)
+      end = g_get_monotonic_time() + static_cast<gint64>(duration_s * G_TIME_SPAN_SECOND);
     const MessagePtr message(gst_bus_timed_pop_filtered(
         bus, kPoll, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
     if (!message) continue;
@@ -170,7 +174,7 @@ class Sessions {
       Session session(certificates_);
       if (!MakePipeline(options_.pipeline, &session)) return kUsage;
       std::string why;
-      const End end = Play(&session, &run_, &why);
+      const End end = Play(&session, options_.duration_s, &run_, &why);
       refused_ = refused_ || session.refused;
       if (session.has_keys) had_keys_ = true;
       if (end == End::kNoHandshake) {
@@ -225,6 +229,9 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--stats", options.stats,
                  "Elements, with commas, whose stats are printed at the end");
+  app.add_option("--duration", options.duration_s,
+                 "How long it plays from the handshake on [s]; without it, until Ctrl-C")
+      ->check(CLI::Range(0.1, 1e7));
   app.prefix_command();  // the first word that is no option begins the pipeline
   app.footer("PIPELINE: elements, properties and links, after the options");
   lidar::tools::Parse(&app, argc, argv);

@@ -20,6 +20,8 @@ using lidar::gst::StringPtr;
 
 enum ExitCode { kGood = 0, kFailed = 1, kUsage = 2 };
 
+constexpr double kMostToConnect_s = 60;
+
 struct Options {
   std::string aux;  // of both ends, as gst-launch writes it
   std::string stats;
@@ -180,6 +182,15 @@ bool Handle(GstMessage* message, int* result) {
   return false;
 }
 
+/// The enumeration's header belongs to gst-plugins-bad, which the build does without.
+bool IsConnected(GstElement* webrtc) {
+  GValue state = G_VALUE_INIT;
+  g_object_get_property(G_OBJECT(webrtc), "connection-state", &state);
+  const StringPtr name(gst_value_serialize(&state));
+  g_value_unset(&state);
+  return g_strcmp0(name.get(), "connected") == 0;
+}
+
 /// Runs until EOS, an error, a signal, or the duration is over; prints statistics meanwhile.
 int Play(const Call& call) {
   bool run = true;
@@ -189,6 +200,7 @@ int Play(const Call& call) {
   const gint64 start = g_get_monotonic_time();
   const auto interval = static_cast<gint64>(call.options.interval_s * G_TIME_SPAN_SECOND);
   gint64 next = start + interval;
+  gint64 connected = 0;
   int result = kGood;
   while (run) {
     g_main_context_iteration(nullptr, FALSE);
@@ -196,8 +208,16 @@ int Play(const Call& call) {
         bus, 50 * GST_MSECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
     run = run && Handle(message.get(), &result);
     const gint64 now = g_get_monotonic_time();
-    const double elapsed_s = static_cast<double>(now - start) / 1e6;
-    if (call.options.duration_s > 0 && elapsed_s >= call.options.duration_s) run = false;
+    if (connected == 0 && IsConnected(call.caller.get()) && IsConnected(call.callee.get()))
+      connected = now;
+    const double since_s = static_cast<double>(now - (connected > 0 ? connected : start)) / 1e6;
+    if (connected == 0 && since_s > kMostToConnect_s) {
+      std::fprintf(stderr, "The two ends have not connected within %g s.\n", kMostToConnect_s);
+      result = kFailed;
+      run = false;
+    }
+    if (connected > 0 && call.options.duration_s > 0 && since_s >= call.options.duration_s)
+      run = false;
     if (now < next) continue;
     next += interval;
     PrintStats(call, start);
@@ -223,7 +243,8 @@ void AddOptions(CLI::App* app, Options* o) {
                   "UDP port of a relay to the callee: the caller knows the callee by it")
       ->check(port)
       ->needs(own);
-  app->add_option("--duration", o->duration_s, "How long [s]; without it, until Ctrl-C")
+  app->add_option("--duration", o->duration_s,
+                  "How long the call lasts [s]; without it, until Ctrl-C")
       ->check(CLI::Range(0.1, 1e7));
   app->prefix_command();  // the first word that is no option begins the pipeline
   app->footer("PIPELINE: elements, properties and links, after the options");
