@@ -96,8 +96,11 @@ void UpstreamArchive::Take(GstSample* sample) {
     items_.push_back(std::move(item));
     return;
   }
-  item.slice = ReadPose(buffer, item.time_ns, frame_id_);
-  if (item.slice) items_.push_back(item);
+  // A piece that ends with the pose goes on with its slice.
+  Item pose = item;
+  pose.position = GST_BUFFER_OFFSET(buffer);
+  pose.slice = ReadPose(buffer, item.time_ns, frame_id_);
+  if (pose.slice) items_.push_back(std::move(pose));
   item.read = gst_buffer_get_size(buffer);
   item.slice = ReadSlice(buffer, item.time_ns, caps_.about.has_ranges);
   item.is_damaged = !item.slice;

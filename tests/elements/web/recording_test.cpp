@@ -7,6 +7,8 @@
 #include <fstream>
 #include <mutex>
 
+#include "ext/web/file_archive.h"
+#include "ext/web/upstream_archive.h"
 #include "gst/common/history_query.h"
 #include "tests/elements/web/slice_viewer.h"
 
@@ -340,6 +342,77 @@ class Histories : public ::testing::Test {
   KeptStream kept_{edge_.sink.harness()->srcpad};
   std::uint64_t pushed_ = 0;
 };
+
+/// An item that is no other stream's: the place behind it, and the number of slices up to there.
+struct PlaceInArchive {
+  std::uint64_t position = 0;
+  std::size_t slices = 0;
+};
+
+/// The times of the slices that follow.
+std::vector<std::uint64_t> RestOf(web::Archive* archive,
+                                  std::vector<PlaceInArchive>* places = nullptr) {
+  std::vector<std::uint64_t> times;
+  while (const auto item = archive->Next()) {
+    EXPECT_FALSE(item->is_damaged);
+    if (!item->slice) continue;
+    if (!item->slice->is_pose) times.push_back(item->slice->unix_ns);
+    if (places != nullptr) places->push_back({item->position, times.size()});
+  }
+  return times;
+}
+
+/// Pieces that begin where another one ended have what it had not, and no slice twice.
+void ExpectPiecesToFit(web::Archive* archive, guint slices) {
+  std::string why;
+  const auto times = archive->Look(&why);
+  ASSERT_TRUE(times) << why;
+  EXPECT_EQ(times->from_ns, kFirst_ns);
+  EXPECT_EQ(times->to_ns, kFirst_ns + (slices - 1) * kSlice_ns);
+  std::vector<PlaceInArchive> places;
+  archive->Seek(kFirst_ns);
+  const auto all = RestOf(archive, &places);
+  ASSERT_EQ(all.size(), slices);
+  for (guint i = 0; i < slices; ++i) {
+    EXPECT_EQ(all[i], kFirst_ns + i * kSlice_ns);
+    archive->Seek(all[i]);
+    EXPECT_EQ(RestOf(archive).size(), slices - i) << i;
+  }
+  for (const PlaceInArchive& place : places) {
+    archive->GoOn(place.position);
+    const std::vector<std::uint64_t> behind(all.begin() + static_cast<std::ptrdiff_t>(place.slices),
+                                            all.end());
+    EXPECT_EQ(RestOf(archive), behind) << "behind " << place.slices << " slices";
+    archive->Rest();
+  }
+  EXPECT_EQ(archive->damaged(), 0U);
+}
+
+web::SliceCaps CapsOf(Edge* edge) {
+  std::string why;
+  const gst::CapsPtr caps(edge->robot.caps());
+  auto parsed = web::SliceCaps::Parse(caps.get(), &why);
+  EXPECT_TRUE(parsed) << why;
+  return *std::move(parsed);
+}
+
+TEST_F(Recordings, AreTheSameInPiecesOfAnySize) {
+  OpenEdge();
+  Push(24);
+  EndRecording();
+  web::FileArchive archive(path(), CapsOf(&*edge_));
+  ExpectPiecesToFit(&archive, 24);
+}
+
+TEST_F(Histories, AreTheSameInPiecesOfAnySize) {
+  Push(24);
+  web::UpstreamArchive archive(
+      [this](GstQuery* query) {
+        return gst_pad_query(edge_.sink.harness()->srcpad, query) != FALSE;
+      },
+      CapsOf(&edge_), "lidar");
+  ExpectPiecesToFit(&archive, 24);
+}
 
 TEST_F(Histories, OfASourceAreRecordings) {
   Push(400);
