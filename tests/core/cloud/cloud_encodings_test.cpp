@@ -183,5 +183,32 @@ TEST(CaptureTimeOfAFile, IsSecondsAndNineDigitsOrNone) {
   }
 }
 
+/// Headers that claim what no file can hold, or what no field is.
+TEST(ClaimsOfHeaders, AreRefusedBeyondTheirLimitsHoweverTheFileGoesOn) {
+  const auto pcd = [](const std::string& size, const std::string& count) {
+    const std::string file =
+        "FIELDS x a\nSIZE 4 " + size + "\nTYPE F U\nCOUNT 1 " + count + "\nPOINTS 0\nDATA binary\n";
+    std::string why;
+    return ReadPcd(Bytes(file), &why).has_value();
+  };
+  EXPECT_TRUE(pcd("1", "1"));
+  EXPECT_TRUE(pcd("8", "1"));
+  for (const char* size : {"0", "9", "4294967297", "-1", "x"}) EXPECT_FALSE(pcd(size, "1")) << size;
+  for (const char* count : {"65537", "4294967297", "18446744073709551615", "-1", "x"})
+    EXPECT_FALSE(pcd("1", count)) << count;
+  const auto vertices = [](const std::string& count) {
+    const std::string file = "ply\nformat binary_little_endian 1.0\nelement vertex " + count +
+                             "\nproperty uchar x\nend_header\n";
+    std::string why;
+    const bool read = ReadPly(Bytes(file), &why).has_value();
+    return read ? "" : why;
+  };
+  EXPECT_EQ(vertices("0"), "");
+  EXPECT_EQ(vertices("1073741824"), "the file ends before its last point");  // a GiB
+  EXPECT_EQ(vertices("1073741825"), "the cloud is larger than 1 GiB");
+  for (const char* count : {"2147483648", "4294967296", "18446744073709551616", "-1", "x"})
+    EXPECT_NE(vertices(count).find("vertices"), std::string::npos) << count;
+}
+
 }  // namespace
 }  // namespace lidar

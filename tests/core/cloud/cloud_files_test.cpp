@@ -320,6 +320,25 @@ TEST(Las, PointsOnAMapKeepTheirMillimetres) {
   EXPECT_EQ(FloatAt(*cloud, 8), 0.75F);
 }
 
+TEST(Las, ItsOriginIsWhereItsPointsBeginOnEitherSideOfZero) {
+  for (const double offset : {-5'400'000.0, 5'400'000.0}) {
+    Las las;
+    las.offset = offset;
+    const auto cloud = ReadLasFile(las.File());
+    ASSERT_TRUE(cloud);
+    for (const std::size_t axis : {0U, 4U, 8U}) {
+      EXPECT_GE(FloatAt(*cloud, axis), 0) << offset;
+      EXPECT_LT(FloatAt(*cloud, axis), 2) << offset;
+    }
+    EXPECT_NEAR(FloatAt(*cloud, 28 + 4) - FloatAt(*cloud, 4), 0.001F, 1e-6) << offset;
+  }
+  for (const double offset : {-16'000.0, 16'000.0}) {
+    Las las;
+    las.offset = offset;
+    EXPECT_NEAR(FloatAt(*ReadLasFile(las.File()), 0), offset + 1.5, 1e-3) << "stays";
+  }
+}
+
 TEST(Las, EachAxisHasAScaleOfItsOwn) {
   std::string file = Las().File();
   constexpr std::size_t kScaleOfZ = 131 + 16;

@@ -47,6 +47,30 @@ TEST_F(Parse, ThePropertyGoesBeforeTheFrameRateOfTheCaps) {
   EXPECT_EQ(CloudInfo::FromCaps(caps.get())->framerate_n, 20);
 }
 
+/// A source of times seeks by times, one of bytes by bytes.
+TEST_F(Parse, ASeekReachesTheSourceInTheFormatThatItSends) {
+  for (const GstFormat format : {GST_FORMAT_TIME, GST_FORMAT_BYTES}) {
+    Start(std::string(kKitti) + ",width=10");
+    PushSegment(format);
+    GstFormat sought = GST_FORMAT_UNDEFINED;
+    gst_pad_set_element_private(h_->srcpad, &sought);
+    gst_pad_set_event_function(h_->srcpad, [](GstPad* pad, GstObject*, GstEvent* raw) -> gboolean {
+      const EventPtr event(raw);
+      auto* to = static_cast<GstFormat*>(gst_pad_get_element_private(pad));
+      if (GST_EVENT_TYPE(raw) == GST_EVENT_SEEK)
+        gst_event_parse_seek(raw, nullptr, to, nullptr, nullptr, nullptr, nullptr, nullptr);
+      return TRUE;
+    });
+    BufferPtr cloud = Bytes(160);
+    GST_BUFFER_PTS(cloud.get()) = 0;
+    ASSERT_EQ(Push(std::move(cloud)), GST_FLOW_OK);
+    gst_pad_push_event(
+        h_->sinkpad, gst_event_new_seek(1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET,
+                                        GST_SECOND, GST_SEEK_TYPE_NONE, 0));
+    EXPECT_EQ(sought, format);
+  }
+}
+
 TEST_F(Parse, KeepsTimesThatAreGiven) {
   Start(kKitti);
   PushSegment(GST_FORMAT_TIME);
