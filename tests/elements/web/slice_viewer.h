@@ -105,6 +105,8 @@ class Viewer {
       poses.push_back(last);
     const SliceReader slice(last);
     EXPECT_TRUE(decoder_->Decode(slice.slice)) << slice.scan << "." << slice.index;
+    // Robot's, be it as it was or coded anew.
+    EXPECT_EQ(slice.first_column, slice.index * 512 / slice.count);
     if (slice.flags == 0) ++own;
     if (slice.flags == 1) ++recoded;
     if (acknowledge) Acknowledge(slice.scan, slice.index);
