@@ -13,7 +13,7 @@ echo "${template/@TABLE@/$(<src/codec/mixing/start_table.txt)}" > "$objects/src/
 
 # Loops over bits and points; the rest is compiled for its size. The linker drops what encodes.
 fast=(src/cloud/range_projection src/codec/mixing/{binary_coder,mixing_codec,slice_coder}
-  src/codec/rans/{adaptive_coder,mask_coder,predictor,rans} src/codec/cloud/{beam_section,cell_tree,level_tree,pixel_part})
+  src/codec/rans/{adaptive_coder,mask_coder,predictor,rans} src/codec/cloud/{beam_part,beam_section,cell_tree,level_tree,pixel_part})
 small=(src/cloud/{point_fields,sensor_model} ext/web/decoder/{crc,decoder})
 for file in src/codec/*.cpp src/codec/{rans,mixing,cloud}/*.cpp; do
   case " ${fast[*]} $file" in *" ${file%.cpp} "* | *_encoder.cpp) ;; *) small+=("${file%.cpp}") ;; esac

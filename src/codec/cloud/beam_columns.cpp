@@ -37,6 +37,12 @@ void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   }
 }
 
+/// Rounds to a length that tables hold.
+std::int32_t InLengthUnits(double um) {
+  constexpr std::int32_t kUnit = BeamTable::kLengthUnitUm;
+  return kUnit * static_cast<std::int32_t>(std::lround(um / kUnit));
+}
+
 /// Finds the reach: sensors measure whole millimetres, or several, from a place of their own.
 void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
   constexpr double kClear = 0.8;  // of 1
@@ -52,7 +58,7 @@ void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, B
     if (aligned < kClear * static_cast<double>(found.points)) continue;
     for (std::uint32_t b = 0; b < table->rows(); ++b) {
       const double reach_um = 1e3 * unit_mm * std::arg(phases[b]) / (2 * M_PI);
-      table->beams[b].reach_um = static_cast<std::int32_t>(std::lround(reach_um));
+      table->beams[b].reach_um = InLengthUnits(reach_um);
     }
     return;
   }
@@ -72,7 +78,7 @@ std::optional<BeamTable> FindColumns(const FoundBeams& found, bool passing,
     BeamTable::Beam beam;
     beam.elevation = static_cast<std::int32_t>(std::lround(std::atan(line.tangent) / kRadians));
     if (passing) {
-      beam.height_um = static_cast<std::int32_t>(std::lround(1e6 * line.height_m));
+      beam.height_um = InLengthUnits(1e6 * line.height_m);
       beam.side_um = SideOf(azimuths[i], quantum).side_um;
       StraightenBeam(beam, &azimuths[i]);
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "src/codec/block_store.h"
+#include "src/codec/cloud/beam_part.h"
 #include "src/codec/cloud/pixel_part.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/mixing/binary_coder.h"
@@ -171,6 +172,7 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   ResidualSettings elevations{errors.bend_um, ResidualGuess::kNone};
   std::vector<std::uint8_t> stream;
   mixing::BinaryEncoder bits(&stream);
+  if (!table.has_path()) CodeBeams(&table, &bits);
   if (table.grains > 0) CodePlaces(&table, &bits);
   if (table.has_path()) CodePath(&table.path, &bits);
   EncodeResiduals(decoded, &azimuths, &list->residuals, &bits);
@@ -254,6 +256,10 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
   const ByteView stream = reader->Bytes(ReadVarint(reader, &ok));
   if (!ok || !reader->ok() || section->returns + extras > max_points) return false;
   mixing::BinaryDecoder bits(stream);
+  if (section->table.beams_follow && !section->table.has_path() &&
+      !CodeBeams(&section->table, &bits)) {
+    return false;
+  }
   if (section->table.grains > 0 && !CodePlaces(&section->table, &bits)) return false;
   if (section->table.has_path() && !CodePath(&section->table.path, &bits)) return false;
   if (!DecodeResiduals(section->image, section->azimuths, &section->residuals, &bits) ||

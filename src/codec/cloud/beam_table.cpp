@@ -28,6 +28,7 @@ constexpr unsigned kReachesFlag = 4;
 constexpr unsigned kPeriodShift = 3;  // stored less one
 constexpr unsigned kBendsFlag = 32;
 constexpr unsigned kPathFlag = 64;
+constexpr unsigned kLaterFlag = 128;
 
 /// Arc tangents of k / kParts.
 class ArcTable {
@@ -185,10 +186,6 @@ ColumnFinder::Found ColumnFinder::Find(std::uint32_t beam, std::int32_t azimuth)
   return {best >= b.delay ? best - b.delay : best + columns - b.delay, residual};
 }
 
-bool BeamTable::has_reaches() const {
-  return std::any_of(beams.begin(), beams.end(), [](const Beam& b) { return b.reach_um != 0; });
-}
-
 Point BeamTable::At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope,
                     std::uint32_t range_mm) const {
   const Beam& b = beams[beam];
@@ -200,43 +197,13 @@ Point BeamTable::At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope
 }
 
 void BeamTable::Write(ByteWriter* writer) const {
-  const bool offsets = has_offsets();
   WriteVarint(turn, writer);
   WriteVarint(rows(), writer);
-  const bool reaches = has_reaches();
-  writer->U8(static_cast<std::uint8_t>((offsets ? kOffsetsFlag : 0) | (reaches ? kReachesFlag : 0) |
-                                       (grains == 0 ? 0 : kGrainsFlag) |
+  writer->U8(static_cast<std::uint8_t>((grains == 0 ? 0 : kGrainsFlag) |
                                        (period - 1) << kPeriodShift | (bends ? kBendsFlag : 0) |
-                                       (has_path() ? kPathFlag : 0)));
+                                       (has_path() ? kPathFlag : kLaterFlag)));
   if (grains > 0) WriteVarint(grains, writer);
-  if (has_path()) {
-    WriteSigned(rate, writer);
-    return;
-  }
-  std::int32_t above = kTurn / 4;
-  std::int32_t left = 0;
-  Beam last;
-  for (const Beam& beam : beams) {
-    const std::int32_t below = above - beam.elevation;
-    if (bends) {
-      WriteVarint(static_cast<std::uint32_t>(below / kBentElevation), writer);
-      WriteSigned(Wrapped(beam.offset - left) / kBentOffset, writer);
-      left = beam.offset;
-    } else {
-      WriteVarint(static_cast<std::uint32_t>(below), writer);
-      WriteVarint(static_cast<std::uint32_t>(beam.offset), writer);
-    }
-    above = beam.elevation;
-    if (offsets) {
-      WriteSigned(beam.height_um - last.height_um, writer);
-      WriteSigned(beam.side_um - last.side_um, writer);
-      last = beam;
-    }
-    if (reaches) WriteSigned(beam.reach_um, writer);
-    if (grains > 0 && !bends) WriteVarint(beam.delay, writer);
-    for (std::uint32_t i = 0; i < period && period > 1; ++i)
-      WriteSigned(beam.swings[i] / kSwingUnit, writer);
-  }
+  if (has_path()) WriteSigned(rate, writer);
 }
 
 std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
@@ -244,7 +211,9 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
   BeamTable table;
   table.turn = ReadVarint(reader, &ok);
   const std::uint32_t rows = ReadVarint(reader, &ok);
-  const unsigned flags = reader->U8();
+  const unsigned all_flags = reader->U8();
+  table.beams_follow = (all_flags & kLaterFlag) != 0;
+  const unsigned flags = all_flags & ~kLaterFlag;
   table.bends = (flags & kBendsFlag) != 0;
   table.period = ((flags & ~(kBendsFlag | kPathFlag)) >> kPeriodShift) + 1;
   if (!ok || table.turn < kParts || table.turn > kMostColumns * kParts || rows == 0 ||
@@ -261,10 +230,16 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
     table.beams.resize(rows);
     table.path.resize(rows);
     if (!ok || !table.has_path() || std::abs(table.rate) > BeamPath::kMostRate ||
-        rows > kMostPathBeams || (flags & ~kBendsFlag) != kPathFlag)
+        rows > kMostPathBeams || (all_flags & ~kBendsFlag) != kPathFlag)
       return std::nullopt;
     return table;
   }
+  if (table.beams_follow) {
+    table.beams.resize(rows);
+    if (!ok || !reader->ok() || (flags & (kOffsetsFlag | kReachesFlag)) != 0) return std::nullopt;
+    return table;
+  }
+  // As earlier encoders wrote them.
   std::int64_t elevation = kTurn / 4;
   Beam beam;
   for (std::uint32_t i = 0; i < rows; ++i) {

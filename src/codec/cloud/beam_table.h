@@ -50,6 +50,7 @@ struct BeamTable {
   static constexpr std::uint32_t kMostBeams = 1'024;
   static constexpr std::uint32_t kMostColumns = 16'384;
   static constexpr std::int32_t kMostOffsetUm = 1'000'000;
+  static constexpr std::int32_t kLengthUnitUm = 50;  // of heights, sides and reaches
   static constexpr std::uint32_t kMostGrains = 1U << 18;
   /// Unit of swings: 0.0014 degrees.
   static constexpr std::int32_t kSwingUnit = 16;
@@ -63,6 +64,7 @@ struct BeamTable {
   std::uint32_t grains = 0;           // of a turn; 0: the columns are even
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
   bool bends = false;                 // each point has its own elevation
+  bool beams_follow = true;           // CodeBeams() codes them; false: as earlier encoders
   // Beams on a path have no other fields than these.
   std::int32_t rate = 0;       // of the turn, for BeamPath; 0: no path
   std::vector<PathBeam> path;  // as many as beams
@@ -70,7 +72,6 @@ struct BeamTable {
   std::uint32_t columns() const { return (turn + kParts - 1) / kParts; }
   std::uint32_t rows() const { return static_cast<std::uint32_t>(beams.size()); }
   bool has_offsets() const;
-  bool has_reaches() const;
   bool has_path() const { return rate != 0; }
   /// Step of the columns, in units.
   std::int32_t step() const {
@@ -100,10 +101,10 @@ struct BeamTable {
   Point At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope,
            std::uint32_t range_mm) const;
 
-  /// Writes all but the places and the curves.
+  /// Writes all but the beams, the places and the curves.
   void Write(ByteWriter* writer) const;
-  /// Returns nothing for numbers that no encoder writes. With grains, all places are 0,
-  /// on a path all curves.
+  /// Returns nothing for numbers that no encoder writes. Beams that follow are 0, with grains all
+  /// places, on a path all curves.
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 

@@ -8,15 +8,18 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <tuple>
 
 #include "src/base/byte_writer.h"
 #include "src/cloud/cloud_files.h"
 #include "src/cloud/nearest_point.h"
 #include "src/codec/cloud/beam_columns.h"
+#include "src/codec/cloud/beam_part.h"
 #include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/cloud_decoder.h"
 #include "src/codec/cloud/cloud_encoder.h"
 #include "src/codec/cloud/path_fit.h"
+#include "src/codec/mixing/binary_coder.h"
 
 namespace lidar::codec::cloud {
 namespace {
@@ -166,8 +169,82 @@ std::optional<BeamTable> ThroughBytes(const BeamTable& table) {
   std::vector<std::uint8_t> bytes;
   ByteWriter writer(&bytes);
   table.Write(&writer);
+  mixing::BinaryEncoder encoder(&bytes);
+  BeamTable coded = table;
+  const bool has_beams = !table.has_path();
+  if (has_beams) CodeBeams(&coded, &encoder);
+  encoder.Finish();
   ByteReader reader(bytes.data(), bytes.size());
-  return BeamTable::Read(&reader);
+  auto read = BeamTable::Read(&reader);
+  mixing::BinaryDecoder decoder(reader.Rest());
+  if (read && has_beams && !(CodeBeams(&*read, &decoder) && decoder.AtEnd())) return std::nullopt;
+  return read;
+}
+
+/// 64 beams of a sensor whose modules repeat every four beams, all a bit off.
+BeamTable PatternedTable() {
+  std::mt19937 random(8);
+  BeamTable table;
+  table.turn = 1'024 * BeamTable::kParts;
+  std::int32_t elevation = kTurn / 16;
+  for (int i = 0; i < 64; ++i) {
+    BeamTable::Beam beam;
+    const auto off = [&] { return static_cast<std::int32_t>(random() % 16); };
+    beam.elevation = elevation -= 8'000 + off();
+    beam.offset = (3'000 - 40'000 * (i % 4) + off()) & (kTurn - 1);
+    beam.height_um = BeamTable::kLengthUnitUm * (600 + 5 * i + off() / 8);
+    beam.side_um = BeamTable::kLengthUnitUm * (i % 4) * 16;
+    beam.reach_um = -500;
+    table.beams.push_back(beam);
+  }
+  return table;
+}
+
+TEST(BeamTable, TakesFewBytesForPatterns) {
+  std::vector<std::uint8_t> bytes;
+  mixing::BinaryEncoder encoder(&bytes);
+  BeamTable table = PatternedTable();
+  EXPECT_TRUE(CodeBeams(&table, &encoder));
+  encoder.Finish();
+  EXPECT_LE(bytes.size(), 160U);
+  const auto again = ThroughBytes(table);
+  ASSERT_TRUE(again);
+  const BeamTable before = PatternedTable();
+  for (std::size_t i = 0; i < 64; ++i) {
+    const BeamTable::Beam& a = again->beams[i];
+    const BeamTable::Beam& b = before.beams[i];
+    EXPECT_EQ(std::tie(a.elevation, a.offset, a.height_um, a.side_um, a.reach_um),
+              std::tie(b.elevation, b.offset, b.height_um, b.side_um, b.reach_um))
+        << i;
+  }
+}
+
+TEST(BeamTable, IsRefusedWithBeamsThatNoEncoderWrites) {
+  const auto is_read = [](const auto& change) {
+    BeamTable table = PatternedTable();
+    table.grains = 36'000;
+    table.places.assign(table.columns(), 0);
+    table.period = 2;
+    change(&table, &table.beams[40]);
+    std::vector<std::uint8_t> bytes;
+    ByteWriter writer(&bytes);
+    table.Write(&writer);
+    mixing::BinaryEncoder encoder(&bytes);
+    CodeBeams(&table, &encoder);
+    encoder.Finish();
+    ByteReader reader(bytes.data(), bytes.size());
+    auto read = BeamTable::Read(&reader);
+    mixing::BinaryDecoder decoder(reader.Rest());
+    return read && CodeBeams(&*read, &decoder);
+  };
+  using Beam = BeamTable::Beam;
+  EXPECT_TRUE(is_read([](BeamTable*, Beam*) {}));
+  EXPECT_FALSE(is_read([](BeamTable*, Beam* beam) { beam->elevation = kTurn / 8; }));
+  EXPECT_FALSE(is_read([](BeamTable*, Beam* beam) { beam->elevation = -kTurn / 4 - 1; }));
+  EXPECT_FALSE(is_read([](BeamTable*, Beam* beam) { beam->delay = 1'024; }));
+  EXPECT_FALSE(is_read([](BeamTable*, Beam* beam) { beam->swings[1] = kTurn + 16; }));
+  for (const auto length : {&Beam::height_um, &Beam::side_um, &Beam::reach_um})
+    EXPECT_FALSE(is_read([&](BeamTable*, Beam* beam) { beam->*length = 1'000'050; }));
 }
 
 TEST(BeamTable, FindsTheBeamsAndColumnsOfASensor) {

@@ -36,7 +36,8 @@ TEST_P(GoldenClouds, AreReadForEver) {
 }
 INSTANTIATE_TEST_SUITE_P(
     All, GoldenClouds,
-    ::testing::Values(GoldenCloud{"beams_jitter", 7782, 0, {-225.14, -211.67, -88.95}},
+    ::testing::Values(GoldenCloud{"beams_coded", 6000, 0, {23805.19, 71168.90, 903.15}},
+                      GoldenCloud{"beams_jitter", 7782, 0, {-225.14, -211.67, -88.95}},
                       GoldenCloud{"beams_levels", 4000, 4000, {-1419.93, 19310.99, -40.89}},
                       GoldenCloud{"beams_sides", 6000, 0, {23805.19, 71168.90, 903.15}},
                       GoldenCloud{"beams_swings", 14384, 0, {-8010.21, 614.27, 0.02}},

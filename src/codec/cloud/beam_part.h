@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes the beams of a table, each field by those of the beams before.
+#pragma once
+#include "src/codec/cloud/beam_table.h"
+
+namespace lidar::codec::cloud {
+
+/// Codes as many beams as the table has, top to bottom, of a table without a path. Returns false
+/// for a damaged stream.
+template <class Coder>
+bool CodeBeams(BeamTable* table, Coder* coder);
+
+}  // namespace lidar::codec::cloud
