@@ -2,7 +2,6 @@
 #include "ext/web/handshakes.h"
 
 #include <algorithm>
-#include <map>
 
 namespace lidar::web {
 namespace {
@@ -24,6 +23,16 @@ std::string AddressOf(GSocketConnection* connection) {
   return copy;
 }
 
+/// As g_tls_server_connection_new(), but without a database: no client shows a certificate, and to
+/// read the system's authorities takes milliseconds a connection.
+ObjectPtr<GIOStream> NewServerConnection(GSocketConnection* connection,
+                                         GTlsCertificate* certificate) {
+  const GType type = g_tls_backend_get_server_connection_type(g_tls_backend_get_default());
+  return ObjectPtr<GIOStream>(static_cast<GIOStream*>(
+      g_initable_new(type, nullptr, nullptr, "base-io-stream", connection, "certificate",
+                     certificate, "database", nullptr, nullptr)));
+}
+
 }  // namespace
 
 /// A running handshake ends without its owner.
@@ -38,7 +47,8 @@ Handshakes::~Handshakes() {
 void Handshakes::Begin(ObjectPtr<GSocketConnection> connection, GTlsCertificate* certificate) {
   auto entry = std::make_shared<Entry>();
   entry->owner = this;
-  entry->address = AddressOf(connection.get());
+  entry->address = counts_.try_emplace(AddressOf(connection.get())).first;
+  ++entry->address->second.all;
   entry->connection = std::move(connection);
   entry->certificate = Ref(certificate);
   entry->cancel.reset(g_cancellable_new());
@@ -59,24 +69,20 @@ gboolean Handshakes::OnReadable(GSocket*, GIOCondition, gpointer data) {
 }
 
 Handshakes::EntryPtr Handshakes::Next() const {
-  std::map<std::string, int> all;
-  std::map<std::string, int> running;
-  for (const EntryPtr& entry : entries_) {
-    ++all[entry->address];
-    if (entry->secure) ++running[entry->address];
-  }
   EntryPtr next;
   for (const EntryPtr& entry : entries_) {
-    if (!entry->is_ready || entry->secure || running[entry->address] >= kOfAnAddress) continue;
-    if (!next || all[entry->address] < all[next->address]) next = entry;
+    const Count& count = entry->address->second;
+    if (!entry->is_ready || entry->secure || count.running >= kOfAnAddress) continue;
+    if (!next || count.all < next->address->second.all) next = entry;
   }
   return next;
 }
 
 void Handshakes::StartMore() {
   const auto running = [this] {
-    return std::count_if(entries_.begin(), entries_.end(),
-                         [](const EntryPtr& entry) { return entry->secure != nullptr; });
+    int sum = 0;
+    for (const auto& [address, count] : counts_) sum += count.running;
+    return sum;
   };
   while (running() < kAtOnce) {
     const EntryPtr next = Next();
@@ -87,9 +93,9 @@ void Handshakes::StartMore() {
 
 void Handshakes::Start(const EntryPtr& entry) {
   entry->since_us = g_get_monotonic_time();
-  entry->secure.reset(g_tls_server_connection_new(G_IO_STREAM(entry->connection.get()),
-                                                  entry->certificate.get(), nullptr));
+  entry->secure = NewServerConnection(entry->connection.get(), entry->certificate.get());
   if (!entry->secure) return Finish(entry, false);
+  ++entry->address->second.running;
   // A browser leaves by closing the connection, without a goodbye.
   g_tls_connection_set_require_close_notify(G_TLS_CONNECTION(entry->secure.get()), FALSE);
   g_tls_connection_handshake_async(G_TLS_CONNECTION(entry->secure.get()), G_PRIORITY_DEFAULT,
@@ -102,9 +108,16 @@ void Handshakes::OnShaken(GObject* stream, GAsyncResult* result, gpointer data) 
   if ((*entry)->owner != nullptr) (*entry)->owner->Finish(*entry, good);
 }
 
+void Handshakes::Remove(const EntryPtr& entry) {
+  Count& count = entry->address->second;
+  if (entry->secure) --count.running;
+  if (--count.all == 0) counts_.erase(entry->address);
+  entries_.remove(entry);
+}
+
 void Handshakes::Finish(const EntryPtr& entry, bool is_secure) {
   const EntryPtr keep = entry;
-  entries_.remove(keep);
+  Remove(keep);
   if (is_secure)
     done_(keep->connection.get(), keep->secure.get());
   else
@@ -120,7 +133,7 @@ void Handshakes::Forget(GSocketConnection* connection) {
   if ((*found)->secure)
     g_cancellable_cancel((*found)->cancel.get());
   else
-    entries_.erase(found);
+    Remove(EntryPtr(*found));
 }
 
 void Handshakes::Tick(gint64 now_us) {

@@ -5,6 +5,7 @@
 #pragma once
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,12 @@ class Handshakes {
   void Tick(gint64 now_us);
 
  private:
+  /// Connections of an address.
+  struct Count {
+    int all = 0;
+    int running = 0;
+  };
+  using Counts = std::map<std::string, Count>;
   struct Entry {
     Handshakes* owner = nullptr;  // null: it has gone
     ObjectPtr<GSocketConnection> connection;
@@ -37,7 +44,7 @@ class Handshakes {
     ObjectPtr<GIOStream> secure;  // once it runs
     ObjectPtr<GCancellable> cancel;
     SourcePtr readable;
-    std::string address;
+    Counts::iterator address;
     bool is_ready = false;
     gint64 since_us = 0;  // it runs
   };
@@ -48,10 +55,12 @@ class Handshakes {
   /// The entry whose turn it is; null if the queue is empty.
   EntryPtr Next() const;
   void Start(const EntryPtr& entry);
+  void Remove(const EntryPtr& entry);
   void Finish(const EntryPtr& entry, bool is_secure);
 
   const Done done_;
   std::list<EntryPtr> entries_;  // the oldest first
+  Counts counts_;                // of the addresses of entries_
 };
 
 }  // namespace lidar::web

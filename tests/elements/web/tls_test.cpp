@@ -8,6 +8,7 @@
 #include "ext/web/certificate.h"
 #include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -164,7 +165,8 @@ TEST_F(Tls, LetsAThousandHalfHandshakesHoldUpTheirOwn) {
                           nullptr, nullptr);
     silent.push_back(connection);
   }
-  EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
+  // While others wait, a handshake has a second, which a busy machine may take.
+  EXPECT_TRUE(Eventually([&] { return HttpGet(sink.Url("https")).status == 200U; }));
   EXPECT_GE(sink.Stat("connections-evicted"), static_cast<guint64>(count - 20 * 32) / 2);
   for (GSocketConnection* connection : silent) g_object_unref(connection);
 }
