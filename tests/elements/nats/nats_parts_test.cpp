@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
+#include <random>
+#include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -266,6 +270,90 @@ TEST_F(NatsParts, TheOutboxSendsAgainInOrder) {
   EXPECT_EQ(box.bytes(), 0U);
 }
 
+/// A sink and a server that acknowledges, refuses and falls silent at random.
+TEST_F(NatsParts, TheOutboxKnowsOfEachMessageWhereItIsAndSinceWhen) {
+  using Time = Outbox::Clock::time_point;
+  std::vector<StreamFormat::Ptr> formats;
+  for (const char* note : {"one", "another"}) {
+    std::string why;
+    const gst::CapsPtr caps(
+        gst_caps_from_string((kSliceCaps + std::string(", note=(string)") + note).c_str()));
+    formats.push_back(StreamFormat::FromCaps(caps.get(), &why));
+  }
+  const auto message = [&](std::uint64_t n) {
+    return Outgoing{n, Bytes(100 + 7 * (n % 50)), formats[n / 20 % 2]};
+  };
+  std::mt19937 random(23);
+  Outbox box(1U << 20);
+  std::set<std::uint64_t> waiting;
+  std::map<std::uint64_t, Time> in_flight;
+  std::uint64_t next = 0;
+  Time now{};
+  for (int step = 0; step < 3'000; ++step) {
+    now += std::chrono::milliseconds(random() % 5);
+    const std::uint64_t any = next == 0 ? 0 : random() % next;
+    const bool flies = in_flight.count(any) > 0;
+    switch (random() % 5) {
+      case 0:
+      case 1:
+        EXPECT_EQ(box.Push(message(next)), 0U);
+        waiting.insert(next++);
+        break;
+      case 2:
+        if (const auto item = box.Take(now)) {
+          EXPECT_EQ(item->number, *waiting.begin()) << "the oldest first";
+          in_flight[item->number] = now;
+          waiting.erase(item->number);
+        }
+        break;
+      case 3:
+        EXPECT_EQ(box.Remove(any), flies);
+        in_flight.erase(any);
+        break;
+      case 4:
+        if (step % 3 != 0) break;
+        EXPECT_EQ(box.Retry(any), flies ? 1U : 0U);
+        if (flies) waiting.insert(any);
+        in_flight.erase(any);
+        break;
+    }
+    EXPECT_EQ(box.waiting(), waiting.size());
+    EXPECT_EQ(box.in_flight(), in_flight.size());
+    std::optional<Time> oldest;
+    for (const auto& [n, at] : in_flight) oldest = std::min(oldest.value_or(at), at);
+    EXPECT_EQ(box.OldestInFlight(), oldest);
+    EXPECT_EQ(box.NextFormat(), waiting.empty() ? nullptr : formats[*waiting.begin() / 20 % 2]);
+    if (step % 100 != 0) continue;
+    Outbox fresh(1U << 20);
+    for (const auto n : waiting) fresh.Push(message(n));
+    for (const auto& [n, at] : in_flight) fresh.Push(message(n));
+    EXPECT_EQ(box.bytes(), fresh.bytes()) << "as if nothing else had ever been in it";
+  }
+}
+
+/// Numbers in any order, some twice.
+TEST_F(NatsParts, ABookOfPlacesCountsAGapAsOftenAsItIsFilled) {
+  std::mt19937 random(5);
+  PlaceBook book;
+  std::set<std::uint64_t> came;
+  std::int64_t missing = 0;
+  std::uint64_t front = 100;
+  book.Note({7, front});
+  came.insert(front);
+  for (int i = 0; i < 500; ++i) {
+    const std::uint64_t n = random() % 3 == 0
+                                ? front - std::min<std::uint64_t>(random() % 6, front - 100)
+                                : front + random() % 4;
+    const auto verdict = book.Note({7, n});
+    EXPECT_EQ(verdict.again, came.count(n) > 0) << n;
+    missing += static_cast<std::int64_t>(verdict.missing);
+    if (verdict.fills_gap) --missing;
+    came.insert(n);
+    front = std::max(front, n);
+    EXPECT_EQ(missing, static_cast<std::int64_t>(front - 100 + 1 - came.size()));
+  }
+}
+
 TEST_F(NatsParts, ABookOfPlacesKnowsWhatCameAndWhatIsMissing) {
   PlaceBook book;
   EXPECT_FALSE(book.Note({1, 10}).again);
@@ -308,6 +396,28 @@ TEST_F(NatsParts, APatternCoversWhatItsWildcardsSay) {
   EXPECT_TRUE(Covers("a.>", "a.*"));
   EXPECT_FALSE(Covers("a.>", "a"));
   EXPECT_FALSE(Covers("a.*", "a.>"));
+}
+
+/// Of all patterns and subjects of up to three words.
+TEST_F(NatsParts, APatternCoversASubjectAsARegularExpressionDoes) {
+  std::vector<std::string> subjects;
+  std::vector<std::string> patterns;
+  for (const std::string a : {"a", "b", "*", ">"})
+    for (const std::string b : {"", ".a", ".b", ".*", ".>"})
+      for (const std::string c : {"", ".a", ".*", ".>"}) {
+        const std::string text = a + b + (b.empty() ? "" : c);
+        const auto tail = text.find('>');
+        if (tail == std::string::npos || tail + 1 == text.size()) patterns.push_back(text);
+        if (text.find_first_of("*>") == std::string::npos) subjects.push_back(text);
+      }
+  for (const std::string& pattern : patterns) {
+    std::string expression;
+    for (const char c : pattern)
+      expression += c == '.' ? "\\." : c == '*' ? "[^.]+" : c == '>' ? ".+" : std::string(1, c);
+    for (const std::string& subject : subjects)
+      EXPECT_EQ(Covers(pattern, subject), std::regex_match(subject, std::regex(expression)))
+          << pattern << " " << subject;
+  }
 }
 
 TEST_F(NatsParts, NamesThatTheServerWouldMisreadAreRefused) {
