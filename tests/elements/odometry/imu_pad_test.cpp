@@ -20,27 +20,34 @@ using test::Harness;
 
 constexpr unsigned kScans = 12;
 
-/// A sensor that stands, and beside it an IMU that says so.
+/// A sensor that stands in a corner of walls, and beside it an IMU that says so.
 class ImuPad : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string line =
-        "lidartestsrc model=os0-32 mode=512x10 speed=0 slices-per-scan=1 num-buffers=" +
-        std::to_string(kScans);
-    source_.reset(gst_harness_new_parse(line.c_str()));
-    gst_harness_play(source_.get());
-    for (unsigned i = 0; i < kScans; ++i) scans_.emplace_back(gst_harness_pull(source_.get()));
     h_.reset(gst_harness_new("lidarodometry"));
-    gst_harness_set_src_caps(h_.get(), gst_pad_get_current_caps(source_->sinkpad));
+    gst_harness_set_src_caps_str(h_.get(),
+                                 "application/x-pointcloud2,width=0,height=1,point-step=12,"
+                                 "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1");
     imu_.reset(gst_element_request_pad_simple(h_->element, "imu"));
     ASSERT_TRUE(imu_);
   }
   void TearDown() override {
     if (imu_) gst_element_release_request_pad(h_->element, imu_.get());
     imu_.reset();
-    scans_.clear();
     h_.reset();
-    source_.reset();
+  }
+  static GstBuffer* Corner(GstClockTime time) {
+    std::vector<float> xyz;
+    for (int a = -10; a < 10; ++a) {
+      for (int b = -10; b < 10; ++b) {
+        const auto u = static_cast<float>(a);
+        const auto v = static_cast<float>(b);
+        xyz.insert(xyz.end(), {u, v, -2, u, 10, v, 10, u, v});
+      }
+    }
+    GstBuffer* buffer = gst_buffer_new_memdup(xyz.data(), xyz.size() * sizeof(float));
+    GST_BUFFER_PTS(buffer) = time;
+    return buffer;
   }
   bool Describe(const char* fields) {
     gst_pad_send_event(imu_.get(), gst_event_new_stream_start("imu"));
@@ -64,9 +71,10 @@ class ImuPad : public ::testing::Test {
     return gst_pad_chain(imu_.get(), gst_buffer_new_memdup(bytes.data(), bytes.size()));
   }
   guint64 ScansWithImu(double rate) {
-    for (BufferPtr& scan : scans_) {
-      EXPECT_EQ(Send(gst_lidar_buffer_get_capture_time(scan.get()), rate), GST_FLOW_OK);
-      EXPECT_EQ(gst_harness_push(h_.get(), scan.release()), GST_FLOW_OK);
+    for (GstClockTime i = 0; i < kScans; ++i) {
+      const GstClockTime start = i * 100 * GST_MSECOND;
+      EXPECT_EQ(Send(start, rate), GST_FLOW_OK);
+      EXPECT_EQ(gst_harness_push(h_.get(), Corner(start)), GST_FLOW_OK);
     }
     GstStructure* stats = nullptr;
     g_object_get(h_->element, "stats", &stats, nullptr);
@@ -76,10 +84,8 @@ class ImuPad : public ::testing::Test {
     return count;
   }
 
-  Harness source_;
   Harness h_;
   PadPtr imu_;
-  std::vector<BufferPtr> scans_;
 };
 
 TEST(ImuInput, TurnsRatesAsTheImuIsMounted) {
@@ -116,7 +122,7 @@ TEST_F(ImuPad, DropsPiecesOfSamples) {
 /// A drive through the corners of a town, and how the odometry takes its IMU.
 class ImuOfADrive : public ::testing::Test {
  protected:
-  static constexpr guint64 kDriveScans = 60;
+  static constexpr guint64 kDriveScans = 24;
   void SetUp() override {
     const std::string line =
         "lidartestsrc name=s imu=true model=os0-32 mode=512x10 scene=town speed=12 seed=3 "
@@ -165,14 +171,14 @@ TEST_F(ImuOfADrive, MayStop) {
   gst_pad_add_probe(
       imu_.get(), GST_PAD_PROBE_TYPE_BUFFER,
       [](GstPad*, GstPadProbeInfo* info, gpointer) {
-        return GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info)) < 3 * GST_SECOND
+        return GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info)) < 1500 * GST_MSECOND
                    ? GST_PAD_PROBE_OK
                    : GST_PAD_PROBE_DROP;
       },
       nullptr, nullptr);
   Run();
-  EXPECT_GE(Count("scans-with-imu"), 20U);
-  EXPECT_LE(Count("scans-with-imu"), 31U);
+  EXPECT_GE(Count("scans-with-imu"), 5U);
+  EXPECT_LE(Count("scans-with-imu"), 16U);
   EXPECT_EQ(Count("scans-lost"), 0U);
 }
 
