@@ -69,8 +69,8 @@ class BeamFields {
         &coder_);
     length = mixing::BitLength(static_cast<std::uint32_t>(std::abs(number)));
     // A damaged stream may have any number; the limit is beyond that of each field.
-    std::int32_t back = std::clamp(from + number, -kLimit, kLimit);
-    if (turn > 0) back &= around - 1;
+    const std::int32_t back =
+        turn > 0 ? (from + number) & (around - 1) : std::clamp(from + number, -kLimit, kLimit);
     guess.See(back, around);
     return back * unit;
   }
