@@ -44,6 +44,11 @@ Duration Scheduler::Rtt(const Link& link) {
   return link.path.rtt > Duration{0} ? link.path.rtt : kUnknownRtt;
 }
 
+/// A far link is tried with packets that are half as old as they may be.
+Duration Scheduler::LeastTravel(const Link& link) {
+  return std::min(link.path.min_rtt / 2, kMaxAge / 2);
+}
+
 /// A gap is expected to last as long again as it has lasted.
 Duration Scheduler::WholeIn(std::size_t link, Time now, DataSize size) const {
   const Link& l = links_[link];
@@ -241,7 +246,8 @@ bool Scheduler::Wants(Time now, std::size_t link, PacketId id) const {
   const Entry* entry = Find(id);
   if (entry == nullptr) return true;
   const bool is_only_one = entry->assigned == LinkSet().set(link);
-  return !entry->arrived && (is_only_one || now - entry->made <= kMaxAge);
+  const Duration age = now - entry->made + LeastTravel(links_[link]);
+  return !entry->arrived && (is_only_one || age <= kMaxAge);
 }
 
 std::uint16_t Scheduler::OnSent(Time now, std::size_t link, PacketId id) {

@@ -35,6 +35,7 @@ enum class TargetRule {
 struct PathView {
   DataRate rate;   // at which the congestion control lets packets out
   Duration rtt{};  // smoothed; 0: not known yet
+  Duration min_rtt{};
 };
 
 struct LinkCounters {
@@ -64,8 +65,8 @@ struct LinkCounters {
 ///  - Links that pass one queue count as one: the nearest of them carries all until its reports are
 ///    overdue by kLongestGap, and the others a packet in each kProbeSpareEvery slices. Only
 ///    broadcast copies go to all.
-///  - A packet that arrived on one link is not sent on another. Copies older than kMaxAge are not
-///    sent: after a gap the newest slices come first.
+///  - A packet that arrived on one link is not sent on another. Copies that would arrive older than
+///    kMaxAge are not sent: after a gap the newest slices come first.
 class Scheduler {
  public:
   static constexpr Duration kMaxAge = std::chrono::milliseconds(200);
@@ -161,6 +162,7 @@ class Scheduler {
   bool Settled(Time now) const;
   static bool Proves(Time now, const Link& link);
   static Duration Rtt(const Link& link);
+  static Duration LeastTravel(const Link& link);
   static bool IsDead(Time now, const Link& link);
 
   const Method method_;

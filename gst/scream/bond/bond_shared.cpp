@@ -54,7 +54,7 @@ class BondLink : public TxLink {
   void OnPath(const scream::Statistics& s) override {
     const std::lock_guard lock(bond_->mutex);
     const bool known = s.s_rtt > Duration{0};
-    bond_->scheduler.OnPath(index_, {known ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
+    bond_->scheduler.OnPath(index_, {known ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt, s.min_rtt});
   }
 
  private:

@@ -81,7 +81,8 @@ class SimLink {
     }
     if (controller_.NextTimer() <= now) controller_.OnTimer(now);
     const scream::Statistics s = controller_.statistics(now);
-    scheduler->OnPath(index_, {s.s_rtt > Duration{0} ? s.ref_wnd / s.s_rtt : DataRate{}, s.s_rtt});
+    const DataRate rate = s.s_rtt > Duration{0} ? s.ref_wnd / s.s_rtt : DataRate{};
+    scheduler->OnPath(index_, {rate, s.s_rtt, s.min_rtt});
   }
 
   bool Take(Time now, Scheduler* scheduler, const scream::CongestionFeedback& report) {

@@ -217,6 +217,16 @@ TEST_F(TwoLinks, DropsWhatIsLateOnEachLinkThatHasIt) {
   }
 }
 
+TEST_F(TwoLinks, DropsWhatWouldArriveLate) {
+  SetPaths({Mbps(8), 300ms, 40ms}, {Mbps(8), 600ms, 500ms});
+  const PacketId id{kMedia, 1};
+  ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, 1}).count(), 2U);
+  EXPECT_TRUE(scheduler_.Wants(now_ + 180ms, 0, id));
+  EXPECT_FALSE(scheduler_.Wants(now_ + 181ms, 0, id));
+  EXPECT_TRUE(scheduler_.Wants(now_ + 100ms, 1, id)) << "a far link is known by such copies";
+  EXPECT_FALSE(scheduler_.Wants(now_ + 101ms, 1, id));
+}
+
 TEST_F(TwoLinks, LeavesLatePacketsOfOneLinkToItsCongestionControl) {
   Settle();
   const PacketId id{kMedia, ++seq_};
