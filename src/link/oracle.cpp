@@ -145,7 +145,7 @@ OracleResult AskOracleOfLinks(const std::vector<Capacity>& links, const OracleCo
     for (std::uint32_t i = 0; i < config.slices_per_scan; ++i) {
       const Duration now =
           FromSeconds(static_cast<double>(scan * config.slices_per_scan + i) * period);
-      const auto end = free.Send(now, now + config.max_age, size, bonding);
+      const auto end = free.Send(now, now + config.max_age - config.rtt / 2, size, bonding);
       if (!end) continue;
       ++whole;
       result.latency_ms.push_back(Milliseconds(*end - now) + Milliseconds(config.rtt) / 2);

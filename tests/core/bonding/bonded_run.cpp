@@ -278,7 +278,7 @@ class BondedRun {
         const double ms = whole ? Milliseconds(s.whole - s.made) : 1e9;
         if (whole) result_.latency_ms.push_back(ms);
         age = std::max(age, ms);
-        in_time = in_time && whole && s.whole - s.made <= kInTime + config_.links[0].rtt / 2;
+        in_time = in_time && whole && s.whole - s.made <= kInTime;
       }
       ++result_.scans;
       result_.in_time += in_time;

@@ -121,6 +121,13 @@ TEST(OracleOfLinks, IsNoWorseThanTheBestLinkWhereOthersAreDead) {
   EXPECT_EQ(four.latency_ms, one.latency_ms);
 }
 
+TEST(OracleOfLinks, CountsWhatArrivesInTime) {
+  const OracleResult r = AskOracleOfLinks({Trace("0 1.2"), Trace("0 1.2")}, TenSeconds(3));
+  EXPECT_LT(r.complete, r.scans);
+  EXPECT_LE(r.latency_ms.back(), 200);
+  EXPECT_GT(r.latency_ms.back(), 180);
+}
+
 TEST(OracleOfLinks, WithoutLinksOrSlicesDeliversNothing) {
   EXPECT_EQ(AskOracleOfLinks({}, TenSeconds(1)).complete, 0U);
   EXPECT_EQ(AskOracleOfLinks({}, TenSeconds(1)).scans, 100U);
