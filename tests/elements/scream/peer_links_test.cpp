@@ -2,6 +2,9 @@
 // A peer of several links: who becomes one, what each hears, and what came twice.
 #include <gtest/gtest.h>
 
+#include <random>
+#include <set>
+
 #include "gst/scream/bond/link_stats.h"
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rx/link_reports.h"
@@ -170,6 +173,21 @@ TEST(LinkStats, HaveEachItsOwnName) {
     EXPECT_EQ(now_shown.True("usable"), usable);
     EXPECT_EQ(now_shown.True("in-gap"), !usable);
   }
+}
+
+/// Packets and copies of them in any order, over the wrap of their numbers.
+TEST(SeenPackets, PassEachOfManyOnceOverTheWrapOfTheirNumbers) {
+  SeenPackets seen;
+  std::mt19937 random(9);
+  std::set<unsigned> came;
+  unsigned front = 65'000;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto n =
+        static_cast<unsigned>(front + random() % 3 - (random() % 4 == 0 ? random() % 500 : 0));
+    EXPECT_EQ(seen.Add(1, static_cast<std::uint16_t>(n)), came.insert(n).second) << n;
+    front = std::max(front, n);
+  }
+  EXPECT_GT(front, 65'536U + 1'000);
 }
 
 TEST(LinkReports, TellEachLinkWhatCameByIt) {

@@ -229,18 +229,23 @@ TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
     }
     return n;
   };
-  EXPECT_EQ(warnings(), 4);
-  EXPECT_NE(texts.find("72 is RTCP"), std::string::npos) << texts;
   gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
-  for (guint16 seq = 0; seq < 4; ++seq) {
-    Rtp camera;
-    camera.ssrc = 0x5678;
-    camera.payload_type = 97;
-    camera.seq = seq;
-    EXPECT_EQ(Push(camera), GST_FLOW_OK);
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_EQ(warnings(), 4) << run;
+    EXPECT_NE(texts.find("72 is RTCP"), std::string::npos) << texts;
+    texts.clear();
+    for (guint16 seq = 0; seq < 4; ++seq) {
+      Rtp camera;
+      camera.ssrc = 0x5678;
+      camera.payload_type = 97;
+      camera.seq = seq;
+      EXPECT_EQ(Push(camera), GST_FLOW_OK);
+    }
+    EXPECT_EQ(warnings(), 1) << run;
+    EXPECT_NE(texts.find("payload type 97"), std::string::npos) << texts;
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_harness_play(rtp.get());
   }
-  EXPECT_EQ(warnings(), 1);
-  EXPECT_NE(texts.find("payload type 97"), std::string::npos) << texts;
   gst_element_set_bus(element, nullptr);
   gst_object_unref(bus);
 }
