@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Statistics of a controller.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include "src/base/time.h"
@@ -17,11 +18,18 @@ enum class EcnState {
   kBleached,  ///< arrives as Not-ECT: fallen back to Not-ECT
   kSilent,    ///< nothing arrives when marked: fallen back to Not-ECT
 };
-const char* ToString(EcnState state);
+inline const char* ToString(EcnState state) {
+  constexpr const char* kNames[] = {"off", "testing", "capable", "bleached", "silent"};
+  return kNames[static_cast<std::size_t>(state)];
+}
 
 /// Reason for the target's last change, as a word for the `reason` of an event.
 enum class RateReason { kStart, kIncrease, kCe, kLoss, kDelay, kDrop, kTimeout };
-const char* ToString(RateReason reason);
+inline const char* ToString(RateReason reason) {
+  constexpr const char* kNames[] = {"start", "increase",      "ce",         "loss",
+                                    "delay", "capacity-drop", "no-feedback"};
+  return kNames[static_cast<std::size_t>(reason)];
+}
 
 struct Statistics {
   // Network congestion control:
