@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beyond the draft: measures the capacity of a busy link from the spacing of arrivals.
+// Extension capacity: measures the link by the spacing of packets that came out of its queue.
 #pragma once
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <optional>
 
@@ -38,38 +39,60 @@ class BusySpacing {
 };
 
 /// The link is never idle between packets that all waited in the bottleneck's queue. Their bytes
-/// over their arrival time are its capacity, at any rate of the sender.
+/// over their arrival time are its capacity, at any rate of the sender. The latest of them, behind
+/// the last hole, show its present capacity: a hole is a time in which the link stood nearly still
+/// while packets waited.
 class BusyRun {
  public:
   struct Arrival {
     Time sent{};
     Time time{};
     DataSize size;
+    Duration qdelay{0};
     bool busy = false;  ///< it waited: was marked, or had a queue before it
     bool marked = false;
   };
 
-  void Add(const Arrival& a) {
-    if (!a.busy || (last_ && a.time < last_->time)) {
-      Reset();
-      return;
+  /// Returns true if the packet came after a hole.
+  bool Add(Arrival a) {
+    const bool hole = last_ && std::min(a.time - last_->time, a.qdelay) > kHole;
+    const bool back = last_ && a.time < last_->time;
+    if (!a.busy || back) EndRun();
+    if (!a.busy || back || hole) latest_.clear();
+    if (a.busy) {
+      // A packet of the last report may have overtaken this one.
+      if (packets_ > 0) a.sent = std::max(a.sent, last_->sent);
+      if (packets_ > 0) spacing_.Add(a.time - last_->time, a.sent - last_->sent, a.size);
+      ++packets_;
+      marked_ += a.marked ? 1 : 0;
+      latest_.push_back(a);
+      if (latest_.size() > kLatest) latest_.pop_front();
     }
-    ++packets_;
-    marked_ += a.marked ? 1 : 0;
-    // A packet of the last report may have overtaken this one.
-    const Time sent = last_ ? std::max(a.sent, last_->sent) : a.sent;
-    if (last_) spacing_.Add(a.time - last_->time, sent - last_->sent, a.size);
     last_ = a;
-    last_->sent = sent;
+    return hole;
   }
   void Reset() { *this = BusyRun(); }
+  /// The time before the next packet is unknown. A hole still shows.
+  void EndRun() {
+    spacing_ = BusySpacing();
+    packets_ = marked_ = 0;
+  }
 
   int packets() const { return packets_; }
   int marked() const { return marked_; }
   Duration span() const { return spacing_.span(); }
-  /// Returns nothing for a run that is too short.
+  /// Returns the present capacity, or nothing if too few packets show it.
+  std::optional<DataRate> latest_capacity() const {
+    BusySpacing spacing;
+    for (std::size_t i = 1; i < latest_.size(); ++i)
+      spacing.Add(latest_[i].time - latest_[i - 1].time, Duration{0}, latest_[i].size);
+    return latest_.size() < kMinLatest ? std::nullopt : spacing.rate(kMinLatestBusy);
+  }
+  /// Returns the larger of that of the whole run and the present one, or nothing for a run that is
+  /// too short.
   std::optional<DataRate> capacity() const {
-    return packets_ < kMinPackets ? std::nullopt : spacing_.rate(kMinBusy);
+    const auto whole = packets_ < kMinPackets ? std::nullopt : spacing_.rate(kMinBusy);
+    return whole ? std::max(whole, latest_capacity()) : std::nullopt;
   }
   /// Returns the growth of the queueing delay from the first packet to the last, in gaps between
   /// departures. A link that is slower than the sender spreads the packets. The longest pause does
@@ -85,10 +108,15 @@ class BusyRun {
  private:
   static constexpr int kMinPackets = 5;
   static constexpr Duration kMinBusy = std::chrono::milliseconds(7);
+  static constexpr std::size_t kLatest = 40;
+  static constexpr std::size_t kMinLatest = 6;
+  static constexpr Duration kMinLatestBusy = std::chrono::milliseconds(5);
+  static constexpr Duration kHole = std::chrono::milliseconds(30);
   std::optional<Arrival> last_;
   BusySpacing spacing_;
   int packets_ = 0;
   int marked_ = 0;
+  std::deque<Arrival> latest_;
 };
 
 }  // namespace lidar::scream

@@ -39,7 +39,6 @@ void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
   evidence_.BeginAt(now);
   queue_delay_.ForgetQueue();
   busy_run_.Reset();
-  train_.Reset();
   rtt_.Restore(std::max(s_rtt, rtt_.min()));
   l4s_alpha_.Restore(l4s_alpha);
 }
@@ -59,7 +58,6 @@ void PathModel::Reset(Time now) {
   evidence_.BeginAt(now);
   queue_delay_.Reset();
   rtt_.Reset();
-  train_.Reset();
   busy_run_.Reset();
   classic_ecn_ = ClassicEcn();
   cross_traffic_ = CrossTraffic();
@@ -83,7 +81,7 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks) {
     if (queue_delay_.Add(now, {packet.sent, *packet.arrival, excess, now - acks.report}, recent))
       continue;
     ++clock_resets_;
-    busy_run_.Reset();
+    busy_run_.EndRun();
   }
   if (evidence_.Counts(acks)) queue_delay_.Update(now, rtt_.smoothed());
   if (queue_delay_.TakeDriftReset()) {
@@ -122,8 +120,8 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks) {
   const bool congested = MarkedLately(now) || lossy;
   cross_traffic_.BeginReport();
   for (const AckedPacket& packet : acks.acked) {
-    if (!packet.arrival) {  // an unknown arrival is a hole
-      busy_run_.Reset();
+    if (!packet.arrival) {  // the spacing around it is unknown
+      busy_run_.EndRun();
       continue;
     }
     const bool marked = packet.arrived_ecn == Ecn::kCe;
@@ -135,17 +133,17 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks) {
       if (marked) marking_onset_.OnMark(qdelay);
       cross_traffic_.Add({packet.sent, *packet.arrival, packet.size}, qdelay, congested);
     }
-    busy_run_.Add({packet.sent, *packet.arrival, packet.size, busy, marked});
-    if (train_.Add({*packet.arrival, packet.size, qdelay, busy})) hole_in_report_ = true;
+    if (busy_run_.Add({packet.sent, *packet.arrival, packet.size, qdelay, busy, marked}))
+      hole_in_report_ = true;
   }
   for (const SentRecord& packet : acks.lost) loss_context_.OnLost(packet.sent);
   EstimateCapacity(now);
 }
 
-/// Trains show the capacity at any rate of the source. The acknowledged rate is a lower bound.
+/// A queue shows the capacity at any rate of the source. The acknowledged rate is a lower bound.
 void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = std::max(acked_peak_, acked_rate_.Rate(now));
-  const auto rate = train_.rate();
+  const auto rate = busy_run_.latest_capacity();
   if (!rate) return;
   const double gain = train_capacity_ > DataRate() ? kCapacityGain : 1;
   train_capacity_ = train_capacity_ * (1 - gain) + *rate * gain;

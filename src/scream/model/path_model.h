@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "src/scream/model/arrival_train.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/cross_traffic.h"
@@ -60,7 +59,6 @@ class PathModel {
   const CrossTraffic& cross_traffic() const { return cross_traffic_; }
   const EcnMonitor& ecn() const { return ecn_; }
   const BusyRun& busy_run() const { return busy_run_; }
-  const ArrivalTrain& train() const { return train_; }
   /// Queue delay at which marking starts.
   Duration marking_onset() const { return marking_onset_.value(); }
   /// The link's capacity at any rate of the source; 0 while unknown.
@@ -120,11 +118,10 @@ class PathModel {
   CrossTraffic cross_traffic_;
   EcnMonitor ecn_{p_.ecn};
   BusyRun busy_run_;
-  ArrivalTrain train_;
   MarkingOnset marking_onset_{p_.pacing_reserve};
   bool hole_in_report_ = false;
   DataRate train_capacity_;
-  DataRate acked_peak_;  // highest average since the last train
+  DataRate acked_peak_;  // highest average since the last measurement
   Evidence evidence_;
   MaxBytesInFlight max_in_flight_;
   mutable RateMeter sent_rate_{1s};

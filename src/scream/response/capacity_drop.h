@@ -24,10 +24,8 @@ class CapacityDrop {
   /// Call it after each report. Returns the window that fills the link if it carries much less than
   /// the target, at most once a round trip.
   std::optional<DataSize> Update(Time now, const PathModel& path, const Load& load) {
-    auto capacity = path.busy_run().capacity();
+    const auto capacity = path.busy_run().capacity();
     if (!p_.extensions.capacity || !capacity) return std::nullopt;
-    // The newest train counts more than a time in which the queue stood.
-    if (const auto now_carried = path.train().rate()) capacity = std::max(*capacity, *now_carried);
     if (!path.Queueing(path.BusyQdelay(now))) return std::nullopt;
     if (now - last_drop_ < path.ReactionInterval()) return std::nullopt;
     // Packets that arrive spaced as they left may show only our own rate beside others.

@@ -23,7 +23,7 @@ constexpr double kRestoredPart = 0.9;
 std::optional<GapRecovery::Restart> GapRecovery::Update(Time now, const PathModel& path,
                                                         DataSize ref_wnd) {
   if (!p_.extensions.gaps) return std::nullopt;
-  const auto rate = path.train().rate();
+  const auto rate = path.busy_run().latest_capacity();
   if (Slow(rate)) BelieveLess();
   if (path.hole_in_report() || Slow(rate)) NoteSign(now);
   if (!last_sign_) {

@@ -41,7 +41,7 @@ class GapRecovery {
     Restart state;
     DataRate rate;
   };
-  /// Returns true if `rate`, of a train of arrivals, is almost nothing of the earlier capacity.
+  /// Returns true if `rate`, of the latest arrivals, is almost nothing of the earlier capacity.
   bool Slow(std::optional<DataRate> rate) const;
   void BelieveLess();
   void NoteSign(Time now);

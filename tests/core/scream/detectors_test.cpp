@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "src/link/random.h"
-#include "src/scream/model/arrival_train.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/loss_context.h"
 #include "src/scream/model/loss_rate.h"
@@ -186,7 +185,7 @@ TEST(RoundTripTime, SmoothsByAnEighth) {
 /// Packets of 1000 bytes that left `sent` apart and came out of a queue `spacing` apart.
 Time Arrive(BusyRun* run, Time now, Duration spacing, int packets, Duration sent = 500us) {
   for (int i = 0; i < packets; ++i, now += spacing)
-    run->Add({kStart + i * sent, now, DataSize::Bytes(1000), true, true});
+    run->Add({kStart + i * sent, now, DataSize::Bytes(1000), 5ms, true, true});
   return now;
 }
 
@@ -218,21 +217,21 @@ TEST(BusyRun, TellsByHowManyPacketsTheQueueGrew) {
   run.Reset();
   Arrive(&run, kStart, 2ms, 10, 2ms);
   EXPECT_EQ(run.growth(), 0);
-  run.Add({kStart + 20ms, kStart + 100ms, DataSize::Bytes(1000), true, true});
+  run.Add({kStart + 20ms, kStart + 100ms, DataSize::Bytes(1000), 5ms, true, true});
   EXPECT_EQ(run.growth(), 0) << "the longest pause counts on neither side";
 }
 
 TEST(BusyRun, TakesAPauseOfTheSourceForNoGrowth) {
   BusyRun run;
   Arrive(&run, kStart, 1ms, 12, 500us);
-  run.Add({kStart + 36ms, kStart + 51ms, DataSize::Bytes(1000), true, true});
+  run.Add({kStart + 36ms, kStart + 51ms, DataSize::Bytes(1000), 5ms, true, true});
   EXPECT_NEAR(run.growth(), 11, 1e-6);
 }
 
 TEST(BusyRun, APacketThatWasOvertakenMakesNoGapThatIsNegative) {
   BusyRun run;
   Arrive(&run, kStart + 20ms, 1ms, 10, 500us);
-  run.Add({kStart - 10ms, kStart + 31ms, DataSize::Bytes(1000), true, true});
+  run.Add({kStart - 10ms, kStart + 31ms, DataSize::Bytes(1000), 5ms, true, true});
   EXPECT_LT(run.growth(), 15);
   EXPECT_GT(run.growth(), 5);
 }
@@ -282,40 +281,45 @@ TEST_F(LossContextTest, KnowsRandomLossWhereDelaysScatter) {
   }
 }
 
-/// Packets of 1000 bytes that waited for `qdelay` and came `spacing` apart.
-Time Train(ArrivalTrain* train, Time now, Duration spacing, Duration qdelay, int packets) {
-  for (int i = 0; i < packets; ++i, now += spacing)
-    train->Add({now, DataSize::Bytes(1000), qdelay, true});
-  return now;
+TEST(BusyRun, TellsWhatTheLinkCarriesAfterAHole) {
+  BusyRun run;
+  Time now = kStart;
+  const auto arrive = [&](int packets, Duration spacing) {
+    for (int i = 0; i < packets; ++i, now += spacing)
+      run.Add({now - 500ms, now, DataSize::Bytes(1000), 500ms, true, false});
+  };
+  arrive(6, 50ms);
+  EXPECT_FALSE(run.latest_capacity());
+  arrive(8, 1ms);
+  ASSERT_TRUE(run.latest_capacity());
+  EXPECT_NEAR(run.latest_capacity()->bits_per_second(), 8e6, 1);
+  EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1) << "not that of the hole";
 }
 
-TEST(ArrivalTrain, TellsWhatTheLinkCarriesAfterAHole) {
-  ArrivalTrain train;
-  const Time hole = Train(&train, kStart, 50ms, 500ms, 6);
-  EXPECT_FALSE(train.rate());
-  Train(&train, hole, 1ms, 500ms, 8);
-  ASSERT_TRUE(train.rate());
-  EXPECT_NEAR(train.rate()->bits_per_second(), 8e6, 1);
+TEST(BusyRun, APauseOfTheSourceIsNoHole) {
+  BusyRun run;
+  EXPECT_FALSE(run.Add({kStart, kStart, DataSize::Bytes(1000), 5ms, true, false}));
+  EXPECT_FALSE(run.Add({kStart, kStart + 1s, DataSize::Bytes(1000), 5ms, true, false}));
+  EXPECT_TRUE(run.Add({kStart, kStart + 2s, DataSize::Bytes(1000), 500ms, true, false}));
 }
 
-TEST(ArrivalTrain, APauseOfTheSourceIsNoHole) {
-  ArrivalTrain train;
-  EXPECT_FALSE(train.Add({kStart, DataSize::Bytes(1000), 5ms, true}));
-  EXPECT_FALSE(train.Add({kStart + 1s, DataSize::Bytes(1000), 5ms, true}));
-  EXPECT_TRUE(train.Add({kStart + 2s, DataSize::Bytes(1000), 500ms, true}));
+TEST(BusyRun, FindsAHoleBehindAPacketThatDidNotWait) {
+  BusyRun run;
+  EXPECT_FALSE(run.Add({kStart, kStart, DataSize::Bytes(1000), 0ms, false, false}));
+  EXPECT_TRUE(run.Add({kStart, kStart + 1s, DataSize::Bytes(1000), 900ms, true, false}));
 }
 
 TEST(BusyRun, EndsWhereArrivalsGoBack) {
   BusyRun run;
   Arrive(&run, kStart, 1ms, 20);
   Arrive(&run, kStart, 1ms, 1);
-  EXPECT_EQ(run.packets(), 0);
+  EXPECT_EQ(run.packets(), 1);
 }
 
 TEST(BusyRun, EndsWithAPacketThatDidNotWait) {
   BusyRun run;
   const Time now = Arrive(&run, kStart, 1ms, 20);
-  run.Add({kStart, now, DataSize::Bytes(1000), false, false});
+  run.Add({kStart, now, DataSize::Bytes(1000), 0ms, false, false});
   EXPECT_FALSE(run.capacity());
   EXPECT_EQ(run.packets(), 0);
 }

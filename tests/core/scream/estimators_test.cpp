@@ -41,7 +41,7 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_EQ(path.model.estimated_capacity(), DataRate());
   EXPECT_EQ(path.model.train_capacity(), DataRate());
   EXPECT_EQ(path.model.busy_run().packets(), 0);
-  EXPECT_FALSE(path.model.train().rate());
+  EXPECT_FALSE(path.model.busy_run().latest_capacity());
   EXPECT_FALSE(path.model.rtt().known());
   EXPECT_EQ(path.model.loss_rate().value(), 0);
   EXPECT_EQ(path.model.l4s_alpha().value(), 0);
