@@ -28,6 +28,10 @@ TEST_F(NatsStream, SlicesComeBackByteForByte) {
   EXPECT_EQ(receiver.stat("messages-without-caps"), 0U);
   EXPECT_EQ(sender.stat("messages"), 80U);
   EXPECT_EQ(sender.stat("messages-waiting"), 0U);
+  guint64 bytes = 0;
+  for (const auto& buffer : sender.buffers()) bytes += buffer.bytes.size();
+  EXPECT_EQ(sender.stat("bytes"), bytes);
+  for (const NatsPipeline* end : {&sender, &receiver}) EXPECT_EQ(end->stat("reconnects"), 0U);
 }
 
 TEST_F(NatsStream, CloudsComeBackByteForByte) {
