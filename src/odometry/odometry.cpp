@@ -49,9 +49,6 @@ constexpr double kMostTurnAcceleration = 30;
 constexpr double kSlack = 0.3;
 /// Greatest distance of a fitting point, relative to the map's cubes.
 constexpr double kFit = 0.2;
-/// The velocity may change over a longer period: the reach grows in proportion.
-constexpr Duration kUsualPeriod = milliseconds(150);
-constexpr double kWidestSearch = 3;
 /// Weight of neighbours without a surface, if scans show surfaces. With so small a weight an open
 /// direction, which no surface holds, is found.
 constexpr double kSparePointWeight = 0.05;
@@ -303,8 +300,7 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
 }
 
 /// Searches with the widest reach if the scan does not fit within the usual one.
-Alignment Odometry::AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
-                              const Surface& fine) {
+Alignment Odometry::AlignFrom(const Pose& guess, const TimedPoints& scan, const Surface& fine) {
   const Surface aligned = ThinOut(fine);
   const RegistrationSettings settings = SettingsFor(scan, guess);
   const auto align = [&](double sigma) {
@@ -312,8 +308,7 @@ Alignment Odometry::AlignFrom(const Pose& guess, Duration gap, const TimedPoints
     const Prediction prediction{guess, confidence_.PoseInformation()};
     return Align(aligned, &map_, prediction, kReach * sigma, kernel, settings);
   };
-  const double widened = std::clamp(Seconds(gap) / Seconds(kUsualPeriod), 1.0, kWidestSearch);
-  const double sigma = threshold_.sigma_m() * widened;
+  const double sigma = threshold_.sigma_m();
   const Alignment found = align(sigma);
   if (found.inlier_share >= kLeastInliers || sigma >= kWidestSigma) return found;
   return align(kWidestSigma);
@@ -344,7 +339,7 @@ Estimate Odometry::Match(Time middle, const Moving& predicted, const TimedPoints
   const Pose& guess = predicted.pose;
   const auto turn = KnownTurn(*last_time_, middle);
   confidence_.Predict(pose_.Inverse() * guess, gap, turn.has_value());
-  const Alignment found = AlignFrom(guess, gap, scan, fine);
+  const Alignment found = AlignFrom(guess, scan, fine);
   Estimate estimate;
   estimate.inlier_share = found.inlier_share;
   estimate.iterations = found.iterations;

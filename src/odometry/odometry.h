@@ -107,8 +107,7 @@ class Odometry {
   Estimate Begin(const TimedPoints& scan, const Surface& fine);
   Estimate Match(Time middle, const Moving& predicted, const TimedPoints& scan,
                  const Surface& fine);
-  Alignment AlignFrom(const Pose& guess, Duration gap, const TimedPoints& scan,
-                      const Surface& fine);
+  Alignment AlignFrom(const Pose& guess, const TimedPoints& scan, const Surface& fine);
   bool ShowsThePlace(const Alignment& found, const Pose& guess) const;
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
   void Follow(const Alignment& found, const Moving& predicted, Time middle, const Surface& fine);
