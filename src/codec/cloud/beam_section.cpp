@@ -172,7 +172,7 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   ResidualSettings elevations{errors.bend_um, ResidualGuess::kNone};
   std::vector<std::uint8_t> stream;
   mixing::BinaryEncoder bits(&stream);
-  if (!table.has_path()) CodeBeams(&table, &bits);
+  if (!table.has_path() && !CodeBeams(&table, &bits)) return false;
   if (table.grains > 0) CodePlaces(&table, &bits);
   if (table.has_path()) CodePath(&table.path, &bits);
   EncodeResiduals(decoded, &azimuths, &list->residuals, &bits);
