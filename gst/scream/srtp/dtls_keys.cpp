@@ -22,19 +22,21 @@ constexpr gint64 kServerKeepsUs = 10 * G_USEC_PER_SEC;
 constexpr gsize kRecordHeader = 13;
 constexpr gsize kHandshakeHeader = 12;
 
+/// Returns true for each part of a client's hello.
+bool IsOfHello(ByteView d) {
+  constexpr guint8 kHandshakeRecord = 22, kClientHello = 1;
+  return d.size >= kRecordHeader + kHandshakeHeader && d.data[0] == kHandshakeRecord &&
+         d.data[3] == 0 && d.data[4] == 0 &&  // the first epoch
+         d.data[kRecordHeader] == kClientHello;
+}
+
 /// Returns what a hello that begins a handshake says, or an empty text. Record numbers differ where
 /// it is repeated.
-std::string HelloIn(GstBuffer* datagram) {
-  constexpr guint8 kHandshakeRecord = 22, kClientHello = 1;
-  const BufferMap map(datagram, GST_MAP_READ);
-  if (!map || map.size() < kRecordHeader + kHandshakeHeader) return "";
-  const guint8* d = map.data();
-  const bool is_first_epoch = d[3] == 0 && d[4] == 0;
-  const guint8* offset = d + kRecordHeader + 6;
-  const bool is_whole = offset[0] == 0 && offset[1] == 0 && offset[2] == 0;
-  if (d[0] != kHandshakeRecord || !is_first_epoch || d[kRecordHeader] != kClientHello || !is_whole)
-    return "";
-  return std::string(reinterpret_cast<const char*>(d) + kRecordHeader, map.size() - kRecordHeader);
+std::string HelloIn(ByteView d) {
+  if (!IsOfHello(d)) return "";
+  const guint8* offset = d.data + kRecordHeader + 6;
+  if (offset[0] != 0 || offset[1] != 0 || offset[2] != 0) return "";
+  return std::string(reinterpret_cast<const char*>(d.data) + kRecordHeader, d.size - kRecordHeader);
 }
 
 }  // namespace
@@ -89,7 +91,7 @@ void DtlsKeys::Process(GstBuffer* datagram) {
   if (is_client_) {
     session = sessions_.empty() ? nullptr : &sessions_.back();
   } else {
-    session = SessionOf(HelloIn(datagram), from);
+    session = SessionOf(HelloIn(BufferMap(datagram, GST_MAP_READ).view()), from);
   }
   if (session != nullptr) session->handshake->Take(datagram);
 }
@@ -130,14 +132,22 @@ DtlsKeys::Session* DtlsKeys::Begin(gint64 now, std::string hello) {
   session.hello = std::move(hello);
   session.route = std::make_shared<Route>();
   session.began = now;
-  session.handshake = DtlsHandshake::Start(certificates_, is_client_,
-                                           [this, route = session.route](GstBuffer* datagram) {
-                                             const std::lock_guard lock(route->mutex);
-                                             calls_.send(datagram, route->addresses);
-                                           });
+  session.handshake = DtlsHandshake::Start(
+      certificates_, is_client_,
+      [this, route = session.route](GstBuffer* datagram) { Send(route.get(), datagram); });
   if (!session.handshake) return nullptr;
   sessions_.push_back(std::move(session));
   return &sessions_.back();
+}
+
+/// A server knows a link by the hello, which the link may have lost: a copy precedes each datagram
+/// that follows it.
+void DtlsKeys::Send(Route* route, GstBuffer* datagram) {
+  const BufferMap map(datagram, GST_MAP_READ);
+  const std::lock_guard lock(route->mutex);
+  if (!HelloIn(map.view()).empty()) route->hello.reset(gst_buffer_ref(datagram));
+  if (route->hello && !IsOfHello(map.view())) calls_.send(route->hello.get(), route->addresses);
+  calls_.send(datagram, route->addresses);
 }
 
 void DtlsKeys::BeginAsClient(gint64 now) {

@@ -64,10 +64,11 @@ class DtlsKeys {
   DtlsCounts counts() const { return {handshakes_, refused_}; }
 
  private:
-  /// The addresses of one peer, which the encoder's thread reads.
+  /// The addresses of one peer, or the first part of a client's hello, for the encoder's thread.
   struct Route {
     std::mutex mutex;
     Addresses addresses;
+    BufferPtr hello;
   };
   struct Session {
     std::string hello;  // of a server's peer
@@ -81,6 +82,7 @@ class DtlsKeys {
   void Process(GstBuffer* datagram);
   Session* SessionOf(const std::string& hello, GSocketAddress* from);
   Session* Begin(gint64 now, std::string hello);
+  void Send(Route* route, GstBuffer* datagram);
   void BeginAsClient(gint64 now);
   void Settle(gint64 now);
   bool MayBegin(gint64 now);

@@ -81,6 +81,7 @@ class DtlsEnds : public ::testing::Test {
     test::SetSource(buffer.get(), "192.0.2.1", datagram.port);
     end.Take(buffer.get());
   }
+  static bool IsOfHello(const Bytes& datagram) { return datagram[0] == 22 && datagram[13] == 1; }
   /// The client's first hello, which may be of several datagrams.
   std::vector<Bytes> HelloOfClient() {
     std::vector<Bytes> hello;
@@ -127,6 +128,23 @@ TEST_F(DtlsEnds, AgreeWhereEachOfTwoLinksLosesEveryThirdDatagram) {
   }));
   EXPECT_EQ(client_key_, server_key_);
   EXPECT_EQ(client_key_.size(), 30U);
+}
+
+/// The clock stands, so that this handshake is the only one.
+TEST_F(DtlsEnds, AgreeOverALinkThatLostTheHelloWhereTheOtherDies) {
+  frozen_at = g_get_monotonic_time();
+  StartServer();
+  StartClient();
+  bool died = false;
+  EXPECT_TRUE(test::Eventually([&] {
+    for (const Carried& d : up_.Take()) {
+      died = died || !IsOfHello(d.bytes);
+      Give(*server_, {static_cast<guint16>(died ? 5'002 : 5'001), d.bytes});
+    }
+    for (const Carried& d : down_.Take())
+      if (!died || d.port == 5'002) Give(*client_, d);
+    return client_keys_ == 1 && server_keys_ == 1;
+  }));
 }
 
 TEST_F(DtlsEnds, AgreeAnewWhereWhatIsSentStaysWithoutAnAnswer) {
