@@ -12,6 +12,7 @@
 #include "ext/ouster/live_session.h"
 #include "ext/ouster/slice_buffer.h"
 #include "gst/common/refs.h"
+#include "gst/common/source_caps.h"
 #include "src/ouster/imu_packet.h"
 
 #include "ext/ouster/debug.h"
@@ -158,12 +159,13 @@ void Session::PushImu(ByteView packet) {
             ToClockTime(stream_->LocalOf(packed->front().timestamp)));
 }
 
-bool Session::SendCaps() {
+GstFlowReturn Session::SendCaps() {
   const CapsPtr caps(CapsOf(*stream_));
-  caps_pending_ = false;
   const CapsPtr current(gst_pad_get_current_caps(GST_BASE_SRC_PAD(element_)));
-  return (current && gst_caps_is_equal(current.get(), caps.get())) ||
-         gst_base_src_set_caps(element_, caps.get());
+  const bool is_known = current && gst_caps_is_equal(current.get(), caps.get());
+  const GstFlowReturn flow = is_known ? GST_FLOW_OK : SetSourceCaps(element_, caps.get());
+  caps_pending_ = flow != GST_FLOW_OK;
+  return flow;
 }
 
 GstFlowReturn Session::Next(GstBuffer** out) {
@@ -171,7 +173,8 @@ GstFlowReturn Session::Next(GstBuffer** out) {
     if (auto slice = stream_ ? stream_->Pop() : std::nullopt) {
       const Time end = slice->local + stream_->slice_duration();
       if (start_ > 0 && end <= ToTime(start_)) continue;
-      if (caps_pending_ && !SendCaps()) return GST_FLOW_NOT_NEGOTIATED;
+      const GstFlowReturn flow = caps_pending_ ? SendCaps() : GST_FLOW_OK;
+      if (flow != GST_FLOW_OK) return flow;
       if (std::exchange(discont_, false)) slice->slice.after_gap = true;
       GST_LOG_OBJECT(element_,
                      "slice %u of scan %u leaves %" G_GINT64_FORMAT

@@ -84,7 +84,7 @@ class Session {
  private:
   Counters Total() const;
   void PushImu(ByteView packet);
-  bool SendCaps();
+  GstFlowReturn SendCaps();
   void PostLoss(const Counters& now);
 
   GstBaseSrc* const element_;

@@ -22,6 +22,7 @@
 #include "gst/common/element_class.h"
 #include "gst/common/enum_type.h"
 #include "gst/common/refs.h"
+#include "gst/common/source_caps.h"
 #include "gst/common/stats.h"
 #include "gst/lidar/gstlidar.h"
 
@@ -298,7 +299,8 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   if (flow != GST_FLOW_OK) return flow;
   if (const CapsPtr caps = state.messages->TakeNewCaps()) {
     GST_DEBUG_OBJECT(self, "caps %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
-    if (!gst_base_src_set_caps(GST_BASE_SRC(self), caps.get())) return GST_FLOW_NOT_NEGOTIATED;
+    const GstFlowReturn set = SetSourceCaps(GST_BASE_SRC(self), caps.get());
+    if (set != GST_FLOW_OK) return set;
   }
   *out = state.messages->TakeBuffer().release();
   return GST_FLOW_OK;

@@ -20,6 +20,7 @@
 #include "gst/common/enum_type.h"
 #include "gst/common/imu_pad.h"
 #include "gst/common/properties.h"
+#include "gst/common/source_caps.h"
 #include "gst/testsrc/live_pacer.h"
 #include "gst/testsrc/slice_maker.h"
 #include "src/base/row_file.h"
@@ -370,8 +371,7 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
     gst_clear_buffer(out);  // drivers publish no empty cloud
   }
   const CapsPtr caps(info->ToCaps());
-  return gst_base_src_set_caps(GST_BASE_SRC(push), caps.get()) ? GST_FLOW_OK
-                                                               : GST_FLOW_NOT_NEGOTIATED;
+  return SetSourceCaps(GST_BASE_SRC(push), caps.get());
 }
 
 static gboolean Unlock(GstBaseSrc* base) {

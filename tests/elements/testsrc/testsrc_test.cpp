@@ -302,6 +302,17 @@ TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
+/// Its caps have the size of the first cloud, which takes long to make.
+TEST(LidarTestSrc, AStopBeforeItsFirstCapsIsNoError) {
+  const ElementPtr pipeline(gst_parse_launch("lidartestsrc model=at128 ! fakesink", nullptr));
+  g_object_set(pipeline.get(), "auto-flush-bus", FALSE, nullptr);
+  gst_element_set_state(pipeline.get(), GST_STATE_PAUSED);
+  g_usleep(50'000);
+  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline.get()));
+  EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_ERROR)));
+}
+
 /// What a source gives at its pads, until its end.
 struct Played {
   std::vector<BufferPtr> clouds;

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Caps of sources, set in their streaming thread.
+#pragma once
+#include <gst/base/gstbasesrc.h>
+
+namespace lidar::gst {
+
+/// Caps do not pass while the pad flushes, as at a stop. That is no error.
+inline GstFlowReturn SetSourceCaps(GstBaseSrc* source, GstCaps* caps) {
+  if (gst_base_src_set_caps(source, caps)) return GST_FLOW_OK;
+  return GST_PAD_IS_FLUSHING(GST_BASE_SRC_PAD(source)) ? GST_FLOW_FLUSHING
+                                                       : GST_FLOW_NOT_NEGOTIATED;
+}
+
+}  // namespace lidar::gst
