@@ -282,17 +282,21 @@ static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenL
 
 /// Drops packets until there is a key: screamtx would count them as lost.
 static void DropUntilKeyed(GstLidarScreamSink* self, GstPad* pad) {
-  using HasKey = std::shared_ptr<const std::atomic<bool>>;
+  using Gate = std::shared_ptr<KeyGate>;
   std::unique_lock lock(self->state->mutex);
-  const HasKey has_key = self->state->srtp ? self->state->srtp->has_key() : nullptr;
+  const Gate gate = self->state->srtp ? self->state->srtp->gate() : nullptr;
   lock.unlock();
-  if (!has_key || *has_key) return;
+  if (!gate || gate->is_open) return;
   gst_pad_add_probe(
       pad, static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
-      [](GstPad*, GstPadProbeInfo*, gpointer flag) {
-        return **static_cast<HasKey*>(flag) ? GST_PAD_PROBE_REMOVE : GST_PAD_PROBE_DROP;
+      [](GstPad*, GstPadProbeInfo* info, gpointer held) {
+        KeyGate& at = **static_cast<Gate*>(held);
+        if (at.is_open) return GST_PAD_PROBE_REMOVE;
+        const bool is_list = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0;
+        at.dropped += is_list ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info)) : 1;
+        return GST_PAD_PROBE_DROP;
       },
-      new HasKey(has_key), [](gpointer flag) { delete static_cast<HasKey*>(flag); });
+      new Gate(gate), [](gpointer held) { delete static_cast<Gate*>(held); });
 }
 
 /// Opens the socket for both ways and hands it to the children.

@@ -24,6 +24,7 @@ namespace lidar::gst {
 struct DtlsCounts {
   std::uint64_t handshakes = 0;  // that brought a key
   std::uint64_t refused = 0;     // with another certificate than the one to trust
+  std::uint64_t unkeyed = 0;  // packets of media that came before there was a key, and were dropped
 };
 
 /// Numbers of packets that were protected, and that passed.
@@ -61,7 +62,7 @@ class DtlsKeys {
 
   /// Takes a datagram that has its source's address; any thread.
   void Take(GstBuffer* datagram);
-  DtlsCounts counts() const { return {handshakes_, refused_}; }
+  DtlsCounts counts() const { return {handshakes_, refused_, 0}; }
 
  private:
   /// The addresses of one peer, or the first part of a client's hello, for the encoder's thread.

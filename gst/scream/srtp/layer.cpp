@@ -82,8 +82,8 @@ bool SrtpLayer::AddKey(const SrtpKey& key) {
   if (!std::all_of(inputs_.begin(), inputs_.end(),
                    [&key](const auto& input) { return input->AddKey(key); }))
     return false;
-  if (places_.sends_media || !*has_key_) encoder_->SetKey(key);
-  *has_key_ = true;
+  if (places_.sends_media || !gate_->is_open) encoder_->SetKey(key);
+  gate_->is_open = true;
   const std::lock_guard lock(mutex_);
   digests_.push_back(DigestOf(key));
   if (digests_.size() > kRememberedKeys) digests_.pop_front();
@@ -114,6 +114,12 @@ SrtpCounts SrtpLayer::counts() const {
     sum.key_changes = std::max(sum.key_changes, counts.key_changes);
   }
   return sum;
+}
+
+DtlsCounts SrtpLayer::dtls_counts() const {
+  DtlsCounts counts = dtls_ ? dtls_->counts() : DtlsCounts{};
+  counts.unkeyed = gate_->dropped;
+  return counts;
 }
 
 BufferPtr SrtpLayer::Protect(GstBuffer* packet) {
@@ -187,7 +193,7 @@ GstPadProbeReturn SrtpLayer::OnOut(GstPad*, GstPadProbeInfo* info, gpointer data
 
 SrtpLayer::~SrtpLayer() {
   dtls_.reset();
-  *has_key_ = true;
+  gate_->is_open = true;
   for (std::size_t i = 0; i < probes_.size(); ++i)
     gst_pad_remove_probe(PadOf(places_.links[i].sender, places_.links[i].out).get(), probes_[i]);
   inputs_.clear();

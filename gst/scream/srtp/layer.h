@@ -36,6 +36,12 @@ struct SrtpPlaces {
   std::function<void(GstBuffer*, const DtlsKeys::Addresses&)> send_dtls;
 };
 
+/// What stands at the pads of media until there is a key.
+struct KeyGate {
+  std::atomic<bool> is_open{false};
+  std::atomic<std::uint64_t> dropped{0};  // packets
+};
+
 /// Lives from READY to NULL of its bin. All SSRCs use the same key. The layer protects packets that
 /// leave by `out`, none before it has a key; RTP over several links is protected once for all
 /// links, by Protect(). The input of each link has its own replay windows.
@@ -51,10 +57,10 @@ class SrtpLayer {
   /// Sums over all inputs.
   SrtpCounts counts() const;
   /// All zero without DTLS.
-  DtlsCounts dtls_counts() const { return dtls_ ? dtls_->counts() : DtlsCounts{}; }
+  DtlsCounts dtls_counts() const;
   bool by_dtls() const { return dtls_ != nullptr; }
-  /// Becomes true with the first key, and with the end of the layer, which it outlives.
-  std::shared_ptr<const std::atomic<bool>> has_key() const { return has_key_; }
+  /// Opens with the first key, and with the end of the layer, which it outlives.
+  std::shared_ptr<KeyGate> gate() const { return gate_; }
   /// Bytes added to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
   BufferPtr Protect(GstBuffer* packet);
@@ -75,7 +81,7 @@ class SrtpLayer {
   std::unique_ptr<SrtpEncoder> encoder_;
   std::vector<std::unique_ptr<SrtpInput>> inputs_;  // one per link
   std::vector<gulong> probes_;                      // one per link
-  std::shared_ptr<std::atomic<bool>> has_key_ = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<KeyGate> gate_ = std::make_shared<KeyGate>();
   std::atomic<std::uint64_t> protected_{0};  // packets of media
 
   std::mutex mutex_;                 // guards digests_

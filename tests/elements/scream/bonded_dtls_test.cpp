@@ -109,6 +109,7 @@ TEST(Dtls, ARobotRefusesAnotherEdge) {
   EXPECT_GE(Stats(sender.Get("out").get())["dtls-refused"], 1U);
   EXPECT_EQ(Stats(sender.Get("out").get())["dtls-handshakes"], 0U);
   EXPECT_EQ(Stats(sender.Get("out").get())["packets-sent"], 0U) << "nothing leaves without a key";
+  EXPECT_GT(Stats(sender.Get("out").get())["packets-unkeyed"], 0U);
 }
 
 TEST(Dtls, FailsWithAWordWhereItCannotStart) {
