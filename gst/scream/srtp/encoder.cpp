@@ -2,6 +2,7 @@
 #include "gst/scream/srtp/encoder.h"
 
 #include <string>
+#include <utility>
 
 #include "gst/scream/rtp_packet.h"
 
@@ -23,9 +24,7 @@ std::unique_ptr<SrtpEncoder> SrtpEncoder::Create(GstElement* bin, const SrtpPoli
   g_object_set(element, "allow-repeat-tx", FALSE, "replay-window-size", kWindow, nullptr);
   gst_element_set_locked_state(element, TRUE);
   gst_bin_add(GST_BIN(bin), element);
-  std::unique_ptr<SrtpEncoder> encoder(new SrtpEncoder(bin, element));
-  gst_element_set_state(element, GST_STATE_PLAYING);
-  return encoder;
+  return std::unique_ptr<SrtpEncoder>(new SrtpEncoder(bin, element));
 }
 
 SrtpEncoder::SrtpEncoder(GstElement* bin, GstElement* element) : bin_(bin), element_(element) {
@@ -64,7 +63,8 @@ void SrtpEncoder::SetKey(const SrtpKey& key) {
   const BufferPtr buffer(gst_buffer_new_memdup(key.data(), key.size()));
   const std::lock_guard lock(mutex_);
   g_object_set(element_, "key", buffer.get(), nullptr);
-  has_key_ = true;
+  // srtpenc of GStreamer 1.22 never frees a session whose first key came while it played.
+  if (!std::exchange(has_key_, true)) gst_element_set_state(element_, GST_STATE_PLAYING);
 }
 
 BufferPtr SrtpEncoder::Protect(GstBuffer* packet) {
