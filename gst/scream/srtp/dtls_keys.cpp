@@ -22,11 +22,13 @@ constexpr gint64 kServerKeepsUs = 10 * G_USEC_PER_SEC;
 constexpr gsize kRecordHeader = 13;
 constexpr gsize kHandshakeHeader = 12;
 
-/// Returns true for each part of a client's hello.
+/// Returns true for each part of a client's hello. A record that was cut off is none.
 bool IsOfHello(ByteView d) {
   constexpr guint8 kHandshakeRecord = 22, kClientHello = 1;
-  return d.size >= kRecordHeader + kHandshakeHeader && d.data[0] == kHandshakeRecord &&
-         d.data[3] == 0 && d.data[4] == 0 &&  // the first epoch
+  if (d.size < kRecordHeader + kHandshakeHeader) return false;
+  const gsize length = gsize{d.data[11]} << 8 | d.data[12];
+  return d.size >= kRecordHeader + length && d.data[0] == kHandshakeRecord && d.data[3] == 0 &&
+         d.data[4] == 0 &&  // the first epoch
          d.data[kRecordHeader] == kClientHello;
 }
 
