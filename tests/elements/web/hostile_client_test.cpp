@@ -7,6 +7,7 @@
 #include "src/foxglove/websocket.h"
 #include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"
+#include "tests/support/patience.h"
 #include "tests/support/proto_reader.h"
 
 namespace lidar::test {
@@ -24,7 +25,7 @@ class RawClient {
         client, "127.0.0.1", static_cast<guint16>(sink->Stat("port")), nullptr, nullptr);
     g_object_unref(client);
     EXPECT_NE(connection_, nullptr);
-    g_socket_set_timeout(g_socket_connection_get_socket(connection_), 10);
+    g_socket_set_timeout(g_socket_connection_get_socket(connection_), kPatience.count());
   }
   ~RawClient() { g_clear_object(&connection_); }
   RawClient(RawClient&& o) noexcept : connection_(std::exchange(o.connection_, nullptr)) {}
@@ -78,17 +79,21 @@ class RawClient {
     }
     Send(frame + std::string(4, '\0') + text);  // a mask of zeros
   }
-  /// The payload of the next frame; empty where the connection ends.
+  /// The payload of the next frame that is no ping; empty where the connection ends.
   std::string ReadFrame() {
-    const std::string head = ReadAll(2);
-    if (head.empty()) return "";
-    std::uint64_t size = static_cast<std::uint8_t>(head[1]);
-    if (size >= 126) {
-      const std::string more = ReadAll(size == 126 ? 2 : 8);
-      size = 0;
-      for (const char c : more) size = size << 8 | static_cast<std::uint8_t>(c);
+    for (;;) {
+      const std::string head = ReadAll(2);
+      if (head.empty()) return "";
+      std::uint64_t size = static_cast<std::uint8_t>(head[1]);
+      if (size >= 126) {
+        const std::string more = ReadAll(size == 126 ? 2 : 8);
+        size = 0;
+        for (const char c : more) size = size << 8 | static_cast<std::uint8_t>(c);
+      }
+      const bool is_ping = (head[0] & 0x0F) == 9;
+      const std::string payload = size > 0 ? ReadAll(size) : "";
+      if (!is_ping) return payload;
     }
-    return size > 0 ? ReadAll(size) : "";
   }
 
  private:

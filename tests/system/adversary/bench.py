@@ -25,26 +25,26 @@ class Bench:
 
     def settle(self):
         """Until the stream runs, and its memory is known."""
-        self.await_more_clouds()
+        self.await_more_slices()
         time.sleep(0.3)
         self.before = self.receiver.ask()
 
-    def await_clouds(self, count):
-        """Until so many true clouds were shown."""
+    def await_report(self, holds, promise):
         start = time.monotonic()
-        while self.count_true() < count:
-            assert time.monotonic() - start < MOST_PATIENCE, f"fewer than {count} clouds were shown"
+        while not holds(self.receiver.ask()):
+            assert time.monotonic() - start < MOST_PATIENCE, promise
             time.sleep(0.02)
 
-    def await_more_clouds(self):
-        self.await_clouds(self.count_true() + 3)
+    def await_more_slices(self, more=3):
+        """Until so many true slices were shown."""
+        count = self.count_true() + more
+        self.await_report(lambda _: self.count_true() >= count, f"fewer than {count} slices were shown")
 
     def await_packets(self, count):
         """Until so many came in: the kernel keeps a few hundred for a busy receiver."""
-        start = time.monotonic()
-        while self.receiver.ask()["net"]["packets-received"] < count:
-            assert time.monotonic() - start < MOST_PATIENCE, f"fewer than {count} packets arrived"
-            time.sleep(0.005)
+        self.await_report(
+            lambda report: report["net"]["packets-received"] >= count, f"fewer than {count} packets arrived"
+        )
 
     def count_true(self):
         self.receiver.ask()
