@@ -12,7 +12,7 @@ namespace lidar::gst {
 
 class FeedbackPeer {
  public:
-  /// A new address becomes the peer's after such a silence of the old one.
+  /// A new address becomes the peer's when the old one has been silent for this time.
   static constexpr Duration kOldPeerSilence = std::chrono::milliseconds(500);
 
   /// Takes the source of accepted feedback, which may be NULL. Returns true if the peer has moved.

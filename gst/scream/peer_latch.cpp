@@ -33,7 +33,8 @@ void PeerLatch::Peer::Add(Time now, const Packet& packet) {
     last.back() = now;
     went_on = std::min(went_on + 1, kProbation);
   }
-  // An SSRC that went back keeps its state for a while: else a repeated packet would be a stream.
+  // The numbers of an SSRC may go back after kStreamTime only: otherwise repeated packets would be
+  // a stream.
   if (goes_on || found == sources.end() || now - found->second.at > kStreamTime) {
     if (found == sources.end() && sources.size() >= kMostSources) sources.erase(sources.begin());
     sources[packet.ssrc] = {static_cast<std::uint16_t>(packet.seq + 1), now};
@@ -88,8 +89,8 @@ void PeerLatch::NoteCopies(const Packet& packet) {
     if (c.digests.Take(packet.digest)) ++c.copies;
 }
 
-/// Gives the candidate a place among the links. If all places are taken, a silent link loses its
-/// own.
+/// Gives the candidate a place among the links, if need be that of the longest silent link. Returns
+/// false if all places belong to links that send.
 bool PeerLatch::Join(Time now, Peer* candidate) {
   if (links_.size() + 1 >= kMaxLinks) {
     const auto oldest = std::min_element(links_.begin(), links_.end(),
@@ -104,8 +105,8 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
   return true;
 }
 
-/// Finds or adds a candidate. If there are too many, it replaces the one with the least standing
-/// that was silent longest.
+/// Finds or adds a candidate. If there are too many, a new one replaces the one of least standing,
+/// and among equals the longest silent.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;
@@ -144,7 +145,7 @@ bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
 bool PeerLatch::Wins(const Peer& candidate, Time now) const {
   if (candidate.went_on < kProbation) return false;
   const Standing shown = candidate.standing(now);
-  // A sender has several links, and chance decides which of them shows a stream first.
+  // A stream alone does not win at the start: it may be another link of the same sender.
   const Standing least = now - peer_.since < kStart ? Standing::kStream : Standing::kNothing;
   if (!IsSilent(now)) return shown > std::max(peer_.standing(now), least);
   const bool needs_slices = peer_.has_slices && now - LastHeard() < kLongSilence;
@@ -177,7 +178,7 @@ PeerLatch::Verdict PeerLatch::OnPacket(Time now, const Packet& packet) {
       peer_.is_known = peer_.has_slices = true;
       known_.erase(packet.ssrc);
     }
-    // Compares by pointer with the next packet's address.
+    // Keeps this object: SameAddress() is fast if the next packet has the same.
     if (packet.from != nullptr && packet.from != peer_.address.get())
       peer_.address = RefAddress(packet.from);
     peer_.Add(now, packet);

@@ -37,16 +37,16 @@ class Digests {
 
 /// Accepts one peer at a time: the first that sends. Another peer takes its place with a higher
 /// standing (see Standing), or with an equal one while the first is silent. Packets of others count
-/// for their standing and are dropped. A packet without an address counts as any peer's.
+/// for their standing and are dropped. A packet without an address counts as the peer's.
 ///
 /// A peer may send over several links. An address becomes its link after kCopies packets that equal
 /// packets of the peer byte for byte: only an observer of the packets can send them. If a link
 /// falls silent, the peer continues over the others.
 class PeerLatch {
  public:
-  /// A stream is this many packets after the first, with ascending numbers in their SSRC,
+  /// A stream is a packet and this many more, with ascending numbers in their SSRC,
   static constexpr int kProbation = 4;
-  /// within this time.
+  /// that arrive within this time.
   static constexpr Duration kStreamTime = 1s;
   /// A peer counts as a stream for this time after its first packet.
   static constexpr Duration kStart = 200ms;
@@ -65,8 +65,8 @@ class PeerLatch {
   enum class Standing {
     kNothing,
     kStream,  ///< sends a stream now
-    kSlices,  ///< the receiver put a slice of its LiDAR packets together
-    kKnown,   ///< continues an SSRC of a silent peer's slices
+    kSlices,  ///< a whole slice was assembled from its LiDAR packets
+    kKnown,   ///< continues an SSRC of a silent peer that showed slices
   };
   enum class Verdict {
     kAccepted,
@@ -82,15 +82,15 @@ class PeerLatch {
   };
 
   Verdict OnPacket(Time now, const Packet& packet);
-  /// Returns true if a datagram from there that is no media may be accepted.
+  /// Returns true if `from` may send datagrams other than media.
   bool IsPeer(GSocketAddress* from) const;
-  /// Returns true if OnPacket() needs no payload of packets from there.
+  /// Returns true if OnPacket() does not need the payload of packets from `from`.
   bool HasShownSlices(GSocketAddress* from) const { return peer_.has_slices && IsPeer(from); }
-  /// Returns true if copies are possible, because another address sends too.
+  /// Returns true if another address sends, too, so that a packet may be a copy.
   bool WantsDigest(GSocketAddress* from) const {
     return !candidates_.empty() || !links_.empty() || !IsPeer(from);
   }
-  /// Number of links of the peer, with the first one.
+  /// Number of links of the peer, the first one included.
   std::size_t links() const { return latched_ ? 1 + links_.size() : 0; }
   /// Address of link `n`, owned by the latch; peer() for 0.
   GSocketAddress* link(std::size_t n) const {
@@ -125,7 +125,7 @@ class PeerLatch {
     Standing standing(Time now) const;
   };
 
-  /// A link beside the first.
+  /// A link other than the first.
   struct Link {
     SocketAddressPtr address;
     Time at{};

@@ -35,7 +35,7 @@ std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);
 /// Returns the SSRCs of all BYEs in a compound RTCP datagram.
 std::vector<guint32> ParseBye(ByteView datagram);
 
-/// Returns a digest, never 0. A sender that cannot see a packet cannot make another with its
+/// Returns a digest, never 0. A sender that has not seen a packet cannot make one with the same
 /// digest.
 std::uint64_t DigestOf(ByteView packet);
 

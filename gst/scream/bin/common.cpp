@@ -32,7 +32,7 @@ void GiveSocket(GstElement* child, GSocket* socket) {
 void EndSrtp(BinState& state) {
   std::unique_lock lock(state.mutex);
   const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
-  lock.unlock();  // the last reference must go without the lock
+  lock.unlock();  // the layer is released without the lock
 }
 
 void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given) {

@@ -15,7 +15,7 @@
 
 namespace lidar::gst {
 
-/// Valid from READY to NULL. `mutex` guards it, and is free while a child works.
+/// Valid from READY to NULL. `mutex` guards it; calls into children are made without it.
 struct BinState {
   std::mutex mutex;
   SocketInUse used;
@@ -31,15 +31,15 @@ struct Child {
 };
 /// Returns false, with an error on the bus, if one of `children` is missing.
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
-/// Gives `socket` to a child that does not own it.
+/// Sets a child's socket (NULL: none), which the child does not own.
 void GiveSocket(GstElement* child, GSocket* socket);
 /// Removes the layer's elements from the bin.
 void EndSrtp(BinState& state);
 /// Takes the socket from the children, ends SRTP and closes the socket. A socket of the user is
 /// closed only if the user asked for it.
 void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given);
-/// Sends a datagram by the interface (empty: by the routes), or drops it where the socket has no
-/// room.
+/// Sends a datagram through the interface (empty: by the routes), or drops it if it cannot leave at
+/// once.
 void SendDatagram(GSocket* socket, GSocketAddress* to, const std::string& interface,
                   GstBuffer* datagram);
 /// Bytes of the UDP and IP headers of a packet to `peer`.
@@ -49,7 +49,7 @@ StructurePtr StatsOf(GstElement* child);
 /// Copies a field of the child's statistics, if there is one.
 void CopyStat(GstElement* child, const char* field, GstStructure* to);
 
-/// Table rows with it belong to a child of the bin.
+/// Returns the child that has the properties of a table's rows.
 template <class Self, GstElement* Self::*child>
 GObject* ChildOf(GObject* bin) {
   GstElement* element = reinterpret_cast<Self*>(bin)->*child;

@@ -47,7 +47,7 @@ struct State : BinState {
 
 }  // namespace
 
-/// A ghost of a sink pad of screamtx, or of such pads on each link, with their properties.
+/// A ghost pad for a sink pad of screamtx, or for one on each link. It has their properties.
 G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
                      GstGhostPad)
 struct _GstLidarScreamSinkPad {
@@ -117,7 +117,7 @@ static guint Estimate(GObject* object) {
   return bps;
 }
 
-/// The defaults end the receiver with the sender, and send it reports.
+/// A screamsink ends its receiver, and sends it reports, unless set otherwise.
 static const TxSettings& TxDefaults() {
   static const TxSettings defaults = [] {
     TxSettings s;
@@ -213,7 +213,7 @@ static std::vector<PadPtr> SinkPadsOf(GstLidarScreamSink* self) {
   return pads;
 }
 
-/// Calls a function for each pad of the bin and the pad it stands for.
+/// Replaces the target of each ghost pad with the result of `retarget`.
 static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(GstPad*)>& retarget) {
   for (const PadPtr& pad : SinkPadsOf(self)) {
     const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad.get())));
@@ -242,8 +242,8 @@ static void Unbond(GstLidarScreamSink* self) {
   if (links) ForEachGhost(self, [&](GstPad* sink) { return links->Remove(sink); });
 }
 
-/// Opens the only link, or the first of several, which are then in `links`. Returns no socket after
-/// an element error.
+/// Opens the only link, or all of several into `links`, and returns the first. It has no socket
+/// after an element error.
 static OpenLink OpenFirst(GstLidarScreamSink* self, const SinkSettings& s,
                           std::vector<OpenLink>* links) {
   OpenLink first;
@@ -264,7 +264,7 @@ static std::shared_ptr<SinkLinks> LinksOf(GstLidarScreamSink* self) {
   return self->state->links;
 }
 
-/// `open` are all links.
+/// `open` has all links.
 static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenLink>& open) {
   std::vector<SrtpPlace> places;
   const std::shared_ptr<SinkLinks> links = LinksOf(self);
@@ -312,7 +312,7 @@ static bool Open(GstLidarScreamSink* self) {
   SharedSocket socket = first.socket;
   if (!socket) return false;
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer.get()));
-  // Resolved here, as a name may have several addresses.
+  // The sink gets the address, because a name may have several.
   const StringPtr literal(g_inet_address_to_string(host));
   g_object_set(self->sink, "host", literal.get(), "port", first.address.target.port, "interface",
                first.address.interface.c_str(), nullptr);
@@ -322,7 +322,7 @@ static bool Open(GstLidarScreamSink* self) {
   std::shared_ptr<SrtpLayer> srtp;
   const std::vector<OpenLink> all = links.empty() ? std::vector<OpenLink>{first} : links;
   if (!StartSrtp(s.srtp, SrtpPlacesOf(self, all), &srtp)) return false;
-  // Several links share packets that are protected before screamtx.
+  // A bond protects packets before screamtx, which then measures them with their SRTP tags.
   const bool adds = srtp && links.size() < 2;
   const guint overhead = OverheadOf(peer.get()) + (adds ? srtp->overhead() : 0);
   g_object_set(self->tx, "packet-overhead", overhead, nullptr);
@@ -362,7 +362,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   }
   GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_sink_parent_class)->change_state(element, change);
-  // The source of feedback is live, which says nothing about the media.
+  // NO_PREROLL is of the feedback's source, not of the media.
   if (result == GST_STATE_CHANGE_NO_PREROLL) result = GST_STATE_CHANGE_SUCCESS;
   if (change == GST_STATE_CHANGE_READY_TO_NULL) Close(self);
   return result;

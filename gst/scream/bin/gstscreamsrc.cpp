@@ -145,7 +145,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
-/// Replaces the general error of a source without a linked pad by one that names what to link.
+/// Replaces a source's general error about its unlinked pad by one that names what to link.
 static void HandleMessage(GstBin* bin, GstMessage* message) {
   auto* self = GST_LIDAR_SCREAM_SRC(bin);
   const PadPtr src(gst_element_get_static_pad(GST_ELEMENT(bin), "src"));
@@ -165,7 +165,7 @@ static void OnPadAdded(GstElement*, GstPad* pad, GstElement* bin) {
   GstPadTemplate* templ = gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(bin), "src_%u");
   GstPad* ghost = gst_ghost_pad_new_from_template(name.get(), pad, templ);
   gst_pad_set_active(ghost, TRUE);
-  // Sends the events before the pad is visible: gst-launch links by caps.
+  // Stores the events before the pad is visible, because gst-launch links by caps.
   gst_pad_sticky_events_foreach(
       pad,
       [](GstPad*, GstEvent** event, gpointer to) -> gboolean {

@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// A peer, and the interface or local address from which packets go to it; empty for any.
+/// A peer, and the interface or local address by which packets to it leave (empty: any).
 struct BondAddress {
   UdpTarget target;
   std::string interface;

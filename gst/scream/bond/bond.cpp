@@ -68,7 +68,7 @@ static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer
   return best;
 }
 
-/// Waits for packets that another link may still deliver: the first goodbye ends the receiver.
+/// Waits while another link may still deliver packets, because the first goodbye ends the receiver.
 static void AwaitArrivals(BondState& state) {
   BondShared& shared = *state.shared;
   std::unique_lock lock(shared.mutex);

@@ -6,7 +6,8 @@
 //
 // Threads: streaming threads push packets to the links that the scheduler chooses. The bond's own
 // thread pushes copies, and sends targets to encoders. One mutex guards the scheduler and the
-// packets kept for copies; no thread pushes with it held. The screamtx call in with their own lock.
+// packets kept for copies; no thread pushes with it held. Each screamtx calls in with its own lock
+// held.
 #pragma once
 #include <gst/gst.h>
 
@@ -50,7 +51,7 @@ void BondSetUsable(GstLidarScreamBond* bond, std::size_t link, bool usable);
 /// below READY.
 void BondSetWatch(GstLidarScreamBond* bond, std::function<void()> watch);
 
-/// Returns all but the name of the link.
+/// Returns the statistics of the link, without its name.
 BondLinkStats BondStats(GstLidarScreamBond* bond, std::size_t link);
 
 }  // namespace lidar::gst

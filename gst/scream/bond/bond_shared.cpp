@@ -21,7 +21,7 @@ constexpr double kWorthTelling = 0.02;
 // Least interval between key units. The interval of a single link is longer.
 constexpr Duration kKeyUnitInterval = std::chrono::milliseconds(400);
 
-constexpr std::size_t kMaxMisdirected = 64;  // a tick of feedback
+constexpr std::size_t kMaxMisdirected = 64;  // reports held for the next tick
 
 class BondLink : public TxLink {
  public:
@@ -81,7 +81,7 @@ void BondShared::KeepLocked(Time now, PacketId id, GstBuffer* buffer, BondStream
 
 bonding::LinkSet BondShared::Schedule(GstBuffer* buffer, BondStream* stream) {
   const auto header = ReadRtpHeader(buffer);
-  if (!header) return 1;  // another buffer counts as sent by the first link
+  if (!header) return 1;  // a buffer that is not RTP leaves by the first link
   const Time now = Now();
   const PacketId id{header->ssrc, header->seq};
   const auto size = static_cast<std::int64_t>(gst_buffer_get_size(buffer));

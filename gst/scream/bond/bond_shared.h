@@ -30,7 +30,7 @@ struct BondStream {
   std::optional<Time> key_unit_at;             // last request for a key unit
 };
 
-/// A report that came by another link than its own.
+/// A report about packets of link `owner` that came by another link.
 struct Misdirected {
   std::size_t owner;
   scream::CongestionFeedback report;
@@ -56,7 +56,7 @@ struct BondShared {
   /// Takes the target of the link behind `src`. Returns an event with the combined target if the
   /// encoder does not have it yet.
   EventPtr Combine(BondStream& stream, GstPad* src, const GstLidarTargetBitrate& target);
-  /// Returns true if another link has brought the same request for a key unit.
+  /// Returns true for a request for a key unit that follows another one too soon.
   bool IsRepeatedRequest(BondStream& stream, GstEvent* event);
   BondWork TakeWorkLocked(const std::vector<std::unique_ptr<BondStream>>& streams);
   void ForgetPacketsLocked(const BondStream* stream);
@@ -81,7 +81,7 @@ struct BondShared {
   std::deque<std::pair<Time, std::uint64_t>> order_;
 };
 
-/// Returns link `index`, as its screamtx sees it.
+/// Returns link `index` in the form that its screamtx calls.
 std::shared_ptr<TxLink> NewBondLink(std::shared_ptr<BondShared> bond, std::size_t index);
 
 }  // namespace lidar::gst

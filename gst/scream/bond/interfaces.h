@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The machine's interfaces and addresses, and what a link lacks of them.
+// The machine's interfaces and addresses, and which of them a link lacks.
 #pragma once
 #include <gio/gio.h>
 

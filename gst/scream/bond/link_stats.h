@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Statistics of a link of a bond, beside those of its screamtx.
+// Statistics that a bond adds to those of a link's screamtx.
 #pragma once
 #include <gst/gst.h>
 

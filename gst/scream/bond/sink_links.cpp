@@ -36,8 +36,8 @@ GType BondTargetType() {
 // Time after which a link whose packets failed is tried again.
 constexpr gint64 kRetryUs = 1 * G_USEC_PER_SEC;
 
-/// Opens the link's socket. Returns none, and the reason, if its name is not found or no socket
-/// opens.
+/// Opens the link's socket. Returns a link without one, and the reason, if its name is not found or
+/// no socket opens.
 OpenLink Open(const BondAddress& address, std::string* why) {
   OpenLink link{address, nullptr, nullptr, true};
   GError* error = nullptr;

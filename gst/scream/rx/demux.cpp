@@ -11,7 +11,7 @@
 namespace lidar::gst {
 namespace {
 
-// Each SSRC creates a pad, even a forged one or that of a restarted sender.
+// Each new SSRC creates a pad, even if it is forged or belongs to a restarted sender.
 constexpr std::size_t kMaxRoutes = 1'024;
 
 bool IsLidar(const GstCaps* caps) {
@@ -31,7 +31,7 @@ CapsPtr CapsOfValue(const GValue* value) {
 /// Payload types that look like RTCP with the marker bit (RFC 5761, section 4).
 constexpr bool CollidesWithRtcp(unsigned type) { return type >= 64 && type <= 95; }
 
-/// Describes the fault of one field of pt-map; NULL without a fault.
+/// Returns what is wrong with a field of pt-map, or NULL.
 const char* FaultOf(std::string_view name, const GValue* value) {
   unsigned type = 0;
   const auto end = std::from_chars(name.data(), name.data() + name.size(), type).ptr;
@@ -100,8 +100,8 @@ bool LeadsToSomebody(GstPad* pad) {
   return ghost != nullptr && LeadsToSomebody(GST_PAD(ghost));
 }
 
-/// Returns the packet's pad. `src` takes the first stream that its peer accepts; unknown payload
-/// types (retransmission, FEC) go to a pad that exists.
+/// Returns the packet's pad. `src` takes the first stream that its peer accepts; payload types that
+/// pt-map lacks (retransmission, FEC) go to `src`, too.
 GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
   const CapsPtr caps(CapsOf(self, header));
@@ -162,7 +162,7 @@ bool HasPtMap(GstLidarScreamRx* self) {
   return self->state->settings.pt_map != nullptr;
 }
 
-/// Drops a packet whose SSRC came after the last pad was given away.
+/// Drops a packet whose SSRC gets no pad, because there are kMaxRoutes.
 static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   RxState& state = *self->state;
   gst_buffer_unref(buffer);

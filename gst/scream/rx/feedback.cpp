@@ -40,7 +40,7 @@ void Wait(RxState& state, RxLock& lock, Time now) {
   gst_clock_id_unref(id);
 }
 
-/// Returns RTCP as a buffer with its destination, for a sink that replies.
+/// Returns RTCP in a buffer with its destination (may be NULL), for ecnudpsink with `reply`.
 GstBuffer* ToBuffer(GSocketAddress* to, const std::vector<std::uint8_t>& bytes) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
   gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
@@ -109,8 +109,8 @@ gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owner(event);
   RxState& state = *GST_LIDAR_SCREAM_RX(parent)->state;
   const RxLock lock(state.mutex);
-  // Requests all SSRCs, as only the streaming thread knows the pad's. Each link sends the request:
-  // a link in a gap would lose it.
+  // Requests key units of all SSRCs, because only the streaming thread may read which SSRC the pad
+  // has. Each link carries the request, because a link in a gap would lose it.
   for (const auto& [ssrc, last] : state.ssrcs)
     for (std::size_t i = 0; i < std::max<std::size_t>(state.latch.links(), 1); ++i)
       state.key_requests.emplace(ssrc, i);

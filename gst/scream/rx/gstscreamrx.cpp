@@ -47,7 +47,7 @@ constexpr auto F = At<&Shown::feedback, field>;
 template <auto field>
 constexpr auto O = At<&Shown::own, field>;
 
-/// Adds the numbers of packets by link of the peer.
+/// Adds the numbers of packets of each link of the peer.
 static void AddLinkStats(const LinkReports& reports, GstStructure* stats) {
   using S = LinkReports::LinkStats;
   using G = scream::FeedbackGenerator::Stats;
@@ -151,7 +151,7 @@ static gboolean SinkEvent(GstPad*, GstObject* parent, GstEvent* event) {
   RxState& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_EOS:
-      if (state.eos) {  // the goodbyes have already sent it
+      if (state.eos) {  // the goodbyes have already ended the stream
         gst_event_unref(event);
         return TRUE;
       }

@@ -25,8 +25,7 @@ struct Clocks {
   GstClockTime unix_now = 0;
 };
 
-/// Reads both clocks. Repeats it if the thread was stopped in between, as all arrivals would then
-/// seem earlier.
+/// Reads both clocks, again if the thread was stopped in between: all arrivals would seem earlier.
 Clocks ReadClocks(const RxState& state) {
   Clocks clocks;
   for (int tries = 0; tries < 3; ++tries) {
@@ -61,8 +60,8 @@ PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpH
   return state.latch.OnPacket(now, packet);
 }
 
-/// Returns true if a slice that begins here was captured too long ago, or nothing if no slice
-/// begins.
+/// Returns true if the capture time of a slice that begins here is more than max-age away, or
+/// nothing if no slice begins.
 std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteView payload) {
   std::optional<bool> old;
   for (const rtp::Unit& unit : rtp::ParsePayload(payload)) {
@@ -120,7 +119,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) +
                 state.settings.packet_overhead;
   state.reports.OnPacket(SourceOf(buffer), ArrivalTime(clocks, arrival), packet);
-  // A live stream comes back with its next packet.
+  // The next packet of an erased stream adds it again.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
   state.ssrcs[header.ssrc] = clocks.now;
   const bool is_new = state.seen.Add(header.ssrc, header.seq);

@@ -54,7 +54,7 @@ class LinkReports {
   std::vector<Link> links_;
 };
 
-/// Packets that have arrived by any link. A packet too old to be remembered passes.
+/// Packets that have arrived by any link. A packet that is too old to be found counts as new.
 class SeenPackets {
  public:
   static constexpr int kWindow = 4096;

@@ -2,8 +2,8 @@
 /**
  * SECTION:element-screamaux
  *
- * SCReAM v2 where the receiver reports with transport-wide feedback (TWCC) in place of RFC 8888:
- * stands right before an rtpsession, as request-aux-sender of webrtcbin puts it.
+ * SCReAM v2 for receivers that report with transport-wide feedback (TWCC) in place of RFC 8888. It
+ * stands right before an rtpsession; request-aux-sender of webrtcbin puts it there.
  *
  * |[
  * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamaux !
@@ -32,7 +32,7 @@ using namespace lidar::gst;
 namespace {
 
 constexpr guint kIpUdpAndSrtpTag = 38;  // bytes
-/// A stock receiver's rtpsession reports this rarely at low rates.
+/// The interval of a stock receiver's rtpsession at low rates.
 constexpr guint64 kFeedbackInterval = 500 * GST_MSECOND;
 
 struct AuxSettings {

@@ -21,7 +21,7 @@ const gchar* UriOf(const GValue* field) {
   return G_VALUE_HOLDS_STRING(uri) ? g_value_get_string(uri) : nullptr;
 }
 
-/// The fields of a packet in rtpsession's event. Missing fields leave it empty.
+/// A packet in rtpsession's event. `arrival` is unset if it is lost or untimed.
 struct Reported {
   guint number = 0;
   std::optional<Duration> arrival;
@@ -41,14 +41,14 @@ std::optional<Reported> Read(const GstStructure* s) {
   return r;
 }
 
-/// Returns the packets of an event that is a report. Stops when their number shows that the report
-/// is too long.
+/// Returns the packets of a report, nothing for another event. At most one more than
+/// kMaxTwccPackets, which shows that the report is too long.
 std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   std::vector<const GstStructure*> packets;
   const GstStructure* s = gst_event_get_structure(event);
   if (s == nullptr || !gst_structure_has_name(s, kEvent)) return packets;
   const GValue* list = gst_structure_get_value(s, "packets");
-  // Found by its name: GLib deprecates the type, but rtpsession uses it.
+  // The type is found by its name, because GLib deprecates it; rtpsession uses it.
   if (list == nullptr || !G_VALUE_HOLDS(list, g_type_from_name("GValueArray"))) return packets;
   const auto* array = static_cast<const GValueArray*>(g_value_get_boxed(list));
   for (guint i = 0; array != nullptr && i < array->n_values; ++i)

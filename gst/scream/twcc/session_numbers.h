@@ -21,7 +21,7 @@ class SessionNumbers {
     guint64 mismatched = 0;  // reports about packets of others
   };
 
-  /// Reads the extension's id from the session's caps. Packets of other caps have none.
+  /// Reads the extension's id from the session's caps. Other caps have no id.
   void OnCaps(const GstCaps* caps);
   /// Notes a packet on its way to the session.
   void OnPacket(GstBuffer* buffer);

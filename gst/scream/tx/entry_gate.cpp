@@ -10,7 +10,8 @@ GstClockTime Shifted(EntryShift* s, GstClockTime entry, GstClockTime base_time, 
   return s->base_time == base_time ? entry + s->shift : entry;
 }
 
-/// Returns when input that is not live may enter, as if a live source had made it.
+/// Returns when input that is not live may enter: the clock time at which a live source would have
+/// made it.
 GstClockTime EntryTime(GstElement* element, const TxStream& stream, GstBuffer* buffer) {
   const GstClockTime pts = GST_BUFFER_PTS(buffer);
   if (!GST_CLOCK_TIME_IS_VALID(pts) || stream.segment.format != GST_FORMAT_TIME)
@@ -57,7 +58,7 @@ void EntryGate::Wait(TxLock& lock, GstElement* element, Duration max_age, TxStre
   WaitForTime(lock, element, stream, first);
 }
 
-/// The queue has room before PLAYING, as a sink needs packets to preroll.
+/// An empty queue has room before PLAYING, because a sink needs packets to preroll.
 void EntryGate::WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stream) {
   changed_.wait(lock, [&] {
     if (Check(stream) != GST_FLOW_OK) return true;

@@ -25,7 +25,7 @@ const char* ToString(scream::FeedbackResult result) {
   return "?";
 }
 
-/// Keeps the arrived packets for payloaders. The caller holds the lock.
+/// Keeps receipts of the arrived packets for payloaders. The caller holds the lock.
 void KeepReceipts(TxState& state, const scream::CongestionFeedback& report) {
   for (const scream::SsrcReport& block : report.blocks) {
     const auto id = state.controller->FindStream(block.ssrc);
@@ -45,7 +45,7 @@ void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   if (!state.controller || !state.gate.open()) return;
   const auto id = state.controller->FindStream(*ssrc);
   TxStream* stream = id ? FindStream(state, *id) : nullptr;
-  // Elements that manage a video encoder's RTP session send its requests.
+  // The element that manages a video encoder's RTP session sends the encoder such requests.
   if (stream == nullptr || !stream->wants_receipts) return;
   stream->key_unit_due = true;
   state.reporter.Evaluate(TxNow(state));
@@ -78,7 +78,7 @@ bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSoc
     state.controller->OnRouteChange(now);
   }
   if (result == scream::FeedbackResult::kAccepted) state.pacing.OnAccepted(now);
-  // Transport-wide feedback names no receiver, and its packets may still be dropped downstream.
+  // TWCC names no receiver, whose elements may still drop the packets that it reports.
   if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
     KeepReceipts(state, report);
   state.reporter.Evaluate(now);

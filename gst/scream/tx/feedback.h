@@ -6,8 +6,8 @@
 
 namespace lidar::gst {
 
-/// Handles a report as if it had come in RTCP, but with the full resolution of its times. All
-/// threads may call it.
+/// Handles a report as if it had come in RTCP, but with the full resolution of its times. Any
+/// thread may call it.
 void TxTakeReport(GstLidarScreamTx* tx, const scream::CongestionFeedback& report);
 
 }  // namespace lidar::gst

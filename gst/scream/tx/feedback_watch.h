@@ -18,7 +18,7 @@ class FeedbackWatch {
     if (!unanswered_since_) unanswered_since_ = now;
     OnInput(now);
   }
-  /// Notes that there is more to send; otherwise silence means nothing.
+  /// Notes that there is more to send. Silence counts only then.
   void OnInput(Time now) {
     if (unanswered_since_ && now - *unanswered_since_ >= kFeedbackTimeout) silent_ = true;
   }

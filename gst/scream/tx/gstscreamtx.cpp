@@ -2,8 +2,8 @@
 /**
  * SECTION:element-screamtx
  *
- * Sends RTP no faster than the network carries it (SCReAM v2) and tells the encoders upstream what
- * they may put out. RFC 8888 feedback goes to rtcp_sink.
+ * Sends RTP no faster than the network carries it (SCReAM v2) and sends the encoders upstream their
+ * target bitrates. RFC 8888 feedback goes to rtcp_sink.
  *
  * |[
  * gst-launch-1.0 videotestsrc is-live=true ! openh264enc ! rtph264pay ! screamsink host=127.0.0.1
@@ -156,7 +156,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
 }
 
-/// Returns false after an element error.
+/// Returns false, after an element error, if `tuning` is wrong.
 static bool TakesTuning(GstElement* element) {
   lidar::scream::Parameters parameters;
   const TxSettings settings = Snapshot(StateOf(element));

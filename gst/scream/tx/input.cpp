@@ -10,7 +10,7 @@ namespace {
 bool IsLive(GstPad* pad) {
   const QueryPtr query(gst_query_new_latency());
   gboolean live = TRUE;
-  // Upstream without an answer counts as live and is never delayed.
+  // Upstream counts as live, and is never delayed, if it does not answer.
   if (gst_pad_peer_query(pad, query.get()))
     gst_query_parse_latency(query.get(), &live, nullptr, nullptr);
   return live != FALSE;

@@ -22,8 +22,8 @@ class TxLink {
   virtual guint16 OnSent(Time now, guint32 ssrc, guint16 seq) = 0;
   /// A packet was dropped. Returns true if another link delivered it.
   virtual bool OnDropped(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// Converts a report to these numbers. Returns nothing if it names packets that this link never
-  /// sent.
+  /// Converts a report to the numbers of OnSent(). Returns nothing if it names packets that this
+  /// link never sent.
   virtual std::optional<scream::CongestionFeedback> OnFeedback(
       Time now, const scream::CongestionFeedback& report) = 0;
   /// Bytes at the end of each packet that are not media.
@@ -32,7 +32,7 @@ class TxLink {
   virtual void OnPath(const scream::Statistics& statistics) = 0;
 };
 
-/// Call it below READY. Null means the only link.
+/// Sets the owner (null: a single link). Call it below READY.
 void TxSetLink(GstLidarScreamTx* tx, std::shared_ptr<TxLink> link);
 
 }  // namespace lidar::gst

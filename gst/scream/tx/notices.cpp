@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// An outage may delay a report.
+// An outage may drop fewer frames, which needs no warning.
 constexpr guint64 kFramesUntilWarning = 20;
 
 /// Returns host and port of the sink behind `src`, if they can be found.
@@ -58,7 +58,7 @@ void WarnOfUnheeded(GstElement* element) {
 }  // namespace
 
 void Notices::Reset(const scream::Controller& controller, Time now) {
-  // The property keeps its value until the next one.
+  // The property keeps its estimate until there is a new one.
   Notices fresh;
   fresh.estimated_bps_ = estimated_bps_;
   fresh.estimate_due_ = estimate_due_;

@@ -13,7 +13,7 @@
 
 namespace lidar::gst {
 
-/// Call it with the element's lock, except for Post().
+/// Call its methods with the element's lock, except Post() and PostUnheard().
 class Notices {
  public:
   /// Messages to post after the lock is released.
@@ -43,7 +43,7 @@ class Notices {
   static void Post(GstElement* element, GstPad* src, Batch batch);
   /// Returns true if the end of the stream needs a warning that there was no receiver.
   bool TakeUnheard(Time now) { return warn_of_silence_(watch_.EndsUnheard(now)); }
-  /// Call it before the end goes on, and without the lock.
+  /// Call it before the EOS event is pushed.
   static void PostUnheard(GstElement* element, GstPad* src);
 
  private:

@@ -177,7 +177,7 @@ void PacingTask::CollectPackets(Time now, Batch* batch) {
     const auto decision = state().controller->NextSend(now);
     if (!decision || decision->time > now) return;
     TxStream* stream = FindStream(state(), decision->stream);
-    // An earlier event goes first, in the next round.
+    // An event ahead of the packet goes first, in the next round.
     if (stream == nullptr || stream->queue.empty() || !stream->queue.front().buffer) return;
     batch->packets.push_back(TakePacket(*stream, decision->ecn, now));
   }
@@ -189,7 +189,7 @@ void PacingTask::OnAccepted(Time now) {
     end_deadline_ = now + std::max(kReceiverTimeout, 2 * state().settings.max_queue_delay);
 }
 
-/// Returns true once all packets have left, or after the longest time that a frame may take.
+/// Returns true, once, when all packets have left or the deadline of the end has passed.
 bool PacingTask::Drained(Time now) {
   TxState& s = state();
   if (!AllEnded(s) || end_sent_) return false;

@@ -15,15 +15,15 @@ namespace lidar::gst {
 
 struct TxState;
 
-/// Call Start(), Stop() and Pause() without the element's lock, the rest with it. The task pushes
-/// without it.
+/// Call Start(), Stop() and Pause() without the element's lock, other methods with it. The task
+/// pushes without it.
 class PacingTask {
  public:
   explicit PacingTask(GstLidarScreamTx* self) : self_(self) {}
 
   bool Start();
   bool Stop();
-  /// Stops until the next Start(), with downstream's result.
+  /// Stops until the next Start(); chain functions return `flow`.
   void Pause(GstFlowReturn flow);
 
   /// Makes the task check its conditions again.
@@ -36,7 +36,7 @@ class PacingTask {
     settings_changed_ = true;
     Wake();
   }
-  /// A receiver took packets: the end of a stream behind waiting input may take its time.
+  /// A receiver took packets: an end that waits for input that is not live gets a later deadline.
   void OnAccepted(Time now);
   /// The stream begins anew: its end has not been sent.
   void ForgetEnd();

@@ -6,10 +6,10 @@
 //     rtcp_sink ──▶ controller ──▶ UpstreamReporter ──▶ events upstream, messages
 //
 // Threads: the sink pads' streaming threads queue packets; the pacing task on the src pad takes
-// them out when the controller says; the RTCP pad's thread hands feedback in and finds out what
-// that changes; the reporter's thread sends it, so that a slow encoder delays neither of the
-// others. One mutex guards all that is shared; no thread holds it while pushing, posting, notifying
-// or waiting.
+// them out at the controller's times; the RTCP pad's thread gives feedback to the controller and
+// finds the events that are due; the reporter's thread sends them, so that a slow encoder delays
+// neither of the others. One mutex guards all that is shared; no thread holds it while pushing,
+// posting, notifying or waiting.
 #pragma once
 #include <gst/gst.h>
 
@@ -42,7 +42,7 @@ struct TxState {
   std::mutex mutex;  // guards all members but the clock
   GstClock* clock = gst_system_clock_obtain();
   TxSettings settings;
-  std::optional<scream::Controller> controller;  // from the first READY to PAUSED
+  std::optional<scream::Controller> controller;  // set from the first change to PAUSED on
   TxStreams streams;
   guint next_pad = 0;
   scream::CcfbParser parser;

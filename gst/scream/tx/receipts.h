@@ -18,7 +18,7 @@ class PacketReceipts {
   std::vector<EventPtr> Take();
 
  private:
-  // A payloader that lacks some takes slices for lost, which does no harm.
+  // A payloader without some receipts counts their slices as lost, which does no harm.
   static constexpr std::size_t kMostReceipts = 16;
   std::vector<GstLidarPacketsReceived> receipts_;
 };

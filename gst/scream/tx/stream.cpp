@@ -41,8 +41,8 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
   config.min_bitrate = Bps(min);
   config.start_bitrate = Bps(std::clamp(start, needed, max));
   config.max_bitrate = Bps(max);
-  // Is no minimum: if the path cannot carry what the error bound needs, the encoder gets a lower
-  // target. It can leave out scans, while a queue would only become older.
+  // The needed bitrate is no minimum: if the path cannot carry what the error bound needs, the
+  // encoder gets a lower target. It can leave out scans, while a queue would only become older.
   config.needed_bitrate = Bps(needed);
   return config;
 }

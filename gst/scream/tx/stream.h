@@ -38,7 +38,7 @@ class OverheadMeter {
   double payload_share() const { return payload_ / wire_; }
 
  private:
-  static constexpr double kShareMemoryPerPacket = 1 - 1.0 / 128;  // per packet
+  static constexpr double kShareMemoryPerPacket = 1 - 1.0 / 128;
   // Starts with the share of packets of 1200 bytes.
   double payload_ = 1188;
   double wire_ = 1228;

@@ -17,7 +17,7 @@ class StreamMerger {
   using Streams = std::vector<std::unique_ptr<TxStream>>;
 
   StreamMerger() { gst_segment_init(&segment_, GST_FORMAT_UNDEFINED); }
-  /// Returns the next event before the packets behind it, or NULL.
+  /// Returns the next event whose place is before all queued packets of its stream, or NULL.
   EventPtr NextEvent(const Streams& streams);
   /// Returns `buffer` with its times in the src pad's segment.
   BufferPtr ToOutput(const Streams& streams, const TxStream& stream, BufferPtr buffer) const;

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kPulse = 200ms;  // interval of target-bitrate
+constexpr Duration kPulse = 200ms;  // interval of target-bitrate events
 // Least change of the payload's share that changes the encoder's bounds.
 constexpr double kShareThreshold = 0.02;
 

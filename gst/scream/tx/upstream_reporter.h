@@ -15,13 +15,13 @@ namespace lidar::gst {
 struct TxState;
 
 /// Call Evaluate() after each change of the controller's state; it finds the due events, which a
-/// thread sends. Call Start() and Stop() without the element's lock, the rest with it. The thread
-/// sends without it.
+/// thread sends. Call Start() and Stop() without the element's lock, other methods with it. The
+/// thread sends without it.
 class UpstreamReporter {
  public:
   explicit UpstreamReporter(GstLidarScreamTx* self) : self_(self) {}
 
-  /// Returns false after an element error, if the system has no thread for it.
+  /// Returns false, after an element error, if the system cannot start the thread.
   bool Start();
   void Stop();
 
