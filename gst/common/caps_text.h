@@ -93,7 +93,7 @@ inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Valu
 }  // namespace caps_text
 
 /// Returns nothing if `caps` are not those of one stream in the system's memory with scalar fields:
-/// `why` then says so in words for a user.
+/// `why` then has the reason in words for a user.
 inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* why = nullptr) {
   std::string ignored;
   std::string& reason = why != nullptr ? *why : ignored;
@@ -126,13 +126,14 @@ inline CapsPtr FromScalarCaps(const ScalarCaps& scalar) {
   return caps;
 }
 
-/// Returns nothing if CapsFromText() would not take it: `why` then says so in words for a user.
+/// Returns nothing if CapsFromText() would refuse the text: `why` then has the reason in words for
+/// a user.
 inline std::optional<std::string> CapsToText(const GstCaps* caps, std::string* why = nullptr) {
   const auto scalar = ToScalarCaps(caps, why);
   return scalar ? scalar->ToText() : std::nullopt;
 }
 
-/// Null if `text` is not caps of scalar fields. They are fixed.
+/// Returns fixed caps, or null if `text` is not caps of scalar fields.
 inline CapsPtr CapsFromText(std::string_view text) {
   const auto scalar = ScalarCaps::Parse(text);
   return scalar ? FromScalarCaps(*scalar) : nullptr;

@@ -13,7 +13,7 @@ namespace lidar::gst {
 
 class CoderPads {
  public:
-  /// Call it from constructed(), as the subclass has the pad templates.
+  /// Call it from constructed(), because the subclass has the pad templates.
   void Create(GObject* element, GstPadChainFunction chain, GstPadEventFunction sink_event) {
     sink_ = AddPad(element, "sink");
     gst_pad_set_chain_function(sink_, chain);
@@ -24,7 +24,7 @@ class CoderPads {
   GstPad* sink() const { return sink_; }
   GstPad* src() const { return src_; }
 
-  /// The next buffer does not continue the last one.
+  /// Sets whether the next buffer does not continue the last one.
   void set_discont(bool discont) { discont_ = discont; }
 
   GstFlowReturn Push(BufferPtr output, GstBuffer* input) {

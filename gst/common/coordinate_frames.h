@@ -3,7 +3,7 @@
 #pragma once
 
 /// tf2_msgs/msg/TFMessage as ROS 2 has it, in CDR with its encapsulation header. `static`
-/// (boolean): the transforms hold for good.
+/// (boolean): the transforms never change.
 #define GST_LIDAR_TF_MEDIA_TYPE "application/x-tf"
 #define GST_LIDAR_TF_STATIC "static"
 

@@ -18,7 +18,7 @@ struct PadRow {
   GstPadDirection direction;
   const char* caps;
   GstPadPresence presence = GST_PAD_ALWAYS;
-  GType type = G_TYPE_NONE;  // of the pads, where GstPad is not enough
+  GType type = G_TYPE_NONE;  // of the pads; NONE: GstPad
 };
 
 /// Documents an element class and installs its pad templates.

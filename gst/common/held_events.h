@@ -12,8 +12,8 @@ namespace lidar::gst {
 /// Events leave after the caps, in order of arrival; a later one replaces one of its type.
 class HeldEvents {
  public:
-  /// Takes events before the caps: `event` waits for the caps, or it is a gap, which has no meaning
-  /// without caps. Returns false for other events.
+  /// Holds a sticky event that belongs behind the caps; drops a gap, which has no meaning before
+  /// them. Returns false, and leaves `event` to the caller, for other events.
   bool Take(GstEvent* event) {
     const GstEventType type = GST_EVENT_TYPE(event);
     const bool waits = GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
@@ -31,20 +31,20 @@ class HeldEvents {
     return waits || type == GST_EVENT_GAP;
   }
 
-  /// Pushes the caps, and the events behind them. If caps do not arrive, the next buffer brings
-  /// them, and its flow says why they did not.
+  /// Pushes the caps, then the held events. If downstream refuses the caps, GStreamer sends them
+  /// again before the next buffer, whose flow has the reason.
   void PushCapsTo(GstPad* pad, GstCaps* caps) {
     gst_pad_push_event(pad, gst_event_new_caps(caps));
     PushTo(pad);
   }
 
-  /// Pushes the events, as before an EOS without caps. A push may flush the pad and call this
-  /// object again.
+  /// Pushes the held events, for example before an EOS without caps. A push may flush the pad and
+  /// so call this object again.
   void PushTo(GstPad* pad) {
     for (EventPtr& event : std::exchange(held_, {})) gst_pad_push_event(pad, event.release());
   }
 
-  /// A flush ends segments; tags and the like come only once.
+  /// A flush ends the segment. Tags and other events stay, because they come only once.
   void OnFlush() {
     Drop([](GstEvent* held) { return GST_EVENT_TYPE(held) == GST_EVENT_SEGMENT; });
   }

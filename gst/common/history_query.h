@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The upstream query "lidar-history": a source answers it whose server keeps the stream.
+// The upstream query "lidar-history", which a source answers if its server keeps the stream.
 #pragma once
 #include <gst/gst.h>
 
@@ -19,16 +19,16 @@ using SamplePtr = std::unique_ptr<GstSample, UnrefSample>;
 
 struct HistoryQuestion {
   GstClockTime time = GST_CLOCK_TIME_NONE;  // earlier buffers may be left out [ns since 1970]
-  guint64 position = 0;                     // behind the last answer, unless there is a time
-  guint64 most_bytes = 0;                   // of buffers, about; 0: only the times are wanted
+  guint64 position = 0;                     // behind the last answer; unused if there is a time
+  guint64 most_bytes = 0;  // approximate size of the buffers; 0: asks for the times only
 };
 
 struct HistoryAnswer {
   guint64 from = 0;  // capture times of all that is kept [ns since 1970]; 0: nothing
   guint64 to = 0;
-  std::vector<SamplePtr> samples;  // caps, and buffers with their metas, and offset = position
+  std::vector<SamplePtr> samples;  // caps and buffers with metas; their offset is the position
   guint64 position = 0;            // behind the samples
-  bool ended = true;               // no more follow yet
+  bool ended = true;               // nothing newer is kept yet
   guint64 damaged = 0;             // buffers that were left out
 };
 

@@ -31,7 +31,7 @@ class ImuPad {
   ImuPad(const ImuPad&) = delete;
   ImuPad& operator=(const ImuPad&) = delete;
 
-  /// Pushes `samples`, unless there are none or they precede the segment. The first ones add the
+  /// Pushes `samples`, unless there are none or they precede the segment. The first call adds the
   /// pad. `pts` is that of the first sample.
   void Push(const std::vector<ImuSample>& samples, const ImuToSensor& imu_to_sensor,
             GstClockTime pts) {
@@ -53,7 +53,7 @@ class ImuPad {
     gst_pad_push(pad_, buffer);
   }
 
-  /// Sets the segment of the next samples. Not while Push() runs.
+  /// Sets the segment of the next samples. Do not call it while Push() runs.
   void SetSegment(const GstSegment& segment) {
     segment_ = segment;
     segment_pending_ = true;
@@ -77,13 +77,14 @@ class ImuPad {
       pad_ = pad;
     }
     gst_pad_push_event(pad_, StreamStart(pad_));
-    // The base class ends the clouds by itself (num-buffers, EOS sent to the element).
+    // The probe ends the samples, too, when the base class ends the clouds by itself (num-buffers,
+    // EOS sent to the element).
     end_of_clouds_ =
         gst_pad_add_probe(GST_BASE_SRC_PAD(source_), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
                           EndWithClouds, gst_object_ref(pad_), gst_object_unref);
   }
 
-  /// The events come before the pad: a handler that links it in its signal finds them there.
+  /// Pushes the events before the pad is added, so that a handler of pad-added finds them on it.
   void Prepare(const ImuToSensor& imu_to_sensor) {
     const bool first = pad_ == nullptr;
     if (first) MakePad();
@@ -126,7 +127,7 @@ class ImuPad {
     return GST_PAD_PROBE_OK;
   }
 
-  /// Samples leave as they come. The pad src answers position queries.
+  /// Samples are not delayed. The pad src answers queries about positions and times.
   static gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
     switch (GST_QUERY_TYPE(query)) {
       case GST_QUERY_LATENCY:
@@ -155,7 +156,7 @@ class ImuPad {
   GstPad* pad_ = nullptr;  // owned by the element
   GstSegment segment_{};
   bool segment_pending_ = true;
-  gulong end_of_clouds_ = 0;     // probe on the pad src, where pad_ is there
+  gulong end_of_clouds_ = 0;     // probe on the pad src, set with pad_
   ImuToSensor imu_to_sensor_{};  // of the caps
   GstClockTime last_pts_ = 0;
 };

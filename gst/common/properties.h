@@ -27,7 +27,7 @@ struct Property {
   Field<Settings> field;
   gdouble min = 0;  // both 0: all that the type holds
   gdouble max = 0;
-  // GST_PARAM_MUTABLE_PLAYING where a change takes effect at once; with G_PARAM_WRITABLE alone it
+  // GST_PARAM_MUTABLE_PLAYING if a change takes effect at once; a property with G_PARAM_WRITABLE
   // cannot be read.
   gint mutability = GST_PARAM_MUTABLE_READY;
 
@@ -39,8 +39,7 @@ struct Property {
   }
 };
 
-/// The row of `table` called `name`. A table that lacks it is a mistake in the program, and ends
-/// it.
+/// The row of `table` called `name`. Ends the program if the table lacks it.
 template <class Settings, std::size_t N>
 const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table,
                                   std::string_view name) {

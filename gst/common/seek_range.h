@@ -41,7 +41,7 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
                        &stop);
   range.start = FromBeginning(&range.start_type, start, *segment);
   range.stop = FromBeginning(&range.stop_type, stop, *segment);
-  // As in GStreamer.
+  // GStreamer, too, takes a start of -1 for 0.
   if (range.start_type == GST_SEEK_TYPE_SET && start == -1) range.start = 0;
   return range.IsSound(*segment) &&
          gst_segment_do_seek(segment, rate, GST_FORMAT_TIME, flags, range.start_type, range.start,
@@ -49,7 +49,7 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
 }
 
 /// Serves a seek without start and flush. Playback continued meanwhile, so the segment continues
-/// from its end.
+/// from `end`, the place that it reached.
 inline void GoOnFrom(GstClockTime end, GstSegment* segment) {
   segment->position = std::min(std::max(end, segment->position), segment->stop);
   segment->offset = segment->position - segment->start;

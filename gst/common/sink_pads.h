@@ -23,7 +23,7 @@ inline guint SinkPadCount(gpointer element) {
   return pads;
 }
 
-/// The caller owns a reference; null past the end.
+/// Returns a new reference to sink pad `index`, or null past the end.
 inline GObject* SinkPadAt(gpointer element, guint index) {
   GST_OBJECT_LOCK(element);
   gpointer pad = g_list_nth_data(GST_ELEMENT(element)->sinkpads, index);
