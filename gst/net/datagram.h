@@ -20,7 +20,7 @@ struct NativeAddress {
   const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
   sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
   bool valid() const { return length != 0; }
-  /// An IPv4 address, also where it is mapped into IPv6.
+  /// Returns true for an IPv4 address, also for one that is mapped into IPv6.
   bool IsIpv4() const;
   bool operator==(const NativeAddress& o) const;
   bool operator!=(const NativeAddress& o) const { return !(*this == o); }
@@ -42,15 +42,16 @@ DatagramInfo ReadInfo(msghdr* received);
 struct SendControl {
   alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(in6_pktinfo))] = {};
 };
-/// Sends `message` to `to` with `tos`, by the interface of that index (0: by the routes), which
-/// needs no privileges. `control` must live until the message is sent.
+/// Makes `message` leave to `to` with `tos`, through the interface of that index (0: by the
+/// routes). Needs no privileges. `control` must live until the message is sent.
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message);
 
 /// Index of the interface of that name in the socket's network; 0 if it is not there.
 unsigned InterfaceIndex(int fd, const std::string& name);
 
-/// Sends multicast by the interface of that name. Returns false with errno set on failure.
+/// Makes multicast leave through the interface of that name. Returns false with errno set on
+/// failure.
 bool SendMulticastFrom(int fd, const std::string& interface);
 
 /// Sets the largest receive buffer up to `bytes` that the kernel grants (0: leaves it). Returns its

@@ -32,8 +32,8 @@ class UdpBatchSender {
   UdpBatchSender& operator=(const UdpBatchSender&) = delete;
 
   bool full() const { return count_ == kCapacity; }
-  /// `tos`: the DSCP and ECN bits of the IP header; `interface`: index of that to leave by, or 0.
-  /// Returns false if the buffer cannot be mapped.
+  /// `tos`: the DSCP and ECN bits of the IP header; `interface`: index of the interface to leave
+  /// by, or 0. Returns false if the buffer cannot be mapped.
   bool Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to, unsigned interface = 0);
   /// Sends all datagrams, waits for the socket if necessary, and forgets them.
   Result Flush(int fd, const WakeFd& wake);
@@ -44,7 +44,7 @@ class UdpBatchSender {
     std::array<iovec, kMaxMemories> iov;
     std::array<GstMapInfo, kMaxMemories> maps;
     guint memories = 0;
-    GstBuffer* merged = nullptr;  // mapped as a whole: more than kMaxMemories pieces
+    GstBuffer* merged = nullptr;  // a buffer of more than kMaxMemories, mapped as a whole
     NativeAddress to;
     net::SendControl control;
   };
@@ -57,7 +57,7 @@ class UdpBatchSender {
   std::size_t count_ = 0;
 };
 
-/// A datagram's additions.
+/// A datagram, and what the kernel adds to it.
 struct ReceivedDatagram {
   const guint8* data = nullptr;  // valid during the call
   gsize size = 0;
@@ -72,8 +72,8 @@ class UdpBatchReceiver {
   static constexpr std::size_t kMaxDatagram = 65536;
 
   UdpBatchReceiver();
-  /// Gives waiting datagrams to `consume`. Returns their number, or -1 with errno set. `fd` was
-  /// given to net::AskForInfo().
+  /// Gives waiting datagrams to `consume`. Returns their number, or -1 with errno set. Call
+  /// net::AskForInfo() on `fd` before.
   int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Datagrams the kernel dropped because the socket's buffer was full, since it was opened.
   guint kernel_drops() const { return kernel_drops_; }

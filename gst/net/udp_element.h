@@ -50,10 +50,10 @@ struct SocketInUse {
   void Close(bool close_given);
 };
 
-/// Options of the elements that bins do not show.
+/// Options that the elements have and their bins lack.
 struct UdpOptions {
   gint dscp = -1;         // of a sink
-  guint buffer_size = 0;  // bytes; the rest of a source
+  guint buffer_size = 0;  // bytes; of a source, like the members below
   Duration timeout{};
   SharedCaps caps;
 };
@@ -63,7 +63,7 @@ const std::array<Property<UdpListen>, 4>& UdpListenRows();
 const std::array<Property<UdpTarget>, 4>& UdpTargetRows();
 const std::array<Property<UdpOptions>, 4>& UdpOptionRows();
 
-// Each posts an element error and returns NULL if it fails.
+// These functions post an element error and return NULL if they fail.
 SharedSocket OpenListening(GstElement* element, const UdpListen& listen);
 SharedSocketAddress ResolveTarget(GstElement* element, const UdpTarget& target);
 SharedSocket OpenSending(GstElement* element, const UdpTarget& target, GSocketFamily family);
@@ -83,7 +83,7 @@ SharedSocket UsedSocket(GObject* object) {
   return state.used.socket;
 }
 
-/// GstBaseSink's or GstBaseSrc's unlock methods, by the state's `wake`.
+/// Installs the unlock methods of GstBaseSink or GstBaseSrc, which use the state's `wake`.
 template <class Self, class Base, class Class>
 void WakeOnUnlock(Class* klass) {
   klass->unlock = [](Base* base) -> gboolean {

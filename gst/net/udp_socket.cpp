@@ -30,7 +30,8 @@ bool HasRouteTo(GInetAddress* address) {
   return socket && g_socket_connect(socket.get(), there.get(), nullptr, nullptr) != FALSE;
 }
 
-/// GLib lists ::1 before 127.0.0.1 for localhost, even on a machine without IPv6.
+/// Prefers an address with a route: GLib lists ::1 before 127.0.0.1 for localhost, even on a
+/// machine without IPv6.
 GInetAddress* Resolve(const std::string& host, GError** error) {
   if (GInetAddress* literal = g_inet_address_new_from_string(host.c_str())) return literal;
   std::unique_ptr<GResolver, GObjectUnref> resolver(g_resolver_get_default());
@@ -134,7 +135,7 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
                    GError** error) {
   const InetAddressPtr address(Resolve(WithoutBrackets(group), error));
   if (!address) return false;
-  // GLib would let the kernel choose.
+  // GLib would let the kernel choose an interface if there is none of that name.
   if (!interface.empty() && if_nametoindex(interface.c_str()) == 0) {
     g_set_error(error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND, "there is no network interface \"%s\"",
                 interface.c_str());
@@ -160,7 +161,7 @@ WakeFd::~WakeFd() {
 }
 
 void WakeFd::Wake() {
-  // Fails only if the counter is full, and then it wakes anyway.
+  // The write fails only if the counter is full, which wakes as well.
   if (eventfd_write(fd_, 1) != 0) return;
 }
 

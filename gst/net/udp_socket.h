@@ -39,9 +39,9 @@ bool SameHost(GSocketAddress* a, GSocketAddress* b);
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error);
 
 struct UdpBind {
-  std::string address;  // empty: every address, of both families where the machine has them
+  std::string address;  // empty: every address, of both families if the machine has them
   guint port = 0;       // 0: any free one
-  GSocketFamily family = G_SOCKET_FAMILY_INVALID;  // with an empty address: only this one
+  GSocketFamily family = G_SOCKET_FAMILY_INVALID;  // with an empty address: only this family
   bool reuse = false;                              // several sockets on one port, for multicast
 };
 /// A bound non-blocking socket; transfer full, or NULL.
