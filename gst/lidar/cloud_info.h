@@ -31,11 +31,11 @@ struct CloudInfo {
   /// FromCaps() for caps that fix the width as well.
   GST_LIDAR_API static std::optional<CloudInfo> FromFrameCaps(const GstCaps* caps,
                                                               std::string* why = nullptr);
-  /// The cloud of slices of coded caps, packed, without its width; returns nothing if the caps
-  /// contradict themselves or lack x, y and z as F32 side by side. The caps of a file may be its
-  /// media type alone.
+  /// Returns the packed cloud, without its width, that slices of coded caps decode to. Returns
+  /// nothing if the caps contradict themselves or lack x, y and z as adjacent F32; without
+  /// `fields`, as in a file with the media type alone, these three are the fields.
   GST_LIDAR_API static std::optional<CloudInfo> FromCodedCaps(const GstCaps* caps);
-  /// Converts what a base class gave its coder; it is checked already.
+  /// Converts the format that a base class gave its coder, and has checked.
   GST_LIDAR_API static CloudInfo FromFormat(const GstLidarCloudFormat& format);
   /// transfer full
   GST_LIDAR_API GstCaps* ToCaps() const;

@@ -3,7 +3,7 @@
 
 namespace {
 
-// GstMeta registration is for the whole process; g_once makes it happen once.
+// GStreamer takes a meta's name only once in a process.
 void RegisterMeta(const char* name) {
   static const gchar* no_tags[] = {nullptr};
   if (gst_meta_get_info(name) == nullptr)

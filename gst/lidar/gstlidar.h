@@ -36,7 +36,7 @@ typedef struct {
 } GstLidarSlice;
 
 GST_LIDAR_API void gst_lidar_buffer_set_slice(GstBuffer* buffer, const GstLidarSlice* slice);
-/** FALSE, and {0, 0, 1, 0} in @slice, where the buffer has no meta. */
+/** Returns FALSE, and {0, 0, 1, 0} in @slice, if the buffer has no meta. */
 GST_LIDAR_API gboolean gst_lidar_buffer_get_slice(GstBuffer* buffer, GstLidarSlice* slice);
 
 /** The two ECN bits of the IP header (RFC 3168). */
@@ -50,16 +50,16 @@ typedef enum {
 /** @arrival: kernel time of reception [ns since the Unix epoch], or GST_CLOCK_TIME_NONE. */
 GST_LIDAR_API void gst_lidar_buffer_set_ecn(GstBuffer* buffer, GstLidarEcn ecn,
                                             GstClockTime arrival);
-/** FALSE where the buffer has no meta; either out pointer may be NULL. */
+/** Returns FALSE if the buffer has no meta; either out pointer may be NULL. */
 GST_LIDAR_API gboolean gst_lidar_buffer_get_ecn(GstBuffer* buffer, GstLidarEcn* ecn,
                                                 GstClockTime* arrival);
 
 /** Sampling time of the buffer's first column [ns since the Unix epoch, UTC]. */
 GST_LIDAR_API void gst_lidar_buffer_set_capture_time(GstBuffer* buffer, GstClockTime unix_time);
-/** GST_CLOCK_TIME_NONE where it is not known. */
+/** Returns GST_CLOCK_TIME_NONE if the time is not known. */
 GST_LIDAR_API GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer);
 
-/** How sure a pose is. */
+/** How reliable a pose is. */
 typedef enum {
   GST_LIDAR_TRACKING_STARTED = 0,    /* the first scan: the map begins here */
   GST_LIDAR_TRACKING_OK = 1,         /* the scan fits the map */
@@ -75,10 +75,10 @@ typedef struct {
 } GstLidarPose;
 
 GST_LIDAR_API void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPose* pose);
-/** FALSE where the buffer has no meta. */
+/** Returns FALSE if the buffer has no meta. */
 GST_LIDAR_API gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose);
 
-/** Upstream: what the element that gets it may put out [bit/s]. */
+/** Upstream event: the rates that the element that gets it may put out [bit/s]. */
 typedef struct {
   guint bitrate;
   guint ssrc;
@@ -101,8 +101,8 @@ typedef struct {
 
 #define GST_LIDAR_MAX_RECEIVED 256
 
-/** Upstream, from a sender to the payloader: what a receiver has got. What is missing in it may
- * still come. */
+/** Upstream event, from a sender to the payloader: packets that a receiver has got. Others may
+ * still arrive. */
 typedef struct {
   guint ssrc;
   guint receiver; /* another number is another receiver */
@@ -121,7 +121,7 @@ typedef struct {
   guint slice_index;
 } GstLidarReceivedSlice;
 
-/** Upstream, from a payloader to the encoder: slices of which a receiver has got all. */
+/** Upstream event, from a payloader to the encoder: slices that a receiver has got whole. */
 typedef struct {
   guint receiver;
   guint count;
@@ -132,7 +132,8 @@ GST_LIDAR_API GstEvent* gst_lidar_event_new_slices_received(const GstLidarSlices
 GST_LIDAR_API gboolean gst_lidar_event_parse_slices_received(GstEvent* event,
                                                              GstLidarSlicesReceived* received);
 
-/** Downstream, sticky: what the encoder needs for its error bound and can use at most [bit/s]. */
+/** Sticky event downstream: the rates [bit/s] that the encoder needs for its error bound, and can
+ * use at most. */
 typedef struct {
   guint min_bitrate;
   guint max_bitrate;

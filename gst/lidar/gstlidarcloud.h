@@ -17,16 +17,16 @@ typedef struct {
 } GstLidarCloudFormat;
 
 /**
- * Where a field is in a point [bytes], or -1 where there is none of that @name and @type.
+ * Returns the offset of a field in a point [bytes], or -1 if none has that @name and @type.
  * Types are I8, U8, I16, U16, I32, U32, F32 and F64; integers and floats are little-endian.
  */
 GST_LIDAR_API gint gst_lidar_cloud_format_get_offset(const GstLidarCloudFormat* cloud,
                                                      const gchar* name, const gchar* type);
 
 /**
- * Caps of @media_type for slices that are encoded from @cloud: alignment=slice, framerate, the
- * sensor model where there is one, and @fields, which are those of the cloud that a decoder gives,
- * packed, x, y and z as F32 among them. Transfer full.
+ * Returns caps of @media_type for slices that are encoded from @cloud: alignment=slice, framerate,
+ * the sensor model if there is one, and @fields. These are the packed fields of the decoded cloud,
+ * x, y and z as F32 among them. Transfer full.
  */
 GST_LIDAR_API GstCaps* gst_lidar_coded_caps_new(const gchar* media_type, const gchar* fields,
                                                 const GstLidarCloudFormat* cloud);
@@ -36,7 +36,7 @@ typedef struct {
   gfloat x; /* m */
   gfloat y;
   gfloat z;
-  guint32 range; /* mm; 0 where the coder codes no ranges */
+  guint32 range; /* mm; 0 if the coder codes no ranges */
 } GstLidarPoint;
 
 G_END_DECLS

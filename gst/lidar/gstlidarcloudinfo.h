@@ -42,9 +42,9 @@ typedef struct {
   gpointer padding[GST_PADDING];
 } GstLidarCloudInfo;
 
-/** FALSE where @caps are not those of a little-endian raw cloud whose size they fix. */
+/** Returns FALSE if @caps are not those of a little-endian raw cloud of fixed size. */
 GST_LIDAR_API gboolean gst_lidar_cloud_info_from_caps(GstLidarCloudInfo* info, const GstCaps* caps);
-/** NULL where there is none of that name. */
+/** Returns NULL if no field has that name. */
 GST_LIDAR_API const GstLidarField* gst_lidar_cloud_info_find(const GstLidarCloudInfo* info,
                                                              const gchar* name);
 
@@ -59,16 +59,16 @@ typedef struct {
   gpointer padding[GST_PADDING];
 } GstLidarCloud;
 
-/** FALSE where @buffer cannot be mapped or is of another size than @info says. */
+/** Returns FALSE if @buffer cannot be mapped or has another size than @info. */
 GST_LIDAR_API gboolean gst_lidar_cloud_map(GstLidarCloud* cloud, const GstLidarCloudInfo* info,
                                            GstBuffer* buffer, GstMapFlags flags);
 GST_LIDAR_API void gst_lidar_cloud_unmap(GstLidarCloud* cloud);
 
-/** The number that @field, one of the cloud's, has at point @index; points count row by row. */
+/** Returns the value of @field, one of the cloud's, at point @index; points count row by row. */
 GST_LIDAR_API gdouble gst_lidar_cloud_get(const GstLidarCloud* cloud, const GstLidarField* field,
                                           gsize index);
-/** Sets it in a cloud that is mapped for writing; integers are rounded and limited to their range.
- */
+/** Sets the value in a cloud that is mapped for writing; integers are rounded and limited to their
+ * range. */
 GST_LIDAR_API void gst_lidar_cloud_set(GstLidarCloud* cloud, const GstLidarField* field,
                                        gsize index, gdouble value);
 

@@ -140,7 +140,7 @@ static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                                    model.get()};
   decoded->refusal = "the coder is another";
   if (!GST_LIDAR_DECODER_GET_CLASS(self)->set_format(self, caps, &format, decoded)) return false;
-  // Rows of pixels may always have gaps: caps should not change with them.
+  // Rows of pixels may have gaps in any slice, and the caps should not change with them.
   cloud->is_dense = decoded->is_organised == FALSE;
   if (!decoded->is_organised) cloud->sensor_model.reset();
   return true;
@@ -165,7 +165,7 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   return FALSE;
 }
 
-/// Pushes caps when the data of a slice give the cloud's size.
+/// Pushes caps if the size of the slice differs from that of the last caps.
 static void PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;

@@ -3,7 +3,7 @@
  * Base class of decoders of point clouds: coded slices in, slices of a raw cloud out.
  *
  * The base class has the pads `sink` and `src`, the caps, the properties max-points, stats and
- * stats-interval, holds sticky events back until the first slice tells the size of the cloud, drops
+ * stats-interval, holds sticky events back until the first slice gives the size of the cloud, drops
  * and counts damaged slices, and sends gaps. A subclass brings two pad templates and decodes one
  * slice; any bytes may come.
  *
@@ -33,20 +33,21 @@ GST_LIDAR_API GType gst_lidar_decoder_get_type(void);
 /** What set_format() answers. */
 typedef struct {
   gboolean is_organised; /* a slice is rows of pixels, of which some may be missing: the caps keep
-                            the sensor model. Else points without order, and none is missing */
-  const gchar* refusal;  /* static; where FALSE is returned, what the caps lack */
+                            the sensor model. FALSE: points without order, none is missing */
+  const gchar* refusal;  /* static; what the caps lack, if FALSE is returned */
 } GstLidarDecodedFormat;
 
-/** What a coded slice holds. Where it does not say how it was coded, the rest stays as it is. */
+/** What a coded slice holds. Members about its coding keep their values if the slice lacks them. */
 typedef struct {
   guint width;  /* columns, or points */
   guint height; /* beams, or 1 */
   gdouble step; /* of the grid [m]; 0: not known */
   gdouble error_bound;
   guint intensity_bits;
-  gdouble keep_fraction;    /* rows that the encoder kept; the others it left out to save bits */
-  gboolean lacks_reference; /* where FALSE is returned: only because it was coded by another slice
-                               that never came. The base class asks for one that stands alone */
+  gdouble keep_fraction;    /* share of the rows that the encoder kept to save bits */
+  gboolean lacks_reference; /* if FALSE is returned: the only reason is that the slice refers to
+                               another one that never came. The base class asks for one that
+                               stands alone */
 } GstLidarDecodedSlice;
 
 struct _GstLidarDecoder {
@@ -60,19 +61,19 @@ struct _GstLidarDecoderClass {
   GstElementClass parent_class;
 
   /**
-   * Before the first slice and at each change of @caps. @cloud is what write() is to give: packed
-   * fields, x, y and z as F32 among them. FALSE where the caps cannot be decoded; the base class
-   * posts the error.
+   * Called before the first slice and at each change of @caps. @cloud is the cloud that write()
+   * must give: packed fields, x, y and z as F32 among them. Returns FALSE if slices of the caps
+   * cannot be decoded; the base class posts the error.
    */
   gboolean (*set_format)(GstLidarDecoder* decoder, GstCaps* caps, const GstLidarCloudFormat* cloud,
                          GstLidarDecodedFormat* decoded);
   /**
-   * Decodes a slice for write(), until whose return @data stays. FALSE for what is damaged,
-   * hostile, or of more than @max_points, for which nothing may be allocated.
+   * Decodes a slice for write(); @data is valid until write() returns. Returns FALSE if the slice
+   * is damaged, hostile, or of more than @max_points, for which it must allocate nothing.
    */
   gboolean (*decode)(GstLidarDecoder* decoder, const guint8* data, gsize size, guint max_points,
                      GstLidarDecodedSlice* slice);
-  /** Writes all of the slice decoded last: width * height points. What it does not know is 0. */
+  /** Writes all of the slice decoded last: width * height points. Unknown values are 0. */
   void (*write)(GstLidarDecoder* decoder, guint8* points);
   /** The element went to READY: free what belongs to the stream. Optional. */
   void (*reset)(GstLidarDecoder* decoder);

@@ -34,16 +34,16 @@ GST_LIDAR_API GType gst_lidar_encoder_get_type(void);
 /** What set_format() answers. */
 typedef struct {
   GstCaps* caps;         /* of the coded slices, transfer full: gst_lidar_coded_caps_new() */
-  gboolean codes_ranges; /* points come back from ranges and the sensor model: the base class warns
-                            where the positions of a cloud contradict them */
-  const gchar* refusal;  /* static; where FALSE is returned, what the cloud lacks */
+  gboolean codes_ranges; /* receivers compute points from ranges and the sensor model: the base
+                            class warns if positions of a cloud contradict its ranges */
+  const gchar* refusal;  /* static; what the cloud lacks, if FALSE is returned */
 } GstLidarCodedFormat;
 
 /** One slice of a raw cloud, valid until the next call of load(). */
 typedef struct {
   const guint8* data;
-  gsize size;         /* bytes; whole points, and whole beams where height is above 1 */
-  guint width;        /* columns; the buffer's, where the caps do not say */
+  gsize size;         /* bytes; whole points, and whole beams if height is above 1 */
+  guint width;        /* columns; from the buffer's size, if the caps lack it */
   guint height;       /* beams */
   guint first_column; /* measurement id of the first column */
   guint scan_id;      /* its place, as in GstLidarSlice */
@@ -64,15 +64,15 @@ typedef struct {
 
 /** The steps of a coder's grid that keep to an error [m]. */
 typedef struct {
-  gdouble finest;   /* a finer one codes digits that nobody has */
-  gdouble coarsest; /* no point moves farther than the error; may be below the finest */
-  gdouble unit;     /* steps are finest and any number of these; 0: any step */
+  gdouble finest;   /* finer ones code meaningless digits */
+  gdouble coarsest; /* with it no point moves farther than the error; may be below the finest */
+  gdouble unit;     /* steps are finest plus a multiple of it; 0: any step */
 } GstLidarStepRange;
 
 /** What encode() is to do. */
 typedef struct {
   gdouble max_error;    /* bound of the distance between a point and its decoded point [m] */
-  gdouble step;         /* of the grid [m]. A wish: what max_error does not allow is not taken */
+  gdouble step;         /* of the grid [m], if max_error allows it */
   guint intensity_bits; /* 0: geometry only */
   guint level;          /* at most that of GstLidarLoadedSlice */
   guint threads;        /* at most, for this slice; 1: the calling one */
@@ -81,8 +81,8 @@ typedef struct {
 /** What encode() did. */
 typedef struct {
   guint returns;       /* points coded */
-  gdouble step;        /* really used [m] */
-  gdouble error_bound; /* that holds with this step [m] */
+  gdouble step;        /* of the grid, as used [m] */
+  gdouble error_bound; /* bound of the distance that holds with this step [m] */
 } GstLidarCodedSlice;
 
 typedef enum {
@@ -95,8 +95,8 @@ typedef enum {
 typedef enum {
   GST_LIDAR_ORDER_PIXELS = 0, /* as many points as the raw slice has, at their places */
   GST_LIDAR_ORDER_KEPT = 1,   /* the raw points that are finite and not all zero, in their order */
-  GST_LIDAR_ORDER_ANY = 2     /* those in any order, one for several where they may merge: errors
-                                 are distances to the nearest point */
+  GST_LIDAR_ORDER_ANY = 2     /* those in any order, maybe one for several: errors are distances to
+                                 the nearest point */
 } GstLidarPointOrder;
 
 struct _GstLidarEncoder {
@@ -110,14 +110,14 @@ struct _GstLidarEncoderClass {
   GstElementClass parent_class;
 
   /**
-   * Before the first slice and at each change of caps. @with_intensity: intensity-bits is above 0.
-   * FALSE where this coder cannot encode such clouds; the base class posts the error.
+   * Called before the first slice and at each change of caps. @with_intensity: intensity-bits is
+   * above 0. Returns FALSE if this coder cannot encode such clouds; the base class posts the error.
    */
   gboolean (*set_format)(GstLidarEncoder* encoder, const GstLidarCloudFormat* cloud,
                          gboolean with_intensity, GstLidarCodedFormat* coded);
-  /** Takes one slice in; it is the one that the next four methods are about. */
+  /** Takes a slice, which the next four methods are about. */
   void (*load)(GstLidarEncoder* encoder, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded);
-  /** Says which steps keep to @max_error. Optional: those of a cubic grid of coordinates. */
+  /** Gives the steps that keep to @max_error. Optional; by default a cubic grid of coordinates. */
   void (*get_steps)(GstLidarEncoder* encoder, gdouble max_error, GstLidarStepRange* steps);
   /** Forgets all rows but those whose element of @kept is not 0. Optional if rows are 0. */
   void (*thin)(GstLidarEncoder* encoder, const guint8* kept, guint rows);
@@ -126,16 +126,16 @@ struct _GstLidarEncoderClass {
                                  GByteArray* bytes, GstLidarCodedSlice* coded);
   /**
    * Decodes a coded slice as a receiver would, for error-check: appends a GstLidarPoint for each
-   * point to @points. FALSE where it cannot be decoded. Optional; without it error-check does
-   * nothing.
+   * point to @points. Returns FALSE if the slice cannot be decoded. Optional; without it
+   * error-check does nothing.
    */
   gboolean (*decode)(GstLidarEncoder* encoder, const guint8* data, gsize size, GArray* points,
                      GstLidarPointOrder* order);
   /** The element went to READY: free what belongs to the stream. Optional. */
   void (*reset)(GstLidarEncoder* encoder);
   /**
-   * A receiver has got all of a slice, or of none yet (@slice_index G_MAXUINT), and there is one
-   * way only that slices go. @receiver is another number for another receiver. Optional.
+   * A receiver has got a whole slice, or none yet (@slice_index G_MAXUINT). Called only while
+   * slices go to one place. Each receiver has its own number @receiver. Optional.
    */
   void (*acknowledge)(GstLidarEncoder* encoder, guint receiver, guint scan_id, guint slice_index);
   /** A receiver cannot decode what it gets: encode so that it can. Optional. */

@@ -14,7 +14,7 @@ namespace lidar::gst {
 /// Belongs to the streaming thread. Posts faults of clouds as messages of the encoder.
 class CloudInput {
  public:
-  /// `codes_ranges`: warns of positions that contradict the ranges, which are coded.
+  /// `codes_ranges`: ranges alone are coded, so positions that contradict them give a warning.
   void SetFormat(const CloudInfo& info, bool codes_ranges);
   const CloudInfo& info() const { return info_; }
 
@@ -31,7 +31,7 @@ class CloudInput {
   /// Returns nothing after an error message if the buffer does not hold the cloud of its caps.
   std::optional<GstLidarRawSlice> Read(GstLidarEncoder* encoder, const BufferMap& map,
                                        const GstLidarSlice& slice);
-  /// Warns, once, that a cloud whose box is so long [m] was left out.
+  /// Warns, once, that a cloud was left out whose box is `extent_m` long.
   void WarnOfReach(GstLidarEncoder* encoder, double extent_m);
 
  private:

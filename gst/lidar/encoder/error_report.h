@@ -15,12 +15,12 @@ struct CheckedSlice {
   guint scan_id = 0;
   guint slice_index = 0;
   double max_error_m = 0;  // the user's bound
-  double bound_m = 0;      // the bound by the grid's step
+  double bound_m = 0;      // the bound that the grid's step gives
   bool thinned = false;    // the encoder left out beams
 };
 
-/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. The first of
-/// several that break max_error_m gives a warning. Belongs to the streaming thread.
+/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. The first one
+/// that exceeds max_error_m gives a warning. Belongs to the streaming thread.
 class ErrorReport {
  public:
   struct Outcome {
@@ -29,7 +29,8 @@ class ErrorReport {
   };
 
   ErrorReport(GstLidarEncoder* encoder, const PointFields& fields, guint point_step);
-  /// Compares `raw` with `coded` in every `every`-th slice (0: never); returns nothing in others.
+  /// Compares `raw` with `coded` for every `every`-th slice (0: never). Returns nothing for the
+  /// others.
   std::optional<Outcome> OnSlice(guint every, ByteView raw, ByteView coded,
                                  const CheckedSlice& slice);
 

@@ -37,7 +37,7 @@ class ReceiverEvents {
 
   std::mutex mutex_;  // guards news_
   News news_;
-  // The rest belongs to the streaming thread.
+  // Used by the streaming thread only:
   gint64 looked_at_us_ = 0;  // last look at the elements downstream
   bool one_way_ = false;
 };

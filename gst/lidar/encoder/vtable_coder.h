@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// `encoder` owns it; its streaming thread uses it.
+/// `encoder` owns this object, and its streaming thread uses it.
 class VtableCoder final : public rate::SliceCoder {
  public:
   explicit VtableCoder(GstLidarEncoder* encoder);
