@@ -10,7 +10,8 @@
 
 namespace lidar::gst {
 
-/// Returns nothing if a receiver would not take the config: `why` then says so in words for a user.
+/// Returns nothing if a receiver would not take the config: `why` then has the reason in words for
+/// a user.
 std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::string* why);
 /// transfer full
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config);

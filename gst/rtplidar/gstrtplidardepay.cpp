@@ -94,13 +94,13 @@ lidar::Duration ReorderTime(const Settings& s) {
 struct State {
   explicit State(GstRTPBaseDepayload* self) : output(self) {}
 
-  std::mutex mutex;  // guards all above the line; never held while pushing
+  std::mutex mutex;  // guards all down to wrong_payload_type; never held while pushing
   Settings settings;
   Receiver receiver{ReorderTime(Settings{})};
   guint64 not_rtp = 0;
   guint64 wrong_payload_type = 0;
 
-  // The rest belongs to the streaming thread.
+  // Only the streaming thread uses these.
   SliceOutput output;
   std::optional<gint> payload_type;  // of the caps
   bool warned_of_type = false;

@@ -60,7 +60,8 @@ struct _GstLidarRtpPay {
 };
 
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
-// Has no rank: a search for a video's payloader would find that this one takes everything.
+// The element has no rank, because a search for a payloader of video would find that it takes
+// everything.
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_NONE, gst_lidar_rtp_pay_get_type())
 
 static StructurePtr Stats(GObject* object) {
@@ -91,7 +92,8 @@ static GstFlowReturn HandleBuffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   return flow;
 }
 
-/// Returns "video" if downstream takes nothing else, as WebRTC, which has no media type for LiDAR.
+/// Returns "video" if downstream takes nothing else, as with WebRTC, which has no media type for
+/// LiDAR.
 static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   const CapsPtr allowed(gst_pad_get_allowed_caps(GST_RTP_BASE_PAYLOAD_SRCPAD(base)));
   const CapsPtr usual(
@@ -164,7 +166,8 @@ static GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
   return out;
 }
 
-/// A receiver needs a start point, or the SSRC will change: the config must be sent at once.
+/// Returns true if the config must be sent at once: a receiver needs a start point, or the SSRC
+/// will change.
 static bool WantsConfig(GstEvent* event) {
   return GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM &&
          (gst_event_has_name(event, "GstForceKeyUnit") ||

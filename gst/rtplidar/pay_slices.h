@@ -44,7 +44,7 @@ struct PayState {
   gdouble recent_payload_bytes = 0;
   bool config_due = true;
 
-  // The rest belongs to the streaming thread.
+  // Only the streaming thread uses these.
   std::optional<rtp::StreamConfig> config;
   std::vector<std::uint8_t> config_bytes;
   std::uint8_t config_id = 0;

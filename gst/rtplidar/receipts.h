@@ -11,10 +11,10 @@ namespace lidar::gst {
 
 class Receipts {
  public:
-  /// Watches the packets that leave by `src`; for as long as the pad lives.
+  /// Watches the packets that leave by `src`. This object must outlive the pad.
   void Watch(GstPad* src);
-  /// Gives the event for the encoder in place of `event`, or null for no event. Returns false for
-  /// other events.
+  /// Sets `upstream` to the event that goes to the encoder in place of `event`. Returns false, and
+  /// null, for other events.
   bool OnEvent(GstEvent* event, GstEvent** upstream);
 
  private:

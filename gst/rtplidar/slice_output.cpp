@@ -55,7 +55,7 @@ bool SliceOutput::SetCapsOf(const rtp::StreamConfig& config) {
     gst_pad_set_caps(src, caps.get());
     return true;
   }
-  // This is no error: others may send a stream of another coder.
+  // This is no error, because another sender may use another coder.
   if (!GST_PAD_IS_FLUSHING(src) && !std::exchange(warned_of_coder_, true))
     WarnOfCoder(element_, caps.get());
   return false;
@@ -82,7 +82,7 @@ void SliceOutput::Push(std::vector<rtp::ReceivedSlice> slices, Time now) {
       if (!MayChangeTo(slice.config, now)) continue;
       flush();
       asked_ = slice.config;
-      // Refused caps are offered again, as a flush refuses them, too.
+      // Refused caps are offered again with the next slice, because a flush refuses them, too.
       config_ = SetCapsOf(*slice.config) ? slice.config : nullptr;
     }
     if (!config_) {

@@ -12,7 +12,7 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread, but for the counts.
+/// Used by the streaming thread, except for the counts.
 class SliceOutput {
  public:
   explicit SliceOutput(GstRTPBaseDepayload* element) : element_(element) {}
@@ -39,7 +39,7 @@ class SliceOutput {
 
   GstRTPBaseDepayload* element_;
   Config config_;  // of the caps on the src pad
-  Config asked_;   // the caps that the next element answered to last
+  Config asked_;   // of the caps that were offered last
   Allowance changes_{kFormatChanges, kFormatChangePeriod};
   bool warned_of_coder_ = false;
   bool warned_of_changes_ = false;
