@@ -3,8 +3,8 @@
  * SECTION:element-lidarenc
  *
  * Encodes clouds slice by slice, to a bitrate and within an error, as small as the machine has time
- * for. Organised scans with a sensor model are ranges, predicted from neighbouring beams
- * (docs/wire-format.md); other clouds are beams and cells (docs/cloud-coder.md), in an order of
+ * for. Organised scans with a sensor model are coded as ranges, predicted from neighbouring beams
+ * (docs/wire-format.md), other clouds as beams and cells (docs/cloud-coder.md), in an order of
  * their own unless `keep-order` is set.
  *
  * |[
@@ -122,7 +122,8 @@ GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, gst_lidar_enc_g
 
 static LidarEncCoder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
 
-/// What comes back exactly of points with these fields; `missing` gets the other names.
+/// Returns what receivers get exactly of points with `fields`. `missing` gets the names of the
+/// settings that `fields` lack.
 static lidar::codec::cloud::ExactChoice ExactChoiceOf(const LidarEncSettings& settings,
                                                       const lidar::PointFields& fields,
                                                       std::string* missing) {
@@ -140,7 +141,7 @@ static lidar::codec::cloud::ExactChoice ExactChoiceOf(const LidarEncSettings& se
   return choice;
 }
 
-/// Says once what of `fields` and `keep-order` is impossible.
+/// Warns once if `fields` or `keep-order` asks for the impossible.
 static void WarnOfFields(GstLidarEncoder* base, const LidarEncSettings& settings, bool ranges,
                          const std::string& missing, const lidar::PointFields& fields) {
   State& state = *GST_LIDAR_ENC(base)->state;

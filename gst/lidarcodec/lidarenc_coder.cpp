@@ -46,8 +46,8 @@ void LidarEncCoder::Load(const GstLidarRawSlice& raw, std::optional<unsigned> ef
            : cloud_->Load(points, with_intensity_);
 }
 
-/// The state after the last slice is known now; which of several encodings was sent becomes known
-/// with the next slice.
+/// Keeps the blocks of a slice's last encoding, which is the one that was sent, when no other
+/// encoding of the slice can follow.
 void LidarEncCoder::KeepBlocks() {
   keeper_.OnEncoded(std::move(slice_.blocks));
   slice_.blocks.clear();

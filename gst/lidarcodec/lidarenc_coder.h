@@ -20,16 +20,17 @@ namespace lidar::gst {
 /// For one thread at a time.
 class LidarEncCoder {
  public:
-  /// Returns false if it has neither ranges of a sensor nor points. The measured speed of the
-  /// machine stays, and what is known of a sensor whose clouds only differ in size.
+  /// Returns false if `info` has neither ranges of a sensor nor points. Keeps the measured speed of
+  /// the machine and, if only the size of the points' clouds changes, the state of their coder.
   /// `exact` is for points only.
   bool SetFormat(const CloudInfo& info, bool with_intensity,
                  const codec::cloud::ExactChoice& exact);
   /// Takes the slice. Without `effort` it chooses the effort that time allows.
   void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
-  /// Lets the loaded slice refer to blocks that the receiver has, if it `remembers`.
+  /// Lets the loaded slice refer to blocks that the receiver has, if receivers are to remember
+  /// blocks (`remembers`).
   void Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval);
-  /// Describes the loaded slice; good until the next one.
+  /// Describes the loaded slice; valid until the next Load().
   void Describe(GstLidarLoadedSlice* loaded);
   /// Returns true if slices are ranges of a sensor, and false if they are points in any order.
   bool codes_ranges() const { return encoder_.has_value(); }
