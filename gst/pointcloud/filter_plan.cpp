@@ -12,7 +12,7 @@
 namespace lidar::gst {
 namespace {
 
-/// CloudInfo holds little-endian clouds only.
+/// Parses caps of either byte order as little-endian ones, the only ones that CloudInfo takes.
 std::optional<CloudInfo> ParseCaps(const GstCaps* caps, bool* big_endian, std::string* why) {
   const CapsPtr copy(gst_caps_copy(caps));
   gboolean flag = FALSE;
@@ -99,7 +99,7 @@ std::string FrameOf(const FilterSettings& settings, const GstCaps* caps) {
   return text != nullptr ? text : "";
 }
 
-/// The points are moved: the next element must not move them again.
+/// Removes the pose of moved points, so that the next element does not move them again.
 void DropPose(GstBuffer* buffer) {
   GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, GST_LIDAR_POSE_META_NAME);
   if (meta != nullptr) gst_buffer_remove_meta(buffer, &meta->meta);

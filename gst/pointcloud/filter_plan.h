@@ -45,7 +45,7 @@ class FilterPlan {
   BufferPtr Apply(GstBuffer* buffer, const Transform& placed = kIdentity);
   /// Caps of the last cloud from Apply().
   GstCaps* caps() const { return caps_.get(); }
-  /// The fields of that cloud, with their types and places.
+  /// The fields of that cloud, with their types and offsets.
   std::string fields() const { return out_.fields.ToString(); }
   std::uint64_t removed() const { return filter_->removed(); }
   /// Number of clouds dropped because they lack the pose that they need.

@@ -21,13 +21,13 @@ struct AssemblerSettings {
 
 struct AssemblerState {
   AssemblerState() { gst_segment_init(&segment, GST_FORMAT_TIME); }
-  /// Makes all but the settings and the timer as before the first buffer. The mutex must be held.
+  /// Resets all except the settings and the timer. The mutex must be held.
   void Reset();
   /// The property `stats`; takes the mutex.
   StructurePtr Stats();
 
-  // Guards all below. The sink pad's streaming lock orders the output: the chain function holds it,
-  // and the timer takes it before this mutex.
+  // Guards all down to `timer`. The sink pad's streaming lock orders the output: the chain function
+  // holds it, and the timer takes it before this mutex.
   std::mutex mutex;
   AssemblerSettings settings;
   ScanQueue queue;
@@ -37,7 +37,7 @@ struct AssemblerState {
   bool caps_sent = false;
   EventPtr early_segment;           // waits for the caps
   std::optional<Latency> upstream;  // after the first query
-  GstClockTime scan_latency = 0;    // latency of a scan in the latency query, without max-wait
+  GstClockTime scan_latency = 0;    // a scan's part of the reported latency, without max-wait
   GstSegment segment;
   DeadlineTimer timer;
 

@@ -2,7 +2,7 @@
 /**
  * SECTION:element-scanassembler
  *
- * Puts the slices of a scan together again; what did not come is zero and the scan is flagged.
+ * Puts the slices of a scan together again. Missing slices are zeros, and the scan is flagged.
  *
  * |[
  * gst-launch-1.0 lidartestsrc num-buffers=80 ! scanassembler ! fakesink silent=false -v
@@ -281,7 +281,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       PushAll(self);
       break;
     case GST_EVENT_GAP: {
-      // The flag of an open scan marks the gap.
+      // The open scan is flagged when it leaves, which marks the gap.
       std::unique_lock lock(state.mutex);
       if (state.queue.empty()) break;
       lock.unlock();

@@ -44,7 +44,7 @@ class ScanBuilder {
   /// PTS of the scan's first column, known or counted back; NONE if no slice had one.
   GstClockTime pts() const { return pts_; }
   GstClockTime duration() const { return duration_; }
-  /// Missing columns are zero. The builder is spent.
+  /// Returns the scan, with zeros for missing columns. No other call may follow.
   FinishedScan Finish();
 
  private:

@@ -9,7 +9,7 @@ namespace lidar::gst {
 
 /// Caps of a scan of `width` columns whose slices have the caps `slice`.
 CapsPtr ScanCaps(const GstCaps* slice, const CloudInfo& slice_info, guint width);
-/// Returns true if the caps say the same but for the width.
+/// Returns true if the caps are equal except for the width.
 bool SameButForWidth(const GstCaps* a, const GstCaps* b);
 /// Returns true if slices with these two caps cannot belong to one scan.
 bool CannotMix(const CloudInfo& a, const CloudInfo& b);

@@ -17,8 +17,9 @@ struct ScanCounters {
   guint64 invalid = 0;
 };
 
-/// At most two scans are open: the one that is swept, and the one before, whose last slices may
-/// still be under way. Scans leave in order. It has no clock: times are the caller's running time.
+/// At most two scans are open: the one that the sensor sweeps, and the one before, whose last
+/// slices may still be under way. Scans leave in order. The queue has no clock: times are the
+/// caller's running time.
 class ScanQueue {
  public:
   using Finished = std::vector<FinishedScan>;

@@ -66,7 +66,7 @@ void AppendText(FieldType type, const std::uint8_t* at, std::string* out) {
   });
 }
 
-/// Walks over the points; all fields are packed without gaps.
+/// Writes the points, with all fields and without the gaps between them.
 class PointWriter {
  public:
   explicit PointWriter(const CloudFileInput& cloud)
@@ -91,7 +91,8 @@ class PointWriter {
     for (gsize i = 0; i < cloud_.info->Points(); ++i) count += HasReturn(At(i)) ? 1U : 0U;
     return count;
   }
-  /// Appends the points; missing returns become NaN, or are left out.
+  /// Appends the points. With `keep_missing`, coordinates of points without a return are NaN;
+  /// otherwise such points are left out.
   void AppendAll(bool keep_missing, std::string* out) const {
     for (gsize i = 0; i < cloud_.info->Points(); ++i) {
       const bool missing = !HasReturn(At(i));

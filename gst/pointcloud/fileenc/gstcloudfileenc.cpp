@@ -3,7 +3,7 @@
  * SECTION:element-pcdenc
  * SECTION:element-plyenc
  *
- * Every cloud as a PCD or PLY file, to be written by multifilesink.
+ * Makes each cloud a PCD or PLY file, which multifilesink writes.
  *
  * |[
  * gst-launch-1.0 lidartestsrc slices-per-scan=1 num-buffers=3 ! pcdenc

@@ -74,7 +74,7 @@ struct State {
   Counters counters;
   FramePlacer placer;
   // Only the streaming thread uses these.
-  CapsPtr caps;  // of what comes
+  CapsPtr caps;  // of the input
   std::unique_ptr<FilterPlan> plan;
   Counters before;  // of earlier plans
   CapsPtr pushed;
@@ -276,7 +276,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
                           const GstCaps*) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
   GST_OBJECT_LOCK(self);
-  // Keeps a requested name. A pad without one must never get a name that was given.
+  // A requested name is kept, and pads that are requested later without a name get other names.
   guint64 number = self->next_pad;
   if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT - 1, &number, nullptr);
   self->next_pad = std::max(self->next_pad, static_cast<guint>(number) + 1);

@@ -70,7 +70,7 @@ GstFlowReturn TransformInbox::Chain(GstPad* pad, GstObject*, GstBuffer* raw) {
   return GST_FLOW_OK;
 }
 
-/// Events of transforms do not go on to where the clouds go.
+/// Events of transforms do not go downstream with the clouds.
 gboolean TransformInbox::Event(GstPad* pad, GstObject*, GstEvent* event) {
   const EventPtr owner(event);
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) InboxOf(pad).SetEnded(pad, true);

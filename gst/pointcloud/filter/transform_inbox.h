@@ -25,8 +25,8 @@ class TransformInbox {
   GstPad* AddPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name);
   void ReleasePad(GstElement* element, GstPad* pad);
 
-  /// Finds the transform of points from `source` to `target`. Waits for a missing transform, but
-  /// not again for one that it has waited for in vain.
+  /// Finds the transform of points from `source` to `target`. Waits for a missing transform. After
+  /// a vain wait it does not wait again before a newer transform has come.
   TransformTree::Answer Find(const std::string& target, const std::string& source,
                              std::optional<Time> at, std::chrono::nanoseconds timeout);
   /// Ends waits of Find(), until Interrupt(false).
@@ -57,7 +57,7 @@ class TransformInbox {
   Counters counters_;
   std::map<GstPad*, bool> pads_;  // true: ended
   bool interrupted_ = false;
-  std::optional<Time> waited_in_vain_;  // waits for later times only
+  std::optional<Time> waited_in_vain_;  // newest transform at the last vain wait
 };
 
 }  // namespace lidar::gst

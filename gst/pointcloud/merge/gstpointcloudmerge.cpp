@@ -99,7 +99,7 @@ static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
   pad->state->plan.reset();
 }
 
-/// Returns the returns of `buffer` in the common frame, with `fields` or the cloud's own. Returns
+/// Converts the returns of `buffer` to the common frame, with `fields` or the cloud's own. Gives
 /// null on failure; `why` then has the reason for a user.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
                               const std::string& fields, std::string* why) {
@@ -123,7 +123,7 @@ static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer
   return state.plan->Apply(buffer);
 }
 
-/// Fields of the result of MergePadRead(), as caps have them; nothing before.
+/// Fields of the last result of MergePadRead(), as caps have them; nothing before the first one.
 static std::optional<std::string> MergePadFields(GstLidarPointCloudMergePad* pad) {
   if (!pad->state->plan) return std::nullopt;
   return pad->state->plan->fields();
@@ -232,7 +232,7 @@ static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* me
   return true;
 }
 
-/// Caps of the next cloud, which has as many points as there are.
+/// Sends caps if the next cloud's number of points or fields differ from the last ones.
 static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
                     const lidar::PointFields& fields) {
   CloudInfo info;
@@ -271,7 +271,7 @@ static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
     });
     return ended ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
   }
-  // Waits for a late sensor no longer than the latency.
+  // A late sensor is waited for until the latency has passed.
   if (DropOld(self, heads) && !timeout) return GST_AGGREGATOR_FLOW_NEED_DATA;
   Merged merged;
   for (const Head& head : heads)

@@ -13,7 +13,7 @@ namespace {
 struct FileKind {
   CloudFileType type;
   const char* name;
-  const char* media_type;  // NULL: typefind looks at the points, as such files have no header
+  const char* media_type;  // NULL: no typefind, because such files have no header
   const char* extension;
 };
 constexpr FileKind kFileKinds[] = {{CloudFileType::kPcd, "PCD", "application/x-pcd", "pcd"},

@@ -20,8 +20,8 @@ struct FileBuffer {
   CloudInfo info;  // of the cloud; width 0: it is empty
   BufferPtr buffer;
 };
-/// Returns nothing if `file` cannot be read; `why` then says so in words for a user. x, y and z
-/// become F32 side by side, numbers little-endian.
+/// Returns nothing if `file` cannot be read; `why` then has the reason in words for a user. The
+/// cloud has x, y and z as adjacent F32, and little-endian numbers.
 std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::string* why);
 
 /// Registers the types that have a header with typefind.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Times of clouds from files: upstream's times, otherwise from their number.
+// Times of clouds from files: upstream's, or computed from the clouds' numbers.
 #pragma once
 #include <gst/gst.h>
 
@@ -42,19 +42,20 @@ class CloudStamper {
   /// Whether upstream stamps its buffers.
   bool times_given() const { return times_given_; }
 
-  /// Keeps upstream's segment where it counts time, and makes one otherwise. Takes the event.
+  /// Keeps upstream's segment if it is in time, and makes one otherwise. Takes the event.
   void TakeSegment(GstEvent* event);
   /// The segment that is to go before the next cloud; NULL once it was taken.
   EventPtr NextSegment() { return std::move(segment_); }
-  /// Sets the size of all clouds in bytes; 0: sizes differ. With a size, seeks and queries are
-  /// answered here and arrive as bytes.
+  /// Sets the size of all clouds in bytes; 0: sizes differ. With a size, seeks and queries in time
+  /// are answered here, and go upstream in bytes.
   void SetCloudSize(gsize bytes);
-  /// Gives a cloud without capture time one, as if its sensor had begun when the first cloud came.
-  /// Makes a cloud that is no slice a scan with its number.
+  /// Sets a missing capture time as if the sensor had begun when the first cloud came. Numbers a
+  /// cloud that is no slice as a scan of its own.
   void Stamp(GstBuffer* cloud);
   /// A cloud that is left out keeps its place in time.
   void LeaveOut() { ++place_.next; }
-  /// Returns true if the next cloud was pushed before a seek that resumes at the old place.
+  /// Returns true if the next cloud was pushed already, before a seek that continues where playback
+  /// was.
   bool HasGone() const { return place_.next < place_.shown; }
   void Flush(bool restarts_time);
   void Reset();

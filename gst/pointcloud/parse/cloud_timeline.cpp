@@ -7,7 +7,7 @@
 
 namespace lidar::gst {
 
-/// Times are rounded down, so a time computed from a cloud would otherwise miss it by one.
+/// TimeOf() rounds down, so the time of a cloud would otherwise give the cloud before it.
 guint64 CloudTimeline::Grid::CloudAt(GstClockTime time) const {
   const guint64 cloud = gst_util_uint64_scale(time, rate_n, rate_d * GST_SECOND);
   return TimeOf(cloud + 1) <= time ? cloud + 1 : cloud;

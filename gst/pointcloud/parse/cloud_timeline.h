@@ -37,9 +37,9 @@ class CloudTimeline {
   /// Converts a segment in bytes to one in time that continues after the last cloud. Sets `place`
   /// to its beginning, as far as known.
   EventPtr ToTime(GstEvent* segment, Place* place);
-  /// SEGMENT_DONE in the time of downstream; takes the event.
+  /// Converts SEGMENT_DONE to time; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
-  /// A cloud was pushed that ends then, or with the segment.
+  /// A cloud was pushed that ends at `end`, or at the segment's stop if that is earlier.
   void NotePosition(GstClockTime end);
   /// The running time begins anew.
   void RestartTime();

@@ -2,8 +2,8 @@
 /**
  * SECTION:element-pointcloudparse
  *
- * Makes clouds of files, PCD, PLY, LAS, KITTI's or raw: the width from the size, a TIME segment,
- * stamps and capture times from the frame rate.
+ * Makes clouds of files: PCD, PLY, LAS, KITTI or raw points. The width comes from the size of a
+ * file, stamps and capture times come from the frame rate, and the segment is in time.
  *
  * |[
  * gst-launch-1.0 multifilesrc location=%06d.bin ! pointcloudparse framerate=10/1 ! fakesink
@@ -82,7 +82,8 @@ GST_ELEMENT_REGISTER_DEFINE(pointcloudparse, "pointcloudparse", GST_RANK_NONE,
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state; }
 
-/// Returns the bytes of a cloud in a stream that is cut anywhere; 0 if each buffer is a cloud.
+/// Returns the bytes of a cloud in a stream whose buffers end anywhere; 0 if each buffer is a
+/// cloud.
 static gsize CloudSize(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   if (!state.type && state.info->width > 0) return state.info->FrameSize();
@@ -279,7 +280,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   State& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
-      // The next file of a concat: it has a size, and a type where no caps name one.
+      // The next file of a concat has its own size and, if no caps name it, its own type.
       state.file_size.reset();
       if (gst_pad_has_current_caps(pad)) break;
       state.type.reset();
