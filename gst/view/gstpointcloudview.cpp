@@ -2,7 +2,7 @@
 /**
  * SECTION:element-pointcloudview
  *
- * Point clouds as video, for any video sink, encoder or pngenc.
+ * Draws point clouds as video, for any video sink, encoder or pngenc.
  *
  * |[
  * gst-launch-1.0 lidartestsrc is-live=true ! pointcloudview ! videoconvert ! autovideosink
@@ -262,7 +262,7 @@ static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   return pose.tracking != GST_LIDAR_TRACKING_LOST;
 }
 
-/// Keeps the map while it is wanted with the same colours.
+/// Keeps the map while the settings ask for one with the same colours.
 static TrailMap* UpdateMap(State* state) {
   const Settings& settings = state->settings;
   const bool stale = state->map_colors != settings.color_by;

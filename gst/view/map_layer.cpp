@@ -12,10 +12,9 @@ namespace {
 constexpr Color kBackground{20, 23, 32};
 constexpr Color kWay{255, 176, 46};
 constexpr Color kSensor{255, 255, 255};
-/// The share of its colour that the map keeps, its distance in perspective, and the number of scans
-/// that must have met a place before it is drawn, which leaves out much of what moves.
-constexpr float kMapShare = 0.7F;
-constexpr float kReach = 300;
+constexpr float kMapShare = 0.7F;  // of its colour that a point of the map keeps
+constexpr float kReach = 300;      // up to which the map is drawn in perspective [m]
+// Scans that must have met a place before it is drawn, which leaves out much of what moves.
 constexpr int kMetOften = 3;
 constexpr float kMargin = 25;  // around the way [m]
 /// Number of steps in which the columns of a scan are placed.
@@ -82,7 +81,7 @@ void Renderer::DrawOverMap(const CloudInfo& info, const GstLidarSlice& slice,
 
 void Renderer::DrawMap() {
   const bool top = settings_.view == ViewKind::kTop;
-  // Draws a cube as large as its place in the picture.
+  // A point is drawn as large as its cube appears in the picture.
   const float cube = map_->cube_m();
   for (const TrailMap::Point& point : map_->points()) {
     if (point.scans < kMetOften) continue;

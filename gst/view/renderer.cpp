@@ -50,7 +50,7 @@ Renderer::Renderer(const ViewSettings& settings, int width, int height, TrailMap
     return Vec{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   };
   forward_ = unit({t[0] - e[0], t[1] - e[1], t[2] - e[2]});
-  // Straight down has no horizon: then the sensor's x points up.
+  // A view straight down has no horizon: the sensor's x points up in it.
   const bool vertical = std::abs(forward_.z) > 0.999F;
   right_ = vertical ? Vec{0, -1, 0} : unit(cross(forward_, {0, 0, 1}));
   up_ = cross(right_, forward_);
@@ -216,7 +216,8 @@ void Renderer::DrawRings() {
 const Canvas& Renderer::Finish() {
   if (settings_.view == ViewKind::kRange) return canvas_;
   if (map_ != nullptr) DrawMap();
-  // Depth is height from above: a step of a metre is shaded like a tenth of the distance.
+  // A step of a metre changes the depth by 1 % only when seen from above, so it is shaded more
+  // there.
   canvas_.ShadeEdges(settings_.view == ViewKind::kTop ? 6.0F : 2.0F);
   if (map_ != nullptr) {
     DrawWay();

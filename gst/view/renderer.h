@@ -33,9 +33,9 @@ constexpr float kGround = -1.9F;  // below the sensor [m]
 /// Draws a picture at a time: Begin, Draw for each slice, Finish.
 class Renderer {
  public:
-  /// Scans with a map, and poses for it, are drawn where they were taken, over earlier ones. From
-  /// above the picture contains the whole way. In perspective the view is level, from behind the
-  /// sensor. The map must outlive the renderer.
+  /// If there is a map, and poses for it, scans are drawn where they were taken, over earlier ones.
+  /// From above the picture contains the whole way. In perspective the view is level, from behind
+  /// the sensor. The map must outlive the renderer.
   Renderer(const ViewSettings& settings, int width, int height, TrailMap* map);
 
   void Begin();

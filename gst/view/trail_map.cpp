@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLongestStep_s = 1;  // beyond this a velocity does not predict the present
 constexpr float kGrowth = 1.5F;
-constexpr float kNews = 0.3F;      // weight of a scan: distant points may be wrong
+constexpr float kNews = 0.3F;      // weight of a new value; values of distant points may be wrong
 constexpr float kFarthest = 1e7F;  // [m]: beyond it floats cannot separate cubes
 
 using Cube = std::array<std::int32_t, 3>;

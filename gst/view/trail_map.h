@@ -23,8 +23,8 @@ struct Rigid {
   float heading() const;  // [rad]
 };
 
-/// Keeps one point per cube in bounded memory: with too many cubes they grow, and the way keeps
-/// every second place.
+/// Keeps one point per cube in bounded memory: if there are too many cubes, they grow; if the way
+/// is too long, it keeps every second place.
 class TrailMap {
  public:
   struct Point {
