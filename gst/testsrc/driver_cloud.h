@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// Streaming thread.
+/// Used by the streaming thread.
 class DriverCloud {
  public:
   explicit DriverCloud(const synth::Firing& firing);
@@ -23,7 +23,7 @@ class DriverCloud {
     GstClockTime begin;  // of its first column, since 1970
     Duration column;     // from one to the next
   };
-  /// The points of what returned.
+  /// Writes the points of the returns.
   const std::vector<std::uint8_t>& Write(const synth::Returns& returns, const synth::Rays& rays,
                                          const Sweep& sweep);
   /// Caps of the last written cloud; width 0: no returns.
@@ -38,7 +38,7 @@ class DriverCloud {
     Vec3 direction;
     double since_begin_ns;
   };
-  /// Offsets of what drivers add to x, y, z and intensity.
+  /// Offsets of the fields that drivers add to x, y, z and intensity.
   struct Offsets {
     std::optional<std::uint32_t> ring, line, time, timestamp;
   };

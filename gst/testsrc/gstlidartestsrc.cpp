@@ -274,7 +274,7 @@ static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   return caps;
 }
 
-/// Caps come with each buffer where each has its own.
+/// Caps come with each buffer if each buffer has its own.
 static gboolean Negotiate(GstBaseSrc* base) {
   const auto& maker = StateOf(base).maker;
   if (maker && maker->OwnInfo() != nullptr) return TRUE;
@@ -340,7 +340,8 @@ static void PushImu(GstLidarTestSrc* self, Duration begin, Duration end) {
   state.imu_pad->Push(samples, kSensorsFrame, RunningTime(self, first));
 }
 
-/// Casts early, so that a live slice leaves when its last column is sampled.
+/// Casts the rays before the slice is due, so that a live slice leaves when its last column is
+/// sampled.
 static GstFlowReturn CreateSlice(GstLidarTestSrc* self, GstBuffer** out) {
   State& state = *self->state;
   const bool live = gst_base_src_is_live(GST_BASE_SRC(self));

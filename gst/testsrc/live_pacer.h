@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// Each source has one, which it must outlive. Only SetFlushing() may be called by other threads
+/// Each source has a pacer, and must outlive it. Only SetFlushing() may be called by other threads
 /// than the streaming thread.
 class LivePacer {
  public:

@@ -20,7 +20,8 @@ enum class Channel { kReflectivity, kSignal, kRing, kTime };
 std::optional<std::vector<Channel>> ParseChannels(std::string_view text, std::string* unknown);
 
 struct SliceOptions {
-  std::uint32_t slices_per_scan = 0;  // automatic; of a sensor with a firing table: whole scans
+  std::uint32_t slices_per_scan =
+      0;  // 0: automatic, or a whole scan of a sensor with a firing table
   std::vector<Channel> channels;
 };
 
@@ -35,7 +36,7 @@ class SliceMaker {
 
   /// When the first column of the next slice is sampled.
   Duration NextTime() const { return scanner_.ColumnTime(scan_, FirstColumn()); }
-  /// When its last column is.
+  /// When the slice after it begins.
   Duration NextEnd() const { return scanner_.ColumnTime(scan_, FirstColumn() + width_); }
   const synth::Trajectory& trajectory() const { return scanner_.trajectory(); }
   Duration LongestSlice() const;
