@@ -162,7 +162,7 @@ static GstLidarBitrateBounds BoundsOf(const Settings& settings) {
   return {whole(settings.min_bps), whole(settings.max_bps), whole(settings.max_bps)};
 }
 
-/// The user's limits go behind the caps, so that the sender asks for nothing else.
+/// Sends the user's limits behind the caps, so that the sender's targets keep to them.
 static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   const bool is_caps = GST_EVENT_TYPE(event) == GST_EVENT_CAPS;
   const gboolean result =

@@ -3,7 +3,7 @@
  * SECTION:element-ecnudpsink
  *
  * Sends each buffer as one UDP datagram whose ECN bits come from the buffer's LidarEcnMeta, or from
- * the property `ecn` where it has none.
+ * the property `ecn` if it has none.
  *
  * |[
  * gst-launch-1.0 audiotestsrc ! audioconvert ! rtpL16pay ! ecnudpsink host=127.0.0.1 port=5004
@@ -227,7 +227,7 @@ static Marking CurrentMarking(State& state) {
       s.options.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.options.dscp << 2);
   Marking marking{dscp, static_cast<guint8>(s.ecn), s.reply, 0};
   if (s.interface.empty()) return marking;
-  // The socket's index changes with each start.
+  // An interface that was removed comes back with another index.
   const int fd = g_socket_get_fd(state.used.socket.get());
   if (const unsigned index = lidar::net::InterfaceIndex(fd, s.interface))
     marking.interface = index;

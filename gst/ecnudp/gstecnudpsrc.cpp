@@ -3,7 +3,7 @@
  * SECTION:element-ecnudpsrc
  *
  * Receives UDP datagrams, each with its sender's address (GstNetAddressMeta) and its ECN bits and
- * kernel arrival time (LidarEcnMeta). Without `caps` it takes what downstream wants.
+ * kernel arrival time (LidarEcnMeta). Without `caps` it has caps that downstream accepts.
  *
  * |[
  * gst-launch-1.0 ecnudpsrc port=5004 num-buffers=100 ! fakesink dump=true
@@ -34,7 +34,7 @@ namespace {
 
 using namespace lidar::gst;
 
-// Enough for 1 s of 16 Mbit/s; asked for silently without a size by the user.
+// Enough for 1 s of 16 Mbit/s. A kernel that grants less than this default causes no warning.
 constexpr guint kDefaultBuffer = 2u << 20;
 constexpr gint kDefaultPayload = 96;
 
