@@ -40,7 +40,7 @@ class AlignedRow {
     closed_ = columns == alignment.columns_per_scan() && alignment.span() + 2 * kMargin <= columns;
     values_.assign(size_, initial);
   }
-  /// Valid for [-kMargin .. columns + kMargin).
+  /// Returns pixel 0 of `beam`; indices in [-kMargin .. columns + kMargin) are valid.
   T* At(std::uint32_t beam) { return &values_[kMargin + alignment_->offset(beam)]; }
   /// Call it after At(beam)[0 .. columns) was written: in a full turn the last column is the first
   /// one's neighbour.

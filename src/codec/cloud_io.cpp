@@ -22,12 +22,12 @@ void Store(T value, std::uint8_t* bytes) {
   std::memcpy(bytes, &value, sizeof value);
 }
 
-/// Null also where the field has another type: caps may come from a network.
+/// Returns null for a field of another type, too: caps may come from a network.
 const PointField* FindTyped(const PointFields& fields, const char* name, FieldType type) {
   return fields.Has(name, type) ? fields.Find(name) : nullptr;
 }
 
-/// True where all ranges are multiples of `unit_mm`.
+/// Returns true if all ranges are multiples of `unit_mm`.
 bool AreMultiples(const std::vector<std::uint32_t>& ranges, std::uint32_t unit_mm) {
   if (unit_mm == 1) return true;
   std::uint32_t remainders = 0;
@@ -88,7 +88,7 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
 }
 
 std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm) {
-  constexpr unsigned kSample = 64;  // returns, which nearly always tell the divisor of all
+  constexpr unsigned kSample = 64;  // returns, whose divisor is nearly always that of all
   std::uint32_t unit = 0;
   unsigned seen = 0;
   for (auto r = ranges.begin(); r != ranges.end() && unit != 1 && seen < kSample; ++r) {
@@ -131,7 +131,7 @@ void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
   const PointField* range = FindTyped(layout.fields, "range", FieldType::kU32);
   const PointField* intensity =
       image.intensity.empty() ? nullptr : FindTyped(layout.fields, "intensity", FieldType::kF32);
-  // If these are all fields, every byte is written below.
+  // If the layout has no other fields, every byte is written below.
   const PointFields kept = KeptFields(layout.fields, intensity != nullptr, range != nullptr);
   if (kept != layout.fields || layout.point_step != kept.MinimumStep())
     std::memset(raw, 0, image.size() * layout.point_step);

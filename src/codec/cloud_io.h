@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Raw clouds, as they lie in buffers, to and from what the codecs work on.
+// Converts raw clouds, as they lie in buffers, to what the codecs work on, and back.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace lidar::codec {
 
-/// Points without order; intensities are as many, or none.
+/// Points without order. Each has an intensity, or none has.
 struct XyzCloud {
   std::vector<float> xyz;  // metres, three a point
   std::vector<float> intensity;
@@ -38,37 +38,37 @@ struct CloudLayout {
 /// What the caps say of every raw slice of a stream.
 struct CloudFormat {
   CloudLayout layout;
-  std::uint32_t height = 1;  // beams, where the cloud is organised
+  std::uint32_t height = 1;  // beams, if the cloud is organised
   std::optional<SensorModel> sensor_model;
 
-  /// Whether it can be coded in range geometry.
+  /// Whether slices can be coded in range geometry.
   bool HasRanges() const;
 };
 
 constexpr unsigned kFineIntensityBits = IntensityScale::kMaxBits;
 
-/// The fields of `input` that an encoded slice keeps, packed: x, y, z, and where they are wanted
-/// and there, intensity and range.
+/// The fields of an encoded slice, packed: x, y, z, intensity if it is wanted and in `input`, and
+/// range if it is wanted.
 PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_range);
 
-/// The other fields of an encoded slice of points, which come back exactly.
+/// The fields of `kept` other than x, y, z and intensity, which are decoded exactly.
 std::vector<PointField> ExactFields(const PointFields& kept);
 
-/// Returns true if there is an intensity that the codecs take: F32.
+/// Returns true if there is an intensity of type F32, which the codecs need.
 bool HasIntensity(const PointFields& fields);
 
-/// Fills `image`, whose beams, columns and first_column are set, from `raw` of as many points.
-/// Intensities, where they are wanted and there, become levels of kFineIntensityBits; the result
-/// is what they are levels of.
+/// Fills `image`, whose beams, columns and first_column are set, from the points of `raw`, one for
+/// each pixel. Intensities, if they are wanted and there, become levels of kFineIntensityBits.
+/// Returns the full scale of the levels.
 FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
                          RangeImage* image);
 /// The common divisor of all ranges [mm]: coarser than the sensor's unit, or finer if the cloud was
-/// filtered. Above RangeGrid::kMaxUnitMm, or without returns, it is the largest divisor of the
-/// sensor's unit that divides all.
+/// filtered. If it is above RangeGrid::kMaxUnitMm, or without returns, the result is the largest
+/// divisor of the sensor's unit that divides all ranges.
 std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm);
 
 /// Fills `cloud` with the points of `raw` that are finite and not all zero. Intensities that are
-/// negative or not finite become 0. `rows`, if it is there, becomes the place of each in `raw`.
+/// negative or not finite become 0. `rows`, if not null, becomes each point's place in `raw`.
 void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud,
              std::vector<std::uint32_t>* rows = nullptr);
 
@@ -76,7 +76,7 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
 void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
                      const RangeProjection& projection, const CloudLayout& layout,
                      std::uint8_t* raw);
-/// Writes `cloud` as points, each at its place of `order` if that is not empty; other fields are
+/// Writes `cloud` as points, point i at place order[i], or i if `order` is empty. Other fields are
 /// zero.
 void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw,
               const std::vector<std::uint32_t>& order = {});

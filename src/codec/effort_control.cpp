@@ -8,9 +8,9 @@ namespace {
 
 constexpr Duration kWindow{1'000'000'000};
 constexpr unsigned kFewestSlices = 8;
-// Part of a window that may be late, as in a busy moment of the machine.
+// Part of a window's slices that may be late, for busy moments of the machine.
 constexpr double kLatePart = 0.1;
-// A window ends early after so many slices in a row that take twice their time.
+// A window ends early after so many slices in a row that take more than twice their time.
 constexpr unsigned kMuchTooLate = 3;
 // A higher effort is tried if it is likely to need no more than this part of its time.
 constexpr double kRoom = 0.75;
@@ -52,7 +52,8 @@ void EffortControl::Reconsider(double cost) {
   ++effort_;
 }
 
-/// Judges the first window after a raise. A busy machine must not spoil the level for long.
+/// Learns a level's ratio from the first window after a raise, within bounds: a busy machine must
+/// not spoil the ratio for long.
 void EffortControl::LearnRatio(double cost) {
   if (cost_below_ > 0 && cost > 0) {
     double& ratio = levels_[effort_].ratio;

@@ -13,7 +13,7 @@ namespace lidar::codec {
 class EffortControl {
  public:
   static constexpr unsigned kHighest = 3;
-  /// Part of its sweep that a slice may take.
+  /// Part of a slice's sweep time that its coding may take.
   static constexpr double kAllowedPart = 0.25;
 
   /// Effort of the next slice.
@@ -29,7 +29,7 @@ class EffortControl {
     unsigned late = 0;  // slices beyond their time
     double spent_s = 0;
     double returns = 0;
-    double most_returns_per_s = 0;  // of sweep
+    double most_returns_per_s = 0;  // a second of sweep
   };
   struct Level {
     double ratio;           // cost relative to the level below

@@ -19,7 +19,8 @@ bool HasGaps(const RangeImage& image) {
   return std::find(image.ranges.begin(), image.ranges.end(), 0U) != image.ranges.end();
 }
 
-/// Two thirds of a step: as a rule one or two of its bins come back within the error of `grid`.
+/// A grid of two thirds of the step: as a rule one or two of its bins decode to within the error of
+/// `grid`.
 RangeGrid FinerGrid(const RangeGrid& grid) {
   constexpr std::uint32_t kThirds = 3 * RangeGrid::kParts;
   return {grid.unit_mm(), std::max((2 * grid.parts() + kThirds / 2) / kThirds, 1U)};
@@ -34,8 +35,8 @@ std::uint32_t ErrorMm(const RangeGrid& grid) {
   return static_cast<std::uint32_t>(std::lround(1e3 * grid.error_m()));
 }
 
-/// Several bins may come back within the error. Each return takes the one that is nearest to what
-/// its pixel has seen.
+/// Several bins may decode to within the error. Each return takes the bin nearest to what its pixel
+/// has seen.
 RangeImage AsRecalled(const RangeImage& image, const BlockMemory& memory, const RangeGrid& grid,
                       std::uint32_t error_mm) {
   RangeImage chosen = image;
@@ -110,12 +111,12 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
     if (!EncodeIntegers(settings, image.columns)) return std::nullopt;
     return settings.coder;
   }
-  // The adaptive coder takes slices whose bins are too many for the mixing coder.
+  // The adaptive coder takes slices with too long ranges or too few bits for the mixing coder.
   EncodeAdaptively(image.columns);
   return RangeCoder::kAdaptive;
 }
 
-/// Chooses bins where that saves bits.
+/// Encodes by kMixing, with a choice between bins if that saves bits.
 bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& settings) {
   MixingSettings mixing{settings.grid, settings.intensity, settings.effort};
   if (MayChoose(settings) && ChoiceSaves(image, settings.grid)) {
@@ -128,9 +129,9 @@ bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& se
   return mixing_.Encode(image, mixing, &payload_);
 }
 
-/// Asks the adaptive coder, which is ten times as fast. Where the bins of a grid are mostly noise,
-/// finer ones cost it log2(1.5) = 0.58 bits a return more, and a choice between them saves nothing;
-/// on smooth surfaces they cost less.
+/// Estimates by the adaptive coder, which is ten times as fast. If the bins of a grid are mostly
+/// noise, finer ones cost it log2(1.5) = 0.58 bits a return more, and a choice between them saves
+/// nothing; on smooth surfaces they cost less.
 bool RangeEncoder::ChoiceSaves(const RangeImage& image, const RangeGrid& grid) {
   const double bits = AdaptiveBits(image, grid);
   const double finer = AdaptiveBits(image, FinerGrid(grid));
@@ -138,7 +139,7 @@ bool RangeEncoder::ChoiceSaves(const RangeImage& image, const RangeGrid& grid) {
   return finer <= 0.85 * bits + 0.76 * static_cast<double>(returns());
 }
 
-/// What the ranges take in the adaptive coder.
+/// Bits that the ranges take in the adaptive coder.
 double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid) {
   RangeSettings geometry;
   geometry.grid = grid;
@@ -149,8 +150,8 @@ double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid
   return 8.0 * static_cast<double>(bytes);
 }
 
-/// Returns false if no later block can refer to this one: then it need not be linked. If bins may
-/// be chosen, codes it a second time on a finer grid and takes the smaller one.
+/// Returns false if no later block can refer to this one: then kMixing codes it. If bins may be
+/// chosen, codes it a second time on a finer grid and takes the smaller one.
 bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& settings,
                                 BlockLink* link) {
   const BlockMemory* reference = link->reference.get();
@@ -347,7 +348,7 @@ bool RangeDecoder::DecodeIntegers(const RangeHeader& header, ByteView mask, Byte
 
 void RangeDecoder::Scatter(RangeImage* image) {
   image->ranges.resize(image->size());
-  // An extra entry, which is read but not used where the last pixels have no return.
+  // These extra entries are read, but not used, if the last pixels have no return.
   lists_.values.push_back(0);
   lists_.levels.push_back(0);
   std::size_t next = 0;

@@ -22,7 +22,7 @@ struct RangeSettings {
   RangeCoder coder = RangeCoder::kAdaptive;
   RangeGrid grid;
   IntensityScale intensity;      // 0 bits: geometry only
-  std::uint32_t kept_beams = 0;  // others were left out on purpose; 0: all
+  std::uint32_t kept_beams = 0;  // number of beams if others were left out on purpose; 0: all
   unsigned effort = 1;           // of kMixing, 1 to 3
 };
 
@@ -37,7 +37,7 @@ class RangeEncoder {
   /// missing.
   /// Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become those of
   /// settings.intensity. An image without any return gives a block that decodes to such an image.
-  /// With `link`, blocks of kMixing become kTemporal where they can: others may refer to them.
+  /// With `link`, blocks of kMixing become kTemporal if they can, so that others may refer to them.
   bool Encode(const RangeImage& image, const RangeSettings& settings,
               std::vector<std::uint8_t>* out, BlockLink* link = nullptr);
 
@@ -96,7 +96,7 @@ class RangeDecoder {
   bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
   bool DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
                       RangeImage* image);
-  /// Moves the lists, which are ranges by now, to the pixels that have returns.
+  /// Spreads the lists, which are ranges by now, over the pixels that have returns.
   void Scatter(RangeImage* image);
 
   AzimuthAlignment alignment_;

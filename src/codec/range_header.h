@@ -17,7 +17,7 @@ enum class RangeCoder : std::uint8_t {
   kResidual = 2,  // residuals of our prediction, by Draco's sequential coder
   kAdaptive = 3,  // residuals of our prediction, by adaptive rANS
   kMixing = 4,    // each bit by mixed contexts (docs/mixing-coder.md)
-  kTemporal = 5,  // as kMixing, with memory of scans before (docs/temporal-coder.md)
+  kTemporal = 5,  // as kMixing, with memory of earlier scans
 };
 
 struct RangeHeader {
@@ -27,10 +27,10 @@ struct RangeHeader {
   std::uint32_t columns = 0;
   RangeGrid grid;
   IntensityScale intensity;        // 0 bits: geometry only
-  std::uint32_t kept_beams = 0;    // others were left out to save bits; 0: all
+  std::uint32_t kept_beams = 0;    // number of beams if others were left out to save bits; 0: all
   bool has_gaps = false;           // some pixels have no return; a mask says which
   std::uint32_t mask_size = 0;     // bytes of the mask, if it is a stream of its own
-  std::uint32_t payload_size = 0;  // bytes behind it
+  std::uint32_t payload_size = 0;  // bytes of the payload, which follows the mask
 
   void Write(std::vector<std::uint8_t>* out) const;
   /// Reads a header and leaves `reader` behind it. Returns nothing for an unknown version or coder,

@@ -20,8 +20,8 @@ struct SliceName {
   std::uint32_t count = 1;
 };
 
-/// Slices stand alone without acknowledgements, or with those of several receivers. Times of calls
-/// never go back. For one thread at a time.
+/// Slices stand alone if no receiver, or more than one, acknowledges them. Times of calls never go
+/// back. For one thread at a time.
 class ReferenceKeeper {
  public:
   /// Longest time between slices that stand alone, for late receivers; 0: no limit.
@@ -32,23 +32,23 @@ class ReferenceKeeper {
   /// Lets the next slices stand alone.
   void OnKeyRequest();
 
-  /// Begins the next slice. Returns false if it cannot be remembered.
+  /// Begins the next slice. Returns false if it cannot become a reference.
   bool Begin(Time now, const SliceName& slice);
   /// Returns true if the receiver has an earlier slice of the sector.
   bool HasReference() const { return current_ != nullptr && !current_->reference.empty(); }
-  /// Blocks of that slice.
+  /// Blocks of the earlier slice.
   std::vector<BlockMemoryPtr> references() const {
     return HasReference() ? current_->reference : std::vector<BlockMemoryPtr>{};
   }
-  /// Returns that slice's block at the place of `image`, or null.
+  /// Returns the earlier slice's block at the place of `image`, or null.
   BlockMemoryPtr Reference(const RangeImage& image) const;
-  /// Takes the memories of the begun slice's blocks, once at most.
+  /// Takes the memories of the blocks of the slice that Begin() began, once at most.
   void OnEncoded(std::vector<BlockMemoryPtr> blocks);
 
   /// Bytes of all memories.
   std::size_t bytes() const { return bytes_; }
 
-  /// Lower than the limits of BlockStore, as slices may be reordered.
+  /// Lower than the limits of BlockStore, because slices may be reordered.
   static constexpr std::size_t kMostOfSlice = 20;
   static constexpr std::size_t kMostBytes = 48U << 20;
   /// Silence after which a receiver is gone.
@@ -59,7 +59,7 @@ class ReferenceKeeper {
     std::uint32_t scan_id = 0;
     std::vector<BlockMemoryPtr> blocks;
   };
-  /// The same sector of all scans.
+  /// A sector, over all scans.
   struct Slot {
     std::deque<Sent> sent;                  // slices since the reference, the oldest first
     std::vector<BlockMemoryPtr> reference;  // empty: none
@@ -77,7 +77,7 @@ class ReferenceKeeper {
 
   std::optional<std::uint32_t> receiver_;
   Time last_heard_{};
-  Time alone_since_{};  // since then there is one receiver
+  Time alone_since_{};  // from then on there is only one receiver
 };
 
 }  // namespace lidar::codec

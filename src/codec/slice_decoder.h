@@ -14,8 +14,8 @@ namespace lidar::codec {
 /// For one thread at a time.
 class SliceDecoder {
  public:
-  /// `format` has a sensor model. Without `integers`, slices of coders that are not our own are
-  /// refused; it must outlive the decoder.
+  /// `format` must have a sensor model. `integers` must outlive the decoder; if it is null, slices
+  /// of coders that are not our own are refused.
   SliceDecoder(const CloudFormat& format, std::uint32_t max_points,
                const IntegerCoder* integers = nullptr);
 
@@ -35,7 +35,7 @@ class SliceDecoder {
   /// Quality of a slice.
   struct Quality {
     double step_m = 0;
-    double error_m = 0;  // bound of all points
+    double error_m = 0;  // bound of the error of all points
     unsigned intensity_bits = 0;
     double keep_fraction = 1;  // part of the beams; others were left out to save bits
   };

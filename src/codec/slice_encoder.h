@@ -67,7 +67,8 @@ class SliceEncoder {
   /// Number of beams that Thin() chooses from.
   std::size_t rows() const { return image_.beams; }
 
-  /// Most blocks of a whole scan. Each has a thread of its own, and kMinBlockReturns at least.
+  /// Most blocks of a whole scan. Each has a thread of its own, and at least kMinBlockReturns
+  /// returns.
   void set_threads(unsigned threads) { threads_ = threads; }
 
   /// Encodes the loaded slice; may be called again.

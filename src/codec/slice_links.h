@@ -16,7 +16,7 @@ struct BlockName {
 };
 
 /// Returns the blocks of a slice in range geometry that have links. Returns nothing for bytes that
-/// no decoder takes; a decoder may refuse further ones.
+/// every decoder refuses; a decoder may refuse others, too.
 std::optional<std::vector<BlockName>> LinksOf(ByteView slice);
 
 }  // namespace lidar::codec

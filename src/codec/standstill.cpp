@@ -6,7 +6,7 @@
 namespace lidar::codec {
 namespace {
 
-// Cost of a return without a prediction, as a distance.
+// Distance that stands for a return without a prediction [steps].
 constexpr double kSurpriseSteps = 8;
 
 /// Distances cost about their logarithm.
@@ -28,7 +28,7 @@ bool IsWorthIt(const RangeImage& image, double step_m, Recalled&& recalled) {
     beside += Cost(last > 0 ? std::abs(range - last) * per_mm : kSurpriseSteps);
     last = range;
   }
-  // Measured: references save bits up to 1.5 times that.
+  // Measured: references save bits while `before` is below 1.5 times `beside`.
   return before < beside;
 }
 
@@ -43,7 +43,7 @@ bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m
 }
 
 bool Standstill::OnImage(const RangeImage& image, double step_m) {
-  // A source with changing first columns cannot be followed.
+  // A source whose first columns keep changing would fill the map.
   if (last_.size() > kMostSectors || (last_.size() + 1) * image.size() > kMostPixels) last_.clear();
   std::vector<std::uint32_t>& last = last_[image.first_column];
   const bool known = last.size() == image.size();

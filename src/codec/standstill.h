@@ -14,7 +14,7 @@ namespace lidar::codec {
 /// `step_m`.
 bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m);
 
-/// Compares each slice with the one of the same sector before.
+/// Compares each slice with the last one of the same sector.
 class Standstill {
  public:
   /// Returns true if `image` resembles the last one that began in the same column.

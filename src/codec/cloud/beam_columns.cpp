@@ -43,7 +43,8 @@ std::int32_t InLengthUnits(double um) {
   return kUnit * static_cast<std::int32_t>(std::lround(um / kUnit));
 }
 
-/// Finds the reach: sensors measure whole millimetres, or several, from a place of their own.
+/// Finds the reaches: sensors measure in steps of one or several millimetres, from a zero of their
+/// own.
 void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
   constexpr double kClear = 0.8;  // of 1
   const BeamLocator locator(*table);

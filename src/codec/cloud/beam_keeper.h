@@ -11,7 +11,7 @@ namespace lidar::codec::cloud {
 
 /// A point and the pixel of its beam and column.
 struct PlacedPoint {
-  double along_m = 0;         // of the beam
+  double along_m = 0;         // distance along the beam
   double above_m = 0;         // height of the point above it; 0 if beams bend
   std::int32_t azimuth = 0;   // less what the side of the beam adds
   std::int32_t residual = 0;  // distance from the column's azimuth
@@ -31,9 +31,9 @@ class BeamKeeper {
   /// An image has no more pixels, and a search of more points takes seconds.
   static constexpr std::size_t kMostPoints = 1U << 20;
 
-  /// Places the points of a cloud in the beams of the clouds before if they fit, else in new ones.
-  /// Returns null if it finds none. Searches become rarer while none succeed. `pulses` are those of
-  /// the points, or none, and then it finds no path.
+  /// Places a cloud's points in beams of earlier clouds if they fit, else in new ones. Returns null
+  /// if there are no beams. After failures it searches more rarely. `pulses`: one for each point;
+  /// if empty, beams on a path are not found.
   const BeamTable* Place(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
                          std::vector<PlacedPoint>* placed);
 

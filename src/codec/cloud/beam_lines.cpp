@@ -8,7 +8,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Limits of the elevations of a beam, in units. Those of neighbours are further apart.
+/// Limits of a beam's elevations, in units: the gap to the next beam, and the width of a beam.
 constexpr double kGap = 60;         // 0.005 degrees
 constexpr double kWidest = 350;     // 0.03 degrees
 constexpr std::size_t kFewest = 8;  // points
@@ -24,13 +24,13 @@ constexpr double kHeightStep = 0.01;
 constexpr double kMostTangent = 1.5;
 constexpr double kTangentStep = 0.0004;
 constexpr auto kTangents = static_cast<std::size_t>(2 * kMostTangent / kTangentStep);
-constexpr std::size_t kWindow = 125;  // tangents of one height
+constexpr std::size_t kWindow = 125;  // tangents that share a height
 constexpr std::size_t kWindows = kTangents / kWindow;
 constexpr double kNearest = 1;  // [m]
 
 using Histogram = std::vector<std::uint32_t>;
 
-/// Bin of the line of this height through the point; kTangents: none.
+/// Bin of the line at this height that passes the point; SIZE_MAX: there is none.
 std::size_t ClassOf(const Sighting& s, double height_m, double classes_per_tangent) {
   const double tangent = (s.z_m - height_m) / s.rho_m;
   if (std::abs(tangent) >= kMostTangent) return SIZE_MAX;
@@ -66,7 +66,7 @@ std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
 std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
   constexpr std::size_t kFiner = 2;
   constexpr double kPerTangent = kFiner / kTangentStep;
-  constexpr std::size_t kReach = 7;  // 0.0014, 0.08 degrees
+  constexpr std::size_t kReach = 7;  // a tangent of 0.0014, 0.08 degrees
   const std::vector<double> heights = SharpestHeights(points);
   std::vector<double> histogram(kFiner * kTangents + 1, 0);
   for (const Sighting& s : points) {

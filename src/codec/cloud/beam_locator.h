@@ -61,8 +61,8 @@ class BeamLocator {
 
   std::vector<Line> lines_;
   double middle_height_m_ = 0;
-  std::uint32_t around_ = 0;            // beams around the one by the tangent that may be nearer
-  std::vector<std::uint16_t> buckets_;  // the last beam above each
+  std::uint32_t around_ = 0;            // beams on each side of the guess that may be nearer
+  std::vector<std::uint16_t> buckets_;  // the last beam above each bucket
 };
 
 }  // namespace lidar::codec::cloud

@@ -12,9 +12,9 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Guesses a field of the next beam in the way that was best for the beams before: as that of one
-/// of the last beams, as sensors repeat their patterns, as far from the last as that was from the
-/// one before, or as the mean.
+/// Guesses a field of the next beam in the way that was best for the beams so far: as that of one
+/// of the last eight beams, because sensors repeat their patterns, as the last plus its last
+/// change, or as the mean.
 class FieldGuess {
  public:
   static constexpr unsigned kWays = 10;
@@ -27,7 +27,7 @@ class FieldGuess {
     if (way < kLast) return last_[way];
     return way == kLast ? 2 * last_[0] - last_[1] : mean_ / kMeanParts;
   }
-  /// Angles are modulo a turn of `turn`; 0: no angle.
+  /// `value` is an angle modulo `turn`; 0: no angle.
   void See(std::int32_t value, std::int32_t turn) {
     for (unsigned way = 0; way < kWays; ++way) {
       std::int32_t off = std::abs(value - By(way));

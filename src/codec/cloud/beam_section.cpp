@@ -99,7 +99,7 @@ std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::in
   return extras;
 }
 
-/// Returns the ranges of `image` as a decoder gets them.
+/// Sets `decoded` and `grid` to the ranges of `image` and their grid as a decoder gets them.
 bool ComeBack(const RangeImage& image, const RangeSettings& settings,
               const std::vector<std::uint8_t>& block, const SensorModel& model, RangeImage* decoded,
               RangeGrid* grid) {
@@ -124,7 +124,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
   return true;
 }
 
-/// Codes residuals as exactly as the settings ask, if they do.
+/// Codes residuals within the tangent that the settings ask for, if any.
 void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
                      std::vector<std::int32_t>* residuals, mixing::BinaryEncoder* bits) {
   if (settings->tangent_um == 0) return;
@@ -132,7 +132,7 @@ void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
   CodeResiduals(image, *settings, residuals, bits);
 }
 
-/// A flag beside the guess of azimuths: further returns are coded by four neighbours.
+/// A flag in the byte of the azimuths' guess: further returns are coded by four neighbours.
 constexpr unsigned kByFourFlag = 4;
 
 void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* writer) {

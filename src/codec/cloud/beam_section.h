@@ -23,9 +23,9 @@ struct PointLevels {
 bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
                        unsigned effort, PixelList* list, std::vector<std::uint8_t>* out);
 
-/// Appends the points of the next section of `reader`, beam by beam, columns in order, and returns
-/// of a pixel in a row. Sets their places unless null. Returns false, with both undefined, for a
-/// section that is damaged or of more than `max_points`.
+/// Appends the points of the next section of `reader`: beam by beam, in the order of columns, the
+/// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with both
+/// undefined, for a section that is damaged or of more than `max_points`.
 bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
                        XyzCloud* cloud, PointPlaces* places = nullptr);
 

@@ -71,7 +71,7 @@ class SineTable {
   static constexpr std::int32_t kParts = 1'024;
   constexpr SineTable() {
     for (int k = 0; k < kParts; ++k) {
-      // The nearest quarter of a turn is left for the sign and the choice of the series.
+      // The nearest quarter of a turn decides the sign and the series.
       const int quarter = (k + kParts / 8) / (kParts / 4);
       const double rest = (k - quarter * (kParts / 4)) * (2 * M_PI / kParts);
       const double series = quarter % 2 == 0 ? SineOf(rest) : CosineOf(rest);
@@ -239,7 +239,7 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
     if (!ok || !reader->ok() || (flags & (kOffsetsFlag | kReachesFlag)) != 0) return std::nullopt;
     return table;
   }
-  // As earlier encoders wrote them.
+  // The rest reads beams as earlier encoders wrote them.
   std::int64_t elevation = kTurn / 4;
   Beam beam;
   for (std::uint32_t i = 0; i < rows; ++i) {

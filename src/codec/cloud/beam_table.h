@@ -64,7 +64,7 @@ struct BeamTable {
   std::uint32_t grains = 0;           // of a turn; 0: the columns are even
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
   bool bends = false;                 // each point has its own elevation
-  bool beams_follow = true;           // CodeBeams() codes them; false: as earlier encoders
+  bool beams_follow = true;           // CodeBeams() codes them; false: an old table has them
   // Beams on a path have no other fields than these.
   std::int32_t rate = 0;       // of the turn, for BeamPath; 0: no path
   std::vector<PathBeam> path;  // as many as beams
@@ -78,7 +78,7 @@ struct BeamTable {
     return has_path() ? std::abs(rate) >> BeamPath::kRateBits
                       : static_cast<std::int32_t>(std::uint64_t{kTurn} * kParts / turn);
   }
-  /// Index of a beam's place in a column.
+  /// Index of the firing in which a beam sees a column.
   std::uint32_t FiringOf(std::uint32_t beam, std::uint32_t column) const {
     column += beams[beam].delay;
     return column >= columns() ? column - columns() : column;
@@ -103,8 +103,8 @@ struct BeamTable {
 
   /// Writes all but the beams, the places and the curves.
   void Write(ByteWriter* writer) const;
-  /// Returns nothing for numbers that no encoder writes. Beams that follow are 0, with grains all
-  /// places, on a path all curves.
+  /// Returns nothing for numbers that no encoder writes. Beams that follow are 0; so are all places
+  /// if there are grains, and all curves on a path.
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 
@@ -119,7 +119,7 @@ inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }
 
-/// Rounds as std::lround(), which is a call.
+/// Rounds like std::lround(), without a call.
 inline std::int32_t ToNearest(double value) {
   return static_cast<std::int32_t>(value < 0 ? value - 0.5 : value + 0.5);
 }
@@ -145,7 +145,7 @@ class ColumnAngles {
 /// Finds the columns of azimuths.
 class ColumnFinder {
  public:
-  /// A column and how far it is off.
+  /// A column, and how far the azimuth is off.
   struct Found {
     std::uint32_t column = 0;
     std::int32_t residual = 0;

@@ -14,7 +14,7 @@ namespace {
 /// Margin for the rounding of floats: grids are finer, and errors count as larger.
 constexpr double kRoom = 1e-4;
 
-/// Is std::floor(), which is a call.
+/// Does what std::floor() does, without a call.
 double Floor(double value) {
   const auto whole = static_cast<double>(static_cast<std::int64_t>(value));
   return whole > value ? whole - 1 : whole;
@@ -30,7 +30,7 @@ CellPosition OwnCell(const Point& point, const CellGrid& grid, unsigned depth) {
   return cell;
 }
 
-/// Numbers from `first[i]` to `first[i + 1]` belong to i.
+/// Returns where the entries of each i begin in a list; they end before `first[i + 1]`.
 std::vector<std::uint32_t> Sums(const std::vector<std::uint32_t>& counts) {
   std::vector<std::uint32_t> first(counts.size() + 1, 0);
   for (std::size_t i = 0; i < counts.size(); ++i) first[i + 1] = first[i] + counts[i];
@@ -74,7 +74,8 @@ class Choices {
   }
 
  private:
-  /// Visits the neighbouring cells on the point's side; others are too far.
+  /// Adds the point's own cell and those of its neighbours that are near enough. Only neighbours on
+  /// the point's side can be.
   void AddPoint(const Point& point, const CellGrid& grid, unsigned depth) {
     const CellPosition own = OwnCell(point, grid, depth);
     AddChoice(own);

@@ -18,8 +18,8 @@ struct CellGrid {
 
   float step_m = 0;
 
-  /// Returns the coarsest grid for an error, with a little room for the rounding of floats. Returns
-  /// nothing if no grid is fine enough.
+  /// Returns the coarsest grid for an error, with a little room for the rounding of floats. The
+  /// error_m() of the finest grid may be larger than `error_m`.
   static CellGrid ForError(double error_m);
   /// Largest distance of a point from the middle of its cell.
   double error_m() const;
@@ -38,7 +38,7 @@ struct CellGrid {
   unsigned DepthFor(double farthest_m) const;
   /// Returns true if a depth holds all coordinates up to `farthest_m`.
   bool Reaches(double farthest_m) const;
-  /// Returns true if floats are fine enough for the error at the point, which a depth can hold.
+  /// Returns true if floats are fine enough for the error at the point. A tree must reach it.
   bool Holds(const Point& point) const;
   /// Distance up to which floats are fine enough at all points.
   double SurelyHolds() const;
@@ -50,7 +50,7 @@ struct CoveredPoints {
   std::vector<std::uint32_t> order;  // indices of the points, cell by cell
 };
 
-/// Gives each point its own cell. The grid has a depth for all points.
+/// Gives each point its own cell. A tree of `depth` must hold all points.
 void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered);
 /// Gives all points to few cells. Most points are within the error of several middles; the cell

@@ -18,7 +18,7 @@ struct CellList {
   std::vector<std::uint64_t> codes;
   std::vector<std::uint32_t> counts;  // of points; at least 1
 
-  /// Points come cell by cell.
+  /// Adds a point. Points must come cell by cell.
   void AddPoint(std::uint64_t code) {
     if (codes.empty() || codes.back() != code) {
       codes.push_back(code);
@@ -32,7 +32,7 @@ struct CellList {
   }
 };
 
-/// Every third bit of a Morton code: 21 bits to 63.
+/// Moves bit i to bit 3 i of a Morton code: 21 bits to 63.
 inline std::uint64_t SpreadBits(std::uint64_t v) {
   v &= 0x1FFFFF;
   v = (v | v << 32) & 0x1F00000000FFFF;

@@ -70,7 +70,7 @@ constexpr std::array<std::uint32_t, 8> NodesByChild() {
 }
 constexpr std::array<std::uint32_t, 8> kNodesBy = NodesByChild();
 
-/// Children of a node, the first at bit 0.
+/// Cells of a node's children, the first child at bit 0.
 constexpr std::array<CellBits, 256> SpreadChildren() {
   std::array<CellBits, 256> spread{};
   for (unsigned children = 0; children < 256; ++children)
@@ -80,7 +80,8 @@ constexpr std::array<CellBits, 256> SpreadChildren() {
 }
 constexpr std::array<CellBits, 256> kSpread = SpreadChildren();
 
-/// A neighbour of a node: offset of its children from the node's own, and those next to them.
+/// A neighbour of a node: shift of its children from the node's own, and which of them are within
+/// CellBits.
 struct Neighbour {
   int shift = 0;
   unsigned inside = 0;
@@ -153,9 +154,9 @@ struct Tally {
     edges_open = Ones(open & kAllEdges);
     corners_on = Ones(mask & kAllCorners);
   }
-  std::uint32_t mask = 0;   // occupied ones
-  std::uint32_t faces = 0;  // states of the six: 0 empty, 1 occupied, 2 unknown
-  std::uint32_t layer = 0;  // states of the eight of the same height
+  std::uint32_t mask = 0;   // occupied cells
+  std::uint32_t faces = 0;  // states of the six at the faces: 0 empty, 1 occupied, 2 unknown
+  std::uint32_t layer = 0;  // states of the eight at the same height
   std::uint32_t faces_on = 0;
   std::uint32_t edges_on = 0;
   std::uint32_t edges_open = 0;
@@ -182,7 +183,7 @@ struct CellTree::Model {
 struct CellTree::Surroundings {
   CellBits occupied = 0;
   CellBits unknown = 0;
-  std::uint32_t nodes = 0;  // occupied ones of the 26 neighbours of the node
+  std::uint32_t nodes = 0;  // occupied nodes among the 26 neighbours
 };
 
 CellTree::CellTree() = default;
@@ -206,7 +207,7 @@ void CellTree::FillLevels(const CellList& cells) {
   }
 }
 
-/// Fills in the cells of coded neighbours, and the presence of others.
+/// Sets the occupied cells of coded neighbours; all cells of the others are unknown.
 void CellTree::Look(const Place& place, Surroundings* around) const {
   constexpr std::uint64_t kOneEach = NodeMap::kStepX + NodeMap::kStepY + NodeMap::kStepZ;
   const std::uint64_t corner = NodeMap::KeyOf(place.position) - kOneEach;
@@ -318,8 +319,8 @@ bool CellTree::CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& 
 
 /// Context of a cell's count.
 struct CellTree::CountContext {
-  std::uint32_t last = 0;   // of the cell before
-  std::uint32_t mean = 0;   // of neighbours, in halves
+  std::uint32_t last = 0;   // count of the cell before
+  std::uint32_t mean = 0;   // mean count of neighbours, in halves
   std::uint32_t range = 0;  // class
 };
 

@@ -41,9 +41,9 @@ class CellTree {
   /// A node and its place.
   struct Place {
     CellPosition position;
-    std::uint32_t node = 0;   // of its level
-    unsigned depth = 0;       // of its children
-    unsigned to_leaves = 0;   // from its children
+    std::uint32_t node = 0;   // index in its level
+    unsigned depth = 0;       // depth of its children
+    unsigned to_leaves = 0;   // levels from its children to the leaves
     std::uint8_t parent = 0;  // occupancy of its parent
   };
   struct Level {

@@ -63,7 +63,7 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
       if (bends || has_path) errors.bend_um = errors.tangent_um;
     }
     const double fitting_bits = (part < 0 ? kResidualBits : 0) - std::log2(grid.step_m());
-    // Counting takes long, and is needless where all points in pixels would take more.
+    // Counting takes long, and is needless if even all points in pixels would take more bits.
     if (best.error_m > 0 && all * std::min(fitting_bits, kRestBits) >= least) continue;
     const auto fitting = static_cast<double>(CountFitting(cloud, errors));
     const double bits = kRestBits * (all - fitting) + fitting * fitting_bits;
@@ -74,8 +74,8 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   return best;
 }
 
-/// Distance from the sensor, in errors, up to which cells are cheaper than ranges, as points are
-/// closer together than cells.
+/// Distance from the sensor, in errors, up to which cells are cheaper than ranges, because points
+/// are closer together than cells.
 constexpr double kUsualReach = 50;
 constexpr std::array<double, 8> kReaches = {0, 15, 25, 35, kUsualReach, 70, 100, 150};
 
@@ -213,8 +213,8 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
   candidate->nodes = tree_.nodes();
 }
 
-/// Codes the points of near_ with these indices. Fewer cells have more varied counts, so the cloud
-/// decides which is smaller.
+/// Codes the points of near_ with these indices. Few cells have more varied counts, so the highest
+/// effort tries both ways and keeps the smaller one.
 void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate) {
   candidate->header.points = static_cast<std::uint32_t>(ids.size());
   if (ids.empty()) return;
@@ -251,7 +251,8 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
 /// Exact fields of points in cells cost more than what cells save.
 double CloudEncoder::LargestReach() const { return choice_.empty() ? kReaches.back() : 0; }
 
-/// Codes the exact fields of the points in `table`, which are those of pixels_, and of the others.
+/// Codes the exact fields of all points: those in `table`, which are those of pixels_, and the
+/// others.
 void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) const {
   if (choice_.empty()) return;
   PointPlaces places;
@@ -289,8 +290,8 @@ void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) con
   candidate->order = std::move(part.order);
 }
 
-/// Codes the beams as each effort does. Near points go to cells, up to the distance at which the
-/// lowest effort's size is least.
+/// Codes the beams at each effort, and keeps the smallest coding. Near points go to cells, up to
+/// the distance that is cheapest at effort 1.
 bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors,
                                         Candidate* best) {
   const unsigned effort = effort_;

@@ -17,7 +17,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Fields that come back exactly.
+/// Fields that are coded exactly, and whether the order of points is.
 struct ExactChoice {
   std::vector<PointField> fields;  // of the layout
   bool keeps_order = false;
@@ -64,8 +64,8 @@ class CloudEncoder {
     std::vector<std::uint8_t> beams;         // the section
     std::vector<std::uint8_t> cells;         // the stream
     std::vector<std::uint8_t> exact;         // the section
-    std::vector<std::uint32_t> cell_points;  // indices of near_, as a decoder gives them
-    std::vector<std::uint32_t> order;        // indices of cloud_, the same, with an exact section
+    std::vector<std::uint32_t> cell_points;  // indices of near_, in the order of decoding
+    std::vector<std::uint32_t> order;        // indices of cloud_, likewise, for the exact section
     std::size_t nodes = 0;
     std::size_t numbers = 0;
 
@@ -98,7 +98,7 @@ class CloudEncoder {
   std::vector<std::uint32_t> far_ids_;
   std::vector<Sighting> sightings_;  // of near_
   std::vector<Pulse> sighted_;       // pulses of near_, or none
-  std::vector<PlacedPoint> placed_;  // the same
+  std::vector<PlacedPoint> placed_;  // of near_
   BeamKeeper keeper_;
   CoveredPoints covered_;
   CellTree tree_;

@@ -27,8 +27,8 @@ struct CloudHeader {
   static std::optional<CloudHeader> Read(ByteReader* reader);
 };
 
-/// Most nodes of a slice of so many bytes. A node costs a decoder a microsecond, but may cost its
-/// sender a hundredth of a bit.
+/// Most nodes that a slice of `slice_bytes` may have. A node costs a decoder a microsecond, but its
+/// sender perhaps a hundredth of a bit.
 constexpr std::size_t MostNodes(std::size_t slice_bytes) {
   constexpr std::size_t kFree = 4'096;
   constexpr std::size_t kNodesPerByte = 64;

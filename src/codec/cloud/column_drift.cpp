@@ -47,7 +47,8 @@ class Drift {
     const std::size_t sector = SectorOf(azimuth);
     return counts_[sector] == 0 ? 0 : sums_[sector] / static_cast<double>(counts_[sector]);
   }
-  /// Returns all sectors. An unknown one has the drift of the known one before, or behind.
+  /// Returns the drift of all sectors. Unknown sectors have that of the known one before, or of the
+  /// first.
   std::vector<double> Curve() const {
     std::vector<double> curve(kSectors);
     double last = 0;
@@ -86,7 +87,7 @@ struct Drifted {
   double drift;
 };
 
-/// Follows the columns of a beam from point to point. Other beams bridge gaps.
+/// Follows the columns of a beam from point to point. The drift of other beams bridges gaps.
 std::vector<Drifted> FollowBeam(const BeamAzimuths& azimuths, std::int32_t first, double step,
                                 const Drift& known) {
   std::vector<double> sorted;
@@ -136,7 +137,7 @@ bool SetPlaces(const Drift& drift, double step, BeamTable* table) {
 
 bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table) {
   const std::int32_t first = WidestGap(beams);
-  // Equal steps cost nothing.
+  // If a step is a whole number of grains, places at equal steps cost nothing.
   step = std::max(std::round(step / kDriftGrain), 1.0) * kDriftGrain;
   std::vector<std::size_t> order(beams.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -73,8 +73,8 @@ void SetPlaces(const std::vector<double>& places, BeamTable* table) {
   }
 }
 
-/// Finds delays and offsets of beams that look ahead and behind. Uneven steps belong to firings,
-/// which all beams share.
+/// Finds delays and offsets of beams that look ahead of others or behind them. Uneven steps belong
+/// to firings, which all beams share.
 class DelaySearch {
  public:
   DelaySearch(const std::vector<BeamAzimuths>& beams, const std::vector<double>& places,
@@ -163,7 +163,7 @@ class DelaySearch {
       if (counts[i] > 0) places_[i] += sums[i] / counts[i];
   }
   void Write() {
-    // No place is below 0.
+    // Places must not be below 0.
     const double least = *std::min_element(places_.begin(), places_.end());
     for (double& place : places_) place -= least;
     std::sort(places_.begin(), places_.end());

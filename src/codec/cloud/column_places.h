@@ -23,7 +23,7 @@ struct StraightAzimuth {
   std::int32_t azimuth;
   std::uint32_t beam;
 };
-/// Moves the columns to those of the next cloud. Returns false if they are not found so.
+/// Moves the columns to those of the next cloud. Returns false if too few or too many are found.
 bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);
 
 // Parts of the functions above:
@@ -31,9 +31,9 @@ bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* tabl
 /// Adds the firings that saw nothing.
 std::vector<std::uint32_t> WithGapsFilled(const std::vector<std::uint32_t>& places, double step,
                                           std::uint32_t grains);
-/// Sets the delays so that column 0 of all beams looks ahead.
+/// Sets the delays so that column 0 of each beam is the first one from azimuth 0 on.
 void AlignDelays(BeamTable* table);
-/// Turns the swings to their present firings.
+/// Rotates the swings so that they fit the firings of the next cloud.
 void TurnSwings(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);
 
 }  // namespace lidar::codec::cloud

@@ -29,20 +29,21 @@ inline std::uint32_t TurnOf(double step) {
   return static_cast<std::uint32_t>(std::lround(kTurn / step * BeamTable::kParts));
 }
 
-/// Returns the most common place of a beam's azimuths between columns, in columns.
+/// Returns the most common distance of a beam's azimuths from multiples of `step`, in steps.
 double PhaseAt(const BeamAzimuths& azimuths, double step);
-/// Returns the mean place, for azimuths that are spread.
+/// Returns the mean of these distances, for azimuths that are spread.
 double MeanPhase(const BeamAzimuths& azimuths, double step);
 
 struct Side {
   std::int32_t side_um = 0;
-  double alignment = 0;  // of 1
+  double alignment = 0;  // from 0 to 1
 };
 
 /// Returns the distance at which the beam passes the origin, if its points lie at multiples of
 /// `step`.
 Side SideOf(const BeamAzimuths& azimuths, double step);
-/// Returns the angle whose multiples the azimuths are: a column, or the sensor's rounding.
+/// Returns the angle whose multiples the azimuths are: the step of columns, or of the sensor's
+/// rounding.
 double QuantumOf(const std::vector<BeamAzimuths>& beams, std::int32_t usual, double step);
 
 }  // namespace lidar::codec::cloud

@@ -14,7 +14,7 @@ namespace lidar::codec::cloud {
 /// For one thread at a time.
 class ExactDecoder {
  public:
-  /// `fields` come back exactly, in this sequence.
+  /// `fields` are those that slices keep exactly, in this sequence.
   ExactDecoder(std::vector<PointField> fields, std::uint32_t max_points)
       : fields_(std::move(fields)), geometry_(max_points) {}
 

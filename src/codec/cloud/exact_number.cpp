@@ -12,7 +12,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Doubles hold all integers below it.
+/// Doubles hold all integers below kExact.
 constexpr unsigned kExactBits = 53;
 constexpr double kExact = static_cast<double>(std::uint64_t{1} << kExactBits);
 constexpr std::array<double, NumberForm::kMostDecimals + 1> kPowers = {1,   1e1, 1e2, 1e3, 1e4,
@@ -52,7 +52,7 @@ std::uint64_t AtOrdinal(std::int64_t ordinal, FieldType type) {
   return sign | (static_cast<std::uint64_t>(-1 - ordinal) & (sign - 1));
 }
 
-/// Gives 0 for NaN and for numbers that a double does not hold exactly.
+/// Gives 0 for NaN and from 2^53 on, where doubles skip integers.
 std::int64_t NearestInteger(double value) {
   return std::abs(value) < kExact ? static_cast<std::int64_t>(std::floor(value + 0.5)) : 0;
 }

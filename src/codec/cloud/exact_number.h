@@ -8,7 +8,7 @@
 
 namespace lidar::codec::cloud {
 
-// Arithmetic of hostile numbers wraps.
+// Hostile numbers may overflow: arithmetic wraps.
 inline std::int64_t Plus(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }

@@ -31,7 +31,7 @@ struct FieldCode {
   std::uint32_t guess = kByBeam;
 };
 
-/// The key that points are sorted by to find their order.
+/// Keys by which points are sorted, so that their order takes few steps.
 constexpr unsigned kAsVisited = 0;
 constexpr unsigned kAsDecoded = 1;
 constexpr unsigned kByFirstField = 2;
@@ -47,7 +47,7 @@ std::uint32_t Class(std::int64_t number, std::int64_t most) {
   return static_cast<std::uint32_t>(std::clamp(number, -most, most) + most);
 }
 
-/// Codes 64 bits at worst.
+/// Codes distances of ranks; a large one takes 64 plain bits.
 template <class Coder>
 class RankCoder {
  public:
@@ -100,7 +100,7 @@ Visited VisitOf(const PointPlaces& places, const FiringOrder& firing) {
   return {places, firing, firing.Visit(places)};
 }
 
-/// Codes the first `count` of the points visited.
+/// Codes a field of the first `count` points visited.
 template <class Ranks>
 bool CodeField(const Visited& v, const FieldCode& code, std::size_t count, Ranks* ranks,
                std::vector<std::uint64_t>* numbers) {
@@ -191,7 +191,7 @@ class FreePlaces {
   }
 
  private:
-  std::vector<std::uint32_t> next_;  // of a free place itself, else one nearer to the free one
+  std::vector<std::uint32_t> next_;  // itself if free, else a later place up to the next free one
 };
 
 /// Codes the order as steps through a sequence.
@@ -223,7 +223,7 @@ bool CodeOrder(const std::vector<std::uint32_t>& sequence, std::vector<std::uint
   return true;
 }
 
-/// Codes the values of each beam.
+/// Codes the slot of each beam.
 template <class Coder>
 bool CodeSlots(std::uint32_t columns, FiringOrder* firing, Coder* coder) {
   const auto model = std::make_unique<Model>();
@@ -318,7 +318,8 @@ bool ReadHeader(ByteReader* reader, const PointPlaces& places, ExactHeader* head
   return ok && reader->ok() && (places.beams == 0 || header->firing.first < places.columns);
 }
 
-/// Finds the order from that of the points, else from the field that fits best.
+/// Finds the firing order by the order of the points or, if few keep to it, by the field that fits
+/// best.
 FiringOrder BestFiringOrder(const PointPlaces& places, const ExactPart& part) {
   if (places.beams == 0) return {};
   std::vector<std::int64_t> clock(part.order.begin(), part.order.end());
@@ -339,7 +340,8 @@ FiringOrder BestFiringOrder(const PointPlaces& places, const ExactPart& part) {
   return best;
 }
 
-/// Counts the firings after which beams have most of their numbers again; kByFiring for none.
+/// Returns the number of firings after which beams repeat most of their numbers; kByFiring: there
+/// is none.
 std::uint32_t BestPeriod(const Visited& v, const std::vector<std::uint64_t>& numbers) {
   constexpr std::size_t kSample = 4'096;
   std::uint32_t best = kByFiring;

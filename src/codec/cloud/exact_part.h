@@ -31,14 +31,14 @@ struct ExactPart {
   }
 };
 
-/// Appends the section. `part` always has an order.
+/// Appends the section. `part.order` must be set, even if the section does not keep it.
 void EncodeExactPart(const PointPlaces& places, const ExactPart& part,
                      std::vector<std::uint8_t>* out);
 
 /// Returns the types of the fields of a section, or nothing for a damaged header.
 std::optional<std::vector<FieldType>> ExactTypesOf(ByteView section);
 
-/// Decodes a section of at most so many numbers. Returns false, with `part` undefined, if it is
+/// Decodes a section of at most `most_numbers`. Returns false, with `part` undefined, if it is
 /// damaged.
 bool DecodeExactPart(ByteView section, const PointPlaces& places, std::size_t most_numbers,
                      ExactPart* part);

@@ -11,7 +11,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Guesses by a level of each beam and one of each firing, which it learns.
+/// Guesses a level as the sum of a base of the firing and an offset of the beam, which it learns.
 class FiringGuess {
  public:
   explicit FiringGuess(std::uint32_t beams) : beams_(beams) {}
@@ -34,7 +34,7 @@ class FiringGuess {
     if (!begun_ || (starts_ && b.is_known)) {
       base_ = Plus(base_, off);
     } else if (b.is_known && std::abs(off / 2) < kNear / 2) {
-      // Both may have been rounded.
+      // Rounded numbers lie around the sum, so base and offset learn a part each.
       b.offset = Plus(b.offset, off / 8);
       base_ = Plus(base_, off / (count_ + 1));
     } else {

@@ -28,10 +28,10 @@ struct PointPlaces {
 struct FiringOrder {
   /// Time of a beam within the firings.
   struct Slot {
-    std::uint32_t delay = 0;  // columns by which its firings are behind its own; below columns
-    std::uint32_t rank = 0;   // in a firing
+    std::uint32_t delay = 0;  // from a column of the beam to its firing; below columns
+    std::uint32_t rank = 0;   // place in a firing
   };
-  std::uint32_t first = 0;  // firing
+  std::uint32_t first = 0;  // the first firing
   bool descends = false;    // columns fall with time
   std::vector<Slot> slots;  // of the beams
 

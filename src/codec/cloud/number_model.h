@@ -9,8 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes bits of `kNodes` kinds by contexts. Counters are made when their context first comes, as
-/// small clouds have few.
+/// Codes bits of `kNodes` kinds by contexts. Counters are made when their context first comes,
+/// because small clouds have few.
 template <unsigned kContexts, std::uint32_t kNodes>
 class BitModel {
  public:
@@ -19,7 +19,7 @@ class BitModel {
 
   BitModel() {
     for (mixing::Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
-    counters_.reserve(kContexts * kValues);  // they stay where they are
+    counters_.reserve(kContexts * kValues);  // pointers to them stay valid
   }
 
   template <class Coder>
@@ -51,7 +51,7 @@ class BitModel {
   }
 
  private:
-  std::array<std::array<std::uint16_t, kValues>, kContexts> places_{};  // plus one; 0: none yet
+  std::array<std::array<std::uint16_t, kValues>, kContexts> places_{};  // index + 1; 0: none yet
   std::vector<Counters> counters_;
   std::array<mixing::Weights, kNodes> weights_{};
 };

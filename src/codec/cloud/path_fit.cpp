@@ -38,7 +38,7 @@ std::vector<Line> LinesOf(const std::vector<Pulse>& pulses) {
   return lines;
 }
 
-/// Calls `call` with each two samples of a line that follow each other.
+/// Calls `call` with each pair of successive samples of a line.
 template <class Call>
 void ForPairs(const std::vector<Line>& lines, Call&& call) {
   for (const Line& line : lines)
@@ -148,7 +148,7 @@ class CurveFit {
   }
   /// Returns nothing if a factor does not fit the format.
   std::optional<PathBeam> Solve() {
-    // A curve stays low over columns without points, as high factors take more bits.
+    // A curve stays low over columns without points, because high factors take more bits.
     for (std::size_t i = 0; i < kPathTerms; ++i) products_[i][i] += kStiffness * (count_ + 1);
     Factorise();
     PathBeam beam;

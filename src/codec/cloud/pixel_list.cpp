@@ -26,7 +26,7 @@ bool Within(const Distances& off, double error_m, double range_m) {
   return off.along * off.along + off.up * off.up + off.side * off.side <= most * most;
 }
 
-/// Checks that points come back within the error.
+/// Checks whether points decode to within the error.
 class PixelCheck {
  public:
   PixelCheck(const PlacedCloud& cloud, const PixelErrors& errors)
@@ -85,7 +85,7 @@ class PixelCheck {
     off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }
-  /// Error by the rounding of a residual. Its class is that of the decoded range.
+  /// Error by the rounding of a residual. The decoded range, which may be shorter, sets the width.
   double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
     return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;
@@ -104,7 +104,8 @@ class PixelCheck {
   std::int32_t half_step_;
 };
 
-/// Sets the columns of the image that see something.
+/// Sets the columns of the image, from the first with a point to the last. Returns false if the
+/// image is too large.
 bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
                 const std::vector<std::uint32_t>& fitting, bool bends, PixelList* list) {
   std::uint32_t first = table.columns() - 1;

@@ -19,9 +19,9 @@ struct ExtraReturn {
 
 /// Errors that pixels may have.
 struct PixelErrors {
-  double error_m = 0;            // of the whole
+  double error_m = 0;            // of a whole point
   double range_m = 0;            // of ranges
-  std::uint32_t tangent_um = 0;  // of azimuths; 0: those of the columns suffice
+  std::uint32_t tangent_um = 0;  // of azimuths; 0: the columns' azimuths suffice
   std::uint32_t bend_um = 0;     // of elevations; 0: beams do not bend
 };
 
@@ -32,7 +32,7 @@ struct PixelList {
   std::vector<std::int32_t> bends;      // of each pixel's elevation
   std::vector<ExtraReturn> extras;
   std::vector<std::uint32_t> rest;  // indices of the points that fit no pixel
-  std::size_t returns = 0;          // in pixels
+  std::size_t returns = 0;          // number of pixels with a return
 };
 
 /// Width of a class of residuals, in units: no azimuth is off by more than `tangent_um` at
@@ -62,7 +62,8 @@ struct PlacedCloud {
 std::size_t CountFitting(const PlacedCloud& cloud, const PixelErrors& errors);
 /// Returns the ranges of these points [mm].
 std::vector<std::uint32_t> FittingRanges(const PlacedCloud& cloud, const PixelErrors& errors);
-/// Points nearer than `nearest_m` are left to the rest. Returns false if the image is too large.
+/// Fills `list`; points nearer than `nearest_m` go to its rest. Returns false if the image is too
+/// large.
 bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double nearest_m,
                 PixelList* list);
 

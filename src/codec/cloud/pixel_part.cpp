@@ -19,7 +19,7 @@ std::int32_t RoundedQuotient(std::int32_t number, std::int32_t width) {
 
 constexpr std::int32_t kUnknownResidual = INT32_MIN;
 
-/// The last residuals of a beam and of each column.
+/// The last two residuals of a beam, and its last quotient.
 struct ResidualHistory {
   std::int32_t last = 0;
   std::int32_t before = 0;
@@ -197,7 +197,7 @@ class ExtraCoder {
   /// Returns false for a damaged stream.
   bool CodeReturn(std::uint32_t pixel, ExtraBin* extra) {
     constexpr std::uint32_t kNearNode = 4;
-    constexpr std::uint32_t kNear = Model::kValues / 2;  // the first context
+    constexpr std::uint32_t kNear = Model::kValues / 2;  // the first context of near returns
     const std::uint32_t far = FarthestClass();
     // A pulse at an edge sees both sides.
     const bool near =

@@ -13,7 +13,7 @@ namespace lidar::codec::cloud {
 enum class ResidualGuess : std::uint8_t { kNone = 0, kColumn = 1, kLast = 2, kBeforeLast = 3 };
 constexpr unsigned kResidualGuesses = 4;
 
-/// Decoded residual of a pixel's azimuth.
+/// How residuals of azimuths or elevations are coded.
 struct ResidualSettings {
   std::uint32_t tangent_um = 0;
   ResidualGuess guess = ResidualGuess::kNone;
@@ -41,7 +41,7 @@ struct ExtraBin {
 };
 struct ExtraSettings {
   unsigned level_bits = 0;
-  bool by_four = true;    // neighbours; false: by two, as earlier encoders
+  bool by_four = true;    // contexts of four neighbours; false: of two, as earlier encoders had
   std::size_t limit = 0;  // most further returns
 };
 /// Codes the further returns of `bins`, the bins of all pixels (-1: no return). Returns false for a

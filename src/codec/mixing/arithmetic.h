@@ -7,11 +7,11 @@
 
 namespace lidar::codec::mixing {
 
-/// Probabilities of a 1 are in 1/65536, and stay between these.
+/// Probabilities of a 1 are in 1/65536, from kLeastChance to kMostChance.
 constexpr std::int32_t kOne = 65'536;
 constexpr std::int32_t kLeastChance = 16;
 constexpr std::int32_t kMostChance = kOne - 17;
-/// Logits are in 1/256 nat, and stay within +-kMostLogit.
+/// Logits are in 1/256 nat, from -kMostLogit to kMostLogit.
 constexpr std::int32_t kMostLogit = 2'047;
 
 /// Position of the highest 1 bit, counted from 1; 0 for 0.
@@ -21,7 +21,7 @@ inline std::int32_t ClampLogit(std::int32_t logit) {
   return std::min(std::max(logit, -kMostLogit), kMostLogit);
 }
 
-/// Made of integers, so that they are the same on every machine, and by the compiler.
+/// The compiler makes the tables, of integers, so that they are the same on every machine.
 struct Tables {
   constexpr Tables();
   std::array<std::uint16_t, 4'096> chance{};      // of logit i - 2048
@@ -43,12 +43,12 @@ inline std::int32_t Log(std::uint32_t value) {
   return ((bits - 1) * kLog2 >> 8) + kTables.log_mantissa[mantissa >> 8];
 }
 
-/// Rate at which a counter learns after so many bits, in 1/65536.
+/// Rate at which a counter learns after `bits` bits, in 1/65536.
 constexpr std::uint16_t RateAfter(unsigned bits) {
   return static_cast<std::uint16_t>(bits == 0 ? 40'000 : kOne / (static_cast<int>(bits) + 2));
 }
 
-/// An adaptive chance whose rate falls for about 300 bits, to 255. Lanes hold eight of them.
+/// An adaptive chance. Its rate falls to 255 within about 300 bits. Lanes hold eight counters.
 struct Counter {
   std::uint16_t rate = RateAfter(0);
   std::uint16_t chance = kOne / 2;
@@ -62,7 +62,7 @@ struct Counter {
     const std::uint32_t mirror = bit ? 65'535 : 0;
     const std::uint32_t miss = chance ^ mirror;
     chance = static_cast<std::uint16_t>((miss - (miss * rate >> 16)) ^ mirror);
-    // The rate becomes about rate / (1 + rate), so that it is 1/n.
+    // The rate becomes about rate / (1 + rate), as a part of kOne: 1/n after n bits.
     const std::uint32_t square = std::uint32_t{rate} * rate >> 16;
     rate = static_cast<std::uint16_t>(rate - (rate * (rate - (square >> 1)) >> 16));
   }

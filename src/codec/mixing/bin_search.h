@@ -11,12 +11,12 @@
 
 namespace lidar::codec::mixing {
 
-/// A beam search along each row, with the coder's models as before the row. A cheap bin may make
+/// A beam search along each row, with the models as they are before the row. A cheap bin may make
 /// the next ones expensive, so the search follows two ways.
 template <class Effort>
 class BinSearch {
  public:
-  /// `steps` is a buffer.
+  /// `steps` is a buffer that lives on between searches.
   BinSearch(Model* model, std::int64_t step_mm, std::vector<SearchStep>* steps)
       : parts_{{{model, &meter_, step_mm}, {model, &meter_, step_mm}}}, steps_(*steps) {}
 
@@ -28,7 +28,7 @@ class BinSearch {
     std::uint32_t columns;
   };
 
-  /// `bins` has the first bin of each return, and becomes the chosen ones.
+  /// `bins` has the first bin of each return, which the chosen bin replaces.
   void Choose(const Row& row, std::int32_t* bins) {
     for (Part& part : parts_) part.StartRow(row.above, row.north);
     steps_.clear();
@@ -47,7 +47,7 @@ class BinSearch {
 
  private:
   using Part = RangePart<Effort, CostMeter>;
-  static constexpr unsigned kMostWays = 2;  // more save 0.2 %
+  static constexpr unsigned kMostWays = 2;  // more ways save 0.2 %
   /// A way that costs so much more than the best one hardly ever wins.
   static constexpr std::int64_t kMostBehind = 1'065;  // 6 bits
   struct Way {
@@ -85,7 +85,7 @@ class BinSearch {
     return found_ > 0 && cost > trials_[0].cost + kMostBehind;
   }
 
-  /// Keeps the two cheapest trials, and the cheapest of those that end in the same two bins.
+  /// Keeps the two cheapest trials; of trials that end in the same two bins, only the cheapest.
   void Offer(const Trial& trial) {
     if (IsHopeless(trial.cost)) return;
     if (found_ == 0) {
@@ -107,7 +107,7 @@ class BinSearch {
     return a.bin == b.bin && parts_[a.way].row().west[0] == parts_[b.way].row().west[0];
   }
 
-  /// A step on the ways of the trials.
+  /// Makes each kept trial a way, one step longer.
   void Go(const Azimuth& above) {
     const std::array<typename Part::Row, kMostWays> before = {parts_[0].row(), parts_[1].row()};
     std::array<typename Part::Row, kMostWays> after;

@@ -27,7 +27,7 @@ inline std::int32_t StepOf(bool bit, std::int32_t chance) {
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
-/// Codes decisions of kCounters counters and kExtra other logits. The last place is a constant.
+/// Codes decisions by kCounters counters and kExtra other logits. The last input is a constant.
 ///
 /// A mixer lives for one decision and is inlined, so that counters, votes and sums stay in
 /// registers: with calls, efforts 2 and 3 take 1.3 times as long.

@@ -11,8 +11,8 @@ namespace lidar::codec::mixing {
 
 class Centre {
  public:
-  /// `offset` is the centre's from the prediction, in 1/16 bin. `spread` is the mean distance from
-  /// the centre so far, in 1/4096.
+  /// `offset` is the distance from the prediction to the centre, in 1/16 bin. `*spread` is the mean
+  /// distance of values from the centre so far, in 1/4096 bin; Learn() updates it.
   void Set(std::int32_t offset, std::int32_t* spread) {
     offset_ = std::clamp(offset, -kMostOffset, kMostOffset);
     exact_ = offset;
@@ -20,7 +20,7 @@ class Centre {
     inverse_ = (1 << 22) / *spread;
   }
 
-  /// Logit of a decision on the difference from the prediction (kSmallNodes). Decisions come in
+  /// Logit of a decision on the difference from the prediction (kSmallNodes). Call it for nodes in
   /// the order of the code.
   [[gnu::always_inline]] std::int32_t Opinion(unsigned node) {
     if (node == 0) {
@@ -37,7 +37,7 @@ class Centre {
     return Ratio(beyond, within);
   }
 
-  /// Learns `value`, the difference from the prediction.
+  /// Learns from `value`, the difference from the prediction in 1/16 bin.
   void Learn(std::int32_t value) {
     constexpr std::int32_t kMostDistance = 96;
     const std::int32_t distance = std::min(std::abs(value - exact_), kMostDistance);
@@ -58,7 +58,7 @@ class Centre {
   std::int32_t offset_ = 0;
   std::int32_t exact_ = 0;
   std::int32_t inverse_ = 0;
-  std::int32_t below_ = 0;  // rest on each side
+  std::int32_t below_ = 0;  // chance beyond the last edge, on each side
   std::int32_t above_ = 0;
   std::int32_t* spread_ = nullptr;
 };

@@ -15,7 +15,7 @@ namespace lidar::codec::mixing {
 /// Context of a jump.
 struct JumpContext {
   std::uint32_t uneven = 0;
-  std::uint32_t range_class = 0;  // with the direction: 32 values
+  std::uint32_t range_class = 0;  // and direction: 32 values
   std::uint32_t gap_class = 0;    // of gap and step between neighbours: 16 values
   /// Distances of neighbours in the direction of the jump.
   std::array<std::int32_t, kCandidates> candidates{};
@@ -28,7 +28,7 @@ class JumpPart {
 
   static constexpr std::uint32_t kTooFar = 1U << 26;
 
-  /// `distance` is 1 or more; kTooFar for a damaged stream.
+  /// `distance` is 1 or more. Returns kTooFar for a damaged stream.
   std::uint32_t Code(std::uint32_t distance, const JumpContext& context) {
     context_ = &context;
     // An Exp-Golomb code: first the length, then the bits below the highest one. Each bit says
@@ -58,7 +58,7 @@ class JumpPart {
   };
   using Places = std::array<std::int32_t, kUsed>;
 
-  /// Places of the candidates in the interval, 1 to 11; 0: in the other direction.
+  /// Places of the candidates relative to the interval, 1 to 10; 0: in the other direction.
   Places PlacesOf(const Split& split) const {
     const auto middle = static_cast<std::int32_t>(split.middle);
     const auto half = static_cast<std::int32_t>(split.half);

@@ -21,12 +21,12 @@ namespace lidar::codec::mixing {
 
 constexpr unsigned kLanes = 8;
 
-/// Serves any processor. The others have the same functions:
-/// - Of: eight numbers. Load and Store: counters of `kCount` places; other lanes have no vote.
-/// - Votes: of counters whose logits are given. Learnt: counters after a bit.
-/// - Join: the numbers of two groups, of which one is zero in each place.
-/// - Dot, Plus and Total: a sum of products, in parts. Teach: weight += (input step + 2^16) / 2^17,
-///   rounded down, in the bounds of an int16.
+/// Serves any processor. The variants for some processors have the same functions:
+/// - Of() packs eight numbers. Load() and Store() move `kCount` counters; other lanes have no vote.
+/// - Votes() takes counters and their logits. Learnt() returns counters after a bit.
+/// - Join() merges two groups; in each lane one of them is zero.
+/// - Dot(), Plus() and Total() make a sum of products, in parts. Teach(): weight += (input step +
+///   2^16) / 2^17, rounded down, in the bounds of an int16.
 struct PlainLanes {
   using Eight = std::array<std::int16_t, kLanes>;
   using Sum = std::int32_t;
@@ -75,7 +75,7 @@ struct PlainLanes {
 };
 
 #if defined(__x86_64__)
-/// SSE2 belongs to every x86-64.
+/// Every x86-64 has SSE2.
 struct Sse2Lanes {
   using Eight = __m128i;
   using Sum = __m128i;
@@ -187,7 +187,7 @@ struct NeonLanes {
   [[gnu::always_inline]] static Eight Votes(Eight logits, const Counters& counters) {
     const uint16x8_t doubt = vaddq_u16(counters.rates, vshrq_n_u16(counters.rates, 1));
     const uint16x8_t sure = vshrq_n_u16(vmvnq_u16(doubt), 1);
-    return vqdmulhq_s16(logits, vreinterpretq_s16_u16(sure));  // of twice the product
+    return vqdmulhq_s16(logits, vreinterpretq_s16_u16(sure));  // upper half of twice the product
   }
   [[gnu::always_inline]] static Counters Learnt(const Counters& counters, bool bit) {
     const uint16x8_t mirror = vdupq_n_u16(bit ? 0xFFFF : 0);

@@ -14,12 +14,12 @@ namespace lidar::codec::mixing {
 
 /// A return next to the one that is coded.
 struct LevelAt {
-  std::int32_t bin = -1;  // -1: none is known
+  std::int32_t bin = -1;  // -1: no return is known
   std::int32_t level = 0;
   std::int32_t residual = 0;  // -3 to 3
 };
 
-/// Uses the first kContexts of its contexts.
+/// Uses the first kContexts of the contexts in SetContexts().
 template <unsigned kContexts, class Coder>
 class LevelPart {
  public:
@@ -49,7 +49,8 @@ class LevelPart {
   }
 
  private:
-  /// 2: as far away as the return, 1: nearly, 0: on another surface, or missing.
+  /// Returns 2 within 2 bins of the return, 1 within 8; 0 on another surface, or if there is no
+  /// return.
   static std::uint32_t Closeness(const LevelAt& at, std::int32_t bin) {
     if (at.bin < 0) return 0;
     const std::int32_t apart = std::abs(at.bin - bin);
@@ -86,16 +87,16 @@ class LevelPart {
   static std::uint32_t Size(const LevelAt& at) {
     return static_cast<std::uint32_t>(std::abs(at.residual));
   }
-  /// Scales a level of any bits to 0 to 31.
+  /// Scales a level of any number of bits to 0 to 31.
   std::uint32_t Height(std::int32_t level) const {
     return static_cast<std::uint32_t>(level * 32 / (most_ + 1));
   }
-  /// Class of the distance behind a neighbour, or before it.
+  /// Class of the distance by which the return is behind a neighbour, or in front of it.
   std::uint32_t Depth(const LevelAt& at, std::int32_t bin) const {
     return at.bin < 0 ? 3U : StepClass(std::clamp(bin - at.bin, -4, 4) * kStep);
   }
 
-  /// Place of the mean of the neighbours, weighted by closeness.
+  /// Mean level of neighbours, weighted by closeness.
   struct Weighed {
     std::int32_t sum = 0;
     std::int32_t count = 0;
@@ -165,7 +166,7 @@ class LevelPart {
     return negative ? -coded : coded;
   }
 
-  /// Codes 1 to 255 as a length, and a binary tree behind it.
+  /// Codes 1 to 255: the bit length, then the lower bits as a binary tree.
   std::int32_t CodeRest(std::int32_t rest, bool negative) {
     const int last = BitLength(static_cast<std::uint32_t>(rest)) - 1;
     int length = 0;

@@ -16,7 +16,7 @@ class MaskPart {
  public:
   MaskPart(Model* model, Coder* coder) : model_(*model), coder_(*coder) {}
 
-  /// `above` is the first azimuth of the row.
+  /// `above[i]` is the azimuth of pixel i, from AlignedRow: indices past both ends are read, too.
   void StartRow(const Azimuth* above) {
     above_ = above;
     west_ = (above[0].returns & 1) != 0 ? 0xFF : 0;
@@ -37,7 +37,7 @@ class MaskPart {
     Keep(bit, i);
     return bit;
   }
-  /// Codes by `code(bit, counters)`, which gets the counters of the first contexts.
+  /// Codes pixel `i` by `code(bit, counter_at)`; counter_at(k) returns the counter of context k.
   template <class Code>
   bool CodeBy(bool bit, std::uint32_t i, std::uint32_t near_class, Code&& code) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
@@ -87,7 +87,7 @@ class MaskPart {
   Coder& coder_;
   const Azimuth* above_ = nullptr;
   std::uint32_t west_ = 0;    // last pixels of the row, the newest in bit 0
-  std::uint32_t run_ = 0;     // length of the run of equal ones
+  std::uint32_t run_ = 0;     // number of equal pixels up to the last one
   std::uint32_t nearby_ = 0;  // pixels of the row above, from two columns to the left on
   std::uint32_t north_west_ = 0;
   std::array<std::uint32_t, kContexts> contexts_{};

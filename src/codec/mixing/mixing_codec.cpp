@@ -88,7 +88,7 @@ struct MixingEncoder::State : MixingCoderState {
   /// Finds the bins that each return may take.
   void Spare(const RangeImage& image, const MixingSettings& settings) {
     constexpr std::int32_t kMostSpare = 255;
-    // Decoders refuse more.
+    // Decoders refuse larger bins.
     const auto last_bin =
         std::min<std::int64_t>(settings.grid.BinOf(RangeGrid::kMaxRangeMm), mixing::kMaxBins - 1);
     slice.spare.assign(image.size(), 0);

@@ -17,22 +17,22 @@ struct MixingSettings {
   RangeGrid grid;
   IntensityScale intensity;  // 0 bits: geometry only
   unsigned effort = 2;       // 1 to 3
-  mixing::Memory memory{};   // of its pixels; empty: the image stands alone
-  /// Above 0, at kSearchingEffort: a return takes the cheapest bin within this error, which may be
-  /// larger than the grid's. With a memory the ranges are those of bins chosen before.
+  mixing::Memory memory{};   // of the image's pixels; empty: the image stands alone
+  /// If above 0, at kSearchingEffort, each return takes the cheapest bin within this error, which
+  /// may exceed the grid's. With a memory, the caller has chosen the bins.
   std::uint32_t error_mm = 0;
 };
 
-/// Most pixels of a payload of so many bytes. A pixel costs a decoder 0.3 us, but may cost its
-/// sender a thousandth of a bit.
+/// Most pixels that a payload of `payload_bytes` may have. A pixel costs a decoder 0.3 us, but its
+/// sender perhaps a thousandth of a bit.
 constexpr std::size_t MostMixedPixels(std::size_t payload_bytes) {
   constexpr std::size_t kFree = 4'096;
   constexpr std::size_t kPixelsPerByte = 256;
   return kFree + kPixelsPerByte * payload_bytes;
 }
 
-/// Reads the start states once a process, some 50 ms of work. Without a call the first slice waits
-/// for it.
+/// Reads the start states, once a process, in some 50 ms. Without a call the first slice waits for
+/// that.
 void PrepareMixing();
 
 /// Keeps its buffers between slices; not for several threads at once.

@@ -9,7 +9,7 @@
 
 namespace lidar::codec::mixing {
 
-// Numbers of values of the contexts, in their order (docs/mixing-coder.md).
+// Number of values of each context, in the order of docs/mixing-coder.md.
 constexpr std::array<std::uint32_t, 6> kMaskContexts = {5'632, 4'096, 560, 4'096, 2'048, 1'024};
 constexpr std::array<std::uint32_t, 13> kRangeContexts = {
     1'331, 1'372, 484, 512, 1'372, 1'936, 121, 120, 512, 24, 2'401, 1'024, 484};
@@ -20,8 +20,8 @@ constexpr std::array<std::uint32_t, 14> kLevelContexts = {
 /// Decisions on small differences from a prediction: zero or not, the sign, and for each sign
 /// whether it is more than 1, 2, 3.
 constexpr unsigned kSmallNodes = 8;
-/// Larger values take 24 nodes for the length, and more for the bits below the highest one, by
-/// place and level.
+/// Larger values take kLengthNodes for the length, and the other nodes for the bits below the
+/// highest one, by place and level.
 constexpr unsigned kJumpNodes = 48;
 constexpr unsigned kLengthNodes = 24;
 
@@ -44,7 +44,7 @@ struct BinCounters {
   std::array<Counter, kSmallNodes * Total(kRangeContexts)> range;
   std::array<Counter, kJumpNodes * Total(kJumpContexts)> jump;
   std::array<Counter, kJumpNodes * kCandidates * kPlaces> candidates;
-  /// Mean distance from each centre, by unevenness and with or without a gap, in 1/4096 step.
+  /// Mean distance from each centre, by unevenness and with or without a gap, in 1/4096 bin.
   std::array<std::int32_t, kCentres * kUnevenClasses * 2> spread;
 };
 struct BinWeights {

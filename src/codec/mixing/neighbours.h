@@ -20,8 +20,8 @@ inline std::int32_t CentreOf(std::int32_t bin) { return kStep * bin + kStep / 2;
 struct Azimuth {
   std::array<std::int32_t, 3> values{};  // the last returns, newest first
   std::int8_t residual = 0;              // of the beam above, -3 to 3
-  std::uint8_t returns = 0xFF;           // beams above, 1: with a return; the last in bit 0
-  std::uint8_t level = 0;                // of the newest return
+  std::uint8_t returns = 0xFF;  // a bit for each beam above, the last in bit 0; 1: a return
+  std::uint8_t level = 0;       // of the newest return
   std::int8_t level_residual = 0;
 };
 
@@ -38,7 +38,7 @@ inline std::uint32_t UnevenClass(std::uint32_t sum) {
   return std::min(HalfOctave(sum) - 2, 23U);
 }
 
-/// Puts a difference in 1/16 bin into one of 11 classes: up to half a bin, 1, 2, 4, 10 bins and
+/// Puts a difference in 1/16 bin into one of 11 classes: within 0.5, 1.5, 2.5, 4.5 and 10 bins, or
 /// more, each way.
 inline std::uint32_t OffsetClass(std::int32_t difference) {
   static constexpr auto kClasses = [] {
@@ -58,7 +58,7 @@ inline std::uint32_t OffsetClass(std::int32_t difference) {
   return kClasses[static_cast<std::size_t>(std::clamp(difference, -161, 161) + 161)];
 }
 
-/// Puts a difference in 1/16 bin into one of 7 classes: up to half a bin, 1, 3 bins and more, each
+/// Puts a difference in 1/16 bin into one of 7 classes: within 0.5, 1.5 and 3.5 bins, or more, each
 /// way.
 inline std::uint32_t StepClass(std::int32_t difference) {
   const std::int32_t size = std::abs(difference);
@@ -66,7 +66,7 @@ inline std::uint32_t StepClass(std::int32_t difference) {
   return static_cast<std::uint32_t>(difference < 0 ? 3 - c : 3 + c);
 }
 
-/// Place of the neighbours' mean against the prediction, in 1/16 bin; 15 classes.
+/// Puts the neighbours' mean less the prediction, in 1/16 bin, into one of 15 classes.
 inline std::uint32_t PhaseClass(std::int32_t phase) {
   static constexpr auto kClasses = [] {
     constexpr std::array<int, 14> kEnds = {-41, -25, -17, -13, -9, -5, -2, 1, 4, 8, 12, 16, 24, 40};
@@ -81,13 +81,13 @@ inline std::uint32_t PhaseClass(std::int32_t phase) {
   return kClasses[static_cast<std::size_t>(std::clamp(phase, -41, 41) + 41)];
 }
 
-/// Range of `value`, in bins of that width.
+/// Class of a range of `value` in 1/16 bin, for bins of `step_mm`.
 inline std::uint32_t RangeClass(std::int32_t value, std::int64_t step_mm) {
   const std::int64_t mm = value * step_mm / kStep;
   return std::min(HalfOctave(static_cast<std::uint32_t>(mm >> 7)), 15U);
 }
 
-/// Residual of -3 to 3 as 0 to 6, with the sign of `mirror`, 1 or -1.
+/// Maps a residual of -3 to 3, times `mirror` (1 or -1), to 0 to 6.
 inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
   return static_cast<std::uint32_t>(residual * mirror + 3);
 }
@@ -97,7 +97,7 @@ inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
 inline std::int32_t Extrapolate(std::int32_t near, std::int32_t far) {
   const std::int64_t divisor = 2 * std::int64_t{far} - near;
   if (divisor <= 0) return near;
-  // The quotient is near + step + 2 step^2 / divisor. The last term is mostly 0, without a
+  // The quotient is near + step + 2 step^2 / divisor. The last term is mostly 0, and then needs no
   // division.
   const std::int64_t step = std::int64_t{near} - far;
   if (2 * step * step < divisor) return static_cast<std::int32_t>(near + step);

@@ -27,7 +27,7 @@ struct Surroundings {
 };
 
 /// `Effort` has the numbers of contexts, centres and candidates, and a flag for weights by events
-/// beside those by unevenness.
+/// in addition to those by unevenness.
 template <class Effort, class Coder>
 class RangePart {
  public:
@@ -40,14 +40,14 @@ class RangePart {
     std::int32_t gap = 0;  // pixels since the last return
     std::int32_t zero_run = 0;
     std::int32_t other = kUnknown;      // surface that the last jump left
-    std::int32_t latest = CentreOf(0);  // return of the slice
+    std::int32_t latest = CentreOf(0);  // latest return of the slice
   };
 
   /// `step_mm` is the width of a bin.
   RangePart(Model* model, Coder* coder, std::int64_t step_mm)
       : jump_(model, coder), model_(*model), coder_(*coder), step_mm_(step_mm) {}
 
-  /// `above` is the first azimuth of the row. `north` has the values above each, or kUnknown.
+  /// `above[i]` is the azimuth of pixel i, and `north[i]` the nearest value above it, or kUnknown.
   void StartRow(const Azimuth* above, const std::int32_t* north) {
     above_ = above;
     north_ = north;
@@ -79,12 +79,12 @@ class RangePart {
     Keep(CentreOf(bin), difference, azimuth);
     return bin;
   }
-  /// Surroundings of pixel `i`, for another coder.
+  /// Surroundings of pixel `i`, for a coder other than Code().
   Surroundings SurroundingsOf(std::uint32_t i) {
     Look(i);
     return {w_, n_, median_, uneven_, range_class_};
   }
-  /// Learns `bin`, which that coder found.
+  /// Learns the bin of the pixel, which another coder has found.
   void See(std::int32_t bin, Azimuth* azimuth) {
     Keep(CentreOf(bin), mirror_ * (bin - (median_ >> 4)), azimuth);
   }
@@ -225,7 +225,7 @@ class RangePart {
       return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
   }
-  /// Chance of a node, computed once for all bins that are tried; nodes of a side come in order.
+  /// Chance of a node, computed once for all bins that are tried. Nodes of a side come in order.
   std::int32_t ChanceOf(unsigned node) {
     if ((asked_ >> node & 1) != 0) return chances_[node];
     asked_ |= 1U << node;
@@ -303,7 +303,7 @@ class RangePart {
   std::uint32_t gap_class_ = 0;
   std::uint32_t range_class_ = 0;
   std::uint32_t event_set_ = 0;
-  std::array<Counter*, kContexts> rows_{};  // of the nodes of each context
+  std::array<Counter*, kContexts> rows_{};  // first node of each context
   std::array<Centre, kCentres> centres_;
   std::uint32_t asked_ = 0;  // bits of nodes whose chance is known
   std::array<std::int32_t, kSmallNodes> chances_{};

@@ -38,14 +38,14 @@ struct Effort3 : Effort2 {
   static constexpr bool kSearches = true;
 };
 
-/// A stream that has ended gives bits without end, so decoding stops there.
+/// A decoder gives bits without end, so decoding stops where its stream ends.
 bool Overran(const BinaryDecoder& coder) { return coder.overran(); }
 template <class Coder>
 bool Overran(const Coder& /*coder*/) {
   return false;
 }
 
-/// Replaces a search.
+/// Stands for BinSearch at efforts that do not search.
 struct NoSearch {
   NoSearch(Model* /*model*/, std::int64_t /*step_mm*/, std::vector<SearchStep>* /*steps*/) {}
 };
@@ -99,7 +99,7 @@ bool SliceCoder::CodeBins(Model* model, SliceBins* slice, Coder* coder) {
   return true;
 }
 
-/// Codes pixels with a known range by that, and others as CodeBins() does.
+/// Codes bins by the pixels' memory where it predicts them better, and others as CodeBins() does.
 template <class Effort, class Coder>
 bool SliceCoder::CodeRecalledBins(Model* model, SliceBins* slice, Coder* coder,
                                   const Recollection& recollection) {

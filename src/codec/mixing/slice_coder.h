@@ -26,7 +26,7 @@ struct Surprise {
   static constexpr std::uint8_t kChanged = 7;
 };
 
-/// Row-major, beam by beam. A decoder fills it.
+/// Row-major, beam by beam. A decoder fills bins and levels.
 struct SliceBins {
   std::uint32_t beams = 0;
   std::uint32_t columns = 0;
@@ -35,7 +35,7 @@ struct SliceBins {
   bool has_gaps = true;              // false: every pixel has a return
   std::vector<std::int32_t> bins;    // kNoReturn, or below kMaxBins
   std::vector<std::uint8_t> levels;  // empty without level_bits
-  /// Number of bins behind that of `bins` that a return may take; the encoder takes the cheapest.
+  /// Number of bins after that in `bins` that each return may take; the encoder takes the cheapest.
   /// Empty: none.
   std::vector<std::uint8_t> spare;
 };
@@ -54,7 +54,7 @@ struct Recollection {
 /// A step of a search.
 struct SearchStep {
   std::int32_t bin;
-  std::uint32_t before;  // index of the step before + 1; 0: none
+  std::uint32_t before;  // index of the previous step + 1; 0: none
 };
 
 /// Lowest effort at which an encoder can choose between bins.

@@ -14,7 +14,7 @@ namespace {
 // Logits in the table are multiples of this.
 constexpr std::int32_t kLogitStep = 160;
 constexpr std::int32_t kMostLogitSteps = 12;
-/// Classes of the number of bits that counters have seen.
+/// Rate classes: after 0, 8, 16 and 32 bits seen.
 constexpr std::array<std::uint16_t, 4> kRates = {RateAfter(0), RateAfter(8), RateAfter(16),
                                                  RateAfter(32)};
 constexpr std::int32_t kWeightStep = 256;
@@ -60,8 +60,8 @@ class TableCoder {
     return node - (1U << bits);
   }
 
-  /// `before` has the similar counters of the class of steps before, or is null. Counters of a
-  /// node are `nodes` apart.
+  /// `before` has the counters of the previous class, or is null. Counters of a node are `nodes`
+  /// apart.
   template <std::size_t kSize>
   void Counters(std::array<Counter, kSize>* counters, const std::array<Counter, kSize>* before,
                 std::uint32_t place, unsigned nodes) {
@@ -220,7 +220,7 @@ const StartStates& Trained() {
   static const std::unique_ptr<const StartStates> states = [] {
     auto read = std::make_unique<StartStates>();
     const std::vector<std::uint8_t> table = CommittedTable();
-    // A test reads the table.
+    // A test makes sure that the table can be read.
     if (!read->Read({table.data(), table.size()})) read->Reset();
     return read;
   }();

@@ -14,12 +14,12 @@ namespace lidar::codec::mixing {
 constexpr std::uint8_t kTableVersion = 2;
 constexpr unsigned kEfforts = 3;
 
-/// Classes of the width of a bin, each with counters of its own: the largest of each [mm].
+/// Largest bin width [mm] of each class but the last. Each class has counters of its own.
 constexpr std::array<std::int64_t, 4> kStepClassEnds = {11, 29, 69, 139};
 constexpr unsigned kStepClasses = kStepClassEnds.size() + 1;
 unsigned StepClassOf(std::int64_t step_mm);
 
-/// Intensities have few levels or many.
+/// Intensities of up to 6 bits are one class, those of more bits the other.
 constexpr unsigned kLevelClasses = 2;
 inline unsigned LevelClassOf(unsigned bits) { return bits > 6 ? 1 : 0; }
 
@@ -30,16 +30,16 @@ struct StartStates {
   std::array<LevelCounters, kLevelClasses> level_counters;
   std::array<std::array<LevelWeights, kLevelClasses>, kEfforts> level_weights;
 
-  /// Chances of a half, and even weights.
+  /// Sets all chances to a half, and all weights alike.
   void Reset();
-  /// Rounds to the values of a table, with so few bits seen that a slice can change them.
+  /// Rounds to the values of a table, with so few bits seen that a slice can still change them.
   void Round();
   /// Appends the table of rounded states.
   void Write(std::vector<std::uint8_t>* out) const;
-  /// Returns false for anything but a whole table.
+  /// Returns false if `table` is anything but a whole table.
   bool Read(ByteView table);
 
-  /// Sets `model` to the initial states. Without levels, their models stay.
+  /// Sets `model` to the initial states. If `level_bits` is 0, its models of levels stay.
   void CopyTo(unsigned effort, std::int64_t step_mm, unsigned level_bits, Model* model) const {
     model->counters = counters[StepClassOf(step_mm)];
     model->weights = weights[effort - 1];

@@ -12,7 +12,7 @@ constexpr unsigned kSpreadClasses = 12;
 constexpr unsigned kCountClasses = 5;
 constexpr unsigned kPhases = 9;
 
-// Numbers of values of the contexts, in their order (docs/temporal-coder.md).
+// Number of values of each context, in the order of docs/temporal-coder.md.
 constexpr std::array<std::uint32_t, 8> kTemporalContexts = {540, 1'536, 441, 264,
                                                             576, 256,   363, 144};
 constexpr std::array<std::uint32_t, 3> kTemporalMaskContexts = {1'024, 256, 480};
@@ -22,7 +22,7 @@ constexpr unsigned kTemporalMaskSets = 16;
 struct TemporalModel {
   std::array<Counter, kSmallNodes * Total(kTemporalContexts)> counters;
   std::array<Counter, Total(kTemporalMaskContexts)> mask;
-  /// Mean distances in 1/4096 step: from the recalled value by spread and count, and from the
+  /// Mean distances in 1/4096 bin: from the recalled value by spread and count, and from the
   /// spatial prediction by unevenness.
   std::array<std::int32_t, kSpreadClasses * kCountClasses> recalled_spread;
   std::array<std::int32_t, kUnevenClasses> spatial_spread;

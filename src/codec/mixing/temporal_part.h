@@ -24,7 +24,7 @@ class TemporalPart {
         model_(*model),
         coder_(*coder) {}
 
-  /// `pixels` are the `count` pixels of the row, and `above` is its first azimuth.
+  /// `pixels` has the `count` pixels of the row, and `above[i]` is the azimuth of pixel i.
   void StartRow(const PixelMemory* pixels, std::uint32_t count, Surprise* above) {
     pixels_ = pixels;
     count_ = count;
@@ -55,7 +55,7 @@ class TemporalPart {
            (west_.shift != Surprise::kChanged || above_[index_].shift != Surprise::kChanged);
   }
 
-  /// `mask_counters` are the first contexts of MaskPart.
+  /// `mask_counters(k)` returns the counter of MaskPart's context k.
   template <class CounterAt>
   bool CodeReturn(bool bit, CounterAt&& mask_counters) {
     const PixelMemory& p = pixels_[index_];
@@ -80,7 +80,8 @@ class TemporalPart {
     return mixer.Code(bit, &model_.mask_weights[(h & 7) * 2 + west], &coder_);
   }
 
-  /// Codes a pixel that Knows(). Returns kFarAway if the bin is not near the recalled one.
+  /// Codes the bin of a pixel for which Knows() is true. Returns kFarAway if the bin is not near
+  /// the recalled one.
   std::int32_t CodeBin(std::int32_t bin, const Surroundings& around) {
     base_ = value_ / kStep;
     const std::int32_t phase = value_ - CentreOf(base_);

@@ -28,11 +28,11 @@ class AdaptiveCoder {
   void Count(const BlockShape& shape, const IntegerLists& lists, SymbolCounts* values,
              SymbolCounts* levels);
   /// Fills the ranges of `image`, and its intensity if it has room for one. Returns false if the
-  /// stream is none of Encode(), or a range is not below kMaxBins.
+  /// stream is damaged, or a range is not below kMaxBins.
   bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
               RangeImage* image);
 
-  /// Replaces values and levels by their residuals, and the other way round.
+  /// Replaces the values by their residuals, and the other way round. Levels stay.
   void ToResiduals(const BlockShape& shape, IntegerLists* lists);
   bool FromResiduals(const BlockShape& shape, IntegerLists* lists);
 
@@ -44,7 +44,7 @@ class AdaptiveCoder {
   bool ForEachRow(const BlockShape& shape, CodeRow&& code_row);
   /// Ranges or intensities.
   struct Channel {
-    std::uint32_t limit;  // values are below
+    std::uint32_t limit;  // values are below it
     RowPredictor predictor = {};
     SymbolModel model = {};
   };

@@ -57,7 +57,7 @@ void MaskCoder::Reset(const AzimuthAlignment& alignment, std::uint32_t columns) 
 }
 
 /// Calls code(lane, model, pixels) for all groups of a row in the order of coding; it returns the
-/// bits of the group. The resulting `row_` is remembered.
+/// bits of the group. Then keeps `row_` for the beam below.
 template <class CodeFour>
 [[gnu::always_inline]] inline void MaskCoder::CodeRow(std::uint32_t beam, std::uint32_t columns,
                                                       CodeFour&& code) {

@@ -19,7 +19,7 @@ class MaskCoder {
   /// `mask` has alignment.beams() rows of `columns`.
   void Encode(const Mask& mask, const AzimuthAlignment& alignment, std::uint32_t columns,
               RansEncoder* encoder);
-  /// Fills `mask`, which has its size. Returns false if the stream ends before.
+  /// Fills `mask`, which has its size. Returns false if the stream ends too early.
   bool Decode(const AzimuthAlignment& alignment, std::uint32_t columns, RansDecoder* decoder,
               Mask* mask);
   /// Pieces of RansEncoder that a mask takes.

@@ -19,7 +19,7 @@ constexpr unsigned kNibbles = 16;
 constexpr unsigned kProbabilityBits = 15;
 constexpr std::uint32_t kProbabilityOne = 1U << kProbabilityBits;
 
-/// What an entropy coder needs to know about a symbol: its interval in 0 .. kProbabilityOne.
+/// Interval of a symbol in 0 .. kProbabilityOne.
 struct Interval {
   std::uint16_t start;
   std::uint16_t size;
@@ -40,8 +40,8 @@ struct Targets {
 };
 inline constexpr Targets kTargets;
 
-/// The rate falls with the number of updates: the first few samples teach a context most of what
-/// there is to know.
+/// The rate falls with the number of updates, because the first few samples are most of what there
+/// is to learn about a context.
 struct Rates {
   static constexpr unsigned kMiddleAge = 24;
   static constexpr unsigned kOldest = 400;

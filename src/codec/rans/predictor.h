@@ -11,7 +11,7 @@
 
 namespace lidar::codec {
 
-/// What is known before a value.
+/// What is known about a value before it is coded.
 struct Prediction {
   std::int32_t value = 0;
   unsigned context = 0;     // how uneven the neighbourhood is, 0 .. kContexts - 1
@@ -71,7 +71,7 @@ class RowPredictor {
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
 
   /// Calls code(lane, index, prediction) for all returns of a row in the order of coding. Returns
-  /// false if a value is not below `limit`, a power of two; then the predictor is of no more use.
+  /// false if a value is not below `limit`, a power of two; Reset() must come next.
   template <class Code>
   [[gnu::always_inline]] bool CodeRow(std::uint32_t beam, const RowReturns& row,
                                       std::uint32_t limit, Code&& code) {
@@ -146,7 +146,7 @@ class RowPredictor {
   };
 
   AlignedRow<Known> above_;
-  std::int32_t latest_ = 0;  // value, for rows without any neighbour
+  std::int32_t latest_ = 0;  // value of the latest return, for rows without any neighbour
   std::vector<Return> row_;
   std::vector<std::int32_t> values_;
 };

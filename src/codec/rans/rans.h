@@ -50,13 +50,13 @@ class RansEncoder {
     Writer& operator=(const Writer&) = delete;
     ~Writer() { encoder_->next_ = next_; }
 
-    /// A symbol, and the low `count` <= kMaxJointBits of `bits`. Its other bits are 0.
+    /// Adds a symbol, and the low `count` <= kMaxJointBits of `bits`, whose other bits are 0.
     [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, NibbleModel* model,
                                     std::uint32_t bits = 0, unsigned count = 0) {
       *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
       model->Update(symbol);
     }
-    /// The low `count` <= kMaxPlainBits of `bits`. Its other bits are 0.
+    /// Adds the low `count` <= kMaxPlainBits of `bits`, whose other bits are 0.
     void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
       *next_++ = {{0, kProbabilityOne}, bits << 8 | count << 2 | lane};
     }
@@ -75,11 +75,11 @@ class RansEncoder {
 /// Copies are cheap: a loop uses its own, which can live in registers.
 class RansDecoder {
  public:
-  /// `padded` keeps the words, with room for `ahead` calls of GetBits() past the end. Callers ask
-  /// overran() at least once in so many calls.
+  /// `padded` keeps the words, with room for `ahead` calls of GetBits() past the end. Callers check
+  /// overran() at least once in `ahead` calls.
   RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded);
 
-  /// Returns true if more was read than there is: the stream is damaged, and its reading ends.
+  /// Returns true if more was read than there is: the stream is damaged, and callers stop.
   bool overran() const { return position_ > end_; }
 
   /// The next call must be GetBits() of the same lane, with a count of 0 if no bits follow.

@@ -128,7 +128,7 @@ class SymbolModel {
     if (length > 0 && length < kLongest) rest |= 1U << (length - 1);
     return static_cast<std::int32_t>(rest);
   }
-  /// Number of written bits of a rest of that length; the highest one is 1.
+  /// Number of written bits of a rest of `length` bits, whose highest bit is 1.
   static unsigned PlainBits(unsigned length) {
     if (length == kLongest) return kLongestBits;
     return length > 0 ? length - 1 : 0;
