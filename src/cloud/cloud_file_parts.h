@@ -32,10 +32,10 @@ class Lines {
 };
 
 std::optional<std::uint64_t> ParseCount(std::string_view text);
-/// The time in a comment of our own writers.
+/// The time [ns since 1970] in a comment of our own writers.
 std::optional<std::uint64_t> ParseCaptureTime(std::string_view comment);
 
-/// Numbers of a point in the file's order.
+/// A field of a point, in the file's order.
 struct FileField {
   std::string name;  // empty: padding
   std::optional<FieldType> type;
@@ -43,12 +43,12 @@ struct FileField {
   std::uint32_t count = 1;  // numbers
 };
 
-/// Sets fields and point_step of `cloud`. Returns false if there are too many.
+/// Sets fields and point_step of `cloud`. Returns false if there are too many fields, or none.
 bool Lay(const std::vector<FileField>& fields, FileCloud* cloud, std::string* why);
 /// Bytes of all points; nothing if that is beyond kMaxCloud.
 std::optional<std::size_t> SizeOfPoints(const FileCloud& cloud, std::string* why);
 
-/// Reads points * numbers numbers of text into little-endian points. Returns false if some are
+/// Reads the numbers of all points from text into little-endian points. Returns false if some are
 /// missing or malformed.
 bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cloud,
               std::string* why);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds from files: PCD (Point Cloud Library), PLY (Stanford), LAS (ASPRS) and KITTI's. Any bytes
-// may come.
+// Clouds from files: PCD (Point Cloud Library), PLY (Stanford), LAS (ASPRS) and KITTI's. Files may
+// hold any bytes.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -28,12 +28,12 @@ struct FileCloud {
   std::vector<std::uint8_t> points;
 };
 
-/// Returns nothing if the file is damaged or of an unsupported kind; `why` then says so for a user.
-/// Its claimed sizes are checked against its bytes.
+/// Returns nothing if the file is damaged or of an unsupported kind; `why` then has the reason for
+/// a user. The sizes that the file claims are checked against its bytes.
 std::optional<FileCloud> ReadPcd(ByteView file, std::string* why);
 std::optional<FileCloud> ReadPly(ByteView file, std::string* why);
 /// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. If a point lies more than 16 km off, x, y
-/// and z are relative to the least of each in whole metres, as F32 has no millimetres beyond that.
+/// and z are relative to the least of each in whole metres: F32 has no millimetres beyond that.
 std::optional<FileCloud> ReadLas(ByteView file, std::string* why);
 /// Reads x, y, z and intensity as F32, the format of KITTI's sequences and their successors.
 std::optional<FileCloud> ReadKitti(ByteView file, std::string* why);

@@ -34,7 +34,7 @@ decltype(auto) WithTypeOf(FieldType type, Call&& call) {
   return call(float{});
 }
 
-/// A number of either byte order; a double holds each of them exactly.
+/// Reads a number of either byte order; a double holds each of these types exactly.
 inline double ReadNumber(const std::uint8_t* from, FieldType type, bool big_endian = false) {
   return WithTypeOf(type, [&](auto value) {
     std::uint8_t bytes[sizeof value];
@@ -45,7 +45,7 @@ inline double ReadNumber(const std::uint8_t* from, FieldType type, bool big_endi
   });
 }
 
-/// Writes the nearest number that the type can hold; not a number is 0 for an integer.
+/// Writes the nearest number that the type can hold; NaN becomes 0 in an integer.
 inline void WriteNumber(double value, FieldType type, std::uint8_t* to) {
   WithTypeOf(type, [&](auto stored) {
     using T = decltype(stored);

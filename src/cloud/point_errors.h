@@ -33,9 +33,9 @@ enum class PointOrder {
 };
 
 /// Measures the distances between `raw`, which has whole points, and its decoded points. Pixels
-/// without positions are compared by range. With `thinned` points were removed on purpose, so fewer
-/// points are missing, not merged. Returns nothing if the numbers of pixels differ, or without
-/// points.
+/// without positions are compared by range. With `thinned`, points were removed on purpose: lacking
+/// points are missing, not merged. Returns nothing if the numbers of pixels differ, or if `fields`
+/// lack what is compared.
 std::optional<PointErrors> MeasureErrors(ByteView raw, const PointFields& fields,
                                          std::uint32_t point_step,
                                          const std::vector<DecodedPoint>& decoded, PointOrder order,

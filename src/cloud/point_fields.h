@@ -36,7 +36,7 @@ class PointFields {
   /// Null if there is no such field.
   const PointField* Find(std::string_view name) const;
   bool Has(std::string_view name, FieldType type) const;
-  /// Returns true if x, y and z are F32 and stand side by side, as all elements take them.
+  /// Returns true if x, y and z are F32 and stand side by side, as all elements need them.
   bool HasPackedXyz() const;
   /// Returns true if the fields, in any order, fill the point from 0 without overlap or gaps, as
   /// decoders produce it.

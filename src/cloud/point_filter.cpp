@@ -104,7 +104,7 @@ std::optional<PointFilter> PointFilter::Make(const PointFilterSettings& settings
 bool PointFilter::IsFirstInVoxel(const std::array<float, 3>& xyz) {
   std::uint64_t key = 0;
   for (const float c : xyz) {
-    // 2^21 cubes along each axis; further points share the last cube.
+    // There are 2^21 cubes along each axis; points beyond share the outermost ones.
     const double index = std::floor(static_cast<double>(c) / settings_.voxel_size_m);
     const auto limited = static_cast<std::int64_t>(std::clamp(index, -1048576.0, 1048575.0));
     key = key << 21 | static_cast<std::uint64_t>(limited + 1048576);

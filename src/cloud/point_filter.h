@@ -15,7 +15,7 @@ namespace lidar {
 
 /// The treatment of points without a return, and of removed points.
 enum class InvalidPoints {
-  kKeep,    // the first kind stays as it is, removed points become zero
+  kKeep,    // points without a return stay as they are, removed points become zero
   kZero,    // all fields zero
   kNan,     // x, y and z are NaN, the rest zero
   kRemove,  // removed from the cloud, which loses its rows

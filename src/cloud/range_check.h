@@ -14,14 +14,14 @@ namespace lidar {
 /// Detects points that were moved after the sensor: coding ranges alone would undo the motion.
 class RangeCheck {
  public:
-  /// Returns nothing if the fields lack x, y and z beside the range.
+  /// Returns nothing if the fields lack the range, or x, y and z side by side.
   static std::optional<RangeCheck> Create(const PointFields& fields, std::uint32_t point_step,
                                           const SensorModel& model);
 
   struct Contradiction {
     std::uint32_t beam = 0;
     std::uint32_t column = 0;  // measurement id
-    double distance_m = 0;     // between the point and its range's
+    double distance_m = 0;     // from the point to where its range puts it
   };
   /// Checks kSamples returns of `raw`, which has whole beams.
   std::optional<Contradiction> Find(ByteView raw, std::uint32_t first_column) const;

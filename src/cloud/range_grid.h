@@ -8,10 +8,10 @@
 
 namespace lidar {
 
-/// Ranges are multiples of `unit_mm`, here called cells. Neighbouring cells share a bin and come
-/// back as its middle, rounded up to a whole millimetre. A step that is no whole number of cells
-/// makes bins of two sizes, evenly mixed: so sizes of slices change as smoothly as steps do, and
-/// the error is that of the larger bins.
+/// Ranges are multiples of `unit_mm`, here called cells. Neighbouring cells share a bin and decode
+/// to its middle, rounded up to a whole millimetre. A step that is no whole number of cells makes
+/// bins of two sizes, evenly mixed: so sizes of slices change as smoothly as steps do, and the
+/// error is that of the larger bins.
 class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
@@ -88,7 +88,7 @@ class RangeGrid {
   std::uint32_t RangeOf(std::uint32_t bin) const {
     return static_cast<std::uint32_t>(Middle<std::uint64_t>(bin));
   }
-  /// Returns true if `bin` comes back as a return, within `error_mm` of `range_mm`.
+  /// Returns true if `bin` decodes to a range, not 0, within `error_mm` of `range_mm`.
   bool ComesBackWithin(std::uint32_t error_mm, std::uint32_t bin, std::uint32_t range_mm) const {
     const std::uint32_t back = RangeOf(bin);
     return back > 0 && (back > range_mm ? back - range_mm : range_mm - back) <= error_mm;

@@ -28,8 +28,8 @@ class RangeProjection {
   std::array<float, 3> Direction(std::uint32_t beam, std::uint32_t column) const;
   /// Range [mm, not rounded] whose point is nearest to `xyz` [m].
   double RangeOf(std::uint32_t beam, std::uint32_t column, const float* xyz) const;
-  /// Writes the three F32 of x, y, z at `xyz + point_step * (beam * window.count + i)` for the
-  /// ranges [mm], below 2^31, `ranges[beam * window.count + i]` of every beam.
+  /// Projects the ranges [mm, below 2^31] of all beams: writes x, y and z of `ranges[beam *
+  /// window.count + i]` as F32 to `xyz + point_step * (beam * window.count + i)`.
   void Project(const std::uint32_t* ranges, ColumnWindow window, std::uint8_t* xyz,
                std::size_t point_step) const;
   /// Projects one beam. If `behind` is not null it has the four bytes to write after z in each

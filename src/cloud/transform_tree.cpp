@@ -18,7 +18,7 @@ using Position = std::array<double, 3>;
 constexpr double kUnitTolerance = 0.01;
 /// No robot is farther away than the moon, so sums stay finite [m].
 constexpr double kFarthest = 1e9;
-/// Greatest depth of frames; more form a circle.
+/// Greatest depth of frames; deeper ones form a circle.
 constexpr std::size_t kMaxDepth = 64;
 /// A straight line suffices between orientations above this cosine.
 constexpr double kNearlyParallel = 0.9995;
@@ -53,7 +53,7 @@ Position Turned(const Quaternion& q, const Position& p) {
   return {turned[0], turned[1], turned[2]};
 }
 
-/// The rotation b, followed by a.
+/// The pose b, followed by a.
 FramePose Times(const FramePose& a, const FramePose& b) {
   FramePose out;
   out.orientation = Normalised(Times(a.orientation, b.orientation));
@@ -118,7 +118,7 @@ bool TransformTree::Set(std::string parent, std::string child, Time at, const Fr
     return true;
   }
   link.earlier.Add(parent, sample);
-  // The history may hold fewer poses, as it drops those far from the newest.
+  // `earlier` may hold fewer poses, because it drops those far from the newest.
   if (++link.too_old < kRestart) return false;
   link.history = std::exchange(link.earlier, {});
   link.too_old = 0;
@@ -129,7 +129,7 @@ bool TransformTree::Link::IsTooOld(Time at) const {
   return !history.samples.empty() && history.samples.back().at - at > kHistory;
 }
 
-/// A frame has one parent.
+/// A frame has one parent: a pose in another one clears the history.
 void TransformTree::History::Add(const std::string& of, const Sample& sample) {
   if (parent != of) *this = {of, {}};
   const auto place = std::lower_bound(samples.begin(), samples.end(), sample.at,

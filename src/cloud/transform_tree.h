@@ -30,14 +30,14 @@ class TransformTree {
 
   /// Sets the pose of `child` in `parent`, at a time or permanently. Returns false for an invalid
   /// pose, unnamed or equal frames, or too many frames. Like tf2, it refuses poses older than
-  /// kHistory. kRestart old poses of a frame in a row show that the clock went back: as many as a
-  /// history can hold then replace the old ones.
+  /// kHistory. kRestart such poses of a frame in a row show that the clock went back: they then
+  /// replace the history, as far as it can hold them.
   bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
 
   struct Answer {
     std::optional<Transform> transform;  // takes points of the source to the target
-    std::string why;                     // there is none, in words for a user
-    bool may_come = false;               // a later pose can make one
+    std::string why;                     // why there is none, for a user
+    bool may_come = false;               // a later pose may give one
     Time newest{};                       // newest pose of the frame that lacks a later one
   };
   /// Poses are interpolated between two times. Without a time the newest poses count.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The grid on which coordinates are rounded: cubes that come back as their middles.
+// The grid on which coordinates are rounded: cubes that decode to their middles.
 #pragma once
 
 namespace lidar {
