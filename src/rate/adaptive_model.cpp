@@ -10,14 +10,15 @@ namespace lidar::rate {
 namespace {
 
 constexpr double kUnitStep = 0.01;
-// Slices with fewer returns say nothing about the scene, as headers are most of their bytes.
+// Slices with fewer returns teach nothing about the scene: headers are most of their bytes.
 constexpr std::uint32_t kFewReturns = 64;
 // Exceeds the size of an uncoded return: a larger size is a fault.
 constexpr double kMostBytesAReturn = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;
 constexpr int kBisections = 40;
-// The sum hides its parts. Without a bound the split drifts until one part vanishes.
+// Only the sum of geometry and intensity is known. Without a bound the split drifts until one part
+// vanishes.
 constexpr double kMostOffFit = 4;
 
 double X(double step_m) { return std::log2(std::max(step_m, 1e-9) / kUnitStep); }
@@ -107,7 +108,7 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
     }
     settings.step_m = kUnitStep * std::exp2((low + high) / 2);
   }
-  // Few steps: it takes the nearest in bytes, and prefers slightly less to too much.
+  // Takes the allowed step that is nearest in bytes, and not too many bytes above.
   constexpr double kMostOver = 1.06;
   const AllowedSteps steps = StepsAround(settings.step_m, limits);
   settings.step_m = steps.coarser_m;

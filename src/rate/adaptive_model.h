@@ -49,12 +49,12 @@ class AdaptiveModel : public SizeModel {
     SliceTracker intensity;
     /// Steepness of this scene's sizes relative to the fit.
     double slope = 1;
-    double thinning = 0.8;                    // log size against log keep_fraction
+    double thinning = 0.8;                    // exponent of keep_fraction in the size
     std::optional<std::uint64_t> last_slice;  // scan and sector, to recognise a re-encoding
   };
   const ModeCoefficients& Mode(const std::string& mode) const;
   /// Returns what was learned of a mode, or null. After a change of mode within a geometry it
-  /// returns that of the last mode, as the scene is the same.
+  /// returns that of the last mode, because the scene is the same.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
   /// Intensity's part of the bytes of a slice if the codec does not report it.

@@ -21,7 +21,7 @@ class ErrorBound {
   /// The coarsest step [m] whose MaxError is not above `error_m`. Errors below the sensor's
   /// resolution give the finest step.
   double CoarsestStep(double error_m) const;
-  /// Finer steps [m] only code digits that the sensor does not have.
+  /// Finest useful step [m]: finer ones only code digits that the sensor does not have.
   double FinestStep() const;
   /// Steps are FinestStep() plus multiples of this [m]; 0 for xyz: any step. Steps of ranges are
   /// small enough for nearly continuous sizes.

@@ -24,7 +24,7 @@ struct ModelFile {
 std::optional<ModelFile> ParseModelFile(std::string_view json, std::string* error);
 std::string WriteModelFile(const ModelFile& file);
 
-/// Null, and why in `error`, where the file has no coefficients for `kind`.
+/// Returns null if the file has no coefficients for `kind`; `error` then has the reason.
 std::unique_ptr<SizeModel> MakeModel(const ModelFile& file, RateModel kind, std::string* error);
 /// The model of the file that is compiled in.
 std::unique_ptr<SizeModel> MakeBuiltInModel(RateModel kind);

@@ -17,12 +17,13 @@ using Samples = std::vector<const Sample*>;
 double X(const Sample& s) { return std::log2(s.settings.step_m / kUnitStep); }
 double N(const Sample& s) { return std::log2(s.slice.returns / 1000.0); }
 
-/// Minimises |A c - b|; constant features are left out.
+/// Minimises |A c - b|; features that depend on others get no coefficient.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   return a.colPivHouseholderQr().solve(b);
 }
 
-/// Returns true, and so fits the exponent of the returns, if their number varies enough.
+/// Returns how far the numbers of returns spread, in doublings. A small spread cannot show their
+/// exponent.
 double ReturnsSpread(const Samples& samples) {
   const auto [low, high] = std::minmax_element(
       samples.begin(), samples.end(),

@@ -9,11 +9,11 @@ namespace {
 
 // A scan compensates for half of the last scans' excess: all of it at once would double the noise.
 constexpr double kRepayGain = 0.5;
-// Greatest part of a scan's unused budget that is kept: the network does not keep unused capacity.
+// Most that scans save, as a part of a scan's budget: the network does not keep unused capacity.
 constexpr double kMaxSaved = 0.05;
 constexpr double kOver = 0.015;       // excess over the budget that causes a second try
-constexpr double kOverOfScan = 0.01;  // ... but not if later slices even out less
-constexpr double kUnder = 3;          // times as much: too few bytes do no harm
+constexpr double kOverOfScan = 0.01;  // ... or this part of the scan's: later slices even it out
+constexpr double kUnder = 3;          // times as much may be missing: it does no harm
 constexpr double kSameStep = 0.004;   // steps closer than this are the same
 // A second try aims a little lower, by how far it has to go, because its slope may be wrong.
 constexpr double kReencodeMargin = 0.02;

@@ -13,7 +13,7 @@
 namespace lidar::rate {
 
 struct ControllerParameters {
-  /// `coarsest_step_m` comes from max-error (ErrorBound), so it holds whatever the target.
+  /// `coarsest_step_m` comes from max-error (ErrorBound), so the error bound holds at any target.
   SettingLimits limits;
   /// The controller lowers the intensity bits to this before it skips or thins.
   unsigned min_intensity_bits = 4;
@@ -55,7 +55,7 @@ class RateController {
   /// Bitrate for the encoded slices without transport overhead. Unset: constant quality at the
   /// coarsest step.
   void SetTarget(std::optional<DataRate> target);
-  /// Sets parameters for the next slice on.
+  /// Sets parameters from the next slice on.
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
 
   Decision NextSlice(const SliceFeatures& slice);

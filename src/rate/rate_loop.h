@@ -30,7 +30,7 @@ struct LoopResult {
   bool skipped = false;  // the controller left it out to save bitrate
   std::string mode;      // of coding
   CodingResult result = CodingResult::kEmpty;
-  CodedSlice slice;  // where it was encoded
+  CodedSlice slice;  // if encoded()
   unsigned intensity_bits = 0;
   double keep_fraction = 1;
   double max_error_m = 0;  // error bound to be kept

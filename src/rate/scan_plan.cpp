@@ -7,7 +7,7 @@
 namespace lidar::rate {
 namespace {
 
-// The next scans' steps repay a debt of a tenth of a scan without a skip.
+// A debt of a tenth of a scan causes no skip: the next scans' steps repay it.
 constexpr double kTolerance = 0.1;
 // A cloud that is thinned further is useless: then scans are skipped as well.
 constexpr double kMinKeep = 1.0 / 16;

@@ -21,7 +21,7 @@ AllowedSteps StepsAround(double step_m, const SettingLimits& limits) {
 
 double ClampStep(double step_m, const SettingLimits& limits) {
   const AllowedSteps steps = StepsAround(step_m, limits);
-  // Nearest in the logarithm, as bytes follow the logarithm of the step.
+  // The nearest step in the logarithm, because bytes follow the logarithm of the step.
   return step_m * step_m > steps.finer_m * steps.coarser_m ? steps.coarser_m : steps.finer_m;
 }
 

@@ -27,11 +27,11 @@ struct Settings {
   unsigned level = 0;           // compression level; only the paper's model chooses it
 };
 
-/// The predictor's choices.
+/// Limits of the predictor's choices.
 struct SettingLimits {
   double finest_step_m = 0.001;
   double coarsest_step_m = 0.04;
-  double step_unit_m = 0;  // steps are finest_step_m and any number of these; 0: any step
+  double step_unit_m = 0;  // steps are finest_step_m plus multiples of this; 0: any step
   unsigned intensity_bits = 0;
   unsigned level = 0;
 };
@@ -45,7 +45,7 @@ struct PredictedSize {
 /// The result of the codec.
 struct EncodedSize {
   DataSize size;
-  double step_m = 0;         // really used
+  double step_m = 0;         // the step that was used
   double keep_fraction = 1;  // of the returns, after thinning
 };
 

@@ -23,13 +23,13 @@ struct LoadedSlice {
 struct StepRange {
   double finest_step_m = 0.001;   // finer steps code meaningless digits
   double coarsest_step_m = 0.04;  // no point moves farther than the requested error
-  double step_unit_m = 0;         // steps are finest_step_m and any number of these; 0: any step
+  double step_unit_m = 0;         // steps are finest_step_m plus multiples of this; 0: any step
 };
 
 struct CodedSlice {
   std::size_t bytes = 0;
   std::size_t returns = 0;
-  double step_m = 0;   // really used
+  double step_m = 0;   // the step that was used
   double error_m = 0;  // bound that holds with this step
 };
 
@@ -39,7 +39,7 @@ enum class CodingResult {
   kOutOfReach,  // no grid of this coder keeps to the error
 };
 
-/// A stream. The coder keeps the bytes; the loop takes only their number.
+/// Codes a stream. The coder keeps the bytes; the loop takes only their number.
 class SliceCoder {
  public:
   virtual ~SliceCoder() = default;
