@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the slices that arrived from the sequence numbers that did.
+// Finds the slices that arrived, by the sequence numbers of the packets that did.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -8,8 +8,8 @@
 
 namespace lidar::rtp {
 
-/// Recent packets of an SSRC, and their slices, in bounded memory: packets without acknowledgement
-/// are forgotten.
+/// Recent packets of an SSRC, and their slices, in bounded memory: the oldest packets without
+/// acknowledgement are dropped.
 class Delivery {
  public:
   struct Slice {
@@ -23,16 +23,17 @@ class Delivery {
     bool ends_slice = false;
   };
 
-  /// Packets in the order of sending.
+  /// Notes a sent packet. Packets come in the order of sending.
   void OnSent(const Packet& packet);
-  /// The receiver has the packets from `first` to `last`. Returns the slices that are whole now.
+  /// Notes that the receiver has the packets from `first` to `last`. Returns the slices that are
+  /// now whole.
   std::vector<Slice> OnReceived(std::uint32_t ssrc, std::uint16_t first, std::uint16_t last);
 
   static constexpr std::size_t kMostPackets = 8'192;
 
  private:
   struct SentPacket {
-    std::uint64_t slice;  // by its number
+    std::uint64_t slice;  // number of the slice
     bool received = false;
   };
   struct SentSlice {

@@ -16,7 +16,7 @@ class FragmentBuffer {
 
   /// Stores a copy of the unit's body.
   Added Add(std::uint16_t sequence, const Unit& unit);
-  /// Are all fragments from the first to the last there?
+  /// Returns true if all fragments from the first to the last are there.
   bool IsWhole() const;
   /// Returns the unit's bytes if their number and CRC are right, else nothing. Call it if
   /// IsWhole().

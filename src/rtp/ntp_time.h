@@ -7,7 +7,7 @@ namespace lidar::rtp {
 
 constexpr std::uint64_t kNtpToUnixSeconds = 2'208'988'800;
 
-/// `unix_ns` is since 1970; the way back is exact to the nanosecond.
+/// `unix_ns` is since 1970. FromNtp() gives back the same nanosecond.
 constexpr std::uint64_t ToNtp(std::uint64_t unix_ns) {
   const std::uint64_t seconds = unix_ns / 1'000'000'000 + kNtpToUnixSeconds;
   const std::uint64_t fraction = ((unix_ns % 1'000'000'000) << 32) / 1'000'000'000;

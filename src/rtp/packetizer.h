@@ -28,8 +28,8 @@ class Aggregator {
   /// Returns false and adds nothing if the unit does not fit into the packet, or if its `rtp_ticks`
   /// (running time in 90 kHz) exceed those of the first unit by more than 16 bits.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
-  /// Returns the packet, with the RTP timestamp of its first unit; a single unit packet for one
-  /// unit, and nothing for none.
+  /// Returns the packet, which has the RTP timestamp of its first unit; it is a single unit packet
+  /// if there is only one unit. Returns nothing if there is none.
   std::optional<Packet> Take();
   bool empty() const { return units_ == 0; }
 
@@ -44,8 +44,8 @@ class Aggregator {
 class ScanCounter {
  public:
   explicit ScanCounter(std::uint32_t first) : number_(first) {}
-  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to send. Its slice id
-  /// and scan id must be set otherwise.
+  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to send. Its index,
+  /// count and scan id must be set.
   void Place(Unit* unit);
 
  private:

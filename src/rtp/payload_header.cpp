@@ -127,7 +127,7 @@ std::uint32_t UnitCrc(const Unit& unit, ByteView bytes) {
 std::vector<Unit> ParsePayload(ByteView payload) {
   if (payload.empty()) return {};
   if (payload.data[0] >> 5 == static_cast<unsigned>(PacketType::kAggregation)) {
-    // The units of an aggregate have the unit type.
+    // An aggregate has no unit type of its own; each of its units has one.
     return (payload.data[0] & 31) == 0 ? ParseAggregate(payload) : std::vector<Unit>{};
   }
   const auto unit = ParseUnit(payload);

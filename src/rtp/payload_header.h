@@ -35,7 +35,7 @@ constexpr bool EndsUnit(PacketType t) {
   return t == PacketType::kSingle || t == PacketType::kLastFragment;
 }
 
-/// The slice of a packet, in each of its packets.
+/// Names the slice of a packet. Each packet of a slice has it.
 struct SliceId {
   std::uint32_t scan_number = 0;  // counts the scans sent, without gaps; wraps
   std::uint16_t index = 0;
@@ -61,9 +61,9 @@ struct Unit {
   UnitType unit = UnitType::kSlice;
   std::uint8_t config_id = 0;
   SliceId slice;                      // of slices
-  SliceInfo info;                     // of slices, where StartsUnit(type)
-  std::uint32_t length = 0;           // bytes of the whole unit, where StartsUnit(type)
-  std::uint32_t crc = 0;              // UnitCrc of the whole unit, where StartsUnit(type)
+  SliceInfo info;                     // of slices, if StartsUnit(type)
+  std::uint32_t length = 0;           // bytes of the whole unit, if StartsUnit(type)
+  std::uint32_t crc = 0;              // UnitCrc of the whole unit, if StartsUnit(type)
   std::uint16_t timestamp_ticks = 0;  // relative to the RTP timestamp; not 0 only in aggregates
   ByteView body;
 };

@@ -101,7 +101,7 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
     Emit(it, std::move(config), out);
 }
 
-/// `skipped` is as in SliceInfo. It is ignored for a slice with a packet here.
+/// `skipped` is as in SliceInfo. A slice of which a packet is here was not skipped.
 void Reassembler::BookSkipped(SlicePosition p, std::uint64_t skipped) {
   for (auto at = ledger_.Before(p); at && skipped != 0; at = ledger_.Before(*at), skipped >>= 1)
     if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Skip(*at);

@@ -46,7 +46,7 @@ struct PacketAccounts {
 class Reassembler {
  public:
   explicit Reassembler(Duration max_reorder_time) : ledger_(max_reorder_time) {}
-  /// For packets that may be of the same stream as `before`, at another place.
+  /// For packets that may be of the same stream as `before`, with other scan numbers.
   Reassembler(Duration max_reorder_time, const Reassembler& before)
       : ledger_(max_reorder_time), newest_scan_(before.newest_scan_) {}
 
@@ -57,17 +57,18 @@ class Reassembler {
   /// of their completion: no slice waits for another.
   void Push(const RtpPacket& packet, const std::vector<Unit>& units,
             std::vector<ReceivedSlice>* out);
-  /// Returns true if a slice has begun here after all that `previous` saw, by `max_scans` at most.
+  /// Returns true if the first slice here is after the last one of `previous`, by at most
+  /// `max_scans`.
   bool IsAfter(const Reassembler& previous, std::int64_t max_scans) const;
   /// Returns true if a slice was whole and undamaged, with or without its config.
   bool has_whole_slice() const { return has_whole_slice_; }
   /// Returns true if a slice has begun.
   bool started() const { return ledger_.started(); }
-  /// Continues after `previous`, the same stream before an outage. Counts what the outage took,
+  /// Continues after `previous`, the same stream before an outage. Counts the slices of the outage,
   /// takes over the configs, and appends the slices that waited for them.
   void GoOn(const Reassembler& previous, std::vector<ReceivedSlice>* out);
   /// The sender of `previous` restarted with the same SSRC. Takes over only configs that came after
-  /// the last slice there, as older ids may have a new meaning.
+  /// the last slice there, because older ids may have a new meaning.
   void StartAnew(const Reassembler& previous, std::vector<ReceivedSlice>* out);
   /// End of stream: incomplete slices are lost.
   void Finish();

@@ -51,7 +51,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
     return;
   }
   if (packet.ssrc != active_->ssrc) NoteRival(packet.ssrc);
-  // A whole slice is enough here, as a throttled sender sends slices that are far apart.
+  // A whole slice is enough here, because a throttled sender sends slices that are far apart.
   if (packet.ssrc == active_->ssrc && candidate_ && !GoesOnWithCandidate(packet, units) &&
       candidate_->reassembler.has_whole_slice() && CandidateGoesOn(packet.arrival)) {
     Promote(packet.arrival, out);

@@ -19,10 +19,9 @@ struct ReceiverAccounts {
   std::uint64_t outages = 0;   // the same stream went on after a gap of several scans
 };
 
-/// Moves to another SSRC or to other scan numbers after several packets in sequence from there,
-/// once the old one is silent. No packet is lost thereby. During silence one whole slice of the
-/// same stream further on moves it at once: a throttled sender may send only such slices, far
-/// apart.
+/// Moves to other scan numbers after several packets in sequence from there, and to another SSRC if
+/// the old one is silent as well. No packet is lost thereby. During silence one whole slice of the
+/// same stream further on is enough: a throttled sender may send only such slices, far apart.
 class Receiver {
  public:
   explicit Receiver(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
@@ -33,7 +32,7 @@ class Receiver {
   void set_max_reorder_time(Duration t);
   ReceiverAccounts accounts() const;
   std::optional<std::uint32_t> ssrc() const;
-  /// Another SSRC, of which many packets were dropped beside the stream.
+  /// Another SSRC of which many packets came during the stream, and were dropped.
   std::optional<std::uint32_t> rival() const { return rival_; }
 
   static constexpr unsigned kProbation = 3;          // packets
@@ -47,7 +46,7 @@ class Receiver {
     Stream(std::uint32_t s, Reassembler r) : ssrc(s), reassembler(std::move(r)) {}
     std::uint32_t ssrc;
     Reassembler reassembler;
-    std::vector<ReceivedSlice> held;  // of a candidate
+    std::vector<ReceivedSlice> held;  // slices of a candidate
     std::uint16_t last_sequence = 0;
     Time last_arrival;
     unsigned streak = 0;  // packets since the active stream's last

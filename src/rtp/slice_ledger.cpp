@@ -11,7 +11,7 @@ namespace {
 
 // Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
-// Number of skipped slices that a slice may announce, possibly scans of one slice each.
+// A slice may announce so many skipped slices, possibly scans of one slice each.
 constexpr std::int64_t kKeptScans = 64;
 constexpr int kToldSlices = 64;
 
@@ -161,7 +161,7 @@ void SliceLedger::TakeBackLoss(Scan* scan, std::uint32_t index) {
   BookScan(scan);
 }
 
-/// Leaves such slices out of the accounts, unless Continue() counts them.
+/// Leaves slices before the origin out of the accounts, unless Continue() counts them.
 void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
   if (!skipped_before_origin_.insert(p).second || !previous_end_) return;
   if (!(*previous_end_ < p) && lost_before_end_.erase(p) == 0) return;
@@ -248,7 +248,7 @@ void SliceLedger::Continue(const SliceLedger& previous) {
     const auto between = static_cast<std::uint64_t>(origin_.scan - last.scan - 1);
     accounts_.scans_lost += between;
     accounts_.slices_lost += between * count + origin_.index;
-    // Finish keeps the frontier's scan.
+    // Finish() keeps the frontier's scan, so that is the last one of `previous`.
     accounts_.slices_lost += previous.scans_.back().slices.size() - last.index - 1;
     if (Scan* scan = Find(origin_.scan)) scan->joined_late = false;
   } else {

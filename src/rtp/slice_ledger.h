@@ -62,7 +62,7 @@ class SliceLedger {
   Admission Admit(SlicePosition p, std::uint32_t count, Time now);
   /// Sets the fate of an open slice.
   void Settle(SlicePosition p, SliceOutcome outcome);
-  /// The source never sent this slice. If it is counted as lost, it moves to the skipped ones.
+  /// Counts the slice as skipped by the source, even if it was counted as lost.
   void Skip(SlicePosition p);
   /// Notes the source's number `id` of `scan`. These numbers have gaps for skipped scans.
   void BookScanId(std::int64_t scan, std::uint32_t id);
@@ -72,13 +72,13 @@ class SliceLedger {
 
   /// Returns the position before which slices are late at `now`; CloseBefore() counts them.
   std::optional<SlicePosition> Overdue(Time now) const;
-  /// All open slices before `limit` are lost.
+  /// Counts all open slices before `limit` as lost.
   void CloseBefore(SlicePosition limit);
   /// End of stream: all open slices up to the frontier are lost.
   void Finish();
   /// Continues after a long outage of the same stream. `previous` is finished. Scans between it and
   /// this ledger's first slice are lost, and so is the beginning of the first scan here. The
-  /// accounts of `previous` are added, as news of its slices may still come.
+  /// accounts of `previous` are added, because news of its slices may still come.
   void Continue(const SliceLedger& previous);
 
   void set_max_reorder_time(Duration t) { max_reorder_time_ = t; }
@@ -94,7 +94,7 @@ class SliceLedger {
     std::uint32_t open = 0;
     std::uint32_t received = 0;
     std::uint32_t skipped = 0;
-    bool count_known = false;  // false: taken from its neighbour, as it has no packet
+    bool count_known = false;  // false: guessed from a neighbour, without a packet
     bool joined_late = false;  // its beginning was sent before the receiver joined
     std::uint64_t SliceAccounts::*booked = nullptr;  // its counter, once it is closed
   };
@@ -127,10 +127,10 @@ class SliceLedger {
   SlicePosition origin_;         // the first slice
   std::uint32_t origin_count_ = 1;
   std::set<SlicePosition> skipped_before_origin_;
-  // This stream may continue an earlier one. Slices behind the end of that are lost, and those
-  // below.
+  // The end of the earlier stream that this one continues, if any. Slices after it are lost, and so
+  // are those of lost_before_end_.
   std::optional<SlicePosition> previous_end_;
-  std::set<SlicePosition> lost_before_end_;  // lost slices at the end
+  std::set<SlicePosition> lost_before_end_;  // lost slices among its last ones
   std::optional<SlicePosition> frontier_;
   ScanId first_id_{};  // if there was one
   std::optional<ScanId> latest_id_;

@@ -34,8 +34,8 @@ struct StreamConfig {
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }
 };
 
-/// Returns the id of a config after one with the id `previous`. It depends on the content, so that
-/// a restarted sender keeps its id, and differs from `previous`.
+/// Returns the id of a config that follows one with the id `previous`. It differs from that, and
+/// depends on the content, so that a restarted sender keeps its id.
 std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,
                       std::optional<std::uint8_t> previous);
 
