@@ -24,7 +24,7 @@ struct Header {
 Header ReadHeader(CdrReader* r);
 void WriteHeader(const Header& header, CdrWriter* w);
 
-/// sensor_msgs/msg/Imu. A covariance whose first number is -1 says that the value is not measured.
+/// sensor_msgs/msg/Imu. A covariance whose first number is -1 marks the value as not measured.
 struct Imu {
   Header header;
   Quaternion orientation = {0, 0, 0, 1};

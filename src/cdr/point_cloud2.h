@@ -50,7 +50,8 @@ struct MadeCloud {
   std::vector<std::uint8_t> points;
 };
 /// livox_ros_driver2/msg/CustomMsg, as the PointCloud2 that the same driver publishes of it: x, y,
-/// z, intensity, tag, line, and timestamp as F64 [ns since 1970]. Returns nothing as above.
+/// z, intensity, tag, line, and timestamp as F64 [ns since 1970]. Returns nothing for another
+/// message.
 std::optional<MadeCloud> ReadLivox(ByteView message, std::string* why = nullptr);
 
 /// point_cloud_interfaces/msg/CompressedPointCloud2
@@ -87,11 +88,11 @@ RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint3
 /// Converts points of messages of one layout to little-endian points in packed rows.
 class PointConverter {
  public:
-  /// `wanted` selects fields, converted if a field's type is another. Without it all fields stay;
-  /// only x, y and z become F32 side by side, as all elements take them. A field of n elements
-  /// becomes n fields a[0], a[1], ... A field is padding if it has no usable name, an earlier
-  /// field's name, an unknown type or more than kMaxFields elements. Returns nothing if the layout
-  /// contradicts itself, is too large, or lacks a wanted field; `why` then says so.
+  /// `wanted` selects fields, which are converted to its types. Without it all fields stay; only x,
+  /// y and z become F32 side by side, as all elements need them. A field of n elements becomes n
+  /// fields a[0], a[1], ... A field is padding if it has no usable name, an earlier field's name,
+  /// an unknown type or more than kMaxFields elements. Returns nothing if the layout contradicts
+  /// itself, is too large, or lacks a wanted field; `why` then has the reason.
   static std::optional<PointConverter> Make(const RosLayout& layout,
                                             const std::optional<PointLayout>& wanted = {},
                                             std::string* why = nullptr);

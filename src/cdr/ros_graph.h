@@ -22,7 +22,7 @@ struct NodeName {
 };
 /// Parses "lidar", "/robot/lidar" or "robot/lidar"; nothing if ROS would refuse it.
 std::optional<NodeName> ParseNodeName(std::string_view text);
-/// Any text as the last part of a node's name.
+/// Turns any text into the last part of a node's name.
 std::string ToNodeName(std::string_view text);
 /// Converts "/ouster/points" or "points" to the topic in DDS, rt/...; nothing if ROS would refuse
 /// it.
