@@ -35,7 +35,7 @@ constexpr int kUsualScans = 10;  // number of scans that set the usual share
 constexpr int kFirstRounds = 4;
 /// Number of steps of a sweep at which the motion is computed.
 constexpr int kPhases = 1024;
-/// A turn counts as steady within such a step, if the gyroscope shows its course.
+/// A turn counts as steady within a step of this length.
 constexpr Duration kTurnStep = milliseconds(100);
 constexpr int kLostForGood = 10;  // scans
 /// A map with fewer fitting scans may have a wrong first motion: it is replaced soon.
@@ -49,8 +49,8 @@ constexpr double kMostTurnAcceleration = 30;
 constexpr double kSlack = 0.3;
 /// Greatest distance of a fitting point, relative to the map's cubes.
 constexpr double kFit = 0.2;
-/// Weight of neighbours without a surface, if scans show surfaces. With so small a weight an open
-/// direction, which no surface holds, is found.
+/// Weight of neighbours without a surface, if scans show surfaces. It is small, so that directions
+/// that no surface holds are found.
 constexpr double kSparePointWeight = 0.05;
 constexpr double kPointTurn = 0.3;
 constexpr double kLeastConstraint = 0.002;
@@ -63,7 +63,8 @@ constexpr double kMapTurn = 0.09;
 /// beyond kMapReach enter the map only if less than kLeastNear of the scan is nearer.
 constexpr double kMapReach = 40;  // cubes
 constexpr double kLeastNear = 0.25;
-/// A scan nearer than that to an earlier one repeats its lines. Relative to the map's cubes.
+/// A scan nearer than this to the last one in the map repeats its lines. Relative to the map's
+/// cubes.
 constexpr double kSameLines = 0.5;
 
 /// Moves each point of a scan by the sensor's motion from its sample to the middle of the scan.
@@ -225,8 +226,8 @@ void Odometry::AddToMap(const Surface& fine) {
   confidence_.EnterMap();
 }
 
-/// Scans between two map steps stay out of the map. Each would add the error of its pose, and lines
-/// that move with the sensor hold it back.
+/// Scans between two map steps stay out of the map. Each would add the error of its pose, and its
+/// lines, which move with the sensor, would hold the pose back.
 bool Odometry::IsFarFromTheLastInMap() const {
   const Pose moved = entered_.Inverse() * pose_;
   return moved.position.norm() >= kMapStep * settings_.voxel_size_m || Angle(moved) >= kMapTurn;

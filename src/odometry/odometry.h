@@ -118,13 +118,13 @@ class Odometry {
   LocalMap map_;
   MotionThreshold threshold_;
   Pose pose_;
-  Pose entered_;                    // of the last scan that entered the map
+  Pose entered_;                    // pose of the last scan that entered the map
   Twist velocity_ = Twist::Zero();  // per second, in the sensor's frame
   std::optional<Time> last_time_;
   Confidence confidence_;
   TurnHistory turns_;
   int lost_scans_ = 0;
-  Duration lost_for_{};    // the velocity may have changed since the last fit
+  Duration lost_for_{};    // time since the last fit, in which the velocity may have changed
   int fitting_scans_ = 0;  // of this map, without its first scan
   double usual_standing_share_ = 0;
   Points last_scan_;

@@ -29,7 +29,7 @@ struct Pose {
   }
 };
 
-/// A sensor on its way.
+/// A moving sensor.
 struct Moving {
   Pose pose;
   Twist velocity = Twist::Zero();  // per second, in the sensor's frame

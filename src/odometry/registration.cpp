@@ -95,7 +95,7 @@ Neighbours Linearise(const Surface& scan, LocalMap* map, const Pose& pose, doubl
   return sums;
 }
 
-/// Returns the projection on the directions that the scene does not hold, in the sensor's frame.
+/// Returns the projection on the directions that the scene leaves free, in the sensor's frame.
 Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSettings& settings) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sums.Constraint());
   const Eigen::Vector3d& held = solver.eigenvalues();  // ascending

@@ -10,10 +10,10 @@ namespace lidar::odometry {
 struct RegistrationSettings {
   int max_iterations = 100;
   double converged = 5e-4;  // length of the last step [m and rad]
-  /// Weight of a neighbour without a surface, relative to one with. Such a neighbour is seldom the
-  /// same spot. This weight applies if surfaces hold every direction,
+  /// Weight of a neighbour without a surface, relative to one with, if surfaces hold every
+  /// direction. Such a neighbour is seldom the same spot.
   double spare_point_weight = 1;
-  /// and this one if a direction is open.
+  /// The same if a direction is open.
   double point_weight = 1;
   /// Share of such a neighbour's pull that turns the sensor: distant wrong spots would turn it
   /// most.
@@ -21,9 +21,10 @@ struct RegistrationSettings {
   /// Surfaces hold a direction whose share is at least this (0: no surface faces it, 1: all do).
   double held_by_surfaces = 0.04;
   /// A direction is not observed if surfaces hold it less than this (0: no surface faces it, 1: all
-  /// do),
+  /// do).
   double least_constraint = 0.04;
-  /// or less than this part of the next direction, as along a tunnel.
+  /// It is not observed, either, if surfaces hold it less than this part of the next direction, as
+  /// along a tunnel.
   double least_balance = 0.3;
   /// Greatest distance of a fitting point from its surface or neighbour. It does not depend on the
   /// reach, so that a wide search does not make a scan fit.
@@ -47,7 +48,7 @@ struct Alignment {
   Pose pose;
   double inlier_share = 0;  // share of the points that fit
   /// The same without the surfaces that face the best held direction. Usually these are ground,
-  /// which fits at every place. The scan shows them, or else the map.
+  /// which fits at every place. Their normals come from the scan, or else from the map.
   double standing_share = 0;
   int iterations = 0;
   /// The scene does not show the motion along a direction; the guess is kept there.

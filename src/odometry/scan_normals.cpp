@@ -102,7 +102,7 @@ ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
   return {(sum.head<3>() / sum.w()).cast<float>(), true};
 }
 
-/// Fits a plane to what three rings, from below, saw left and right of `bin`.
+/// Fits a plane to the returns of three rings, the lowest first, on both sides of `bin`.
 std::optional<Eigen::Vector3f> ScanNormals::FitPlane(const int (&rings)[3], int bin,
                                                      const Eigen::Vector3f& point) const {
   const int bins =

@@ -13,8 +13,9 @@ namespace lidar::odometry {
 /// for an edge; the beams above and below show that it lies on a plane.
 class ScanNormals {
  public:
-  /// `rings` has the beam of each point, in any order of the beams. The constructor alone reads
-  /// both. Points that are not finite have no normal; without rings no point has one.
+  /// `rings` has the beam of each point, in any order of the beams. Only the constructor reads
+  /// `points` and `rings`. Points that are not finite have no normal; without rings no point has
+  /// one.
   ScanNormals(const Points& points, const std::vector<std::uint16_t>& rings);
 
   struct Surface {
@@ -24,7 +25,8 @@ class ScanNormals {
     Eigen::Vector3d normal;
   };
   /// Moves a point along its normal to the mean of its ring nearby. Returns of grass lie on the
-  /// cone of their beam, the nearest highest, so the front edge of a map of them would be low.
+  /// cone of their beam, the nearest ones highest; a map of unmoved returns would be low at its
+  /// front edge.
   Surface At(const Eigen::Vector3d& point, std::uint16_t ring) const;
 
   static constexpr std::size_t kMaxRings = 1024;  // points of further rings are left out

@@ -34,8 +34,8 @@ std::optional<Twist> ParseTwist(const std::string& text);
 /// middle.
 Trajectory ReadTrajectory(std::istream& in, Duration kitti_period, std::string* error);
 
-/// Interpolates the pose at `t`. Before the first pose and after the last it returns that one. The
-/// trajectory must not be empty.
+/// Interpolates the pose at `t`. Before the first pose it returns the first, after the last the
+/// last. The trajectory must not be empty.
 Pose InterpolateAt(const Trajectory& trajectory, Time t);
 
 }  // namespace lidar::odometry

@@ -13,8 +13,8 @@ constexpr Duration kLongestStep = std::chrono::milliseconds(50);
 constexpr Duration kNewClock = std::chrono::seconds(1);
 constexpr double kMostRate = 50;  // [rad/s]: vehicles turn slower
 constexpr double kMostBias = 0.2;
-/// Least part of a scan's error that enters the bias. The first scans have more weight: an offset
-/// is about as large as the noise of kOffsetScans.
+/// Least weight of a scan's error in the bias. The first scans weigh more: the guess that there is
+/// no offset counts as much as kOffsetScans scans.
 constexpr double kBiasShare = 0.05;
 constexpr int kOffsetScans = 3;
 constexpr double kMemory = 0.9;

@@ -49,10 +49,10 @@ class TurnHistory {
   struct Span {
     Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // integral of the force
-    Eigen::Vector3d way = Eigen::Vector3d::Zero();       // and the integral of that
+    Eigen::Vector3d way = Eigen::Vector3d::Zero();       // integral of the velocity
   };
   std::optional<Span> SpanBetween(Time from, Time to) const;
-  /// Interpolates between samples. Before the first and after the last it returns that one.
+  /// Interpolates between samples. Before the first it returns the first, after the last the last.
   Sample SampleAt(Time t) const;
   Moving After(const Moving& at, const Span& span, double seconds) const;
 
@@ -64,8 +64,8 @@ class TurnHistory {
   int taught_ = 0;
   /// The force at rest, in the frame of the poses: gravity, and the accelerometer's offset.
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();
-  /// Velocities in the frame of the poses: the mean of the last way, and that at its end by the
-  /// forces. The odometry's velocity would not do, as it is filtered.
+  /// Velocities in the frame of the poses: the mean over the last span, and that at its end by the
+  /// forces. The odometry's velocity would not do, because it is filtered.
   struct Reached {
     Eigen::Vector3d mean;
     Eigen::Vector3d velocity;
