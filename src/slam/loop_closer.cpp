@@ -22,8 +22,8 @@ constexpr double kClosure_rad = 0.002;
 /// A closure is wrong if the solved poses contradict it by more.
 constexpr double kContradiction_m = 1.5;
 constexpr double kContradiction_rad = 0.05;
-/// Greatest distance between the same point of two maps. A map counts as empty there beyond
-/// kOverlap.
+/// Greatest distance between the same point of two maps. Beyond kOverlap_m a map counts as empty
+/// there.
 constexpr double kSame_m = 0.4;
 constexpr double kOverlap_m = 2;
 constexpr double kMapVoxel_m = 1;
@@ -184,8 +184,8 @@ void LoopCloser::Solve() {
   ++solved_;
 }
 
-/// Returns the later map of the nearest pair. The first map stays, as it holds the way's beginning;
-/// so does the last, as the way continues from it.
+/// Returns the later map of the nearest pair. The first map stays, because it holds the way's
+/// beginning; so does the last, because the way continues from it.
 std::size_t LoopCloser::FindNearestToAnother() const {
   double least = std::numeric_limits<double>::max();
   std::size_t found = 1;

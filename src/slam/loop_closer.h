@@ -16,9 +16,9 @@ struct LoopSettings {
   double local_map_m = 40;    // length of the way in a local map
   double voxel_size_m = 0.5;  // distance between a map's points
   std::size_t most_maps = 100;
-  /// Loops are searched within this drift of the odometry: a constant,
+  /// Loops are searched within this drift of the odometry, and drift_share on top of it.
   double drift_m = 10;
-  double drift_share = 0.04;  // and a part of the way between the maps
+  double drift_share = 0.04;  // part of the way between the maps
   double heading_range_rad = 0.25;
   double least_score = 0.3;
   double least_distinct = 1.3;
@@ -88,7 +88,7 @@ class LoopCloser {
   std::vector<LocalMap> maps_;    // the first map has the way's beginning
   std::vector<Closure> closures_;
   std::size_t solved_ = 0;
-  std::size_t scans_after_key_ = 0;  // of the last map
+  std::size_t scans_after_key_ = 0;  // number of scans after the key of the last map
 };
 
 }  // namespace lidar::slam
