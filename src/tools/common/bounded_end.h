@@ -11,8 +11,8 @@
 
 namespace lidar::tools {
 
-/// Starts with the end of the program: after `most` the process ends with a message and code 0. The
-/// exit itself is not bounded, as a sanitizer's leak check takes long on a busy machine.
+/// Begins when the program ends: after `most` the process ends with a message and code 0. The exit
+/// itself is not bounded, because a sanitizer's leak check takes long on a busy machine.
 class BoundedEnd {
  public:
   explicit BoundedEnd(std::chrono::milliseconds most) {

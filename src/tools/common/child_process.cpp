@@ -32,7 +32,7 @@ Pipe MakePipe() {
   return {FileDescriptor(fds[0]), FileDescriptor(fds[1])};
 }
 
-/// The child: only async-signal-safe calls until exec.
+/// Runs in the child: only async-signal-safe calls until exec.
 [[noreturn]] void Exec(char* const* argv, int output, int clouds, int error_log) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   sigset_t none;

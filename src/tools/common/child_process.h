@@ -32,9 +32,9 @@ class ChildProcess {
   bool ReadLines(const std::function<void(const std::string&)>& handler);
 
   void Signal(int signal) const;
-  /// True once it has ended; does not wait.
+  /// Returns true once the child has ended; does not wait.
   bool Ended();
-  /// Its exit code, or 128 + the signal that ended it. Waits.
+  /// Waits. Returns the exit code, or 128 + the signal that ended the child.
   int Wait();
 
  private:

@@ -17,7 +17,7 @@
 
 namespace lidar::tools {
 
-/// Makes an element of `factory` in `bin`; without a name it gets one of its own. Throws
+/// Makes an element of `factory` in `bin`; without `name` its name is unique. Throws
 /// std::runtime_error if it is not installed.
 inline GstElement* AddElement(GstElement* bin, const std::string& factory,
                               const char* name = nullptr) {
@@ -29,8 +29,7 @@ inline GstElement* AddElement(GstElement* bin, const std::string& factory,
   return element;
 }
 
-/// The pipeline of a command line's words. Returns null, with a line on stderr, if they are no
-/// pipeline.
+/// Makes the pipeline of a command line's words. Returns null, with a line on stderr, if it cannot.
 inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
   std::vector<const gchar*> argv;
   for (const std::string& word : words) argv.push_back(word.c_str());
@@ -43,7 +42,7 @@ inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
   return nullptr;
 }
 
-/// SIGINT and SIGTERM make `*run` false, where the main context is iterated.
+/// Makes SIGINT and SIGTERM set `*run` to false while the main context is iterated.
 inline void StopOnSignals(bool* run) {
   const auto interrupt = [](gpointer data) -> gboolean {
     *static_cast<bool*>(data) = false;
@@ -67,7 +66,7 @@ inline gst::StructurePtr StatsOf(GstElement* bin, const std::string& element) {
   return gst::StructurePtr(raw);
 }
 
-/// A line for each of the elements in `names`, which has commas between, with its statistics.
+/// Prints a line of statistics for each element in `names`, a list with commas.
 inline void PrintStats(GstElement* bin, const std::string& names, const std::string& before = "") {
   std::istringstream words(names);
   for (std::string name; std::getline(words, name, ',');) {
@@ -79,7 +78,7 @@ inline void PrintStats(GstElement* bin, const std::string& names, const std::str
   std::fflush(stdout);
 }
 
-/// The text of an error or a warning, behind the name of its source.
+/// Returns the text of an error or a warning after the name of its source.
 inline std::string MessageText(GstMessage* message) {
   GError* raw = nullptr;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR)

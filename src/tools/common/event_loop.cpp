@@ -52,7 +52,7 @@ EventLoop::EventLoop()
   sigprocmask(SIG_BLOCK, &set, nullptr);
   signals_ = FileDescriptor(signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
   Check(static_cast<bool>(signals_), "signalfd");
-  // Timers are late by this much at most; the default of 50 us is a third of a packet.
+  // Timers may be late by 1 ns; the default of 50 us is a third of a packet.
   prctl(PR_SET_TIMERSLACK, 1UL);
   Watch(timer_.get(), [this] {
     std::uint64_t expirations = 0;

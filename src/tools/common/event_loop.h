@@ -11,7 +11,7 @@ namespace lidar::tools {
 
 /// CLOCK_MONOTONIC as a Time.
 Time Now();
-/// The difference from a Time of Now() to the time since the Unix epoch, as of this call.
+/// Returns the difference of Unix time from Now(), as of this call.
 Duration UnixOffset();
 
 class EventLoop {

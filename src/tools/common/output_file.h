@@ -6,11 +6,11 @@
 
 namespace lidar::tools {
 
-/// Throws std::runtime_error, with the path and the reason, where the file cannot be written.
+/// Throws std::runtime_error, with the path and the reason, if the file cannot be written.
 class OutputFile {
  public:
-  /// What remains of a file that was not written or closed completely. Empty files are removed;
-  /// only regular files are.
+  /// What remains of a file that was not written or closed completely. Only regular files are
+  /// removed, and empty ones always.
   enum class Rest { kRemove, kKeepRows };
 
   /// An empty path writes nothing.
@@ -32,10 +32,10 @@ class OutputFile {
   std::ofstream file_;
 };
 
-/// All of the file. Throws std::runtime_error if it cannot be opened.
+/// Returns the whole file. Throws std::runtime_error if it cannot be opened.
 std::string ReadFile(const std::string& path);
 
-/// Writes all of the file, or no file.
+/// Writes the whole file, or leaves no file.
 void WriteFile(const std::string& path, const std::string& text);
 
 /// Throws if printed output could not be written. The stream keeps such errors, so one call at the

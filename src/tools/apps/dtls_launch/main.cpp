@@ -52,7 +52,8 @@ constexpr GstClockTime kPoll = 100 * GST_MSECOND;
 // Pause between handshakes. It limits the restarts that other packets can cause.
 constexpr gulong kPauseUs = 200'000;
 
-/// The certificate comes in the handshake, before keys. After the flag no packet passes.
+/// Refuses an untrusted certificate. It comes before the keys, and no packet passes after
+/// `refused`.
 void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   gchar* pem = nullptr;
   g_object_get(dtls, "peer-pem", &pem, nullptr);
@@ -60,7 +61,7 @@ void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   if (pem == nullptr || CertificateIn(pem) != session->certificates.peer) session->refused = true;
 }
 
-/// Drops a stranger's packets: the rest of the handshake, and data under its keys.
+/// Drops all packets after `refused`: the rest of the handshake, and data under its keys.
 void DropOnceRefused(GstElement* decoder, Session* session) {
   GstPad* pad = gst_element_get_static_pad(decoder, "sink");
   gst_pad_add_probe(
@@ -72,7 +73,7 @@ void DropOnceRefused(GstElement* decoder, Session* session) {
   gst_object_unref(pad);
 }
 
-/// Holds packets back, as srtpenc would encrypt with a random key until the handshake sets one.
+/// Holds packets back until the handshake sets a key: srtpenc would encrypt with a random one.
 void HoldUntilThereIsAKey(GstElement* encoder, Session* session) {
   g_object_set_data(G_OBJECT(encoder), "session", session);
   GstIterator* pads = gst_element_iterate_sink_pads(encoder);
@@ -127,7 +128,7 @@ bool MakePipeline(const std::vector<std::string>& words, Session* session) {
   return false;
 }
 
-/// True for the elements that shake hands, and those within them.
+/// Returns true for a DTLS element, and for elements within one.
 bool IsOfDtls(GstObject* source) {
   for (GstObject* o = source; o != nullptr; o = GST_OBJECT_PARENT(o)) {
     const GstElementFactory* factory =
@@ -139,8 +140,8 @@ bool IsOfDtls(GstObject* source) {
 
 enum class End { kOver, kFailed, kNoHandshake };
 
-/// Plays until EOS, an error, `*run` is false, or there have been keys for `duration_s`, if that is
-/// not 0. EOS does not pass dtlssrtpenc, whose handshake never ends.
+/// Plays until EOS, an error, `*run` is false, or `duration_s` (if not 0) after the keys. EOS does
+/// not pass dtlssrtpenc, whose handshake never ends.
 End Play(Session* session, double duration_s, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);
@@ -190,7 +191,7 @@ class Sessions {
   }
 
  private:
-  /// Prints each reason once until a success, so that strangers cannot fill a log.
+  /// Prints a reason unless it repeats the last one, so that strangers cannot fill a log.
   void Tell(const Session& session, const std::string& why) {
     if (session.has_keys) told_.clear();
     if (std::exchange(told_, why) == why) return;

@@ -65,7 +65,7 @@ class Section {
   std::set<std::string> known_;
 };
 
-/// A word of a subject, and of a label of Prometheus.
+/// Whether `text` can be a word of a NATS subject and the value of a Prometheus label.
 bool IsWord(const std::string& text) {
   const auto is_good = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -100,7 +100,7 @@ NatsConfig ReadNats(const json& object) {
   return nats;
 }
 
-/// A number, decimal or 0x and hexadecimal; nothing for other text.
+/// Parses a decimal number, or hexadecimal digits after 0x. Returns nothing for other text.
 std::optional<std::uint32_t> ReadSsrc(std::string_view text) {
   const bool hex = text.substr(0, 2) == "0x";
   if (hex) text.remove_prefix(2);
@@ -110,7 +110,7 @@ std::optional<std::uint32_t> ReadSsrc(std::string_view text) {
   return result.ec == std::errc() && result.ptr == end ? std::optional(value) : std::nullopt;
 }
 
-/// "FIRST-LAST", or one.
+/// Parses "FIRST-LAST", or a single SSRC.
 std::optional<SsrcRange> ReadSsrcs(const std::string& text) {
   const auto dash = text.find('-');
   const auto first = ReadSsrc(std::string_view(text).substr(0, dash));
@@ -189,8 +189,8 @@ void CheckSharedPort(const EdgeConfig& config) {
                                " share an ssrc");
 }
 
-/// JetStream's stream drops its oldest messages, of any sender. So it must hold all that robots may
-/// send within its period.
+/// A full JetStream stream drops its oldest messages, of any robot. So it must hold all that the
+/// robots may send within max-age.
 void CheckShares(const EdgeConfig& config) {
   const NatsConfig& nats = config.nats;
   if (nats.jetstream.empty() || nats.max_bytes == 0) return;

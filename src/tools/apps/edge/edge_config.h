@@ -13,8 +13,8 @@ namespace lidar::edge {
 struct NatsConfig {
   std::optional<nats::ConnectionSettings> connection;  // empty: no NATS
   std::string prefix = "fleet";                        // of all subjects
-  std::string jetstream;                               // empty: not kept
-  int replicas = 1;                                    // of the stream, where it is made
+  std::string jetstream;                               // stream that keeps messages; empty: none
+  int replicas = 1;                                    // of the stream, if the sink creates it
   std::uint64_t max_age_s = 3600;
   std::uint64_t max_bytes = 0;          // 0: no limit
   std::uint64_t buffer_size = 8 << 20;  // bytes that wait, for each robot
@@ -29,7 +29,7 @@ struct RobotConfig {
   std::string name;
   std::string sensor = "lidar";
   std::uint16_t port = 0;         // own port; 0: the common one
-  std::optional<SsrcRange> ssrc;  // on the port for all
+  std::optional<SsrcRange> ssrc;  // SSRCs on the common port
   std::string srtp_key;           // file:PATH or env:NAME; empty: no SRTP
   std::string srtp_cipher = "aes-128-icm";
   std::string record;                      // pattern of file names; empty: no recording

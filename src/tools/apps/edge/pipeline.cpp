@@ -98,7 +98,7 @@ void AddRecorder(GstElement* pipeline, const RobotConfig& robot) {
   GstPad* entry = gst_ghost_pad_new("sink", inner.get());
   Shield(entry);
   gst_element_add_pad(recorder, entry);
-  gst_element_sync_state_with_parent(recorder);  // what fails is on the bus
+  gst_element_sync_state_with_parent(recorder);  // errors appear on the bus
   const ElementPtr tee(gst_bin_get_by_name(GST_BIN(pipeline), "tee"));
   Link(tee.get(), recorder);
 }
@@ -116,7 +116,7 @@ void RemoveRecorder(GstElement* pipeline) {
 }
 
 bool IsFromRecorder(GstMessage* message) {
-  // It may be removed from the pipeline already.
+  // Compares names: the recorder may have left the pipeline already.
   for (const char* name : {kRecorder, "queue", "mcapsink"})
     if (g_strcmp0(GST_MESSAGE_SRC_NAME(message), name) == 0) return true;
   return false;

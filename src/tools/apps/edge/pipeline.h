@@ -11,20 +11,20 @@
 
 namespace lidar::edge {
 
-/// Receives, and hands on to NATS; `socket` is the robot's on the port for all, or NULL. Throws
-/// std::runtime_error if an element is missing.
+/// Makes a pipeline that receives, and sends to NATS. `socket`: the robot's own on the common port,
+/// or NULL. Throws std::runtime_error if an element is missing.
 gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
 
 /// Adds a recorder that runs with the pipeline. Its failures only reach the bus. Throws
 /// std::runtime_error if an element is missing.
 void AddRecorder(GstElement* pipeline, const RobotConfig& robot);
-/// Does nothing if there is none.
+/// Does nothing without a recorder.
 void RemoveRecorder(GstElement* pipeline);
 /// Whether the message is of the recorder.
 bool IsFromRecorder(GstMessage* message);
 
 /// Ends the stream, and waits until all received data are written and sent. Errors of the recorder
-/// go to `on_recorder_error`, which removes it; the remainder continues. Returns false after
+/// go to `on_recorder_error`, which removes it; the other branches continue. Returns false after
 /// another error or `timeout`.
 bool Drain(GstElement* pipeline, GstClockTime timeout,
            const std::function<void(GstMessage*)>& on_recorder_error);

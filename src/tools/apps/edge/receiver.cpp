@@ -90,7 +90,7 @@ void Receiver::Begin(Time now) {
   watch_at_.reset();
   robot_watch_.Begin();
   if (socket_ != nullptr) ShutSocket(socket_, false);
-  // An error is read from the bus.
+  // ReadBus() reports errors.
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
 }
 
@@ -101,7 +101,7 @@ void Receiver::End() {
   recording_ = false;
 }
 
-/// Writes and sends what has come, if disk and server take it.
+/// Writes and sends received data, for up to kFinish, and ends the session.
 void Receiver::Finish() {
   if (state_ != State::kResting && BytesReceived() > 0)
     Drain(pipeline_.get(), kFinish,
@@ -188,7 +188,7 @@ guint64 Receiver::BytesReceived() const {
   return bytes;
 }
 
-/// Called once a second: checks that the robot is there and keeps to its limit.
+/// Checks once a second that the robot is there and keeps to its limit.
 void Receiver::Watch(Time now) {
   if (watch_at_ && now < *watch_at_) return;
   watch_at_ = now + seconds(1);

@@ -21,7 +21,7 @@ namespace lidar::edge {
 
 class Receiver {
  public:
-  /// `socket` is the robot's on the port for all, or NULL. Throws std::runtime_error if an element
+  /// `socket`: the robot's own on the common port, or NULL. Throws std::runtime_error if an element
   /// is missing or a setting is wrong.
   Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
   /// Ends the session, and waits for it.
@@ -76,10 +76,10 @@ class Receiver {
   State state_ = State::kResting;
   Time begin_at_{};  // end of a rest
   Time began_at_{};
-  std::optional<Time> watch_at_;  // the rate is taken then
+  std::optional<Time> watch_at_;  // time of the next Watch()
   RobotWatch robot_watch_;
   bool recording_ = false;
-  Time record_at_{};  // when it began or will begin
+  Time record_at_{};  // when recording began or will begin
   Backoff failures_;
   Backoff record_failures_;
 

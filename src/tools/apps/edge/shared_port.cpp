@@ -27,7 +27,7 @@ sock_filter Step(unsigned code, std::uint32_t k, std::uint8_t yes = 0, std::uint
 
 /// Returns the number of the socket; 0 for an SSRC outside of the ranges and for a short datagram.
 Program ChooseBySsrc(const std::vector<SsrcRange>& ranges) {
-  // RTCP has the packet types 192 to 223 (RFC 5761), and its SSRC further in front.
+  // RTCP has the packet types 192 to 223 (RFC 5761), and its SSRC is 4 bytes earlier.
   Program p = {Step(BPF_LD | BPF_B | BPF_ABS, 1),
                Step(BPF_JMP | BPF_JGE | BPF_K, 192, 0, 3),
                Step(BPF_JMP | BPF_JGE | BPF_K, 224, 2, 0),
@@ -73,8 +73,8 @@ Address Resolve(const std::string& name, std::uint16_t port) {
   return address;
 }
 
-/// Opens a socket that is bound there, `shared` with others of this user. With IPv6, it takes IPv4
-/// as well.
+/// Opens a socket bound to `address`; `shared` allows other sockets of this user. IPv6 sockets take
+/// IPv4 as well.
 tools::FileDescriptor OpenSocket(const Address& address, bool shared) {
   tools::FileDescriptor fd(
       socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -105,7 +105,7 @@ SharedPort::SharedPort(const std::string& address, std::uint16_t port,
     if (socket == nullptr) Fail("a socket cannot be used");
     sockets_.emplace_back(socket);
     const int fd = owner.Release();
-    // The socket stays unread until its robot's session begins.
+    // The filter drops all datagrams until the robot's session begins.
     if (!Attach(fd, SO_ATTACH_FILTER, kNothing)) Fail("a socket takes no filter");
     if (i == 0 && !Attach(fd, SO_ATTACH_REUSEPORT_CBPF, ChooseBySsrc(ranges)))
       Fail(std::string("the kernel does not tell ") + std::to_string(ranges.size()) +

@@ -6,7 +6,7 @@
 
 namespace lidar::fleet {
 
-/// For a natssink or a natssrc.
+/// Sets the properties of a natssink or natssrc.
 inline void SetConnection(GstElement* element, const nats::ConnectionSettings& connection) {
   tools::SetText(element, "url", connection.url);
   tools::SetText(element, "credentials-file", connection.credentials_file);

@@ -23,7 +23,7 @@ json ValueOf(const GValue* v) {
       return g_value_get_uint(v);
     case G_TYPE_INT64:
       return g_value_get_int64(v);
-    case G_TYPE_UINT64:  // the largest stands for none
+    case G_TYPE_UINT64:  // the largest value means unset
       if (g_value_get_uint64(v) != G_MAXUINT64) return g_value_get_uint64(v);
       return nullptr;
     case G_TYPE_DOUBLE:

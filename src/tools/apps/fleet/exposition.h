@@ -19,9 +19,9 @@ nlohmann::json ToJson(const GstStructure* structure);
 /// Collects values and writes them sorted by name, as the text format requires.
 class Exposition {
  public:
-  /// `labels` have their braces, or are empty.
+  /// `labels` include their braces, or are empty.
   void Add(const std::string& name, const std::string& labels, double value);
-  /// All numbers and flags of `structure`, called lidar_`element`_their name.
+  /// Adds each number and flag of `structure` as lidar_`element`_`field`.
   void Add(const std::string& element, const std::string& labels, const GstStructure* structure);
   std::string text() const;
 

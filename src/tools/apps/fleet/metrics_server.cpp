@@ -102,12 +102,12 @@ void MetricsServer::Run() {
   }
 }
 
-/// Replaces the oldest connection, which has had the most time.
+/// If all places are taken, a new connection replaces the oldest, which has had the most time.
 void MetricsServer::Accept() {
   tools::FileDescriptor socket(
       accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (!socket && !MustWait()) {
-    // No descriptor is left: the listener stays readable, so without a pause this would spin.
+    // No descriptor is left. The listener stays readable, so without a pause this would spin.
     cut_ += connections_.size();
     connections_.clear();
     pollfd wake{wake_.get(), POLLIN, 0};

@@ -17,7 +17,7 @@ namespace lidar::fleet {
 
 class Reporter {
  public:
-  /// What is published, by subject.
+  /// Pairs of subject and text.
   using Reports = std::vector<std::pair<std::string, std::string>>;
 
   explicit Reporter(const nats::ConnectionSettings& settings);

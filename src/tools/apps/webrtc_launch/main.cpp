@@ -23,7 +23,7 @@ enum ExitCode { kGood = 0, kFailed = 1, kUsage = 2 };
 constexpr double kMostToConnect_s = 60;
 
 struct Options {
-  std::string aux;  // of both ends, as gst-launch writes it
+  std::string aux;  // auxiliary element of both ends, in gst-launch syntax
   std::string stats;
   std::string address = "127.0.0.1";
   guint port = 0;   // of the callee; 0: any
@@ -66,7 +66,7 @@ void Fail(Call* call, const char* what) {
   GST_ELEMENT_ERROR(call->pipeline.get(), RESOURCE, FAILED, ("%s", what), (nullptr));
 }
 
-/// The description that is `name` in a reply.
+/// Returns the description called `name` in a reply; null without one.
 gpointer DescriptionIn(const GstStructure* reply, const char* name) {
   const GValue* value = reply != nullptr ? gst_structure_get_value(reply, name) : nullptr;
   return value != nullptr && G_VALUE_HOLDS_BOXED(value) ? g_value_get_boxed(value) : nullptr;
@@ -165,7 +165,7 @@ void Connect(Call* call) {
     g_signal_connect(end, "request-aux-sender", G_CALLBACK(OnAuxSender), call);
 }
 
-/// A line for each of the elements named, with their statistics.
+/// Prints a line of statistics for each element that the options name.
 void PrintStats(const Call& call, gint64 start) {
   std::array<char, 32> time{};
   const double elapsed_s = static_cast<double>(g_get_monotonic_time() - start) / 1e6;

@@ -19,9 +19,9 @@ namespace lidar::worker {
 
 struct FleetSettings {
   std::string prefix = "fleet";  // of all subjects
-  std::string stream = "fleet";  // of JetStream, that keeps what the robots send
+  std::string stream = "fleet";  // the JetStream stream with the robots' messages
   std::string bucket = "lidar-workers";
-  int replicas = 1;                   // of the bucket, where it is made
+  int replicas = 1;                   // of the bucket, if it must be created
   std::vector<std::string> patterns;  // of robots, with * and ?; "robot" or "robot.sensor"
 };
 
@@ -35,12 +35,12 @@ class FleetWatch {
   struct News {
     std::vector<Entry> entries;
     std::optional<std::set<std::string>> robots;  // "robot.sensor"; all within the bounds
-    std::size_t left_out = 0;                     // number of robots beyond the bounds
-    std::uint64_t stream = 0;                     // id of the stream that has them, as in Progress
-    std::uint64_t first = 0;                      // number of its oldest message
-    std::uint64_t last = 0;                       // number of its newest message
-    Time asked_at{};                              // the answer was sent at this time or later
-    std::string trouble;                          // empty: no trouble, or reported already
+    std::size_t left_out = 0;                     // number of sensors beyond the bounds
+    std::uint64_t stream = 0;  // id of the stream with the robots, as in Progress
+    std::uint64_t first = 0;   // number of its oldest message
+    std::uint64_t last = 0;    // number of its newest message
+    Time asked_at{};           // time of the request: the answer is newer
+    std::string trouble;       // empty: no trouble, or reported already
   };
 
   FleetWatch(nats::Connection* connection, const FleetSettings& settings);
@@ -48,7 +48,7 @@ class FleetWatch {
   FleetWatch(const FleetWatch&) = delete;
   FleetWatch& operator=(const FleetWatch&) = delete;
 
-  /// Makes all entries come again.
+  /// Makes Take() return all entries again.
   void Renew() { renew_ = true; }
   /// Returns the changes since the last call. Never waits.
   News Take();
@@ -66,9 +66,9 @@ class FleetWatch {
   const FleetSettings settings_;
   nats::JetStreamPtr js_;
   nats::SubscriptionPtr entries_;
-  unsigned connections_ = 0;  // as of the present subscription
+  unsigned connections_ = 0;  // count at the last subscription
   unsigned missed_heartbeats_ = 0;
-  std::uint64_t last_number_ = 0;  // of the consumer
+  std::uint64_t last_number_ = 0;  // consumer's number of the last entry
   bool stale_ = true;              // the subscription has a gap, or there is none
   std::chrono::steady_clock::time_point renew_at_{};
   std::chrono::steady_clock::time_point list_at_{};
@@ -88,7 +88,7 @@ constexpr std::size_t kMostSensors = 16;
 constexpr std::size_t kMostRobots = 4'096;
 /// Keeps the first robots, and the first sensors of each, in the order of their names.
 std::set<std::string> WithinBounds(const std::set<std::string>& all);
-/// "robot.sensor" of the subject of a stream; empty if it is none.
+/// Returns "robot.sensor" for the subject of a LiDAR stream; empty for other subjects.
 std::string RobotOf(const FleetSettings& settings, const std::string& subject);
 
 }  // namespace lidar::worker

@@ -31,7 +31,7 @@ struct LeaseRecord {
 /// Returns false if ParseLeaseRecord() would refuse it.
 bool ReadsBack(const Progress& progress);
 
-/// Returns the velocity from two consecutive scans; nothing for others.
+/// Returns the velocity between two consecutive scans; nothing if their times are too close or far.
 std::optional<std::array<double, 6>> VelocityBetween(const Progress& before, const Progress& after);
 
 std::string ToJson(const LeaseRecord& record);

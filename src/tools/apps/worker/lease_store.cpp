@@ -51,7 +51,7 @@ std::optional<LeaseStore::Answer> LeaseStore::NextAnswer(std::chrono::millisecon
   const auto ticket = nats::ToNumber(subjects_->WordOf(raw));
   auto answer =
       ParseAnswer({natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))});
-  // A server without JetStream, or without the bucket, refuses as well.
+  // Other answers are refusals, too: the server has no JetStream or no bucket.
   if (!answer) answer.emplace();
   answer->ticket = ticket.value_or(0);
   return answer;

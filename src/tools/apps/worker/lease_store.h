@@ -21,10 +21,10 @@ class LeaseStore {
     std::optional<std::uint64_t> newest;    // revision that caused a refusal, if known
   };
 
-  /// The bucket may be made later. Throws std::runtime_error.
+  /// The bucket may be created later. Throws std::runtime_error.
   LeaseStore(natsConnection* connection, const std::string& bucket);
 
-  /// Replaces the entry of `key` whose revision is `replaces`; 0: there must be none.
+  /// Replaces the entry of `key` whose revision is `replaces`; 0: there must be no entry.
   void Write(std::uint64_t ticket, const std::string& key, std::uint64_t replaces,
              const std::string& text);
   std::optional<Answer> NextAnswer(std::chrono::milliseconds timeout);
@@ -39,7 +39,7 @@ class LeaseStore {
   lidar::nats::SubscriptionPtr answers_;
 };
 
-/// The content of an answer of JetStream, without the ticket; nothing for other messages.
+/// Returns the content of JetStream's answer, without the ticket; nothing for other messages.
 std::optional<LeaseStore::Answer> ParseAnswer(const std::string& text);
 
 }  // namespace lidar::worker

@@ -9,7 +9,7 @@
 namespace lidar::worker {
 namespace {
 
-constexpr int kRenewals = 4;  // in the time of a lease
+constexpr int kRenewals = 4;  // writes in the time of a lease
 /// Others wait a lease and one part in kMargin of it: steady clocks differ by far less.
 constexpr int kMargin = 20;
 /// A full worker waits for this part of a lease, so that others go first.
@@ -32,14 +32,14 @@ void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
   for (auto at = robots_.begin(); at != robots_.end();) {
     Robot& robot = at->second;
     robot.wanted = robots.count(at->first) > 0;
-    // Entries of the bucket come once.
+    // A known robot is kept, because the bucket sends an entry once.
     const bool is_known = robot.revision > 0 || robot.doubted_since || robot.held || robot.pending;
     at = robot.wanted || is_known ? std::next(at) : robots_.erase(at);
   }
   for (const std::string& name : robots) {
     const auto [at, is_new] = robots_.try_emplace(name);
     at->second.wanted = true;
-    // Other workers' leases come first, if there are any.
+    // Waits for the entry, which may be another worker's lease.
     if (is_new) at->second.not_before = now + settings_.lease / kRenewals;
   }
 }
@@ -61,7 +61,7 @@ void LeaseTable::OnEntry(const std::string& name, std::uint64_t revision,
   robot.revision = revision;
   const auto progress = robot.record.progress;
   robot.record = record.value_or(LeaseRecord());
-  // A write of this worker, with its answer missing. Our progress is newer.
+  // For a write of this worker whose answer is missing: our progress is newer.
   const bool ours = record && record->worker == settings_.worker;
   if (ours && robot.held) robot.record.progress = progress;
   if (!ours) robot.held = false;
@@ -89,12 +89,12 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The entry of the faster writer follows; it may be an earlier one of ours.
+  // The stored entry follows. It may come from an earlier write of ours.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
   robot->revision = 0;
-  // The last write of the owner into an old bucket is unknown in a new one.
+  // A new bucket does not show the last write of the owner in the old one.
   const Duration lease = std::max(robot->record.lease, settings_.lease);
   robot->free_at = IsHeld(*robot, now) ? now : now + lease + lease / kMargin;
 }
@@ -116,7 +116,7 @@ void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
 }
 
 void LeaseTable::LeaveToOthers(const std::string& name, Duration least, Time now) {
-  // Other workers wait from our last write.
+  // Other workers wait for a lease from our last write, so this one waits for two.
   Drop(name, std::max(least, 2 * settings_.lease), now);
 }
 
@@ -141,8 +141,8 @@ LeaseTable::Robots::iterator LeaseTable::Choose(const std::map<std::string, std:
       FromSeconds(kHesitation * Seconds(settings_.lease) * static_cast<double>(held) /
                   static_cast<double>(settings_.most));
   auto best = robots_.end();
-  // Sorts robots by fewest places, then by fewest tries. The further order differs by worker, so
-  // that two seldom choose the same.
+  // Sorts robots by fewest places, then by fewest tries, then differently in each worker, so that
+  // two workers seldom choose the same robot.
   std::tuple<std::size_t, std::uint64_t, std::size_t> best_rank;
   for (auto at = robots_.begin(); at != robots_.end(); ++at) {
     const Robot& robot = at->second;

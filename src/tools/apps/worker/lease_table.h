@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decides which robots are ours, from entries of the key-value store and answers; returns writes.
+// Decides which robots are ours: takes entries and answers of the key-value store, returns writes.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -20,21 +20,21 @@ struct LeaseSettings {
 };
 
 /// Leases by revisions alone. A write names the revision that it replaces, and the store refuses it
-/// if that is not the newest. An owner has a robot for `lease` from when it *sent* the write that
-/// was stored last. Another worker waits for longer than that, from when it *saw* that write, and
-/// then replaces exactly that one. So no two have a robot at once, and the clocks of machines and
+/// if that is not the newest. An owner has a robot for `lease` from when it *sent* the last stored
+/// write. Another worker waits longer than that from when it *saw* that write, and then replaces
+/// exactly that write. So no two workers have a robot at once, and the clocks of machines and
 /// servers need not agree: each span of time is measured by one steady clock. Deterministic; for
 /// one thread.
 ///
-/// An entry is a sensor, "r7" or "r7.front", and a publisher can make up any number of sensors of
-/// its robot. So robots share the places of a worker evenly, whatever their sensors are; a sensor
-/// that makes no progress leaves its place to one that waits.
+/// An entry stands for a sensor, "r7" or "r7.front", and a publisher can invent any number of
+/// sensors of its robot. So robots share the places of a worker evenly, however many sensors they
+/// have. A sensor without progress gives its place to a waiting one.
 class LeaseTable {
  public:
   struct Write {
-    std::uint64_t ticket;  // comes back with the answer
+    std::uint64_t ticket;  // returned with the answer
     std::string robot;
-    std::uint64_t replaces;  // revision; 0: there is none
+    std::uint64_t replaces;  // revision; 0: there is no entry
     std::string text;
   };
   struct Held {
@@ -61,16 +61,16 @@ class LeaseTable {
   /// Gives up a robot that fails here. Another worker may take it; this one tries again after
   /// `least`.
   void LeaveToOthers(const std::string& robot, Duration least, Time now);
-  /// Ends leases that are over, and gives what to write now.
+  /// Ends leases that are over, and returns the writes to send now.
   std::vector<Write> Poll(Time now);
-  /// Gives up all robots at once for waiting workers. Takes no robot any more.
+  /// Returns writes that free all robots at once. No robot is taken after that.
   std::vector<Write> HandOver(Time now);
 
-  /// Returns the robots of this worker at `now`, even if a renewal is late.
+  /// Returns the robots whose leases are valid at `now`: not those whose renewal is late.
   std::map<std::string, Held> HeldAt(Time now) const;
-  /// Returns true if expected entries are missing, so that all must be read again.
+  /// Returns true if expected entries are missing. Then all must be read again.
   bool MissesEntries(Time now);
-  /// Writes that have no answer yet.
+  /// Number of writes without an answer yet.
   std::size_t unanswered() const;
 
  private:
@@ -103,7 +103,7 @@ class LeaseTable {
   void Expire(Time now);
   /// Returns the number of places by robot.
   std::map<std::string, std::size_t> Places() const;
-  /// The robot to take now, where there is room; end() for none.
+  /// Returns the robot to take now if there is room; end() for none.
   Robots::iterator Choose(const std::map<std::string, std::size_t>& places, std::size_t held,
                           Time now);
   /// Gives up a place for which `waiting` has a better claim.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-worker: follows robots with odometry, beside others of its kind that take over.
+// lidar-worker: follows robots by odometry. Other workers take over when it ends.
 #include <gst/gst.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@
 namespace lidar::worker {
 namespace {
 
-constexpr std::chrono::milliseconds kEnd{900};  // longest end, whatever servers do
+constexpr std::chrono::milliseconds kEnd{900};  // longest end, even if servers hang
 
 std::atomic<bool> stopping{false};
 

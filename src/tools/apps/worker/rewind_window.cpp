@@ -5,7 +5,8 @@ namespace lidar::worker {
 namespace {
 
 constexpr std::size_t kMostMessages = 65'536;
-/// Longest pause of a server. Capture times with larger differences come from a stopped clock.
+/// Longest pause of a server. If stored times differ by more and capture times do not, the robot's
+/// clock stands still.
 constexpr std::uint64_t kLongestPauseNs = 60'000'000'000;
 
 /// `to` - `from`; 0 if a clock went back.
@@ -13,8 +14,8 @@ std::uint64_t Between(std::uint64_t from, std::uint64_t to) { return to < from ?
 
 }  // namespace
 
-/// Returns true if the message is more than `rewind` back. After a pause the server stores seconds
-/// of data in an instant, so both times count. A robot's clock may jump.
+/// Returns true if the message is more than `rewind` older than the newest by both of its times: a
+/// pause of the server tears stored times apart. A robot's clock may jump.
 bool RewindWindow::IsOld(const Message& message) const {
   const Message& now = messages_.back();
   const std::uint64_t age_ns = Between(message.stored_ns, now.stored_ns);

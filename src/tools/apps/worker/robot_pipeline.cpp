@@ -115,7 +115,7 @@ void RobotPipeline::Watch(GstElement* element, const char* name,
 
 void RobotPipeline::Play() {
   start_ = std::async(std::launch::async, [pipeline = pipeline_.get()] {
-    gst_element_set_state(pipeline, GST_STATE_PLAYING);  // what fails is on the bus
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);  // errors appear on the bus
   });
 }
 
@@ -127,9 +127,9 @@ GstPadProbeReturn RobotPipeline::OnMessage(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Passes the clouds for odometry, and counts scans as odometry does.
+/// Passes on the clouds that odometry needs, and separates scans as odometry does.
 GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
-  if (number_ < begin_scan_) return GST_PAD_PROBE_DROP;  // the decoder had to see it
+  if (number_ < begin_scan_) return GST_PAD_PROBE_DROP;  // only the decoder needs it
   GstLidarSlice slice{};
   if (!gst_lidar_buffer_get_slice(buffer, &slice) || slice.slice_count == 0) slice = {0, 0, 1, 0};
   // A map that begins with half a scan would fit the next scan badly.
@@ -145,14 +145,14 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// The record's pose is of a scan that odometry does not get.
+/// Odometry misses the scan of the record's pose, so its poses lack the motion after that.
 void RobotPipeline::NoteLateBegin(GstClockTime captured) {
   begun_late_ = true;
   const GstClockTime since = begin_->time;
   late_ns_ = GST_CLOCK_TIME_IS_VALID(captured) ? captured - std::min(since, captured) : 0;
 }
 
-/// A worker without its lease publishes and changes nothing.
+/// A worker without its lease publishes and records no pose.
 GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   std::optional<Scan>& scan = closed_ ? closed_ : open_;
   const gst::BufferMap map(buffer, GST_MAP_READ);

@@ -30,18 +30,18 @@ struct PipelineSettings {
   std::string decoder = "lidardec";
   /// Properties of lidarodometry: name and value.
   std::vector<std::pair<std::string, std::string>> odometry;
-  /// Time that a decoder must read before a slice: the robot's key-interval.
+  /// Part of the stream that a decoder must read before a slice: the robot's key-interval.
   Duration rewind = std::chrono::milliseconds(1'200);
 };
 
 class RobotPipeline {
  public:
-  /// `robot` is "robot.sensor", and `stream` the name of its JetStream stream, as in Progress. If
-  /// that of `begin` is another, only its pose counts. Throws std::runtime_error if an element is
-  /// missing or refuses a setting.
+  /// `robot` is "robot.sensor", `stream` the creation time of its JetStream stream. A `begin` of
+  /// another stream gives only its pose. Throws std::runtime_error if an element is missing or
+  /// refuses a setting.
   RobotPipeline(const PipelineSettings& settings, const std::string& robot, std::uint64_t stream,
                 const std::optional<Progress>& begin);
-  /// Waits for a start that is under way, which may take seconds where the network is gone.
+  /// Waits for a start that is under way, which may take seconds if the network is gone.
   ~RobotPipeline();
   RobotPipeline(const RobotPipeline&) = delete;
   RobotPipeline& operator=(const RobotPipeline&) = delete;
@@ -51,14 +51,14 @@ class RobotPipeline {
   /// Poses go out only before this time, even if the thread that stops them hangs.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
-  /// The place in its record.
+  /// Returns the progress from which it began.
   const std::optional<Progress>& begin() const { return begin_; }
-  /// Returns true if it waits for a scan behind `last`, the newest message of the stream at
-  /// `asked_at`: then the record is wrong.
+  /// Returns true if its scan is behind `last`, the newest message of the stream at `asked_at`:
+  /// then the record is wrong.
   bool IsAheadOf(std::uint64_t last, Time asked_at) const {
     return begin_scan_ > last && asked_at > made_at_;
   }
-  /// Returns true once a pose came after the end.
+  /// Returns true once it dropped a pose, because its end had passed.
   bool has_dropped() const { return dropped_; }
   /// Returns nothing before the first pose.
   std::optional<Progress> progress() const;
@@ -93,13 +93,13 @@ class RobotPipeline {
   std::future<void> start_;
   std::atomic<std::int64_t> end_{0};
   std::atomic<bool> dropped_{false};
-  std::atomic<std::uint64_t> late_ns_{0};  // from the record's pose to the first scan
+  std::atomic<std::uint64_t> late_ns_{0};  // from the record's pose to the first scan [ns]
 
   // Only the streaming thread uses what follows.
-  std::uint64_t number_ = 0;  // of the message that is on its way
-  RewindWindow window_;       // the last is that one
+  std::uint64_t number_ = 0;  // of the message in the pipeline
+  RewindWindow window_;       // its last message is number_
   bool begun_ = false;
-  bool begun_late_ = false;  // after the scan of the record's pose
+  bool begun_late_ = false;  // began behind the scan of the record's pose
   std::optional<Scan> open_;
   std::optional<Scan> closed_;  // waits for its pose
 

@@ -22,7 +22,7 @@ constexpr std::chrono::seconds kAfterFailure{5};
 // Their sum stays below a second.
 constexpr milliseconds kStopTimeout{400};
 constexpr milliseconds kAnswerTimeout{300};
-constexpr std::size_t kShownLetters = 300;  // letters of a record that is damaged
+constexpr std::size_t kShownLetters = 300;  // of a damaged record
 
 std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
   nats::ConnectionSettings connection = settings.pipeline.connection;
@@ -62,7 +62,7 @@ void Worker::Step() {
   if (table_.MissesEntries(Now())) watch_.Renew();
   PollPipelines();
   FollowLeases();
-  // Data that waited for a connection would be outdated.
+  // Sends only while connected: data that waited would be outdated.
   if (connection_->state().connected()) Send(table_.Poll(Now()));
 }
 
@@ -143,7 +143,7 @@ void Worker::FollowLeases() {
   const auto held = table_.HeldAt(Now());
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const auto lease = held.find(at->first);
-    // A late renewal leads back to the scan that had no pose.
+    // A renewal that was late makes it begin again at the scan whose pose was dropped.
     if (lease != held.end() && !at->second->has_dropped()) {
       at->second->SetEnd(lease->second.until);
       ++at;
@@ -156,7 +156,7 @@ void Worker::FollowLeases() {
     const auto last = ending_.find(robot);
     if (last == ending_.end())
       Begin(robot, lease);
-    else if (Now() - last->second.since > settings_.lease.lease)  // another worker is faster
+    else if (Now() - last->second.since > settings_.lease.lease)  // others can begin at once
       table_.LeaveToOthers(robot, Duration{}, Now());
   }
 }
@@ -179,7 +179,7 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
     pipeline->SetEnd(held.until);
     pipeline->Play();
     pipelines_[robot] = std::move(pipeline);
-  } catch (const std::exception& e) {  // the machine gives no more threads, or no files
+  } catch (const std::exception& e) {  // no threads or files are left
     Warn(robot, e.what());
     ++counters_.failures;
     NoteGivenUp(robot);

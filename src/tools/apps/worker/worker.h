@@ -29,7 +29,7 @@ class Worker {
   /// Throws std::runtime_error if settings are wrong or elements missing.
   explicit Worker(const WorkerSettings& settings);
 
-  /// Some milliseconds of work.
+  /// Works for some milliseconds.
   void Step();
   /// Stops all pipelines, and leaves the robots to other workers within two seconds. A pipeline
   /// that runs longer publishes nothing; the destructor waits for it.
@@ -55,7 +55,7 @@ class Worker {
   void Begin(const std::string& robot, const LeaseTable::Held& held);
   void WaitForEnds();
   void NoteGivenUp(const std::string& robot);
-  /// Ends a pipeline in the background, and prints that.
+  /// Ends a pipeline in the background, and prints that the robot is given up.
   Pipelines::iterator GiveUp(Pipelines::iterator at);
   Pipelines::iterator End(Pipelines::iterator at);
   void Send(const std::vector<LeaseTable::Write>& writes);

@@ -45,7 +45,7 @@ Comparison ComparePlaces(const Cloud& sent, const Cloud& received) {
   return c;
 }
 
-/// Points in cubes of a given edge, so that a search looks at 27 of them.
+/// Points in cubes of a given edge, so that a search visits 27 cubes.
 class Grid {
  public:
   Grid(const Cloud& cloud, double edge_m) : edge_m_(edge_m) {
@@ -53,7 +53,7 @@ class Grid {
       if (!IsMissing(&cloud.xyz[i])) cells_[Key(CellOf(&cloud.xyz[i]))].push_back(&cloud.xyz[i]);
   }
 
-  /// Infinity where no point is within an edge.
+  /// Returns infinity if no point is within an edge.
   double DistanceToNearest(const float* p) const {
     const Cell centre = CellOf(p);
     double best = std::numeric_limits<double>::infinity();

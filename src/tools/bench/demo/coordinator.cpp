@@ -95,7 +95,7 @@ class Coordinator {
   std::string failure_;
 };
 
-/// Returns a free port below those that the kernel assigns, until a child has bound it.
+/// Returns a port that is free now, below those that the kernel assigns.
 int FreePort() {
   std::random_device random;
   std::uniform_int_distribution<int> ports(10000, 32767);
@@ -199,7 +199,7 @@ void Coordinator::OnLink(std::size_t index, const nlohmann::json& record) {
   if (index + 1 == links_.size()) PrintLive(Together());
 }
 
-/// Returns the sum of all links over the last second, with the longest of their queues.
+/// Returns the sum of all links over the last second, with the longest queue.
 nlohmann::json Coordinator::Together() const {
   nlohmann::json all = links_.front().latest;
   if (!all.is_object()) return links_.back().latest;
@@ -240,7 +240,7 @@ void Coordinator::PrintLive(const nlohmann::json& link) {
 void Coordinator::TakeComparisons() {
   if (!comparer_) return;
   for (const auto& [key, comparison] : comparer_->Take()) {
-    // A stopped receiver writes its clouds at the speed of the comparison.
+    // The comparison slows down a receiver that stops, so its time limit starts again.
     if (phase_ == Phase::kReceiverStops) phase_since_ = Now();
     last_error_m_ = std::max(last_error_m_, comparison.max_error_m);
     m_.ledger.Add(key, comparison);
@@ -264,7 +264,8 @@ void Coordinator::Enter(Phase phase) {
     case Phase::kSender:
       sender_ = Start({folder + "/lidar-demo", "send", SenderPipeline(o, ports_)}, "sender", true);
       Watch(sender_.get(), [this](const nlohmann::json& r) { OnSender(r); });
-      // Two returns of one place may both lie at the bound's edge.
+      // The reach exceeds the bound, so that larger errors are measured and not taken for missing
+      // points.
       comparer_ = std::make_unique<StreamComparer>(sender_->clouds_fd(), receiver_->clouds_fd(),
                                                    2 * ErrorBoundOf(o) + 0.01);
       break;

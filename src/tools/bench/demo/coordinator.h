@@ -5,8 +5,8 @@
 
 namespace lidar::demo {
 
-/// The program's exit code: 0, 1 if something failed or a guarantee broke. Throws
-/// std::runtime_error with a text for the user.
+/// Returns the program's exit code: 1 if something failed or a guarantee broke, 3 for a poor
+/// stream, else 0. Throws std::runtime_error with a text for the user.
 int RunDemo(const RunOptions& options);
 
 }  // namespace lidar::demo

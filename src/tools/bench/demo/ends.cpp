@@ -32,7 +32,7 @@ nlohmann::json Record(const char* type, GstBuffer* buffer) {
           {"unix_ns", UnixNow()}};
 }
 
-/// Time between a buffer that enters an element and the one that leaves it in the same thread.
+/// When a buffer entered an element. The next buffer that leaves it is in the same thread.
 struct Stopwatch {
   std::int64_t entered = 0;
 };

@@ -5,12 +5,12 @@
 
 namespace lidar::demo {
 
-/// Plays a pipeline whose elements `source`, `encoder` and `sender` are watched. Records: captured,
-/// encoded, bounds, stats; every captured slice on descriptor 3.
+/// Plays a pipeline, and watches its elements `source`, `encoder` and `sender`. Writes the records
+/// captured, encoded, bounds and stats, and every captured slice to descriptor 3.
 int Send(const std::string& description);
 
-/// Watches `receiver`, `depayloader` and `decoder`. Records: decoded, stats; every decoded
-/// slice on descriptor 3.
+/// Watches `receiver`, `depayloader` and `decoder`. Writes the records decoded and stats, and every
+/// decoded slice to descriptor 3.
 int Receive(const std::string& description);
 
 }  // namespace lidar::demo

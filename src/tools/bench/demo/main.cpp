@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Passed in the environment, so that the list of processes does not show it.
+/// Makes a key in the environment, so that the list of processes does not show it.
 void MakeKey() {
   constexpr int kBytes = 16 + 14;  // key and salt
   constexpr const char* kDigits = "0123456789abcdef";

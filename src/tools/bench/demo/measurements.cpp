@@ -12,7 +12,7 @@ namespace {
 constexpr double kStart_s = 3;
 constexpr double kAfterChange_s = 1;
 
-/// The number in `object` under the first of `names` that is one; 0 without any.
+/// Returns the first number in `object` under one of `names`; 0 without any.
 double Pick(const nlohmann::json& object, std::initializer_list<const char*> names) {
   if (!object.is_object()) return 0;
   for (const char* name : names) {

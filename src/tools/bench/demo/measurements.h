@@ -21,7 +21,7 @@ struct LinkPacket {
   std::size_t link = 0;
 };
 
-/// What sender and encoder said about themselves at one time.
+/// Statistics of the sender and the encoder at one time.
 struct SenderSample {
   std::int64_t unix_ns = 0;
   double target_bps = 0;
@@ -50,11 +50,11 @@ struct Measurements {
   Ledger ledger;
   std::vector<LinkPacket> packets;
   std::vector<SenderSample> samples;
-  // The encoder's bitrate-bounds, means over time; 0: unknown. Bounds from a gap, of coarse slices,
-  // are a guess.
+  // Means over time of the encoder's bitrate bounds; 0: unknown. Bounds of coarse slices, as in a
+  // gap, are guesses.
   double encoder_min_bps = 0;
   double encoder_max_bps = 0;
-  /// The latest bitrate bounds, with the start of their validity.
+  /// The latest bitrate bounds, and since when they hold.
   struct {
     std::int64_t since_unix_ns = 0;
     double min_bps = 0, max_bps = 0;
@@ -69,7 +69,7 @@ struct Measurements {
   double Since(std::int64_t unix_ns) const {
     return static_cast<double>(unix_ns - origin_unix_ns) / 1e9;
   }
-  /// Returns false in the first 3 s, and in the second after a step of the capacity.
+  /// Returns false in the first 3 s, and for 1 s after a step of the capacity.
   bool IsSteady(double time_s) const;
 };
 

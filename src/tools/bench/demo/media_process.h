@@ -34,16 +34,16 @@ class MediaProcess {
   using EventHandler = std::function<void(GstEvent*)>;
   void OnBuffer(const char* element, const char* pad, BufferHandler handler);
   void OnEvent(const char* element, const char* pad, EventHandler handler);
-  /// Calls `handler` at this interval, in the main loop, and once more before the pipeline stops.
+  /// Calls `handler` at this interval in the main loop, and once more before the pipeline stops.
   void Every(guint interval_ms, std::function<void()> handler);
 
-  /// A record on standard output.
+  /// Writes a record to standard output.
   void Write(const nlohmann::json& record);
   void Write(const Cloud& cloud);
   /// Converts `pts` to UnixNow's time, by the pipeline's clock.
   std::int64_t UnixTimeOf(GstPad* pad, GstClockTime pts) const;
 
-  /// Plays until EOS, an error, or a signal that asks for EOS. The program's exit code.
+  /// Plays until EOS, an error, or a signal that asks for EOS. Returns the program's exit code.
   int Run();
 
  private:
@@ -64,7 +64,7 @@ class MediaProcess {
   bool asked_to_stop_ = false;
 };
 
-/// The organised cloud of a buffer with caps as of `pad`; nothing if they are no cloud's.
+/// Returns the organised cloud of a buffer; nothing if the caps of `pad` are not a cloud's.
 std::optional<Cloud> ReadCloud(GstPad* pad, GstBuffer* buffer);
 
 }  // namespace lidar::demo

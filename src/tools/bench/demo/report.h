@@ -12,7 +12,7 @@ namespace lidar::demo {
 void WriteTables(const Measurements& m, const std::string& folder);
 /// Removes files of an earlier run, so that they are not taken for this run's.
 void RemoveReport(const std::string& folder);
-/// Runs gnuplot over the tables. False, with a message on standard error, where that fails.
+/// Runs gnuplot over the tables. Returns false after a message on standard error if that fails.
 bool DrawPlots(const Measurements& m, const std::string& folder);
 void PrintTable(const nlohmann::ordered_json& summary);
 

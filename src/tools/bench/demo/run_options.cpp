@@ -17,7 +17,7 @@ namespace {
 /// Side of the cube that --fixed-bits divides: the view of a sensor of 100 m range.
 constexpr double kFixedBitsExtentM = 200;
 
-/// Mean of --drive: between the source's least and greatest use.
+/// Mean capacity of --drive, between the least and the greatest bitrate of a source.
 constexpr double kDriveMbps = 4;
 constexpr double kDriveOfCaptureMbps = 8;
 constexpr double kDriveTail_s = 60;  // for a stream that starts late
@@ -65,7 +65,7 @@ std::string SourceOf(const RunOptions& o) {
          (o.slam ? " trajectory-location=" + Quoted(o.output + "/truth.tum") : "") + common;
 }
 
-/// Only an Ouster's clouds have them.
+/// Only clouds of Ouster sensors have ranges.
 bool HasRanges(const RunOptions& o) {
   if (o.geometry == "xyz" || !o.scans.empty()) return false;
   return !o.pcap.empty() || o.model.rfind("os", 0) == 0;
@@ -178,7 +178,7 @@ link::Capacity CapacityOf(const RunOptions& o, std::size_t index) {
   return link::Capacity::Steps(rates, FromSeconds(StepTime(o)));
 }
 
-/// The host and port that the sender's packets go to, or several links to one receiver.
+/// Returns the properties of the sender's destination: a host and port, or several links.
 std::string TargetOf(const Ports& ports) {
   if (ports.links.size() == 1) return "host=127.0.0.1 port=" + std::to_string(ports.links.front());
   std::string links;

@@ -65,12 +65,12 @@ double FixedStepOf(const RunOptions& options);
 double ErrorBoundOf(const RunOptions& options);
 /// The capacity of each link.
 std::vector<link::Capacity> CapacitiesOf(const RunOptions& options);
-/// When the capacity of an only link changes in steps, within the run; empty for a trace.
+/// Times at which the capacity of a single link steps during the run; empty for a trace.
 std::vector<Duration> ChangesOf(const RunOptions& options);
 
 /// The text of the capacity trace of --drive.
 std::string DriveTraceOf(const RunOptions& options, std::size_t index);
-/// Path of NAME in the report's folder; for the second link with a 2 before the extension.
+/// Path of NAME in the report's folder; the second link has a 2 before the extension.
 std::string LinkFile(const RunOptions& options, const std::string& name, std::size_t index);
 
 struct Ports {

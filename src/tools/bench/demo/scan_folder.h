@@ -7,8 +7,8 @@ namespace lidar::demo {
 
 /// The pattern of LinkScans()'s links for multifilesrc.
 std::string ScansPattern(const std::string& output);
-/// Links the files of `folder`, in the order of their names, under numbers into the folder
-/// `output`: those with the extension (pcd, ply, las or bin) of the first. Throws
+/// Links the files of `folder`, in the order of their names, under numbers in the folder `output`.
+/// Takes only files with the extension (pcd, ply, las or bin) of the first. Throws
 /// std::runtime_error with a text for the user if there is no file.
 void LinkScans(const std::string& folder, const std::string& output);
 

@@ -15,7 +15,7 @@ namespace {
 using tools::Distribution;
 
 constexpr double kShortQueue_ms = 10;
-/// A queue has settled after being short for this time.
+/// A queue has settled once it is short for this time.
 constexpr double kSettled_s = 0.5;
 /// Coordinates are floats: half a unit in the last place at 200 m, in three dimensions.
 constexpr double kRounding_m = 5e-5;
@@ -84,7 +84,8 @@ Delays QueueDelays(const Measurements& m) {
   return d;
 }
 
-/// Delivered bits over those that the link carries and the source can use, in steady time.
+/// Returns the delivered share of the bits that the link carries and the source can use, in steady
+/// time.
 nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps) {
   if (m.options.links > 1) return nullptr;  // copies fill the remaining capacity
   constexpr double kSpan_s = 0.1;
@@ -108,7 +109,7 @@ nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps)
   return used / offered;
 }
 
-/// Rate on the wire; infinite where it is not known.
+/// Returns the source's greatest bitrate on the wire; infinity if it is unknown.
 double SourceMax(const Measurements& m) {
   return m.encoder_max_bps > 0 ? m.encoder_max_bps * WireShare(m)
                                : std::numeric_limits<double>::infinity();
@@ -219,7 +220,7 @@ std::vector<Transient> FindTransients(const Measurements& m) {
     t.to_bps = capacity.RateAt(changes[i]).bits_per_second();
     const double end = i + 1 < changes.size() ? Seconds(changes[i + 1]) : m.ran_s;
     for (const LinkPacket& p : m.packets) {
-      // A packet is seen where it leaves the queue, so that a long wait counts in full.
+      // A packet counts when it leaves the queue, so that a long wait counts in full.
       const double left = p.time_s + p.sojourn_ms / 1e3;
       if (!p.delivered || left < t.at_s || left >= end) continue;
       const bool settled = left - t.at_s - t.settled_after_s > kSettled_s;

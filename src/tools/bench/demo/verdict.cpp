@@ -19,7 +19,7 @@ std::string Text(const char* format, Args... args) {
   return text;
 }
 
-/// The share of the run in which a link carried more than the source can use.
+/// Returns the share of the run in which a link carried more than the source can use.
 double ShareAbove(const Measurements& m, double source_max_bps) {
   constexpr Duration kStep = std::chrono::milliseconds(100);
   const auto links = CapacitiesOf(m.options);
@@ -94,7 +94,7 @@ Verdict Judge(const Measurements& m) {
   Verdict v;
   if (n.captured == 0) return {Verdict::Level::kPoor, "no scan was captured", {}};
   const auto captured = static_cast<double>(n.captured);
-  // Scans at the start and the end are counted slightly differently.
+  // The oracle counts scans at the start and the end slightly differently.
   double possible = captured;
   if (m.encoder_min_bps > 0)
     possible = std::min(captured, static_cast<double>(AskOracle(m, m.encoder_min_bps).complete));

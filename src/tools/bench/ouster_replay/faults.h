@@ -49,7 +49,7 @@ class FaultInjector {
   bool Chance(double probability);
 
   std::mt19937_64 random_;
-  std::optional<OutPacket> held_;  // follows the next packet
+  std::optional<OutPacket> held_;  // sent after the next packet
   FaultCounts counts_;
 };
 

@@ -30,7 +30,7 @@ bool Flag(const HttpRequest& request, const char* name) {
 /// Returns false for the paths that set faults, which ignore the sensor's faults.
 bool IsSensorPath(const HttpRequest& request) { return request.path.rfind("/replay/", 0) != 0; }
 
-/// "key value", the value being JSON or a bare word.
+/// Parses "key value"; the value is JSON or a bare word.
 json ParseArguments(const std::string& text) {
   const std::size_t space = text.find(' ');
   if (space == std::string::npos) return {};

@@ -14,7 +14,7 @@ namespace lidar::tools {
 ///   GET  /api/v1/sensor/config?staging=       POST /replay/faults  (faults.h; merged)
 ///   POST /api/v1/sensor/config?staging=&reinit=&persist=
 ///   POST /replay/restart
-/// and what firmware before 2.4 has instead of .../config, with `old_firmware` only that.
+/// and the paths of firmware before 2.4 instead of .../config; with `old_firmware` only those.
 class HttpApi {
  public:
   struct Options {
@@ -22,7 +22,7 @@ class HttpApi {
     int port = 0;  // 0: any free one
     bool old_firmware = false;
   };
-  /// Throws std::runtime_error. `stats` is called from those threads.
+  /// Throws std::runtime_error. The server's threads call `stats`.
   HttpApi(const Options& options, Sensor* sensor, std::function<std::string()> stats);
   ~HttpApi();
   HttpApi(const HttpApi&) = delete;

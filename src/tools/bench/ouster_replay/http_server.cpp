@@ -46,7 +46,7 @@ class HttpServer::Impl {
         delay_(std::move(delay)),
         context_(g_main_context_new()),
         loop_(g_main_loop_new(context_, FALSE)) {
-    // The server belongs to the context that is the thread's default here.
+    // The server takes the thread's default context.
     g_main_context_push_thread_default(context_);
     server_ = soup_server_new(nullptr, nullptr);
     soup_server_add_handler(server_, nullptr, OnRequest, this, nullptr);
@@ -71,7 +71,7 @@ class HttpServer::Impl {
     });
   }
   ~Impl() {
-    // Ends the loop from within, as it may not run yet.
+    // Quits from within the loop: before it runs, a quit has no effect.
     g_main_context_invoke_full(
         context_, G_PRIORITY_DEFAULT,
         [](gpointer loop) -> gboolean {
@@ -87,7 +87,7 @@ class HttpServer::Impl {
   int port() const { return port_; }
 
  private:
-  /// A request that waits.
+  /// A request whose answer is delayed.
   struct Waiting {
     Impl* server;
     SoupServerMessage* message;

@@ -32,7 +32,7 @@ ouster::Metadata LoadMetadata(const std::string& path) {
   return *std::move(metadata);
 }
 
-/// Empty for 0.
+/// 0 leaves the serial number unchanged.
 void SetSerial(std::uint64_t serial, ouster::Metadata* metadata) {
   if (serial == 0) return;
   metadata->serial = serial;

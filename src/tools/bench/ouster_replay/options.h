@@ -41,7 +41,7 @@ struct ReplayOptions {
   int scans = 10;  // in that file
 };
 
-/// Exits the program with a message where the command line is wrong.
+/// Exits the program with a message if the command line is wrong.
 ReplayOptions ParseReplayOptions(int argc, char** argv);
 
 }  // namespace lidar::tools

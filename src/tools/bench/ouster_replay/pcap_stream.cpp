@@ -18,9 +18,9 @@ struct PacketPatch {
   std::uint32_t init_id = 0;  // 0: as it is
   std::uint64_t serial = 0;   // 0: as it is
   std::uint32_t add_frames = 0;
-  std::uint64_t first_time_ns = 0;  // time of the recording's first column ...
-  std::uint64_t new_time_ns = 0;    // ... becomes this; others keep their distance,
-  double speed = 1;                 // divided by this
+  std::uint64_t first_time_ns = 0;  // time of the recording's first column
+  std::uint64_t new_time_ns = 0;    // its new time
+  double speed = 1;                 // divides the distance of other times from it
 };
 
 constexpr std::size_t kCrcSize = 8;
@@ -36,7 +36,7 @@ void Put(std::uint8_t* at, std::uint64_t v, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<std::uint8_t>(v >> (8 * i));
 }
 
-/// `packet` is one packet of `format`. A right CRC is corrected.
+/// `packet` must have `format`. A right CRC stays right.
 void ApplyPatch(const PacketPatch& patch, const ouster::PacketFormat& format,
                 std::vector<std::uint8_t>* packet) {
   std::uint8_t* bytes = packet->data();
@@ -92,7 +92,7 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
   if (!first_frame)
     throw std::runtime_error(path + " holds no packets of the sensor in the metadata");
   scans_ = static_cast<std::uint32_t>(last_frame - *first_frame) + 1;
-  // A round has whole scans, so that its first follows the last of the earlier round.
+  // A round lasts whole scans, so that its first scan follows the last one of the round before.
   round_ = metadata.scan_period() * scans_;
 }
 

@@ -41,7 +41,7 @@ bool IsValid(const std::string& key, const json& value) {
   return value.is_string();
 }
 
-/// Empty is nowhere. May ask a name server.
+/// An empty text means no destination. May ask a name server.
 bool IsDestination(const json& value) {
   if (!value.is_string()) return false;
   const auto host = value.get<std::string>();

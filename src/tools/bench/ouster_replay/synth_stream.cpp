@@ -91,7 +91,7 @@ void SynthStream::Restart(const Start& start) {
   start_ = start;
   writer_ = std::make_unique<ouster::PacketWriter>(
       metadata_.format, ouster::PacketIdentity{start.init_id, metadata_.serial});
-  // The car drove on: only the sensor's counters restart.
+  // The car drives on: only the sensor's counters restart.
   scan_ = 0;
   column_ = 0;
   imu_ = 0;

@@ -17,8 +17,7 @@ struct SynthOptions {
   std::uint64_t seed = 1;
 };
 
-/// The metadata of that model in mode "1024x10" and that profile, as a sensor just made. Throws
-/// std::runtime_error.
+/// A format that a synthetic sensor can have.
 struct SynthFormat {
   std::string mode = "1024x10";
   ouster::Profile profile = ouster::Profile::kRng19Rfl8Sig16Nir16;

@@ -38,8 +38,8 @@ class FramePacketizer {
 
   explicit FramePacketizer(std::uint32_t mtu) : mtu_(mtu) {}
 
-  /// Packets of `payload` bytes (one packet at least, an empty frame none), the last with the
-  /// marker. `created`: Unix time, from which the RTP timestamp comes.
+  /// Returns packets with `payload` bytes in all; none for an empty frame. The last has the marker.
+  /// `created`: Unix time, from which the RTP timestamp comes.
   gst::BufferListPtr Packetize(DataSize payload, Duration created, GstClockTime pts);
 
  private:

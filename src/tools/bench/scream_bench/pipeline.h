@@ -15,7 +15,7 @@ namespace lidar::tools {
 /// Throws std::runtime_error if the pads don't fit.
 void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad);
 
-/// 0, or 1 after an error, which is printed with `program` before it.
+/// Returns 0, or 1 after an error, which is printed after `program`.
 int RunPipeline(GstElement* pipeline, const std::string& program, Duration duration,
                 const std::function<void()>& every_100_ms);
 

@@ -118,7 +118,7 @@ GstPad* Sender::AddSinkPad(GstElement* sink) {
   return pad;
 }
 
-/// Frames at even times of the monotonic clock, which GStreamer's system clock reads too.
+/// Sends frames at a constant interval of GStreamer's system clock, which is monotonic.
 void Sender::SendFrames() {
   const gst::ElementPtr keep(GST_ELEMENT(gst_object_ref(pipeline_.get())));
   GstClock* clock = gst_element_get_clock(pipeline_.get());

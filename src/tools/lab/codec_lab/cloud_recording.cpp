@@ -56,7 +56,7 @@ std::string ChooseTopic(const std::string& path, const std::string& wanted,
   throw std::runtime_error(path + ": no clouds on " + wanted + "; there are on " + Join(clouds));
 }
 
-/// Places of the numbers in a converted point.
+/// Reads one number of a converted point.
 struct NumberAt {
   const PointField* field = nullptr;
   float Of(const std::uint8_t* point) const {
@@ -170,7 +170,7 @@ class Recording final : public ScanStream {
   std::unique_ptr<mcap::Reader> reader_;
   std::optional<cdr::PointConverter> converter_;
   std::vector<std::uint8_t> bytes_;
-  std::string why_;  // the last cloud could not be read
+  std::string why_;  // why the last cloud could not be read
   Duration period_ = kUsualPeriod;
   bool known_ = false;
   std::optional<TimedScan> next_;

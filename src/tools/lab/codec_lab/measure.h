@@ -15,10 +15,10 @@ struct Measurement {
   Distortion errors;
 };
 
-/// A setting by its step, or by the paper's bits of the slice's bounding cube.
+/// A setting by its step, or by the paper's bits over the slice's bounding cube.
 struct MeasuredSetting {
   double step_m = 0;
-  unsigned quantization_bits = 0;  // not 0: goes before the step
+  unsigned quantization_bits = 0;  // if not 0, replaces the step
   unsigned intensity_bits = 0;
   std::uint32_t slices = 1;
 };

@@ -84,7 +84,7 @@ Scan ToRangeImage(const Scan& scan, const std::shared_ptr<const ScanGeometry>& g
     const double range_mm = std::round(1e3 * std::sqrt(x * x + y * y + z * z));
     const int beam = NearestBeam(model.beams, std::atan2(z, std::hypot(x, y)) * kDegreesPerRadian);
     if (beam < 0 || range_mm < 1 || range_mm > kMaxRangeMm) continue;
-    // Columns run against azimuth, starting behind.
+    // Columns run against azimuth and start at -x.
     const double turn = 0.5 - std::atan2(y, x) / (2 * kPi);
     const auto column = static_cast<std::uint32_t>(std::lround(turn * columns)) % columns;
     const std::size_t at = static_cast<std::size_t>(beam) * columns + column;

@@ -9,7 +9,7 @@
 
 namespace lidar::tools {
 
-/// Draws only where standard error is a terminal.
+/// Draws only if standard error is a terminal.
 inline std::function<void(double)> ProgressBar(const std::string& what) {
   if (isatty(STDERR_FILENO) == 0) return [](double) {};
   return [what, shown = -1](double done) mutable {

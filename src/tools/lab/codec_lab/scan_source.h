@@ -49,7 +49,7 @@ class ScanStream {
 };
 
 /// `text` is one of
-///   drive.pcap             an Ouster capture; its metadata is drive.json beside it
+///   drive.pcap             an Ouster capture; its metadata is drive.json in the same folder
 ///   drive.pcap,sensor.json the same with another metadata file
 ///   cloud.bin              a cloud (KITTI's x y z intensity floats)
 ///   cloud.pcd, cloud.ply   a cloud

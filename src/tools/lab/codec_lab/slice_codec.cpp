@@ -13,7 +13,7 @@
 namespace lidar::tools {
 namespace {
 
-// The step decides; this factor leaves room for the rounding of distant floats.
+// Margin of the error bound [m] for the rounding of distant floats. The step decides.
 constexpr double kRoomForRounding = 1e-3;
 
 double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }
@@ -132,7 +132,7 @@ rate::ErrorBound SliceCodec::Bound(const CodingMode& mode) {
   return rate::ErrorBound::Range(EncoderFor(mode).range_unit_mm());
 }
 
-/// Uses the coder that the mode names; dracoenc would choose the smaller one.
+/// Uses the coder that the mode names; dracoenc would choose the one with the smaller output.
 bool SliceCodec::EncodeXyz(const CodingMode& mode, const rate::Settings& settings,
                            double keep_fraction) {
   codec::XyzCloud all;

@@ -21,7 +21,7 @@ struct CodingMode {
   Geometry geometry = Geometry::kRange;
   codec::RangeCoder coder = codec::RangeCoder::kAdaptive;  // of range geometry
   unsigned level = 7;                                      // Draco's, of xyz geometry
-  unsigned effort = 0;                                     // kMixing\'s
+  unsigned effort = 0;                                     // kMixing's
 };
 const std::vector<CodingMode>& AllModes();
 /// Throws std::runtime_error for an unknown name.

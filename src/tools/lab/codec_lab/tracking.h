@@ -35,7 +35,7 @@ struct TrackOptions {
   bool open_loop = false;
 };
 
-/// A scan, as it went.
+/// The result of a scan.
 struct TrackedScan {
   double target_bps = 0;
   double sent_bps = 0;
@@ -59,7 +59,7 @@ std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& ta
 /// Bitrates that the error bound and the sensor's resolution allow for a scan of the source.
 rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& options,
                                std::size_t scan = 0);
-/// Mean of |min_bps / real r_min - 1| where a scan was sent, without the first `settle`.
+/// Mean of |min_bps / real r_min - 1| over the scans that were sent, without the first `settle`.
 double MinimumError(const ScanSet& set, const TrackOptions& options,
                     const std::vector<TrackedScan>& scans, std::size_t settle);
 

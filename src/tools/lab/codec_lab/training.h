@@ -20,7 +20,7 @@ struct SamplingOptions {
   std::uint64_t seed = 1;
 };
 
-/// Gets the part of the work that is done, 0 to 1.
+/// Gets the share of the work that is done, 0 to 1.
 using Progress = std::function<void(double)>;
 
 /// Random slices at random steps (even in the logarithm), slice counts and intensity bits. Range
@@ -41,7 +41,7 @@ struct FitReport {
   rate::FitError cross_validation;
 };
 
-/// Leaves out one source after the other, or fifths of the samples where there is one source.
+/// Leaves out one source after the other, or fifths of the samples if there is one source.
 FitReport Report(
     const std::string& name, const std::vector<rate::Sample>& samples,
     const std::function<std::unique_ptr<rate::SizeModel>(const std::vector<rate::Sample>&)>& fit);

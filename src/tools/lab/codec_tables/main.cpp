@@ -55,7 +55,7 @@ void CountSlice(const Scan& scan, SliceOf slice, const RangeGrid& grid, unsigned
                                &counts->levels);
 }
 
-/// Adds `counts` as if every context had been seen equally often in each of them.
+/// Adds `counts` as if every context had been seen equally often.
 void AddEvenly(const SymbolCounts& counts, SymbolCounts* sum) {
   const auto add = [](const auto& from, auto* to) {
     constexpr std::uint64_t kShare = 1'000'000'000;
@@ -82,7 +82,7 @@ void CountCapture(const ScanSet& set, Counts* sum) {
   }
 }
 
-/// Share in a thousand, and never zero.
+/// Returns shares in a thousand, none of them zero.
 std::string Frequencies(const std::array<std::uint64_t, codec::kNibbles>& counts) {
   const auto all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   std::string text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval clouds: clouds without a sensor model, ours beside Draco.
+// lidar-eval clouds: clouds without a sensor model, by our coder and by Draco.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -48,7 +48,7 @@ double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
   return largest;
 }
 
-/// As a driver publishes them: column by column, without missing returns and ranges.
+/// Returns points as a driver publishes them: column by column, without missing returns and ranges.
 std::vector<float> PointsOf(const Scan& scan) {
   const RangeProjection& projection = scan.geometry->projection;
   std::vector<float> xyz;
@@ -62,7 +62,7 @@ std::vector<float> PointsOf(const Scan& scan) {
   return xyz;
 }
 
-/// Takes the scans' ranges and models from them.
+/// Replaces organised scans by their points, without ranges and models.
 void Flatten(ScanSet* set) {
   for (Scan& scan : set->scans) {
     if (!scan.organised()) continue;
@@ -83,7 +83,7 @@ void Shuffle(Scan* scan) {
   }
 }
 
-/// Points as a driver publishes them, with laser and time where the scan has both.
+/// Points as a driver publishes them, with laser and time if the scan has both.
 struct RawCloud {
   explicit RawCloud(const Scan& scan) {
     const bool has_times = !scan.phases.empty() && !scan.rings.empty();
@@ -114,7 +114,7 @@ struct CloudCoders {
   codec::cloud::CloudDecoder decoder;
 };
 
-/// The first of `repeats` runs is the size; the fastest ones are the times.
+/// Adds the size of the first of `repeats` runs, and the times of the fastest ones.
 void AddCost(const Scan& scan, double error_m, unsigned repeats, CloudCoders* coders,
              CloudCost* cost) {
   const RawCloud raw(scan);
@@ -143,7 +143,7 @@ void AddCost(const Scan& scan, double error_m, unsigned repeats, CloudCoders* co
   cost->decode_s += decode_s;
 }
 
-/// The smallest of Draco's coders.
+/// Prints the size by the best of Draco's coders.
 void PrintDraco(const ScanSet& set, double error_m) {
   double best = 0;
   for (const char* mode : {"xyz-sequential", "xyz-kd0", "xyz-kd6"}) {

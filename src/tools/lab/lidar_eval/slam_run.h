@@ -58,7 +58,7 @@ struct Calibration {
   double within_3_sigma = 0;
   double width = 0;  // deviations divided by errors, both root mean squares
 };
-/// `first`: 0 for positions, 3 for turns. None without errors.
+/// `first`: 0 for positions, 3 for turns. Returns nothing for fewer than two errors.
 std::optional<Calibration> Calibrate(const std::vector<odometry::Twist>& errors,
                                      const std::vector<odometry::Matrix6>& covariance,
                                      Eigen::Index first);

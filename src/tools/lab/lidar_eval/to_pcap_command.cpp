@@ -17,7 +17,7 @@ struct PcapOptions {
   std::string source;
   SourceOptions scans;
   std::string output;
-  std::string metadata;  // empty: beside the output
+  std::string metadata;  // empty: next to the output
   std::string beams = "hdl64";
   std::uint32_t columns = 1024;
   double rate = 10;

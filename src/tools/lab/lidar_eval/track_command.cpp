@@ -53,7 +53,7 @@ std::vector<double> Targets(const std::string& name, const TrackArguments& o,
   return MakeTargets(profiles.at(name), o.length, o.profile);
 }
 
-/// "x.png" and "walk" to "x-walk.png" where there are several.
+/// "x.png" and "walk" to "x-walk.png" if there are several.
 std::string PathFor(const std::string& path, const std::string& name, bool several) {
   if (path.empty() || !several) return path;
   const std::size_t dot = path.rfind('.');

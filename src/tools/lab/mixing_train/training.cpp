@@ -20,7 +20,7 @@ constexpr std::uint32_t kSlices = 8;
 constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
 constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
 constexpr double kLevelError = 0.02;
-// Least rate with which a slice can change the states that other slices taught.
+// Trained counters adapt at least this fast, so that a slice can still change them.
 constexpr std::uint16_t kLeastRate = mixing::RateAfter(24);
 constexpr std::uint16_t kLeastJumpRate = mixing::RateAfter(48);
 // Version, flags, lengths and the first byte of the payload.
@@ -60,8 +60,7 @@ void Hasten(std::uint16_t least_rate, std::array<mixing::Counter, kSize>* counte
   for (mixing::Counter& counter : *counters) counter.rate = std::max(counter.rate, least_rate);
 }
 
-/// Means of the numbers after each slice that changed them. All slices weigh the same, even the
-/// last one.
+/// Mean of each number over the slices that changed it. All slices weigh the same.
 class Means {
  public:
   void Add(std::size_t place, std::int64_t number) {
@@ -131,7 +130,7 @@ void ForEach(States& a, const States& b, Do&& act) {
   std::apply([&](auto... part) { (walk.Of(a.*part, b.*part, act), ...); }, kParts<States>);
 }
 
-/// Replaces `states` by those after a slice.
+/// Adds the numbers that a slice changed to `means`, and replaces `states` by `learnt`.
 template <class States>
 void Keep(States& learnt, States* states, Means* means) {
   ForEach(learnt, *states, [&](std::size_t place, auto& now, auto before, bool visited) {
@@ -232,14 +231,14 @@ class Trainer {
   std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
-  std::vector<std::uint8_t> written_;  // unused: the model learns from the coded data
+  std::vector<std::uint8_t> written_;  // never read: coding alone teaches the model
 };
 
 }  // namespace
 
 std::unique_ptr<mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets) {
   Trainer trainer;
-  // Alternates between the sets, as consecutive slices should differ.
+  // Alternates between the sets, because consecutive slices should differ.
   for (std::uint32_t index = 0; index < kSlices; ++index)
     for (const ScanSet* set : sets)
       for (const Scan& scan : set->scans) trainer.Learn(scan, {index, kSlices});

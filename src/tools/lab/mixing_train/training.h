@@ -23,7 +23,7 @@ struct MixingCase {
 std::unique_ptr<codec::mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets);
 
 /// Bits a return of real payloads, with all parts of a block. Decodes each block again and throws
-/// std::runtime_error for a difference.
+/// std::runtime_error if they differ.
 double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
                      const codec::mixing::StartStates& states);
 
