@@ -8,7 +8,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Work of `cost` each `period` for 100 s: the share of a processor that was allowed.
+/// Returns the share of a processor that was allowed to work of `cost` each `period`, over 100 s.
 double Allowed(double load, milliseconds cost, milliseconds period) {
   LoadBudget budget;
   Duration spent{};

@@ -67,8 +67,8 @@ class SimLink {
         {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn), p.marker, p.size});
   }
 
-  /// `reported`: the link whose receiver is heard here.
   using Links = std::vector<std::unique_ptr<SimLink>>;
+  /// `reported`: the link whose reports come on this one.
   void Step(Time now, Scheduler* scheduler, SimLink* reported, const Links& links) {
     while (auto report = reported->generator_.Take(now + reported->config_.receiver_clock))
       reports_.emplace(now + config_.rtt / 2, *report);

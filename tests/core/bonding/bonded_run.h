@@ -18,17 +18,17 @@ struct LinkConfig {
   link::QueueLimit limit{};
   link::PathConfig path{};
   Duration receiver_clock{0};  // ahead of the sender's
-  /// The scheduler is told that packets cannot leave, within this time of the run.
+  /// The link is reported to the scheduler as unusable in this time of the run.
   Duration unusable_from = Duration::max(), unusable_until = Duration::max();
 };
 
 struct RunConfig {
   std::vector<LinkConfig> links;
-  /// What is received by one of two links is reported by the other one, from this time of the run.
+  /// Each of two links reports what the other one received, from this time of the run on.
   Duration swapped_from = Duration::max();
-  /// All pass the first one's queue; the others have a round trip of their own only.
+  /// All links share the first one's queue; only their round trips differ.
   bool one_bottleneck = false;
-  /// Flows of somebody else on the first link.
+  /// Competing flows on the first link.
   std::vector<scream::test::TcpConfig> others;
   Duration duration = std::chrono::seconds(60);
   Method method = Method::kAdaptive;
@@ -38,17 +38,17 @@ struct RunConfig {
 
 struct RunResult {
   std::uint64_t scans = 0;
-  std::uint64_t in_time = 0;             // whole within 0.2 s of the capture of each slice
-  std::vector<double> latency_ms;        // of slices that arrive whole, sorted
-  std::vector<double> scan_age_ms;       // of each scan's last slice to be whole; 1e9: never
-  std::int64_t media_bytes = 0;          // that the encoder put out, headers included
+  std::uint64_t in_time = 0;        // whole within 0.2 s of the capture of each slice
+  std::vector<double> latency_ms;   // of slices that arrive whole, sorted
+  std::vector<double> scan_age_ms;  // age of each scan when its last slice is whole; 1e9: never
+  std::int64_t media_bytes = 0;     // that the encoder put out, headers included
   std::vector<std::int64_t> link_bytes;  // that left by each link
-  std::int64_t other_bytes = 0;          // of flows of somebody else, that arrived
+  std::int64_t other_bytes = 0;          // of competing flows, that arrived
   struct Target {
     Duration time;
     DataRate rate;
   };
-  std::vector<Target> targets;  // that the encoder was asked for
+  std::vector<Target> targets;  // bitrates that the encoder was asked for
   std::vector<LinkCounters> counters;
 
   double Share() const { return static_cast<double>(in_time) / static_cast<double>(scans); }

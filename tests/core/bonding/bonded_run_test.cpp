@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A stream over simulated links, held against what a sender that knew them could deliver.
+// A stream over simulated links, compared with what a sender that knew them could deliver.
 #include "tests/core/bonding/bonded_run.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 link::Capacity Constant(double mbps) { return link::Capacity::Constant(Mbps(mbps)); }
 
-/// Less than a packet in a gap.
+/// A gap of this rate carries less than a packet.
 constexpr DataRate kNothing = DataRate::BitsPerSecond(1e3);
 
 link::Capacity Drive(std::uint64_t seed, DataRate in_gaps = link::DriveTraceConfig().in_gaps) {
@@ -28,7 +28,7 @@ link::Capacity Drive(std::uint64_t seed, DataRate in_gaps = link::DriveTraceConf
   return *link::Capacity::ParseTrace(link::MakeDriveTrace(config), true, &error);
 }
 
-/// At the coarsest step: r_min, whatever the links carry.
+/// A source at the coarsest step: r_min, whatever the links carry.
 RunConfig AtNeed(std::vector<LinkConfig> links) {
   RunConfig config;
   config.links = std::move(links);
@@ -49,8 +49,8 @@ double Bytes(const RunResult& r) {
 
 double Sent(const RunResult& r) { return Bytes(r) / static_cast<double>(r.media_bytes); }
 
-/// The bound knows when a gap ends, and sends into the gap what becomes whole then. It is also
-/// asked for drives whose gaps carry nothing.
+/// The oracle knows when a gap ends, and sends packets into the gap that arrive whole then. A
+/// second bound is that of drives whose gaps carry nothing.
 TEST(TwoLinkRun, ReachesTheBoundOverGeneratedDrives) {
   double sum = 0, sum_outside = 0;
   for (std::uint64_t seed = 1; seed <= 19; seed += 2) {
@@ -141,7 +141,7 @@ TEST(TwoLinkRun, SendsLittleTwiceOnLinksThatAreSettled) {
   EXPECT_LE(adaptive, 0.6 * broadcast);
 }
 
-/// Feedback of packets that both links carried, as all are by broadcast, does not tell its link.
+/// Feedback on packets that both links carried does not show its link; by broadcast those are all.
 TEST(TwoLinkRun, GoesOnWhereFeedbackIsSwapped) {
   for (const Method method : {Method::kAdaptive, Method::kBroadcast})
     for (const Duration from : {0s, 20s}) {

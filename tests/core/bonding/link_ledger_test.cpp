@@ -13,7 +13,7 @@ using scream::CongestionFeedback;
 
 constexpr std::uint32_t kSsrc = 9;
 
-/// A report of `seq`, `seq` + 1, ...: which of them arrived.
+/// Reports which of `seq`, `seq` + 1, ... arrived.
 CongestionFeedback ReportOf(std::uint16_t seq, const std::vector<bool>& arrived,
                             std::uint32_t ssrc = kSsrc) {
   CongestionFeedback feedback;

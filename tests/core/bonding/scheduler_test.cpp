@@ -36,7 +36,7 @@ class TwoLinks : public testing::Test {
     scheduler_.OnPath(1, b);
   }
 
-  /// A packet that leaves at once wherever it goes.
+  /// Sends a packet, which leaves at once on each of its links.
   LinkSet Packet() {
     const PacketId id{kMedia, ++seq_};
     const LinkSet links = scheduler_.OnPacket(now_, {id, kSize, seq_});
@@ -45,7 +45,7 @@ class TwoLinks : public testing::Test {
     return links;
   }
 
-  /// Both links work for so long; the round trip takes no time.
+  /// Both links deliver packets for `time`; the round trip takes no time.
   void Work(Duration time, Duration period = 12500us) {
     for (const Time end = now_ + time; now_ < end; now_ += period) {
       const LinkSet links = Packet();
@@ -54,7 +54,7 @@ class TwoLinks : public testing::Test {
     }
   }
 
-  /// Until links are settled, and the next slice is none that keeps a link known.
+  /// Works until links are settled and a copy was just sent, so that the next slice is not copied.
   void Settle() {
     Work(4s);
     LinkSet links;
@@ -89,7 +89,7 @@ TEST_F(TwoLinks, SendsASliceWhereItIsWholeFirst) {
   Settle();
   SetPaths({Mbps(8), 40ms}, {Mbps(8), 20ms});
   EXPECT_EQ(Packet(), SetOf({1})) << "by 10 ms sooner";
-  // What waits in the FIFO of the nearer one makes it the later one.
+  // A backlog in the FIFO of the nearer link makes it the later one.
   const std::uint32_t slice = ++seq_;
   for (int i = 0; i < 30; ++i) scheduler_.OnPacket(now_, {{kMedia, ++seq_}, kSize, slice});
   EXPECT_EQ(Packet(), SetOf({0}));
@@ -112,7 +112,7 @@ TEST_F(TwoLinks, CopiesWhatWaitsInAFifoForLongerThanExpected) {
   Settle();
   const PacketId id{kMedia, ++seq_};
   ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, seq_}), SetOf({0}));
-  // 1.2 ms of sending, a round trip, and 20 ms.
+  // A copy is due after 1.2 ms of sending, a round trip, and 20 ms.
   EXPECT_TRUE(scheduler_.TakeCopies(now_ + 61ms).empty());
   EXPECT_FALSE(scheduler_.InGap(now_ + 62ms, 0)) << "nothing was sent that could be reported";
   const auto copies = scheduler_.TakeCopies(now_ + 62ms);
@@ -368,7 +368,7 @@ class LinksOfFifos {
     report.blocks[0].metrics[0].arrival_offset = 0ms;
     scheduler_.OnFeedback(now_, link, report);
   }
-  /// Bursts that show whose packets wait for whose.
+  /// Bursts that show which links share a FIFO.
   void Burst() {
     for (int i = 0; i < 6000; ++i) {
       now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());
@@ -448,7 +448,7 @@ TEST(Scheduler, SparesNoLinkBesideOneThatIsDead) {
   for (std::uint32_t slice = 0; links.now_ < silent_since + 1s; ++slice, links.now_ += 5ms) {
     const PacketId id{kMedia, ++links.seq_};
     const LinkSet to = links.scheduler_.OnPacket(links.now_, {id, kSize, 100'000 + slice, false});
-    links.scheduler_.OnSent(links.now_, 0, id);  // and nothing is heard of it
+    links.scheduler_.OnSent(links.now_, 0, id);  // and is never reported
     const Duration silent = links.now_ - silent_since;
     EXPECT_TRUE(to[1] || silent < 300ms) << Seconds(silent);
     EXPECT_FALSE(to[1] && silent < 100ms) << Seconds(silent);

@@ -21,7 +21,7 @@ class TwoFifos : public testing::Test {
     const auto ticks = static_cast<std::uint32_t>(Seconds(free - kStart) * 65536);
     queues_.OnArrival(link, {now_, ticks, 0ms});
   }
-  /// Bursts on both links; `copies` are sent at the same times.
+  /// Bursts on both links; as `copies` they are sent at the same times.
   void Run(std::size_t second_fifo, bool copies) {
     for (int i = 0; i < 4000; ++i) {
       now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());
@@ -47,7 +47,7 @@ TEST_F(TwoFifos, FindsOneQueue) {
 }
 
 TEST_F(TwoFifos, KnowsTheEmptyQueueOfTheWindowBeforeWhileOneStands) {
-  while (now_ < kStart + 9950ms) {  // nothing waits
+  while (now_ < kStart + 9950ms) {  // the queue stays empty
     now_ += 50ms;
     for (const std::size_t link : {0U, 1U}) Send(link, 0, DataSize::Bytes(600));
   }

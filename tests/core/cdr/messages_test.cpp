@@ -200,7 +200,7 @@ TEST(CodedSlices, ANegativeDurationIsNone) {
   CodedSlice slice;
   Bytes bytes = WriteCodedSlice(slice);
   EXPECT_FALSE(ReadCodedSlice(View(bytes))->duration);
-  // The duration stands behind stamp and the text of no frame: seconds, then nanoseconds.
+  // The duration follows the stamp and an empty frame: seconds, then nanoseconds.
   EXPECT_EQ(Bytes(bytes.begin() + 20, bytes.begin() + 28),
             (Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0}));
   slice.duration = Duration{0};
@@ -242,7 +242,7 @@ TEST(Messages, TruncatedOnesAreRefusedAtEachLength) {
 
 TEST(Messages, ASequenceLongerThanItsMessageTakesNoMemory) {
   Bytes bytes = WriteTransforms(TwoTransforms());
-  bytes[7] = 0x40;  // 2^30 transforms more
+  bytes[7] = 0x40;  // claims 2^30 more transforms
   EXPECT_FALSE(ReadTransforms(View(bytes)));
 }
 

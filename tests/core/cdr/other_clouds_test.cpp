@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages that hold clouds and are no PointCloud2.
+// Messages with clouds that are not PointCloud2.
 #include <gtest/gtest.h>
 
 #include "src/cdr/point_cloud2.h"
@@ -8,7 +8,7 @@
 namespace lidar::cdr {
 namespace {
 
-/// As livox_ros_driver2 writes it.
+/// A message as livox_ros_driver2 writes it.
 Bytes LivoxMessage(std::uint32_t points) {
   Bytes message;
   CdrWriter w(&message);

@@ -250,7 +250,7 @@ TEST(PointConverter, GivesWhatIsWanted) {
   EXPECT_EQ((*out)[0], 77);
   EXPECT_EQ((*out)[1], 0);
   EXPECT_EQ(Get<double>(*out, 2), 1.);
-  EXPECT_EQ((*out)[10], 255);  // the nearest that there is
+  EXPECT_EQ((*out)[10], 255);  // the nearest value that fits
   std::string why;
   EXPECT_FALSE(PointConverter::Make(cloud.layout,
                                     PointLayout{PointFields().Add("t", FieldType::kU32), 4}, &why));

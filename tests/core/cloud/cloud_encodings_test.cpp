@@ -19,14 +19,14 @@ struct EncodedField {
   std::uint32_t count;
 };
 
-/// Every type, arrays whose elements have other sizes than there are of them, and padding.
+/// Fields of every type, arrays whose count is not their element's size, and padding.
 std::vector<EncodedField> AllFields() {
   return {{"x", 'F', 4, 1}, {"y", 'F', 4, 1},     {"z", 'F', 4, 1}, {"_", 'U', 1, 3},
           {"a", 'I', 1, 2}, {"b", 'U', 2, 4},     {"c", 'I', 2, 1}, {"d", 'U', 4, 2},
           {"e", 'I', 4, 3}, {"stamp", 'F', 8, 2}, {"f", 'U', 1, 1}, {"_", 'U', 1, 2}};
 }
 
-/// The `k`-th number of a point; each differs, and fits each type.
+/// The `k`-th number of a point. All numbers differ, and fit each type.
 int NumberAt(int point, int k) { return 25 * point + k + 1; }
 
 void PutNumber(int value, char type, std::uint32_t size, std::vector<std::uint8_t>* out) {
@@ -61,7 +61,7 @@ Encodings Encode(int points) {
   return all;
 }
 
-/// LZF of literals only.
+/// Encodes LZF of literals only.
 std::string Packed(const std::string& bytes) {
   std::string lzf;
   for (std::size_t at = 0; at < bytes.size(); at += 32) {
@@ -183,7 +183,7 @@ TEST(CaptureTimeOfAFile, IsSecondsAndNineDigitsOrNone) {
   }
 }
 
-/// Headers that claim what no file can hold, or what no field is.
+/// Headers that claim more than a file can hold, or fields that cannot be.
 TEST(ClaimsOfHeaders, AreRefusedBeyondTheirLimitsHoweverTheFileGoesOn) {
   const auto pcd = [](const std::string& size, const std::string& count) {
     const std::string file =

@@ -87,14 +87,14 @@ TEST(Pcd, CompressedIsRead) {
   lzf.back() = 0;
   EXPECT_TRUE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed", 3) + Text(sizes) + lzf));
-  sizes[4] = 31;  // less than the header says; what is there would do
+  sizes[4] = 31;  // less than the header needs, although the data suffice
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
   sizes[4] = 32;
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf.substr(0, 20)));
 }
 
 TEST(Pcd, CompressedPointsRepeatWhatCameBefore) {
-  // A literal zero, then 79 bytes from one byte back.
+  // A literal zero, then 79 copies of the byte before.
   const std::vector<std::uint8_t> lzf = {0, 0, 7 << 5, 70, 0};
   const auto file = [&lzf](std::uint32_t size) {
     std::vector<std::uint8_t> bytes;
@@ -315,7 +315,7 @@ TEST(Las, PointsOnAMapKeepTheirMillimetres) {
   las.offset = 5'400'000;
   const auto cloud = ReadLasFile(las.File());
   ASSERT_TRUE(cloud);
-  EXPECT_EQ(FloatAt(*cloud, 0), 0.5F);  // from 5,400,001
+  EXPECT_EQ(FloatAt(*cloud, 0), 0.5F);  // relative to an origin of 5,400,001
   EXPECT_NEAR(FloatAt(*cloud, 28 + 4), 0.001F, 1e-6);
   EXPECT_EQ(FloatAt(*cloud, 8), 0.75F);
 }

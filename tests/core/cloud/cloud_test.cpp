@@ -205,7 +205,7 @@ using Xyz = std::array<float, 3>;
 
 class ProjectionWindows : public ::testing::TestWithParam<ColumnWindow> {
  protected:
-  /// The point of step 20 at `index`.
+  /// Returns point `index`; a point takes 20 bytes.
   static Xyz PointAt(const std::vector<std::uint8_t>& points, std::size_t index) {
     Xyz p{};
     std::memcpy(p.data(), &points[index * 20], sizeof p);

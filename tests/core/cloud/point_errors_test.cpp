@@ -10,7 +10,7 @@ namespace {
 
 const PointFields kXyz = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
 
-/// Points two metres apart, so that the nearest one is the one that it was.
+/// Points two metres apart, so that a moved point is still nearest to where it was.
 std::vector<DecodedPoint> Lattice() {
   std::vector<DecodedPoint> points;
   for (unsigned i = 0; i < 500; ++i) {
@@ -21,7 +21,7 @@ std::vector<DecodedPoint> Lattice() {
   return points;
 }
 
-/// As they lie in a buffer.
+/// Returns points as the bytes of a buffer.
 std::vector<std::uint8_t> Raw(const std::vector<DecodedPoint>& points) {
   std::vector<std::uint8_t> raw(12 * points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -88,7 +88,7 @@ TEST(PointErrors, OfAPointThatIsGoneIsTheDistanceToTheNextOneWhereTheyMayMerge) 
   EXPECT_DOUBLE_EQ(errors.max_m, 2);
 }
 
-/// Points at random, with errors of centimetres, and those mirrored or scaled.
+/// A lattice with errors of up to 5 cm. Changed() mirrors or scales it.
 class PointErrorsOf : public ::testing::TestWithParam<PointOrder> {
  protected:
   static std::vector<DecodedPoint> Changed(std::vector<DecodedPoint> points, float factor) {

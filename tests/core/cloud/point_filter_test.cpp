@@ -57,7 +57,7 @@ TEST(PointFilter, KeepsEveryNthRowAndColumnOfTheScan) {
   settings.beam_step = 2;
   settings.column_step = 2;
   EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 2, 4}));
-  // A slice that begins with column 3 of the scan has columns 4, 6 and 8.
+  // Columns 4, 6 and 8 stay of a slice that begins with column 3 of the scan.
   const auto slice = Filter(settings, Cloud(), 3);
   EXPECT_EQ(slice.Ids(), (Ids{1, 3, 5}));
   EXPECT_EQ(slice.first_column, 2U);
@@ -141,8 +141,8 @@ TEST(PointFilter, VoxelsOnBothSidesOfZeroAreTwo) {
   cloud[1] = {-0.4F, 0, 0, 1};
   cloud[2] = {0.4F, -0.4F, 0, 2};
   cloud[3] = {0.4F, 0, -0.4F, 3};
-  cloud[4] = {0.6F, 0.1F, 0.1F, 4};  // as 0
-  cloud[5] = {-0.6F, 0, 0, 5};       // as 1
+  cloud[4] = {0.6F, 0.1F, 0.1F, 4};  // in the voxel of 0
+  cloud[5] = {-0.6F, 0, 0, 5};       // in the voxel of 1
   EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{0, 1, 2, 3}));
 }
 
@@ -162,11 +162,11 @@ TEST(PointFilter, EachCloudHasItsOwnVoxelsAndAllCountInWhatIsRemoved) {
 TEST(PointFilter, LeavesNoColumnOfASliceBetweenTwoSteps) {
   PointFilterSettings settings;
   settings.column_step = 8;
-  const auto out = Filter(settings, Cloud(), 1);  // columns 1 to 6; the next is 8
+  const auto out = Filter(settings, Cloud(), 1);  // columns 1 to 6; the next that stays is 8
   EXPECT_EQ(out.width, 0U);
   EXPECT_EQ(out.height, 2U);
   settings.column_step = 7;
-  const auto last = Filter(settings, Cloud(), 2);  // the last of 2 to 7
+  const auto last = Filter(settings, Cloud(), 2);  // column 7, the last one
   EXPECT_EQ(last.Ids(), (Ids{5, 11}));
   EXPECT_EQ(last.first_column, 1U);
   settings.column_step = 1;
@@ -226,7 +226,7 @@ TEST(PointFilter, NeedsCoordinatesForWhatIsAboutThem) {
 
 TEST(PointFilter, TransformsAreReadStrictly) {
   EXPECT_TRUE(ParseTransform("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"));
-  // Metres, then degrees about x, y and z; the one about z comes last.
+  // Metres, then degrees about x, y and z; the turn about z comes last.
   const auto turned = ParseTransform("1,2,3, 90,0,90");
   ASSERT_TRUE(turned);
   const Transform expected = {0, 0, 1, 1, 1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};

@@ -59,12 +59,12 @@ TEST_F(Tree, WhatHoldsForGoodHoldsAtAnyTime) {
 TEST_F(Tree, BetweenTwoPosesItInterpolatesByTheShorterTurn) {
   ASSERT_TRUE(tree_.Set("map", "odom", kStart + milliseconds(100), At(102), false));
   FramePose turned = TurnedLeft(20);
-  turned.orientation = {0, 0, -1, 0};  // half a turn, as its other quaternion
+  turned.orientation = {0, 0, -1, 0};  // half a turn, as the other of its two quaternions
   ASSERT_TRUE(tree_.Set("odom", "base", kStart + milliseconds(100), turned, false));
   const auto found = tree_.Find("map", "base", kStart + milliseconds(50));
   ExpectNear(Place(found, {0, 0, 0}), {116, 0, 0});
   ExpectNear(Place(found, {1, 0, 0}), {116 - kHalf, kHalf, 0});  // 135 degrees
-  // Nearly the same orientation twice.
+  // Nearly equal orientations.
   TransformTree still;
   still.Set("a", "b", kStart, kNowhere, false);
   still.Set("a", "b", kStart + milliseconds(10), At(1), false);
@@ -111,7 +111,7 @@ TEST_F(Tree, APoseThatIsTooLateChangesNothing) {
   EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(10), At(3), false));
   EXPECT_FALSE(tree_.Set("elsewhere", "odom", kStart - seconds(10), At(3), false));
   ExpectNear(Place(tree_.Find("map", "odom", kStart + milliseconds(500)), {0, 0, 0}), {150, 0, 0});
-  // However many there are, while newer ones come between them.
+  // Many old poses change nothing, either, while newer ones come between them.
   for (int i = 0; i < 100; ++i) {
     EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(20) + milliseconds(i), At(3), false));
     EXPECT_TRUE(tree_.Set("map", "odom", kStart + seconds(1) + milliseconds(i), At(200), false));
@@ -125,7 +125,7 @@ TEST_F(Tree, AClockThatWentBackBeginsAnew) {
   for (int i = 0; i < kAgain; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", again + milliseconds(10 * i), At(i), false), i == kAgain - 1)
         << i;
-  // Nothing of the new time is lost, and nothing of the old one is left.
+  // All poses of the new time are there, and those of the old time are gone.
   ExpectNear(Place(tree_.Find("map", "odom", again + milliseconds(15)), {0, 0, 0}), {1.5, 0, 0});
   EXPECT_TRUE(tree_.Find("map", "odom", kStart).may_come);
 }
@@ -138,7 +138,7 @@ TEST_F(Tree, AClockThatWentBackIsSeenHoweverRareThePosesAre) {
   // The history is what it would be without the old time.
   ExpectNear(Place(tree_.Find("map", "odom", again + seconds(9)), {0, 0, 0}), {4.5, 0, 0});
   EXPECT_FALSE(tree_.Find("map", "odom", again + seconds(7)).transform);
-  // Those after it may be as far from each other as they like.
+  // Later poses may be any time apart.
   for (int i = 0; i < 10; ++i)
     EXPECT_TRUE(tree_.Set("map", "odom", again + seconds(40 + 20 * i), At(i), false)) << i;
 }
@@ -156,7 +156,7 @@ TEST_F(Tree, AClockThatWentBackIsSeenWhateverThePosesHold) {
               i == kAgain - 1)
         << i;
   ExpectNear(Place(tree_.Find("odom", "base", again + seconds(9)), {0, 0, 0}), {9, 0, 0});
-  // Times without an order; those that the newest of them leaves behind are refused again.
+  // Times without an order: poses too old for the newest one are refused again.
   const Time earlier = again - seconds(100);
   for (int i = 0; i < 50; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", earlier - seconds(11 * (i % 5)), At(i), false),

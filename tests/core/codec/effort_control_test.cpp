@@ -9,7 +9,7 @@
 namespace lidar::codec {
 namespace {
 
-/// A machine that codes so many million returns a second, by effort.
+/// A machine. `speeds` are million returns a second, by effort.
 struct Machine {
   std::array<double, 4> speeds = {38, 8, 5, 2};
   double factor = 1;
@@ -22,7 +22,7 @@ struct Sensor {
   Duration sweep{12'500'000};
 };
 
-/// The effort of every slice over some seconds.
+/// Returns the effort of every slice over some seconds.
 std::vector<unsigned> Play(const Machine& machine, const Sensor& sensor, double seconds,
                            EffortControl* control) {
   std::mt19937 random(4);
@@ -50,7 +50,7 @@ TEST(EffortControl, TakesTheHighestEffortThatFits) {
     std::size_t returns;
     unsigned effort;
   };
-  // 12.5 ms of sweep leave 3.1 ms: 6,200 returns at effort 3, 15,600 at 2, 25,000 at 1.
+  // A sweep of 12.5 ms allows 3.1 ms: 6,200 returns at effort 3, 15,600 at 2, 25,000 at 1.
   for (const Case& c : {Case{2'700, 3}, Case{10'000, 2}, Case{20'000, 1}, Case{60'000, 0}}) {
     EffortControl control;
     EXPECT_EQ(Play({}, {c.returns}, 10, &control).back(), c.effort) << c.returns;

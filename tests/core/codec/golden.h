@@ -63,7 +63,7 @@ inline std::vector<std::uint8_t> ReadGolden(const std::string& file) {
   return bytes;
 }
 
-/// `bytes` are those of the file, which the environment variable UPDATE_GOLDEN=1 writes.
+/// Expects the bytes of the file, which UPDATE_GOLDEN=1 in the environment writes.
 inline void ExpectGolden(const std::string& file, const std::vector<std::uint8_t>& bytes) {
   if (std::getenv("UPDATE_GOLDEN") != nullptr) {
     std::ofstream(file, std::ios::binary)
@@ -88,7 +88,7 @@ struct GoldenBlock {
 };
 inline void PrintTo(const GoldenBlock& block, std::ostream* out) { *out << block.name; }
 
-/// Encodes the block to the bytes of its file, and those back to the returns that they stand for.
+/// Expects the block to become the bytes of its file, and those to decode to the same returns.
 inline void ExpectGoldenBlock(const GoldenBlock& c, const std::string& folder,
                               const codec::IntegerCoder* integers) {
   const SensorModel model = GoldenSensor(c.scan.beams, c.columns_per_scan);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The own coder gives the bytes that it always gave.
+// Our coder gives the bytes that it always gave.
 #include "tests/core/codec/golden.h"
 
 #include "src/base/byte_writer.h"
@@ -17,7 +17,7 @@ TEST_P(GoldenBytes, AreWhatABlockIsCodedTo) {
 INSTANTIATE_TEST_SUITE_P(
     All, GoldenBytes,
     ::testing::Values(
-        // A whole turn in lanes, whose last column is the neighbour of the first.
+        // A whole turn, in which the last column is the neighbour of the first.
         GoldenBlock{"adaptive_turn", RangeCoder::kAdaptive, {8, 1024, 0, 1, 10}, 41 * 256, 5},
         // Short rows, a step between whole cells of 8 mm, beams left out.
         GoldenBlock{"adaptive_slice",
@@ -79,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
                     2}),
     [](const auto& c) { return c.param.name; });
 
-/// What decoders make of chosen bins. Which ones an encoder chooses is no part of the format: the
-/// block stays as it is when that improves.
+/// Decodes bins that an encoder chose. The choice is no part of the format, so the file stays when
+/// encoders choose better.
 TEST(GoldenChoice, ComesBackAsItWasChosen) {
   const test::GoldenScan scan{16, 256, 512, 1, 5};
   const SensorModel model = test::GoldenSensor(scan.beams, 1024);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What any slice decoder must do with streams that nobody encoded like that.
+// What any slice decoder must do with damaged streams.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ inline std::vector<std::uint8_t> SmallSlice() {
   return RawCloud(model, RoomScan(model, 0, 64));
 }
 
-/// How many of kMutations damaged streams decode. Each gives a cloud within the limits, or none.
+/// Returns how many of kMutations damaged streams decode. Each gives a cloud within the limits.
 template <class Decoder>
 int CountDecodedMutations(const std::vector<std::uint8_t>& stream, Decoder* decoder) {
   std::mt19937 random(42);
@@ -30,7 +30,7 @@ int CountDecodedMutations(const std::vector<std::uint8_t>& stream, Decoder* deco
   for (int i = 0; i < kMutations; ++i) {
     auto bytes = stream;
     const std::size_t damage = 1 + random() % 4;
-    // Half of the hits go where the headers are.
+    // Half of the damage hits the headers.
     for (std::size_t k = 0; k < damage; ++k) {
       const std::size_t reach =
           random() % 2 == 0 ? std::min<std::size_t>(64, bytes.size()) : bytes.size();
@@ -47,7 +47,7 @@ int CountDecodedMutations(const std::vector<std::uint8_t>& stream, Decoder* deco
   return decoded;
 }
 
-/// `all`: any byte less is noticed.
+/// `all`: a single missing byte at the end is noticed, too.
 template <class Decoder>
 void ExpectNothingOfCutStreams(const std::vector<std::uint8_t>& stream, bool all,
                                Decoder* decoder) {
@@ -67,7 +67,7 @@ inline codec::CloudFormat OddFormat() {
   return format;
 }
 
-/// `decoder` is of OddFormat().
+/// `decoder` must have OddFormat().
 template <class Decoder>
 void ExpectOddFieldsToStayZero(const std::vector<std::uint8_t>& stream, Decoder* decoder) {
   const auto shape = decoder->Decode({stream.data(), stream.size()});

@@ -146,7 +146,7 @@ TEST(RangeGrids, MakeSizesThatFallAsTheStepGrows) {
 
 class HostileHeaders : public ::testing::Test {
  protected:
-  /// The header of a good block with one of its first bytes replaced.
+  /// Returns true if a header can be read from `bytes`.
   static bool Reads(std::vector<std::uint8_t> bytes) {
     ByteReader reader(bytes.data(), bytes.size());
     return RangeHeader::Read(&reader).has_value();

@@ -30,7 +30,7 @@ TEST(ReferenceKeeper, LetsOldSlicesGoWhereTheyAreTooLargeAndRemembersNewOnes) {
   ReferenceKeeper keeper;
   for (std::uint32_t scan = 0; scan < 40; ++scan) {
     const Time now{scan * 100ms};
-    // It is there, and has got nothing yet.
+    // The receiver is there, and has no slice yet.
     keeper.OnAcknowledged(now, kOneReceiver, 0, UINT32_MAX);
     for (std::uint32_t index = 0; index < kSlices; ++index) {
       EXPECT_TRUE(keeper.Begin(now, {scan, index, kSlices})) << scan;
@@ -105,7 +105,7 @@ TEST(Standstill, ForgetsASourceOfMoreSectorsThanItHasMemoryFor) {
   image.columns = 1'024;
   image.ranges.assign(image.size(), 5'000);
   for (std::size_t i = 0; i < image.size(); i += 2) image.ranges[i] = 9'000;
-  // 4 million pixels are 64 of these.
+  // The limit of 4 million pixels is 64 of these sectors.
   for (const std::uint32_t sectors : {60U, 70U}) {
     Standstill standstill;
     for (image.first_column = 0; image.first_column < sectors; ++image.first_column)

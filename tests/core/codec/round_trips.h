@@ -13,12 +13,12 @@ namespace lidar::test {
 
 struct CodingCase {
   codec::RangeCoder coder;
-  double cells;  // a bin
+  double cells;  // per bin
   unsigned intensity_bits;
   RangeGrid grid() const { return RangeGrid::ForStep(1e-3 * cells, 1); }
 };
 
-/// A pair that goes through all slices of a test: nothing of a slice may reach into the next.
+/// An encoder and a decoder for all slices of a test: no slice may change the next.
 struct Codec {
   explicit Codec(const SensorModel& model, const codec::IntegerCoder* integers = nullptr)
       : encoder(model, integers), decoder(model, integers) {}
@@ -62,7 +62,7 @@ inline void ExpectBinsOfRooms(const CodingCase& c, const codec::IntegerCoder* in
   ExpectRoundTrip(RoomScan(model, 500, 37), settings, &codec);
 }
 
-/// Blocks that no predictor helps with.
+/// Blocks of noise, which no predictor helps with.
 inline void ExpectBinsOfNoise(const CodingCase& c, const codec::IntegerCoder* integers) {
   const SensorModel model = RoomSensor();
   std::mt19937 random(5);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kMaxPoints = 1U << 20;
 
-/// There and back; the ranges of the result.
+/// Encodes and decodes. Returns the ranges of the result.
 std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads, unsigned effort) {
   const SensorModel model = test::RoomSensor(image.beams);
   const CloudFormat format{test::OrganisedLayout(), image.beams, model};
@@ -248,7 +248,7 @@ class HostileSlices : public ::testing::TestWithParam<unsigned> {
   std::vector<std::uint8_t> stream_;
 };
 
-// Those of effort 0 that pass were hit in the header: a grid of another step, another first column.
+// Damage that passes at effort 0 is in the header: another step of the grid, another first column.
 // The mixing coder finds little damage: that is what the CRC of the payload format is for.
 TEST_P(HostileSlices, GiveACloudWithinLimitsOrNone) {
   SliceDecoder decoder(test::RoomFormat(), test::kHostileMaxPoints);

@@ -35,7 +35,7 @@ struct Pair {
       if (image.ranges[i] != 0) image.ranges[i] += static_cast<std::uint32_t>(i * 7 % 19);
     EXPECT_TRUE(encoder.Encode(image, settings, &dependent, &link));
   }
-  /// True where `bytes` is a block; `decoder` says why not.
+  /// Returns true if `bytes` are a block; otherwise `decoder` has the reason.
   bool Decode(const std::vector<std::uint8_t>& bytes, RangeDecoder* decoder,
               BlockStore* store) const {
     ByteReader reader(bytes.data(), bytes.size());
@@ -124,7 +124,7 @@ std::vector<RangeImage> NoisyScans(int count) {
 }
 
 /// Bytes of dependent blocks of such scans at an effort, the largest error [mm] that they come back
-/// with, and how many of them say that bins were chosen.
+/// with, and how many of them have chosen bins.
 struct Repeated {
   std::size_t bytes = 0;
   int error_mm = 0;

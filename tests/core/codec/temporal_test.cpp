@@ -31,9 +31,9 @@ struct LinkTest {
   std::function<bool(std::uint32_t scan, std::uint32_t index)> loses = [](auto, auto) {
     return false;
   };
-  /// Scans after which a receiver has said what it has; none: it says nothing.
+  /// Scans until the receiver's acknowledgement; without a value it sends none.
   std::optional<std::uint32_t> delay = 2;
-  /// What a scan shows; nobody moves by default.
+  /// What a scan shows; by default nothing moves.
   std::function<RangeImage(const SensorModel&, std::uint32_t scan)> scene =
       [](const SensorModel& model, std::uint32_t scan) {
         return test::RoomScan(model, 0, kColumns, scan + 1);
@@ -43,7 +43,7 @@ struct LinkTest {
 struct Sent {
   std::size_t bytes = 0;
   std::size_t plain_bytes = 0;  // by an encoder without references
-  bool is_plain = false;        // the very same bytes
+  bool is_plain = false;        // equal to those bytes
   bool refers = false;
   bool decoded = false;
 };
@@ -136,7 +136,7 @@ class Loop {
     return sent;
   }
 
-  /// What arrives comes back as it was, within the error.
+  /// Expects a slice that arrives to decode within the error.
   void Check(const RangeImage& image, const std::vector<std::uint8_t>& bytes, Sent* sent) {
     const auto shape = decoder_.Decode({bytes.data(), bytes.size()});
     sent->decoded = shape.has_value();
@@ -219,7 +219,7 @@ TEST(Temporal, SlicesThatArriveDecodeWhateverWasLost) {
   Loop loop(test);
   const auto sent = loop.Scans(30);
   EXPECT_GT(std::count_if(sent.begin(), sent.end(), [](const Sent& s) { return s.refers; }), 60);
-  // None of those that came was refused: the decoder never had to ask.
+  // The decoder refuses no slice that arrives.
   LinkTest all;
   all.loses = [](std::uint32_t scan, std::uint32_t index) { return (scan + index) % 3 == 1; };
   Loop steady(all);
@@ -246,7 +246,7 @@ TEST(Temporal, SlicesStandAloneOnceInAKeyInterval) {
       }
       EXPECT_LT(now, kSlices);
     }
-    // As long as the new one is on its way, there is nothing to refer to.
+    // Slices also stand alone until the renewed slice is acknowledged.
     for (const unsigned count : alone) EXPECT_TRUE(count >= 1 && count <= 3) << count;
   }
 }
@@ -266,7 +266,7 @@ TEST(Temporal, SlicesAreThePlainOnesWithASecondReceiver) {
     loop.keeper().OnAcknowledged(loop.now(), kReceiver + 1, 0, 0);
     EXPECT_TRUE(AllPlain(loop.Scan())) << scan;
   }
-  // Once it is gone, the first one is alone again.
+  // The second receiver is forgotten, and the first one is alone again.
   loop.Scans(25);
   EXPECT_TRUE(AnyRefers(loop.Scans(3)));
 }

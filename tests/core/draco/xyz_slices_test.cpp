@@ -45,7 +45,7 @@ struct Result {
   Points points = {};
 };
 
-/// There and back through xyz geometry.
+/// Encodes and decodes in xyz geometry.
 Result Coded(const Points& points, const SliceSettings& settings) {
   auto encoder = *SliceEncoder::Create(PlainFormat(), Geometry::kXyz);
   const auto* raw = reinterpret_cast<const std::uint8_t*>(points.data());

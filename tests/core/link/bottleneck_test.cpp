@@ -21,7 +21,7 @@ BottleneckConfig Simple() {
   return c;
 }
 
-/// Every outcome, at the times the link asks for.
+/// Returns every outcome, at the times that the link asks for.
 std::vector<Outcome> Drain(Bottleneck* link) {
   std::vector<Outcome> all;
   while (link->NextEventTime() < Time::max())
@@ -163,7 +163,7 @@ TEST(Bottleneck, TheRampMarksInProportionToTheSojourn) {
   auto config = Simple();
   config.capacity = Capacity::Constant(Mbps(800));
   config.aqm = {AqmConfig::Kind::kRamp, 2ms, 10ms, {}};
-  // A standing queue of 5 ms: 37.5 % of the packets.
+  // A standing queue of 5 ms marks 37.5 % of the packets.
   Bottleneck link(config);
   int marked = 0;
   int counted = 0;

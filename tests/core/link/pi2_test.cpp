@@ -22,8 +22,8 @@ struct Share {
   double mean_ms() const { return sojourn_ms / packets; }
 };
 
-/// 8 Mbit/s; flows of 1000-byte packets that never slow down, `load` each, for 20 s; figures of
-/// the last 10.
+/// Sends flows of 1000-byte packets that never slow down, each `load` of 8 Mbit/s, for 20 s.
+/// Returns figures of the last 10 s.
 std::array<Share, 4> Overload(AqmConfig::Kind kind, std::vector<Ecn> flows, double load,
                               bool knows_l4s = true) {
   BottleneckConfig config;

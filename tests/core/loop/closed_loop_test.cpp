@@ -186,7 +186,7 @@ TEST_P(ClosedLoop, StandsStillAgainSoonAfterEveryStepOfTheLink) {
   const std::vector<DataRate> steps = {mbps(9), mbps(6), mbps(9), mbps(5), mbps(8), mbps(7)};
   const auto result = Simulate(Path(link::Capacity::Steps(steps, seconds(12)), GetParam(), true));
   for (int step = 1; step < 5; ++step) {
-    // SCReAM probes upwards for some seconds; then it has arrived.
+    // SCReAM probes upwards for some seconds; after that the target is steady.
     const Swing target = Measure(Targets(result, seconds(12 * step + 6), seconds(12 * step + 12)));
     const Swing sent = Measure(Sent(result, seconds(12 * step + 6), seconds(12 * step + 12)));
     Print("target, after a step", target);

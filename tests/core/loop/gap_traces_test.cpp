@@ -57,7 +57,7 @@ TEST(Loop, TheSameRunGivesTheSameFigures) {
   EXPECT_EQ(a.capture_to_cloud_ms.p95, b.capture_to_cloud_ms.p95);
 }
 
-/// A run whose goals are held. What falls short is printed by loop-matrix.
+/// A run that must reach its goals. loop-matrix prints goals not met.
 struct Held {
   const char* name;
   const char* trace;
@@ -109,8 +109,8 @@ TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
   }
 }
 
-/// What a stream without adaptation completes, and in time. It has less on its way when a gap
-/// begins, so that the scans behind come sooner: it may be ahead by so much, and no more.
+/// A fixed step has less data on its way when a gap begins, so that the scans after it come sooner.
+/// It may be ahead in scans, complete or in time, by this much and no more.
 TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   constexpr int kStarts = 24;
   for (const char* trace : {"gap_1s_every_10s", "drive_1", "drive_2", "drive_3"}) {
@@ -130,7 +130,7 @@ TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   }
 }
 
-/// What filled the link when a gap began leaves first, so the scan behind it comes later than that
+/// Data that filled the link when a gap began leave first, so the next scan comes later than that
 /// of a stream that sends little.
 TEST(Loop, AFullLinkCostsHardlyAScanOfAGap) {
   link::GapTraceConfig gaps;
@@ -169,7 +169,7 @@ TEST(Loop, SettlesSoonOnALinkThatStaysSlow) {
   }
 }
 
-/// The time after a gap in which the sender is not yet back at 80 % of what can be used.
+/// The time after a gap until the sender is back at 80 % of what it can use.
 TEST(Loop, IsBackSoonAfterEveryGap) {
   for (const char* trace : {"gap_100ms_every_0.6s", "gap_100ms_every_2s", "gap_1s_every_10s"})
     EXPECT_LE(RunLoop(Case(trace)).report.recovery_s.max, 0.3) << trace;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Walks through a file record by record, by the specification (https://mcap.dev/spec) and without
-// our reader: whatever one record says of another has to be so.
+// our reader: what one record says of another must be true.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -187,7 +187,7 @@ TEST_F(Layout, TheStatisticsCountWhatIsThere) {
   ByteReader r(Of(11)[0].content);
   EXPECT_EQ(r.Le64(), 25U);
   EXPECT_EQ(r.Le16(), 2U);  // schemas
-  EXPECT_EQ(r.Le32(), 2U);  // channels: nothing came of the third
+  EXPECT_EQ(r.Le32(), 2U);  // channels: the third has no messages
   EXPECT_EQ(r.Le32(), 0U);
   EXPECT_EQ(r.Le32(), 0U);
   EXPECT_EQ(r.Le32(), 3U);  // chunks

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the reader believes of files that others wrote, and where it stops believing.
+// How far the reader trusts files that others wrote.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ void AppendChunk(const Bytes& records, std::uint64_t time, Bytes* file) {
   Append(ChunkHeader{time, time, records.size(), 0, "", records.size()}, ViewOf(records), file);
 }
 
-/// A file of zeros but for its begin and its footer.
+/// A file of zeros except for its begin and its footer.
 class HugeInput : public Input {
  public:
   explicit HugeInput(std::uint64_t summary_start) : begin_(Begin()) {
@@ -87,7 +87,7 @@ TEST(McapOfOthers, AChunkThatClaimsMoreThanItsRecordHoldsIsPassedOver) {
   Bytes file = Begin();
   const std::uint64_t at = file.size();
   const Bytes records = ChannelWithMessage(1, 5);
-  // Whoever believed it would read on into the record behind it.
+  // A reader that trusts this length reads on into the next record.
   Append(ChunkHeader{5, 5, records.size() + 9, 0, "", 0}, ViewOf(records), &file);
   file[at + 41] = static_cast<std::uint8_t>(file[at + 41] + 9);
   AppendChunk(ChannelWithMessage(2, 6), 6, &file);
@@ -115,7 +115,7 @@ TEST(McapOfOthers, ChunksMayBeAsLargeAsTheLimitAndNoLarger) {
   }
 }
 
-/// The chunk is of the time 5. It goes from `at` to the end of `file`.
+/// Returns the index of a chunk of the time 5 that goes from `at` to the end of `file`.
 ChunkIndex IndexOf(std::uint64_t at, const Bytes& file) {
   ChunkIndex index;
   index.start_time = index.end_time = 5;
@@ -153,7 +153,7 @@ TEST(McapOfOthers, AChunkIsReadOnceHoweverOftenItIsIndexed) {
     index.start_time = i % 6;
     Append(index, &summary);
   }
-  // One that begins within it, and one that hides how long it is.
+  // An index of a chunk that begins within the first.
   ChunkIndex inside = IndexOf(at + 9, file);
   Append(inside, &summary);
   Close(summary, &file);

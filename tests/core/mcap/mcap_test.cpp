@@ -79,7 +79,7 @@ TEST_P(Compressed, AFileThatBrokeOffGivesEveryWholeChunk) {
         Open(Bytes(maker.file().begin(), maker.file().begin() + static_cast<long>(size)));
     ASSERT_NE(reader, nullptr);
     EXPECT_FALSE(reader->index().complete);
-    // The indexes of messages behind a chunk are not needed.
+    // The indexes of messages after a chunk are not needed.
     const auto whole = static_cast<std::size_t>(
         std::count_if(ends.begin(), ends.end() - 1, [&](std::size_t end) { return end <= size; }));
     const auto read = ReadAll(reader.get());
@@ -285,8 +285,7 @@ TEST(Mcap, RecordsAreThoseOfTheSpecification) {
   EXPECT_EQ(out, chunk);
 }
 
-/// Bytes flipped anywhere never make more messages than there were, nor any that is wrong about
-/// its size.
+/// Bytes flipped anywhere never make more messages than there were, nor messages of a wrong size.
 TEST(Mcap, DamageAnywhereIsSurvived) {
   FileMaker maker(WriterSettings{});
   Record(&maker, 30, 40);

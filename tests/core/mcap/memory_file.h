@@ -34,7 +34,7 @@ inline std::unique_ptr<Reader> Open(Bytes file) {
   return Reader::Open(std::make_unique<MemoryInput>(std::move(file)), &why);
 }
 
-/// A message, kept.
+/// A message that a test keeps.
 struct Kept {
   std::string topic;
   std::uint64_t log_time = 0;
@@ -86,7 +86,7 @@ class FileMaker {
   }
   Writer& writer() { return writer_; }
   const Bytes& file() const { return file_; }
-  /// How long the file was after each chunk.
+  /// Returns the lengths of the file after each chunk.
   const std::vector<std::size_t>& ends() const { return ends_; }
   void FillDisk() { full_ = true; }
   void FreeDisk() { full_ = false; }

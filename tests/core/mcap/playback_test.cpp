@@ -37,7 +37,7 @@ class Growing : public ::testing::Test {
   }
   ~Growing() override { fs::remove_all(folder_); }
 
-  /// A message a second, each a chunk.
+  /// Records a message a second, each in a chunk of its own.
   void Record(int from, int to) {
     for (int i = from; i < to; ++i) {
       ASSERT_TRUE(maker_.Add(channel_, Time(i), "message"));

@@ -32,7 +32,7 @@ TEST(LocalMap, FindsTheNearestPointWithinACube) {
   map.Add(points);
   const Points kept = map.Collect();
   for (const Eigen::Vector3d& asked : RandomPoints(300, 5)) {
-    double nearest = 1;  // what is farther than the reach is not asked for
+    double nearest = 1;  // points beyond the reach do not count
     for (const Eigen::Vector3d& point : kept) nearest = std::min(nearest, (point - asked).norm());
     const auto found = map.FindNearest(asked, 1);
     ASSERT_EQ(found.has_value(), nearest < 1);

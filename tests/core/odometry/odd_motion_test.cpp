@@ -54,7 +54,7 @@ TEST(OddMotion, ATurnBringsANarrowViewIntoTheMap) {
   OdometrySettings settings;
   settings.deskew = false;
   Odometry odometry(settings);
-  constexpr double kTurn = 0.06;  // a scan
+  constexpr double kTurn = 0.06;  // per scan
   for (int scan = 0; scan < 50; ++scan) {
     const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(kTurn * scan, Eigen::Vector3d::UnitZ())),
                     Eigen::Vector3d::Zero()};

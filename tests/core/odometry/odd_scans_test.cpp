@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans that do not fit, come late, or are none of a drive.
+// Scans that do not fit, come late, or belong to no drive.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -56,7 +56,7 @@ TEST(OddScans, KnowsWhenAScanDoesNotFit) {
   EXPECT_EQ(found.tracking, Tracking::kTracking);
 }
 
-/// To another place that looks alike.
+/// A jump to another place that looks alike.
 struct Jump {
   synth::SceneKind scene;
   const char* sensor;
@@ -137,7 +137,7 @@ TEST(OddScans, FindsItsWayAfterLostScansInWhichTheCarBraked) {
   for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
   for (std::uint64_t i = 20; i < 25; ++i)
     EXPECT_EQ(odometry.OnScan(drive.StartOf(i), kPeriod, elsewhere).tracking, Tracking::kLost);
-  // In 0.6 s it has come as far as in 0.5 s before: 1 m less than is expected.
+  // The sensor has moved in 0.6 s as far as in 0.5 s before: 1 m less than is expected.
   const Estimate found = odometry.OnScan(drive.StartOf(25), kPeriod, drive.Scan(24));
   EXPECT_EQ(found.tracking, Tracking::kTracking);
   EXPECT_LT((found.pose.position - drive.WayTo(24).position).norm(), 0.3);
@@ -193,7 +193,8 @@ TEST(OddScans, FollowsADriveOfWhichSomeScansAreThinnedOut) {
     const TimedPoints whole = drive.Scan(i);
     TimedPoints thinned;
     for (std::size_t n = 0; n < whole.points.size(); ++n) {
-      if (whole.rings[n] % (i / 5 % 3 + 1) != 0) continue;  // each beam, each second, each third
+      if (whole.rings[n] % (i / 5 % 3 + 1) != 0)
+        continue;  // every beam, every second one, every third one
       thinned.points.push_back(whole.points[n]);
       thinned.phases.push_back(whole.phases[n]);
       thinned.rings.push_back(whole.rings[n]);
@@ -231,7 +232,7 @@ TEST(OddScans, ReachesFartherAfterAGapInWhichTheCarBraked) {
   Drive drive(synth::SceneKind::kTown, 10);
   Odometry odometry({});
   for (std::uint64_t i = 0; i < 20; ++i) odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
-  // Half a second later it has come as far as in 0.4 s before.
+  // The sensor has moved in 0.5 s as far as in 0.4 s before.
   const Pose found = odometry.OnScan(drive.StartOf(24), kPeriod, drive.Scan(23)).pose;
   const Pose way = drive.WayTo(23);
   EXPECT_LT((found.position - way.position).norm(), 0.6);

@@ -12,7 +12,7 @@
 namespace lidar::odometry {
 namespace {
 
-/// Poses of `scans` scans, of which those in `missing` do not come.
+/// Poses of `scans` scans, without those in `missing`.
 struct Followed {
   Trajectory truth;
   Trajectory estimate;
@@ -91,7 +91,7 @@ TEST(Odometry, DoesNotTiltOnGroundThatItSawFromAfar) {
   EXPECT_LT(error->end_error_m, 0.3);
 }
 
-/// Through the corners of a town, or over the bumps of a field.
+/// Results of a drive through the corners of a town, or over the bumps of a field.
 struct GyroRun {
   double ate_m = 0;
   std::size_t lost = 0;
@@ -199,7 +199,7 @@ TEST(Odometry, GoesOnAtTheVelocityThatItIsGiven) {
   EXPECT_NEAR(second.pose.position.x(), 2, 0.1) << "the first scan is straight";
 }
 
-/// How far the last pose is off, against where the first one was.
+/// Error of the last position relative to the first pose.
 double EndError(const Followed& run) {
   const Pose way = run.truth.front().pose.Inverse() * run.truth.back().pose;
   const Pose found = run.estimate.front().pose.Inverse() * run.estimate.back().pose;

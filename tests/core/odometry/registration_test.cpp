@@ -148,7 +148,7 @@ TEST(Align, TellsThePartOfThePointsThatFit) {
 }
 
 TEST(Align, GroundThatTheScanShowsDoesNotStandWhateverTheMapHasThere) {
-  // Of the floor the map has few points, and of the poles it has none.
+  // The map has few points of the floor, and none of the poles.
   const Points floor = Floor();
   Points sparse;
   for (std::size_t i = 0; i < floor.size(); i += 50) sparse.push_back(floor[i]);

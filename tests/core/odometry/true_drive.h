@@ -9,7 +9,7 @@ namespace lidar::odometry {
 
 inline constexpr Duration kPeriod = std::chrono::milliseconds(100);
 
-/// A car with a sensor, of 32 beams if nothing else is said.
+/// A car with a sensor, by default of 32 beams.
 class Drive {
  public:
   Drive(synth::SceneKind scene, double speed_mps, std::uint64_t seed = 0)
@@ -43,7 +43,7 @@ class Drive {
     return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
   }
   synth::Imu Imu() const { return {scanner_.trajectory(), synth::kMemsImu, 7}; }
-  /// From the middle of the first scan to that of another.
+  /// Returns the motion from the middle of the first scan to that of another.
   Pose WayTo(std::uint64_t number) const {
     return TruthAt(StartOf(0) + kPeriod / 2).Inverse() * TruthAt(StartOf(number) + kPeriod / 2);
   }
@@ -64,7 +64,8 @@ class Drive {
   RangeProjection projection_;
 };
 
-/// Passes the turns before `end` on, as a gyroscope that is turned about the vertical has them.
+/// Adds the turns before `end`, as a gyroscope measures them that is turned about the vertical by
+/// `axes_rad`.
 inline void AddTurns(synth::Imu* imu, Time end, double axes_rad, Odometry* odometry) {
   const Eigen::AngleAxisd axes(axes_rad, Eigen::Vector3d::UnitZ());
   for (const ImuSample& s : imu->Until(end.time_since_epoch()))

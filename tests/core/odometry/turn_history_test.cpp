@@ -24,7 +24,7 @@ double YawOf(const Eigen::Quaterniond& turn) {
 void AddSteadyTurn(Time from, Time to, double rate, TurnHistory* turns) {
   for (Time t = from; t <= to; t += kStep) turns->Add(t, {0, 0, rate});
 }
-/// Ten scans of a turn of one radian a second, each twice as fast as the last velocity has it.
+/// Teaches ten scans of a turn of one radian a second, twice as fast as their last velocity.
 void TeachTurns(double measured, TurnHistory* turns) {
   AddSteadyTurn(Time{}, Time{} + seconds(1), measured, turns);
   for (int i = 0; i < 10; ++i)
@@ -116,7 +116,7 @@ TEST(TurnHistory, BelievesNoBiasThatNoGyroscopeHas) {
   EXPECT_LE(turns.bias().norm(), 0.2 + 1e-9);
 }
 
-/// A sensor on a road with bumps of five a second, at 10 m/s.
+/// A sensor on a road with five bumps a second, at 10 m/s.
 struct BumpyRoad {
   static constexpr double kTurns = 31.4;  // [rad/s]
   static constexpr double kHeight = 0.04;

@@ -225,7 +225,7 @@ TEST(Window, PadsToTheFullTurnAndCompletesWithTheLastColumnOfTheWindow) {
   EXPECT_EQ(batcher.stats().lost_packets, 0U);
 }
 
-/// Columns of a window, which may go over the begin of a scan.
+/// Columns of a window, which may contain the begin of a scan.
 class AnyWindow : public ::testing::TestWithParam<std::pair<std::uint32_t, std::uint32_t>> {
  protected:
   static std::vector<Slice> Run(const Metadata& metadata, BatcherStats* stats) {

@@ -80,7 +80,7 @@ TEST_F(CaptureIndexTest, AReaderSeesAllThatIsLaterFromItsPlaces) {
     const auto next = reader->Next();
     ASSERT_TRUE(next) << time;
     EXPECT_LE(next->time, kStart + milliseconds(time));
-    // Not much before it, or the places would be of no use.
+    // Places much earlier than the time would be of no use.
     EXPECT_GE(next->time, kStart + milliseconds(std::min(time, kDatagrams) - 250));
   }
 }

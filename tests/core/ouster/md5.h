@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// MD5, as the digests beside the captures have it.
+// MD5, in the form of the digests next to the captures.
 #pragma once
 #include <glib.h>
 

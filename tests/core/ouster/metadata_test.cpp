@@ -70,7 +70,7 @@ TEST(Metadata, TellsThatTheStreamIsSentNowhere) {
   auto m = Parse(root, &error);
   ASSERT_TRUE(m) << error;
   EXPECT_TRUE(m->switched_off);
-  // A capture may have been recorded later.
+  // Points can be made all the same: a capture may have been recorded later.
   EXPECT_TRUE(PointWriter::Create(*m, {}, &error)) << error;
   root["lidar_data_format"]["udp_profile_lidar"] = "OFF";
   m = Parse(root, &error);

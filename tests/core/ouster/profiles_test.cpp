@@ -49,7 +49,7 @@ Metadata MakeMetadata(const Case& c) {
   return m;
 }
 
-/// The value that pixel carries in that channel: any of those that it has room for.
+/// Returns the value of a pixel in a channel: any number that fits the channel's bits.
 std::uint32_t ValueOf(const ChannelBits& bits, std::uint32_t beam, std::uint32_t column) {
   std::minstd_rand random(1 + beam * 7919 + column * 31 +
                           static_cast<std::uint32_t>(bits.channel) * 104729);

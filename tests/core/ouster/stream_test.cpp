@@ -61,7 +61,8 @@ TEST(ClockMapper, FollowsAClockThatDrifts) {
   }
 }
 
-/// Packets each millisecond from `from` to `until`, all `delay` under way; the error of the last.
+/// Maps packets each millisecond from `from` to `until`, all `delay` under way. Returns the error
+/// of the last one.
 Duration ErrorAfter(ClockMapper* mapper, Duration from, Duration until, Duration delay) {
   Duration error{};
   for (Duration t = from; t < until; t += 1ms) {
@@ -77,7 +78,7 @@ TEST(ClockMapper, RemembersTheFastestPacketOfTheWindowBefore) {
   EXPECT_EQ(ErrorAfter(&mapper, 0s, 4s, 0ms), 0ms);
   // A window of slow packets only: the fast ones before still count.
   EXPECT_EQ(ErrorAfter(&mapper, 4s, 8s, 10ms), 0ms);
-  // They are forgotten after that, and the offset creeps up as fast as clocks drift.
+  // The fast ones are forgotten after that, and the offset creeps up as fast as clocks drift.
   const Duration error = ErrorAfter(&mapper, 8s, 16s, 10ms);
   EXPECT_GT(error, 2ms);
   EXPECT_LT(error, 4ms);

@@ -30,7 +30,7 @@ double Bytes(const AdaptiveModel& model, const SliceFeatures& slice) {
   return model.Predict(slice, kTwoCentimetres).total();
 }
 
-/// Has learned one scan whose slices are of the size that it says itself.
+/// A model that has learned one scan, whose slices had the sizes that it predicted.
 AdaptiveModel Taught() {
   AdaptiveModel model(AdaptiveCoefficients{{}, {{11, -0.5, 0, 0}}});
   for (std::uint32_t i = 0; i < kSlices; ++i) {

@@ -26,7 +26,7 @@ class BadInput : public ::testing::Test {
     p.limits.coarsest_step_m = 0.04;
     return p;
   }
-  /// Encodes one slice and returns how it was decided, having checked that it is within limits.
+  /// Encodes one slice. Returns its decision after a check that it is within limits.
   Decision Play(const SliceFeatures& f) {
     const Decision d = controller_.NextSlice(f);
     EXPECT_GE(d.settings.step_m, 0.001);

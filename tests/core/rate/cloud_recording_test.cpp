@@ -67,7 +67,7 @@ class CloudRecording : public ::testing::Test {
     std::ofstream(path_, std::ios::binary) << file_.substr(0, bytes);
     return path_;
   }
-  /// What the user is told.
+  /// Returns the error that opening `source` throws.
   static std::string RefusalOf(const std::string& source) {
     try {
       OpenScans(source, {});

@@ -222,7 +222,7 @@ TEST(ScanPlans, KeepTheIntensityBetweenItsLimitsAtAnyBudget) {
         }
 }
 
-/// Notes what it is asked for. Its slices have no intensity.
+/// A coder that notes its settings, and whose slices have no intensity.
 class RangesOnly : public SliceCoder {
  public:
   LoadedSlice loaded() const override { return {1'000, 50, 32, false, 3, "range-plain"}; }

@@ -25,8 +25,8 @@ struct RangeErrors {
   double mean = 0;
 };
 
-/// Puts `units` neighbouring ranges on a grid of steps of `parts` / 256 units. Those that share a
-/// bin come back as the middle of the first and the last of them, rounded up to a millimetre.
+/// Puts `units` neighbouring ranges on a grid of steps of `parts` / 256 units. Ranges in one bin
+/// come back as the middle of the first and the last of them, rounded up to a millimetre.
 RangeErrors ErrorsOfRanges(std::int64_t parts, unsigned unit_mm, std::int64_t units) {
   RangeErrors errors;
   for (std::int64_t first = 0; first < units;) {

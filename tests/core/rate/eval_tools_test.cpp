@@ -60,7 +60,7 @@ TEST_F(Files, KittiCloudsOfOddLengthAreRefused) {
 
 TEST_F(Files, KittiSequencesHaveABeamForEachRiseOfPhasesAndTheMedianPeriod) {
   KittiScan scan;
-  scan.phases = {0.1F, 0.1F, 0.5F, 0.1F, 0.2F, 0.2F};  // the second of two equal ones is a return
+  scan.phases = {0.1F, 0.1F, 0.5F, 0.1F, 0.2F, 0.2F};  // equal neighbours are a second return
   for (std::size_t i = 0; i < scan.phases.size(); ++i)
     scan.points.insert(scan.points.end(), {static_cast<float>(i) + 1, 2, 3, 0.5F});
   for (std::size_t number = 0; number < 4; ++number) WriteKittiScan(folder_, number, scan);

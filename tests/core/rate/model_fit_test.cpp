@@ -12,7 +12,7 @@
 namespace lidar::rate {
 namespace {
 
-/// Samples whose bytes `size` tells, at random settings as lidar-train draws them.
+/// Samples with the bytes that `size` gives, at random settings as lidar-train draws them.
 template <class Size>
 std::vector<Sample> Samples(std::size_t count, const Size& size) {
   std::mt19937 random(5);
@@ -109,7 +109,7 @@ TEST(FitAdaptive, MakesModelsThatCanBeReadWhateverTheSamples) {
   }
 }
 
-/// Predicts a byte for each.
+/// Predicts one byte for any slice.
 class OneByte : public SizeModel {
  public:
   PredictedSize Predict(const SliceFeatures&, const Settings&) const override { return {1, 0}; }

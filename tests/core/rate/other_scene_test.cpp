@@ -49,7 +49,7 @@ class TrainedInTheTunnel : public ::testing::Test {
 };
 TrainedInTheTunnel::Sets* TrainedInTheTunnel::sets_ = nullptr;
 
-/// Halfway between what the bound needs and what is of use.
+/// Returns a rate halfway between what the bound needs and what is of use.
 double MiddleRate(const ScanSet& set, const TrackOptions& options) {
   const rate::RateBounds bounds = MeasureBounds(set, options);
   return std::sqrt(bounds.min.bits_per_second() * bounds.max.bits_per_second());

@@ -217,7 +217,7 @@ TEST_P(Tracking, ComesBackToEveryScanAtOnceWhenTheTargetDoes) {
 
 class Ramps : public ::testing::TestWithParam<std::tuple<DegradationPreference, std::uint32_t>> {};
 
-/// Down to an eighth of the minimum and up again, 3 % a scan.
+/// The target goes down to an eighth of the minimum and up again, 3 % a scan.
 TEST_P(Ramps, GoBelowTheMinimumAndComeBackWithoutAJolt) {
   const auto [preference, slices] = GetParam();
   ControllerParameters parameters = Parameters();
@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
                                          DegradationPreference::kBalanced),
                        ::testing::Values(1U, 8U)));
 
-/// From four times finer steps, of a codec whose curve is not the model's.
+/// The run uses finer steps only, and the codec's curve is not the model's.
 TEST_P(Tracking, KnowsTheMinimumWithoutEverHavingBeenThere) {
   Stream run(Codec());
   for (std::uint32_t i = 0; i < 100; ++i) {

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """usage: same_model.py SCRIPT LIDAR_TRAIN CAPTURES COMMITTED [MODES]
 
-The committed rate model is what the script makes, but for what another machine rounds otherwise.
-MODES, separated by commas: of these modes alone, which is faster.
+The committed rate model is what the script makes, except for the rounding of another machine.
+MODES, separated by commas, limit it to these modes, which is faster.
 """
 import json
 import subprocess

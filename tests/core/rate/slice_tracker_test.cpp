@@ -11,7 +11,7 @@ namespace {
 constexpr double kGain = 0.3;    // of an innovation, to the drift
 constexpr double kWeight = 0.7;  // of the drift, in a prediction
 
-/// A tracker that has seen one scan, each of whose sectors was as the model said.
+/// A tracker that has seen one scan, whose sectors all were as the model predicted.
 SliceTracker AfterOneScan(std::uint32_t slices) {
   SliceTracker tracker;
   for (std::uint32_t i = 0; i < slices; ++i) tracker.Observe(i, slices, {1, 0}, 0);
@@ -38,7 +38,8 @@ TEST(SliceTracker, FollowsADriftThatAllSectorsShareWithoutBias) {
   SliceTracker tracker = AfterOneScan(8);
   for (std::uint32_t i = 0; i < 8; ++i)
     tracker.Observe(i, 8, {1, kTrue}, kTrue - tracker.Predict(i, 8)->residual);
-  // Its own weight in the errors is taken out, so the drift closes in on all of the change.
+  // The tracker takes the drift's own part out of the errors, so that the drift approaches the
+  // whole change.
   const double drift = kTrue * (1 - std::pow(1 - kGain, 8));
   EXPECT_NEAR(tracker.Predict(0, 8)->residual, kTrue + kWeight * drift, 1e-9);
 }

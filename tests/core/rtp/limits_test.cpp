@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where the parts of the RTP format begin and stop to fit.
+// The limits of the parts of the RTP format.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -146,7 +146,7 @@ TEST(UnitCheckLimits, ASliceMayBeAsLongAsTheLimit) {
   }
 }
 
-/// What a stream that goes on `scans` scans later, after `pause`, counts as.
+/// Returns the accounts of a stream that continues `scans` scans later, after `pause`.
 ReceiverAccounts AfterJump(std::uint32_t scans, Duration pause, bool clock = true) {
   Receiver receiver(test::kReorder);
   test::SenderOptions options;
@@ -224,7 +224,7 @@ TEST_F(Rivals, TakeOverOnceTheStreamWasSilentForTheTimeOfAScan) {
   Push(1, 1, 100);
   Push(2, Receiver::kProbation, 200);
   EXPECT_EQ(receiver.ssrc(), 2U);
-  // Its silence begins with its own last packet.
+  // The silence of stream 2 begins with its own last packet.
   Push(3, Receiver::kProbation, 210);
   EXPECT_EQ(receiver.ssrc(), 2U);
 }

@@ -86,14 +86,14 @@ Unit GoldenUnit() {
   return unit;
 }
 
-/// `size` bytes that begin with `first` and count on.
+/// Returns `size` bytes that count up from `first`.
 std::vector<std::uint8_t> Count(std::size_t size, std::uint8_t first) {
   std::vector<std::uint8_t> bytes(size);
   std::iota(bytes.begin(), bytes.end(), first);
   return bytes;
 }
 
-// The bytes below were made by tests/system/adversary/wire.py, which knows the document alone.
+// The bytes below were made by tests/system/adversary/wire.py, which follows the document alone.
 
 TEST(GoldenUnits, AreThoseOfAnotherWriter) {
   const auto bytes = Count(30, 1);
@@ -226,7 +226,7 @@ TEST(ScanCounter, ASliceThatComesAgainIsOfTheNextScan) {
 
 TEST(ScanCounter, TellsWhichOfTheSlicesBeforeWereLeftOut) {
   ScanCounter scans(0);
-  EXPECT_EQ(Placed(&scans, 1, 1, 4).unit, UnitType::kSlice);  // what came before is unknown
+  EXPECT_EQ(Placed(&scans, 1, 1, 4).unit, UnitType::kSlice);  // the slices before it are unknown
   EXPECT_EQ(Placed(&scans, 1, 2, 4).unit, UnitType::kSlice);
   const Unit over_the_end = Placed(&scans, 2, 1, 4);  // without slice 3 and slice 0
   EXPECT_EQ(over_the_end.unit, UnitType::kSliceAfterSkip);

@@ -19,7 +19,7 @@ using test::SenderOptions;
 using test::Wire;
 using Names = std::vector<std::string>;
 
-/// Equality of what the stream has become, in one line.
+/// Returns the accounts in one line.
 std::string Accounts(const Receiver& r) {
   const SliceAccounts a = r.accounts().slices;
   return "received " + std::to_string(a.slices_received) + " lost " +
@@ -80,7 +80,7 @@ TEST(Loss, OfAnyOnePacketCostsItsSliceOnly) {
         std::to_string(packets[drop].scan) + "." + std::to_string(packets[drop].index);
     ASSERT_EQ(DeliverAll(&receiver, left), Without(AllSlices(0, 3), {lost})) << drop;
     receiver.Finish();
-    // Without its first packet the very first slice is where the receiver joins.
+    // A loss in the very first slice makes the receiver join after it.
     if (lost == "0.0") continue;
     ASSERT_EQ(Accounts(receiver), "received 11 lost 1 damaged 0 mismatch 0; scans 2 1 0") << drop;
   }
@@ -262,7 +262,7 @@ TEST(Join, InMidStreamStartsWithTheFirstSliceThatIsWholeAfterAConfig) {
   sender.Config(&packets);
   for (std::uint16_t i = 0; i < 4; ++i) sender.Slice(3, i, &packets);
   for (std::uint16_t i = 0; i < 4; ++i) sender.Slice(4, i, &packets);
-  // From the second packet of slice 1.2 on.
+  // Keeps the packets from the second one of slice 1.2 on.
   const auto from = std::find_if(packets.begin(), packets.end(),
                                  [](const Wire& w) { return w.scan == 1 && w.index == 2; });
   packets.erase(packets.begin(), from + 1);

@@ -94,7 +94,7 @@ TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
   for (std::uint32_t cut = 0; cut < 4; ++cut) {
     std::vector<Wire> through;
     for (const Wire& w : all) {
-      // Down from slice 5.cut to slice (5 + scans).cut.
+      // The link is down from slice 5.cut to slice (5 + scans).cut.
       const std::uint32_t at = w.scan * 4 + w.index;
       if (w.config || at < 5 * 4 + cut || at >= (5 + scans) * 4 + cut) through.push_back(w);
     }
@@ -104,7 +104,7 @@ TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
     const auto a = receiver.accounts();
     EXPECT_EQ(a.slices.slices_lost, scans * 4) << cut;
     EXPECT_EQ(a.slices.slices_received, 40U) << cut;
-    // Where the cut is within a scan, two scans are incomplete and one less is lost.
+    // A cut within a scan leaves two scans incomplete and loses one less.
     EXPECT_EQ(a.slices.scans_incomplete, cut == 0 ? 0U : 2U) << cut;
     EXPECT_EQ(a.slices.scans_lost, cut == 0 ? scans : scans - 1) << cut;
     EXPECT_EQ(a.slices.scans_complete, cut == 0 ? 10U : 9U) << cut;
@@ -160,7 +160,7 @@ TEST(Receiver, GivesOutSlicesThatComeAloneAndFarApart) {
 }
 
 TEST(Receiver, GivesOutSlicesFromFarApartThatComeAllAtOnce) {
-  // As where a link without capacity keeps them until it has some again.
+  // Packets wait, as if a link had no capacity until 1.5 s.
   SenderOptions options;
   options.slice_size = 1'500;
   std::vector<Wire> through;

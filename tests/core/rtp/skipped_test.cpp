@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices and scans that the sender left out: told from lost ones, whatever else happens.
+// Slices and scans that the sender left out are not counted as lost, whatever else happens.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ TEST(SkippedSlices, AreToldFromLostOnesEvenWhereTheNextSliceIsLostToo) {
   Sender sender;
   auto packets = sender.ScansWithout(
       10, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
-  // 4.3 would have been the first to tell.
+  // Slice 4.3 is the first that names the skipped ones before it.
   Lose(&packets, [](const Wire& w) { return w.scan == 4 && w.index == 3; });
   DeliverAll(&receiver, packets);
   receiver.Finish();
@@ -57,8 +57,8 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesLate) {
   Sender sender;
   auto packets = sender.ScansWithout(
       6, [](std::uint32_t s, std::uint16_t i) { return (s == 2 && i == 3) || (s == 3 && i < 2); });
-  // A sender in need pauses within the slice that tells of them: its last packet comes when
-  // what lies before it is overdue.
+  // A sender short of capacity pauses within the slice that names them: its last packet comes when
+  // they are overdue.
   const auto told = [](const Wire& w) { return w.scan == 3 && w.index == 2; };
   const auto begun = std::find_if(packets.begin(), packets.end(), told);
   ASSERT_TRUE(told(*(begun + 1)));
@@ -74,14 +74,14 @@ TEST(SkippedSlices, AreNotLostInAnOutage) {
   Sender sender;
   auto packets = sender.ScansWithout(
       20, [](std::uint32_t s, std::uint16_t i) { return s == 11 || (s == 12 && i < 2) || i == 3; });
-  // Nothing of scans 5 to 11 comes through. Scan 11 has no number, as none of it was sent.
+  // No packet of scans 5 to 11 arrives. Scan 11 has no number, because no slice of it was sent.
   Lose(&packets, [](const Wire& w) { return !w.config && w.scan >= 5 && w.scan <= 11; });
   DeliverAll(&receiver, packets);
   receiver.Finish();
   const auto a = receiver.accounts();
   EXPECT_EQ(a.outages, 1U);
   EXPECT_EQ(a.slices.slices_received, 5U * 3 + 1 + 7 * 3);
-  // 12.2 tells of the 64 slices before it.
+  // Slice 12.2 names the skipped ones of the 64 slices before it.
   EXPECT_EQ(a.slices.slices_lost, 6U * 3);
   EXPECT_EQ(a.slices.scans_skipped, 1U);
 }
@@ -91,7 +91,7 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesAfterAnOutage) {
   Sender sender;
   auto packets = sender.ScansWithout(
       20, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
-  // Slice 4.3 would have told, but only one packet of it comes. Then scans 5 to 9 are lost.
+  // Only one packet arrives of slice 4.3, which names them. Then scans 5 to 9 are lost.
   bool first = true;
   Lose(&packets, [&](const Wire& w) {
     if (w.config) return false;
@@ -157,7 +157,7 @@ TEST(SkippedScans, AreNotThoseOfWhichAPartWasLost) {
   EXPECT_EQ(receiver.accounts().slices.scans_skipped, 0U);
 }
 
-/// A slice that says that all slices before it were left out, whatever was.
+/// A slice that claims that all slices before it were left out.
 std::vector<Wire> Liar(Sender* sender, std::uint32_t scan, std::uint16_t index) {
   ScanCounter counter(SenderOptions{}.scan_number + scan - 1);
   Unit before;
@@ -182,7 +182,7 @@ TEST(SkippedSlices, AreNotThoseThatArrivedOrArriveNow) {
   EXPECT_EQ(names, Names{});
   EXPECT_EQ(DeliverAll(&receiver, Liar(&sender, 2, 2)), Names{"2.2"});
   EXPECT_EQ(DeliverAll(&receiver, {begun.back()}), Names{"2.0"});
-  // 2.1 was not there yet, so the lie about it is believed; all others stand.
+  // Slice 2.1 had not arrived, so the false claim about it counts; the other slices stay received.
   EXPECT_EQ(DeliverAll(&receiver, next), Names{});
   std::vector<Wire> last;
   sender.Slice(2, 3, &last);

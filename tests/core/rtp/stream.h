@@ -98,7 +98,7 @@ class Sender {
       for (std::uint16_t i = 0; i < o_.slices; ++i) Slice(s, i, &out);
     return out;
   }
-  /// The config, then `scans` scans of which `left_out` says which slices to leave out.
+  /// The config, then `scans` scans without the slices that `left_out` names.
   template <class LeftOut>
   std::vector<Wire> ScansWithout(std::uint32_t scans, LeftOut&& left_out) {
     std::vector<Wire> out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Packets as the tests hold them.
+// The type of packets in tests.
 #pragma once
 #include <cstdint>
 #include <vector>

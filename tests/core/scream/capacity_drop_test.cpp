@@ -54,20 +54,21 @@ TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(20)));
 }
 
-/// Beside others, packets that arrive as they left show what we send, not what the link carries.
+/// Packets that arrive as they left show our own rate if others use the link, too, and not its
+/// capacity.
 TEST_F(CapacityDropTest, TakesItsOwnRateForNoDropWhereMarksWork) {
   path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
 }
 
 TEST_F(CapacityDropTest, NeedsAQueueThatGrewByThreePackets) {
-  HoldBack(40, Ecn::kCe, 100us);  // by two gaps of 1.9 ms
+  HoldBack(40, Ecn::kCe, 100us);  // 4 ms: two gaps of 1.9 ms
   EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
-  HoldBack(30, Ecn::kCe, 100us);  // by 3.6
+  HoldBack(30, Ecn::kCe, 100us);  // 7 ms: more than three gaps
   EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(10)));
 }
 
-/// Where nothing marks, it is what keeps a standing queue short.
+/// This response alone keeps a standing queue short if the link does not mark.
 TEST_F(CapacityDropTest, ShortensAStandingQueueThatNobodyMarks) {
   path_.Arrive(40, 2ms, 50ms, Ecn::kEct1);
   EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(10)));

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// One SSRC, `count` packets from 100; all received where `last_received`, else all but the last.
+/// A report of one SSRC: `count` packets from 100 on, all received, or all except the last.
 CongestionFeedback Report(std::size_t count, bool last_received = true) {
   CongestionFeedback f;
   f.sender_ssrc = 7;
@@ -128,7 +128,7 @@ TEST(Ccfb, ACompoundIsSplitAndForeignPacketsAreLeftAlone) {
   EXPECT_TRUE(SplitRtcp(View(compound)).empty());
 }
 
-/// `report` with `added` bytes behind it that say that `said` of them are padding.
+/// Returns `report` with `added` bytes of padding, whose last byte claims `said` of them.
 Bytes Padded(Bytes report, std::size_t added, std::uint8_t said) {
   report[0] |= 0x20;
   report[3] = static_cast<std::uint8_t>(report[3] + added / 4);

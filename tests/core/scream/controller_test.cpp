@@ -102,14 +102,14 @@ class FullLink : public ::testing::Test {
         c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
     }
   }
-  /// All that was sent until then has arrived half a round trip later.
+  /// Reports that all packets sent until `sent` have arrived half a round trip later.
   void Report(Time sent) {
     const auto until = static_cast<std::uint16_t>(((sent - kStart) / kTick + 1) * kPacketsATick);
     ReportNext(static_cast<std::uint16_t>(until - reported_), Ecn::kEct1, sent + 20ms, 0ms);
   }
-  /// The next `count` packets have arrived 1 ms apart, the last one half a round trip ago.
+  /// Reports the next `count` packets as arrived 1 ms apart, the last one half a round trip ago.
   void ReportTrain(int count, Ecn ecn) { ReportNext(count, ecn, now_ - 20ms, 1ms); }
-  /// The next `count` packets have arrived so far `apart`, the last one at `last`.
+  /// Reports the next `count` packets as arrived `apart` from each other, the last one at `last`.
   void ReportNext(int count, Ecn ecn, Time last, Duration apart) {
     CongestionFeedback f;
     f.report_timestamp = ReportClock::ToTimestamp(last);
@@ -191,7 +191,7 @@ TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
     CongestionFeedback f;
     f.report_timestamp = ReportClock::ToTimestamp(now);
     f.blocks.push_back({1, 0, {}});
-    // All that arrives has done so within 10 ms.
+    // All packets that arrived did so at kStart + 10 ms.
     for (const char m : metrics)
       f.blocks[0].metrics.push_back({m == 'r', Ecn::kEct1, now - kStart - 10ms});
     ASSERT_EQ(c.OnFeedback(now, f), FeedbackResult::kAccepted);
@@ -246,7 +246,7 @@ TEST(Simulation, ThePureDraftFillsALinkWithoutEcn) {
   EXPECT_LT(m.queue_ms.p95, 40);
 }
 
-/// Which signal moved the rate is counted, and no other.
+/// The counters show which signal moved the rate, and no other signal.
 TEST(Simulation, CountsWhatItAnswers) {
   const Statistics marked =
       Simulate(FindScenario("frames_20M_rtt25", Parameters::Draft())->config).flows[0].statistics;

@@ -13,7 +13,7 @@ namespace {
 /// Frames of ten packets every 20 ms, about 1 ms apart, and a pause: arrivals in ticks of a report.
 class CrossTrafficTest : public ::testing::Test {
  protected:
-  /// In front of each packet waits what others sent since the one before. `own` ms a packet.
+  /// What others sent since the last packet precedes each packet, of `own` ms.
   void Send(int frames, double others_share, Duration queue = 20ms, double own = 0.5) {
     for (int i = 0; i < 10 * frames; ++i) {
       if (i % 10 == 0) traffic_.BeginReport();
@@ -56,7 +56,7 @@ TEST_F(CrossTrafficTest, IsTheOthersShareOfTheLink) {
   }
 }
 
-/// 1250 bytes in 0.5 ms.
+/// The link carries 1250 bytes in 0.5 ms.
 TEST_F(CrossTrafficTest, TellsWhatTheLinkCarriesForAll) {
   for (const double share : {0.0, 0.4, 0.7}) {
     traffic_ = CrossTraffic();
@@ -91,7 +91,7 @@ TEST_F(CrossTrafficTest, TakesNoStepOfTheCapacityForOthers) {
   EXPECT_NEAR(*traffic_.share(), 0, 0.1);
 }
 
-/// A packet that left after the one before had passed the queue found it empty, or nearly so.
+/// A packet sent after its predecessor left the queue may find it empty, or nearly so.
 TEST_F(CrossTrafficTest, CountsNoPacketThatMayHaveMetAnIdleLink) {
   Send(500, 1, 1500us);
   EXPECT_FALSE(traffic_.share());
@@ -151,7 +151,7 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
   EXPECT_TRUE(traffic_.unseen());
 }
 
-/// A flow that has become slow sends few packets that count, so what it knows is believed late.
+/// A flow that has become slow has few packets that count, so that a share counts as found late.
 TEST_F(CrossTrafficTest, IsUnseenWhileFewPacketsTellOfAShareThatIsKnown) {
   Send(50, 0.5);
   ASSERT_GT(traffic_.share().value_or(0), 0.4);

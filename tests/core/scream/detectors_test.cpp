@@ -56,7 +56,7 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
 
 class QueueDelayTest : public ::testing::Test {
  protected:
-  /// A packet a millisecond that takes `owd`, on clocks an hour apart.
+  /// Sends a packet a millisecond that takes `owd`, on clocks an hour apart.
   void Run(int packets, Duration owd, Duration rtt_excess) {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
       const Duration way_back = 40ms + rtt_excess - owd - 1h;
@@ -107,7 +107,7 @@ TEST_F(QueueDelayTest, AQueueThatStandsForMinutesIsNoClock) {
   parameters_.clock_drift = false;
   Run(30, 20ms, 0ms);
   Run(1000, 210ms, 190ms);
-  for (int i = 0; i < 100; ++i, now_ += 1s) {  // the lowest round trip has become this one
+  for (int i = 0; i < 100; ++i, now_ += 1s) {  // this becomes the lowest round trip
     ok_ = delay_.Add(now_, {now_ - 20ms, now_ + 190ms + 1h, 0ms, 20ms - 1h}) && ok_;
     delay_.Update(now_, 40ms);
     ASSERT_EQ(delay_.qdelay(), Duration(190ms));
@@ -182,7 +182,7 @@ TEST(RoundTripTime, SmoothsByAnEighth) {
   EXPECT_EQ(rtt.min(), Duration(80ms));
 }
 
-/// Packets of 1000 bytes that left `sent` apart and came out of a queue `spacing` apart.
+/// Adds packets of 1000 bytes that left `sent` apart and came out of a queue `spacing` apart.
 Time Arrive(BusyRun* run, Time now, Duration spacing, int packets, Duration sent = 500us) {
   for (int i = 0; i < packets; ++i, now += spacing)
     run->Add({kStart + i * sent, now, DataSize::Bytes(1000), 5ms, true, true});
@@ -192,7 +192,7 @@ Time Arrive(BusyRun* run, Time now, Duration spacing, int packets, Duration sent
 TEST(BusyRun, MeasuresTheLinkByTheSpacingOfWhatItHeldBack) {
   BusyRun run;
   Arrive(&run, kStart, 1ms, 8);
-  EXPECT_FALSE(run.capacity());  // 7 ms, of which one does not count
+  EXPECT_FALSE(run.capacity());  // 7 ms, of which the first does not count
   Arrive(&run, kStart + 8ms, 1ms, 1);
   ASSERT_TRUE(run.capacity());
   EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);

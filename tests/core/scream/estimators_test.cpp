@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the estimators forget, and what they take no account of.
+// What the estimators forget, and what they ignore.
 #include <gtest/gtest.h>
 
 #include "src/scream/model/ecn_monitor.h"
@@ -84,7 +84,7 @@ TEST(PathModel, TheRateIsHalvedWhereClocksDriftAndWholeOnAnotherRoute) {
   Path path(p);
   for (int i = 0; i < 5000 && path.model.half_rate_until() == Time{}; ++i)
     path.Arrive(1, 10ms, 40ms, Ecn::kEct1);
-  // Five round trips, which are longer than the 0.2 s that it is at least.
+  // The half rate lasts five round trips, which are longer than its minimum of 0.2 s.
   EXPECT_GT(path.model.half_rate_until(), path.now + 350ms);
   EXPECT_LT(path.model.half_rate_until(), path.now + 450ms);
   path.model.Reset(path.now);
@@ -193,7 +193,7 @@ TEST(QueueDelay, AWayBackThatTakesLongForAWhileIsNoClock) {
   QueueDelay delay(p);
   for (const Time now : {kStart, kStart + 1s})
     EXPECT_TRUE(delay.Add(now, {now - 40ms, now - 20ms, 0ms, 20ms}));
-  const Time later = kStart + 6min;  // the shortest is looked for anew
+  const Time later = kStart + 6min;  // after this the shortest is looked for anew
   EXPECT_TRUE(delay.Add(later, {later - 240ms, later - 220ms, 200ms, 220ms}));
   EXPECT_TRUE(delay.Add(later, {later - 40ms, later - 20ms, 0ms, 20ms}));
 }

@@ -18,7 +18,7 @@ TEST_P(ScenarioGoals, AreReached) {
 INSTANTIATE_TEST_SUITE_P(Matrix, ScenarioGoals, ::testing::ValuesIn(ScenariosWithGoals()));
 
 /// Whole scans: p99 of 560 is the seventh slowest, and three falls of the capacity each delay two.
-/// (Where a scan begins 40 to 60 ms after a fall, before it is known, three are late.)
+/// (If a scan begins 40 to 60 ms after a fall, before it is known, three are late.)
 TEST(Goals, AScanBehindThoseOfACapacityDropIsInTime) {
   for (const Duration phase : {0ms, 10ms, 20ms, 30ms, 70ms, 80ms, 90ms}) {
     Scenario s = *FindScenario("frames10_steps_rtt40", Parameters());

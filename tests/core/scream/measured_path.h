@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A path of which reports tell, without a link or a sender.
+// A path as reports show it, without a link or a sender.
 #pragma once
 #include "src/scream/model/path_model.h"
 #include "src/sim/simulated_time.h"

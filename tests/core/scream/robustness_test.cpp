@@ -24,7 +24,7 @@ class Trial {
   double MaxQueueMs(Duration from, Duration until) const {
     return result_.QueueDelay(origin_ + from, origin_ + until).max;
   }
-  /// The part of what was sent then that was lost.
+  /// Returns the lost share of what was sent in this time.
   double OwnLoss(Duration from, Duration until) const {
     double sent = 0, lost = 0;
     for (const PacketLog& p : result_.packets) {
@@ -49,7 +49,7 @@ class Trial {
 
 Scenario Named(const char* name) { return *FindScenario(name, Parameters()); }
 
-/// The path is dead from 10 s to 40 s; what it held is lost but for a buffer.
+/// The path is dead from 10 s to 40 s. All that it held is lost except for a buffer.
 Scenario WithOutage(Scenario s) {
   s.config.forward.capacity.AddOutage(10s, 40s);
   s.config.forward.limit.bytes = DataSize::Bytes(100000);
@@ -201,7 +201,7 @@ TEST(Feedback, WithoutArrivalTimesStillTellsOfMarksAndRoundTrips) {
   }
 }
 
-/// From 15 s on.
+/// The route is longer from 15 s on.
 Scenario OnALongerRoute(Scenario s) {
   s.config.flows[0].route_change = 15s;
   s.config.longer_by = 30ms;
@@ -231,7 +231,7 @@ TEST(Feedback, ThatIsSlowCostsLittle) {
   EXPECT_LT(run.MaxQueueMs(10s, 40s), 30);
 }
 
-/// As receivers made of the reference's code report.
+/// Receivers with the reference's code report once a frame.
 TEST(Feedback, OnceAFrameIsEnough) {
   for (const char* name :
        {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "frames_20M_two_flows"}) {

@@ -217,7 +217,7 @@ SimulationConfig ShortPath() {
   return config;
 }
 
-/// What one sees of a run each second, and all counters at its end.
+/// Returns the figures of a run each second, and all counters at its end.
 std::string Course(const SimulationResult& result) {
   std::ostringstream out;
   Time next = result.config.forward.origin + 1s;
@@ -260,7 +260,7 @@ bool Same(const std::string& a, const std::string& b) {
   return *end_a == '\0' && *end_b == '\0' && std::abs(x - y) <= 1e-3 * std::abs(y);
 }
 
-/// The files show what a change of the controller does to whole runs. Where that is meant,
+/// The files show what a change of the controller does to whole runs. If that is meant,
 /// UPDATE_GOLDEN=1 in the environment writes them anew.
 class Runs : public ::testing::TestWithParam<Run> {};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the sender believes of its feedback.
+// How far the sender trusts its feedback.
 #include "src/scream/model/sent_history.h"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST_F(SentHistoryTest, TheRoundTripIsOfThePacketSentLast) {
   EXPECT_EQ(summary_.rtt, 5ms);
 }
 
-/// Reports tell one stream after the other.
+/// Reports list one stream after the other.
 TEST_F(SentHistoryTest, PacketsOfSeveralStreamsComeAsTheyWereSent) {
   for (std::uint16_t seq = 0; seq < 3; ++seq)
     for (std::uint32_t ssrc = 1; ssrc <= 2; ++ssrc, now_ += 1ms)

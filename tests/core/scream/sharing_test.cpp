@@ -27,7 +27,7 @@ class TwoStreams : public ::testing::Test {
     result = Simulate(scenario.config);
     metrics = Measure(scenario, result);
   }
-  /// What arrived of a stream after the first 5 s.
+  /// Returns the rate of a stream that arrived after the first 5 s.
   double Rate(int source) const {
     const Time origin = scenario.config.forward.origin;
     const Time end = origin + scenario.config.duration;
@@ -75,7 +75,7 @@ TEST_F(TwoStreams, AnEncoderThatIgnoresItsTargetDoesNotTakeTheOthersShare) {
   EXPECT_LT(metrics.queue_ms.p99, 10);
 }
 
-/// Audio beside an encoder that sends twice its target.
+/// A stream such as audio, and an encoder that sends twice its target.
 TEST_F(TwoStreams, AStrictOneNeverWaitsForTheOther) {
   Camera().obedience = [](Duration) { return 2.0; };
   Lidar().stream.strict = true;
@@ -89,7 +89,7 @@ TEST_F(TwoStreams, AStrictOneNeverWaitsForTheOther) {
   EXPECT_LT(Summarise(latency_ms).p99, 35);
 }
 
-/// A second LiDAR that fails: what it needed is nobody's.
+/// A second LiDAR fails: the rate that it needed must be free again.
 TEST(SilentStream, LeavesTheLiveOneAsItWas) {
   for (const double needed : {5.0, 10.0, 20.0}) {
     Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
@@ -145,7 +145,7 @@ double Jain(Scenario s, double frames_per_second = 50) {
   return Measure(s, Simulate(s.config)).jain;
 }
 
-/// Who joins last is slowest, and learns least of the others.
+/// The last flow to join is slowest, and learns least of the others.
 TEST(BesideOthers, FourOfOursThatJoinOneAfterTheOtherShareAlike) {
   Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
   for (int i = 1; i <= 3; ++i) {
@@ -163,7 +163,7 @@ TEST(BesidePrague, OneOfThreeGetsAThird) {
   EXPECT_NEAR(Measure(s, Simulate(s.config)).beside->ours_mbps, 6.7, 1.3);
 }
 
-/// A slow flow has few packets that tell of others. Even shares are 5 and 4 Mbit/s.
+/// A slow flow has few packets that show others. Even shares are 5 and 4 Mbit/s.
 TEST(BesidePrague, OneThatJoinsThreeOrFourIsNotLeftBehind) {
   for (const int others : {3, 4}) {
     Scenario s = *FindScenario("prague_ramp_20M", Parameters());
@@ -175,8 +175,8 @@ TEST(BesidePrague, OneThatJoinsThreeOrFourIsNotLeftBehind) {
   }
 }
 
-/// Its packets are few and far apart, as the link's are. With frames the index is 0.64 and 0.88
-/// where every measurement of its own rate passes for a drop of the capacity.
+/// Packets are few and far apart on a slow link. With frames the index is 0.64 and 0.88 if every
+/// measurement of the flow's own rate counts as a drop of the capacity.
 TEST(BesidePrague, AtFewMegabitsItGetsItsShareAsWell) {
   const std::pair<const char*, double> even[] = {{"prague_ramp_4M", 0.95},
                                                  {"prague_ramp_8M", 0.97}};
@@ -192,7 +192,7 @@ TEST(Alone, AFlowOfOneMegabitUsesItsLink) {
   EXPECT_GE(Measure(s, Simulate(s.config)).utilisation, 0.93);
 }
 
-/// 0.80 and 0.87 where each round that is mostly marked passes for a fall of the capacity.
+/// The index is 0.80 and 0.87 if each round that is mostly marked counts as a drop of the capacity.
 TEST(BesidePrague, BothGetAboutTheSameBehindAStepAsWell) {
   for (const char* name : {"prague_step_1ms_20M", "prague_step_3ms_20M"})
     for (const double frames_per_second : {50.0, 80.0})
@@ -200,7 +200,7 @@ TEST(BesidePrague, BothGetAboutTheSameBehindAStepAsWell) {
           << name << " " << frames_per_second;
 }
 
-/// Their packets leave evenly but for what the pacer does.
+/// Packets of whole scans leave evenly except for the pacer's ripple.
 TEST(BesidePrague, WholeScansGetAboutTheSame) {
   EXPECT_GE(Jain(*FindScenario("prague_ramp_20M", Parameters()), 10), 0.97);
 }
@@ -212,7 +212,7 @@ TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
   EXPECT_GE(Measure(s, Simulate(s.config)).jain, 0.99);
 }
 
-/// A slow link tells them less of each other.
+/// A slow link shows flows less of each other.
 TEST(TwoFlows, ShareASlowLinkEvenlyAtAnyPhase) {
   const auto phases = {0ms, 1ms, 3ms, 4ms, 6ms, 7ms, 9ms, 10ms, 12ms, 13ms, 15ms, 17ms, 19ms};
   double sum = 0;
@@ -228,8 +228,8 @@ TEST(TwoFlows, ShareASlowLinkEvenlyAtAnyPhase) {
   EXPECT_GE(sum / static_cast<double>(phases.size()), 0.99);
 }
 
-/// At other phases one's frames find the other's queue always, and more marks: the draft alone
-/// comes to 0.87.
+/// The frames of one flow always find the other's queue at other phases, and more marks: the draft
+/// alone comes to 0.87.
 TEST(TwoFlows, WhoseFramesNeverMeetKeepTheirBalanceAndTheQueue) {
   for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
     for (const Duration phase : {4ms, 10ms}) {

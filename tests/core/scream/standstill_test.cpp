@@ -36,7 +36,8 @@ TEST(Standstill, NothingIsBegunInItByASourceThatLeavesItsWindowUnused) {
   Scenario s = Standing(1s);
   s.config.flows[0].sources[0].stream.max_bitrate = Mbps(2);
   const SimulationResult run = Simulate(s.config);
-  // A round trip, and the time until the next report is overdue; then 50 kbit/s.
+  // The window stays open for a round trip and until the next report is overdue; then 50 kbit/s
+  // leave.
   const DataSize most = Mbps(2) * 140ms + Parameters().rate_pace_min * 1s;
   EXPECT_LE(Sent(run, kFrom, kFrom + 1s), most.bytes());
   EXPECT_GE(Utilisation(run, kFrom + 2s, kFrom + 5s), 0.24) << "of the 25 % that it can use";

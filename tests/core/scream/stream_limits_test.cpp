@@ -12,7 +12,7 @@ class Limits : public ::testing::Test {
  protected:
   StreamId Add(const StreamConfig& config) { return streams_.Add(config); }
   double Target(StreamId id) { return streams_.Find(id)->target_bitrate().bits_per_second() / 1e6; }
-  /// A target of 1000 bytes a millisecond.
+  /// Adds a stream with a target of 1000 bytes a millisecond.
   StreamId AddAt8Mbps() {
     const StreamId id = Add({1, Mbps(0), Mbps(1), Mbps(100)});
     streams_.Allocate(kStart, Mbps(8));
@@ -22,7 +22,7 @@ class Limits : public ::testing::Test {
     for (int i = 0; i < packets; ++i)
       streams_.Find(id)->OnQueued(now, {1, DataSize::Bytes(1000), i + 1 == packets, timestamp});
   }
-  /// How many of the next packets that go are of the stream.
+  /// Returns how many of the next packets to leave are of the stream.
   int TurnsOf(StreamId stream, int packets) {
     int turns = 0;
     for (int i = 0; i < packets; ++i) {
@@ -125,7 +125,7 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_NEAR(Target(a), 4, 1e-3);
 }
 
-/// Its queue is the longest, but most of that leaves in time.
+/// The scan's queue is the longest, but most of it leaves in time.
 TEST_F(Limits, AScanThatIsLeavingIsNotTheLongestBacklog) {
   const StreamId scans = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   const StreamId frames = Add({1, Mbps(0), Mbps(1), Mbps(100)});

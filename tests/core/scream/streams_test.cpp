@@ -47,7 +47,7 @@ TEST_F(StreamsTest, ASilentStreamLeavesItsShareToTheOthers) {
   const StreamId a = Add(1, 1, 100), b = Add(1, 1, 100);
   streams_.Allocate(kStart, Mbps(10));
   EXPECT_NEAR(Target(b), 5, 1e-3);
-  streams_.Allocate(kStart + 2s, Mbps(10));  // nobody sends yet: all may start
+  streams_.Allocate(kStart + 2s, Mbps(10));  // no stream sends yet: all may start
   EXPECT_NEAR(Target(a), 5, 1e-3);
   streams_.Find(a)->OnQueued(kStart + 2s, {1, DataSize::Bytes(1000), true, 0});
   streams_.Allocate(kStart + 2s, Mbps(10));
@@ -283,7 +283,7 @@ TEST_F(StreamTest, AQueueThatOutlastsTheFramePeriodLowersTheRate) {
   EXPECT_DOUBLE_EQ(stream_.rate_adjust_factor(), 0.5);
 }
 
-/// Frames of one packet: twenty wait at once, they are gone, and four more come.
+/// Sends frames of one packet: twenty wait at once, they leave, and four more come.
 double RateAdjustFactorAfterBacklog(Duration period) {
   const Parameters parameters;
   Stream stream(parameters, {1, Mbps(0), Mbps(4), Mbps(50)});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The flows of others are what they claim to be: alone on a link, and against their published
-// response functions.
+// Competing flows behave as they should: alone on a link, and by their published response
+// functions.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -39,7 +39,7 @@ TEST_F(Mapper, FindsThePacketsOfTheNumbersAcrossTheWrap) {
 }
 
 TEST_F(Mapper, SaysNothingOfPacketsBetweenThoseOfTheReport) {
-  // Number 65535 belongs to somebody else.
+  // Number 65535 belongs to another stream.
   mapper.OnSent(65534, 100, 1);
   mapper.OnSent(0, 100, 5);
   const auto report = mapper.Map(Report({10ms, 11ms, 12ms}));

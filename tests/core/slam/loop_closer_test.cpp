@@ -80,7 +80,7 @@ TEST(LoopCloser, BoundsItsMapsByForgettingThoseThatLieOverOthers) {
   EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
 }
 
-/// A sensor that stands sees nothing new, and its noise is no way.
+/// A sensor that stands sees nothing new, and its noise is no motion.
 TEST(LoopCloser, MakesNoMapsWhereTheSensorStands) {
   LoopCloser closer({});
   odometry::StampedPose pose;
@@ -103,7 +103,7 @@ TEST(LoopCloser, DoubtsTheClosureThatIsMostContradicted) {
   EXPECT_EQ(FindWorst(closures, poses), 1U);  // twice as far as it may turn
   closures.pop_back();
   closures[0].pose.position.x() = 1.4;
-  EXPECT_EQ(FindWorst(closures, poses), 1U);  // none
+  EXPECT_EQ(FindWorst(closures, poses), 1U);  // now no closure turns
 }
 
 TEST(Place, IsFoundAgainTurnedMovedAndTilted) {
@@ -128,7 +128,7 @@ TEST(Place, IsFoundAgainTurnedMovedAndTilted) {
 }
 
 TEST(PoseGraph, SpreadsWhatALoopContradicts) {
-  // A square whose fourth side ends a metre beside its beginning.
+  // A square whose fourth side ends a metre from its beginning.
   std::vector<Pose> poses(5);
   std::vector<Edge> edges;
   for (std::size_t i = 1; i < poses.size(); ++i) {

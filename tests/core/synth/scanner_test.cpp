@@ -63,9 +63,6 @@ TEST_P(EveryScene, StaysWithinTheReachOfTheSensor) {
     EXPECT_TRUE(range == 0 || (range >= 300 && range <= 170'000)) << range;
 }
 
-// With no noise, a ground point put where the sensor was when its column was sampled lies on the
-// ground within the millimetre that ranges are rounded to. One pose a scan would be off by
-// 1.2 m along the road and, with the pitch, by centimetres of height.
 TEST_P(EveryScene, GivesTwoEchoesWhereABeamMeetsTwoThings) {
   ScannerConfig config = Config(GetParam());
   config.second_returns = true;
@@ -82,10 +79,13 @@ TEST_P(EveryScene, GivesTwoEchoesWhereABeamMeetsTwoThings) {
   const double share = static_cast<double>(both) / static_cast<double>(r.range_mm.size());
   EXPECT_GT(share, 0.001);
   EXPECT_LT(share, 0.2);
-  // What a beam meets only once is no weaker for it.
+  // Beams that meet one thing only are no weaker.
   EXPECT_NEAR(ShareOfReturns(r.range_mm), ShareOfReturns(Ranges(Config(GetParam()), 2)), 0.02);
 }
 
+// Ground points lie on the ground within the millimetre that ranges are rounded to if each column
+// has its own pose. One pose a scan would be off by 1.2 m along the road and, with the pitch, by
+// centimetres of height.
 TEST(Scanner, EveryColumnIsSampledFromItsOwnPose) {
   ScannerConfig config = Config();
   config.noise_m = 0;

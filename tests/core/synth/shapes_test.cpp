@@ -9,7 +9,7 @@
 namespace lidar::synth {
 namespace {
 
-/// Distance to the shape, or 0 where the ray misses it.
+/// Returns the distance to the shape, or 0 if the ray misses it.
 float DistanceTo(const Shape& shape, Vec3 origin, Vec3 direction) {
   const float length = std::sqrt(Dot(direction, direction));
   Random noise(1);

@@ -33,14 +33,15 @@ def scans_come_back_with_their_beams_and_times(folder):
     assert all(abs(b - a - 0.1) < 1e-6 for a, b in zip(times, times[1:])), times
     direct, read = slam(*DRIVE), slam(f"kitti:{folder}")
     assert read["scans"] == 12 and read["tracked"] == direct["tracked"], read
-    # Points are the same, so is the way; only rows without a return are not in the folder.
+    # The points are the same, and so is the trajectory; only rows without a return are not in the
+    # folder.
     assert abs(read["error"]["ate_rmse_m"] - direct["error"]["ate_rmse_m"]) < 0.002, (read, direct)
     assert abs(read["error"]["length_m"] - direct["error"]["length_m"]) < 1e-3
     assert "not empty" in run("to-kitti", *DRIVE, "-o", folder, fails=True)
 
 
 def poses_of_a_camera_become_those_of_the_sensor(folder):
-    """KITTI's cameras look along z, with x to the right: the way must not turn."""
+    """KITTI's cameras look along z, with x to the right: the trajectory must not turn."""
     before = slam(f"kitti:{folder}")["error"]
     camera = [[0, -1, 0, 0.1], [0, 0, -1, -0.2], [1, 0, 0, -0.3]]  # the sensor in its frame
 

@@ -31,7 +31,7 @@ class Lease : public ::testing::Test {
     }
   }
   bool Has(const std::string& robot, Time now) const { return table_.HeldAt(now).count(robot) > 0; }
-  /// Time passes, in steps of a millisecond; the last.
+  /// Lets time pass in steps of a millisecond. Returns the last.
   Time Pass(Time now, int ms) {
     for (; ms > 0; --ms) {
       now += milliseconds(1);
@@ -192,7 +192,7 @@ TEST_F(Lease, OfAnotherInABucketThatWasDeletedIsTakenOnceItIsOver) {
   table_.OnEntry("r", 5, LeaseRecord{"other", seconds(1), Scan(3)}, At(0));
   const auto writes = table_.Poll(At(1100));
   ASSERT_EQ(writes.size(), 1U);
-  // The other may have renewed its lease a moment ago, which nobody will tell us of.
+  // The other worker may have renewed its lease a moment ago, unseen by us.
   table_.OnRefused(writes[0].ticket, 0, At(1110));
   Time now = Pass(At(1110), 1000);
   EXPECT_FALSE(Has("r", now));
@@ -235,13 +235,13 @@ TEST_F(Lease, OfARobotThatHangsHereGoesToAnotherWorkerThoughItHesitates) {
   ASSERT_TRUE(Has("r", now));
   LeaseTable other({"other", seconds(1), 4});
   other.SetRobots({"a", "b", "c"}, At(0));
-  for (std::uint64_t ms = 0; ms < 1'000; ++ms)  // has all but one that it can take
+  for (std::uint64_t ms = 0; ms < 1'000; ++ms)  // holds all but one of the robots that it can
     for (const auto& write : other.Poll(now + milliseconds(ms)))
       other.OnStored(write.ticket, 1'000 + ms, now + milliseconds(ms));
   now = Pass(now, 1'000);
   other.SetRobots({"a", "b", "c", "r"}, now);
   table_.LeaveToOthers("r", Duration{}, now);
-  // It sees our last write late.
+  // The other worker sees our last write late.
   now += milliseconds(100);
   other.OnEntry("r", revision_, ParseLeaseRecord(written_.text), now);
   std::string next;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# lidar-trace --bound: a second link bridges the gaps of the first, and a trace that is none is an error.
+# lidar-trace --bound: a second link bridges the gaps of the first, and a text that is no trace is
+# an error.
 set -euo pipefail
 trace=$1
 folder=$(mktemp -d)

@@ -4,7 +4,7 @@
 
 namespace lidar::worker {
 
-/// As far as the scan of that number, which is also that many metres ahead.
+/// Progress up to scan `number`, which is that many metres ahead.
 inline Progress Scan(std::uint64_t number) {
   Progress progress;
   progress.pose = {static_cast<double>(number), 0, 0, 0, 0, 0, 1};

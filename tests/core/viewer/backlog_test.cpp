@@ -6,7 +6,7 @@
 namespace lidar::viewer {
 namespace {
 
-/// The slice that refers to the same place `back` scans before; 0: to nothing; negative: no slice
+/// A slice that refers to the same place `back` scans before; 0: to no slice; negative: no slice
 /// may refer to it.
 SharedSlice Make(std::uint32_t scan, std::uint32_t index, int back, std::int64_t bytes = 1000) {
   auto slice = std::make_shared<Slice>();

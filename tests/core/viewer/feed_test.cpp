@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::uint32_t kPlaces = 2;
 
-/// Named by its scan and place; refers to the same place `back` scans before, 0: to nothing.
+/// A slice named by its scan and place. It refers to the same place `back` scans before; 0: to no
+/// slice.
 SharedSlice Own(std::uint32_t scan, std::uint32_t index, std::uint32_t back) {
   auto slice = std::make_shared<Slice>();
   slice->id = {scan, index};
@@ -120,7 +121,7 @@ TEST(Feed, SkipsWholeScansOfAViewerThatIsSlow) {
   EXPECT_EQ(feed.scans_skipped(), 2U);
   feed.OnDrawn(Time{std::chrono::milliseconds(60)}, {2, 1});
   EXPECT_EQ(stream.Take(&feed), "5.0 5.1 ");
-  // What the scans in between would have brought is not there.
+  // The slices of the scans in between are missing.
   stream.Add(Own(6, 0, 2));
   EXPECT_EQ(stream.Take(&feed), "");
   EXPECT_TRUE(feed.wants_recoded());
@@ -150,7 +151,7 @@ TEST(Recorded, ComeInOrderAsFastAsTheyAreDrawn) {
     now += std::chrono::milliseconds(10);
     feed.OnDrawn(now, {drawn, 0});
     for (const auto& slice : feed.TakeRecorded(now, &waiting)) EXPECT_EQ(slice->id.scan, ++scan);
-    EXPECT_LT(scan - drawn, 15U);  // 100 ms at that rate, and what takes its way
+    EXPECT_LT(scan - drawn, 15U);  // 100 ms at that rate, and slices on their way
   }
   EXPECT_TRUE(waiting.empty());
 }

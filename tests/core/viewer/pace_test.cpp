@@ -25,7 +25,7 @@ struct Link {
   Duration one_way;
 };
 
-/// A queue without end before a link, and a page that acknowledges once a frame.
+/// An unbounded queue before a link, and a page that acknowledges once a frame.
 class Viewer {
  public:
   explicit Viewer(const Link& link, DataRate max_bitrate = {}) : link_(link), pace_(max_bitrate) {}
@@ -198,7 +198,7 @@ TEST(Pace, IsLateWhereWhatWasSentTakesTooLong) {
   Pace pace{DataRate()};
   Time now{};
   EXPECT_FALSE(pace.IsLate(now));
-  // A kilobyte in 10 ms.
+  // A kilobyte takes 10 ms.
   pace.OnSent(now, {1, 0}, DataSize::Bytes(1000));
   pace.OnDrawn(now += milliseconds(10), {1, 0});
   pace.OnSent(now, {2, 0}, DataSize::Bytes(10'000));
@@ -224,7 +224,7 @@ TEST(Pace, TakesADelayOfAFrameMoreForTheSame) {
     ASSERT_TRUE(pace.MayBegin(now)) << scan;
     pace.OnSent(now, {scan, 0}, DataSize::Bytes(1000));
     pace.OnDrawn(now + milliseconds(scan == 1 ? 10 : 25), {scan, 0});
-    // Another one is on the way when it begins, so that none is alone.
+    // Another slice is on the way when it begins, so that none is alone.
     pace.OnSent(now + milliseconds(26), {scan, 1}, DataSize::Bytes(10));
   }
   EXPECT_EQ(pace.shortest_delay(), milliseconds(10));

@@ -43,7 +43,7 @@ TEST(CellTree, GivesBackCellsAndCounts) {
     EXPECT_TRUE(decoder.AtEnd());
     EXPECT_EQ(cells.codes, before.codes);
     EXPECT_EQ(cells.counts, before.counts);
-    // A node or a point less is refused.
+    // Limits of a node or a point less refuse the tree.
     for (const CellLimits& limits :
          {CellLimits{points.size(), nodes - 1}, CellLimits{points.size() - 1, nodes}}) {
       mixing::BinaryDecoder again({bytes.data(), bytes.size()});

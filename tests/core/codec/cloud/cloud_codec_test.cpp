@@ -37,7 +37,7 @@ ByteView BytesOf(const PlainPoints& points) {
   return {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * 16};
 }
 
-/// A scan of tests/data/lidars. Its intensities are those of some order of the points.
+/// A scan of tests/data/lidars, with intensities that follow the order of the points.
 PlainPoints ScanOf(const std::string& sensor) {
   std::ifstream file(LIDARS_FOLDER "/" + sensor + ".pcd", std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -82,7 +82,7 @@ double BitsPerPoint(const Coded& coded) {
          static_cast<double>(coded.slice.returns);
 }
 
-/// The largest distance from a point of one cloud to the nearest of the other, both ways.
+/// Returns the largest distance from a point of one cloud to the nearest of the other, both ways.
 double LargestDistance(const PlainPoints& points, const XyzCloud& cloud) {
   std::vector<float> xyz;
   for (const auto& p : points) xyz.insert(xyz.end(), p.begin(), p.begin() + 3);
@@ -104,7 +104,7 @@ struct SensorCase {
 };
 class SensorClouds : public ::testing::TestWithParam<SensorCase> {};
 
-// The bits are a twentieth above those of the first version.
+// The limits are 5 % above the bits of the first version.
 TEST_P(SensorClouds, ComeBackWithinTheErrorInFewBits) {
   const SensorCase& c = GetParam();
   const PlainPoints points = ScanOf(c.name);
@@ -123,8 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
                       SensorCase{"vlp16", 3, 3.8, 2.0}),
     [](const auto& c) { return std::string(c.param.name) + std::to_string(c.param.effort); });
 
-/// What a sensor of 16 beams and 450 columns sees of a room, each azimuth off by up to
-/// `jitter_deg`, and every twentieth twice or three times.
+/// What a sensor of 16 beams and 450 columns sees of a room. Azimuths are off by up to
+/// `jitter_deg`, and every twentieth pixel has two or three returns.
 PlainPoints SpinningScan(double jitter_deg) {
   std::mt19937 random(9);
   PlainPoints points;
@@ -181,7 +181,7 @@ std::optional<BeamTable> ThroughBytes(const BeamTable& table) {
   return read;
 }
 
-/// 64 beams of a sensor whose modules repeat every four beams, all a bit off.
+/// 64 beams of a sensor whose modules repeat every four beams, each beam a bit off.
 BeamTable PatternedTable() {
   std::mt19937 random(8);
   BeamTable table;
@@ -264,19 +264,19 @@ TEST(BeamTable, FindsTheBeamsAndColumnsOfASensor) {
   }
 }
 
-/// How a sensor differs from one whose beams meet, and fire at even steps.
+/// How a sensor differs from one whose beams meet at the origin, and fire at even steps.
 struct UnevenSensor {
   const char* name;
-  double height_m = 0;      // of the beams above the origin, the upper half at twice as much
-  double side_m = 0;        // how far beams pass the origin, left and right in turn
+  double height_m = 0;      // of the lower half's origin; the upper half's is twice that
+  double side_m = 0;        // distance of beams from the origin, left and right in turn
   double rounding_deg = 0;  // of azimuths
   double jitter_deg = 0;    // of all beams of a firing
-  double swing_deg = 0;     // of every fourth beam's third firings
-  int ahead = 0;            // firings that the beams are ahead, in turn
+  double swing_deg = 0;     // of every fourth beam in every third firing
+  int ahead = 0;            // firings that beams are ahead, times 0, 1 and 2 in turn
 };
 std::ostream& operator<<(std::ostream& out, const UnevenSensor& s) { return out << s.name; }
 
-/// What it sees of a room from 16 beams and 900 firings, 0.39 degrees apart.
+/// What the sensor sees of a room from 16 beams and 900 firings, 0.39 degrees apart.
 PlainPoints UnevenScan(const UnevenSensor& sensor) {
   std::mt19937 random(3);
   PlainPoints points;
@@ -324,7 +324,7 @@ INSTANTIATE_TEST_SUITE_P(All, UnevenClouds,
                                            UnevenSensor{"Swings", 0, 0, 0.01, 0.03, 0.15, 0}),
                          [](const auto& sensor) { return std::string(sensor.param.name); });
 
-/// The bits a point of clouds that one encoder takes one after the other.
+/// Returns the bits a point of clouds that one encoder codes one after the other.
 std::vector<double> BitsOfStream(const std::vector<PlainPoints>& clouds) {
   auto encoder = CloudEncoder::Create(PlainLayout());
   std::vector<double> bits;
@@ -356,11 +356,11 @@ TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
   const auto bits = BitsOfStream({points, Turned(points, 0.4), Turned(points, 7)});
   EXPECT_LE(bits[0], 2.3);
   EXPECT_LE(bits[1], 1.05 * bits[0]);
-  // The azimuths at which nothing fires are between others now.
+  // The gap of 9 degrees without firings has moved by 7.
   EXPECT_LE(bits[2], 1.15 * bits[0]);
 }
 
-// As lidarenc cuts a turn into slices.
+// Cuts a turn into slices, as lidarenc does.
 TEST_P(UnevenClouds, KeepTheirBeamsFromSliceToSlice) {
   const PlainPoints points = UnevenScan(GetParam());
   constexpr std::size_t kSlices = 4;
@@ -373,7 +373,7 @@ TEST_P(UnevenClouds, KeepTheirBeamsFromSliceToSlice) {
 }
 
 /// What 12 beams of an oscillating mirror see: they bend, a bit more the lower they are, and their
-/// steps of 0.2 degrees are up to 2 % shorter. The scan is turned by `turn_deg`.
+/// steps vary by 2 % about 0.2 degrees. The scan is turned by `turn_deg`.
 PlainPoints BendingScan(double turn_deg) {
   const auto rounded = [](double degrees) { return std::round(100 * degrees) * 0.01 * M_PI / 180; };
   PlainPoints points;
@@ -411,13 +411,13 @@ TEST(BeamTable, FindsBeamsThatBend) {
   }
 }
 
-// A mirror does not stop where it did.
+// A mirror turns back at another angle in each scan.
 TEST(CloudCodec, KeepsBeamsThatBendFromScanToScan) {
   for (const double bits : BitsOfStream({BendingScan(0), BendingScan(0.07), BendingScan(3)}))
     EXPECT_LE(bits, 1.2);
 }
 
-/// A cloud as livox_ros_driver2 publishes it, but for the tag.
+/// A cloud as livox_ros_driver2 publishes it, without the tag.
 struct PathPoint {
   float x, y, z;
   float intensity;
@@ -432,8 +432,8 @@ CloudLayout PathLayout() {
       sizeof(PathPoint)};
 }
 
-/// What four lasers see of a room and its sky by way of a mirror that turns by 7.3 turns a scan and
-/// tilts up and down. `shake_deg` are errors of the directions.
+/// What four lasers see of a room and its sky in a mirror that makes 7.3 turns a scan and tilts up
+/// and down. `shake_deg`: largest error of the directions.
 PathCloud PathScan(unsigned scan, double shake_deg = 0) {
   constexpr int kFirings = 4'000;
   std::mt19937 random(scan);
@@ -581,7 +581,7 @@ TEST(CloudCodec, FindsTheBeamsOfASensorThatTakesTheOthersPlace) {
   EXPECT_LE(bits[2], 1.01 * bits[0]);
 }
 
-// Each change of the sensor is a new beginning, however many there were.
+// Each change of the sensor makes the encoder search anew, however many there were.
 TEST(CloudCodec, FindsTheBeamsOfSensorsThatTakeTurns) {
   const PlainPoints first = SpinningScan(0);
   const PlainPoints second = UnevenScan({"", 0.1, 0.026, 0.2, 0, 0, 7});

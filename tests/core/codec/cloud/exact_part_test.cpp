@@ -146,8 +146,8 @@ TEST_P(ExactEfforts, KeepRingTimeAndOrderOfAVelodyne) {
 }
 INSTANTIATE_TEST_SUITE_P(All, ExactEfforts, ::testing::Values(0U, 1U, 3U));
 
-/// What a sensor of 16 beams sees of a room, a beam after the other, with some second returns, and
-/// a point too far for cells.
+/// What a sensor of 16 beams sees of a room, firing by firing, with some second returns, and a
+/// point too far for cells.
 Cloud SpinningScan() {
   std::vector<Point> points;
   std::vector<std::pair<int, int>> shots;
@@ -174,7 +174,7 @@ Cloud SpinningScan() {
     const auto [firing, beam] = shots[i];
     cloud.Set(i, "ring", static_cast<std::uint16_t>(beam));
     cloud.Set(i, "time", static_cast<float>(1e-6 * (166 * firing + 2.304 * beam)));
-    // Begins anew with each packet, and is rounded at random.
+    // A time that restarts with each packet, plus noise.
     const std::uint32_t place = static_cast<std::uint32_t>(firing % 24 * 16 + beam);
     cloud.Set(i, "packet", 10'000 * place + place * 0x9E37'79B1U % 1'000);
   }
@@ -202,7 +202,7 @@ TEST(ExactPart, TakesFewBitsForRegularFields) {
   EXPECT_LE(BitsPerPoint(cloud, Encoded(cloud, {{}, true})), plain + 0.6);
 }
 
-// As an encoder of before wrote it.
+// The file comes from an earlier encoder.
 TEST(ExactDecoder, ReadsItsFirstSlicesForEver) {
   std::ifstream file(GOLDEN_CLOUDS_FOLDER "/exact.bin", std::ios::binary);
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
@@ -343,7 +343,7 @@ TEST(CloudDecoder, PassesOverWhatComesBackExactly) {
   EXPECT_FALSE(decoder.exact_section().empty());
 }
 
-/// Codes the order of points in no beam.
+/// Codes the order of points without beams.
 std::vector<std::uint8_t> SectionOf(const std::vector<std::uint32_t>& order) {
   PointPlaces places;
   places.AddLoose(order.size());
@@ -373,8 +373,7 @@ TEST(ExactPart, ReadsNoMoreNumbersThanItMay) {
   EXPECT_FALSE(Decodes({0, 0}, 1, 1U << 20));   // nothing
 }
 
-// Each step leads to a long run of places that are taken. A search from place to place takes
-// minutes.
+// Each step leads to a long run of taken places. A search from place to place would take minutes.
 TEST(ExactPart, DecodesAnOrderFullOfStepsBackInTime) {
   constexpr std::uint32_t kPoints = 1U << 19;
   std::vector<std::uint32_t> order(kPoints);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices that an encoder of before wrote give the clouds that they were.
+// Slices that earlier encoders wrote still give the same clouds.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -34,7 +34,7 @@ std::vector<std::uint8_t> PayloadOf(const SensorModel& model, const RangeImage& 
   return payload;
 }
 
-/// Pixels that are gaps on one side only, or farther than `error_mm` from each other.
+/// Counts pixels that are gaps in one image only, or differ by more than `error_mm`.
 std::size_t Wrong(const RangeImage& image, const RangeImage& back, std::uint32_t error_mm) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace lidar::codec::mixing {
 namespace {
 
-/// Gives the next of a few bits, and keeps the chances that it was asked with.
+/// An encoder that only keeps the chances that it gets.
 struct Script {
   static constexpr bool kDecodes = false;
   bool Code(bool bit, std::int32_t chance) {
@@ -39,8 +39,8 @@ struct Learnt {
   }
 };
 
-/// Random bits, most of them alike, so that counters come to both ends of their chances; weights
-/// begin anywhere.
+/// Learns random bits, most of them alike, so that counters reach both ends of their chances.
+/// Weights begin anywhere.
 template <class Lanes, unsigned kCounters, unsigned kExtra>
 Learnt<kCounters> Learn(unsigned seed) {
   std::mt19937 random(seed);
@@ -99,7 +99,7 @@ TEST(Lanes, AddUpTheLargestNumbers) {
 
 TEST(ACounter, LearnsAboutAsTheMeanOfItsBits) {
   Counter counter;
-  EXPECT_EQ(counter.Vote(2'047), 172);  // it knows next to nothing
+  EXPECT_EQ(counter.Vote(2'047), 172);  // a new counter has little weight
   for (int i = 0; i < 100; ++i) {
     counter.Learn(i % 4 == 0);
     EXPECT_NEAR(counter.rate, 65'536 / (i + 2.64), 0.12 * counter.rate) << i;

@@ -60,7 +60,7 @@ class MixingCodec : public testing::TestWithParam<Case> {
   }
 };
 
-/// Decodes what was encoded; fails the test where that is not possible.
+/// Decodes what was encoded; fails the test if that is not possible.
 RangeImage Decoded(const SensorModel& sensor, const RangeImage& image,
                    const MixingSettings& settings, const std::vector<std::uint8_t>& payload) {
   RangeImage decoded;
@@ -146,7 +146,8 @@ TEST(MixingCodecOf, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(payload.empty());
 }
 
-/// A payload that a decoder would follow to the end of any image: each pixel is what it expects.
+/// A payload whose every bit is what the decoder expects, so that it could fill an image of any
+/// size.
 std::vector<std::uint8_t> AsExpected(std::size_t bytes) {
   std::vector<std::uint8_t> payload(bytes, 0xFF);
   payload[0] = mixing::kTableVersion << 4 | 4 | 3;  // the version, gaps, effort 3
@@ -256,7 +257,7 @@ RangeImage Steps() {
 }
 
 TEST(MixingFormat, IsTheSameWithEveryCompilerAndProcessor) {
-  // Whoever has to change these numbers makes another version of the format.
+  // A change of these numbers is another version of the format.
   const std::array<std::uint32_t, 3> expected = {2'862'675'178, 3'885'110'784, 3'935'255'924};
   MixingEncoder encoder(Sensor(16, 256));
   for (unsigned effort = 1; effort <= 3; ++effort) {
