@@ -25,7 +25,7 @@ std::optional<std::uint8_t> Short(ByteReader* reader) {
   return number;
 }
 
-/// libdraco follows nested metadata to any depth.
+/// Skips the metadata of a cloud. Refuses nested ones, which libdraco follows to any depth.
 bool SkipMetadata(ByteReader* reader) {
   const auto of_attributes = Short(reader);
   const auto entries = Short(reader);
@@ -56,7 +56,7 @@ bool CheckAttributes(ByteReader* reader, std::uint32_t max_attributes) {
   return true;
 }
 
-/// The kd-tree repeats the count, and a large one costs seconds without any memory.
+/// The kd-tree repeats the count of points: a large one would cost seconds, though no memory.
 bool CheckKdTree(ByteReader* reader, std::uint32_t points) {
   const std::uint8_t level = reader->U8();
   const std::uint32_t bit_length = reader->Le32();

@@ -50,7 +50,7 @@ void AddField(const FieldOfPoints& field, ByteView points, std::uint32_t point_s
                   points.data + std::size_t{i} * point_step + field.offset, size);
 }
 
-/// Returns false if the attribute is not the field.
+/// Returns false if the attribute's values do not have the field's size.
 bool CopyField(const ::draco::PointAttribute& attribute, const FieldOfPoints& field,
                const FieldLayout& layout, std::vector<std::uint8_t>* points) {
   const std::size_t size = BytesOf(field);

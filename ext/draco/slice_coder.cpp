@@ -30,8 +30,8 @@ void XyzSliceEncoder::Thin(const std::vector<bool>& kept) {
   if (!cloud_.intensity.empty()) cloud_.intensity.resize(count);
 }
 
-/// The order of the points decides which of Draco's coders is smaller: a sensor's order suits the
-/// sequential one.
+/// Tries both of Draco's coders. The order of the points decides which result is smaller: a
+/// sensor's order suits the sequential coder.
 bool XyzSliceEncoder::TryBothMethods(const XyzSettings& settings, codec::EncodedSlice* slice,
                                      XyzResult* result) {
   XyzSettings other = settings;

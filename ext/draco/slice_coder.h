@@ -71,14 +71,14 @@ class SliceEncoder {
   void set_threads(unsigned threads);
   void set_effort(unsigned effort);
 
-  /// Encodes what is loaded, as often as wanted.
+  /// Encodes the loaded points. May be called again for the same ones.
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
 
  private:
   explicit SliceEncoder(const codec::CloudLayout& layout) : xyz_(layout) {}
 
   std::optional<codec::SliceEncoder> range_;
-  XyzSliceEncoder xyz_;  // where there is no `range_`
+  XyzSliceEncoder xyz_;  // used if there is no `range_`
 };
 
 /// Decodes the slices of one stream; any bytes give a cloud or nothing. For one thread at a time.

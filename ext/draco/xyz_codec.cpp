@@ -112,7 +112,8 @@ void LeaveQuantized(::draco::Decoder* decoder) {
   decoder->SetSkipAttributeTransform(GeometryAttribute::GENERIC);
 }
 
-/// `bytes` hold `values` as integers of the attribute's grid, rounded in floats as Draco does.
+/// Converts `bytes`, integers of the attribute's grid, to `values`, and rounds in floats as Draco
+/// does.
 template <std::size_t kComponents>
 bool FromGrid(const ::draco::PointAttribute& attribute, const std::uint8_t* bytes,
               std::vector<float>* values) {

@@ -29,13 +29,14 @@ struct XyzResult {
   double error_m = 0;  // bound that holds with this step, float rounding included
 };
 
-/// Appends a Draco file to `out`. The points must be finite. Returns false if there are none, or
-/// where no grid that Draco can write meets the bound: its grids have 2^30 cells at most, and a
-/// float at 10 km has steps of a millimetre itself.
+/// Appends a Draco file to `out`. The points must be finite. Returns false if there are none, or if
+/// no grid that Draco can write meets the bound: a grid has at most 2^30 cells along a side, and
+/// floats at 10 km have steps of a millimetre themselves.
 bool EncodeXyz(const XyzCloud& cloud, const XyzSettings& settings, std::vector<std::uint8_t>* out,
                XyzResult* result);
 
-/// False for a stream that is not a cloud of 1 .. max_points points as EncodeXyz writes them.
+/// Returns false for a stream that is not a cloud of 1 .. max_points points as EncodeXyz writes
+/// them.
 bool DecodeXyz(ByteView stream, std::uint32_t max_points, XyzCloud* cloud);
 
 }  // namespace lidar::draco
