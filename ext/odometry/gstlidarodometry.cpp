@@ -262,7 +262,7 @@ static void FinishLoops(GstLidarOdometry* self) {
   PushMap(GST_ELEMENT(self), stream.map_from_odometry, stream.last.time, GST_CLOCK_TIME_NONE);
 }
 
-/// Returns true if a scan took the buffer.
+/// Adds the buffer to a scan. Returns false if it cannot be mapped or does not hold whole points.
 static bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice,
                       Time at) {
   Stream& stream = self->state->stream;

@@ -73,7 +73,8 @@ GstBuffer* PoseBuffer(const Estimate& e, GstClockTime pts) {
   for (Eigen::Index i = 0; i < 36; ++i)
     told.pose_covariance[static_cast<std::size_t>(i)] = e.covariance(i / 6, i % 6);
   auto bytes = cdr::WritePose(told, static_cast<std::uint64_t>(e.tracking));
-  bytes.resize(kPoseSizeWithCovariance);  // the first scan's covariance is 0
+  // WritePose() leaves out a covariance of 0, as the first scan has.
+  bytes.resize(kPoseSizeWithCovariance);
   return ToBuffer(bytes, e.time, pts);
 }
 

@@ -28,7 +28,7 @@ class ScanCollector {
   /// one has too many points.
   bool BeginsNewScan(const GstLidarSlice& slice) const;
   /// Adds a slice, whose first column was sampled at `time`, to the open scan or to a new one.
-  /// `size` bytes at `points` are whole points, and whole columns where the cloud is organised.
+  /// `size` bytes at `points` are whole points, and whole columns if the cloud is organised.
   void Add(const GstLidarSlice& slice, Time time, const guint8* points, gsize size);
   /// Returns true if the last slice of the open scan is there.
   bool complete() const { return open_ && next_index_ >= count_; }
