@@ -73,7 +73,7 @@ class CloudWriter : public BufferWriter {
   const CloudInfo info_;
 };
 
-/// A packet of samples becomes a message each.
+/// Writes a message for each sample of a packet.
 class ImuWriter : public BufferWriter {
  public:
   explicit ImuWriter(const std::string& frame_id) : BufferWriter(MessageType::kImu, frame_id) {}

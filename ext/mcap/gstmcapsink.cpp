@@ -243,7 +243,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
     name = wanted != nullptr ? wanted : "sink_" + std::to_string(number);
     if (const PadPtr taken(gst_element_get_static_pad(element, name.c_str())); !taken) break;
   } while (wanted == nullptr);
-  // The stream is called as its pad, so that sink_0::topic reaches it.
+  // The stream has its pad's name, so that sink_0::topic reaches it.
   GstElement* stream = gst_lidar_mcap_stream_new(self, name.c_str());
   if (!gst_bin_add(GST_BIN(self), stream)) return nullptr;
   const PadPtr target(gst_element_get_static_pad(stream, "sink"));
@@ -269,8 +269,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_object_unref(stream);
 }
 
-/// Returns the part of the caps that needs a channel of its own. A cloud's width is in its
-/// messages.
+/// Returns the part of the caps that needs a channel of its own. A cloud's width does not, because
+/// its messages have it.
 static std::string KindOf(lidar::ScalarCaps caps, MessageType type) {
   auto& fields = caps.fields;
   if (type == MessageType::kCloud)
@@ -307,7 +307,7 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   if (!state.recorder) return false;
   state.topics.insert(topic);
   state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
-  // A stream that returns to caps it had goes on in their channel.
+  // A stream that has earlier caps again continues in their channel.
   const auto [known, is_new] = stream->channels.try_emplace(KindOf(caps, writer.type()));
   stream->channel_id = known->second;
   if (!is_new) return true;

@@ -17,7 +17,7 @@ G_END_DECLS
 
 namespace lidar::gst {
 
-/// The properties of a stream's next buffers.
+/// The channel of a stream's next messages, and all its channels.
 struct RecordedStream {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;

@@ -2,7 +2,7 @@
 /**
  * SECTION:element-mcapsrc
  *
- * Plays MCAP files: a pad for each topic.
+ * Plays MCAP files. Each topic has its own pad.
  *
  * |[
  * gst-launch-1.0 mcapsrc location=drive.mcap ! lidardec ! scanassembler ! fakesink
@@ -73,7 +73,7 @@ struct State {
   guint32 last_seek = GST_SEQNUM_INVALID;
 
   std::atomic<bool> end_wanted{false};
-  std::atomic<bool> stopping{false};  // the chunk in work is the last
+  std::atomic<bool> stopping{false};  // no chunk is read after the present one
   PlayTask task;
   Run run;
 };
@@ -175,7 +175,7 @@ static bool Open(GstLidarMcapSrc* self) {
   return true;
 }
 
-/// A seek without a flush continues from the end.
+/// Posts SEGMENT_DONE and keeps its position, from which a seek without a flush continues.
 static void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   const guint32 seqnum = self->state->run.streams->seqnum();
   {
@@ -214,7 +214,7 @@ static void Finish(GstLidarMcapSrc* self) {
   streams.End(gst_event_new_segment_done(GST_FORMAT_TIME, position));
 }
 
-/// Posts what is an error, and stops the task.
+/// Pauses the task, and posts `flow` if it is an error.
 static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
   // The task pauses before EOS is posted: a seek may answer it and starts the task again.
@@ -264,7 +264,7 @@ static void Loop(gpointer user_data) {
   if (flow != GST_FLOW_OK) Stop(self, flow);
 }
 
-/// Takes the pads from the element, as the streams belong to the task.
+/// Takes the pads from the element, because the streams belong to the task.
 static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   GST_OBJECT_LOCK(self);
   GList* pads = g_list_copy_deep(
@@ -277,7 +277,7 @@ static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   gst_event_unref(event);
 }
 
-/// The task stands still and its lock is held.
+/// Call it with the lock of the task, which is paused.
 static void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment) {
   State& state = *self->state;
   Run& run = state.run;
@@ -335,7 +335,7 @@ static gboolean SendEvent(GstElement* element, GstEvent* event) {
   return TRUE;
 }
 
-/// The task is gone and the pads are inactive.
+/// Call it when the task has ended and the pads are inactive.
 static void Close(GstLidarMcapSrc* self) {
   State& state = *self->state;
   {
@@ -343,7 +343,7 @@ static void Close(GstLidarMcapSrc* self) {
     state.is_open = false;
     state.last_seek = GST_SEQNUM_INVALID;
   }
-  // A seek may still be at work on it.
+  // A seek in another thread may still use the run.
   g_rec_mutex_lock(state.task.lock());
   Run run = std::exchange(state.run, Run());
   g_rec_mutex_unlock(state.task.lock());

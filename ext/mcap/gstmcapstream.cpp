@@ -120,7 +120,8 @@ static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
 }
 
 GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name) {
-  // Does not preroll: a sparse stream must not delay the others, and disks have no clock.
+  // The stream does not preroll, which would delay the others if it is sparse, nor wait for the
+  // clock, which disks do not need.
   auto* stream = static_cast<GstElement*>(g_object_new(GST_TYPE_LIDAR_MCAP_STREAM, "name", name,
                                                        "async", FALSE, "sync", FALSE, nullptr));
   StateOf(stream).sink = sink;

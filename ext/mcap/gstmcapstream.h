@@ -9,8 +9,8 @@ G_BEGIN_DECLS
 #define GST_TYPE_LIDAR_MCAP_STREAM (gst_lidar_mcap_stream_get_type())
 G_DECLARE_FINAL_TYPE(GstLidarMcapStream, gst_lidar_mcap_stream, GST, LIDAR_MCAP_STREAM, GstBaseSink)
 
-/** @sink outlives the stream. Floating. */
+/** Returns a floating reference. @sink must outlive the stream. */
 GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name);
-/** TRUE from its EOS to the next flush. */
+/** Returns TRUE from EOS to the next flush. */
 gboolean gst_lidar_mcap_stream_ended(GstLidarMcapStream* stream);
 G_END_DECLS

@@ -52,7 +52,7 @@ class SliceReader : public MessageReader {
 
 class CloudReader : public MessageReader {
  public:
-  /// `caps` may be NULL: ROS messages say nearly all.
+  /// `caps` may be NULL, because ROS messages have nearly all of their content.
   explicit CloudReader(CapsPtr caps) {
     if (caps) info_ = CloudInfo::FromFrameCaps(caps.get());
     if (info_) caps_ = std::move(caps);
@@ -76,7 +76,7 @@ class CloudReader : public MessageReader {
   }
 
  private:
-  /// Makes converter and caps where the message has another layout than the last one.
+  /// Makes converter and caps if the message has another layout than the last one.
   bool Follow(const cdr::PointCloud2& cloud) {
     if (converter_ && converter_->layout() == cloud.layout && info_->is_dense == cloud.is_dense)
       return true;

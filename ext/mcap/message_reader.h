@@ -17,9 +17,9 @@ class MessageReader {
                                              const mcap::Channel& channel);
   virtual ~MessageReader() = default;
 
-  /// Buffers from the last Read() on have these caps; NULL if only a message has them.
+  /// Caps of the buffers from the last Read() on. NULL before it if they depend on a message.
   GstCaps* caps() const { return caps_.get(); }
-  /// Null for what is damaged. Any bytes may come. The buffer has no PTS.
+  /// Returns null if `message`, which may be any bytes, is damaged. The buffer has no PTS.
   virtual BufferPtr Read(ByteView message) = 0;
 
  protected:

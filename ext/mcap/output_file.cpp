@@ -31,7 +31,7 @@ bool OutputFile::WriteAll(ByteView bytes) {
   return !sync_ || fdatasync(fd_) == 0;
 }
 
-/// Removes regular files only, as devices are not ours.
+/// Undoes a failed write to a regular file: cuts the file, or removes an empty one.
 void OutputFile::TakeBack() {
   struct stat status {};
   if (fstat(fd_, &status) != 0 || !S_ISREG(status.st_mode)) return;

@@ -13,15 +13,15 @@ class OutputFile {
  public:
   /// A file that the user has named is replaced; a numbered one stays.
   enum class Existing { kReplace, kKeep };
-  /// The disk is untouched yet. `sync`: each piece is on the disk before Append() returns.
+  /// Does not touch the disk yet. `sync`: each piece is on the disk before Append() returns.
   OutputFile(std::string path, bool sync, Existing existing)
       : path_(std::move(path)), sync_(sync), existing_(existing) {}
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Appends all of `bytes`. After a failure the file is as before, and error() says why; an empty
-  /// file is removed.
+  /// Appends all of `bytes`. After a failure the file is as before, or removed if it was empty, and
+  /// error() has the reason.
   bool Append(ByteView bytes);
   /// Returns false if what was written did not reach the disk.
   bool Close();

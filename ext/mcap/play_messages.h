@@ -16,14 +16,14 @@ struct PlayedCounts {
   bool has_pads;
 };
 
-/// Error: no topic of the recording can be played, or not the one that is wanted.
+/// Posts an error: no topic of the recording can be played, or the wanted one cannot.
 void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
                        const std::string& location, const std::string& topic);
 /// Warns of files that break off or cannot be read; `why` belongs to the last one.
 void WarnOfFiles(GstElement* element, const mcap::Playback& playback, const std::string& why);
-/// Error where nothing could be read, a warning where parts are left out, else nothing.
+/// Posts an error if nothing could be read, and a warning if parts are left out.
 void PostDamage(GstElement* element, const PlayedCounts& counts);
-/// Posts an error: downstream takes the caps of no pad.
+/// Posts an error: no pad's caps are taken downstream.
 void PostNotTaken(GstElement* element);
 
 }  // namespace lidar::gst

@@ -22,7 +22,7 @@ class PlayTask {
   PlayTask(const PlayTask&) = delete;
   PlayTask& operator=(const PlayTask&) = delete;
 
-  /// Returns false if there is no thread to be had.
+  /// Returns false if no thread can be started.
   bool Start() { return Set(true, GST_TASK_STARTED); }
   void Stop() { Set(false, GST_TASK_STOPPED); }
   void Join() { gst_task_join(task_); }

@@ -4,7 +4,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A stream that is silent for longer would hold up sinks that wait for it.
+/// A stream that is silent for longer gets a gap event, so that sinks do not wait for it.
 constexpr GstClockTime kLongestSilence = 500 * GST_MSECOND;
 
 GstEvent* WithSeqnum(const PlaybackGroup& group, GstEvent* event) {
@@ -32,7 +32,7 @@ void PlayedStream::PushStreamStart(const PlaybackGroup& group) {
   gst_pad_push_event(pad_, WithSeqnum(group, event));
 }
 
-/// The events precede the pad: a handler of its signal that links it finds them there.
+/// Pushes the events before the pad is added, so that a handler of pad-added finds them on it.
 bool PlayedStream::Prepare(const PlaybackGroup& group) {
   GstCaps* caps = reader_->caps();
   if (caps == nullptr) return false;

@@ -31,7 +31,7 @@ class PlayedStream {
 
   /// Reads messages of that channel from now on. Returns false if their type is unknown.
   bool Follow(const mcap::Schema& schema, const mcap::Channel& channel);
-  /// Pushes caps and segment where they are due, and shows the pad. Returns false if caps are not
+  /// Pushes caps and segment if they are due, and shows the pad. Returns false if caps are not
   /// known.
   bool Prepare(const PlaybackGroup& group);
   /// Null if the message is damaged.

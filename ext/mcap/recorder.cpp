@@ -66,7 +66,7 @@ std::optional<RecorderFault> Recorder::Add(const mcap::MessageHeader& header, By
     if (auto fault = Finish()) return fault;
   }
   if (!writer_) {
-    // The only file that there can be is complete already.
+    // A recording without numbers has one file, which is complete already.
     if (!names_.is_numbered() && next_number_ > 0)
       return RecorderFault{names_.Name(0), EEXIST, true};
     BeginFile();

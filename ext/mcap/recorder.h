@@ -19,7 +19,7 @@ struct RecorderSettings {
   mcap::WriterSettings writer;
   std::uint64_t max_file_size = 0;  // bytes; 0: no limit
   Duration max_file_duration{};     // 0: no limit
-  unsigned max_files = 0;           // the oldest goes; 0: no limit
+  unsigned max_files = 0;           // the oldest is removed; 0: no limit
   bool sync = false;
 };
 
@@ -40,12 +40,12 @@ class Recorder {
  public:
   Recorder(const RecorderSettings& settings, mcap::FileNames names);
 
-  /// Returns what prevents the first file, without making it.
+  /// Returns what prevents the first file, without creating it.
   std::optional<RecorderFault> Check() const;
 
   mcap::Catalogue& catalogue() { return catalogue_; }
-  /// `begins_scan`: a file may begin here. After a fault the recording ends, and all before it is
-  /// in order.
+  /// `begins_scan`: a file may begin here. After a fault the recording ends; the messages before it
+  /// are intact.
   std::optional<RecorderFault> Add(const mcap::MessageHeader& header, ByteView data,
                                    bool begins_scan);
   /// Completes the file. The next message begins another one.

@@ -14,7 +14,7 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread, or while it stands still. Takes its pads away at the end.
+/// Used by the streaming thread, or while it stands still. The destructor removes the pads.
 class StreamGroup {
  public:
   /// Returns a new, inactive pad without a parent.
@@ -34,8 +34,8 @@ class StreamGroup {
   void ShowKnown(const mcap::Playback& playback, const std::string& topic);
   /// Announces once that no more pads come.
   void EndPads();
-  /// A message for its pad; no buffer where it is damaged, its caps are not known, or there are
-  /// more topics than pads.
+  /// A message for its pad. There is no buffer if it is damaged, if its caps are not known, or if
+  /// there are more topics than pads.
   struct Played {
     PlayedStream* stream = nullptr;
     BufferPtr buffer;
