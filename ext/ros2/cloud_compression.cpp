@@ -20,11 +20,11 @@ constexpr int kZstdLevel = 1;
 constexpr int kZlibLevel = 1;
 constexpr int kGzipWindow = 15 + 16;  // zlib's plugin writes gzip
 constexpr int kAnyWindow = 15 + 32;   // reads zlib and gzip
-// Greatest output of a byte of data.
+// Greatest output of a byte of data [bytes].
 constexpr std::size_t kZlibMost = 1032;
 constexpr std::size_t kZstdMost = std::size_t{1} << 16;
 
-/// Bytes of the points, and the most that rows may add.
+/// Bytes of the points alone, and at most with the gaps between rows.
 struct Bounds {
   std::size_t least, most;
 };
@@ -37,7 +37,7 @@ std::optional<Bounds> BoundsOf(const cdr::RosLayout& layout) {
   return Bounds{row * height, std::min<std::uint64_t>(most, kMostBytes)};
 }
 
-/// Resizes `out` for the content of `data`. Returns false if that is less than the points.
+/// Makes room for all that `data` can hold. Returns false if the points need more.
 bool MakeRoom(ByteView data, const Bounds& bounds, std::size_t most_per_byte, Bytes* out) {
   const std::size_t most = (data.size + 1) * most_per_byte;
   if (bounds.least > most) return false;

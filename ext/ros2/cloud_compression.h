@@ -18,8 +18,8 @@ const char* NameOf(CloudCompression compression);
 /// memory than the layout's points need, at most 256 MiB.
 std::optional<cdr::MadeCloud> Decompress(const cdr::CompressedCloud& compressed, std::string* why);
 
-/// Packs the points without loss. Returns nothing if the compression is not built in, or takes no
-/// such cloud. The result's data are `packed`.
+/// Packs the points without loss. Returns nothing if the compression is not built in, or cannot
+/// pack the cloud. The result's data are `packed`.
 std::optional<cdr::CompressedCloud> Compress(CloudCompression compression,
                                              const cdr::PointCloud2& cloud,
                                              std::vector<std::uint8_t>* packed);

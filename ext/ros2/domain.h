@@ -7,7 +7,7 @@
 
 namespace lidar::dds {
 
-/// Each owner of entities in the domain holds one.
+/// Each owner of entities in a domain holds an object of this class.
 class Domain {
  public:
   /// Returns null if Cyclone refuses its configuration; `why` has the reason. The fault may be the

@@ -54,8 +54,9 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-/// The domain may pass larger messages if another part of the process created it. A hundred
-/// messages without clouds may wait; thousands of transforms are smaller than this.
+/// Returns the limit of a message, because a domain that another part of the process created may
+/// pass larger ones. A hundred messages without clouds may wait, and kMaxSmall holds thousands of
+/// transforms.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
   return cdr::IsCloud(type) ? Domain::kMaxMessage : kMaxSmall;

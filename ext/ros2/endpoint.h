@@ -39,7 +39,7 @@ class Node {
   bool Announce(const EndpointOptions& options, bool writes, std::string* why);
 
   std::unique_ptr<Domain> domain_;
-  std::int32_t participant_ = 0;  // entities of DDS, which go with the participant
+  std::int32_t participant_ = 0;  // DDS entities, which are deleted with the participant
   std::int32_t topic_ = 0;
   std::int32_t endpoint_ = 0;
   const ddsi_sertype* type_ = nullptr;  // of the topic
@@ -61,7 +61,7 @@ class Reader : public Node {
   /// Callable from any thread: Wait() returns at once until Wake(false).
   void Wake(bool on);
 
-  /// Valid after kMessage; null for the message of a node that left.
+  /// Takes the message after kMessage; null for that of a node that left.
   MessagePtr Take();
   const std::string& other_type() const { return other_type_; }
   /// Counts of messages that DDS missed, and of present publishers.
@@ -77,7 +77,7 @@ class Reader : public Node {
   std::string other_type_;
   std::int32_t waitset_ = 0;
   std::int32_t guard_ = 0;
-  std::int32_t messages_ = 0;      // a condition: there are some
+  std::int32_t messages_ = 0;      // a condition: there are messages
   std::int32_t publications_ = 0;  // reads the publications of others
 };
 
@@ -86,7 +86,7 @@ class Writer : public Node {
   static std::unique_ptr<Writer> Create(const EndpointOptions& options, std::string* why);
 
   enum class Result { kSent, kTimeout, kFailed };
-  /// Waits for slow reliable subscribers, but no longer than kMaxBlocking.
+  /// Waits for slow reliable subscribers, but no longer than kMaxBlockingNs.
   Result Publish(const std::vector<ByteView>& pieces);
   unsigned subscribers() const;
   /// Returns true once for each subscriber with an incompatible reliability.

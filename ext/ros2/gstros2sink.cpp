@@ -270,7 +270,7 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   const Time now = Time{} + Duration{g_get_real_time() * 1000};
   auto last = Writer::Result::kSent;
   const auto publish = [&](const auto& pieces) {
-    // Waits once a buffer: a wait for each of many samples would keep the element from stopping.
+    // Only one message of a buffer may wait: a wait for each of many samples would delay a stop.
     if (last == Writer::Result::kTimeout)
       NoteResult(self, last, 0);
     else

@@ -2,8 +2,8 @@
 /**
  * SECTION:element-ros2src
  *
- * Clouds, samples of an IMU, odometry, or transforms that ROS 2 nodes publish, as they come. Needs
- * no ROS.
+ * Receives clouds, samples of an IMU, odometry, or transforms that ROS 2 nodes publish. Needs no
+ * ROS.
  *
  * |[
  * gst-launch-1.0 ros2src topic=/ouster/points ! dracoenc geometry=xyz ! fakesink
@@ -116,7 +116,7 @@ static std::shared_ptr<Reader> ReaderOf(gpointer self) {
   return state.reader;
 }
 
-/// Adds what DDS counts itself.
+/// Returns the counters, with those that DDS keeps.
 static Counters CountersNow(GObject* object) {
   State& state = StateOf(object);
   const auto reader = ReaderOf(object);
@@ -229,7 +229,7 @@ static void NoteIncompatible(GstLidarRos2Src* self) {
                       ("use qos=sensor-data where it is best-effort"));
 }
 
-/// A single warning, until a message is good again: a publisher that is broken sends many.
+/// Warns once until a message is good again, because a broken publisher sends many damaged ones.
 static void NoteDamaged(GstLidarRos2Src* self, const std::string& why) {
   State& state = StateOf(self);
   Count(self, &Counters::damaged);
@@ -248,7 +248,7 @@ static GstFlowReturn Take(GstLidarRos2Src* self, const lidar::dds::MessagePtr& m
   const lidar::ByteView bytes = lidar::dds::BytesOf(message.get());
   Count(self, &Counters::messages);
   Count(self, &Counters::bytes, bytes.size);
-  // Downstream may have changed while we waited for the message.
+  // Downstream may have changed while this thread waited for the message.
   if (gst_pad_check_reconfigure(GST_BASE_SRC_PAD(self))) state.messages->Renegotiate();
   switch (state.messages->Read(bytes)) {
     case Verdict::kBuffer:

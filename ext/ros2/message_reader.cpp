@@ -16,7 +16,7 @@
 namespace lidar::gst {
 namespace {
 
-/// Caps hold valid UTF-8.
+/// Replaces invalid UTF-8, which caps cannot hold.
 std::string ToText(const std::string& name) {
   const StringPtr valid(g_utf8_make_valid(name.data(), static_cast<gssize>(name.size())));
   return valid.get();
@@ -64,7 +64,7 @@ void MessageReader::SetStamp(Time stamp) {
   if (ns > 0) gst_lidar_buffer_set_capture_time(buffer_.get(), static_cast<GstClockTime>(ns));
 }
 
-/// Returns caps that downstream takes; `caps` follow from the message alone.
+/// Sets those of `caps` that downstream takes; `caps` follow from the message alone.
 MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   const CapsPtr wanted = wanted_();
   if (wanted)

@@ -27,7 +27,7 @@ class MessageReader {
     kBuffer,         // buffer()
     kEmpty,          // a cloud without points, or a message without transforms
     kDamaged,        // why()
-    kNotNegotiated,  // downstream takes no caps of this message: why()
+    kNotNegotiated,  // downstream does not take this message's caps: why()
   };
   Verdict Read(ByteView message);
   /// Queries downstream again at the next cloud.

@@ -43,8 +43,9 @@ class MessageWriter {
   /// Returns false and sets why() if buffers of `caps` cannot be messages of the type.
   bool SetCaps(const GstCaps* caps);
 
-  /// Gives the messages of `buffer` in pieces, which are valid until it returns. `now` is the time
-  /// of buffers without a capture time. Returns false if the buffer contradicts its caps.
+  /// Calls `publish` for each message of `buffer`, with pieces that are valid during the call.
+  /// `now` is the time of buffers without a capture time. Returns false if the buffer contradicts
+  /// its caps.
   using Publish = std::function<void(const std::vector<ByteView>& pieces)>;
   bool Write(GstBuffer* buffer, const MessageSettings& settings, Time now, const Publish& publish);
 

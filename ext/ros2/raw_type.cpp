@@ -91,7 +91,7 @@ ddsi_serdata_ops DataOps() {
   ops.from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) -> ddsi_serdata* {
     return NewRaw(type, SDK_KEY, 0);
   };
-  // Samples are not used: we write and take bytes only.
+  // Samples are not used: this plugin writes and takes bytes only.
   ops.from_sample = [](const ddsi_sertype*, ddsi_serdata_kind, const void*) -> ddsi_serdata* {
     return nullptr;
   };
