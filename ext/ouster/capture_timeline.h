@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The duration of a capture and places in it, for the thread that asks and the reading one.
+// The duration of a capture and places in it, for the reading thread and those that query.
 #pragma once
 #include <gst/gst.h>
 
@@ -25,7 +25,7 @@ class CaptureTimeline {
 
   struct Place {
     Time first{};                        // capture time of the file's first packet
-    std::optional<std::int64_t> offset;  // empty: the front
+    std::optional<std::int64_t> offset;  // empty: the front of the file
   };
   /// Returns the place from which a reader finds all data captured at `time` and later; nothing as
   /// above.

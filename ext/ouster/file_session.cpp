@@ -50,7 +50,7 @@ void FileSession::Seek(const GstSegment& segment) {
 GstFlowReturn FileSession::GoToTarget() {
   // Greatest drift of the sensor's clock relative to that of the capture.
   constexpr Duration kLead = std::chrono::seconds(1);
-  // Includes the last scan: its packets may be out of order.
+  // Packets of the two scans before are taken, too, because they may be out of order.
   skip_to_ = *target_ - 2 * stream()->metadata().scan_period();
   const auto place = timeline_->Find(skip_to_->time_since_epoch() - kLead);
   if (!place && timeline_->cancelled()) return GST_FLOW_FLUSHING;
@@ -118,7 +118,7 @@ GstFlowReturn FileSession::EndOfCapture() {
 }
 
 GstFlowReturn FileSession::Poll() {
-  // The first packets set the clock, at any seek position.
+  // The first packets of the file are taken before a seek, because they set the clock.
   if (target_ && stream()->knows_time()) {
     const GstFlowReturn flow = GoToTarget();
     if (flow != GST_FLOW_OK) return flow;

@@ -2,8 +2,8 @@
 /**
  * SECTION:element-ouster_src
  *
- * Clouds from an Ouster sensor, or from a capture of one. A scan comes as slices, each as soon as
- * its columns are there.
+ * Gives clouds of an Ouster sensor, or of a capture of one. A scan comes as slices, each as soon as
+ * its columns have arrived.
  *
  * |[
  * gst-launch-1.0 ouster_src location=drive.pcap metadata=drive.json ! fakesink silent=false -v
@@ -138,7 +138,7 @@ static gboolean DoSeek(GstBaseSrc* base, GstSegment* segment) {
   return TRUE;
 }
 
-/// The base class does not flush the pad imu.
+/// Seeks on both pads, because the base class does not flush the pad imu.
 static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
   gdouble rate = 1;
   GstFormat format = GST_FORMAT_UNDEFINED;
@@ -174,7 +174,7 @@ static gboolean Event(GstBaseSrc* base, GstEvent* event) {
   return GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
 }
 
-/// The base class would perform a seek that an application sends here without calling Event().
+/// The base class would perform a seek of an application without a call of Event().
 static gboolean SendEvent(GstElement* element, GstEvent* event) {
   const auto session = SessionOf(element);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK && session && session->seekable())

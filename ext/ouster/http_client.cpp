@@ -21,14 +21,14 @@ struct Headers {
   ~Headers() { curl_slist_free_all(list); }
 };
 
-/// The result of an answer.
+/// An answer, as far as it has come.
 struct Answer {
   std::string body;
   std::size_t header_bytes = 0;
   bool too_large = false;
 };
 
-/// Returning another size than was given ends the request.
+/// curl ends the request if a function returns another size than it was given.
 std::size_t TakeBody(char* data, std::size_t size, std::size_t n, void* to) {
   auto& answer = *static_cast<Answer*>(to);
   answer.too_large = answer.body.size() + size * n > kMaxBody;

@@ -11,7 +11,7 @@ struct HttpResponse {
   bool ok = false;  // a 2xx answer came whole
   long status = 0;  // 0: no answer
   std::string body;
-  std::string error;  // for a user, where not ok
+  std::string error;  // for a user, if not ok
 };
 
 /// Talks to its sensor only: no redirects, no proxies, and only http and https. Answers are bounded

@@ -69,7 +69,7 @@ bool CanOpenFiles(std::size_t count) {
 LiveSession::LiveSession(GstBaseSrc* element, const OusterSettings& settings)
     : Session(element, settings) {}
 
-// The link's thread wakes the sockets.
+// The link ends first, because its thread wakes the sockets.
 LiveSession::~LiveSession() { link_.reset(); }
 
 bool LiveSession::Open() {
@@ -88,7 +88,7 @@ bool LiveSession::Open() {
   return OpenFeed() && OpenLink();
 }
 
-/// Sockets of a stream with metadata from a file do not wait for the sensor.
+/// Opens the sockets at once if a file has the metadata; otherwise they wait for the sensor's.
 bool LiveSession::OpenFeed() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
     auto metadata = LoadMetadata();
@@ -189,7 +189,7 @@ void LiveSession::Ask() {
   link_->Request();
 }
 
-/// False after an error was posted.
+/// Returns false after an error was posted.
 bool LiveSession::HandleAnswer(SensorLink::Result result) {
   if (result.metadata) {
     api_reported_ = false;
@@ -220,7 +220,8 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// Returns false after an error was posted: no packet ever came, so a setting is wrong.
+/// Returns false, after an error, if no packet ever came, because then a setting is wrong, or
+/// without `reconnect`.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {

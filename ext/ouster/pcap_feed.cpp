@@ -49,7 +49,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
 }
 
 bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
-  // Starts from the front, too: after an error the reader reads no more.
+  // The reader is rewound for any place, because after an error it reads no more.
   if (!reader_->Rewind() || (offset && !reader_->GoTo(*offset))) return false;
   first_ = last_ = first;
   error_.clear();

@@ -28,7 +28,7 @@ class PcapFeed {
   /// Returns nothing at the end, or for a damaged file: error() then has the reason.
   std::optional<Packet> Next();
   /// Makes Next() continue at `offset` of the file, or at its front, with times relative to
-  /// `first`. Returns false if the file is gone. Not for looping.
+  /// `first`. Returns false if the file is gone. Not for a looped file.
   bool Reposition(Time first, std::optional<std::int64_t> offset);
   const std::string& error() const { return error_; }
   bool found_lidar_packets() const { return found_; }

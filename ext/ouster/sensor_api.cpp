@@ -13,7 +13,7 @@ using nlohmann::json;
 constexpr long kNotFound = 404;
 constexpr const char* kAuto = "@auto";
 
-/// Empty if the text is no object.
+/// Returns an empty object if the text is no object.
 json ParseObject(const std::string& text) {
   json root = ouster::ParseJsonObject(text);
   if (root.is_discarded()) return json::object();

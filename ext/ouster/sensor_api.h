@@ -25,8 +25,8 @@ class SensorApi {
   std::optional<ouster::Metadata> FetchMetadata(ApiError* error);
 
   /// Sets the differences from `settings`, makes the sensor apply them and checks the result.
-  /// Returns true if nothing has to change any more. `sleep` waits about a second; its false ends
-  /// the call.
+  /// Returns true if the sensor has them. `sleep` waits about a second, and ends the call if it
+  /// returns false.
   bool Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
                  ApiError* error);
   /// Returns the destination of the sensor's packets, "192.0.2.1:7502"; empty if unknown.

@@ -23,7 +23,8 @@ namespace {
 // 8 bits per pixel and a header: more than the largest scan needs.
 constexpr std::size_t kMaxMaskSize = 32U << 20;
 
-/// Returns nothing for a file that cannot be read, and the first `max_size` bytes of a larger file.
+/// Returns nothing for a file that cannot be read. A text above `max_size` bytes is only the
+/// beginning of the file.
 std::optional<std::string> ReadFile(const std::string& path, std::size_t max_size) {
   constexpr std::size_t kPiece = 1U << 16;
   std::ifstream file(path, std::ios::binary);
@@ -34,7 +35,7 @@ std::optional<std::string> ReadFile(const std::string& path, std::size_t max_siz
     file.read(&text[size], kPiece);
     text.resize(size + static_cast<std::size_t>(file.gcount()));
   }
-  // Reading a folder fails otherwise than at its end.
+  // A folder can be opened, but not read, which sets bad(); the end of a file does not.
   if (!file.is_open() || file.bad()) return std::nullopt;
   return text;
 }

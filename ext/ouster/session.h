@@ -26,7 +26,7 @@ struct Counters {
 };
 extern const std::array<Stat<Counters>, 17> kOusterStats;
 
-/// Runs in the streaming thread, except where it says otherwise. Posts its own errors.
+/// Runs in the streaming thread, except where a comment says otherwise. Posts its own errors.
 class Session {
  public:
   static std::shared_ptr<Session> Create(GstBaseSrc* element, const OusterSettings& settings);
@@ -34,7 +34,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Called by the thread that starts the element. False after an error was posted.
+  /// Called by the thread that starts the element. Returns false after an error was posted.
   virtual bool Open() = 0;
   GstFlowReturn Next(GstBuffer** out);
   /// Next() returns FLUSHING until UnlockStop(). Any thread may call both.
@@ -45,7 +45,7 @@ class Session {
 
   /// Returns true if Seek() works.
   virtual bool seekable() const { return false; }
-  /// Makes the next slices those of `segment`. Not while Next() runs.
+  /// Makes the next slices those of `segment`. Do not call it while Next() runs.
   virtual void Seek(const GstSegment& segment) {
     start_ = segment.start;
     ended_ = false;

@@ -55,7 +55,7 @@ struct OusterSettings {
   /// UDP is always live; the user decides for files.
   bool live() const { return location.empty() || is_live; }
   bool from_file() const { return !location.empty(); }
-  /// Path of the metadata: beside the capture unless the user gives one. Empty: unknown.
+  /// Path of the metadata: the user's, or the capture's with the extension json. Empty: unknown.
   std::string MetadataPath() const;
 };
 

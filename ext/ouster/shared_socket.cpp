@@ -42,10 +42,10 @@ GSocket* OpenSocket(const SocketPlace& place, GError** error) {
 
 }  // namespace
 
-/// The sockets of the process: all elements that use a port share its socket.
+/// A socket of the process: all elements that use its place share it.
 class SharedSocket {
  public:
-  /// Opens the reader's socket, or joins those who use it.
+  /// Opens the reader's socket, or joins its other readers.
   static bool Attach(SocketReader* reader, GError** error) {
     std::lock_guard lock(RegistryMutex());
     auto& slot = Registry()[reader->place_];

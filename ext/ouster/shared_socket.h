@@ -43,10 +43,10 @@ class SocketReader {
   SocketReader(const SocketReader&) = delete;
   SocketReader& operator=(const SocketReader&) = delete;
 
-  /// Returns a descriptor that is readable while Receive() may find datagrams.
+  /// Descriptors to wait for: at least one is readable while Receive() may find datagrams.
   int socket_fd() const;
   int queue_fd() const { return queued_.fd(); }
-  /// Hands over the datagrams; returns false with errno set if the socket failed.
+  /// Gives the datagrams to `consume`; returns false with errno set if the socket failed.
   bool Receive(const std::function<void(const ReceivedDatagram&)>& consume);
 
   guint granted_buffer() const { return granted_buffer_; }  // bytes

@@ -11,7 +11,7 @@ namespace lidar::gst {
 GstClockTime ToClockTime(Time time);
 /// transfer full
 GstCaps* CapsOf(const ouster::SensorStream& stream);
-/// Takes the points without a copy. PTS is slice.local since the Unix epoch of that clock;
+/// Takes the points without a copy. PTS is slice.local, counted from the zero of its clock;
 /// transfer full.
 GstBuffer* ToBuffer(ouster::TimedSlice slice, Duration duration);
 

@@ -22,7 +22,7 @@ std::string Explain(const GError& error, guint port) {
   return text;
 }
 
-/// The socket of that port as the settings ask; null and `why`, for a user.
+/// Opens the socket of `port` with the settings. Returns null and `why`, for a user, if it fails.
 std::unique_ptr<SocketReader> OpenReader(const OusterSettings& settings, guint port,
                                          std::string* why) {
   GError* raw_error = nullptr;
@@ -72,7 +72,7 @@ bool UdpFeed::IsOpen(const Ports& ports) const {
 }
 
 void UdpFeed::Close() {
-  // A socket that others go on to use stays in the epoll set unless it is taken out.
+  // A socket that other readers still use stays in the epoll set unless it is taken out.
   for (const ReaderPtr* reader : {&lidar_, &imu_})
     if (*reader)
       for (const int fd : {(*reader)->socket_fd(), (*reader)->queue_fd()})

@@ -12,7 +12,7 @@
 
 namespace lidar::gst {
 
-/// Owned by one thread, except for Wake() and ClearWake().
+/// Used by one thread, except for Wake() and ClearWake().
 class UdpFeed {
  public:
   UdpFeed();
@@ -27,7 +27,7 @@ class UdpFeed {
   struct Opened {
     guint granted_buffer = 0;  // bytes
     std::string error;         // for a user; empty: success
-    std::string imu_error;     // for a user; only the lidar's socket is open
+    std::string imu_error;     // for a user; then only the lidar's socket is open
   };
   /// Binds and joins, replacing open sockets.
   Opened Open(const OusterSettings& settings, const Ports& ports);
