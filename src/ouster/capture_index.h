@@ -25,7 +25,7 @@ class CaptureIndex {
   /// Time from the first datagram that was read to the last.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
   /// Returns the place from which a reader finds all read datagrams of `time` and later, or nothing
-  /// for the front.
+  /// if it must read from the front.
   std::optional<std::int64_t> OffsetBefore(Duration time) const;
 
  private:

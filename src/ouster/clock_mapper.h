@@ -28,12 +28,12 @@ class ClockMapper {
   };
   explicit ClockMapper(Mode mode) : mode_(mode) {}
 
-  /// A packet whose last column was sampled at `sensor_ns` arrived at `arrival`.
+  /// Notes that a packet with a column sampled at `sensor_ns` arrived at `arrival`.
   void Observe(std::uint64_t sensor_ns, Time arrival);
-  /// Returns true if Observe() would find a clock jump. Map data sampled before the jump before
-  /// that call.
+  /// Returns true if Observe() would find a clock jump. Call Map() for data from before the jump
+  /// first.
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
-  /// The next packet sets the offset anew.
+  /// Lets the next packet set the offset anew.
   void Reset() { offset_.reset(); }
   /// Call only after Observe().
   Time Map(std::uint64_t sensor_ns) const;

@@ -12,8 +12,8 @@ namespace lidar::ouster {
 struct PacketHeader {
   std::uint16_t type = 0;
   std::uint32_t frame_id = 0;
-  std::uint32_t init_id = 0;  // 0: the packet does not say
-  std::uint64_t serial = 0;   // 0: the packet does not say
+  std::uint32_t init_id = 0;  // 0: unknown
+  std::uint64_t serial = 0;   // 0: unknown
 };
 
 /// A measurement block.
@@ -77,7 +77,7 @@ std::optional<PacketHeader> PeekHeader(ByteView bytes, const PacketFormat& forma
 class PacketCrcCheck {
  public:
   explicit PacketCrcCheck(const PacketFormat& format) : carried_(!format.is_legacy()) {}
-  /// False for a damaged packet.
+  /// Returns false for a damaged packet.
   bool Accept(ByteView packet);
 
  private:

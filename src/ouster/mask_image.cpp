@@ -6,7 +6,7 @@
 namespace lidar::ouster {
 namespace {
 
-/// Skips white space and comments; then a number, or none.
+/// Skips white space and comments, then reads a number. Returns nothing if there is none.
 std::optional<std::uint32_t> ReadNumber(ByteView* text) {
   std::size_t at = 0;
   bool comment = false;

@@ -11,7 +11,7 @@
 
 namespace lidar::ouster {
 
-/// Keeps a pixel where its byte is not zero; beams x columns_per_scan, row-major, as packets have
+/// A byte for each pixel, not zero to keep it: beams x columns_per_scan, row-major, as packets have
 /// them.
 using PixelMask = std::vector<std::uint8_t>;
 

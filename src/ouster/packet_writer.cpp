@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kCrcSize = 8;
 constexpr std::size_t kMeasurementIdOffset = 8;
-constexpr std::size_t kStatusOffset = 10;  // LEGACY: the frame id, its status stands last
+constexpr std::size_t kStatusOffset = 10;  // LEGACY has the frame id here, and its status last
 constexpr std::size_t kEncoderOffset = 12;
 constexpr std::uint32_t kEncoderTicks = 90112;  // a turn of LEGACY's encoder
 
@@ -78,7 +78,7 @@ void PacketWriter::SetPixel(Pixel at, Channel channel, std::uint32_t value) {
 }
 
 const std::vector<std::uint8_t>& PacketWriter::Finish() {
-  // FUSA packets have zeros if the others have the CRC.
+  // FUSA packets have zeros in place of the CRC.
   if (format_.is_legacy() || format_.is_fusa() || bytes_.size() <= kCrcSize) return bytes_;
   const std::size_t body = bytes_.size() - kCrcSize;
   PutLittle(&bytes_[body], Crc64({bytes_.data(), body}), kCrcSize);

@@ -27,13 +27,13 @@ class PacketWriter {
   };
   /// `column` counts within the packet.
   void SetColumn(std::uint32_t column, const ColumnHeader& header);
-  /// Keeps the bits that fit the channel. Does nothing if the profile lacks it.
   struct Pixel {
     std::uint32_t column = 0;
     std::uint32_t beam = 0;
   };
+  /// Keeps the bits of `value` that fit the channel. Does nothing if the profile lacks the channel.
   void SetPixel(Pixel at, Channel channel, std::uint32_t value);
-  /// The packet with its CRC (where the format has one), until the next Begin().
+  /// Returns the packet, with its CRC if the format has one. It is valid until the next Begin().
   const std::vector<std::uint8_t>& Finish();
 
  private:

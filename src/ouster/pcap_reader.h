@@ -15,18 +15,18 @@ namespace lidar::ouster {
 
 class PcapReader {
  public:
-  /// Null and `error` for a file that is missing or no capture.
+  /// Returns null and sets `error` for a file that is missing or no capture.
   static std::unique_ptr<PcapReader> Open(const std::string& path, std::string* error);
 
   struct Captured {
     UdpDatagram datagram;
     Time time;  // of the capture, since the Unix epoch
   };
-  /// Returns nothing at the end of the file, or where it is damaged: error() then says so.
+  /// Returns nothing at the end of the file, or if it is damaged; error() then has the reason.
   std::optional<Captured> Next();
   /// Empty unless the file ended in the middle of a packet or is damaged.
   const std::string& error() const { return error_; }
-  /// Back to the first packet; false if the file is gone.
+  /// Goes back to the first packet. Returns false if the file is gone.
   bool Rewind();
 
   /// Returns the place of the next frame, for GoTo() of any reader of this file. Returns nothing

@@ -16,7 +16,7 @@ namespace lidar::ouster {
 
 class PcapWriter {
  public:
-  /// Null and `error` where the file cannot be written.
+  /// Returns null and sets `error` if the file cannot be written.
   static std::unique_ptr<PcapWriter> Open(const std::string& path, std::string* error);
   ~PcapWriter();
   PcapWriter(const PcapWriter&) = delete;

@@ -21,7 +21,7 @@ enum class Return { kStrongest, kSecond, kBoth };
 enum class Invalid { kZero, kNan };
 
 /// A span of azimuth in the sensor frame [degrees, from x towards y, so counter-clockwise seen from
-/// above]; it wraps where the last angle is below the first.
+/// above]; it wraps if the last angle is below the first.
 struct Sector {
   double first_deg = 0;
   double last_deg = 360;
@@ -95,13 +95,13 @@ class PointWriter {
   std::shared_ptr<const PixelProjection> projection_;
   std::optional<ChannelReader> range_;
   std::optional<ChannelReader> intensity_;
-  std::optional<ChannelReader> range2_;  // of the second return, where both are wanted
+  std::optional<ChannelReader> range2_;  // of the second return, if both are wanted
   std::optional<ChannelReader> intensity2_;
   std::vector<Extra> extras_;
   std::uint32_t min_range_mm_ = 0;
   std::uint32_t max_range_mm_ = 0;
   PixelMask mask_;                     // sectors included; empty: keep all
-  std::vector<std::uint32_t> shifts_;  // columns to the right, a beam; may be empty
+  std::vector<std::uint32_t> shifts_;  // columns to the right, for each beam; may be empty
   Invalid invalid_ = Invalid::kZero;
 };
 

@@ -175,7 +175,7 @@ ScanBatcher::Key ScanBatcher::NextExpected() const {
 bool ScanBatcher::IsReady(const OpenSlice& open) const {
   if (open.later_packets >= reorder_packets_) return true;
   if (open.seen < expected_[static_cast<std::size_t>(open.key % slices_)]) return false;
-  // Packets of slices before it may still be under way if all of them are missing.
+  // Packets of earlier slices that are wholly missing may still be under way.
   return open.key <= NextExpected() || open.packets >= reorder_packets_;
 }
 
@@ -230,8 +230,8 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
   }
 }
 
-/// Adds the lost packets whose first column is in the slice; `columns` is null for a slice without
-/// any.
+/// Adds the lost packets whose first column is in the slice; `columns` is null if no column of it
+/// came.
 void ScanBatcher::CountLost(Key key, const std::vector<bool>* columns) {
   const std::int64_t scan = key / slices_;
   const auto first = static_cast<std::uint32_t>(key % slices_) * width_;

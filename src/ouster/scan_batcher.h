@@ -30,7 +30,7 @@ struct Slice {
 
 struct BatcherStats {
   std::uint64_t packets = 0;
-  std::uint64_t lost_packets = 0;  // that never came
+  std::uint64_t lost_packets = 0;  // packets that never came
   std::uint64_t late_packets = 0;  // came after their slice was given out
   std::uint64_t duplicate_packets = 0;
   std::uint64_t stray_packets = 0;  // of a distant scan; enough of them count as a restart
@@ -65,7 +65,7 @@ class ScanBatcher {
 
   struct OpenSlice {
     Key key = 0;
-    std::uint32_t seen = 0;     // columns of the window
+    std::uint32_t seen = 0;     // columns of the window that came
     std::uint32_t packets = 0;  // packets of this slice
     std::uint32_t later_packets = 0;
     std::vector<bool> columns;

@@ -48,7 +48,7 @@ enum class PacketVerdict {
   kLidar,
   kImu,
   kWrongSize,  // of another profile, mode or sensor
-  kForeign,    // of another sensor by its serial number, or without one by its sender
+  kForeign,    // of another sensor, by its serial number or, without one, by its sender
   kDamaged,    // by its CRC
   kNewInitId,  // the sensor restarted or was reconfigured: its metadata may be outdated
 };
@@ -67,8 +67,8 @@ class SensorStream {
   static std::unique_ptr<SensorStream> Create(Metadata metadata, const StreamOptions& options,
                                               std::string* error);
 
-  /// Takes a packet. kNewInitId leaves it out: then refresh the metadata, or call AcceptNewInitId()
-  /// and push the packet again.
+  /// Takes a packet. One with kNewInitId is left out: refresh the metadata, or call
+  /// AcceptNewInitId() and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
   /// Call this after kNewInitId: the sensor restarted, and packets with that init id count from now
   /// on.

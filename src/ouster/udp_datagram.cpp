@@ -82,7 +82,7 @@ bool IsKnown(LinkType link) {
   return false;
 }
 
-/// The datagram that `f` is a part of.
+/// Finds, or begins, the datagram of which `f` is a part.
 std::deque<IpReassembler::Partial>::iterator IpReassembler::Find(const Fragment& f, Time time) {
   auto at = std::find_if(partials_.begin(), partials_.end(), [&](const Partial& p) {
     return p.id == f.id && p.addresses == f.addresses;
