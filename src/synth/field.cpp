@@ -99,7 +99,7 @@ void Field::AddPlants(const View& view, float side, std::vector<Shape>* shapes) 
 
 void Field::AddFence(const View& view, float side, std::vector<Shape>* shapes) const {
   View near = view;
-  near.radius = std::min(view.radius, 80.0F);  // farther ones are thinner than a beam
+  near.radius = std::min(view.radius, 80.0F);  // farther posts are thinner than a beam
   ForEachCell(near, 3, kPost + (side > 0 ? 64 : 0), [&](Random, std::int64_t index, float x) {
     if ((index / 40) % 2 != 0) return;
     const float z = HeightAt(kFence);
@@ -153,7 +153,8 @@ void Field::AddMoving(const View& view, const Instant& now, std::vector<Shape>* 
 }
 
 bool Field::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit) const {
-  // The ray is traced on the side it heads for; on the other side it is mirrored.
+  // The profile is mirrored at y = 0: the ray crosses the side that it comes from, then the one
+  // that it heads for.
   const float toward = ray.direction.y >= 0 ? 1.0F : -1.0F;
   const float rate = std::max(std::abs(ray.direction.y), 1e-6F);
   for (int half = 0; half < 2; ++half) {

@@ -17,7 +17,7 @@ struct DriverLayout {
 struct Firing {
   std::string_view name;
   std::uint32_t lasers;
-  std::uint32_t banks;         // laser i of firing has the ring i / banks of bank i % banks
+  std::uint32_t banks;  // the laser that fires as number i has the ring i / banks of bank i % banks
   double first_elevation;      // of ring 0
   double elevation_step;       // from one ring to the next
   double bank_azimuth;         // from one bank to the next

@@ -9,7 +9,7 @@ namespace {
 using Vector = std::array<double, 3>;
 
 constexpr double kGravity = 9.80665;
-/// A unit averages over its period, as these differences do.
+/// Half a period: the differences average over a period, as a unit does.
 constexpr Duration kStep = std::chrono::milliseconds(5);
 /// Correlation time of the bias [s].
 constexpr double kWanderTime = 100;

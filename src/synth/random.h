@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Random numbers by place instead of order: the same world and noise however a scan is cut.
+// Random numbers by place, not by order: world and noise are the same however a scan is cut.
 #pragma once
 #include <cstdint>
 
@@ -17,7 +17,7 @@ constexpr std::uint64_t Mix(std::uint64_t v) {
 class Random {
  public:
   explicit constexpr Random(std::uint64_t key) : state_(Mix(key)) {}
-  /// The thing number `index` of kind `kind`.
+  /// Numbers of the thing `index` of kind `kind`.
   constexpr Random(std::uint64_t seed, std::uint64_t kind, std::int64_t index)
       : state_(Mix(Mix(seed ^ (kind << 56)) + static_cast<std::uint64_t>(index))) {}
 

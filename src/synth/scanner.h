@@ -18,10 +18,10 @@ struct ScannerConfig {
   Duration period = std::chrono::milliseconds(100);  // of one turn
   SceneKind scene = SceneKind::kStreet;
   double speed_mps = 0;
-  double roughness = 1;   // of the car's motion, relative to what the scene's road does
+  double roughness = 1;   // scales the motion that the scene's road gives the car
   double noise_m = 0.01;  // standard deviation of a range on a white wall nearby
   std::uint64_t seed = 0;
-  bool second_returns = false;  // two echoes where a beam meets two things; costs a second ray
+  bool second_returns = false;  // two echoes if a beam meets two things; costs a second ray
   bool mixed_pixels = false;    // ranges between two surfaces, for beams that meet an edge
 };
 

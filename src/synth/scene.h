@@ -34,13 +34,14 @@ class Scene {
   virtual void MoveTo(const View&) {}
   /// Appends fixed shapes.
   virtual void AddStatic(const View& view, std::vector<Shape>* shapes) const = 0;
-  /// Appends moving shapes at `time_s`, with the sensor's car at `ego_x` and its `speed`.
+  /// A time, and the place and speed of the sensor's car.
   struct Instant {
     double time_s = 0;
     double ego_x = 0;
     double ego_speed = 0;
     double ego_y = 0;
   };
+  /// Appends moving shapes.
   virtual void AddMoving(const View& view, const Instant& now,
                          std::vector<Shape>* shapes) const = 0;
   /// Returns true for rays that test the ground first. A costly ground is tested last by rays that

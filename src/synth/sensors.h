@@ -12,7 +12,7 @@ namespace lidar::synth {
 
 /// A sensor unit: its beams, and its reach.
 struct Sensor {
-  SensorModel model;               // with a firing table only the size of its scans
+  SensorModel model;               // with a firing table, only the size of its scans is set
   const Firing* firing = nullptr;  // null: an Ouster, which the model describes
   double min_range_m = 0;
   double max_range_m = 0;

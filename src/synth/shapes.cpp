@@ -75,12 +75,13 @@ bool EnterCabin(Vec3 half, const Ray& r, Span* span) {
          span->in > kNearest;
 }
 
-/// Finds where the ray enters the infinite cylinder u^2 + v^2 = radius^2, then its caps at |w| =
-/// half.
+/// Origin and direction of a ray, with w along the middle of a cylinder.
 struct Axes {
   float ou, ov, ow;
   float du, dv, dw;
 };
+/// Finds where the ray enters the infinite cylinder u^2 + v^2 = radius^2, then its caps at |w| =
+/// half.
 bool EnterCylinder(const Axes& a, float radius, float half, Span* span, float* cosine) {
   const float aa = a.du * a.du + a.dv * a.dv + 1e-12F;
   const float b = a.ou * a.du + a.ov * a.dv;
@@ -118,8 +119,8 @@ bool EnterEllipsoid(Vec3 half, const Ray& r, Span* span, float* cosine) {
   return span->in > kNearest;
 }
 
-/// Windows in rows of storeys, deep in the wall. Some have curtains; others absorb the light,
-/// except for the pane's own echo near its normal.
+/// Adds windows in rows, one in each storey, deep in the wall. Some have curtains; others absorb
+/// the light, except for the pane's own echo near its normal.
 void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& span, Hit* hit) {
   constexpr float kStorey = 3.2F;
   constexpr float kBay = 2.8F;
@@ -134,7 +135,7 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
   if (u < 0.25F || u > 0.75F || v < 0.28F || v > 0.78F) return;
   hit->distance +=
       std::min(kRecess * std::abs(long_side ? local.inverse.y : local.inverse.x), 2.0F);
-  // The paint differs by house, for any anchor.
+  // The paint identifies the house, at any anchor.
   const auto house = static_cast<std::uint64_t>(s.reflectivity * 1e6F);
   const auto window = static_cast<std::uint64_t>(storey) * 64 + static_cast<std::uint64_t>(bay);
   const bool curtain = Random(house * 4096 + window).Chance(0.55F);

@@ -107,7 +107,7 @@ void Street::AddFurniture(const View& view, float side, std::vector<Shape>* shap
 }
 
 void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // A car ahead and one behind, at varying distances.
+  // Two cars ahead and one behind, at varying distances.
   struct Follower {
     double gap, breath, period_s;
   };

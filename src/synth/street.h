@@ -5,11 +5,11 @@
 
 namespace lidar::synth {
 
-/// The length of a house with its plot; every seventh one is a crossing.
+/// Length of a block [m]: a house with its plot. Every seventh block is a crossing.
 constexpr double kBlock = kAnchorStep;
 constexpr std::int64_t kBlocksToCrossing = 7;
 constexpr double kCrossingSpacing = kBlock * kBlocksToCrossing;
-constexpr double kFirstCrossing = 3.5 * kBlock;  // its middle, in blocks
+constexpr double kFirstCrossing = 3.5 * kBlock;  // its middle [m]
 constexpr float kStreetHalfRoad = 5.8F;          // two lanes and two rows of parked cars
 constexpr float kStreetKerb = 0.14F;
 constexpr float kStreetLane = 1.75F;  // middle of a lane
@@ -25,8 +25,8 @@ class Street final : public Scene {
   bool IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const override;
 
   void AddHouses(const View& view, float side, std::vector<Shape>* shapes) const;
-  /// Parked cars, trees, lamps, signs and bins.
   void AddParked(const View& view, float side, std::vector<Shape>* shapes) const;
+  /// Trees, lamps, signs and bins.
   void AddFurniture(const View& view, float side, std::vector<Shape>* shapes) const;
   /// Cars on the left lane, which drive toward -x.
   void AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const;

@@ -75,7 +75,7 @@ class Terrain {
     Height HeightAt(float x, float y) const {
       return {hill_x_.At(x) + hill_y_.At(y), hill_x_.SlopeAt(x), hill_y_.SlopeAt(y)};
     }
-    /// Place of that point on the plan, relative to the anchor's own coordinates.
+    /// Plan coordinates of a point, less those of the anchor in the world.
     float PlanU(float x, float y) const { return x - bend_y_.At(y); }
     float PlanV(float x, float y) const { return y - bend_x_.At(x); }
     static constexpr float curvature() {  // greatest curvature of the ground [1/m]

@@ -53,7 +53,7 @@ struct Surroundings {
   }
 
   Terrain::Local land;
-  float u, v;  // distance from the anchor to the middle of a block, in blocks
+  float u, v;  // place between two crossings, in kCrossingSpacing; 0.5 at a crossing
 };
 
 class Town final : public Scene {

@@ -11,7 +11,7 @@
 namespace lidar::synth {
 namespace {
 
-/// The crossings at which the route turns, counted in blocks. The route crosses itself at (1, 0).
+/// The crossings at which the route turns, by their numbers. The route crosses itself at (1, 0).
 struct Corner {
   int u, v;
 };
@@ -25,7 +25,7 @@ constexpr double kQuarter = 1.57079632679489661923;
 
 double Plan(int block) { return kFirstCrossing + kCrossingSpacing * block; }
 
-/// A quarter of a turn around the corner at `to`, or the straight way to it.
+/// A straight way, then a quarter of a turn around the corner, if any.
 struct Leg {
   double u0, v0, du, dv;  // where it begins, and its direction
   double straight;
@@ -44,7 +44,7 @@ std::vector<Leg> MakeLegs() {
     const int du = Sign(to.u - from.u);
     const int dv = Sign(to.v - from.v);
     const int turn = du * Sign(next.v - to.v) - dv * Sign(next.u - to.u);
-    // The last leg ended its turn this far behind the corner; the first leg began straight.
+    // A turn at `from` ends this far behind it; the first leg begins without a turn.
     const Corner& before = kCorners[i > 0 ? i - 1 : kLegs - 1];
     const bool turned = Sign(from.u - before.u) != du || Sign(from.v - before.v) != dv;
     const double skip = turned ? kCornerRadius : 0;
