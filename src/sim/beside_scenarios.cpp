@@ -11,7 +11,7 @@ namespace {
 using link::AqmConfig;
 
 constexpr Duration kRtt = std::chrono::milliseconds(40);
-constexpr Duration kOtherStart = 1s;  // after ours: what it knows of the link has to go
+constexpr Duration kOtherStart = 1s;  // after ours, whose model of the link is then outdated
 constexpr DataSize kShortestFifo = DataSize::Bytes(10 * 1500);
 
 Scenario Beside(const std::string& name, double mbps, TcpKind other, const Parameters& p) {
@@ -47,7 +47,7 @@ Scenario BesideWithAqm(const std::string& name, TcpKind other, AqmConfig::Kind a
   return s;
 }
 
-/// The other flow is the draft alone, with the reference's frame rate equal to ours.
+/// The other flow runs the draft alone, at our frame rate.
 Scenario BesideDraft(Duration phase, const Parameters& p) {
   Scenario s = BesideWithAqm("draft_ramp_20M_phase_" + std::to_string(phase / 1ms) + "ms",
                              TcpKind::kCubic, AqmConfig::Kind::kRamp, p);

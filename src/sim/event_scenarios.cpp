@@ -39,7 +39,7 @@ Scenario PolicerLifted(const Parameters& p) {
   return s;
 }
 
-/// No report comes back from 10 to 20 s. Then the link carries `mbps`.
+/// No report arrives from 10 to 20 s. The link carries `mbps` from 12 s on.
 Scenario Silence(const std::string& name, double mbps, const Parameters& p) {
   Scenario s = Event(name, 8, p);
   const std::string trace = "0 8\n12 " + std::to_string(mbps) + "\n";

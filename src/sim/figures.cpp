@@ -153,7 +153,7 @@ std::vector<Figure> Figures(const Scenario& s, const ScenarioMetrics& m) {
   return figures;
 }
 
-/// The limits are ours: the RFCs name metrics without limits.
+/// The goals are ours: the RFCs name metrics without limits.
 std::vector<Figure> Figures(const RmcatCase& c, const RmcatMetrics& m) {
   const bool alone = c.config.others.empty();
   const auto goal = [&](double limit) { return alone ? std::optional(limit) : std::nullopt; };

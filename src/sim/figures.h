@@ -23,8 +23,8 @@ struct Figure {
   std::optional<double> goal{};
 
   bool reached() const { return !goal || (kind->more_is_better ? value >= *goal : value <= *goal); }
-  /// Returns the difference from `base` as a multiple of the ignored one: above 0 if better, below
-  /// 0 if worse.
+  /// Returns the difference from `base` as a multiple of the largest ignored difference: above 0 if
+  /// better, below 0 if worse.
   double BetterThan(const Figure& base) const;
 };
 

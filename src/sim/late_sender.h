@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The yardstick for adaptive senders: it knows the link's capacity one round trip late.
+// A yardstick for adaptive senders: a sender that gets the link's capacity one round trip late.
 #pragma once
 #include <cstdint>
 
@@ -31,8 +31,8 @@ struct LateSenderReport {
   double queue_p95_ms = 0;  // of the network's queue
 };
 
-/// The window is the known rate times the round trip, so that at a gap only a link's fill is under
-/// way.
+/// The window is the known rate times the round trip, so that at a gap only as much is under way as
+/// fills the link.
 LateSenderReport SendLate(const link::Capacity& capacity, const LateSenderConfig& config);
 
 }  // namespace lidar::loop

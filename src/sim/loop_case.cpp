@@ -64,7 +64,7 @@ DataRate SourceMax(const LoopCase& c, const LoopReport& report) {
   return DataRate::BitsPerSecond(report.max_mbps * 1e6) + (c.camera ? kCameraMax : DataRate());
 }
 
-/// Returns the bits that the link carries and the source can use, from `from` to `until`.
+/// Returns the bits that the link carries and the source can use in `length` after `from`.
 double Usable(const LoopCase& c, const LoopReport& report, Duration from, Duration length) {
   const double link = c.capacity.Between(from, from + length).bits();
   return std::min(link, SourceMax(c, report).bits_per_second() * Seconds(length));

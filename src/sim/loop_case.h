@@ -65,7 +65,7 @@ struct LoopRun {
 LoopRun RunLoop(const LoopCase& loop_case);
 
 /// Returns the same case with another scene, `n` times 7.33 s later in its trace. Runs over drives
-/// are chaotic, so only the mean of several runs says something.
+/// are chaotic, so only the mean of several runs is meaningful.
 LoopCase Later(LoopCase loop_case, int n);
 
 struct NamedTrace {

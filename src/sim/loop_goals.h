@@ -26,7 +26,8 @@ struct LoopGoals {
 };
 LoopGoals GoalsOf(const LoopCase& loop_case);
 
-/// Returns the goals of this kind of run; those about gaps only for traces with gaps.
+/// Checks the goals of this kind of run. Traces with regular gaps have a goal for the time after a
+/// gap.
 std::vector<GoalResult> CheckGoals(const LoopCase& loop_case, const LoopReport& report);
 
 /// Checks that adapting is never worse than the coarsest step within the same error bound.

@@ -48,7 +48,8 @@ bool OthersOnLink0(const RmcatCase& c, int flow) {
   return flow >= ours && c.config.others[static_cast<std::size_t>(flow - ours)].route.front() == 0;
 }
 
-/// Bytes that link 0 carries of what its flows can use. Other flows can use all.
+/// Bytes that link 0 can carry and its flows can use. Background flows can use all, unless they
+/// send files.
 double Usable(const RmcatCase& c) {
   double most = 0;
   for (const int flow : c.forward)

@@ -106,7 +106,7 @@ RmcatCase BesideBackground(bool tcp, std::size_t on, const Parameters& p) {
     c.config.others.push_back(other);
     return c;
   }
-  // Constant-rate flows leave this capacity.
+  // Flows of constant rate are modelled by the capacity that they leave.
   std::string error;
   const auto less = *link::Capacity::ParseTrace("0 1\n40 0.7\n80 1\n", false, &error);
   (on == 0 ? c.config.forward : c.config.more_links[0]).capacity = less;

@@ -210,7 +210,7 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   result_.frames.push_back(frame);
 }
 
-/// Returns the size of the next frame on the wire; 0 if the encoder leaves it out.
+/// Returns the next frame, whose size is that on the wire; 0 if the encoder leaves it out.
 EncodedFrame Flow::Encode(Time now, std::size_t index) {
   SourceConfig& config = config_.sources[index];
   SourceState& source = sources_[index];

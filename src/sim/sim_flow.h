@@ -33,7 +33,7 @@ class Flow {
     std::uint16_t seq = 65000;  // wraps around early in a run
     Time next_frame{};
     std::deque<WirePacket> queue;
-    std::deque<Time> queued;  // arrival times of the packets in `queue`
+    std::deque<Time> queued;  // when the packets in `queue` were queued
     TargetNotifier notifier;
     DataRate told;  // last target that was sent to the encoder
   };

@@ -38,7 +38,7 @@ struct SourceConfig {
   double frame_jitter = 0;  ///< frame sizes vary by up to this fraction, uniformly
   /// Factor of the encoder's output relative to its target, over the flow's time.
   std::function<double(Duration)> obedience;
-  /// Replaces both: makes the next frame for the present target.
+  /// Replaces jitter and obedience: makes the next frame for the present target.
   std::function<EncodedFrame(DataRate)> encoder;
 };
 
@@ -64,14 +64,14 @@ struct FlowConfig {
   Duration receiver_restart = kNever;
   /// Another sender, with new SSRCs, continues the flow.
   Duration sender_restart = kNever;
-  /// Sequence numbers jump by so much, backwards or through the rest of their range.
+  /// Time at which sequence numbers jump back by `jump_back`, modulo 2^16.
   Duration sequence_jump = kNever;
   std::uint16_t jump_back = 0;
   /// false: reports hold no arrival times, as RFC 8888 allows.
   bool arrival_times = true;
   /// Time of the event route-changed at the sender.
   Duration route_change = kNever;
-  /// Step of the clocks.
+  /// Time at which the clocks jump, and by how much.
   Duration clock_jump = kNever;
   Duration sender_jump{0}, receiver_jump{0};
   double receiver_drift = 0;  ///< part by which the receiver's clock is too fast

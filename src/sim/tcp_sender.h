@@ -16,8 +16,8 @@ class TcpSender {
  public:
   TcpSender(TcpKind kind, Time start, double slow_start_threshold);
 
-  /// Returns when to call OnTimer() or SendPacket() next; Time::max() while only an acknowledgement
-  /// can help.
+  /// Returns when to call OnTimer() or SendPacket() next; Time::max() if the sender must wait for
+  /// an acknowledgement.
   Time NextEvent() const;
   bool MaySend(Time now) const;
   /// Accounts for a packet that leaves now. Returns its number.
@@ -48,7 +48,7 @@ class TcpSender {
   std::deque<InFlight> in_flight_;
   std::size_t outstanding_ = 0;
   std::uint64_t next_id_ = 0;
-  std::uint64_t recover_ = 0;  // earlier losses were answered
+  std::uint64_t recover_ = 0;  // losses of earlier packets were answered
   Duration s_rtt_{0}, rtt_var_{0};
   Time last_progress_;
   Time next_paced_;

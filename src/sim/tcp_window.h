@@ -13,7 +13,7 @@ enum class TcpKind {
   kPrague  ///< draft-briscoe-iccrg-prague-congestion-control
 };
 
-/// A congestion window in packets. Slow start is in TcpFlow for all of them.
+/// A congestion window in packets. TcpSender does slow start for all kinds.
 class TcpWindow {
  public:
   virtual ~TcpWindow() = default;
