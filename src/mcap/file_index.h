@@ -28,8 +28,8 @@ struct FileIndex {
   bool empty() const { return chunks.empty(); }
   std::uint64_t start_time() const;
   std::uint64_t end_time() const;
-  /// Takes a schema or a channel; returns false for other records and for damaged ones. Known ones
-  /// stay unchanged. Memory stays within kMaxCatalogue.
+  /// Takes a new schema or channel. Returns false for other records, damaged ones and known ones,
+  /// which stay unchanged. Memory stays within kMaxCatalogue.
   bool Learn(const Record& record);
 };
 

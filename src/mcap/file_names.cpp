@@ -10,12 +10,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Digits and length of a conversion like %d or %05d at the beginning of `text`; no digits for any
-/// other.
+/// A conversion like %d or %05d.
 struct Conversion {
   std::size_t digits = 0;
   std::size_t length = 0;
 };
+/// Parses the conversion at the beginning of `text`; nothing for any other.
 std::optional<Conversion> ParseConversion(std::string_view text) {
   std::size_t at = 1;  // behind the %
   const bool zeros = at < text.size() && text[at] == '0';

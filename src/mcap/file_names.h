@@ -13,14 +13,14 @@ namespace lidar::mcap {
 class FileNames {
  public:
   /// `location` is a path; its file name may have a number: `rec-%05d.mcap`. Returns nothing for
-  /// another conversion, or a second one; `why` then says so for a user.
+  /// another conversion, or a second one; `why` then has the reason for a user.
   static std::optional<FileNames> Parse(const std::string& location, std::string* why);
 
   bool is_numbered() const { return is_numbered_; }
   std::string Name(std::uint32_t number) const;
   /// The folder that the files are in.
   std::string Folder() const;
-  /// The existing files by number, or the only file. `failed`: the folder cannot be read.
+  /// The existing files by number, or the only file. Sets `failed` if the folder cannot be read.
   std::vector<std::pair<std::uint32_t, std::string>> Existing(std::error_code* failed) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans a file without a summary, which broke off or was written so.
+// Scans a file without a summary: it broke off, or its writer wrote none.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -32,7 +32,7 @@ class Scanner {
   }
 
  private:
-  /// The end of what is known. A file that was replaced is another.
+  /// Returns the end of the known records. Forgets them if the file was replaced by another.
   std::uint64_t Begin() {
     const auto last = std::max_element(
         index_.chunks.begin(), index_.chunks.end(),
@@ -73,7 +73,7 @@ class Scanner {
 
   bool TakeChunk(const RecordPlace& record, std::uint64_t offset) {
     const auto header = ReadChunkHeader(&input_, record);
-    if (!header) return true;  // the next record may be better
+    if (!header) return true;  // later records may be intact
     index_.chunks.push_back(
         {header->start_time, header->end_time, offset, record.end() - offset, false});
     if (learned_ == kChunksToLearn) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The files of a recording as one.
+// The files of a recording, read as one.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -22,7 +22,7 @@ class Playback {
     Schema schema;
     Channel channel;
   };
-  /// `message` stays until the next call of Next() or Seek().
+  /// `message` is valid until the next call of Next() or Seek().
   struct Item {
     const Schema* schema = nullptr;
     const Channel* channel = nullptr;
@@ -35,8 +35,9 @@ class Playback {
   static std::unique_ptr<Playback> Open(const std::string& location,
                                         const std::atomic<bool>* cancelled, std::string* why);
 
-  /// Looks at the files anew: a recording that is still written grows, and its oldest files go.
-  /// Returns false if there is none to read; `why` then says so. Seek() comes next.
+  /// Looks at the files anew: a recording that is still written grows, and its oldest files are
+  /// removed. Returns false if there is no file to read; `why` then has the reason. Seek() comes
+  /// next.
   bool Refresh(std::string* why);
 
   /// Log times [ns].

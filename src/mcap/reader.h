@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads the messages of an MCAP file by their log times. Any bytes may come.
+// Reads the messages of an MCAP file by their log times. The file may hold any bytes.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -12,7 +12,7 @@
 
 namespace lidar::mcap {
 
-/// A message; `data` belong to the reader and stay until its next call.
+/// A message; `data` belong to the reader and are valid until its next call.
 struct Message {
   MessageHeader header;
   ByteView data;
@@ -20,7 +20,7 @@ struct Message {
 
 class Reader {
  public:
-  /// Returns nothing if `input` is no MCAP file; `why` then says so in words for a user. `known` is
+  /// Returns nothing if `input` is no MCAP file; `why` then has the reason for a user. `known` is
   /// the index of the same file when it was shorter.
   static std::unique_ptr<Reader> Open(std::unique_ptr<Input> input, std::string* why,
                                       FileIndex known = {});
@@ -32,7 +32,7 @@ class Reader {
 
   /// Continues with the first message of `log_time` or later.
   void Seek(std::uint64_t log_time);
-  /// The next message of a known channel, none at the end. Chunks that overlap are merged.
+  /// The next message of a known channel; nothing at the end. Chunks that overlap are merged.
   std::optional<Message> Next();
 
  private:

@@ -8,7 +8,7 @@
 
 namespace lidar::mcap {
 
-/// The file as read by its owner.
+/// The bytes of a file, as its owner reads them.
 class Input {
  public:
   virtual ~Input() = default;
@@ -17,7 +17,7 @@ class Input {
   virtual bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) = 0;
 };
 
-/// Limits for a file's claims.
+/// Limits of what a file may claim.
 constexpr std::uint64_t kMaxChunk = std::uint64_t{128} << 20;    // bytes, uncompressed
 constexpr std::uint64_t kMaxSummary = std::uint64_t{64} << 20;   // bytes
 constexpr std::uint64_t kMaxCatalogue = std::uint64_t{8} << 20;  // bytes of schemas and channels

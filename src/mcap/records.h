@@ -76,7 +76,7 @@ struct ChunkHeader {
   std::string compression;             // empty, "lz4" or "zstd"
   std::uint64_t records_size = 0;      // of what follows, compressed
 };
-/// Log times and offsets in the uncompressed chunk of one channel's messages.
+/// Log times of one channel's messages, and their offsets in the uncompressed chunk.
 struct MessageIndex {
   std::uint16_t channel_id = 0;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;
@@ -137,7 +137,7 @@ std::optional<ChunkHeader> ParseChunkHeader(ByteView content, std::size_t* heade
 std::optional<ChunkIndex> ParseChunkIndex(ByteView content);
 std::optional<Statistics> ParseStatistics(ByteView content);
 
-/// A record of a run of them.
+/// A record in a run of records.
 struct Record {
   Op op;
   ByteView content;

@@ -24,7 +24,7 @@ class Catalogue {
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
 
-  /// The id of the schema of that name, which is added where it is missing.
+  /// The id of the schema of that name, which is added if it is missing.
   std::uint16_t AddSchema(const Schema& schema);
   /// The id of the new channel; 0 if there are 65,535 of them, or a reader would refuse more.
   std::uint16_t AddChannel(Channel channel);
@@ -33,7 +33,7 @@ class Catalogue {
   std::size_t channel_bytes_ = 0;
 };
 
-/// A file. Each chunk holds the schemas and channels that it uses, so it can be read alone.
+/// Writes a file. Each chunk holds the schemas and channels that it uses, so it can be read alone.
 class Writer {
  public:
   /// Appends to the file, all or nothing. Returns false if that failed.
