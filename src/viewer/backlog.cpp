@@ -35,7 +35,7 @@ void Backlog::Push(SharedSlice slice) {
   }
   bytes_ += CostOf(*slice);
   slices_.push_back(std::move(slice));
-  // A slice to which no other refers was only for display.
+  // No slice can refer to one without blocks: it was only for display.
   for (auto it = slices_.begin(); it != slices_.end();)
     it = (*it)->blocks.empty() && !IsRecent(**it) ? Erase(it) : std::next(it);
   while (bytes_ > most_bytes_) Erase(slices_.begin());

@@ -8,20 +8,20 @@
 
 namespace lidar::viewer {
 
-/// An encoder refers to ever newer slices of a place. So a slice that refers to one which stands
-/// alone makes all earlier slices of that place obsolete.
+/// An encoder refers to ever newer slices of a place. So a reference to a slice that stands alone
+/// makes all slices of that place before it obsolete.
 class Backlog {
  public:
   explicit Backlog(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// Drops obsolete slices, and the oldest ones above the bound.
   void Push(SharedSlice slice);
-  /// The oldest; null if it is empty.
+  /// Takes the oldest slice; null if there is none.
   SharedSlice Pop();
 
   bool empty() const { return slices_.empty(); }
   std::size_t size() const { return slices_.size(); }
-  /// Returns true if needed slices must soon be dropped: then a decoder should read it.
+  /// Returns true if needed slices must soon be dropped: then a decoder should take them.
   bool is_full() const { return bytes_ > most_bytes_ / 2; }
   /// Returns true for a slice of the two newest scans.
   bool IsRecent(const Slice& slice) const {

@@ -59,7 +59,7 @@ class Feed {
   /// Take().
   std::vector<SharedSlice> TakeRecorded(Time now, std::deque<SharedSlice>* waiting);
   void OnDrawn(Time now, SliceId slice) { pace_.OnDrawn(now, slice); }
-  /// The viewer's decoder lacks a reference: it now gets slices that stand alone.
+  /// The viewer's decoder lacks a reference: from now on it gets slices that stand alone.
   void OnLacksReference();
 
   /// Returns true if the viewer is too slow for the next scan to begin.
@@ -83,7 +83,7 @@ class Feed {
   std::unordered_set<std::uint32_t> known_;  // names of blocks that the viewer has
   std::deque<std::uint32_t> order_;          // the same, oldest first
   std::optional<std::uint32_t> newest_;      // last scan that appeared
-  bool skipping_ = false;                    // it was not begun
+  bool skipping_ = false;                    // the newest scan was not begun
   std::uint64_t scans_skipped_ = 0;
   bool wants_recoded_ = false;
 };

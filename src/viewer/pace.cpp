@@ -6,9 +6,9 @@
 namespace lidar::viewer {
 namespace {
 
-/// A delay this close to the shortest one confirms it, as a page draws once a frame.
+/// A delay this close to the shortest one confirms it, because a page draws once a frame.
 constexpr Duration kSameDelay = std::chrono::milliseconds(20);
-/// Time by whose data a scan may exceed max-bitrate, as it is sent at once.
+/// Time by whose data a scan may exceed max-bitrate, because it is sent at once.
 constexpr Duration kCredit = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -56,7 +56,7 @@ void Pace::OnDrawn(Time now, SliceId slice) {
     LearnRate(now, (acknowledged_ - newest.acknowledged_before) / since);
 }
 
-/// The delay without other traffic is that of the path, even if it was shorter before.
+/// A delay without other traffic is that of the path, even if an old one was shorter.
 void Pace::LearnDelay(Time now, Duration delay, bool alone) {
   const bool is_old = now - shortest_at_ > kDelayMemory && alone;
   if (shortest_ && !is_old && delay > *shortest_ + kSameDelay) return;

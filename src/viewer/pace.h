@@ -11,7 +11,7 @@
 
 namespace lidar::viewer {
 
-/// Named by the scan and its place in it.
+/// A slice, named by the scan and its place in it.
 struct SliceId {
   std::uint32_t scan = 0;
   std::uint32_t index = 0;
@@ -21,14 +21,14 @@ struct SliceId {
 /// more than the shortest delay. Times must not go back.
 class Pace {
  public:
-  /// 0: no limit.
+  /// `max_bitrate` of 0: no limit.
   explicit Pace(DataRate max_bitrate) : max_bitrate_(max_bitrate) {}
 
   bool MayBegin(Time now);
   /// Returns true if the unacknowledged bytes take too long.
   bool IsLate(Time now) const;
   void OnSent(Time now, SliceId slice, DataSize size);
-  /// The viewer has drawn the slice, and all that was sent before it.
+  /// Notes that the viewer has drawn the slice, and all that was sent before it.
   void OnDrawn(Time now, SliceId slice);
 
   DataSize unacknowledged() const { return unacknowledged_; }
@@ -51,8 +51,8 @@ class Pace {
     SliceId slice;
     DataSize size;
     Time at;
-    DataSize acknowledged_before;  // acknowledged in total when the slice was sent,
-    Time acknowledged_at;          // and the time of that
+    DataSize acknowledged_before;  // all that was acknowledged when the slice was sent
+    Time acknowledged_at;          // when the last of that was
     bool alone = false;            // no other traffic was under way
   };
   struct Rate {

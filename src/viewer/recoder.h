@@ -25,7 +25,7 @@ class Recoder {
   };
   /// Returns false if the slice cannot be coded.
   bool Encode(const Decoded& slice, std::vector<std::uint8_t>* out);
-  /// Width of the grid relative to the robot's.
+  /// Grid step relative to the robot's grid.
   double coarseness() const { return coarseness_; }
 
  private:
