@@ -67,7 +67,7 @@ void PutLe(std::uint64_t value, unsigned bytes, std::uint8_t* out) {
   for (unsigned i = 0; i < bytes; ++i) out[i] = static_cast<std::uint8_t>(value >> 8 * i);
 }
 
-/// `{"op":"drawn","subscriptionId":7,"scan":1234,"slice":5}`; others have no slice.
+/// `{"op":"drawn","subscriptionId":7,"scan":1234,"slice":5}`; other requests have no slice.
 Request ParseOfSlices(const json& message, Request::Kind kind) {
   const auto subscription = Id(message, "subscriptionId");
   const auto scan = Id(message, "scan");

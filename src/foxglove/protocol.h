@@ -12,8 +12,8 @@
 
 namespace lidar::foxglove {
 
-/// https://docs.foxglove.dev/docs/sdk/websocket-server and its predecessor; both mean the same to
-/// us.
+/// https://docs.foxglove.dev/docs/sdk/websocket-server and its predecessor, which the server treats
+/// alike.
 inline constexpr std::array<const char*, 2> kSubprotocols = {"foxglove.sdk.v1",
                                                              "foxglove.websocket.v1"};
 
@@ -80,7 +80,7 @@ struct Request {
   Kind kind = Kind::kMalformed;
   std::vector<Subscription> subscriptions;
   std::vector<std::uint32_t> unsubscribed;  // subscription ids
-  std::uint32_t subscription = 0;           // by which `slice` came
+  std::uint32_t subscription = 0;           // the one by which `slice` came
   SliceName slice;
   std::uint16_t number = 0;  // of a replay; never 0
   std::uint64_t time_ns = 0;
@@ -93,14 +93,14 @@ Request ParseRequest(std::string_view text);
 using MessageHead = std::array<std::uint8_t, 13>;
 MessageHead HeadOf(std::uint32_t subscription_id, std::uint64_t unix_ns);
 
-/// The bytes between the head and a slice, or a pose.
+/// Fields of SliceHead, which stands between MessageHead and the slice or pose.
 struct SliceInfo {
   SliceName name;
   std::uint32_t count = 1;  // number of slices in the scan
   std::uint32_t first_column = 0;
   bool is_recoded = false;
   std::uint16_t replay = 0;  // number of the replay; 0: live
-  bool is_pose = false;      // of a replay: no slice, but a foxglove.FrameTransform
+  bool is_pose = false;      // a foxglove.FrameTransform of a replay follows, no slice
 };
 using SliceHead = std::array<std::uint8_t, 24>;
 SliceHead HeadOfSlice(const SliceInfo& slice, std::uint64_t sent_unix_ns);

@@ -22,7 +22,7 @@ struct SchemaText {
   const char* name;      // "foxglove.PointCloud"
   const char* encoding;  // of the messages: "protobuf", "json" or "lidar-slice"
   const char* language;  // of the schema: "protobuf", "jsonschema", or "json": the stream itself
-  std::string text;      // base64 where the language is protobuf; empty if each stream has one
+  std::string text;      // base64 if the language is protobuf; empty if each stream has one
 };
 SchemaText TextOf(Schema schema);
 
