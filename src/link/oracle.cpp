@@ -60,7 +60,8 @@ class Sender {
     bool dropped = false;
   };
 
-  /// Decides when a scan's first bit would leave. A scan that has begun is finished.
+  /// Returns false for slices of dropped scans. A scan is dropped, or else finished, when its first
+  /// bit would leave.
   bool IsWanted(const Slice& slice, double now) {
     Scan& scan = scans_[slice.scan];
     const bool begins = slice.first && slice.bits_left >= bits_;

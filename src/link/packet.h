@@ -14,14 +14,14 @@ enum class Ecn : std::uint8_t { kNotEct = 0, kEct1 = 1, kEct0 = 2, kCe = 3 };
 struct Packet {
   DataSize size;  // with IP header
   Ecn ecn = Ecn::kNotEct;
-  std::uint64_t id = 0;  // of the caller; the model does not use it
+  std::uint64_t id = 0;  // the caller's; the model does not use it
 };
 
 enum class Fate : std::uint8_t {
   kDelivered,
   kLost,       // random loss
   kQueueFull,  // tail drop
-  kAqmDropped  // an AQM dropped it, as it could not mark it
+  kAqmDropped  // an AQM dropped it, because it could not mark it
 };
 
 /// A packet that arrived or was dropped. `sojourn` runs from its arrival in the queue to its
