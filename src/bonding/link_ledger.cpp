@@ -53,7 +53,7 @@ bool LinkLedger::Translate(const Source& source, const scream::SsrcReport& block
 
 void LinkLedger::Settle(const scream::SsrcReport& own, Source* source, Report* report) {
   if (own.metrics.empty()) return;
-  // The block's numbers lie within one turn of 16 bit, as kMaxPackets is less than a turn.
+  // The block's numbers lie within one turn of 16 bit, because kMaxPackets is less than a turn.
   const std::int64_t begin =
       source->end() - static_cast<std::uint16_t>(source->end() - own.begin_seq);
   for (std::size_t i = 0; i < own.metrics.size(); ++i) {

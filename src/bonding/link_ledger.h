@@ -20,7 +20,7 @@ namespace lidar::bonding {
 /// from RTP sequence numbers to these.
 class LinkLedger {
  public:
-  /// Reports of packets before these are implausible.
+  /// Number of packets that are remembered. Reports of older packets are implausible.
   static constexpr std::size_t kMaxPackets = 8192;
   static constexpr std::size_t kMaxSources = 64;
 
@@ -35,7 +35,8 @@ class LinkLedger {
     std::vector<PacketId> missing;        // overtaken by packets that arrived; each is listed once
   };
 
-  /// Returns the packet's number on this link. The receiver reports at once after `ends_slice`.
+  /// Returns the packet's number on this link. The receiver reports at once after a packet with
+  /// `ends_slice`.
   std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
   /// Returns nothing if the report has packets that never left over this link.
   std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
@@ -52,12 +53,12 @@ class LinkLedger {
     std::uint16_t seq = 0;
     Time sent{};
     bool ends_slice = false;
-    bool settled = false;  // arrived or missing
+    bool settled = false;  // reported as arrived
   };
   struct Source {
-    std::deque<Packet> packets;                               // numbered first, first + 1, ...
-    std::int64_t first = 0;                                   // number of packets.front()
-    std::int64_t waiting = 0;                                 // first packet that may still arrive
+    std::deque<Packet> packets;  // numbered first, first + 1, ...
+    std::int64_t first = 0;      // number of packets.front()
+    std::int64_t waiting = 0;    // first packet neither reported nor overtaken
     std::unordered_map<std::uint16_t, std::int64_t> numbers;  // by RTP sequence number
 
     std::int64_t end() const { return first + static_cast<std::int64_t>(packets.size()); }

@@ -83,8 +83,8 @@ bool Scheduler::InGap(Time now, std::size_t link) const {
   return !l.usable || (since && now - *since > Rtt(l) + kReportMargin);
 }
 
-/// The links that pass another link's queue: all but the nearest one that works, or that of the
-/// slice before where they are alike.
+/// Returns the links that share a queue with a nearer link that works. The link of the last slice
+/// counts as nearer by kSimilarRtts.
 LinkSet Scheduler::Spare(Time now) const {
   const auto far = [this](std::size_t link) {
     return std::pair(Rtt(links_[link]) - (link == slice_first_ ? kSimilarRtts : Duration{0}), link);
@@ -119,7 +119,7 @@ bool Scheduler::AwaitsArrivals(Time now) const {
   });
 }
 
-/// Returns the links beside the best one that get a copy of the next slice.
+/// Returns the links, in addition to the best one, that get a copy of the next slice.
 LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
   LinkSet links;
   const bool probe = slices_ % kProbeEvery == 0;

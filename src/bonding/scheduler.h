@@ -17,8 +17,8 @@
 namespace lidar::bonding {
 
 enum class Method {
-  /// Copies waiting packets, and all that has room while links are not settled. With summed targets
-  /// it copies waiting packets only.
+  /// Copies waiting packets, and while links are unsettled all packets for which there is room.
+  /// With TargetRule::kSum it copies waiting packets only.
   kAdaptive,
   kBroadcast,  ///< copies each packet to each link
   kBackup,     ///< copies waiting packets only
@@ -106,8 +106,8 @@ class Scheduler {
   /// is impossible.
   std::optional<scream::CongestionFeedback> OnFeedback(Time now, std::size_t link,
                                                        const scream::CongestionFeedback& feedback);
-  /// Returns the link that sent the packets of a report which is impossible for the link that it
-  /// came by: something between the ends may swap feedback.
+  /// Returns the link that sent the packets of a report. It may differ from the link that the
+  /// report came by: something between the ends may swap feedback.
   std::optional<std::size_t> OwnerOf(const scream::CongestionFeedback& feedback) const;
   void OnPath(std::size_t link, const PathView& path) { links_[link].path = path; }
   /// Sets whether packets can leave by the link at all.

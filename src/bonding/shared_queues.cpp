@@ -13,17 +13,18 @@ using namespace std::chrono_literals;
 /// Packets that a regression remembers, and the fewest that it needs.
 constexpr double kMemory = 512;
 constexpr double kFewest = 20;
-/// A term is left out where the others explain all of it but this part.
+/// A regression gives nothing if the other terms explain all of a term but this part.
 constexpr double kNothing = 1e-6;
 /// Arrival times are rounded to 1/1024 s [ms^2].
 constexpr double kLeastVariance = 0.01;
-/// Significance, of both directions together, that makes one queue of two, and that keeps it.
+/// Significance, of both directions together, from which on two links share a queue, and down to
+/// which they still do.
 constexpr double kFound = 4;
 constexpr double kStillFound = 1;
 /// The queue did not run empty if it was longer by this than the time to the next packet.
 constexpr double kMarginMs = 1;
-/// Packets of two links that leave within this time of each other meet the same queue of one FIFO,
-/// but for this part of the longer one, on average over so many packets.
+/// Packets of two links that leave within kTogether meet the same queue of one FIFO: the two queues
+/// differ by less than kAlike of the longer one, on average over kQueues packets.
 constexpr Duration kTogether = 10ms;
 constexpr double kAlike = 0.35;
 constexpr double kQueues = 16;
@@ -98,7 +99,7 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   const double sent_ms = Milliseconds(arrival.sent - last->sent);
   const auto ticks = static_cast<std::int32_t>(arrival.report_timestamp - last->report_timestamp);
   const double arrived_ms = ticks / 65.536 - Milliseconds(arrival.age - last->age);
-  // What arrived must not decide which packets count, so the one before shows the queue.
+  // The arrival itself must not decide whether it counts, so the packet before shows the queue.
   const bool busy = l.queue_ms > sent_ms + kMarginMs;
   l.Measure(arrival.sent, arrived_ms - sent_ms);
   for (std::size_t other = 0; other < kMaxLinks; ++other)

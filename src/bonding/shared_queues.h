@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which links pass one queue.
+// Finds out which links pass one queue.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace lidar::bonding {
 
-/// While a FIFO does not run empty, two packets of a link arrive as far apart as all takes to leave
-/// that entered between them. Packets of another link take time there only in the same FIFO. So the
-/// spacing of arrivals is regressed on what the other link sent in between, beside what the link
-/// itself sent, and the spacing of departures, which stands for the flows of others. Copies fill
-/// two queues alike, and then RFC 8382, which compares delays, takes them for one; but they do not
-/// space the packets of the other queue. Queues of one FIFO are also equally long at a time.
+/// While a FIFO does not run empty, two packets of a link arrive as far apart as all packets that
+/// entered between them take to leave. Packets of another link take time there only in the same
+/// FIFO. So the spacing of arrivals is regressed on what the other link sent in between, what the
+/// link itself sent, and the spacing of departures, which stands for the flows of others. RFC 8382
+/// compares delays, and takes two queues that copies fill alike for one; but copies do not space
+/// the packets of the other queue. Queues of one FIFO are also equally long at a time.
 class SharedQueues {
  public:
   /// A packet of a report.
   struct Arrival {
     Time sent{};
     std::uint32_t report_timestamp = 0;  // in 1/65536 s of the receiver's clock
-    Duration age{0};                     // then
+    Duration age{0};                     // at that time
   };
 
   void OnSent(Time now, std::size_t link, DataSize size);
@@ -35,7 +35,7 @@ class SharedQueues {
   bool Shared(std::size_t a, std::size_t b) const { return pairs_[a][b].shared; }
 
  private:
-  /// Least squares that forget.
+  /// Least squares, with less weight for older samples.
   class Regression {
    public:
     static constexpr std::size_t kTerms = 4;
@@ -53,7 +53,7 @@ class SharedQueues {
   };
   struct Pair {
     Regression spacing;  // of the first one's packets, by what the second one sent
-    // On average of packets that left together; of the pair with the lower index first.
+    // Means over packets that left together, in the pair whose first index is lower.
     double apart_ms = 0, longer_ms = 0;
     bool shared = false;
   };
