@@ -22,7 +22,8 @@ RowFile& RowFile::operator=(RowFile&& other) noexcept {
   return *this;
 }
 
-/// True for a regular file: others, such as /dev/full, are never removed.
+/// Removes a file without rows if it is a regular one: others, such as /dev/full, are never
+/// removed.
 void RowFile::Close() {
   if (!file_.is_open()) return;
   file_.close();

@@ -138,7 +138,7 @@ std::optional<Value> ParseValue(std::size_t type, std::string_view text,
   return kParsers[type](text);
 }
 
-/// Parses the text from the front; empty after a failure.
+/// Parses the text from the front.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
@@ -161,7 +161,7 @@ class Reader {
     text_.remove_prefix(size);
     return taken;
   }
-  /// The text after the opening quote, up to the closing one.
+  /// Takes the text after the opening quote, up to the closing one.
   std::optional<std::string> TakeQuoted() {
     std::string out;
     while (!Take('"')) {
@@ -187,7 +187,7 @@ class Reader {
   std::string_view text_;
 };
 
-/// The values after the opening bracket, up to the closing one.
+/// Takes the values after the opening bracket, up to the closing one.
 std::optional<Value> TakeDoubles(Reader* r) {
   Doubles values;
   do {

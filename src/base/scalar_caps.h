@@ -40,8 +40,8 @@ struct ScalarCaps {
 
   /// Returns nothing for text outside of the grammar.
   static std::optional<ScalarCaps> Parse(std::string_view text);
-  /// The text, as GStreamer would write it. Returns nothing if Parse() would refuse it: `why` then
-  /// says so for a user.
+  /// The text, as GStreamer would write it. Returns nothing if Parse() would refuse it; `why` then
+  /// has the reason for a user.
   std::optional<std::string> ToText(std::string* why = nullptr) const;
 
   /// Returns null if there is no such field.

@@ -7,7 +7,7 @@
 
 namespace lidar {
 
-/// Signed distance from `b` to `a`: positive where `a` is newer. Exact within half the range.
+/// Signed distance from `b` to `a`: positive if `a` is newer. Exact within half the range.
 template <class U>
 constexpr std::make_signed_t<U> SequenceDistance(U a, U b) {
   static_assert(std::is_unsigned_v<U>);
