@@ -11,7 +11,7 @@
 
 namespace lidar::nats {
 
-/// A message names one of these subjects, whose last word is the sender's.
+/// A message names one of these subjects for its answer. The sender chooses the last word.
 class AnswerSubjects {
  public:
   /// Returns nothing if memory is short.
@@ -20,7 +20,7 @@ class AnswerSubjects {
   std::string Of(const std::string& word) const { return prefix_ + word; }
   std::string Of(std::uint64_t number) const { return Of(std::to_string(number)); }
   std::string All() const { return prefix_ + "*"; }
-  /// The word of the message that is answered; empty if `subject` is no answer's.
+  /// Returns the word of the message that `answer` belongs to; empty if its subject is another.
   std::string_view WordOf(natsMsg* answer) const;
 
  private:
@@ -28,7 +28,7 @@ class AnswerSubjects {
   std::string prefix_;
 };
 
-/// All of `text` as a number.
+/// Returns `text` as a number, or nothing if other characters are in it.
 std::optional<std::uint64_t> ToNumber(std::string_view text);
 
 /// The reason why JetStream did not store a message; empty if it did.

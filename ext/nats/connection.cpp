@@ -27,7 +27,7 @@ std::vector<std::string> SplitUrls(const std::string& list) {
   return urls;
 }
 
-/// The fault of the files that the settings name; empty if there is none.
+/// Returns what is wrong with the files of the settings, or an empty text.
 std::string CheckFiles(const ConnectionSettings& s) {
   for (const std::string* path :
        {&s.credentials_file, &s.tls_ca_file, &s.tls_cert_file, &s.tls_key_file})
@@ -48,7 +48,7 @@ natsStatus SetSecurity(natsOptions* o, const ConnectionSettings& s) {
     status = natsOptions_LoadCATrustedCertificates(o, s.tls_ca_file.c_str());
   if (status == NATS_OK && !s.tls_cert_file.empty())
     status = natsOptions_LoadCertificatesChain(o, s.tls_cert_file.c_str(), s.tls_key_file.c_str());
-  // An authority makes TLS mandatory: nothing is sent to a server without it. libnats ignores the
+  // Certificates make TLS mandatory: nothing is sent to a server without it. libnats ignores the
   // scheme of the address, so it is read here.
   const bool tls = s.url.find("tls://") != std::string::npos || !s.tls_ca_file.empty() ||
                    !s.tls_cert_file.empty();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A connection to NATS that comes back by itself.
+// A connection to NATS that reconnects by itself.
 #pragma once
 #include <nats/nats.h>
 
@@ -26,20 +26,20 @@ struct ConnectionSettings {
 struct ConnectionState {
   bool connected() const { return connections > disconnections && !closed; }
 
-  bool closed = false;       // for good, as the server refuses us
+  bool closed = false;       // for good, because the server refused the client
   unsigned connections = 0;  // how many were made so far
   unsigned disconnections = 0;
   std::uint64_t errors = 0;  // reports of the server
   std::string last_error;    // the latest report, or empty
-  // Counts silences of JetStream's consumers: the server may have lost them.
+  // Number of silences of JetStream's consumers, which the server may have lost.
   unsigned missed_heartbeats = 0;
 };
 
 class Connection {
  public:
   /// `changed` runs in threads of libnats, at each change of the state until the destructor
-  /// returns. Returns null, and `why`, if the settings are wrong. A server that is away is no
-  /// error: the connection tries it until it is there.
+  /// returns. Returns null, and `why`, if the settings are wrong. A server that does not answer is
+  /// no error: the connection tries again until it does.
   using Changed = std::function<void(const ConnectionState&)>;
   static std::unique_ptr<Connection> Open(const ConnectionSettings& settings, Changed changed,
                                           std::string* why);
@@ -68,7 +68,7 @@ class Connection {
   natsConnection* nc_ = nullptr;
 };
 
-/// A server that is away for as long gives a warning.
+/// Time without a server until there is a warning.
 constexpr std::chrono::seconds kAbsence{2};
 /// Returns the URLs without their secrets, for messages to users.
 std::string WithoutUser(const std::string& urls);

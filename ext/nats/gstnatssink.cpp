@@ -3,7 +3,7 @@
  * SECTION:element-natssink
  *
  * Publishes coded slices, clouds, IMU samples or odometry on a subject of NATS, each buffer as a
- * message, and has JetStream keep them where that is wanted.
+ * message. JetStream keeps them if `jetstream` names a stream.
  *
  * |[
  * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! natssink subject=fleet.r7.lidar.front

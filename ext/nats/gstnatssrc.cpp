@@ -2,8 +2,8 @@
 /**
  * SECTION:element-natssrc
  *
- * The stream that a natssink publishes on a subject of NATS, as it comes or as JetStream kept it.
- * Elements downstream may ask for earlier buffers.
+ * Receives the stream that a natssink publishes on a subject of NATS, live or from JetStream.
+ * Elements downstream may query earlier buffers.
  *
  * |[
  * gst-launch-1.0 natssrc subject=fleet.r7.lidar.front ! lidardec ! fakesink
@@ -227,7 +227,7 @@ static gboolean Stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-/// Warns once until a message is good again, as a broken publisher sends many.
+/// Warns once until a message is good again, because a broken publisher sends many bad ones.
 static void NoteDamaged(GstLidarNatsSrc* self) {
   State& state = StateOf(self);
   state.account.Count(&SourceCounters::damaged);
@@ -238,14 +238,14 @@ static void NoteDamaged(GstLidarNatsSrc* self) {
                         (nullptr));
 }
 
-/// Returns null after it dropped and counted the message.
+/// Returns the format with that id, or null for a message to drop, which it counts.
 static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
   State& state = StateOf(self);
   if (state.format && state.format->id() == id) return state.format;
   const bool wait = g_get_monotonic_time() >= state.no_wait_until_us;
   StreamFormat::Ptr format = state.subscriber->Format(id, wait ? kFormatWait : milliseconds{});
   if (format) return format;
-  // Other messages may be good, so they do not each wait.
+  // The next messages do not wait, because they may have known formats.
   if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
   state.account.Count(&SourceCounters::without_caps);
   return nullptr;

@@ -11,7 +11,7 @@
 namespace lidar::nats {
 namespace {
 
-constexpr int kMostMessages = 4'096;  // of a piece
+constexpr int kMostMessages = 4'096;  // in a piece
 
 struct StreamNames {
   jsStreamNamesList* list = nullptr;
@@ -72,7 +72,8 @@ std::optional<gst::HistoryAnswer> History::Answer(const gst::HistoryQuestion& qu
   answer.to = std::max(last->captured, first->captured);
   if (question.most_bytes == 0) return answer;
   const bool has_time = GST_CLOCK_TIME_IS_VALID(question.time);
-  // JetStream knows when it stored a message, and the robot's clock may be ahead of the server's.
+  // JetStream finds messages by the time of storage, and the robot's clock may be ahead of the
+  // server's.
   const guint64 ahead = last->captured - std::min(last->captured, last->stored);
   answer.position = has_time ? 0 : question.position;
   Take(Fetch(has_time ? FromTime(question.time - std::min(question.time, ahead))
@@ -138,7 +139,7 @@ std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64
       NATS_OK)
     return {};
   const SubscriptionPtr subscription(raw);
-  // The server gives nothing instead of a message that is larger.
+  // The server sends nothing if the first message alone exceeds MaxBytes.
   const std::int64_t largest = 2 * natsConnection_GetMaxPayload(connection_->get());
   jsFetchRequest request;
   jsFetchRequest_Init(&request);
@@ -174,7 +175,7 @@ void History::Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* 
   }
 }
 
-/// Returns null if the stream does not have the format, either.
+/// Returns null if neither the book nor the stream has the format.
 StreamFormat::Ptr History::FormatOf(const std::string& id) {
   if (auto known = book_.Find(id)) return known;
   natsMsg* raw = nullptr;

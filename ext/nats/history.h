@@ -13,7 +13,7 @@
 
 namespace lidar::nats {
 
-/// Any thread may ask; one at a time gets its answer, which takes a few requests of the server.
+/// All threads may call Answer(), one at a time. An answer takes a few requests to the server.
 class History {
  public:
   /// `stream` is that of JetStream; empty: the one that keeps the subject.

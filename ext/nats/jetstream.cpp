@@ -52,7 +52,7 @@ natsStatus Add(jsCtx* js, const StreamSettings& settings, const std::vector<std:
   return js_AddStream(nullptr, js, &config, nullptr, code);
 }
 
-/// Adds to the subjects of the stream: other sinks keep theirs in it.
+/// Adds `subjects` to those of the stream, which may be of other sinks.
 natsStatus Update(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, const jsStreamConfig& now,
                   jsErrCode* code) {
@@ -84,7 +84,7 @@ natsStatus AddOrUpdate(jsCtx* js, const StreamSettings& settings,
   jsStreamInfo* raw = nullptr;
   const natsStatus status = js_GetStreamInfo(&raw, js, settings.name.c_str(), nullptr, code);
   const StreamInfoPtr info(raw);
-  // A stream of all subjects answers requests itself, with an acknowledgement.
+  // A stream of all subjects keeps requests, too, and its acknowledgement comes as their answer.
   if (status == NATS_OK && info->Config == nullptr) return NATS_PROTOCOL_ERROR;
   if (status == NATS_OK) return Update(js, settings, subjects, *info->Config, code);
   return status == NATS_NOT_FOUND ? Add(js, settings, subjects, code) : status;

@@ -15,7 +15,7 @@ struct StreamSettings {
   Duration max_age{};           // 0: no limit
   std::uint64_t max_bytes = 0;  // 0: no limit
   unsigned replicas = 1;        // servers of a cluster that keep a copy
-  std::string subjects;         // a pattern; empty: the subjects of its maker
+  std::string subjects;         // a pattern; empty: the subjects of the sink
 };
 
 constexpr std::int64_t kRequestTimeoutMs = 1'000;

@@ -24,7 +24,7 @@ struct ReadMessage {
   gst::BufferPtr buffer;  // without PTS
 };
 
-/// Returns further subjects of a stream: for formats and for requests.
+/// Return the subjects of a stream's formats, and of requests for formats.
 std::string ConfigSubject(const std::string& subject, const std::string& format_id);
 std::string AskSubject(const std::string& subject);
 /// The fault of `subject`; empty if there is none.

@@ -78,7 +78,7 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
   const bool closed = state.closed && !std::exchange(closed_, true);
   const bool error = state.errors > std::exchange(errors_, state.errors);
   lock.unlock();
-  // The words are the server's, and messages on the bus are valid UTF-8.
+  // The server's text may be invalid UTF-8, which messages on the bus must not have.
   const StringPtr words(g_utf8_make_valid(state.last_error.c_str(), -1));
   if (changed)
     gst_element_post_message(

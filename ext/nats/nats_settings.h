@@ -26,13 +26,13 @@ const std::array<Property<NatsSettings>, 8>& NatsRows();
 bool CheckNatsSettings(GstElement* element, NatsSettings* settings);
 
 /// Posts the state of a connection: nats-connection-changed, warnings if the server complains, an
-/// error if it refuses us.
+/// error if it refuses the client.
 class ConnectionWatch {
  public:
-  /// `keeps_trying`: a server that refuses us is a warning.
+  /// `keeps_trying`: a refusal by the server is a warning instead of an error.
   ConnectionWatch(GstElement* element, bool keeps_trying)
       : element_(GST_ELEMENT(gst_object_ref(element))), keeps_trying_(keeps_trying) {}
-  /// Runs in any thread.
+  /// Any thread may call these.
   void Note(const nats::ConnectionState& state);
   void Warn(const std::string& text);
   void PostRefused(const nats::ConnectionState& state);

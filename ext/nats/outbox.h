@@ -24,17 +24,17 @@ class Outbox {
 
   explicit Outbox(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// Drops the oldest that wait if it is full; returns how many.
+  /// Adds a message. If there is no room, drops the oldest waiting messages; returns how many.
   std::size_t Push(Outgoing item);
 
-  /// Takes the oldest that waits: it is in flight until Remove() or Retry().
+  /// Takes the oldest waiting message, which is in flight until Remove() or Retry().
   std::optional<Outgoing> Take(Clock::time_point now);
   /// Returns false if `number` is not in flight.
   bool Remove(std::uint64_t number);
   /// Makes messages in flight wait again, before all others. Returns how many.
   std::size_t Retry(std::uint64_t number);
   std::size_t RetryAll();
-  /// Forgets all; returns how many.
+  /// Forgets all messages; returns how many.
   std::size_t Clear();
 
   /// The format of the oldest message that waits, or null.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 8;
 constexpr std::size_t kMaxSpans = 256;  // of a run
-/// Larger jumps, days of a stream, are taken for damage.
+/// A larger jump, of days of a stream, counts as damage.
 constexpr std::uint64_t kMaxMissing = 100'000'000;
 
 }  // namespace

@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds kPatrol{500};  // between checks for unanswe
 constexpr const char* kConfigReply = "config";     // in place of a message's number
 constexpr std::size_t kMaxInFlight = 256;          // messages
 
-/// Random, so that sinks do not change one stream at the same time.
+/// The pause is random, so that sinks do not change one stream at the same time.
 std::chrono::milliseconds StreamPause() {
   return std::chrono::milliseconds(
       g_random_int_range(kMinStreamRetryMs, static_cast<gint>(kStreamRetry.count())));
@@ -100,8 +100,8 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
     *why = ErrorText(s);
     return false;
   }
-  // The callback may still run after the subscription; this one follows it. If the server has
-  // closed the connection, it does not come.
+  // The callback may still run after the end of the subscription, so the target lives until the
+  // completion callback. That does not come if the server has closed the connection.
   const natsStatus told = natsSubscription_SetOnCompleteCB(
       raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.get());
   if (told != NATS_OK) untold_.push_back(std::move(target));
@@ -176,7 +176,7 @@ void Publisher::OnAck(natsMsg* message) {
       ++counters_.acknowledged;
     told_.clear();
   } else {
-    // The messages behind it wait as well, so that the order stays.
+    // All messages in flight are sent again, so that their order stays.
     SendAllAgain();
     retry_at_ = Clock::now() + StreamPause();
   }
@@ -236,7 +236,7 @@ void Publisher::NoteConnection(const ConnectionState& state) {
   refusals_.Reset();
 }
 
-/// Sends messages in flight before waiting ones, so that all are stored in order.
+/// Sends messages in flight again before waiting ones, so that all are stored in order.
 void Publisher::RetryAfterReconnect(Lock* lock) {
   lock->unlock();
   const std::uint64_t reconnects = connection_->reconnects();  // may wait for a write

@@ -26,7 +26,7 @@ struct PublisherSettings {
   std::string subject;
   StreamSettings stream;
   std::size_t max_buffered = 8U << 20;  // bytes
-  // Refusals and wrong settings are tried again, as they may be mended later.
+  // Tries again after refusals and wrong settings, which may be mended later.
   bool keep_trying = false;
 };
 
@@ -118,7 +118,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   JetStreamPtr js_;
   SubscriptionPtr asks_;
   SubscriptionPtr acks_;
-  std::vector<std::unique_ptr<Target>> untold_;  // of subscriptions without an end callback
+  std::vector<std::unique_ptr<Target>> untold_;  // of subscriptions without a completion callback
   std::thread thread_;
 
   mutable std::mutex mutex_;  // guards what follows; never held while sending or calling events_

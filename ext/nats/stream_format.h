@@ -15,7 +15,7 @@ class StreamFormat {
  public:
   using Ptr = std::shared_ptr<const StreamFormat>;
 
-  /// Returns null, and `why` for a user, if streams of `caps` cannot travel.
+  /// Returns null, and `why` for a user, if streams of `caps` cannot be sent.
   static Ptr FromCaps(GstCaps* caps, std::string* why);
   /// Reads text of the network; returns null if FromCaps() cannot have sent it.
   static Ptr FromText(const std::string& text);

@@ -22,7 +22,7 @@ constexpr int kMaxPendingConfigBytes = 1 << 20;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kAckWaitNs = 2 * kSecondNs;
 constexpr std::int64_t kMaxUnacknowledged = 32;  // messages; more would wait here past kAckWaitNs
-constexpr int kMaxPendingUnacknowledged = 256;   // of consumers that others made
+constexpr int kMaxPendingUnacknowledged = 256;   // messages of consumers that others made
 
 /// libnats 3.4 writes .012 s as .12 s, so such times become the whole second before them.
 std::int64_t SafeTime(std::uint64_t time) {
@@ -148,7 +148,8 @@ natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
   messages_.reset(raw);
   if (s != NATS_OK) return s;
-  // Messages beyond the limit come again, unacknowledged. A single message must fit.
+  // Messages beyond the limit are dropped here and, unacknowledged, come again. A single message
+  // must fit.
   const std::int64_t largest = natsConnection_GetMaxPayload(connection_->get());
   const auto bytes = std::max<std::int64_t>(settings_.max_pending, 2 * largest);
   return natsSubscription_SetPendingLimits(
@@ -172,7 +173,7 @@ natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
   return settings_.durable.empty() ? SubscribeOwn(code) : SubscribeDurable(code);
 }
 
-/// Consumers of JetStream are made anew after each connect, as the server may have lost them.
+/// Makes the consumer of JetStream anew after each connect, because the server may have lost it.
 Subscriber::Event Subscriber::Renew() {
   const auto now = steady_clock::now();
   if (now < renew_at_) {

@@ -20,7 +20,7 @@ struct SubscriberSettings {
   std::string stream;                       // JetStream's stream; empty: live
   std::string durable;                      // consumer; empty: a temporary one
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
-  std::uint64_t start_sequence = 0;         // replaces start_time; 0: does not
+  std::uint64_t start_sequence = 0;         // replaces start_time, unless it is 0
   int max_pending = 8 << 20;                // bytes that may wait, if live
 };
 
