@@ -21,23 +21,23 @@ class Archive {
   struct Item {
     std::uint64_t time_ns = 0;
     std::uint64_t position = 0;           // behind it
-    std::size_t read = 0;                 // bytes that it cost
+    std::size_t read = 0;                 // bytes that were read for it
     std::shared_ptr<SliceMessage> slice;  // null: of another stream, or damaged
     bool is_damaged = false;
   };
 
   virtual ~Archive() = default;
-  /// Returns the times of all that can be read now. Returns nothing if that is nothing; `why` then
-  /// says so for a user.
+  /// Returns the times of all that can be read now, or nothing if there is none; `why` then has the
+  /// reason for a user.
   virtual std::optional<Times> Look(std::string* why) = 0;
   /// Continues at a time, or behind the item that had the `position`.
   virtual void Seek(std::uint64_t time_ns) = 0;
   virtual void GoOn(std::uint64_t position) = 0;
   /// Returns nothing if no more follow yet, or soon after Cancel().
   virtual std::optional<Item> Next() = 0;
-  /// Lets go of files and buffers until the next Seek() or GoOn().
+  /// Closes files and frees buffers until the next Seek() or GoOn().
   virtual void Rest() = 0;
-  /// Counts parts that were left out, beside damaged items.
+  /// Number of parts that were left out, damaged items not counted.
   virtual std::uint64_t damaged() const = 0;
 
   /// Any thread may call it.

@@ -39,7 +39,7 @@ Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers)
 Client::~Client() {
   readable_.reset();
   writable_.reset();
-  // TLS would wait for a peer that takes no goodbye.
+  // A TLS connection would wait for a peer that takes no close notification.
   if (G_IS_TLS_CONNECTION(stream_.get())) {
     GIOStream* base = nullptr;
     g_object_get(stream_.get(), "base-io-stream", &base, nullptr);

@@ -33,13 +33,13 @@ class Client {
 
   /// Control texts wait in order; a client that lets too many wait is closed.
   void SendText(const std::string& text);
-  /// Returns the number of dropped messages, this one included.
+  /// Returns how many of the channel's messages were dropped, maybe this one.
   std::size_t Send(Outbox::Item item, std::size_t depth);
-  /// The channel's next message does not come here.
+  /// Notes that a message of the channel is not sent to this client.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
-  /// Slices are kept in order. Their sender waits for earlier ones to be drawn, so a client that
-  /// lets too many wait has lied and is closed. `replay` is the number of the replay to which the
-  /// slice belongs, or 0 if it is live.
+  /// Slices are kept in order. They are sent only as earlier ones were drawn, so a client that lets
+  /// too many wait broke the protocol and is closed. `replay` is the number of the replay to which
+  /// the slice belongs, or 0 if it is live.
   void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice,
                  std::uint16_t replay = 0);
   /// The channel's messages are no longer sent.
@@ -83,7 +83,8 @@ class Client {
   bool TakeMessage();
   void Begin(const foxglove::MessageHead& head, ByteView more,
              std::shared_ptr<const std::vector<std::uint8_t>> body);
-  /// Bytes written; 0 if the peer takes no more, or after an error, which closes.
+  /// Returns the bytes written; 0 if the peer takes no more, or after an error, which closes the
+  /// connection.
   std::size_t WriteSome(const Outgoing& out);
   void WaitForRoom();
   void End();

@@ -12,7 +12,7 @@
 
 namespace lidar::web {
 
-/// The element's user names the files; nothing that a viewer sends does.
+/// Only the element's user names the files, no viewer can.
 class FileArchive final : public Archive {
  public:
   /// `location` is that of mcapsink; `caps` those of the stream.

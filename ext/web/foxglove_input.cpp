@@ -38,7 +38,7 @@ constexpr guint kMaxDepth = 64;
 enum class Kind { kNone, kCloud, kDraco, kOdometry, kSlices, kH264, kVp8 };
 
 struct State {
-  std::mutex mutex;  // guards the settings and the pointer
+  std::mutex mutex;  // guards the settings and `hub`
   InputSettings settings;
   std::shared_ptr<Hub> hub;
   // Only the streaming thread uses what follows.
@@ -136,7 +136,7 @@ Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
 
 bool IsVideo(Kind kind) { return kind == Kind::kH264 || kind == Kind::kVp8; }
 
-/// Coded caps have a framerate, too.
+/// Returns 0 if the caps, coded ones included, have no framerate.
 guint64 ScanDurationOf(GstCaps* caps) {
   gint n = 0;
   gint d = 1;
@@ -152,7 +152,7 @@ bool OpenVideo(GstBaseSink* sink, const std::string& name) {
   return true;
 }
 
-/// Waits for the source's server, once, if it has one that keeps the stream.
+/// Returns the function that queries upstream, and waits for a server that keeps the stream.
 lidar::web::UpstreamArchive::Ask AskUpstream(GstBaseSink* sink) {
   const std::shared_ptr<GstPad> pad(GST_PAD(gst_object_ref(GST_BASE_SINK_PAD(sink))),
                                     gst_object_unref);
@@ -313,7 +313,7 @@ bool RenderVideo(State* state, const Header& header, GstBuffer* buffer, const Bu
   return true;
 }
 
-/// Position and orientation as seven doubles, and the tracking.
+/// Publishes position and orientation, which are the first seven doubles.
 bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   lidar::ByteReader in(map.view());
   Pose pose;

@@ -12,7 +12,7 @@ namespace {
 /// Long enough for the page over a poor link.
 constexpr gint64 kLongest_us = 60 * gint64{G_USEC_PER_SEC};
 constexpr int kBacklog = 128;
-/// Most unsent data in the kernel: they become old and cannot be dropped.
+/// Limit of unsent data in the kernel, which become old there and cannot be dropped.
 constexpr gint kUnsentBytes = 128 * 1024;
 
 std::string AddressOf(GSocketAddress* peer) {
@@ -91,7 +91,7 @@ void FrontDoor::Accept(GSocketConnection* connection) {
     Enter(connection, G_IO_STREAM(connection));
 }
 
-/// An address with many connections loses its own first.
+/// Closes the oldest connection of an address that has too many, or else the oldest of all.
 void FrontDoor::MakeRoom(const std::string& address) {
   const auto is_his = [&address](const Visitor& v) { return v.address == address; };
   const auto his =

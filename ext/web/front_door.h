@@ -16,22 +16,22 @@ namespace lidar::web {
 /// Lives in the server's thread.
 class FrontDoor {
  public:
-  /// Limits of connections that are no WebSocket; the oldest give way.
+  /// Limits of connections that are no WebSocket; the oldest are closed.
   struct Limits {
     std::size_t all = 1000;
     std::size_t of_an_address = 32;  // a browser has six at a time
   };
-  /// `certificate` may be null, and outlives the door.
+  /// `certificate` may be null, and must outlive the door.
   FrontDoor(SoupServer* server, Certificate* certificate, Limits limits);
   ~FrontDoor();
   FrontDoor(const FrontDoor&) = delete;
   FrontDoor& operator=(const FrontDoor&) = delete;
 
-  /// The port, or 0 and why not.
+  /// Returns the port, or 0 and the error.
   guint16 Listen(GInetAddress* address, guint16 port, std::string* error);
   /// The connection of this request is a WebSocket from now on.
   void Promote(SoupServerMessage* request);
-  /// Once a second: ends what took too long.
+  /// Call it once a second: closes connections that take too long.
   void Tick(gint64 now_us);
   guint64 evicted() const { return evicted_; }
 

@@ -37,7 +37,7 @@ std::string HmacSha256(std::string_view secret, std::string_view text) {
   return {digest.begin(), digest.begin() + size};
 }
 
-/// RFC 7515: a header that names a critical extension is for those that implement it.
+/// A header with critical extensions (RFC 7515) is refused, because none is implemented.
 bool IsHs256(const json& header) {
   const auto alg = header.is_object() ? header.find("alg") : header.end();
   return header.is_object() && alg != header.end() && *alg == "HS256" && !header.contains("crit");

@@ -9,7 +9,7 @@
 
 namespace lidar::web {
 
-/// Takes as long for any texts, so that time does not leak a matching prefix.
+/// Takes a time that depends on the lengths only, so that it does not leak a matching prefix.
 bool SameSecret(std::string_view a, std::string_view b);
 
 struct Grant {

@@ -2,8 +2,8 @@
 /**
  * SECTION:element-foxglovesink
  *
- * Shows clouds, poses and statistics in a browser, in Foxglove and in all that speaks its WebSocket
- * protocol.
+ * Shows clouds, poses and statistics in a browser, in Foxglove and in other programs that speak its
+ * WebSocket protocol.
  *
  * |[
  * gst-launch-1.0 lidartestsrc is-live=true ! foxglovesink
@@ -45,7 +45,7 @@ struct Settings {
 };
 
 struct State {
-  std::mutex mutex;  // guards the settings and the pointer
+  std::mutex mutex;  // guards the settings and `hub`
   Settings settings;
   std::shared_ptr<Hub> hub;  // above NULL
   std::atomic<guint> next_pad{0};
@@ -179,7 +179,7 @@ static StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
   Counters counters;
   {
-    // Also called by the server's thread, which must not hold the last reference to itself.
+    // The server's thread calls this, too, and must not hold the last reference to the hub.
     const std::lock_guard lock(state.mutex);
     if (state.hub) counters = CountersOf(*state.hub);
   }
@@ -289,7 +289,7 @@ static bool Open(GstElement* element) {
   return true;
 }
 
-/// Gives each input the server and stream of `state`; null takes them away.
+/// Sets the element's hub, which may be null, in each input.
 static void GiveHub(GstElement* element) {
   const auto hub = HubOf(G_OBJECT(element));
   GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(element));

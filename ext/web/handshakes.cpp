@@ -10,7 +10,7 @@ namespace {
 constexpr int kAtOnce = 8;
 constexpr int kOfAnAddress = 3;
 constexpr gint64 kLongestHandshake_us = 10 * gint64{G_USEC_PER_SEC};
-/// A round trip over a slow link.
+/// Longest handshake while others wait: a round trip over a slow link.
 constexpr gint64 kLongestWhileOthersWait_us = gint64{G_USEC_PER_SEC};
 
 std::string AddressOf(GSocketConnection* connection) {
@@ -23,8 +23,8 @@ std::string AddressOf(GSocketConnection* connection) {
   return copy;
 }
 
-/// As g_tls_server_connection_new(), but without a database: no client shows a certificate, and to
-/// read the system's authorities takes milliseconds a connection.
+/// As g_tls_server_connection_new(), but without a database: no client shows a certificate, and
+/// reading the system's authorities takes milliseconds a connection.
 ObjectPtr<GIOStream> NewServerConnection(GSocketConnection* connection,
                                          GTlsCertificate* certificate) {
   const GType type = g_tls_backend_get_server_connection_type(g_tls_backend_get_default());
@@ -35,7 +35,7 @@ ObjectPtr<GIOStream> NewServerConnection(GSocketConnection* connection,
 
 }  // namespace
 
-/// A running handshake ends without its owner.
+/// A running handshake ends later, without its owner.
 Handshakes::~Handshakes() {
   for (const EntryPtr& entry : entries_) {
     entry->owner = nullptr;

@@ -27,7 +27,7 @@ class Handshakes {
   void Begin(ObjectPtr<GSocketConnection> connection, GTlsCertificate* certificate);
   /// The connection was closed.
   void Forget(GSocketConnection* connection);
-  /// Once a second: ends those that take too long.
+  /// Call it once a second: ends handshakes that take too long.
   void Tick(gint64 now_us);
 
  private:
@@ -46,7 +46,7 @@ class Handshakes {
     SourcePtr readable;
     Counts::iterator address;
     bool is_ready = false;
-    gint64 since_us = 0;  // it runs
+    gint64 since_us = 0;  // start of the handshake
   };
   using EntryPtr = std::shared_ptr<Entry>;
   static gboolean OnReadable(GSocket*, GIOCondition, gpointer entry);

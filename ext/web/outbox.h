@@ -19,7 +19,7 @@ class Outbox {
     SharedMessage message;
   };
 
-  /// Returns the number of dropped messages of the channel, this one included; `depth` are kept.
+  /// Returns how many of the channel's messages were dropped, maybe this one. At most `depth` stay.
   /// Messages that continue a dropped one are dropped, too.
   std::size_t Push(Item item, std::size_t depth) {
     const std::uint32_t channel = item.channel_id;
@@ -36,7 +36,7 @@ class Outbox {
     items_.pop_front();
     return item;
   }
-  /// Notes that a message of the channel is sent elsewhere: messages that continue it are dropped.
+  /// Notes that a message of the channel is not sent: messages that continue it are dropped.
   void Skip(std::uint32_t channel) { whole_.erase(channel); }
   void Forget(std::uint32_t channel) {
     Skip(channel);

@@ -39,7 +39,7 @@ std::unique_ptr<Server> Server::Start(ServerConfig config, std::string* error) {
 
 Server::~Server() {
   if (!thread_.joinable()) return;
-  // Runs in the context, so that it comes after the loop has begun.
+  // The loop's own thread quits it, so that the loop has begun before.
   GSource* quit = g_idle_source_new();
   g_source_set_priority(quit, G_PRIORITY_HIGH);
   g_source_set_callback(
@@ -143,7 +143,7 @@ void Server::Collect() {
     while (auto item = inbox_.Pop()) messages.push_back(std::move(*item));
     slices.swap(slices_);
   }
-  if (!service_) return;  // it has closed
+  if (!service_) return;  // the service has ended
   service_->SetTopics(topics);
   for (const Outbox::Item& item : messages) service_->Deliver(item.channel_id, item.message);
   for (const auto& [channel, slice] : slices) service_->DeliverSlice(channel, slice);

@@ -21,7 +21,7 @@ class ClientService;
 /// All threads may call the public functions, which wait for no client.
 class Server {
  public:
-  /// Returns nothing if the server cannot listen; `error` then says why, in words for a user.
+  /// Returns nothing if the server cannot listen; `error` then has the reason in words for a user.
   static std::unique_ptr<Server> Start(ServerConfig config, std::string* error);
   /// Ends all connections.
   ~Server();

@@ -16,7 +16,7 @@ inline constexpr const char* kStatisticsTopic = "/statistics";
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;    // 0: any free port
-  std::string token;         // empty, with `secret` also empty: admits all clients
+  std::string token;         // empty, with `token_secret` also empty: admits all clients
   std::string token_secret;  // for signed tokens; empty: none
   std::string
       allowed_origins;      // of pages that need no token, beside the own: "https://a,https://b"

@@ -40,7 +40,7 @@ class SliceService {
  private:
   /// What a viewer gets of a recording in place of live slices.
   struct Replay {
-    std::uint16_t number = 0;                 // the viewer's
+    std::uint16_t number = 0;                 // number of the replay, chosen by the viewer
     std::deque<viewer::SharedSlice> waiting;  // read and not sent
     std::uint64_t next = 0;                   // position of the next piece
     std::uint64_t last_ns = 0;                // of the last slice that was read
@@ -59,7 +59,7 @@ class SliceService {
     viewer::RecentScans recent;
     std::map<Client*, Viewer> viewers;
     Time looked_at{};           // at the recording
-    std::uint64_t from_ns = 0;  // its times at that time
+    std::uint64_t from_ns = 0;  // the recording's times then
     std::uint64_t to_ns = 0;
     std::string why;  // of the last warning
   };
@@ -77,7 +77,7 @@ class SliceService {
   const DataRate max_bitrate_;
   const std::function<void(std::string)> warn_;
   RecordingReader reader_;
-  std::uint64_t next_asker_ = 1;             // 0: looks for all viewers of a stream
+  std::uint64_t next_asker_ = 1;             // asker 0 looks for all viewers of a stream
   std::map<std::uint32_t, Stream> streams_;  // by channel, with viewers
   std::uint64_t scans_skipped_ = 0;
 };

@@ -21,7 +21,7 @@ class SliceStream {
     std::string topic;           // of the decoded clouds; slices have it with kSlicesEnding
     std::string frame_id;        // of both channels
     std::string recording = {};  // location of mcapsink's files of the stream; empty: none
-    UpstreamArchive::Ask ask_upstream = {};  // for a history, without a recording; null: none
+    UpstreamArchive::Ask ask_upstream = {};  // queries a history without a recording; null: none
     guint max_points = 0;                    // of a decoded message; 0: no limit
   };
   struct Counters {
@@ -32,7 +32,7 @@ class SliceStream {
   /// decode, or another stream has a topic. `server` and the `counters` outlive the stream.
   static std::unique_ptr<SliceStream> Open(Server* server, const GstCaps* caps, Settings settings,
                                            Counters counters, std::string* why);
-  /// Takes back the channels.
+  /// Closes the channels.
   ~SliceStream();
   SliceStream(const SliceStream&) = delete;
   SliceStream& operator=(const SliceStream&) = delete;
@@ -60,7 +60,7 @@ class SliceStream {
   SharedTopic slices_;
   SharedTopic clouds_;
   bool has_ranges_ = false;
-  std::unique_ptr<Decoding> decoding_;  // of the thread
+  std::unique_ptr<Decoding> decoding_;  // used by the thread
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable change_;

@@ -30,7 +30,7 @@ void Collect(GstElement* element, json* all);
 
 void CollectChildren(GstBin* bin, json* all) {
   GstIterator* children = gst_bin_iterate_elements(bin);
-  // Repeats the message if children come and go meanwhile.
+  // If children are added or removed meanwhile, some are missing until the next message.
   gst_iterator_foreach(
       children,
       [](const GValue* child, gpointer out) {

@@ -7,9 +7,9 @@
 
 namespace lidar::web {
 
-/// A message of the schema lidar.Statistics: the property `stats` of each element of the pipeline
-/// that `element` is in. The `stats` of a bin replace those of its children. Takes the locks of
-/// those elements for a moment.
+/// A message of the schema lidar.Statistics: a timestamp, summaries, and the property `stats` of
+/// each element of the pipeline that `element` is in. The `stats` of a bin replace those of its
+/// children. Takes the locks of those elements for a moment.
 std::string StatisticsOf(GstElement* element);
 
 }  // namespace lidar::web

@@ -30,7 +30,8 @@ struct SliceMessage final : viewer::Slice {
   bool is_pose = false;  // the payload is a foxglove.FrameTransform, `id` that of the slice before
   std::vector<std::uint8_t> payload;
 
-  /// Sets what others need to know of the payload. Returns false if no decoder takes it.
+  /// Sets the size and the links to other slices from the payload. Returns false if no decoder
+  /// takes it.
   bool ReadLinks(bool has_ranges) {
     size = DataSize::Bytes(static_cast<std::int64_t>(payload.size()));
     if (!has_ranges) return true;

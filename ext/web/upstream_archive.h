@@ -20,7 +20,7 @@ class UpstreamArchive final : public Archive {
   UpstreamArchive(Ask ask, SliceCaps caps, std::string frame_id)
       : ask_(std::move(ask)), caps_(std::move(caps)), frame_id_(std::move(frame_id)) {}
 
-  /// Returns true if a source upstream knows of a history.
+  /// Returns true if a source upstream has a history.
   static bool IsThere(const Ask& ask);
 
   std::optional<Times> Look(std::string* why) override;

@@ -11,7 +11,7 @@ mkdir -p "$objects/src/codec"
 template=$(<src/codec/mixing/start_table.h.in)
 echo "${template/@TABLE@/$(<src/codec/mixing/start_table.txt)}" > "$objects/src/codec/start_table.h"
 
-# Loops over bits and points; the rest is compiled for its size. The linker drops what encodes.
+# Files with loops over bits and points; the others are compiled for size. The linker drops encoders.
 fast=(src/cloud/range_projection src/codec/mixing/{binary_coder,mixing_codec,slice_coder}
   src/codec/rans/{adaptive_coder,mask_coder,predictor,rans} src/codec/cloud/{beam_part,beam_section,cell_tree,level_tree,pixel_part})
 small=(src/cloud/{point_fields,sensor_model} ext/web/decoder/{crc,decoder})
@@ -23,6 +23,6 @@ flags=(--target=wasm32-wasi -msimd128 -std=c++17 -fno-exceptions -fno-rtti -DNDE
 compile() { printf '%s\n' "${@:2}" | xargs -P 2 -I{} sh -c "clang++ ${flags[*]} $1 -c {}.cpp -o $objects/\$(echo {} | tr / _).o"; }
 compile -O2 "${fast[@]}"
 compile -Oz "${small[@]}"
-# The stack is below all else, so that an overflow traps.
+# The stack lies below all other memory, so that an overflow traps.
 clang++ "${flags[@]}" -mexec-model=reactor -Wl,-z,stack-size=1048576,--stack-first,--strip-all,--gc-sections \
   -Wl,--max-memory=536870912 "$objects"/*.o -o "$to"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// src/base/crc.h without liblzma, which is not built for WebAssembly; the decoder needs one of
-// both.
+// Implements src/base/crc.h without liblzma, which is not built for WebAssembly.
 #include "src/base/crc.h"
 
 #include <array>

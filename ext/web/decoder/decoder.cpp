@@ -60,7 +60,7 @@ enum Result : std::int32_t { kGood = 0, kDamaged = -1, kLacksReference = -2 };
 
 class Decoder {
  public:
-  /// Slices are ranges of the sensor of `model`, or points where there is none.
+  /// Slices are ranges of the sensor of `model`, or points without a model.
   Decoder(std::optional<SensorModel> model, std::uint32_t max_points) : max_points_(max_points) {
     layout_ = {RawFields(), sizeof(RawPoint)};
     if (!model) {
@@ -159,7 +159,7 @@ EXPORT(allocate) void* Allocate(std::uint32_t size) {
   return size <= kMostSliceBytes ? ::operator new(size) : nullptr;
 }
 EXPORT(release) void Release(void* memory) { ::operator delete(memory); }
-/// Returns null for a sensor model that does not parse; `size` 0 has none and is for points.
+/// Returns null for a sensor model that does not parse. `size` 0: no model, for points.
 EXPORT(open)
 Decoder* Open(const std::uint8_t* model, std::uint32_t size, std::uint32_t max_points) {
   std::optional<SensorModel> sensor;
@@ -167,12 +167,12 @@ Decoder* Open(const std::uint8_t* model, std::uint32_t size, std::uint32_t max_p
   return new Decoder(std::move(sensor), max_points < kMostPoints ? max_points : kMostPoints);
 }
 EXPORT(close) void Close(Decoder* decoder) { delete decoder; }
-/// The place for the next slice; null for one that is too large.
+/// Returns the place for the next slice; null for a slice that is too large.
 EXPORT(input) std::uint8_t* Input(Decoder* decoder, std::uint32_t size) {
   return decoder->Input(size);
 }
 EXPORT(decode) std::int32_t Decode(Decoder* decoder) { return decoder->Decode(); }
-/// How many links the input has; they are at `links`.
+/// Returns how many links the input has; links() returns them.
 EXPORT(find_links) std::uint32_t FindLinks(Decoder* decoder) { return decoder->FindLinks(); }
 EXPORT(links) const void* Links(const Decoder* decoder) { return decoder->links(); }
 EXPORT(slice) const Slice* SliceOf(const Decoder* decoder) { return &decoder->slice(); }
