@@ -21,5 +21,5 @@ need() {
   done
 }
 
-# launch PIPELINE...: gst-launch-1.0 becomes this process. Its progress is not shown; its warnings are, which -q would hide.
+# launch PIPELINE...: replaces this process by gst-launch-1.0. Shows its warnings, which -q would hide, but not its progress.
 launch() { exec gst-launch-1.0 "$@" > >(grep --line-buffered '^WARNING' >&2); }

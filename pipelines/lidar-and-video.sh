@@ -86,7 +86,7 @@ timeout --foreground -s INT "$duration" gst-launch-1.0 -e -m \
   2>"$work/sender.err" | show || true
 [ ! -s "$work/sender.err" ] || grep -E 'ERROR|WARN' "$work/sender.err" >&2 || true
 
-# The sender's goodbye ends the receiver; a sender that could not start says none.
+# The sender's goodbye ends the receiver; a sender that could not start sends none.
 for ((i = 0; i < 50; ++i)); do
   kill -0 "$receiver" 2>/dev/null || break
   sleep 0.1

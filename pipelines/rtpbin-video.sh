@@ -60,7 +60,7 @@ one_end A "$port" $((port + 1)) $((port + 2)) $((port + 3)) &
 one_end B $((port + 2)) $((port + 3)) "$port" $((port + 1)) &
 wait
 
-# report NAME: the target and the counters of one direction; fails where the loop was never closed.
+# report NAME: prints the target and the counters of one direction. Fails if hardly any feedback came.
 report() {
   sed -n 's/^.*x-screamtx-stats, \(.*\)$/\1/p' "$work/$1" | awk -v name="$1" '
     function value(line, field) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# A LiDAR stream over DTLS-SRTP on loopback: both ends show a certificate, and trust one of the other only.
+# A LiDAR stream over DTLS-SRTP on loopback: each end trusts the certificate of the other only.
 set -euo pipefail
 source "$(dirname "$0")/options.sh"
 
@@ -38,7 +38,7 @@ for name in robot edge stranger; do certificate $name; done
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 media=media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96
-# The first capssetter gives dtlssrtpdec buffers of its own, as srtpdec works in place; the second says what the RTP holds.
+# The first capssetter gives dtlssrtpdec buffers of its own, because srtpdec works in place; the second sets the caps of the RTP.
 receive() {
   exec "$launch" --certificate "$folder/edge.pem" --peer-certificate "$folder/robot.crt" --stats rx,depay \
     ecnudpsrc port="$port" caps=application/x-srtp ! capssetter caps=application/x-srtp ! dtlssrtpdec name=dec connection-id=edge \
@@ -56,7 +56,7 @@ send() {
     ecnudpsrc port="$back" caps=application/x-srtcp ! capssetter caps=application/x-srtcp ! \
     dtlssrtpdec name=dec connection-id=robot dec.rtcp_src ! tx.rtcp_sink
 }
-# send_stranger: until the receiver has refused it, or for a minute.
+# send_stranger: sends until the receiver has refused the stranger, for a minute at most.
 send_stranger() {
   send stranger >/dev/null 2>&1 & local stranger=$!
   until grep -q REFUSED "$folder/refused" || ! kill -0 $stranger 2>/dev/null; do sleep 0.1; done
