@@ -44,7 +44,7 @@ typedef struct {
   gdouble step; /* of the grid [m]; 0: not known */
   gdouble error_bound;
   guint intensity_bits;
-  gdouble keep_fraction;    /* share of the rows that the encoder kept to save bits */
+  gdouble keep_fraction;    /* share of the rows kept; others were left out to save bits */
   gboolean lacks_reference; /* if FALSE is returned: the only reason is that the slice refers to
                                another one that never came. The base class asks for one that
                                stands alone */
