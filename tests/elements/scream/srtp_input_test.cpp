@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a receiver with a key believes: other keys, replays, recordings, wraps and floods, by a
 // clock that the test sets.
+#include <dlfcn.h>
 #include <gst/check/gstharness.h>
 #include <gtest/gtest.h>
 
@@ -14,8 +15,9 @@
 
 using lidar::test::frozen_at;
 
-/// Stands before GLib's in this program.
-extern "C" gint64 g_get_monotonic_time() {
+/// Stands before GLib's in this program. Libraries do not see it: GStreamer's system clock would
+/// sleep until a time that the test has set.
+extern "C" __attribute__((visibility("hidden"))) gint64 g_get_monotonic_time() {
   if (frozen_at != 0) return frozen_at;
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -24,6 +26,14 @@ extern "C" gint64 g_get_monotonic_time() {
 
 namespace lidar::gst {
 namespace {
+
+TEST(FrozenClock, IsNotThatOfGStreamer) {
+  frozen_at = 7;
+  EXPECT_EQ(g_get_monotonic_time(), 7);
+  auto* of_libraries = reinterpret_cast<gint64 (*)()>(dlsym(RTLD_DEFAULT, "g_get_monotonic_time"));
+  EXPECT_NE(of_libraries(), 7);
+  frozen_at = 0;
+}
 
 class SrtpIn : public ::testing::Test {
  protected:
