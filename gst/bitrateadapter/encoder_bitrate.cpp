@@ -107,7 +107,7 @@ std::optional<std::pair<gdouble, gdouble>> RangeOf(const GParamSpec* spec) {
   return std::nullopt;
 }
 
-/// The other fields of the structure, which are the user's, stay.
+/// Sets a field of a structure property, and leaves the other fields, which are the user's.
 guint SetControl(GstElement* encoder, const BitrateControl& control, gdouble units) {
   GstStructure* old = nullptr;
   g_object_get(encoder, control.property.c_str(), &old, nullptr);
