@@ -33,7 +33,7 @@ class CoderPads {
     return gst_pad_push(src_, output.release());
   }
 
-  /// `input` has no output: downstream must not wait for it.
+  /// Sends a gap, so that downstream does not wait for an output of `input`.
   GstFlowReturn LeaveOut(GstBuffer* input) {
     discont_ = true;
     // A gap before the first caps means nothing downstream.
@@ -61,8 +61,8 @@ void EndStream(Coder* coder, const Class* klass) {
 /// Statistics as element messages.
 class MessageTimer {
  public:
-  /// Posts `stats` if `interval` has passed since the last call that posted, or since the first
-  /// one. 0: never.
+  /// Posts `stats` if `interval` (0: never) has passed since the last post or, before it, since the
+  /// first call.
   void Post(GstElement* element, Duration interval, StructurePtr (*stats)(GObject*)) {
     const gint64 now_us = g_get_monotonic_time();
     if (!last_us_) last_us_ = now_us;

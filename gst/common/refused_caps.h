@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Posts one error for refused caps, which GStreamer offers again with each buffer.
+// Remembers refused caps, so that an element posts one error although GStreamer offers them with
+// each buffer.
 #pragma once
 #include <gst/gst.h>
 
