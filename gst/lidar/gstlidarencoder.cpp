@@ -195,7 +195,7 @@ static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return TRUE;
 }
 
-/// Sends the bounds if they moved.
+/// Sends the bounds if they have changed.
 static void PushBounds(GstLidarEncoder* self) {
   const auto bounds = self->state->stream.loop->controller().TakeChangedBounds();
   if (!bounds) return;
