@@ -36,7 +36,7 @@ struct AssemblerState {
   guint out_width = 0;  // in the caps sent last; 0: to be sent again
   bool caps_sent = false;
   EventPtr early_segment;           // waits for the caps
-  std::optional<Latency> upstream;  // after the first query
+  std::optional<Latency> upstream;  // known after the first query
   GstClockTime scan_latency = 0;    // a scan's part of the reported latency, without max-wait
   GstSegment segment;
   DeadlineTimer timer;

@@ -93,7 +93,7 @@ static GstFlowReturn PushAll(GstLidarScanAssembler* self) {
   return PushScans(self, &finished);
 }
 
-/// Works out the latency that slices of such a scan cause, and posts a message when it changes.
+/// Computes the latency of scans of `slices` slices, and posts a message when it changes.
 static void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint slices) {
   State& state = *self->state;
   const GstClockTime scan = info.ScanDuration();

@@ -49,7 +49,7 @@ const std::array<Property<MergePadSettings>, 1> kPadProperties = {{
      &MergePadSettings::transform, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// The pose of a sensor, and its clouds in the common form.
+/// The pose of a sensor, and the plan that converts its clouds to the common form.
 struct MergePadState {
   std::mutex mutex;  // guards the settings
   MergePadSettings settings;
@@ -182,7 +182,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
   return heads;
 }
 
-/// Drops scans of earlier turns than the newest; true if there were any.
+/// Drops scans of earlier turns than the newest. Returns true if there were any.
 static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
   GstClockTime newest = 0;
   for (const Head& head : heads) newest = std::max(newest, head.time);
