@@ -145,7 +145,8 @@ static const std::array<Property<Settings>, 2> kProperties = {{
      Stats},
 }};
 
-/// Returns true once after many packets of a wrong payload type and none of the right one.
+/// Counts a packet of a wrong payload type. Returns true after many of them and none of the right
+/// one.
 static bool CountWrongType(State& state) {
   std::lock_guard lock(state.mutex);
   return ++state.wrong_payload_type >= kWrongTypePackets &&
@@ -186,7 +187,7 @@ static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
                        ssrc));
 }
 
-/// Returns true once after many packets without a readable one. The caller holds the lock.
+/// Returns true, once, if many packets came and none was readable. The caller holds the lock.
 static bool IsUnreadable(State& state) {
   if (state.readable) return false;
   const ReceiverAccounts all = state.receiver.accounts();
