@@ -10,7 +10,7 @@
 namespace lidar::gst {
 
 std::vector<std::uint8_t> BuildKeyRequest(std::uint32_t sender_ssrc, std::uint32_t media_ssrc);
-/// Returns the SSRC of the media that an RTCP packet asks for, or nothing for other packets.
+/// Returns the SSRC of which an RTCP packet requests a key unit, or nothing for other packets.
 std::optional<std::uint32_t> ParseKeyRequest(ByteView rtcp_packet);
 
 }  // namespace lidar::gst

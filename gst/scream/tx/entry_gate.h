@@ -19,7 +19,7 @@ class EntryGate {
  public:
   explicit EntryGate(GstClock* clock) : clock_(clock) {}
 
-  /// Chain functions may queue.
+  /// Lets chain functions queue.
   void Open() { Set(true, GST_FLOW_OK); }
   /// Ends all waits and closes the queues; chain functions return FLUSHING.
   void Close(const TxStreams& streams);

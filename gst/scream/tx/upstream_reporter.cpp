@@ -97,7 +97,7 @@ UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
 void UpstreamReporter::Run() {
   TxLock lock(state().mutex);
   for (;;) {
-    // A key unit that waits for its interval is checked with the next target.
+    // A key unit that waits for its interval is checked again after kPulse.
     due_.wait_for(lock, kPulse, [&] { return HasWork(); });
     if (stop_) return;
     Work work = TakeWork(TxNow(state()));
