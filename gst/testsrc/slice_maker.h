@@ -20,8 +20,8 @@ enum class Channel { kReflectivity, kSignal, kRing, kTime };
 std::optional<std::vector<Channel>> ParseChannels(std::string_view text, std::string* unknown);
 
 struct SliceOptions {
-  std::uint32_t slices_per_scan =
-      0;  // 0: automatic, or a whole scan of a sensor with a firing table
+  // 0: automatic, or whole scans of a sensor with a firing table.
+  std::uint32_t slices_per_scan = 0;
   std::vector<Channel> channels;
 };
 
