@@ -36,7 +36,7 @@ bool SkipMetadata(ByteReader* reader) {
     if (!size) return false;
     reader->Skip(*size);
   }
-  return Short(reader) == 0;  // further metadata
+  return Short(reader) == 0;  // number of nested metadata
 }
 
 bool CheckAttributes(ByteReader* reader, std::uint32_t max_attributes) {
