@@ -79,7 +79,7 @@ struct State {
   std::vector<NewMessage> messages;
   bool has_slices = false;
   bool failed = false;
-  Counters counted;  // `counters` follows
+  Counters counted;  // copied to `counters`
 
   guint next_pad = 0;  // under the object's lock
 };

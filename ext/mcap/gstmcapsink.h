@@ -24,7 +24,7 @@ struct RecordedStream {
   std::map<std::string, std::uint16_t> channels;  // by the caps of each channel
 };
 
-/// For the streams of the sink, from their threads. Errors are posted on the sink.
+/// Called by the streams of the sink, in their threads. Errors are posted on the sink.
 bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
                         const std::string& topic, const ScalarCaps& caps, RecordedStream* stream);
 /// `running_time` may be GST_CLOCK_TIME_NONE.

@@ -19,7 +19,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kMaxSlices = 4'096;
-/// A point of a byte becomes one of twelve or more, so the message's size alone is no bound.
+/// A point of one byte becomes one of twelve bytes or more, so the message's size alone is no
+/// bound.
 constexpr gsize kMaxCloud = gsize{256} << 20;  // bytes
 
 void SetCaptureTime(const cdr::Header& header, GstBuffer* buffer) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The thread of a source that works by itself.
+// The thread of a source, which can pause and resume.
 #pragma once
 #include <gst/gst.h>
 

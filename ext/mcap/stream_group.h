@@ -43,7 +43,7 @@ class StreamGroup {
   Played Read(const mcap::Playback::Item& item, GstClockTime pts);
   /// Returns the combined flow of all pads.
   GstFlowReturn Push(Played played);
-  /// The source was sought.
+  /// The source performed a seek.
   void Restart(const GstSegment& segment, guint32 seqnum);
   /// Sends `event` on all pads.
   void End(GstEvent* event);
