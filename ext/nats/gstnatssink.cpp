@@ -161,7 +161,7 @@ static bool CheckStreamSubjects(GstLidarNatsSink* self, const NatsSinkSettings& 
   const bool covers =
       pattern.empty() || (lidar::nats::Covers(pattern, subject) &&
                           lidar::nats::Covers(pattern, lidar::nats::ConfigSubject(subject, "*")));
-  // A stream of all subjects would keep, and answer, the server's own.
+  // A stream of all subjects would keep, and answer, the server's own messages.
   const bool all = !pattern.empty() && (pattern.front() == '*' || pattern.front() == '>');
   if (covers && !all) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,

@@ -138,7 +138,7 @@ static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
      Stats},
 }};
 
-/// Kept messages come as fast as downstream takes them, so the source is not live.
+/// A source of kept messages is not live, because they come as fast as downstream takes them.
 static void FollowSettings(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::unique_lock lock(state.mutex);
