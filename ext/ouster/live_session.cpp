@@ -27,7 +27,7 @@ constexpr gint64 kQuestionIntervalUs = 1'000'000;
 constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id
 constexpr guint kWrongSizesForQuestion = 4;
 
-/// A server's text, fit for a message: short, and UTF-8 as GStreamer asks of strings.
+/// Returns a server's text in a form for messages: short, and valid UTF-8, which GStreamer demands.
 std::string Readable(const std::string& text) {
   constexpr gssize kLongest = 1000;  // bytes
   const auto size = std::min(static_cast<gssize>(text.size()), kLongest);
@@ -74,7 +74,7 @@ LiveSession::~LiveSession() { link_.reset(); }
 
 bool LiveSession::Open() {
   constexpr std::size_t kFilesOfLink = 6;    // sockets of HTTP and of the resolver
-  constexpr std::size_t kFilesOfFeed = 5;    // two sockets and what wakes their readers
+  constexpr std::size_t kFilesOfFeed = 5;    // two sockets, and what wakes a wait for them
   constexpr std::size_t kFilesOfOthers = 4;  // of the application's main loop
   const std::size_t wanted =
       kFilesOfFeed + kFilesOfOthers + (settings().hostname.empty() ? 0 : kFilesOfLink);
