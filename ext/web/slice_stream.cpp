@@ -130,7 +130,7 @@ bool SliceStream::OpenTopics(SliceCaps caps, std::string* why) {
   return false;
 }
 
-/// Returns null if the stream has no past.
+/// Returns null if the stream has neither a recording nor a history.
 std::unique_ptr<Archive> SliceStream::MakeArchive(SliceCaps caps) const {
   if (!settings_.recording.empty())
     return std::make_unique<FileArchive>(settings_.recording, std::move(caps));
