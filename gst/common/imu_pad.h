@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pad `imu` with the samples of an inertial measurement unit, beside the clouds of a source.
+// The pad `imu` of a source of clouds, with the samples of an inertial measurement unit.
 #pragma once
 #include <gst/base/gstbasesrc.h>
 
