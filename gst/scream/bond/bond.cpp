@@ -21,7 +21,7 @@ struct BondState {
   std::shared_ptr<BondShared> shared;
   std::vector<GstLidarScreamTx*> links;
   std::vector<std::unique_ptr<BondStream>> streams;  // guarded by shared->mutex
-  std::vector<std::unique_ptr<BondStream>> removed;  // kept, as a link's call may still use them
+  std::vector<std::unique_ptr<BondStream>> removed;  // kept, because a link's call may use them
   guint next_pad = 0;
   std::function<void()> watch;
   std::condition_variable wake;
