@@ -68,7 +68,7 @@ const std::array<Stat<Counters>, 4> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards these; never held while writing, as a disk may hang
+  std::mutex mutex;  // guards these; never held while writing, because a disk may hang
   Settings settings;
   Counters counters;
 
