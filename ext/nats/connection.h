@@ -64,7 +64,7 @@ class Connection {
   natsStatus Connect(natsOptions* options);
 
   const SharedPtr shared_;    // shared with callbacks, which may outlive this object
-  StatisticsPtr statistics_;  // kept, as reconnects() reads it for each message
+  StatisticsPtr statistics_;  // kept, because reconnects() reads it for each message
   natsConnection* nc_ = nullptr;
 };
 

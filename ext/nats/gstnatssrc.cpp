@@ -379,7 +379,8 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   return GST_FLOW_FLUSHING;
 }
 
-/// Answers in the thread of an element downstream that wants what JetStream keeps of the stream.
+/// Answers queries for the history of the stream, in the thread of the element downstream that
+/// asks.
 static gboolean Query(GstBaseSrc* base, GstQuery* query) {
   const auto question = ParseHistoryQuestion(query);
   if (!question) return GST_BASE_SRC_CLASS(gst_lidar_nats_src_parent_class)->query(base, query);

@@ -36,11 +36,11 @@ class ConnectionWatch {
   void Note(const nats::ConnectionState& state);
   void Warn(const std::string& text);
   void PostRefused(const nats::ConnectionState& state);
-  /// Ends all posting, as the element stops.
+  /// Ends all posting, because the element stops.
   void Silence();
 
  private:
-  const ElementPtr element_;  // owned, as threads of libnats may outlive its stop
+  const ElementPtr element_;  // owned, because threads of libnats may outlive its stop
   const bool keeps_trying_;
   std::mutex mutex_;
   bool silent_ = false;

@@ -144,7 +144,7 @@ Publisher::Drained Publisher::Drain(Duration timeout) {
 void Publisher::Interrupt(bool on) {
   const std::lock_guard lock(mutex_);
   interrupted_ = on;
-  if (on) ++interrupts_;  // counted, as GstBaseSink may reset the flag before the thread looks
+  if (on) ++interrupts_;  // counted, because GstBaseSink may reset the flag too soon
   drained_.notify_all();
 }
 

@@ -37,7 +37,7 @@ class SourceAccount {
   void NoteStop();
 
   struct Verdict {
-    bool again = false;  // repeated, as JetStream saw no acknowledgement
+    bool again = false;  // repeated, because JetStream saw no acknowledgement
     bool gap = false;    // messages before it are missing
   };
   /// `shared`: a queue group shares the stream, so what is missing here is not lost.

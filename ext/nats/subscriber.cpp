@@ -59,7 +59,7 @@ Subscriber::~Subscriber() {
     natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
 }
 
-/// libnats subscribes again by itself when a connection comes back.
+/// libnats subscribes again by itself after a reconnect.
 natsStatus Subscriber::SubscribeLive() {
   natsSubscription* raw = nullptr;
   const std::string configs = ConfigSubject(settings_.subject, "*");
