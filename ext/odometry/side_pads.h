@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pads of lidarodometry beside the clouds: poses, the map's frame, and an IMU.
+// The pads of lidarodometry that are not for clouds: poses, the map's frame, and an IMU.
 #pragma once
 #include <gst/gst.h>
 
