@@ -219,7 +219,7 @@ static void InstallVmethods(GstLidarOusterSrcClass* klass) {
   src->event = Event;
   src->is_seekable = IsSeekable;
   src->do_seek = DoSeek;
-  // Caps are set with the first slice, as they depend on the sensor.
+  // Caps are set with the first slice, because they depend on the sensor.
   src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
   GST_PUSH_SRC_CLASS(klass)->create = Create;
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
