@@ -18,7 +18,7 @@ namespace {
 
 /// 30 s of 4 Mbit/s.
 constexpr std::size_t kMostWaiting = 16U << 20;
-/// Decoding continues for this time after a viewer needed it, as it is often needed again.
+/// Decoding continues for this time after a viewer needed it, because it is often needed again.
 constexpr gint64 kLinger_us = 15 * gint64{G_USEC_PER_SEC};
 constexpr std::uint32_t kMostPoints = 1U << 20;
 
