@@ -152,7 +152,7 @@ bool OpenVideo(GstBaseSink* sink, const std::string& name) {
   return true;
 }
 
-/// Returns the function that queries upstream, and waits for a server that keeps the stream.
+/// Returns the function that queries upstream, and waits for the answer.
 lidar::web::UpstreamArchive::Ask AskUpstream(GstBaseSink* sink) {
   const std::shared_ptr<GstPad> pad(GST_PAD(gst_object_ref(GST_BASE_SINK_PAD(sink))),
                                     gst_object_unref);

@@ -91,7 +91,8 @@ void FrontDoor::Accept(GSocketConnection* connection) {
     Enter(connection, G_IO_STREAM(connection));
 }
 
-/// Closes the oldest connection of an address that has too many, or else the oldest of all.
+/// Closes the oldest connection of `address` if it has too many, or the oldest of all if there are
+/// too many.
 void FrontDoor::MakeRoom(const std::string& address) {
   const auto is_his = [&address](const Visitor& v) { return v.address == address; };
   const auto his =
