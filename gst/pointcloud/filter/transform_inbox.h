@@ -57,7 +57,7 @@ class TransformInbox {
   Counters counters_;
   std::map<GstPad*, bool> pads_;  // true: ended
   bool interrupted_ = false;
-  std::optional<Time> waited_in_vain_;  // newest transform at the last vain wait
+  std::optional<Time> waited_in_vain_;  // time of the newest transform at the last vain wait
 };
 
 }  // namespace lidar::gst
