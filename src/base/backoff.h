@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pauses between attempts at what fails: each twice the last, up to a limit.
+// Pauses before repeated attempts: each pause is twice the last one, up to a limit.
 #pragma once
 #include <algorithm>
 

@@ -21,7 +21,7 @@ inline constexpr const char* kImuFields =
     "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28";
 inline constexpr std::size_t kImuSampleSize = 32;
 
-/// Appends a sample, little-endian, as kImuFields says.
+/// Appends a sample, little-endian, in the layout of kImuFields.
 inline void WriteImuSample(const ImuSample& sample, std::vector<std::uint8_t>* out) {
   ByteWriter w(out);
   w.Le64(static_cast<std::uint64_t>(

@@ -13,8 +13,8 @@ class LoadBudget {
   /// Unused time is kept for this period.
   static constexpr Duration kUnusedTimeKept = std::chrono::seconds(1);
 
-  /// Returns false while more was spent than `load`, processor time over time, allows up to `now`.
-  /// Times must not go back.
+  /// `load` is the allowed processor time divided by elapsed time. Returns false while more than
+  /// that was spent up to `now`. Times must not go back.
   bool Allows(double load, Time now) {
     if (last_) saved_ += FromSeconds(load * Seconds(now - *last_));
     last_ = now;

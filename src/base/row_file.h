@@ -20,7 +20,7 @@ class RowFile {
   /// Returns false if a write failed.
   bool ok() const { return file_.is_open() && file_.good(); }
   std::ostream& stream() { return file_; }
-  /// Returns false if not all was written.
+  /// Returns false if some rows could not be written.
   bool Flush() { return static_cast<bool>(file_.flush()); }
   void Close();
 
