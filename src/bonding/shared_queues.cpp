@@ -17,8 +17,8 @@ constexpr double kFewest = 20;
 constexpr double kNothing = 1e-6;
 /// Arrival times are rounded to 1/1024 s [ms^2].
 constexpr double kLeastVariance = 0.01;
-/// Significance, of both directions together, from which on two links share a queue, and down to
-/// which they still do.
+/// Two links count as sharing a queue if the significance of both directions together exceeds
+/// kFound, and until it falls below kStillFound.
 constexpr double kFound = 4;
 constexpr double kStillFound = 1;
 /// The queue did not run empty if it was longer by this than the time to the next packet.
@@ -105,7 +105,7 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   for (std::size_t other = 0; other < kMaxLinks; ++other)
     if (other != link) Compare(link, other);
   if (!busy || arrived_ms > kPauseMs) return;
-  const double weight = 1 / std::sqrt(1 + sent_ms);  // the longer, the more others may have sent
+  const double weight = 1 / std::sqrt(1 + sent_ms);  // others send more in longer spacings
   const double own_kb = l.SentUntil(arrival.sent) - l.SentUntil(last->sent);
   for (std::size_t other = 0; other < kMaxLinks; ++other) {
     if (other == link || links_[other].sent.empty()) continue;
