@@ -87,9 +87,9 @@ FramePose Between(const FramePose& a, const FramePose& b, double part) {
 }
 
 bool IsPose(const FramePose& pose) {
-  const auto near = [](double v) { return std::abs(v) < kFarthest; };  // NaN is not
+  const auto near = [](double v) { return std::abs(v) < kFarthest; };  // false for NaN
   return std::all_of(pose.position.begin(), pose.position.end(), near) &&
-         std::abs(Dot(pose.orientation, pose.orientation) - 1) < kUnitTolerance;  // NaN is not
+         std::abs(Dot(pose.orientation, pose.orientation) - 1) < kUnitTolerance;  // false for NaN
 }
 
 std::string ToText(Duration d) {
