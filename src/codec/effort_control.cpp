@@ -10,7 +10,7 @@ constexpr Duration kWindow{1'000'000'000};
 constexpr unsigned kFewestSlices = 8;
 // Part of a window's slices that may be late, for busy moments of the machine.
 constexpr double kLatePart = 0.1;
-// A window ends early after so many slices in a row that take more than twice their time.
+// A window ends early after this many slices in a row that take more than twice their time.
 constexpr unsigned kMuchTooLate = 3;
 // A higher effort is tried if it is likely to need no more than this part of its time.
 constexpr double kRoom = 0.75;

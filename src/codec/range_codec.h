@@ -34,10 +34,10 @@ class RangeEncoder {
       : alignment_(model), integers_(integers), mixing_(model) {}
 
   /// Appends one block to `out`. Returns false if the image does not fit the sensor or the coder is
-  /// missing.
-  /// Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become those of
-  /// settings.intensity. An image without any return gives a block that decodes to such an image.
-  /// With `link`, blocks of kMixing become kTemporal if they can, so that others may refer to them.
+  /// missing. Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become
+  /// those of settings.intensity. An image without any return gives a block that decodes to such an
+  /// image. With `link`, blocks of kMixing become kTemporal if they can, so that others may refer
+  /// to them.
   bool Encode(const RangeImage& image, const RangeSettings& settings,
               std::vector<std::uint8_t>* out, BlockLink* link = nullptr);
 

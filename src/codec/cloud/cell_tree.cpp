@@ -155,8 +155,8 @@ struct Tally {
     corners_on = Ones(mask & kAllCorners);
   }
   std::uint32_t mask = 0;   // occupied cells
-  std::uint32_t faces = 0;  // states of the six at the faces: 0 empty, 1 occupied, 2 unknown
-  std::uint32_t layer = 0;  // states of the eight at the same height
+  std::uint32_t faces = 0;  // states of the six cells at its faces: 0 empty, 1 occupied, 2 unknown
+  std::uint32_t layer = 0;  // states of the eight cells around it at the same height
   std::uint32_t faces_on = 0;
   std::uint32_t edges_on = 0;
   std::uint32_t edges_open = 0;

@@ -69,7 +69,8 @@ class FiringGuess {
   bool starts_ = true;  // the point is the first of its firing
 };
 
-/// Remembers the last level of each beam in each firing of a period; without a period nothing.
+/// Remembers the last level of each beam in each firing of a period. Without a period it remembers
+/// nothing.
 class RepeatGuess {
  public:
   RepeatGuess(std::uint32_t beams, std::uint32_t period)

@@ -48,7 +48,7 @@ class BinSearch {
  private:
   using Part = RangePart<Effort, CostMeter>;
   static constexpr unsigned kMostWays = 2;  // more ways save 0.2 %
-  /// A way that costs so much more than the best one hardly ever wins.
+  /// A way that costs this much more than the best one hardly ever wins.
   static constexpr std::int64_t kMostBehind = 1'065;  // 6 bits
   struct Way {
     std::int64_t cost = 0;
