@@ -27,7 +27,7 @@ std::unique_ptr<Queue> MakeQueue(const AqmConfig& config, Random random) {
   return std::make_unique<FifoQueue>(MakeAqm(config, random));
 }
 
-/// Time::max() stands for never, so the sum stops there.
+/// Time::max() stands for never: larger sums become Time::max().
 Time Plus(Time t, Duration d) { return d < Time::max() - t ? t + d : Time::max(); }
 
 }  // namespace
@@ -39,7 +39,7 @@ bool Bottleneck::Later::operator()(const Pending& a, const Pending& b) const {
 Bottleneck::Bottleneck(const BottleneckConfig& config)
     : config_(config),
       loss_random_(config.seed),
-      // Each has a random sequence of its own: losses do not shift the marks.
+      // Losses and marks have separate random sequences, so losses do not shift the marks.
       queue_(MakeQueue(config.aqm, Random(config.seed + 1))),
       path_(config.path, config.seed + 2),
       limit_(config.limit.bytes),
