@@ -31,8 +31,8 @@ class Confidence {
 
   /// Information of the pose relative to the map.
   Matrix6 PoseInformation() const;
-  /// Errors of neighbouring points depend on each other: so many points give as much information as
-  /// one independent point.
+  /// Errors of neighbouring points depend on each other: this number of points gives as much
+  /// information as one independent point.
   static constexpr double kPointsOfOne = 12;
   /// Covariance of the pose since the first scan, in the sensor's frame.
   Matrix6 covariance() const;

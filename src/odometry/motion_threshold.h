@@ -29,7 +29,7 @@ class MotionThreshold {
   double max_range_m_;
   double sum_of_squares_ = 0;
   int count_ = 0;
-  double sigma_m_ = 2;  // until the first correction
+  double sigma_m_ = 2;  // start value, used until the first correction
 };
 
 }  // namespace lidar::odometry

@@ -37,7 +37,7 @@ constexpr int kFirstRounds = 4;
 constexpr int kPhases = 1024;
 /// A turn counts as steady within a step of this length.
 constexpr Duration kTurnStep = milliseconds(100);
-constexpr int kLostForGood = 10;  // scans
+constexpr int kLostForGood = 10;  // number of lost scans after which a new map begins
 /// A map with fewer fitting scans may have a wrong first motion: it is replaced soon.
 constexpr int kTrustedMap = 3;
 /// Deviation for the search without a known motion [m].
@@ -322,7 +322,7 @@ bool Odometry::ShowsThePlace(const Alignment& found, const Pose& guess) const {
   return found.standing_share >= kLeastOfUsual * known_view * usual_standing_share_;
 }
 
-/// A scan fits if enough of its points do and a vehicle can move like that.
+/// A scan fits if enough of its points fit and a vehicle can move as the pose says.
 bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) const {
   if (found.inlier_share < kLeastInliers) return false;
   if (fitting_scans_ == 0) return true;  // the first motion has no limit
@@ -381,12 +381,13 @@ void Odometry::Follow(const Alignment& found, const Moving& predicted, Time midd
   map_.Forget(pose_.position);
 }
 
-/// Begins a new map after too many lost scans.
+/// Counts a lost scan. Begins a new map after kLostForGood of them, or at once if the map is not
+/// trusted yet.
 void Odometry::Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate) {
   ++lost_scans_;
   const bool untried = fitting_scans_ < kTrustedMap;
   if ((!untried && lost_scans_ < kLostForGood) || fine.points.empty()) return;
-  velocity_.setZero();  // it has led to the loss
+  velocity_.setZero();  // the old velocity led to the loss
   if (untried) estimate->tracking = Tracking::kStarted;
   estimate->map_restarted = true;
   StartMap(fine);

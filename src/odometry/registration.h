@@ -10,10 +10,10 @@ namespace lidar::odometry {
 struct RegistrationSettings {
   int max_iterations = 100;
   double converged = 5e-4;  // length of the last step [m and rad]
-  /// Weight of a neighbour without a surface, relative to one with, if surfaces hold every
-  /// direction. Such a neighbour is seldom the same spot.
+  /// Weight of a neighbour without a surface if surfaces hold every direction. Neighbours with a
+  /// surface have weight 1. One without is seldom the same spot.
   double spare_point_weight = 1;
-  /// The same if a direction is open.
+  /// The same weight if surfaces leave a direction open.
   double point_weight = 1;
   /// Share of such a neighbour's pull that turns the sensor: distant wrong spots would turn it
   /// most.
