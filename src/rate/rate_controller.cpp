@@ -11,11 +11,14 @@ namespace {
 constexpr double kRepayGain = 0.5;
 // Most that scans save, as a part of a scan's budget: the network does not keep unused capacity.
 constexpr double kMaxSaved = 0.05;
-constexpr double kOver = 0.015;       // excess over the budget that causes a second try
-constexpr double kOverOfScan = 0.01;  // ... or this part of the scan's: later slices even it out
-constexpr double kUnder = 3;          // times as much may be missing: it does no harm
-constexpr double kSameStep = 0.004;   // steps closer than this are the same
-// A second try aims a little lower, by how far it has to go, because its slope may be wrong.
+// Excess over the budget that causes a second try: a part of the slice's budget, and at least this
+// part of the scan's budget, because later slices even out small errors.
+constexpr double kOver = 0.015;
+constexpr double kOverOfScan = 0.01;
+constexpr double kUnder = 3;         // a size may fall short by this multiple of the excess
+constexpr double kSameStep = 0.004;  // steps closer than this are the same
+// A second try aims lower by this many doublings for each doubling between the first size and the
+// budget, because the model's slope may be wrong.
 constexpr double kReencodeMargin = 0.02;
 constexpr double kBoundsChange = 0.03;
 constexpr double kMaxTarget = 1e12;

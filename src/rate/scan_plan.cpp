@@ -33,7 +33,7 @@ ScanPlan PlanScan(const ScanPlanInputs& in, DegradationPreference preference) {
   plan.degraded = needed > in.budget;
   if (!plan.degraded || !in.measured) return plan;
   const double share = in.budget / needed;
-  double wanted = 1;  // part of `needed` that is sent, if the scan is
+  double wanted = 1;  // part of `needed` that a scan sends, unless it is skipped
   if (preference == DegradationPreference::kMaintainFramerate)
     wanted = std::min(1.0, share + std::min(0.0, in.saved / needed));
   else if (preference == DegradationPreference::kBalanced)
