@@ -101,7 +101,7 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
     Emit(it, std::move(config), out);
 }
 
-/// `skipped` is as in SliceInfo. A slice of which a packet is here was not skipped.
+/// `skipped` is as in SliceInfo. A slice with a waiting packet counts as not skipped.
 void Reassembler::BookSkipped(SlicePosition p, std::uint64_t skipped) {
   for (auto at = ledger_.Before(p); at && skipped != 0; at = ledger_.Before(*at), skipped >>= 1)
     if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Skip(*at);
@@ -198,7 +198,7 @@ void Reassembler::DropBefore(SlicePosition limit) {
 }
 
 Reassembler::PendingMap::iterator Reassembler::Remove(PendingMap::iterator it) {
-  // A whole slice that leaves without output never got its config.
+  // A whole slice that is removed before its output never got its config.
   if (!it->second.bytes.empty()) ledger_.Settle(it->first, SliceOutcome::kConfigMismatch);
   pending_bytes_ -= it->second.fragments.cost();
   return pending_.erase(it);

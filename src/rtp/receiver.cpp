@@ -62,7 +62,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
   if (CandidateHasWon(packet.arrival)) Promote(packet.arrival, out);
 }
 
-/// Too many SSRCs reset the counts; forged ones can do nothing else.
+/// Too many SSRCs reset the counts. Forged SSRCs have no other effect.
 void Receiver::NoteRival(std::uint32_t ssrc) {
   if (rivals_.size() >= kMaxRivals && rivals_.count(ssrc) == 0) rivals_.clear();
   if (++rivals_[ssrc] >= kRivalPackets) rival_ = ssrc;

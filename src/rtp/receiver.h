@@ -32,7 +32,7 @@ class Receiver {
   void set_max_reorder_time(Duration t);
   ReceiverAccounts accounts() const;
   std::optional<std::uint32_t> ssrc() const;
-  /// Another SSRC of which many packets came during the stream, and were dropped.
+  /// Another SSRC, many packets of which were dropped during the stream.
   std::optional<std::uint32_t> rival() const { return rival_; }
 
   static constexpr unsigned kProbation = 3;          // packets

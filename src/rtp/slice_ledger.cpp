@@ -11,7 +11,7 @@ namespace {
 
 // Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
-// A slice may announce so many skipped slices, possibly scans of one slice each.
+// A slice may announce this many skipped slices, which may be scans of one slice each.
 constexpr std::int64_t kKeptScans = 64;
 constexpr int kToldSlices = 64;
 
@@ -229,7 +229,7 @@ void SliceLedger::Finish() {
   Scan* scan = Find(frontier_->scan);
   if (scan != nullptr && scan->open > 0) {
     BookScan(scan);
-    scan->joined_late = true;  // booked
+    scan->joined_late = true;  // the scan is not counted again
   }
 }
 

@@ -32,10 +32,10 @@ struct SliceAccounts {
 
   std::uint64_t slices_received = 0;
   std::uint64_t slices_lost = 0;
-  std::uint64_t slices_damaged = 0;          // with all packets but wrong bytes
+  std::uint64_t slices_damaged = 0;          // all packets came, but their bytes are wrong
   std::uint64_t slices_config_mismatch = 0;  // whole, but without a config of their id
   std::uint64_t slices_skipped = 0;          // never sent
-  std::uint64_t scans_complete = 0;          // apart from skipped slices
+  std::uint64_t scans_complete = 0;          // all slices received, except for skipped ones
   std::uint64_t scans_incomplete = 0;
   std::uint64_t scans_lost = 0;     // no slice received
   std::uint64_t scans_skipped = 0;  // never sent, but numbered by the source

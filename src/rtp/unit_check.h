@@ -9,8 +9,8 @@
 
 namespace lidar::rtp {
 
-/// Follows one unit at a time, in order; a gap ends it and the next unit starts. For packets of an
-/// SSRC whose sender is not accepted yet.
+/// Collects the packets of one unit at a time, in order. After a gap it waits for the next unit.
+/// For packets of an SSRC whose sender is not accepted yet.
 class UnitCheck {
  public:
   /// Longer units are not followed.
