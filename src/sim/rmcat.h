@@ -16,7 +16,7 @@ struct RmcatCase {
   SimulationConfig config;
   /// The measured time. Flows may join before it.
   Duration from{0}, until{0};
-  /// Our flows on the way there over link 0. Their shares are compared.
+  /// Our flows whose media pass link 0. Their shares are compared.
   std::vector<int> forward = {0};
 };
 
@@ -33,7 +33,7 @@ struct RmcatMetrics {
   double media_mbps = 0;   ///< mean of the forward flows
   double variation = 0;    ///< standard deviation of their rates in 200 ms over the mean, averaged
   double jain = 1;         ///< of the forward flows
-  Percentiles queue_ms;    ///< of their packets
+  Percentiles queue_ms;    ///< of the forward flows' packets
   Percentiles frame_ms;    ///< creation to last packet
   double loss = 0;         ///< of all media packets
   double dropped = 0;      ///< part of all frames that senders dropped

@@ -58,7 +58,7 @@ struct FlowConfig {
   Time start{};
   Duration stop_after = kNever;
   bool drop_late = true;
-  /// A frame that began to leave is dropped after its first waiting packet waited so long.
+  /// A frame that began to leave is dropped once its first waiting packet has waited this long.
   Duration longest_stay = std::chrono::milliseconds(1000);
   /// The receiver restarts without state, and with another clock epoch.
   Duration receiver_restart = kNever;
@@ -99,15 +99,15 @@ struct TcpConfig {
 };
 
 struct SimulationConfig {
-  link::BottleneckConfig forward;                  ///< link 0; its delay is that of the way there
+  link::BottleneckConfig forward;                  ///< link 0; its delay is the forward delay
   std::vector<link::BottleneckConfig> more_links;  ///< links 1, 2, ...
   Duration return_delay{0};
   double return_loss = 0;
   /// Two of three packets sent between these times are lost.
   Duration loss_from = kNever, loss_until = kNever;
-  /// The way back carries no packet between these times.
+  /// The return path carries no packet between these times.
   Duration return_outage_from = kNever, return_outage_until = kNever;
-  /// A change of route: the way there becomes longer by this.
+  /// A change of route: the forward delay is longer by this after `longer_from`.
   Duration longer_by{0};
   Duration longer_from = kNever;
   Duration duration = std::chrono::seconds(40);

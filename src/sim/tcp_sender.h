@@ -48,7 +48,7 @@ class TcpSender {
   std::deque<InFlight> in_flight_;
   std::size_t outstanding_ = 0;
   std::uint64_t next_id_ = 0;
-  std::uint64_t recover_ = 0;  // losses of earlier packets were answered
+  std::uint64_t recover_ = 0;  // losses of earlier packets do not shrink the window again
   Duration s_rtt_{0}, rtt_var_{0};
   Time last_progress_;
   Time next_paced_;
