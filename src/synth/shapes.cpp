@@ -14,7 +14,8 @@ struct Span {
   float out = 1e9F;
   Vec3 normal;
 
-  /// Keeps the part below the plane `normal` . p = `offset`. Returns false if nothing is left.
+  /// Keeps the part of the ray where `face` . p is below `offset`. Returns false if nothing is
+  /// left.
   bool Clip(Vec3 face, float offset, const Ray& ray) {
     const float height = offset - Dot(face, ray.origin);
     const float rate = Dot(face, ray.direction);
