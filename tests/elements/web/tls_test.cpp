@@ -2,6 +2,7 @@
 // HTTPS and WSS by the element itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -167,7 +168,9 @@ TEST_F(Tls, LetsAThousandHalfHandshakesHoldUpTheirOwn) {
   }
   // While others wait, a handshake has a second, which a busy machine may take.
   EXPECT_TRUE(Eventually([&] { return HttpGet(sink.Url("https")).status == 200U; }));
-  EXPECT_GE(sink.Stat("connections-evicted"), static_cast<guint64>(count - 20 * 32) / 2);
+  // The server counts once a second.
+  const auto evicted = static_cast<guint64>(std::max(0, count - 20 * 32) / 2);
+  EXPECT_TRUE(Eventually([&] { return sink.Stat("connections-evicted") >= evicted; }));
   for (GSocketConnection* connection : silent) g_object_unref(connection);
 }
 
