@@ -193,8 +193,7 @@ TEST(OddScans, FollowsADriveOfWhichSomeScansAreThinnedOut) {
     const TimedPoints whole = drive.Scan(i);
     TimedPoints thinned;
     for (std::size_t n = 0; n < whole.points.size(); ++n) {
-      if (whole.rings[n] % (i / 5 % 3 + 1) != 0)
-        continue;  // every beam, every second one, every third one
+      if (whole.rings[n] % (i / 5 % 3 + 1) != 0) continue;  // each beam, each 2nd, each 3rd
       thinned.points.push_back(whole.points[n]);
       thinned.phases.push_back(whole.phases[n]);
       thinned.rings.push_back(whole.rings[n]);
