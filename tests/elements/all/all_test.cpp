@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Every plugin of the set in one process: what holds for each element, whatever it does.
+// Every plugin of the set in one process: what holds for each element.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ ElementPtr Make(const std::string& factory) {
   return element;
 }
 
-/// Tests run side by side: whoever listens takes a port of the system's choice.
+/// Lets elements listen on ports that the system chooses, because tests run at the same time.
 void AvoidFixedPorts(GstElement* element) {
   for (const char* name : {"port", "lidar-port", "imu-port", "bind-port"}) {
     GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), name);
@@ -66,7 +66,7 @@ TEST_P(EveryElement, ReadsAllItsPropertiesAndTakesItsDefaults) {
       GValue value = G_VALUE_INIT;
       g_value_init(&value, spec->value_type);
       g_object_get_property(G_OBJECT(element.get()), spec->name, &value);
-      // What a new element has is what its pages call the default.
+      // A property of a new element has the value that its page calls the default.
       const bool settable = (spec->flags & G_PARAM_WRITABLE) != 0;
       if (settable && spec->owner_type == G_OBJECT_TYPE(element.get())) {
         EXPECT_TRUE(g_param_value_defaults(spec, &value)) << spec->name;
@@ -94,8 +94,8 @@ TEST_P(EveryElement, HasMetadataThatSaysWhatItIs) {
   }
 }
 
-// Alone, an element has nobody to talk to and some lack a setting: it may refuse to play, but it
-// must do so in order, and come back.
+// An element alone has no peer, and some lack a setting: it may refuse to play, but it must do so
+// in order, and come back.
 TEST_P(EveryElement, GoesUpAndDownAgainAndAgain) {
   const ElementPtr pipeline(gst_pipeline_new(nullptr));
   GstElement* element = gst_element_factory_make(GetParam().c_str(), nullptr);
@@ -132,8 +132,8 @@ std::string NameOf(const ::testing::TestParamInfo<std::string>& info) {
   return name;
 }
 
-// The registry is there only after gst_init, so the elements are named here; the test below keeps
-// the list whole.
+// The registry is there only after gst_init, so the elements are named here. The test below checks
+// that the list is complete.
 const std::vector<std::string> kElements = {
     "bitrateadapter",  "lidarenc",      "lidardec",     "dracodec",      "dracoenc",
     "ecnudpsink",      "ecnudpsrc",     "foxglovesink", "lidarodometry", "lidartestsrc",
@@ -156,7 +156,7 @@ TEST(AllPlugins, LoadIntoOneProcessAndHoldTheseElements) {
     EXPECT_EQ(std::count(kElements.begin(), kElements.end(), name), 1) << name << " is not listed";
 }
 
-/// A pipeline is left out where an optional plugin is not built.
+/// Returns false if an optional plugin of the pipeline is not built.
 bool IsBuilt(const std::string& description) {
   const auto built = OurElements();
   for (const std::string& name : kElements)
@@ -191,7 +191,7 @@ TEST_P(TypicalPipelines, PlayFourTimesInARow) {
   GstBus* bus = gst_element_get_bus(pipeline.get());
   for (int cycle = 0; cycle < 4; ++cycle) {
     ASSERT_NE(gst_element_set_state(pipeline.get(), GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
-    // Every other time it is torn down on its way up.
+    // Every other time the pipeline is torn down on its way up.
     if (cycle % 2 == 0) {
       EXPECT_EQ(gst_element_get_state(pipeline.get(), nullptr, nullptr, test::kPatience_ns),
                 GST_STATE_CHANGE_SUCCESS);

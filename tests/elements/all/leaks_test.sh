@@ -8,7 +8,7 @@ failed=0
 # alive LOG: the lines of objects that were left.
 alive() { grep -o 'object-alive, type-name=.*' <<<"$1" | grep -v '%s'; }
 
-# run NAME PIPELINE...: counts whether it ends by itself and leaves nothing behind.
+# run NAME PIPELINE...: counts whether the pipeline ends by itself and leaves no object behind.
 run() {
   local name=$1
   shift

@@ -24,7 +24,7 @@ done
 "$python" "$source/tests/elements/apps/cloud_to_numpy.py" "$pipeline" >"$work/python"
 diff "$work/cpp" "$work/python"
 
-# Neither waits for a pipeline that cannot be made, or whose source fails.
+# The programs do not wait for a pipeline that cannot be made, or whose source fails.
 fails() {
   local status=0
   timeout 20 "$@" >"$work/said" 2>&1 || status=$?

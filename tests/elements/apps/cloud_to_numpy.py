@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Clouds of a pipeline as numpy arrays: prints what is nearest in each scan."""
+"""Clouds of a pipeline as numpy arrays: prints the nearest point of each scan."""
 import sys
 
 import gi

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds of a pipeline in a program: prints what is nearest in each scan.
+// Clouds of a pipeline in a program: prints the nearest point of each scan.
 #include <gst/app/gstappsink.h>
 #include <gst/lidar/gstlidarcloudinfo.h>
 
@@ -34,7 +34,8 @@ static void show(GstSample* sample) {
   gst_lidar_cloud_unmap(&cloud);
 }
 
-/// Shows what comes until the end. False, and said, where an element fails: then no sample comes.
+/// Shows all scans until the end. Prints an error and returns false if an element fails: then no
+/// sample comes.
 static bool show_all(GstElement* pipeline) {
   GstElement* sink = gst_bin_get_by_name(GST_BIN(pipeline), "sink");
   GstBus* bus = gst_element_get_bus(pipeline);
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
   GError* error = nullptr;
   GstElement* pipeline =
       gst_parse_launch((source + " ! appsink name=sink sync=false").c_str(), &error);
-  // With an error there may be a pipeline all the same, of the elements that were found.
+  // A partial pipeline may exist with an error: the elements that were found.
   const bool ended = error == nullptr && show_all(pipeline);
   if (error != nullptr) {
     std::fprintf(stderr, "%s\n", error->message);

@@ -18,8 +18,8 @@ constexpr std::size_t kStep = 20;  // bytes a point: x, y, z, intensity, range
 
 struct CloudCase {
   const char* name;
-  std::function<void(codec::RangeImage*)> ranges;         // before they become points
-  std::function<void(std::vector<std::uint8_t>*)> spoil;  // the points
+  std::function<void(codec::RangeImage*)> ranges;  // changes ranges before they become points
+  std::function<void(std::vector<std::uint8_t>*)> spoil;  // changes the points
   bool some_in_xyz = true;                                // else the slice is a gap there
 };
 void PrintTo(const CloudCase& c, std::ostream* out) { *out << c.name; }
@@ -56,7 +56,7 @@ const CloudCase kClouds[] = {
     {"Duplicates",
      [](auto* image) { std::fill(image->ranges.begin(), image->ranges.end(), 5'000U); },
      [](auto* raw) {
-       // In xyz all points are one.
+       // All points are the same in xyz.
        for (std::size_t i = 1; i < raw->size() / kStep; ++i)
          std::memcpy(raw->data() + i * kStep, raw->data(), 12);
      }},
@@ -80,12 +80,12 @@ TEST_P(BadClouds, GiveFinitePointsWithinTheErrorAndNeverStopTheStream) {
     const StructurePtr check = codec.PopCheck();
     ASSERT_TRUE(check);
     const bool moved =
-        std::string(bad.name) == "Duplicates" && !xyz;  // points without their ranges
+        std::string(bad.name) == "Duplicates" && !xyz;  // points away from their ranges
     EXPECT_EQ(Holds(check.get()), !moved);
     for (const float v : PointsOf(output.get(), kStep - (xyz ? 4 : 0)))
       ASSERT_TRUE(std::isfinite(v));
   }
-  // The next slice is as good as ever.
+  // The next slice is coded as usual.
   EXPECT_TRUE(codec.Push(OrganisedBuffer(model, kColumns, {9, 1, 8, 64})));
   EXPECT_TRUE(Holds(codec.PopCheck().get()));
   EXPECT_EQ(codec.Errors(), 0U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An encoder and its decoder behind each other, and what they say on the bus.
+// An encoder, then its decoder, and their messages on the bus.
 #pragma once
 #include <deque>
 #include <memory>
@@ -22,12 +22,12 @@ class CheckedCodec {
 
   void SetCaps(const CloudInfo& info) { gst::SetCaps(harness_.get(), info); }
   GstHarness* harness() const { return harness_.get(); }
-  /// Takes `buffer`, gives the decoded cloud.
+  /// Takes `buffer`, returns the decoded cloud.
   BufferPtr Push(GstBuffer* buffer) {
     EXPECT_EQ(gst_harness_push(harness_.get(), buffer), GST_FLOW_OK);
     return BufferPtr(gst_harness_try_pull(harness_.get()));
   }
-  /// The oldest check that was posted and not popped; null where there is none.
+  /// Returns the oldest check that was posted and not popped; null if there is none.
   StructurePtr PopCheck() {
     Drain();
     if (checks_.empty()) return nullptr;
@@ -35,7 +35,7 @@ class CheckedCodec {
     checks_.pop_front();
     return check;
   }
-  /// So far.
+  /// Returns the number of warnings so far.
   unsigned Warnings() {
     Drain();
     return warnings_;
@@ -70,7 +70,7 @@ class CheckedCodec {
   unsigned errors_ = 0;
 };
 
-/// Did the error check that `s` is of hold?
+/// Returns whether the error check `s` held.
 inline bool Holds(const GstStructure* s) {
   gboolean holds = FALSE;
   EXPECT_TRUE(gst_structure_get_boolean(s, "holds", &holds));

@@ -34,7 +34,7 @@ struct CoderCase {
 };
 inline void PrintTo(const CoderCase& c, std::ostream* out) { *out << c.name; }
 
-// What effort=auto takes depends on the load of the machine, and so do the sizes.
+// The efforts are fixed: what effort=auto takes, and so the sizes, depend on the machine's load.
 constexpr CoderCase kLidar{"lidar", "lidarenc effort=1", "lidardec"};
 constexpr CoderCase kLidarXyz{"lidar_xyz", "lidarenc effort=0 geometry=xyz", "lidardec", true};
 constexpr CoderCase kDraco{"draco", "dracoenc", "dracodec"};
@@ -42,7 +42,7 @@ constexpr CoderCase kDracoXyz{"draco_xyz", "dracoenc geometry=xyz", "dracodec", 
 
 constexpr CoderCase kExample{"example", "exampleenc", "exampledec", true};
 
-/// Those that code the ranges of organised scans.
+/// Returns the coders of ranges of organised scans.
 inline std::vector<CoderCase> RangeCoders() {
 #ifdef HAVE_DRACO
   return {kLidar, kDraco};
@@ -50,7 +50,7 @@ inline std::vector<CoderCase> RangeCoders() {
   return {kLidar};
 #endif
 }
-/// Those that we install.
+/// Returns the coders that we install.
 inline std::vector<CoderCase> OurCoders() {
   std::vector<CoderCase> coders = RangeCoders();
   coders.push_back(kLidarXyz);
@@ -106,7 +106,7 @@ inline CloudInfo OrganisedInfo(const SensorModel& model, guint columns) {
   return info;
 }
 
-/// Columns of the room, which is the same in each scan: made once for all of them.
+/// Returns columns of the room, which is the same in each scan: made once for all scans.
 inline const std::vector<std::uint8_t>& RoomPoints(const SensorModel& model, guint first_column,
                                                    guint columns) {
   using Part = std::tuple<std::vector<std::uint8_t>, guint, guint>;
@@ -142,9 +142,9 @@ inline void SetCaps(GstHarness* h, const CloudInfo& info) {
   gst_harness_set_src_caps(h, gst_caps_ref(caps.get()));
 }
 
-/// What holds with every coder of ranges.
+/// Tests that hold with every coder of ranges.
 class EitherCoder : public ::testing::TestWithParam<CoderCase> {};
-/// What holds with every coder.
+/// Tests that hold with every coder.
 class AnyCoder : public ::testing::TestWithParam<CoderCase> {};
 
 inline double LargestDistance(const std::vector<float>& a, const std::vector<float>& b) {

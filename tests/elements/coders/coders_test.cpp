@@ -243,7 +243,7 @@ TEST_P(RefusedCaps, GiveOneErrorThatSaysWhatIsMissing) {
   gst_message_parse_error(message.get(), &error, nullptr);
   EXPECT_TRUE(g_error_matches(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT));
   g_error_free(error);
-  // GStreamer offers them again with each buffer.
+  // GStreamer offers the caps again with each buffer.
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
   EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));
   gst_element_set_bus(h->element, nullptr);

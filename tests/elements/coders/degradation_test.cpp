@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Below min-bitrate: what gives, and that sender and receiver say the same about it.
+// Below min-bitrate: what is given up, and that sender and receiver count the same.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -72,7 +72,7 @@ class BelowTheMinimum : public ::testing::TestWithParam<std::tuple<CoderCase, Pr
     static const SensorModel model = test::RoomSensor();
     return model;
   }
-  /// The number of decoded slices.
+  /// Returns the number of decoded slices.
   static guint Play(GstHarness* h, guint first, guint scans) {
     guint slices = 0;
     for (guint i = 8 * first; i < 8 * (first + scans); ++i) {
@@ -109,14 +109,14 @@ TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
   const ElementPtr dec = Find(h.get(), "dec");
   const guint64 skipped = Counter(enc.get(), "scans-skipped");
   EXPECT_EQ(skipped > kScans / 10, preference.skips);
-  // Nobody has heard of those after the last scan that came.
+  // The receiver cannot count scans skipped after the last scan that arrived.
   EXPECT_NEAR(static_cast<double>(Counter(depay.get(), "scans-skipped")),
               static_cast<double>(skipped), preference.skips ? 3 : 0);
   EXPECT_EQ(Counter(depay.get(), "slices-lost"), 0U);
   EXPECT_EQ(Counter(dec.get(), "slices"), 8 * (kScans - skipped));
   EXPECT_EQ(Counter(dec.get(), "slices-thinned") > Counter(dec.get(), "slices") / 2,
             preference.thins);
-  // Back above the minimum all is whole at once.
+  // All slices are whole at once when the target is above the minimum again.
   SetTarget(h.get(), 2 * needed);
   const guint64 thinned = Counter(dec.get(), "slices-thinned");
   EXPECT_EQ(Play(h.get(), kScans, 5), 40U);

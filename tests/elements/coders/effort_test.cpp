@@ -17,7 +17,7 @@ class EffortHarness {
     info.framerate_d = seconds;
     SetCaps(harness_.get(), info);
   }
-  /// The mode of the slice that was pushed, which came back within the error.
+  /// Returns the mode of the slice that was pushed, after a check that it decodes within the error.
   std::string Push() {
     GstBuffer* input =
         OrganisedBuffer(model_, 64, {slices_ / 8, slices_ % 8, 8, 64 * (slices_ % 8)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What encoders say about their own errors, and about clouds that contradict themselves.
+// What encoders report about their own errors, and about clouds that contradict themselves.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -15,7 +15,7 @@ double Number(const GstStructure* s, const char* name) {
   return value;
 }
 
-/// Distances between points at the same place, of those that are not all zero.
+/// Returns distances between points at the same place, without places that are all zero.
 std::vector<double> Distances(const std::vector<float>& a, const std::vector<float>& b) {
   std::vector<double> distances;
   for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
@@ -89,7 +89,7 @@ CloudInfo PlainInfo(guint points) {
   return info;
 }
 
-/// Points two metres apart, so that the nearest one is the one that it was.
+/// Points two metres apart, so that a moved point is still nearest to where it was.
 std::vector<float> Lattice() {
   std::vector<float> xyz;
   for (unsigned i = 0; i < 500; ++i) {
@@ -168,7 +168,7 @@ TEST_P(EitherCoder, WarnsWhenTheErrorIsLargerThanItMayBe) {
     EXPECT_FALSE(Holds(check.get()));
     EXPECT_NEAR(Number(check.get(), "largest-error"), 1, 0.021);
   }
-  // One for the errors and one for the ranges, each told once.
+  // Two warnings, for the errors and for the ranges, come once each.
   EXPECT_EQ(codec.Warnings(), 2U);
   const StructurePtr stats = codec.Stats();
   guint64 failed = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidarenc fields=… keep-order=true: what drivers say of each point comes back exactly.
+// lidarenc fields=… keep-order=true: the drivers' fields of each point come back exactly.
 #include <gtest/gtest.h>
 
 #include "tests/elements/coders/checked_codec.h"
@@ -45,14 +45,14 @@ CloudInfo InfoOf(GstHarness* h) {
   return *CloudInfo::FromCaps(caps.get());
 }
 
-/// A field of a point, as bytes.
+/// Returns a field of a point, as bytes.
 std::string FieldOf(const std::uint8_t* point, const PointFields& fields, const char* name) {
   const PointField* field = fields.Find(name);
   if (field == nullptr) return "none";
   return {point + field->offset, point + field->offset + SizeOf(field->type)};
 }
 
-/// Each point of `after` is the one of `before` at its place, with the same `names`.
+/// Expects each point of `after` to be that of `before` at its place, with the same `names`.
 void ExpectSame(const std::vector<std::uint8_t>& before, GstBuffer* after, const CloudInfo& info,
                 const std::vector<const char*>& names) {
   const PointFields driver = *PointFields::Parse(kDriverFields);
@@ -116,7 +116,7 @@ TEST(ExactFields, AreNoneUnlessTheyAreNamed) {
   EXPECT_EQ(InfoOf(h.get()).fields.ToString(), "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12");
 }
 
-// Positions and intensities come in any case, at their own precision.
+// Positions and intensities are always coded, at their own precision.
 TEST(ExactFields, MayNameWhatComesAnyway) {
   const CoderCase coder{"exact", "lidarenc effort=1 intensity-bits=0", "lidardec"};
   CheckedCodec codec(coder, "fields=x,y,z,intensity,ring,ring,");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the base classes do for a coder that they do not know.
+// What the base classes do for a coder that is not in the tree.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ TEST_F(ExampleCoder, MayMergePointsWithinTheBound) {
   GstLidarEncoderClass* klass = GST_LIDAR_ENCODER_GET_CLASS(enc.get());
   static gboolean (*decode)(GstLidarEncoder*, const guint8*, gsize, GArray*, GstLidarPointOrder*);
   decode = klass->decode;
-  // Of points in one cell, the first stands for all, as in a coder of voxels.
+  // The first point of a cell stands for all points in it, as in a coder of voxels.
   klass->decode = [](GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
                      GstLidarPointOrder* order) -> gboolean {
     if (!decode(base, data, size, points, order)) return FALSE;
@@ -131,7 +131,7 @@ TEST_F(ExampleCoder, MayGiveAsManyPointsAsAreAllowedAndNoMore) {
   const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
   g_object_set(dec.get(), "max-points", 1000U, nullptr);
   SetCaps(h.get(), OrganisedInfo(Sensor(), 64));
-  // A decoder that does not look at the most that it may give.
+  // A decoder that ignores the limit of its points.
   GstLidarDecoderClass* klass = GST_LIDAR_DECODER_GET_CLASS(dec.get());
   static guint width = 0;
   const auto decode = klass->decode;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The folder docs/examples/coder, copied, builds with what is installed: headers, pkg-config, library. What its
-# encoder makes comes through each transport to its decoder, and nothing between them knows the coder.
-# Usage: outside_plugin_test.sh SOURCE_ROOT BUILD_ROOT; LIDAR_EDGE names the program.
+# The folder docs/examples/coder, copied, builds with what is installed: headers, pkg-config,
+# library. Its slices come through each transport to its decoder, and no part between them knows the
+# coder. Usage: outside_plugin_test.sh SOURCE_ROOT BUILD_ROOT; LIDAR_EDGE names the program.
 set -euo pipefail
 source=$1
 build=$2
@@ -30,15 +30,15 @@ done
 
 play=(timeout 60 gst-launch-1.0 -q)
 mapfile -t ports < <(python3 "$source/tests/support/ports.py" udp tcp)
-# 40 slices, each point of which the decoder gives back.
+# The decoder gives back each point of 40 slices.
 encoder='lidartestsrc model=os1-32 mode=512x10 num-buffers=40 ! exampleenc max-error=0.02'
 decoder='exampledec ! filesink async=false location'
 # shellcheck disable=SC2086
 "${play[@]}" $encoder ! $decoder=direct
 [ "$(stat -c %s direct)" -gt 500000 ] || { echo "the decoder gave too little" >&2; exit 1; }
 
-# Every slice comes, and each point within twice the bound of where it is without a network: the controller may
-# choose finer or coarser steps.
+# Every slice comes, and each point within twice the bound of where it is without a network: the
+# controller may choose finer or coarser steps.
 same() {
   python3 - direct "$1" <<'END' || { echo "$1 is not what was sent" >&2; exit 1; }
 import array, sys
@@ -50,14 +50,14 @@ END
 
 children=()
 trap 'kill "${children[@]}" 2>/dev/null; wait; rm -rf "$work"' EXIT
-# Runs a program beside what follows, once a command says that it is ready.
+# Starts a program in the background, and waits until a command succeeds that checks it.
 start() {
   "${@:2}" >output 2>&1 &
   children+=($!)
   until eval "$1"; do kill -0 $! || { cat output >&2; exit 1; }; sleep 0.05; done
 }
 
-# What is not live waits in the sender's queue, and nothing is left out.
+# A source that is not live waits in the sender's queue, and no slice is left out.
 send="rtplidarpay ! screamsink host=127.0.0.1 port=${ports[0]} start-bitrate=20000000"
 bound() { grep -qs "$(printf ':%04X ' "${ports[0]}")" /proc/net/udp /proc/net/udp6; }
 # shellcheck disable=SC2086
@@ -85,7 +85,7 @@ if [ -n "$server" ] && has natssink; then
   cmp direct nats
 fi
 
-# The file is complete once the robot's goodbye has come.
+# The file is complete once the robot's goodbye has arrived.
 closed() { [ "$(tail -c 8 "$1" 2>/dev/null | tr -d '\0' | tail -c +2 | head -c 5)" = MCAP0 ]; }
 # shellcheck disable=SC2086
 if [ -n "${LIDAR_EDGE:-}" ] && has mcapsink; then

@@ -30,7 +30,7 @@ inline GstBuffer* PlainBuffer(const std::vector<float>& xyz) {
   return buffer;
 }
 
-/// Distance from each point of `a` to the nearest of `b`, the largest of them.
+/// Returns the largest distance from a point of `a` to the nearest of `b`.
 inline double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
   double largest = 0;
   for (std::size_t i = 0; i + 2 < a.size(); i += 3) {

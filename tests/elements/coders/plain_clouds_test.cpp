@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-/// Coders of clouds without a sensor model, and how they may be set.
+/// Coders of clouds without a sensor model, with their settings.
 std::vector<CoderCase> XyzCoders() {
   return {
       {"lidar_effort_0", "lidarenc effort=0", "lidardec", true},
@@ -25,7 +25,7 @@ std::vector<CoderCase> XyzCoders() {
 struct PlainCase {
   const char* name;
   std::vector<float> xyz;
-  std::vector<float> expected;  // what is finite and not all zero
+  std::vector<float> expected;  // finite points that are not all zero
 };
 class PlainClouds : public ::testing::TestWithParam<std::tuple<PlainCase, CoderCase>> {};
 
@@ -107,7 +107,7 @@ TEST_P(DriverFields, MayChangeWhileTheStreamRuns) {
 INSTANTIATE_TEST_SUITE_P(All, DriverFields, ::testing::ValuesIn(XyzCoders()),
                          [](const auto& c) { return std::string(c.param.name); });
 
-/// What 16 beams see of a room in so many firings of 450.
+/// What 16 beams see of a room in the first `firings` of 450 firings.
 std::vector<float> SpinningScan(int firings) {
   std::vector<float> xyz;
   for (int firing = 0; firing < firings; ++firing) {
@@ -123,7 +123,7 @@ std::vector<float> SpinningScan(int firings) {
   return xyz;
 }
 
-/// Codes clouds one after the other. Returns whether the last one comes from beams.
+/// Codes clouds one after the other. Returns whether the last one is coded by beams.
 bool ComesFromBeams(const std::vector<std::vector<float>>& clouds) {
   const Harness h = Launch("lidarenc effort=1 max-error=0.02");
   bool has_beams = false;
@@ -146,7 +146,7 @@ TEST(LidarEnc, KnowsASensorWhoseCloudsChangeInSize) {
 
 class StoppedSink : public ::testing::TestWithParam<CoderCase> {};
 
-// The pads of a pipeline that stops flush one after the other, from its end on.
+// Pads of a pipeline that stops flush one after the other, from the last element on.
 TEST_P(StoppedSink, IsNoError) {
   const Harness h = Codec(GetParam(), "max-error=0.02");
   SetCaps(h.get(), XyzInfo(500));

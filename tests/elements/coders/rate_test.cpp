@@ -6,8 +6,8 @@
 namespace lidar::gst {
 namespace {
 
-/// Bytes of each scan that `scans` scans of 8 slices give, 0 for one that was skipped. Checks that
-/// scans are whole.
+/// Returns the bytes of each of `scans` scans of 8 slices; 0 for a skipped scan. Checks that scans
+/// are whole.
 std::vector<gsize> ScanSizes(GstHarness* h, const SensorModel& model, guint scans) {
   std::vector<gsize> sizes;
   for (guint scan = 0; scan < scans; ++scan) {
@@ -37,7 +37,7 @@ TEST_P(EitherCoder, KeepsToATargetBitrateThatComesFromDownstream) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Encoder(GetParam(), "max-error=0.2 intensity-bits=0 bitrate=1");
   SetCaps(h.get(), OrganisedInfo(model, 64));
-  // About 4 bits a return.
+  // The target is about 4 bits a return.
   const GstLidarTargetBitrate target{640'000, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(h.get(), gst_lidar_event_new_target_bitrate(&target));
   const auto sizes = ScanSizes(h.get(), model, 30);
@@ -89,7 +89,7 @@ TEST_P(EitherCoder, TellsItsBitrateFromTheFirstScanOn) {
   const Harness h = Encoder(GetParam());
   SetCaps(h.get(), OrganisedInfo(model, 64));
   const auto sizes = ScanSizes(h.get(), model, 2);
-  // A scan is counted with the next: ten in a second.
+  // A scan is counted once the next begins: ten in a second.
   EXPECT_NEAR(StatOf(h.get(), "bitrate"), 80.0 * static_cast<double>(sizes[0]),
               0.2 * 80 * static_cast<double>(sizes[0]));
 }
@@ -122,7 +122,7 @@ TEST_P(EitherCoder, TellsDownstreamWhatItsErrorBoundNeeds) {
   GstLidarBitrateBounds bounds{};
   while (const EventPtr event{gst_harness_try_pull_event(h.get())})
     gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds);
-  // Constant quality is what the bound needs, with all intensity bits.
+  // The nominal bitrate is what the bound needs, with all intensity bits.
   EXPECT_NEAR(bounds.nominal_bitrate, 80.0 * static_cast<double>(sizes[9]),
               0.1 * 80 * static_cast<double>(sizes[9]));
   EXPECT_LE(bounds.min_bitrate, bounds.nominal_bitrate);
@@ -139,7 +139,7 @@ TEST_P(EitherCoder, SkipsWholeScansEvenlyBelowTheMinimum) {
   const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));
   const auto sizes = ScanSizes(tight.get(), model, 30);
-  // Half of what is needed: every second scan, and no two in a row are lost.
+  // The target is half of what is needed: every second scan is sent, and no two in a row are lost.
   guint sent = 0;
   for (std::size_t i = 10; i < 30; ++i) {
     sent += sizes[i] > 0 ? 1U : 0U;
@@ -167,7 +167,7 @@ TEST_P(EitherCoder, ThinsScansInsteadWhereTheFrameRateMattersMore) {
     late += static_cast<double>(sizes[i]) / 10;
   }
   EXPECT_NEAR(late, static_cast<double>(needed) / 2, 0.1 * static_cast<double>(needed));
-  // All returns of the room, less those of the beams that were left out.
+  // Returns are those of the room without the beams that were left out.
   const ElementPtr enc(gst_bin_get_by_name(GST_BIN(tight->element), "enc"));
   EXPECT_LT(Counter(enc.get(), "returns"), 20 * 32 * 512 * 3 / 4);
 }

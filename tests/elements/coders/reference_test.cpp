@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidarenc, rtplidarpay, rtplidardepay and lidardec over a link that the test makes: what arrives,
-// what the sender hears of it, and what the decoder asks for.
+// what is acknowledged, and what the decoder asks for.
 #include <gst/rtp/gstrtpbuffer.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ constexpr guint kSlices = 8;
 
 class StaticSensor : public ::testing::Test {
  protected:
-  /// Without slices that stand alone by the clock: where computing is slow, they come at any scan.
+  /// Starts without slices that stand alone by the clock: on a slow machine they would come at any
+  /// scan.
   void Start(const std::string& properties = "", const std::string& between = "") {
     sender_ = Launch("lidarenc name=enc effort=1 error-check=1 key-interval=0 " + properties +
                      " ! " + between + " rtplidarpay name=pay config-interval=1");
@@ -24,7 +25,8 @@ class StaticSensor : public ::testing::Test {
     SetCaps(sender_.get(), info);
   }
 
-  /// One scan. Packets for which `loses` is true never arrive; the sender hears of the others.
+  /// Sends one scan. Packets for which `loses` is true never arrive; the others can be
+  /// acknowledged.
   void Scan(const std::function<bool(guint packet)>& loses = nullptr) {
     for (guint i = 0; i < kSlices; ++i) {
       const GstLidarSlice slice{scan_, i, kSlices, 64 * i};
@@ -48,7 +50,7 @@ class StaticSensor : public ::testing::Test {
     arrived_.clear();
     gst_harness_push_upstream_event(sender_.get(), gst_lidar_event_new_packets_received(&received));
   }
-  /// Hands on what the receiver asks of the sender; true where it asked for a key unit.
+  /// Passes on what the receiver asks of the sender. Returns true if it asked for a key unit.
   bool CarryKeyRequest() {
     bool asked = false;
     while (EventPtr event{gst_harness_try_pull_upstream_event(receiver_.get())}) {
@@ -67,14 +69,14 @@ class StaticSensor : public ::testing::Test {
   static ElementPtr Get(const char* name, const Harness& harness) {
     return ElementPtr(gst_bin_get_by_name(GST_BIN(harness->element), name));
   }
-  /// What it had is gone, but the caps are still there.
+  /// Makes the decoder forget its slices, but not the caps.
   void RestartDecoder() {
     const ElementPtr dec = Get("dec", receiver_);
     gst_element_set_state(dec.get(), GST_STATE_READY);
     gst_element_sync_state_with_parent(dec.get());
   }
 
-  /// A second branch behind the tee `t`.
+  /// Adds a second branch to the tee `t`.
   void AddBranch() {
     GstElement* sink = gst_element_factory_make("fakesink", nullptr);
     g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
@@ -86,7 +88,7 @@ class StaticSensor : public ::testing::Test {
   bool acknowledges_ = true;
 
  private:
-  /// The room is the same in all scans, and the sensor's noise is not.
+  /// Adds noise of the sensor to a room that is the same in all scans.
   void AddNoise(GstBuffer* buffer) {
     BufferMap map(buffer, GST_MAP_READWRITE);
     const RangeProjection projection(model_);
@@ -167,7 +169,7 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceABranchOfATeeIsAdded) {
   Scans(4);
   ASSERT_EQ(Mode(), "range-temporal1");
   AddBranch();
-  g_usleep(G_USEC_PER_SEC / 10);  // so often the encoder looks at what is behind it
+  g_usleep(G_USEC_PER_SEC / 10);  // the encoder looks at its downstream this often
   Scan();
   EXPECT_EQ(Mode(), "range-mixing1") << "the new branch has none of what was sent before";
 }

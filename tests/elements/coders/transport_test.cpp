@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Every coder's slices through what carries them: files, and SRTP under congestion control.
+// Every coder's slices through their transports: files, and SRTP under congestion control.
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace lidar::gst {
 namespace {
 
-/// The port that a screamsrc with port=0 has bound.
+/// Returns the port that a screamsrc with port=0 has bound.
 guint PortOf(GstElement* source) {
   gst_element_get_state(source, nullptr, nullptr, test::kPatience_ns);
   GSocket* socket = nullptr;
@@ -62,7 +62,7 @@ TEST_P(Transport, GoesThroughSrtpUnderCongestionControl) {
   test::Pipeline receiver("screamsrc name=in address=127.0.0.1 port=0" + key + " ! " + Receiver());
   receiver.Play();
   const guint port = PortOf(receiver.Get("in").get());
-  // What is not live waits in the queue of the sender, however busy the machine is.
+  // A source that is not live waits in the sender's queue, however busy the machine is.
   test::Pipeline sender(
       Sender("num-buffers=24") +
       " ! screamsink start-bitrate=20000000 host=127.0.0.1 port=" + std::to_string(port) + key);

@@ -62,7 +62,7 @@ struct TestThingClass {
 static GType test_thing_get_type();
 G_DEFINE_TYPE(TestThing, test_thing, G_TYPE_OBJECT)
 
-/// Shows a thing's port as its own, and another default.
+/// A bin that shows a thing's port as its own, with another default.
 struct TestBin {
   GObject parent;
   struct State {
@@ -83,7 +83,7 @@ namespace {
 StructurePtr Stats(GObject*) { return StructurePtr(gst_structure_new_empty("counts")); }
 guint Changes(GObject* o) {
   State& state = *reinterpret_cast<TestThing*>(o)->state;
-  const std::lock_guard lock(state.mutex);  // would hang if the caller held it
+  const std::lock_guard lock(state.mutex);  // would hang if the caller held the lock
   return static_cast<guint>(state.changes);
 }
 void Changed(GObject* o, GParamSpec*) { ++reinterpret_cast<TestThing*>(o)->state->changes; }

@@ -53,7 +53,7 @@ inline std::string Text(GstBuffer* buffer) {
   return text;
 }
 
-/// A sink that is not started yet: a harness starts it at once.
+/// Returns a sink that is not started: a harness starts its element at once.
 inline GstElement* SinkElement() {
   GstElement* sink = gst_element_factory_make("ecnudpsink", nullptr);
   g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);

@@ -43,7 +43,7 @@ TEST_P(Loopback, EveryPacketArrivesWithItsOwnEcnCodepoint) {
     gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(i), GST_CLOCK_TIME_NONE);
     gst_buffer_list_add(list, buffer);
   }
-  gst_buffer_list_add(list, Payload("packet 4"));  // without meta: the property
+  gst_buffer_list_add(list, Payload("packet 4"));  // without meta: the property counts
   ASSERT_EQ(gst_pad_push_list(sink->srcpad, list), GST_FLOW_OK);
   for (guint i = 0; i < 5; ++i) {
     const BufferPtr got(gst_harness_pull(src.get()));
@@ -125,7 +125,7 @@ TEST(EcnUdp, ReplyGoesToThePeerThatTheBufferNames) {
   }
 }
 
-/// The TOS byte of the next datagram on `fd`, as the kernel tells it; -1 where it does not.
+/// Returns the TOS byte of the next datagram on `fd`; -1 if the kernel does not give it.
 int ReceiveTos(int fd) {
   char data[16];
   alignas(cmsghdr) char control[64];

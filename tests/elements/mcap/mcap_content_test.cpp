@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What stands in a recording, message by message.
+// The content of a recording, message by message.
 #include <fstream>
 
 #include "ext/mcap/timeline.h"
@@ -65,7 +65,7 @@ guint64 CountedBy(GstElement* element, const char* field) {
 
 class McapContent : public Recording {
  protected:
-  /// The messages that `buffers` of `caps` become, where the stream's frame is called front.
+  /// Returns the messages that `buffers` of `caps` become, in the frame "front".
   std::vector<Logged> Write(const char* caps, const std::vector<GstBuffer*>& buffers) {
     const Harness h = RecordingTo(Path("a.mcap"));
     gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::frame-id", "front", nullptr);
@@ -183,7 +183,7 @@ TEST_F(McapContent, TheSinkCountsAndTellsWhatItWrote) {
   for (const Kept& kept : recorded.buffers.at("see")) bytes += kept.bytes.size();
   EXPECT_EQ(recorded.stats.at("messages"), 80U);
   EXPECT_GE(recorded.stats.at("bytes"), bytes);
-  EXPECT_LT(recorded.stats.at("bytes"), bytes + 80 * 100);  // what a message says besides
+  EXPECT_LT(recorded.stats.at("bytes"), bytes + 80 * 100);  // the rest of each message
   EXPECT_EQ(recorded.stats.at("files"), 4U);
   EXPECT_EQ(recorded.stats.at("chunks"), 10U);
   ASSERT_EQ(recorded.complete.size(), 4U);
@@ -202,7 +202,7 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
   const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));
   gst_harness_play(h.get());
   for (const bool first : {true, false}) {
-    // The second is of an hour before.
+    // The second recording is from an hour before.
     const GstClockTime start = first ? kCapture : kCapture - 3600 * GST_SECOND;
     const std::string topic = first ? "/slices" : "/rear";
     if (!first) gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::topic", "/rear", nullptr);
@@ -210,7 +210,7 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
     for (guint i = 0; i < 3; ++i) {
       const GstClockTime pts = (i + 1) * GST_MSECOND;
       EXPECT_EQ(gst_harness_push(h.get(), Slice(1, pts, start + i * GST_MSECOND)), GST_FLOW_OK);
-      // The end of the recording before is none of this.
+      // An end of the other stream in the first recording does not count in the second.
       if (!first && i == 0) End(other.get());
     }
     EXPECT_EQ(CountedBy(h->element, "messages"), 3U);
@@ -238,7 +238,7 @@ TEST_F(McapContent, AFlushedStreamGoesOnWhereItWas) {
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
-  End(other.get());  // the first goes on
+  End(other.get());  // the first stream continues
   for (guint i = 0; i < 2; ++i)
     EXPECT_EQ(gst_harness_push(h.get(), Slice(2, i * GST_SECOND, kCapture)), GST_FLOW_OK);
   End(h.get());
@@ -307,7 +307,7 @@ TEST_F(McapContent, GapsFillWhatASilentStreamLeavesOpen) {
   EXPECT_EQ(p.outcome().gaps["see1"],
             (Gaps{{0, 500}, {500, 500}, {1'350, 550}, {1'900, 500}, {2'400, 500}}));
   EXPECT_EQ(p.outcome().gaps["see0"], Gaps{});
-  // After a seek the silence begins where it went.
+  // The gaps of the silent stream begin at the place of a seek.
   p.Forget();
   ASSERT_TRUE(
       gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 1'500 * GST_MSECOND));
@@ -331,7 +331,7 @@ TEST(McapTimeline, KeepsTheDistancesOfRunningTimes) {
   EXPECT_EQ(line.LogTime({990, {}, 1}), 4'990U);
   EXPECT_EQ(line.LogTime({{}, 1, 1}), 5'010U);
   line.Restart();
-  EXPECT_EQ(line.LogTime({3, 2'000, 1}), 5'010U);  // never before what is there
+  EXPECT_EQ(line.LogTime({3, 2'000, 1}), 5'010U);  // never before the newest log time
   EXPECT_EQ(line.LogTime({4, 2'000, 1}), 5'011U);
   line.Restart();
   EXPECT_EQ(line.LogTime({0, 8'000, 1}), 8'000U);

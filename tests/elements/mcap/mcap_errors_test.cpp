@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What mcapsink and mcapsrc say where they cannot do their work.
+// What mcapsink and mcapsrc report if they cannot do their work.
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -24,7 +24,7 @@ class McapErrors : public Recording {
   }
 };
 
-/// No file may grow beyond `size` while it lives, as on a disk that is full there.
+/// Limits files to `size` during its lifetime, as a disk that is full there.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t size) {
@@ -101,7 +101,7 @@ TEST_F(McapErrors, TheLocationIsCheckedBeforeTheFirstBuffer) {
   EXPECT_TRUE(Files().empty());
 }
 
-/// A user learns of it before the drive, not with its first slice.
+/// A user learns of it at the start, not with the first slice.
 TEST_F(McapErrors, AWrongLocationFailsTheStart) {
   for (const std::string& location :
        {std::string(), std::string("/nowhere/a.mcap"), folder_, Path("a-%s.mcap"),
@@ -120,7 +120,7 @@ TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
             "Cannot be recorded: clouds, coded slices, IMU samples and odometry can be recorded, "
             "and no video/x-raw.");
   EXPECT_TRUE(Files().empty());
-  // Each time it is tried.
+  // The error comes with each try.
   Pipeline p("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap"));
   for (int round = 0; round < 2; ++round) {
     p.Forget();
@@ -149,7 +149,7 @@ TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
 
 TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
   std::string caps = "application/x-lidar-slice, alignment=(string)slice, a=";
-  while (caps.size() < 569) caps += "[[ a, b={";  // GStreamer's parser doubles its time with each
+  while (caps.size() < 569) caps += "[[ a, b={";  // each level doubles the parser's time
   mcap::test::FileMaker maker(mcap::WriterSettings{});
   mcap::Channel channel;
   channel.topic = "/slices";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Recordings in pieces, those that broke off, and those that are damaged.
+// Recordings in pieces, recordings that broke off, and damaged recordings.
 #include <ctime>
 #include <fstream>
 #include <future>
@@ -39,7 +39,7 @@ TEST_F(McapFiles, PiecesPlayAsOneRecording) {
     EXPECT_TRUE(played.buffers.at("see")[i].SameAs(written[i]));
     EXPECT_EQ(played.buffers.at("see")[i].pts, written[i].pts);
   }
-  // Each begins with a scan.
+  // Each piece begins with a scan.
   const auto second = PlayFile("rec-001.mcap");
   EXPECT_EQ(second.buffers.at("see")[0].slice.slice_index, 0U);
   EXPECT_EQ(second.buffers.at("see").size(), 24U);
@@ -56,7 +56,7 @@ TEST_F(McapFiles, SeeksOverPieces) {
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   EXPECT_EQ(p.outcome().buffers.at("see").size(), 16U);
-  // The last slice of a piece is of that piece.
+  // A seek to the last slice of a piece finds it in that piece.
   p.Forget();
   ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
                                       300 * GST_MSECOND - 12'500 * GST_USECOND));
@@ -140,7 +140,7 @@ TEST_F(McapFiles, AChunkThatIsDamagedCostsItselfAndIsCounted) {
   EXPECT_EQ(played.warning, "The recording is damaged: 1 chunks and 0 messages are left out.");
   EXPECT_LT(played.buffers.at("see").size(), 32U);
   EXPECT_GE(played.buffers.at("see").size(), 16U);
-  // The same in two pieces of a recording.
+  // The same holds for two pieces of a recording.
   WriteFile("b-0.mcap", damaged);
   WriteFile("b-1.mcap", damaged);
   EXPECT_EQ(PlayFile("b-%d.mcap").stats.at("chunks-damaged"), 2U);
@@ -162,7 +162,7 @@ TEST_F(McapFiles, WhereAllOrTheLastIsDamagedThePlayerSaysSo) {
   EXPECT_NE(played.warning, "");
 }
 
-/// A recording whose chunks of zeros take a while each, and hold nothing to play.
+/// Writes a recording whose chunks of zeros take a while each to read, and have no message to play.
 void WriteBombs(const std::string& path, int chunks) {
   mcap::Bytes file(mcap::kMagic.begin(), mcap::kMagic.end());
   mcap::Bytes records;
@@ -215,7 +215,7 @@ TEST_F(McapFiles, ThatTakeLongToReadDoNotDelayAStop) {
   pads.get_future().wait();
   begin = ProcessorTime();
   gst_element_set_state(p.get(), GST_STATE_NULL);
-  // The chunk at hand is read to its end, a hundred would cost ten times the bound.
+  // The current chunk is read to its end. A hundred chunks would cost ten times the bound.
   EXPECT_LT(ProcessorTime() - begin, 10 * one_chunk);
 }
 
@@ -225,7 +225,8 @@ TEST_F(McapFiles, DamageAnywhereIsSurvived) {
   std::mt19937 random(11);
   for (int round = 0; round < 60; ++round) {
     std::string damaged = whole;
-    // Half of it where the caps are, which are the most complicated thing in it.
+    // Half of the rounds damage the begin, where the caps are, the most complicated part of the
+    // file.
     for (int i = 0; i < 4; ++i)
       damaged[random() % (round % 2 == 0 ? 4'000 : damaged.size())] = static_cast<char>(random());
     WriteFile("b.mcap", damaged);

@@ -15,7 +15,7 @@ namespace {
 
 class McapSeek : public Recording {};
 
-/// Where the playing pipeline `p` is, and how long the recording.
+/// Returns the position of the playing pipeline `p`, and the duration of the recording.
 std::pair<gint64, gint64> Times(const Pipeline& p) {
   std::pair<gint64, gint64> times{-1, -1};
   gst_element_query_position(p.get(), GST_FORMAT_TIME, &times.first);
@@ -154,7 +154,8 @@ TEST_F(McapSeek, IsDoneOnceHoweverManySinksSendIt) {
   }
 }
 
-/// Shows what comes to a sink after the last flush, and stops it at a time until it is opened.
+/// Keeps the times of the buffers that came to a sink after the last flush, and holds the sink from
+/// a time on until it is opened.
 class Gate {
  public:
   explicit Gate(GstClockTime closed_from) : closed_from_(closed_from) {}
@@ -225,7 +226,7 @@ TEST_F(McapSeek, ASeekHoldsWhereItsEndIsPlayedMeanwhile) {
   Pipeline p("mcapsrc name=m" + At("a.mcap") +
              " m.src_0 ! fakesink name=a async=false m.src_1 ! fakesink name=b async=false");
   gate.Guard(p.Find("b").get());
-  // The flush comes to the first stream first: until it is through, the second plays on.
+  // The first stream gets the flush first: until it is through, the second one plays on.
   const gst::PadPtr first(gst_element_get_static_pad(p.Find("a").get(), "sink"));
   gst_pad_add_probe(
       first.get(), GST_PAD_PROBE_TYPE_EVENT_FLUSH,
@@ -281,7 +282,7 @@ TEST(SeekOfAPlayer, GoesOnFromWhatWasPlayedMeanwhile) {
     GstSegment begun = seek.Begun(*made, played);
     EXPECT_EQ(begun.position, position);
     EXPECT_EQ(gst_segment_to_running_time(&begun, GST_FORMAT_TIME, position), 2 * GST_SECOND);
-    // Past its end, too.
+    // The position may be past the segment's end, too.
     played.position = 7 * GST_SECOND;
     begun = seek.Begun(*made, played);
     EXPECT_EQ(begun.position, start == here ? GstClockTime{6 * GST_SECOND} : position);

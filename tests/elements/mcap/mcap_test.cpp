@@ -55,7 +55,7 @@ TEST_F(Mcap, CloudsComeBackWithTheirCaps) {
   EXPECT_EQ(played.caps.at("see"), recorded.caps.at("see"));
 }
 
-/// Pushes `buffers` of `caps` into a recording, and gives what is played.
+/// Records `buffers` of `caps`, and returns what is played.
 std::vector<Kept> ThroughFile(const std::string& path, const char* caps,
                               const std::vector<GstBuffer*>& buffers) {
   {
@@ -181,7 +181,7 @@ TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
     gst_harness_push_event(h.get(), gst_event_new_eos());
     gst_harness_push_event(late, gst_event_new_eos());
   }
-  // Without gaps the sink of the late stream would wait for ever, and the queue before the other
+  // The sink of the late stream would wait for ever without gaps, and the queue before the other
   // would be full.
   const auto played = Play("mcapsrc name=m" + At("a.mcap") +
                            " m.src_0 ! queue max-size-buffers=10 ! fakesink name=see0 m.src_1 ! "
@@ -199,8 +199,8 @@ TEST_F(Mcap, EndsWhenToldToAndPlaysTheNextTime) {
   ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
   ASSERT_TRUE(gst_element_send_event(p.Find("m").get(), gst_event_new_eos()));
   EXPECT_EQ(p.Run().error, "");
-  EXPECT_LE(p.outcome().buffers.at("see").size(), 3U);  // those that were on their way
-  // Nobody takes the first message now, so it plays.
+  EXPECT_LE(p.outcome().buffers.at("see").size(), 3U);  // those in the pipeline
+  // The first message was not consumed, so it plays now.
   EXPECT_EQ(p.Run(GST_MESSAGE_ERROR).stats.at("messages"), 1U);
 }
 
@@ -208,7 +208,7 @@ TEST_F(Mcap, CountsAnewAfterReady) {
   Record(2, "", "a.mcap");
   Pipeline p("mcapsrc name=m" + At("a.mcap") + " fakesrc num-buffers=1 ! fakesink");
   for (int round = 0; round < 2; ++round) {
-    // Nobody takes the first message.
+    // The first message has no consumer: the pad is not linked.
     EXPECT_EQ(p.Run(GST_MESSAGE_ERROR).stats.at("messages"), 1U);
   }
 }
@@ -219,14 +219,14 @@ TEST_F(Mcap, PlaysAgainAfterReady) {
   for (int round = 0; round < 3; ++round) {
     p.Forget();
     gst_element_set_state(p.get(), GST_STATE_PLAYING);
-    // The pad is another one each time; who linked it by its signal does so again.
+    // The pad is another one each time, so a link by its signal must be made again.
     ASSERT_TRUE(p.Wait(round == 0 ? GST_MESSAGE_EOS : GST_MESSAGE_ANY));
     if (round == 0) ExpectSame(p.outcome().buffers.at("see"), written);
     gst_element_set_state(p.get(), GST_STATE_READY);
   }
 }
 
-/// A recording of another program: clouds of one layout, big-endian doubles.
+/// A recording of another program: clouds of one layout, with big-endian doubles.
 class McapOfOthers : public Mcap {
  protected:
   void Record(const std::vector<cdr::PointCloud2>& clouds) {
@@ -266,7 +266,7 @@ TEST_F(McapOfOthers, CloudsBecomeOurs) {
   }
   cdr::PointCloud2 cloud = Cloud(2);
   cloud.data = {points.data(), points.size()};
-  // Empty ones, and one that claims points which it does not have, are left out.
+  // Empty clouds are left out, and so is a cloud that claims points that it does not have.
   Record({Cloud(0), Cloud(0), Cloud(1U << 24), cloud});
   const auto played = Play("mcapsrc" + At("other.mcap") + " ! fakesink name=see");
   EXPECT_EQ(played.error, "");
@@ -285,7 +285,7 @@ TEST_F(McapOfOthers, NoMorePadsComeOnceAllAreThere) {
   cloud.data = {points.data(), points.size()};
   Record({cloud, cloud});
   Pipeline p("mcapsrc name=m" + At("other.mcap") + " ! fakesink name=see");
-  guint pads = 0;  // when there are no more
+  guint pads = 0;  // at the time of no-more-pads
   g_signal_connect(p.Find("m").get(), "no-more-pads",
                    G_CALLBACK(+[](GstElement* m, guint* n) { *n = m->numsrcpads; }), &pads);
   EXPECT_EQ(p.Run().error, "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where one file of a recording ends and the next begins, and which ones stay.
+// Where one file of a recording ends and the next begins, and which files stay.
 #include "ext/mcap/recorder.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// No file can be opened while it lives.
+/// Prevents the opening of files during its lifetime.
 class NoDescriptors {
  public:
   NoDescriptors() {
@@ -81,11 +81,11 @@ TEST_F(Pieces, EndAtTheirAgeWithTheNextScanOrAnEighthLaterWithAnyMessage) {
   Add(recorder.get(), 1799, true);   // not yet
   Add(recorder.get(), 1899, false);  // late, but no beginning of a scan
   EXPECT_TRUE(Messages(recorder.get()).empty());
-  Add(recorder.get(), 1900, false);  // an eighth too late
+  Add(recorder.get(), 1900, false);  // an eighth of the duration too late
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{3}));
   Add(recorder.get(), 2699, true);
   EXPECT_TRUE(Messages(recorder.get()).empty());
-  Add(recorder.get(), 2700, true);  // 800 after the second began
+  Add(recorder.get(), 2700, true);  // 800 after the second file began
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{2}));
   EXPECT_FALSE(recorder->Finish());
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{1}));

@@ -22,15 +22,14 @@ namespace lidar::test {
 
 constexpr GstClockTime kCapture = GstClockTime{1'764'000'000} * GST_SECOND;
 
-/// An mcapsink with one stream. The harness plays what it gets, so the element knows its file
-/// before.
+/// Returns an mcapsink with one stream. The location is set before the harness starts the element.
 inline Harness RecordingTo(const std::string& path) {
   const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
   g_object_set(sink.get(), "location", path.c_str(), nullptr);
   return Harness(gst_harness_new_with_element(sink.get(), "sink_0", nullptr));
 }
 
-/// A buffer, kept.
+/// A buffer that a test keeps.
 struct Kept {
   std::string bytes;
   GstClockTime pts = 0;
@@ -64,7 +63,7 @@ inline Kept Keep(GstBuffer* buffer) {
   return kept;
 }
 
-/// What mcapsink says of a file that is complete.
+/// What mcapsink reports of a complete file.
 struct CompleteFile {
   std::string location;
   guint64 messages = 0;
@@ -73,7 +72,7 @@ struct CompleteFile {
   guint64 end_time = 0;
 };
 
-/// What was played is what was written, from time 0 on.
+/// Expects that the buffers written were played, from time 0 on.
 inline void ExpectSame(const std::vector<Kept>& read, const std::vector<Kept>& written) {
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
@@ -97,7 +96,7 @@ struct Outcome {
 
 class Pipeline {
  public:
-  /// Elements whose names begin with "see" show their buffers.
+  /// Buffers of elements whose names begin with "see" are kept.
   explicit Pipeline(const std::string& description) {
     GError* raw = nullptr;
     pipeline_.reset(gst_parse_launch(description.c_str(), &raw));
@@ -127,14 +126,14 @@ class Pipeline {
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
     return outcome();
   }
-  /// Until a number of the statistics is there; false where that takes too long.
+  /// Waits until a number of the statistics is reached. Returns false if that takes too long.
   bool AwaitStat(const char* name, guint64 least) {
     const gint64 end = g_get_monotonic_time() + kPatience_us;
     for (; outcome_.stats[name] < least && g_get_monotonic_time() < end; TakeStats())
       g_usleep(2000);
     return outcome_.stats[name] >= least;
   }
-  /// False at an error, and where nothing comes.
+  /// Returns false at an error, or if no message comes.
   bool Wait(GstMessageType until) {
     GstBus* bus = gst_element_get_bus(pipeline_.get());
     bool good = false;
@@ -155,7 +154,7 @@ class Pipeline {
     const std::lock_guard lock(mutex_);
     return outcome_;
   }
-  /// What came up to now counts no more.
+  /// Forgets what came up to now.
   void Forget() {
     const std::lock_guard lock(mutex_);
     outcome_.buffers.clear();
@@ -266,7 +265,7 @@ class Recording : public ::testing::Test {
     std::sort(names.begin(), names.end());
     return names;
   }
-  /// Records `scans` scans of the synthetic sensor as coded slices, and gives those slices.
+  /// Records `scans` scans of the synthetic sensor as coded slices, and returns those slices.
   std::vector<Kept> Record(int scans, const std::string& options, const std::string& name) {
     const auto outcome =
         Play(kSensor + " num-buffers=" + std::to_string(8 * scans) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: a recorder that fails harms nothing beside it.
+// lidar-edge: a recorder that fails harms no other branch.
 #include "src/tools/apps/edge/pipeline.h"
 #include "tests/elements/nats/nats_server.h"
 #include "tests/support/patience.h"
@@ -42,7 +42,7 @@ TEST_F(EdgeRecorder, ThatFailsAtTheEndDoesNotCutTheStreamShort) {
     edge::RemoveRecorder(pipeline_.get());
   }));
   EXPECT_GE(errors, 1);
-  // The sink tells of the end before its pad knows of it.
+  // The sink posts the end before its pad is at EOS.
   EXPECT_TRUE(Eventually([&] { return GST_PAD_IS_EOS(PadOf("sink").get()); }));
 }
 

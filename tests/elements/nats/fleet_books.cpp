@@ -8,12 +8,12 @@
 namespace lidar::test {
 namespace {
 
-/// What one natssink stored from start to stop, which is a session of the edge.
+/// The slices that one natssink stored from start to stop: a session of the edge.
 struct Run {
   std::size_t life = 0;
   std::optional<SessionReport> report;
   std::uint64_t messages = 0;
-  Missing missing;  // here, as the numbers say
+  Missing missing;  // in this run, by the numbers
 };
 
 class Bookkeeper {
@@ -53,7 +53,7 @@ class Bookkeeper {
     return life;
   }
 
-  /// The runs of a life are those of its sessions in which something came.
+  /// Assigns reports to runs: the runs of a life are those of its sessions that received something.
   void MatchReports(const std::vector<SessionReport>& sessions) {
     std::map<std::size_t, std::vector<SessionReport>> of_life;
     for (const SessionReport& session : sessions)
@@ -66,7 +66,7 @@ class Bookkeeper {
     }
   }
 
-  /// What a life of the edge was told to be there is there.
+  /// Checks that the stream has what was acknowledged to a life of the edge.
   void CheckAcknowledged(const std::vector<SessionReport>& sessions) {
     std::vector<std::uint64_t> gone(lives_.size());
     for (const SessionReport& session : sessions) gone[session.life] += session.acknowledged;
@@ -102,12 +102,12 @@ class Bookkeeper {
     if (!gap.empty()) BookGap(before, gap, nullptr);
   }
 
-  /// Books the slices between two that are stored.
+  /// Books the slices between two stored ones.
   void BookGap(const StoredSlice* before, const std::vector<const SentSlice*>& gap,
                const StoredSlice* after) {
     Missing missing;
     if (after == nullptr)
-      missing.not_counted = gap.size();  // nothing came behind them that would tell
+      missing.not_counted = gap.size();  // no later slice shows who lost them
     else if (before != nullptr && before->run == after->run)
       BookWithin(*before, gap, *after, &missing);
     else
@@ -116,7 +116,7 @@ class Bookkeeper {
     Tell(gap, missing);
   }
 
-  /// Both are of one session.
+  /// Books a gap between two slices of one session.
   void BookWithin(const StoredSlice& before, const std::vector<const SentSlice*>& gap,
                   const StoredSlice& after, Missing* missing) {
     Run& run = runs_[after.run];
@@ -131,7 +131,8 @@ class Bookkeeper {
     run.missing += *missing;
   }
 
-  /// Another session began here: the edge was killed, or it is the first.
+  /// Books a gap at whose end another session began: the edge was killed, or it is the first
+  /// session.
   void BookBetween(const StoredSlice* before, const std::vector<const SentSlice*>& gap,
                    const StoredSlice& after, Missing* missing) {
     Run& run = runs_[after.run];
@@ -140,7 +141,7 @@ class Bookkeeper {
         run.report ? run.report->receiving_from : std::numeric_limits<double>::infinity();
     const bool killed = last == nullptr || lives_[last->life].killed.has_value();
     const double end = last == nullptr ? 0 : lives_[last->life].killed.value_or(0);
-    std::uint64_t old = 0;  // was there for longer than a report takes
+    std::uint64_t old = 0;  // in the edge for longer than a report takes
     for (const SentSlice* slice : gap) {
       if (killed && slice->at <= end) {
         ++missing->at_kill;
@@ -162,13 +163,13 @@ class Bookkeeper {
     *missing += head;
   }
 
-  /// What was sent later than this may have been lost without a report of it.
+  /// Returns the time of sending after which slices may be lost without a report of it.
   double ToldUntil(const Run& run) const {
     if (!lives_[run.life].killed) return std::numeric_limits<double>::infinity();
     return run.report ? run.report->at - report_age_ : 0;
   }
 
-  /// Compares what is missing with what the edge has counted.
+  /// Compares the missing slices with the counts of the edge.
   void Settle(Run* run) {
     const SessionReport report = run->report.value_or(SessionReport());
     const bool killed = lives_[run->life].killed.has_value();
@@ -199,7 +200,7 @@ class Bookkeeper {
   const double report_age_;
   std::map<std::tuple<std::uint32_t, std::uint32_t>, StoredSlice> stored_;
   std::map<std::uint64_t, Run> runs_;
-  std::vector<std::uint64_t> order_;  // of runs
+  std::vector<std::uint64_t> order_;  // ids of runs, in the order of storing
   RobotBooks books_;
 };
 

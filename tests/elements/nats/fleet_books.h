@@ -20,7 +20,7 @@ struct SentSlice {
   std::tuple<std::uint32_t, std::uint32_t> place() const { return {scan, index}; }
 };
 
-/// As JetStream has it at the end. `run` and `number` are what natssink gave it.
+/// A slice as JetStream has it at the end. `run` and `number` come from natssink.
 struct StoredSlice {
   std::uint32_t scan = 0;
   std::uint32_t index = 0;
@@ -32,13 +32,13 @@ struct StoredSlice {
   std::tuple<std::uint32_t, std::uint32_t> place() const { return {scan, index}; }
 };
 
-/// From when lidar-edge was up until it was killed.
+/// The time from when lidar-edge was up until it was killed.
 struct EdgeLife {
   double up = 0;
   std::optional<double> killed;
 };
 
-/// What lidar-edge told last of a session of one robot.
+/// The last report of lidar-edge on a session of one robot.
 struct SessionReport {
   std::size_t life = 0;
   double receiving_from = std::numeric_limits<double>::infinity();
@@ -50,11 +50,11 @@ struct SessionReport {
   std::uint64_t acknowledged = 0;  // by JetStream
 };
 
-/// Slices that are missing, by the part that has counted them.
+/// Missing slices, by the part that has counted them.
 struct Missing {
   std::uint64_t on_path = 0;  // rtplidardepay: the network, and what SCReAM gives up
   std::uint64_t by_sink = 0;  // natssink
-  std::uint64_t at_kill = 0;  // the edge had them, and no acknowledgement, or not told of them yet
+  std::uint64_t at_kill = 0;  // lost in the edge, unacknowledged or not yet reported
   std::uint64_t away = 0;     // sent from when the edge was killed until it received again
   std::uint64_t not_counted = 0;
 
@@ -64,22 +64,22 @@ struct Missing {
 
 struct RobotBooks {
   std::uint64_t sent = 0;
-  std::uint64_t received = 0;      // as the edge told last, of each session
-  std::uint64_t acknowledged = 0;  // likewise
-  std::uint64_t stored = 0;        // slices
-  std::uint64_t twice = 0;         // messages beyond them
-  std::uint64_t strange = 0;       // messages that no robot sent
+  std::uint64_t received = 0;      // by the last report of each session
+  std::uint64_t acknowledged = 0;  // by the last report of each session
+  std::uint64_t stored = 0;        // number of slices
+  std::uint64_t twice = 0;         // number of messages beyond them
+  std::uint64_t strange = 0;       // number of messages that no robot sent
   std::uint64_t acknowledged_and_gone = 0;
   Missing missing;
-  std::vector<std::string> gaps;  // a line each
+  std::vector<std::string> gaps;  // a line for each
 
   RobotBooks& operator+=(const RobotBooks& o);
-  /// Nothing was lost that was acknowledged, and each loss was counted.
+  /// Returns true if no acknowledged slice was lost, and each loss was counted.
   bool Balanced() const { return acknowledged_and_gone + missing.not_counted + strange == 0; }
 };
 
-/// `sent`, `sessions` and `lives` are in the order of time, `stored` in that of the stream. What
-/// the edge had not told of for `report_age` when it was killed went with it.
+/// `sent`, `sessions` and `lives` are in the order of time, `stored` in that of the stream. Slices
+/// that the edge had not reported on for `report_age` when it was killed count as lost with it.
 RobotBooks MakeBooks(const std::vector<SentSlice>& sent, const std::vector<StoredSlice>& stored,
                      const std::vector<SessionReport>& sessions, const std::vector<EdgeLife>& lives,
                      double report_age);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Books of a fleet tell each loss from the others, and notice what nobody counted.
+// Books of a fleet distinguish losses by their cause, and notice those that no part counted.
 #include "tests/elements/nats/fleet_books.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kReportAge = 1;
 
-/// A robot that sends a slice a second for a minute, over an edge that was killed at 30 and
-/// received again at 35.
+/// A robot sends a slice a second for a minute, over an edge that is killed at 30 s and receives
+/// again at 35 s.
 class FleetBooks : public ::testing::Test {
  protected:
   FleetBooks() {
@@ -23,7 +23,7 @@ class FleetBooks : public ::testing::Test {
   void Store(std::uint64_t run, std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = from; i < to; ++i) stored_.push_back({i, 0, i + 0.2, i, run, i - from});
   }
-  /// It never came to natssink, so those behind it have lower numbers.
+  /// The slice never came to natssink, so later slices have lower numbers.
   void LoseOnPath(std::size_t at) {
     for (std::size_t i = at + 1; i < stored_.size(); ++i)
       if (stored_[i].run == stored_[at].run) --stored_[i].number;
@@ -73,7 +73,7 @@ TEST_F(FleetBooks, NoticeWhatThePathLostAndNobodyCounted) {
 TEST_F(FleetBooks, NoticeWhatTheSinkLostAndNobodyCounted) {
   LoseInSink(40);
   sessions_[1].acknowledged = 24;
-  sessions_[1].lost = 1;  // of another place
+  sessions_[1].lost = 1;  // at another place
   EXPECT_EQ(Make().missing.not_counted, 1U);
 }
 
@@ -93,7 +93,7 @@ TEST_F(FleetBooks, NoticeWhatWaitedForLongerThanTheEdgeSaid) {
   stored_.erase(stored_.begin() + 20, stored_.begin() + 30);
   sessions_[0].acknowledged = 20;
   sessions_[0].waiting = 8;
-  // There are 11 slices. Nine are older than the last report, which told of eight.
+  // There are 11 slices. Nine are older than the last report, which had eight.
   const RobotBooks books = Make();
   EXPECT_EQ(books.missing.not_counted, 1U);
   EXPECT_EQ(books.missing.at_kill, 10U);

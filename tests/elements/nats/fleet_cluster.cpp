@@ -59,7 +59,8 @@ class Robot {
   NatsPipeline poses_;
 };
 
-/// How many of `sent` are not in `stored`: a stream without a leader changes the order of some.
+/// Returns how many of `sent` are not in `stored`, in any order: a stream without a leader changes
+/// it.
 std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stored) {
   std::set<std::string> there;
   for (const Kept& kept : stored) there.insert(kept.bytes);
@@ -67,7 +68,7 @@ std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stor
       sent.begin(), sent.end(), [&](const Kept& kept) { return there.count(kept.bytes) == 0; }));
 }
 
-/// How many of `stored` come behind one that was captured later.
+/// Returns how many of `stored` come after a slice that was captured later.
 std::size_t OutOfOrder(const std::vector<Kept>& stored) {
   GstClockTime newest = 0;
   return static_cast<std::size_t>(std::count_if(stored.begin(), stored.end(), [&](const Kept& k) {
@@ -83,7 +84,7 @@ class FleetCluster : public NatsTest {
     NatsTest::SetUp();
     if (IsSkipped()) return;
     cluster_.Start();
-    // What workers publish is kept here, so that every pose can be counted.
+    // The stream keeps what workers publish, so that every pose can be counted.
     const nats::StreamSettings poses{"poses", std::chrono::hours(1), 0, 3, {}};
     std::string why;
     ASSERT_TRUE(WaitFor([&] {
@@ -108,7 +109,7 @@ class FleetCluster : public NatsTest {
     for (auto& worker : workers_) owned += worker->Robots().size();
     return owned == kRobots;
   }
-  /// How long it is until a leader answers for each of the streams [s].
+  /// Returns the time until a leader answers for each of the streams [s].
   double TimeToLeaders() {
     const auto begin = SteadyClock::now();
     jsOptions options;
@@ -123,10 +124,10 @@ class FleetCluster : public NatsTest {
       }));
     return SecondsSince(begin);
   }
-  /// How long it is until each of the robots has a pose that nobody had when it began [s].
+  /// Returns the time until each of the robots has a pose of its new worker [s].
   std::map<std::string, double> TimesToPoses(const std::set<std::string>& names) {
     const auto begin = SteadyClock::now();
-    // What was on its way is no pose of a successor.
+    // Poses on their way are not those of a new worker.
     std::this_thread::sleep_for(milliseconds(100));
     std::map<std::string, std::size_t> before;
     for (const auto& robot : robots_) before[robot->name()] = robot->poses();
@@ -208,7 +209,7 @@ void FleetCluster::CountAll() {
     const auto sent = robot->sender().buffers();
     EXPECT_EQ(robot->sender().stat("messages-dropped"), 0U);
     EXPECT_EQ(robot->sender().stat("messages-acknowledged"), sent.size());
-    // A server that has just come back replays what it has, which may not be all yet.
+    // A restarted server replays what it has, which may be incomplete yet.
     std::vector<Kept> stored;
     EXPECT_TRUE(WaitFor([&] {
       stored = robot->Replay("fleet", "lidar");
@@ -220,7 +221,8 @@ void FleetCluster::CountAll() {
       poses = robot->Replay("poses", "odometry");
       return !poses.empty() && poses.back().capture_time + 200 * GST_MSECOND > last;
     }));
-    // The stream of poses has gaps where it had no leader, as nobody waits for its answer.
+    // The stream of poses has gaps where it had no leader, because workers do not wait for its
+    // answer.
     for (const Kept& live : robot->LivePoses()) poses.push_back(live);
     std::stable_sort(poses.begin(), poses.end(), [](const Kept& a, const Kept& b) {
       return std::tie(a.capture_time, a.bytes) < std::tie(b.capture_time, b.bytes);

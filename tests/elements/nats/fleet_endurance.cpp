@@ -21,8 +21,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::size_t kEnduringWorkers = 2;
-constexpr double kSamplePause = 0.2;  // between reads of what the edge tells [s]
-constexpr double kReportAge = 1;      // of what it has told for sure when it is killed [s]
+constexpr double kSamplePause = 0.2;  // between reads of the edge's reports [s]
+constexpr double kReportAge = 1;      // age of what it surely has reported when it is killed [s]
 constexpr double kMemoryPause = 60;
 
 struct EnduranceOptions {
@@ -164,7 +164,7 @@ void FleetEndurance::KillSomething() {
   const std::size_t part = random_() % (workers_.empty() ? 2 : 3);
   const std::size_t which = random_();
   if (part == 0) {
-    // Two of the three servers have to be there and complete.
+    // The other two servers must be there and complete.
     if (ClusterIsWhole())
       KillServer(which % kServers);
     else
@@ -221,14 +221,14 @@ void FleetEndurance::Run() {
     RestartDue();
     if (options_.kill_every <= 0 || now < kill_at) continue;
     kill_at = now + options_.kill_every * spread(random_);
-    // What it told a moment ago is known.
+    // The last report of the edge is then fresh.
     edge_->Sample();
     KillSomething();
   }
   TellMemory();
 }
 
-/// All is back, all that was sent has arrived, and the edge has told of it.
+/// Waits until all parts are back, all slices have arrived, and the edge has reported that.
 void FleetEndurance::Settle() {
   ASSERT_TRUE(WaitFor([this] {
     RestartDue();
@@ -320,7 +320,7 @@ void FleetEndurance::CountSlices() {
   EXPECT_EQ(gone, 0U);
 }
 
-/// Poses go out without an acknowledgement, so whoever takes them counts what is missing.
+/// Poses are not acknowledged, so missing ones are counted where they are received.
 void FleetEndurance::CountPoses() {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const auto& scans = robots_->ScansOf(i);

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs a whole fleet on loopback, kills its servers, its edge and its workers, and keeps books of every slice
-# (docs/results/fleet.md). Run by hand. Fails where something is gone that was acknowledged, or that no part counted.
+# Runs a whole fleet on loopback, kills its servers, its edge and its workers, and keeps books of
+# every slice (docs/results/fleet.md). Run by hand. Fails if a slice is gone that was acknowledged,
+# or that no part counted.
 set -euo pipefail
 usage() {
   cat >&2 <<'END'

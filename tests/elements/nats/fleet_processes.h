@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The parts of a fleet that can be killed, and what they tell until then.
+// The parts of a fleet that can be killed, and their reports until then.
 #pragma once
 #include <csignal>
 #include <cstdlib>
@@ -22,7 +22,7 @@
 
 namespace lidar::test {
 
-/// A lidar-edge that is killed and started again, and what it told of each session last.
+/// A lidar-edge that is killed and started again, and its last report of each session.
 class EdgeProcess {
  public:
   EdgeProcess(nlohmann::json config, const std::string& folder) : path_(folder + "/edge.json") {
@@ -31,7 +31,7 @@ class EdgeProcess {
     std::ofstream(path_) << config.dump();
   }
 
-  /// True once it is there.
+  /// Returns true once the edge is up.
   bool Start() {
     process_ = std::make_unique<tools::ChildProcess>(
         tools::ChildProcess::Config{{std::getenv("LIDAR_EDGE"), path_}, path_ + ".log", false});
@@ -53,7 +53,7 @@ class EdgeProcess {
   bool is_up() const { return process_ != nullptr; }
   pid_t pid() const { return process_ ? process_->pid() : 0; }
   const std::vector<EdgeLife>& lives() const { return lives_; }
-  /// In the order of time.
+  /// Returns the sessions in the order of time.
   std::vector<SessionReport> SessionsOf(const std::string& robot) const {
     std::vector<SessionReport> sessions;
     const auto found = sessions_.find(robot);
@@ -62,7 +62,7 @@ class EdgeProcess {
     return sessions;
   }
 
-  /// Reads what it tells.
+  /// Reads the reports of the edge.
   void Sample() {
     if (!is_up()) return;
     const auto answer = HttpGet("127.0.0.1:" + std::to_string(port_), "/metrics");
@@ -121,7 +121,7 @@ class EdgeProcess {
   std::map<std::string, std::map<std::pair<std::size_t, std::uint64_t>, SessionReport>> sessions_;
 };
 
-/// Sees the acknowledgements of a stream on their way to the publishers.
+/// Listens to the acknowledgements of a stream to its publishers.
 class AckWitness {
  public:
   AckWitness(const std::string& url, const std::string& stream)
@@ -137,14 +137,14 @@ class AckWitness {
     subscription_.reset(raw);
     natsSubscription_SetPendingLimits(raw, -1, -1);
   }
-  /// Nothing is seen any more.
+  /// Stops listening.
   void End() {
     subscription_.reset();
     connection_.reset();
   }
 
   std::size_t seen() const { return seen_.size(); }
-  /// Acknowledgements of what is not in the stream at the number that they name.
+  /// Returns the number of acknowledgements whose slice is not in the stream at their number.
   std::size_t CountGone(const std::map<std::uint64_t, StoredSlice>& by_sequence) const {
     std::map<std::string, std::uint64_t> runs;
     return static_cast<std::size_t>(std::count_if(seen_.begin(), seen_.end(), [&](const Seen& ack) {
@@ -177,7 +177,7 @@ class AckWitness {
   }
 
   const std::string sign_;
-  std::vector<Seen> seen_;  // by the subscription's thread, until the end
+  std::vector<Seen> seen_;  // written by the subscription's thread, until the end
   std::unique_ptr<nats::Connection> connection_;
   nats::SubscriptionPtr subscription_;
 };

@@ -14,10 +14,10 @@
 
 namespace lidar::test {
 
-/// As what is sent is timed [s].
+/// The clock by which sent slices are timed [s].
 inline double WallTime() { return static_cast<double>(g_get_real_time()) * 1e-6; }
 
-/// One sensor, coded by each robot for itself and sent on a path of its own.
+/// Robots share one sensor. Each codes it for itself and sends on a path of its own.
 class Robots {
  public:
   Robots(const std::vector<std::string>& names, const std::vector<int>& ports) : names_(names) {
@@ -43,7 +43,7 @@ class Robots {
   }
   ~Robots() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
   void Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
-  /// Nothing new is sent, and nobody says goodbye.
+  /// Stops sending, without goodbyes.
   void Hold() {
     const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "source"));
     const gst::PadPtr pad(gst_element_get_static_pad(source.get(), "src"));
@@ -53,12 +53,12 @@ class Robots {
   }
 
   const std::vector<std::string>& names() const { return names_; }
-  /// Only once it is held.
+  /// Call this only after Hold().
   const std::vector<SentSlice>& SentBy(std::size_t robot) const { return sent_[robot].slices; }
   const std::map<guint, GstClockTime>& ScansOf(std::size_t robot) const {
     return sent_[robot].scans;
   }
-  /// What SCReAM gave up, of all robots.
+  /// Returns the losses that SCReAM of all robots counted.
   std::string SenderLosses() const {
     guint64 dropped = 0;
     guint64 lost = 0;
@@ -77,7 +77,7 @@ class Robots {
 
  private:
   struct Account {
-    std::vector<SentSlice> slices;        // by its streaming thread, until the end
+    std::vector<SentSlice> slices;        // written by the streaming thread, until the end
     std::map<guint, GstClockTime> scans;  // when the first of their slices was captured
   };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the programs of a fleet tell of themselves.
+// The statistics that the programs of a fleet publish.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 
@@ -43,7 +43,7 @@ TEST(Printable, IsALineThatGivesATerminalNoOrders) {
   EXPECT_EQ(tools::Printable(""), "");
 }
 
-/// Clients that connect to a port and say as much as `request`.
+/// Returns clients that connect to a port and send `request`.
 std::vector<tools::FileDescriptor> Clients(int port, std::size_t count,
                                            const std::string& request) {
   std::vector<tools::FileDescriptor> clients;
@@ -60,7 +60,7 @@ std::vector<tools::FileDescriptor> Clients(int port, std::size_t count,
   return clients;
 }
 
-/// All that comes until the server closes the connection.
+/// Returns all bytes until the server closes the connection.
 std::string Received(int fd) {
   std::string text;
   char bytes[1'024];

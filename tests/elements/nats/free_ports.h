@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Ports of the loopback interface for programs that are told theirs.
+// Ports of the loopback interface for programs that take theirs as an option.
 #pragma once
 #include <gio/gio.h>
 
@@ -10,7 +10,7 @@
 
 namespace lidar::test {
 
-/// A port that is free, below those that the kernel hands out until the program has bound it.
+/// Returns a port that is free now, below those that the kernel assigns.
 inline int FreePort(GSocketType type = G_SOCKET_TYPE_DATAGRAM) {
   using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
   std::random_device random;
@@ -27,7 +27,7 @@ inline int FreePort(GSocketType type = G_SOCKET_TYPE_DATAGRAM) {
 }
 inline int FreeTcpPort() { return FreePort(G_SOCKET_TYPE_STREAM); }
 
-/// UDP ports, no two the same.
+/// Returns different UDP ports.
 inline std::vector<int> FreePorts(std::size_t count) {
   std::set<int> ports;
   while (ports.size() < count) ports.insert(FreePort());

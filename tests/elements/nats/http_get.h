@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a program says at a path of its HTTP port.
+// Reads a path of a program's HTTP port.
 #pragma once
 #include <gio/gio.h>
 
@@ -9,7 +9,7 @@
 
 namespace lidar::test {
 
-/// The body of a 200 answer of `host`, "127.0.0.1:9464".
+/// Returns the body of a 200 answer of `host`, as "127.0.0.1:9464".
 inline std::optional<std::string> HttpGet(const std::string& host, const std::string& path) {
   GSocketClient* client = g_socket_client_new();
   g_socket_client_set_enable_proxy(client, FALSE);

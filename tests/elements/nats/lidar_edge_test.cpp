@@ -18,7 +18,7 @@ namespace {
 
 class LidarEdge : public NatsTest {
  protected:
-  /// With `config`, on an HTTP port of its own; `interval` is short.
+  /// Starts with `config`, on a free HTTP port, and a short `interval`.
   void StartEdge(nlohmann::json config) {
     config["http-port"] = 0;
     config["interval"] = 0.2;
@@ -52,7 +52,7 @@ class LidarEdge : public NatsTest {
   std::optional<std::string> Metrics() const {
     return HttpGet("127.0.0.1:" + std::to_string(metrics_port_), "/metrics");
   }
-  /// None where it is not told.
+  /// Returns nothing if the metric is missing.
   std::optional<double> Metric(const std::string& name, const std::string& robot) {
     const auto answer = Metrics();
     if (!answer) return std::nullopt;
@@ -61,7 +61,7 @@ class LidarEdge : public NatsTest {
     if (at == std::string::npos) return std::nullopt;
     return std::atof(answer->c_str() + at + line.size());
   }
-  /// Whether statistics come, and say that the robot's stream goes on.
+  /// Returns true if statistics come, and show that the robot's stream continues.
   bool GoesOn(const std::string& robot) {
     const auto sent = [&] { return Metric("lidar_natssink_messages", robot).value_or(0); };
     const double before = sent();
@@ -111,7 +111,7 @@ TEST_F(TwoRobots, HandsOnWhatARobotSendsAndTellsOfIt) {
   EXPECT_TRUE(Eventually(
       [&] { return Metric("lidar_natssink_messages_acknowledged", "r1").value_or(0) >= 20; }));
   EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
-  // It says goodbye, and comes again.
+  // The robot says goodbye, and comes again.
   robot->SendEos();
   EXPECT_EQ(robot->WaitForEnd(), "");
   robot.reset();
@@ -134,7 +134,7 @@ TEST_F(TwoRobots, OneThatSendsTooMuchIsShutOutAndNoOther) {
   EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
 }
 
-/// Takes connections, and says nothing.
+/// Takes connections and sends nothing.
 class SilentServer {
  public:
   SilentServer()
@@ -162,7 +162,8 @@ TEST_F(LidarEdge, AServerThatSaysNothingDelaysNoRobotAndNotTheEnd) {
   nlohmann::json robots = nlohmann::json::array();
   for (const int port : FreePorts(60))
     robots.push_back({{"name", "r" + std::to_string(robots.size())}, {"port", port}});
-  // One after the other they would take a minute, at the beginning and at the end.
+  // Waits for the server, one robot after the other, would take a minute at the start and at the
+  // end.
   robots.back()["record"] = server_.folder() + "/last-%05d.mcap";
   StartEdge({{"nats", {{"url", silent.url()}}}, {"robots", robots}});
   const auto robot = Robot(robots.back()["port"]);
@@ -234,7 +235,7 @@ TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   const auto r2 = Robot(ports[1]);
   EXPECT_TRUE(first->WaitForBuffers(8));
   EXPECT_TRUE(second->WaitForBuffers(8));
-  // Its file is opened with the first chunk, once that lasts for a second.
+  // The file of r2 is opened with the first chunk, after a second.
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_chunks", "r2").value_or(0) > 0; }));
   const auto recorded = [&] { return Metric("lidar_mcapsink_messages", "r1"); };
   EXPECT_TRUE(Eventually([&] {
@@ -269,7 +270,7 @@ TEST_F(LidarEdge, TakesEncryptedRobotsToAServerThatWantsCredentials) {
   EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
 }
 
-/// Each slice once, in any order.
+/// Expects each slice once, in any order.
 void ExpectSameSlices(std::vector<Kept> got, std::vector<Kept> sent) {
   ASSERT_EQ(got.size(), sent.size());
   const auto earlier = [](const Kept& a, const Kept& b) {
@@ -281,7 +282,7 @@ void ExpectSameSlices(std::vector<Kept> got, std::vector<Kept> sent) {
   for (std::size_t i = 0; i < got.size(); ++i) EXPECT_TRUE(got[i].SameAs(sent[i])) << i;
 }
 
-/// Whether a buffer of the consumer is one of the robot's.
+/// Returns true if a buffer of the consumer is one of the robot's.
 bool Has(const NatsPipeline& consumer, const NatsPipeline& robot) {
   const auto sent = robot.buffers();
   const auto got = consumer.buffers();
@@ -306,7 +307,7 @@ TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
   const auto first = Consumer("fleet.r1.lidar.lidar");
   const auto second = Consumer("fleet.r2.lidar.lidar");
   auto r1 = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=1192960");  // 0x123400
-  // Says that it is r2, and has r1's key.
+  // The forger has the SSRC of r2 and the key of r1.
   auto forger = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=7");
   const auto flood = Robot(port, "", "rtplidarpay ssrc=8");
   const auto stray = Robot(port, "", "rtplidarpay ssrc=99");
@@ -322,7 +323,8 @@ TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
   EXPECT_FALSE(Has(*first, *r2));
   EXPECT_FALSE(Has(*second, *r1));
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_penalties", "r3").value_or(0) >= 1; }));
-  // One goes and comes back with another SSRC of its range, and the others notice nothing.
+  // r1 leaves and comes back with another SSRC of its range, and the other robots are not
+  // disturbed.
   r1->SendEos();
   EXPECT_EQ(r1->WaitForEnd(), "");
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_sessions", "r1").value_or(0) >= 2; }));
@@ -354,7 +356,7 @@ TEST_F(LidarEdge, ARobotOfTwoAddressesOnTheSharedPortIsOneRobot) {
       "max-queue-delay=5000000000 bonding-addresses=\"" + to + "@127.0.0.1," + to + "@127.0.0.2\"",
       "rtplidarpay ssrc=7");
   const auto metric = [&](const char* name) { return Metric(name, "r1").value_or(0); };
-  // Copies count from when the second address has shown that it is the robot's.
+  // Copies count once the second address has shown that it is the robot's.
   ASSERT_TRUE(Eventually([&] { return metric("lidar_screamsrc_packets_copies") > 0; }));
   const double foreign = metric("lidar_screamsrc_packets_foreign");
   ASSERT_TRUE(consumer->WaitForBuffers(40));

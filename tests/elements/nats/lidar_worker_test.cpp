@@ -19,10 +19,10 @@
 namespace lidar::test {
 namespace {
 
-/// What a decoder does that is slow to start.
+/// State of a decoder that is slow to start.
 struct Slowness {
   std::atomic<bool> hold{false};
-  std::atomic<int> held{0};  // that wait, or did
+  std::atomic<int> held{0};  // number of starts that wait, or did
   std::atomic<bool> gave_up{false};
 } slowness;
 
@@ -64,7 +64,7 @@ class LidarWorker : public NatsTest {
     robot->Play();
     return robot;
   }
-  /// The lease is long, as the machine may be busy.
+  /// The lease is long, because the machine may be busy.
   std::unique_ptr<WorkerProcess> Worker() {
     return std::make_unique<WorkerProcess>(
         std::vector<std::string>{"r*", "--url", server_.url(), "--lease", "2000"});
@@ -77,7 +77,7 @@ class LidarWorker : public NatsTest {
     ASSERT_TRUE(connection) << why;
     use(nats::OpenJetStream(connection->get()).get());
   }
-  /// Makes the bucket where there is none, and hands it to `use`.
+  /// Makes the bucket if there is none, and calls `use` with it.
   void WithBucket(const std::function<void(kvStore*)>& use) {
     WithJetStream([&](jsCtx* js) {
       kvConfig config;
@@ -125,7 +125,7 @@ class LidarWorker : public NatsTest {
   }
   std::uint64_t LastOf(const char* stream) { return InfoOf(stream)->State.LastSeq; }
   std::string Record() { return Newest("r1.front").text; }
-  /// The robot drives at 10 m/s, and its record said something else.
+  /// The robot drives at 10 m/s, and its record had another velocity.
   void ExpectNoVelocityOfTheRecord(NatsPipeline* consumer) {
     ASSERT_TRUE(consumer->WaitForBuffers(10));
     EXPECT_LT(LargestJump(consumer->buffers()), 5);
@@ -148,7 +148,7 @@ TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
   ASSERT_TRUE(consumer.WaitForBuffers(15));
   EXPECT_NE(first->Taken("r1.front").find("from now on"), std::string::npos);
   auto second = Worker();
-  // By then it has seen that there is somebody.
+  // The second worker has seen by then that the robot is taken.
   const std::size_t before = consumer.count();
   ASSERT_TRUE(consumer.WaitForBuffers(before + 20));
   EXPECT_EQ(second->Taken("r1.front"), "");
@@ -160,7 +160,7 @@ TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
   const auto poses = consumer.buffers();
   EXPECT_LT(LargestJump(poses), 1.5) << "neither back to the origin nor past what it missed";
   EXPECT_GT(DistanceOf(poses.back()), 10);
-  // It leaves its robot to others at once.
+  // The worker leaves its robot to others at once.
   EXPECT_EQ(second->Stop(), 0);
   const auto record = worker::ParseLeaseRecord(Record());
   ASSERT_TRUE(record && record->progress);
@@ -193,7 +193,7 @@ TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
   server_.Freeze();
   const Time begin = tools::Now();
   EXPECT_EQ(worker->Stop(), 0);
-  // A busy machine may take as long to let it run.
+  // A busy machine may take another second to let it run.
   EXPECT_LT(Seconds(tools::Now() - begin), 2);
   server_.Thaw();
 }
@@ -356,7 +356,7 @@ class SlowRobots : public LidarWorker {
     slowness.hold = false;
     worker_.reset();
   }
-  /// While the worker works.
+  /// Lets the worker work meanwhile.
   bool WorksUntil(const std::function<bool()>& holds) {
     return Eventually([&] {
       worker_->Step();

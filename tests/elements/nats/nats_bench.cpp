@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Measures natssink and natssrc with many streams at their true pace: added latency, and processor
 // time a stream of each side and of the server.
-// usage: nats-bench STREAMS SECONDS [jetstream]   (the first two seconds are not counted)
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -73,11 +72,11 @@ gst::ElementPtr Launch(const std::string& description) {
   return pipeline;
 }
 
-/// In a process of its own: takes the streams and prints what they took.
+/// Runs in a process of its own: takes the streams, and prints latency and processor time.
 void Receive(const Options& o, std::size_t expected, int ready_fd) {
   struct Latencies {
     std::mutex mutex;
-    guint64 count_from = 0;  // what was sent before is the beginning, and counts not
+    guint64 count_from = 0;  // messages sent before do not count
     std::size_t received = 0;
     std::vector<double> ms;
   } latencies;
@@ -146,7 +145,7 @@ void Send(const Options& o, const Slices& slices) {
   std::printf("natssink  %.2f %% of a core for each stream\n", 100 * cpu / o.seconds / o.streams);
 }
 
-/// One for all streams, as lidar-edge makes it.
+/// Makes one stream for all senders, as lidar-edge does.
 bool MakeStream(const std::string& url) {
   natsConnection* nc = nullptr;
   if (natsConnection_ConnectTo(&nc, url.c_str()) != NATS_OK) return false;
@@ -160,7 +159,7 @@ bool MakeStream(const std::string& url) {
   return made;
 }
 
-/// The receiver is a process of its own, begun before this one has threads.
+/// Starts the receiver in a process of its own, before this one has threads.
 int Measure(Options o, const NatsServer& server) {
   const auto expected = static_cast<std::size_t>(o.streams * o.seconds * kSlicesPerSecond);
   int ready[2];

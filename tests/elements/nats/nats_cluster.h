@@ -14,7 +14,7 @@ namespace lidar::test {
 
 constexpr std::size_t kServers = 3;
 
-/// True once `holds` is; clusters take their time.
+/// Waits until `holds` returns true, for longer than Eventually(): clusters are slow.
 inline bool WaitFor(const std::function<bool()>& holds) {
   return Eventually(holds) || Eventually(holds);
 }
@@ -46,7 +46,7 @@ class Cluster {
   }
   NatsServer& server(std::size_t i) { return servers_[i]; }
   jsCtx* js() { return js_.get(); }
-  /// The leader of a stream whose copies are all there and complete; empty: it has none.
+  /// Returns the leader of a stream whose copies are all there and complete; empty: it has none.
   std::string LeaderOf(const char* stream) {
     jsStreamInfo* raw = nullptr;
     if (js_GetStreamInfo(&raw, js_.get(), stream, nullptr, nullptr) != NATS_OK) return "";

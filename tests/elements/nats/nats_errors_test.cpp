@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Garbage from the network, settings that are wrong, and servers that want to know who one is.
+// Garbage from the network, wrong settings, and servers that want credentials.
 #include <cstdlib>
 
 #include "ext/nats/nats_ptr.h"
@@ -96,7 +96,7 @@ TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
   EXPECT_EQ(clouds.WaitForEnd(), "");
   ASSERT_TRUE(receiver.WaitForBuffers(2));
   Stranger stranger(server_.url());
-  // The caps of the clouds, and a cloud cut short.
+  // A message with the caps of the clouds, and a cloud cut short.
   std::string why;
   const gst::CapsPtr caps(gst_caps_from_string(clouds.caps().c_str()));
   const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
@@ -187,7 +187,7 @@ TEST_F(NatsErrors, CredentialsAreTakenFromAFile) {
   }
 }
 
-/// A certificate for 127.0.0.1 that signs itself, as NAME.pem and NAME-key.pem.
+/// Makes a self-signed certificate for 127.0.0.1, as NAME.pem and NAME-key.pem.
 bool MakeCertificate(const std::string& folder, const std::string& name) {
   const std::string make =
       "cd " + folder +
@@ -199,11 +199,11 @@ bool MakeCertificate(const std::string& folder, const std::string& name) {
 
 TEST_F(NatsErrors, AnAddressWithTlsMeansTls) {
   server_.Start();
-  // In the clear there would be a connection. One of several addresses is enough.
+  // A connection in the clear would succeed. One tls:// address of several is enough to refuse it.
   for (const std::string& url : {server_.url("tls"), server_.url() + "," + server_.url("tls")}) {
     NatsPipeline wary("natssrc name=n url=" + url + " ! fakesink name=see sync=false");
     wary.Play();
-    PublishSlices(8, At());  // newer versions of libnats try on, older ones give up
+    PublishSlices(8, At());  // newer versions of libnats try again, older ones give up
     EXPECT_EQ(wary.stat("connected"), 0U) << url;
     EXPECT_TRUE(wary.buffers().empty()) << url;
   }

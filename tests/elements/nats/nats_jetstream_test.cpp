@@ -19,7 +19,7 @@ class NatsJetStream : public NatsTest {
     NatsTest::SetUp();
     if (!IsSkipped()) server_.Start();
   }
-  /// What JetStream has from `start` on.
+  /// Returns what JetStream has from `start` on.
   std::vector<Kept> Replay(guint64 start, const std::string& more = "") {
     NatsPipeline player("natssrc name=n eos-at-end=true start-time=" + std::to_string(start) +
                         At(kBox + " " + more) + "! fakesink name=see sync=false");
@@ -34,7 +34,7 @@ class NatsJetStream : public NatsTest {
   std::string caps_;  // of what Replay() gave
 };
 
-/// A durable consumer of r1.front that somebody else has made.
+/// A durable consumer of r1.front that another program has made.
 class DurableConsumer {
  public:
   DurableConsumer(const std::string& url, std::int64_t ack_wait_ns, std::int64_t max_pending) {
@@ -54,9 +54,9 @@ class DurableConsumer {
     js_.reset();
     natsConnection_Destroy(nc_);
   }
-  /// Messages that were sent again and are not acknowledged.
+  /// Returns the number of messages that were sent again and are not acknowledged.
   std::int64_t again() const { return Info()->NumRedelivered; }
-  /// Messages that nobody has acknowledged.
+  /// Returns the number of messages without an acknowledgement.
   std::uint64_t open() const {
     const auto info = Info();
     return info->NumPending + static_cast<std::uint64_t>(info->NumAckPending);
@@ -90,7 +90,7 @@ std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuesti
   return out;
 }
 
-/// Has `receiver` play so slowly that messages are sent again, and then take all there is.
+/// Makes `receiver` play so slowly that messages are sent again, and then take all messages.
 bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* receiver) {
   receiver->Hold(true);
   receiver->Play();
@@ -168,7 +168,7 @@ TEST_F(NatsJetStream, GoesOnWhereCapsWereNeverAnswered) {
   server_.Freeze();
   const gint64 late = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
   ASSERT_TRUE(Eventually([&] { return g_get_monotonic_time() > late; }));
-  server_.Kill();  // with what came in meanwhile
+  server_.Kill();  // loses the latest messages, too
   server_.Restart();
   const guint64 before = sender.stat("messages-acknowledged");
   EXPECT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= before + 100; }));
@@ -186,7 +186,7 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   }
   NatsPipeline second("natssrc name=n durable=slam" + At(kBox) + "! fakesink name=see sync=false");
   second.Play();
-  // What the first had taken and not acknowledged comes again, later.
+  // Messages that the first had taken and not acknowledged come again later.
   const auto has_all = [&] {
     auto seen = all;
     for (const Kept& kept : second.buffers()) seen.push_back(kept);
@@ -245,7 +245,7 @@ TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
   ASSERT_TRUE(a.WaitForBuffers(8));
   b.Play();
   ASSERT_TRUE(Eventually([&] { return b.stat("connected") == 1; }));
-  // The second takes its share once the server knows of it.
+  // The second gets its share once the server has its subscription.
   ASSERT_TRUE(Eventually([&] {
     PublishSlices(8, At(kBox));
     return b.count() > 0;
@@ -280,8 +280,8 @@ TEST_F(NatsJetStream, ManyThatBeginAtOnceShareABox) {
     EXPECT_EQ(sender->stat("messages-acknowledged"), 16U);
     EXPECT_EQ(sender->stat("messages-dropped"), 0U);
   }
-  // A sink that adds its subject may remove the one that another has just added. What the stream
-  // refuses then is sent again, behind what it took.
+  // A sink that adds its subject may remove the subject that another has just added. Messages that
+  // the stream then refuses are sent again, after those that it took.
   std::vector<Kept> played = Replay(0);
   std::stable_sort(played.begin(), played.end(), [](const Kept& a, const Kept& b) {
     return std::pair(a.slice.scan_id, a.slice.slice_index) <
@@ -314,7 +314,7 @@ TEST_F(NatsJetStream, AStreamThatAnswersForTheServerIsToldOf) {
   std::string why;
   const bool made = nats::EnsureStream(js.get(), {"all", {}, 0, 1, ""}, {"*.>"}, &why);
   EXPECT_TRUE(made || why.find("no-ack") != std::string::npos) << why;  // newer servers refuse it
-  // The server and the stream answer, and who is first is taken.
+  // The server and the stream both answer, and the first answer counts.
   bool told = !made;
   for (int i = 0; i < 500 && !told; ++i)
     told = !nats::EnsureStream(js.get(), {"all", {}, 0, 1, ""}, {"*.>"}, &why);
@@ -344,7 +344,7 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_EQ(last.from, sent.front().capture_time);
   EXPECT_EQ(last.to, sent.back().capture_time);
   EXPECT_EQ(last.damaged, 0U);
-  // No earlier ones than those of the second before, as libnats writes no others.
+  // Slices begin up to a second before, because libnats writes times in whole seconds.
   const GstClockTime half = sent[150].capture_time;
   const auto later = AskForHistory(receiver, {half, 0, 100'000}, &last);
   ASSERT_FALSE(later.empty());

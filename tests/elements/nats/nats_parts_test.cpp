@@ -32,7 +32,7 @@ class NatsParts : public ::testing::Test {
  protected:
   void SetUp() override {
     gst_lidar_init();
-    nats_Open(-1);  // connections do it by themselves
+    nats_Open(-1);  // connections do that themselves
   }
 };
 
@@ -191,7 +191,7 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
 
 TEST_F(NatsParts, NestedTextIsRefusedAtOnce) {
   std::string text = std::string(kSliceCaps) + ", a=";
-  while (text.size() < 569) text += "[[ a, b={";  // GStreamer's parser doubles its time with each
+  while (text.size() < 569) text += "[[ a, b={";  // each level doubles the parser's time
   FormatBook book;
   book.Note("a.config.0000000000000000", text);
   EXPECT_EQ(book.damaged(), 1U);
@@ -211,7 +211,7 @@ TEST_F(NatsParts, TheBookKeepsTheNewestFormatsAndCountsWhatIsDamaged) {
   EXPECT_EQ(book.damaged(), 0U);
   EXPECT_TRUE(book.Find(ids.back()));
   EXPECT_FALSE(book.Find(ids.front()));
-  book.Note("a.config." + ids.front(), "application/x-odometry");  // another's id
+  book.Note("a.config." + ids.front(), "application/x-odometry");  // the id of other caps
   book.Note("a.config.*", kSliceCaps);
   book.Note("", "");
   EXPECT_EQ(book.damaged(), 3U);
@@ -228,7 +228,7 @@ TEST_F(NatsParts, TheOutboxDropsTheOldestThatWait) {
   EXPECT_EQ(box.Take({})->number, dropped);
   EXPECT_EQ(box.Push(Item(20, 1'000'000)), box.in_flight() == 1 ? 21 - dropped - 1 : 0U);
   EXPECT_EQ(box.waiting(), 0U);
-  EXPECT_EQ(box.in_flight(), 1U);  // what is with the server stays
+  EXPECT_EQ(box.in_flight(), 1U);  // messages in flight stay
 }
 
 TEST_F(NatsParts, TheOutboxCountsTheFormatsOfWhatWaits) {
@@ -398,7 +398,7 @@ TEST_F(NatsParts, APatternCoversWhatItsWildcardsSay) {
   EXPECT_FALSE(Covers("a.*", "a.>"));
 }
 
-/// Of all patterns and subjects of up to three words.
+/// Compares all patterns and subjects of up to three words.
 TEST_F(NatsParts, APatternCoversASubjectAsARegularExpressionDoes) {
   std::vector<std::string> subjects;
   std::vector<std::string> patterns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pipelines with an end at NATS that are watched while they run.
+// Pipelines with an end at NATS, whose buffers are kept while they run.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace lidar::test {
 
-/// `n` is the element of NATS. The buffers that pass the pad of `see` are kept.
+/// `n` is the natssrc or natssink. The buffers that pass the pad of `see` are kept.
 class NatsPipeline {
  public:
   explicit NatsPipeline(const std::string& description) {
@@ -35,7 +35,7 @@ class NatsPipeline {
     Hold(false);
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
   }
-  /// The next buffer stays where it is seen until this is taken back.
+  /// Holds the next buffer at the pad of `see` until Hold(false).
   void Hold(bool on) {
     hold_from_ = SIZE_MAX;
     held_ = on;
@@ -44,7 +44,7 @@ class NatsPipeline {
   void HoldFrom(std::size_t count) { hold_from_ = count; }
   /// Ends a live source.
   void SendEos() { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); }
-  /// The text of the error; empty at EOS.
+  /// Returns the text of the error; empty at EOS.
   std::string WaitForEnd() {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(
         bus_, kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
@@ -52,7 +52,7 @@ class NatsPipeline {
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
     return Text(message.get(), gst_message_parse_error);
   }
-  /// The text of the next warning.
+  /// Returns the text of the next warning.
   std::string WaitForWarning() {
     const gst::MessagePtr message(
         gst_bus_timed_pop_filtered(bus_, kPatience_ns, GST_MESSAGE_WARNING));
@@ -77,7 +77,7 @@ class NatsPipeline {
     const gst::StringPtr text(caps ? gst_caps_to_string(caps.get()) : nullptr);
     return text ? text.get() : "";
   }
-  /// A counter of `n`, or a flag.
+  /// Returns a counter or a flag of `n`.
   guint64 stat(const char* name) const {
     GstStructure* raw = nullptr;
     g_object_get(nats_.get(), "stats", &raw, nullptr);
@@ -123,7 +123,7 @@ inline const std::string kLive = "lidartestsrc is-live=true model=os1-32 mode=51
 inline const std::string kQuick = "lidartestsrc model=os1-32 mode=512x10 ";
 inline const std::string kSee = " ! identity name=see ";
 
-/// Publishes `count` coded slices, waits until the server has them, and gives them.
+/// Publishes `count` coded slices, waits until the server has them, and returns them.
 inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
   NatsPipeline sender(kQuick + "num-buffers=" + std::to_string(count) + " ! lidarenc" + kSee +
                       "! natssink name=n sync=false drain-timeout=30000000000" + where);

@@ -25,7 +25,7 @@ namespace lidar::test {
 
 class NatsServer {
  public:
-  /// Debian has it in a folder that the path of users may lack.
+  /// Debian installs it in a folder that may be missing in a user's PATH.
   static std::string Program() {
     for (const char* path : {"/usr/sbin/nats-server", "/usr/local/bin/nats-server"})
       if (access(path, X_OK) == 0) return path;
@@ -47,13 +47,13 @@ class NatsServer {
   NatsServer(const NatsServer&) = delete;
   NatsServer& operator=(const NatsServer&) = delete;
 
-  /// With JetStream. The port stays the same from the first start on.
+  /// Starts with JetStream. The port stays the same from the first start on.
   void Start(const std::vector<std::string>& options = {}) {
     options_ = options;
     ASSERT_TRUE(Eventually([this] { return TryToStart(); })) << "nats-server does not start";
   }
   void Restart() { Start(options_); }
-  /// As a power cut would.
+  /// Ends the server as a power cut would.
   void Kill() {
     if (pid_ <= 0) return;
     kill(pid_, SIGKILL);
@@ -67,7 +67,7 @@ class NatsServer {
     return scheme + "://" + user + "127.0.0.1:" + port_;
   }
   const std::string& folder() const { return folder_; }
-  /// How often the server has told of it.
+  /// Returns how often `text` is in the server's log.
   std::size_t Logged(const std::string& text) const {
     std::ifstream in(folder_ + "/log");
     const std::string log{std::istreambuf_iterator<char>(in), {}};
@@ -75,7 +75,7 @@ class NatsServer {
     for (auto at = log.find(text); at != log.npos; at = log.find(text, at + 1)) ++count;
     return count;
   }
-  /// Files good.creds and bad.creds in the folder. Empty where a tool for it is missing.
+  /// Makes good.creds and bad.creds in the folder. Returns nothing if a tool for that is missing.
   std::vector<std::string> OptionsForCredentials() const {
     const std::string make = std::string(g_getenv("NATS_MAKE_CREDENTIALS")) + " " + folder_;
     if (std::system(make.c_str()) != 0) return {};
@@ -84,7 +84,7 @@ class NatsServer {
   pid_t pid() const { return pid_; }
 
  private:
-  /// Another program may have taken the port meanwhile, so it may take more than one go.
+  /// Another program may have taken the port meanwhile, so several tries may be needed.
   bool TryToStart() {
     Kill();
     for (const auto& entry : std::filesystem::directory_iterator(folder_))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What goes into natssink comes out of natssrc, while both run.
+// Buffers go into natssink and come out of natssrc, while both run.
 #include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {

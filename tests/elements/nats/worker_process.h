@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A lidar-worker of the test's own, and what it publishes.
+// A lidar-worker of the test's own, and the poses that it publishes.
 #pragma once
 #include <csignal>
 #include <cstdlib>
@@ -13,7 +13,7 @@ namespace lidar::test {
 
 constexpr double kSpeed = 10;  // of all robots [m/s]
 
-/// A robot that drives, without what its sensor would cost.
+/// A robot that drives, with a sensor that costs little processor time.
 inline std::string DrivingRobot(int frames = -1) {
   return "lidartestsrc is-live=true model=os0-32 mode=512x10 speed=10 num-buffers=" +
          std::to_string(frames) + " ! lidarenc effort=0 key-interval=1000000000" + kSee;
@@ -28,19 +28,19 @@ class WorkerProcess {
         tools::ChildProcess::Config{std::move(command), "", false});
   }
 
-  /// "robot.sensor" that it has, as it said so far.
+  /// Returns the "robot.sensor" names that the worker has, by its output so far.
   std::set<std::string> Robots() {
     Read();
     return robots_;
   }
-  /// What it said when it took a robot first; empty: it did not yet.
+  /// Returns the line that the worker printed when it first took a robot; empty before that.
   std::string Taken(const std::string& robot) {
     Read();
     for (const std::string& line : lines_)
       if (line.rfind(robot + ": taken", 0) == 0) return line;
     return "";
   }
-  /// All that it said.
+  /// Returns all lines that the worker printed.
   const std::vector<std::string>& lines() {
     Read();
     return lines_;
@@ -76,14 +76,15 @@ class WorkerProcess {
   std::set<std::string> robots_;
 };
 
-/// Metres from the origin.
+/// Returns the distance from the origin [m].
 inline double DistanceOf(const Kept& pose) {
   double p[3] = {};
   if (pose.bytes.size() >= 64) std::memcpy(p, pose.bytes.data(), sizeof p);
   return std::hypot(p[0], p[1], p[2]);
 }
 
-/// The largest difference between how far two poses are apart and how far the robot drove between.
+/// Returns the largest difference between the distance of two poses and the way that the robot
+/// drove between them.
 inline double LargestJump(std::vector<Kept> poses) {
   std::stable_sort(poses.begin(), poses.end(),
                    [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; });
@@ -96,7 +97,7 @@ inline double LargestJump(std::vector<Kept> poses) {
   return largest;
 }
 
-/// How far the last pose is behind where the robot is, which drove straight on.
+/// How far the last pose is behind the robot, which drove straight on.
 inline double BehindBy(const std::vector<Kept>& poses) {
   const auto earlier = [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; };
   const auto [first, last] = std::minmax_element(poses.begin(), poses.end(), earlier);
@@ -105,14 +106,14 @@ inline double BehindBy(const std::vector<Kept>& poses) {
   return kSpeed * time - (DistanceOf(*last) - DistanceOf(*first));
 }
 
-/// Poses of what JetStream keeps of a robot, by one odometry from its begin to its end.
+/// Returns the poses of a robot's stream in JetStream, by one odometry from begin to end.
 inline std::vector<Kept> PosesInOneGo(const std::string& robot, const std::string& url) {
   NatsPipeline player("natssrc name=n eos-at-end=true start-time=0 jetstream=fleet subject=fleet." +
                       robot + ".lidar.front url=" + url +
                       " ! lidardec ! lidarodometry name=o ! fakesink sync=false async=false "
                       "o.odometry ! fakesink name=see sync=false async=false");
   player.Play();
-  // A drive of ten minutes takes its time.
+  // A drive of ten minutes may outlast the patience of WaitForEnd().
   std::string end;
   std::size_t before = 0;
   do {

@@ -20,7 +20,7 @@ using test::Harness;
 
 constexpr unsigned kScans = 12;
 
-/// A sensor that stands in a corner of walls, and beside it an IMU that says so.
+/// A sensor that stands in a corner of walls, and an IMU that measures no motion.
 class ImuPad : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -58,7 +58,7 @@ class ImuPad : public ::testing::Test {
     gst_segment_init(&segment, GST_FORMAT_TIME);
     return gst_pad_send_event(imu_.get(), gst_event_new_segment(&segment));
   }
-  /// Ten samples of a turn of `rate` about the vertical, over a scan that begins at `start`.
+  /// Sends ten samples of a turn of `rate` about the vertical, over a scan that begins at `start`.
   GstFlowReturn Send(GstClockTime start, double rate) {
     std::vector<std::uint8_t> bytes;
     for (unsigned i = 0; i < 10; ++i) {
@@ -119,7 +119,7 @@ TEST_F(ImuPad, DropsPiecesOfSamples) {
   EXPECT_GE(ScansWithImu(0), kScans / 2);
 }
 
-/// A drive through the corners of a town, and how the odometry takes its IMU.
+/// A drive through the corners of a town, and how the odometry uses its IMU.
 class ImuOfADrive : public ::testing::Test {
  protected:
   static constexpr guint64 kDriveScans = 24;

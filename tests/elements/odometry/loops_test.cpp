@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Loop closure: its thread, and what lidarodometry makes of it.
+// Loop closure: its thread, and what lidarodometry makes of its results.
 #include <gtest/gtest.h>
 
 #include "ext/odometry/loop_thread.h"
@@ -83,7 +83,7 @@ class MapPad : public ::testing::Test {
 
 TEST_F(MapPad, SaysWhereTheOdometryIsInTheMapAsRosHasIt) {
   Play(26, "local-maps=10");
-  EXPECT_EQ(poses_, 27U);  // of each scan, and what the last loops changed
+  EXPECT_EQ(poses_, 27U);  // one for each scan, and those that the last loops changed
   const GstStructure* s = gst_caps_get_structure(caps_.get(), 0);
   EXPECT_STREQ(gst_structure_get_string(s, "frame-id"), "map");
   EXPECT_STREQ(gst_structure_get_string(s, "child-frame-id"), "odom");

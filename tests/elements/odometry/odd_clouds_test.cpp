@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds made by hand, as no sensor sends them, through lidarodometry.
+// Clouds that no sensor sends, through lidarodometry.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,13 +43,13 @@ class OddClouds : public ::testing::Test {
     gst_structure_get_uint64(stats, name, &value);
     return value;
   }
-  /// Since the last call.
+  /// Returns the number of warnings since the last call.
   int CountWarnings() {
     int count = 0;
     while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) ++count;
     return count;
   }
-  /// That of the last pose; none where there is no message.
+  /// Returns the time of the last pose message; none without a message.
   GstClockTime TimeOfMessage() {
     GstClockTime time = GST_CLOCK_TIME_NONE;
     while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_ELEMENT)})
@@ -71,7 +71,7 @@ TEST_F(OddClouds, MayBeEmptyOrNotFinite) {
   Start(kXyz);
   EXPECT_EQ(Push({}, 0), GST_FLOW_OK);
   EXPECT_EQ(Push({NAN, 1, 2, INFINITY, 0, 0}, GST_SECOND), GST_FLOW_OK);
-  EXPECT_EQ(Push({1, 2}, 2 * GST_SECOND), GST_FLOW_OK);  // no whole point
+  EXPECT_EQ(Push({1, 2}, 2 * GST_SECOND), GST_FLOW_OK);  // less than a point
   EXPECT_EQ(Push({3e38F, 3e38F, 3e38F}, 3 * GST_SECOND), GST_FLOW_OK);
   EXPECT_FALSE(HasError());
 }
@@ -191,7 +191,7 @@ TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
     ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
     gst_buffer_unref(gst_harness_pull(h_.get()));
   }
-  EXPECT_EQ(Count("scans"), 1U);  // the first four, as soon as they were too many
+  EXPECT_EQ(Count("scans"), 1U);  // the first four slices, once they had too many points
 }
 
 TEST_F(OddClouds, MayBeSlicesOfNoScan) {

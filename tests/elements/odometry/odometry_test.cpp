@@ -93,7 +93,7 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   EXPECT_EQ(CountMessages("odometry"), 10U);
 }
 
-/// Returns the way of five scans of a drive of 20 m/s, with `coder` before the odometry.
+/// Returns the length of the way over five scans at 20 m/s, with `coder` before the odometry.
 double DriveOf(const std::string& model, const char* deskew, const std::string& coder = "") {
   const Harness h(
       gst_harness_new_parse(("lidartestsrc speed=20 num-buffers=7 model=" + model + " ! " + coder +
@@ -125,7 +125,7 @@ TEST_F(Odometry, FollowsCodedCloudsByTheTimesThatComeBack) {
 }
 
 TEST_F(Odometry, BeginsAtItsInitialPose) {
-  // A quarter turn to the left: who drives along x goes along y.
+  // A quarter turn to the left: a drive along x goes along y.
   Start(1, 5, "initial-pose=\"100 20 3 0 0 0.70710678 0.70710678\"");
   const auto scans = PullAll(5);
   GstLidarPose first;
@@ -196,7 +196,8 @@ TEST_F(Odometry, PredictsThePoseOfEachSlice) {
 
 TEST_F(Odometry, AlignsAScanOfWhichSlicesAreMissing) {
   Start(8, 10, "! identity drop-probability=0.2");
-  // What came before identity is aligned; what it lets through does not matter.
+  // Odometry stands before identity, so that it aligns all clouds; those that identity drops do not
+  // count.
   for (int i = 0; i < 50; ++i) BufferPtr(gst_harness_pull(h_.get()));
   EXPECT_GT(Count("scans"), 5U);
   EXPECT_EQ(Count("scans-lost"), 0U);
@@ -215,7 +216,7 @@ TEST_F(Odometry, WritesTheTrajectory) {
   std::filesystem::remove(path);
 }
 
-/// Ends a pipeline where a test returns early, too.
+/// Ends a pipeline if a test returns early, too.
 struct Stop {
   void operator()(GstElement* pipeline) const { gst_element_set_state(pipeline, GST_STATE_NULL); }
 };

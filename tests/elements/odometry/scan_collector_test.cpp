@@ -16,7 +16,7 @@ constexpr Time kStart{std::chrono::seconds(50)};
 
 class Collector : public ::testing::Test {
  protected:
-  /// Rows of beams, two of them where clouds are organised.
+  /// Prepares rows of beams: two in organised clouds.
   void Prepare(guint height) {
     info_.height = height;
     info_.point_step = 12;
@@ -26,7 +26,7 @@ class Collector : public ::testing::Test {
     ASSERT_TRUE(collector_.SetInfo(info_));
     height_ = height;
   }
-  /// `width` columns whose points have their index, from 1 on, as x.
+  /// Adds `width` columns whose points have their index, from 1 on, as x.
   void Add(guint scan, guint index, guint count, Time time, guint width) {
     std::vector<float> points;
     for (guint i = 0; i < width * height_; ++i)
@@ -48,7 +48,7 @@ TEST_F(Collector, TellsWhenEachColumnWasSampled) {
   ASSERT_TRUE(scan);
   EXPECT_EQ(scan->start, kStart);
   EXPECT_EQ(scan->duration, milliseconds(100));
-  // Four columns in each half; both rows of a column at once.
+  // Each half has four columns; both rows of a column have the same time.
   const std::vector<float> phases = {0,   .125, .25,  .375, 0,   .125, .25,  .375,
                                      .5F, .625, .75F, .875, .5F, .625, .75F, .875};
   EXPECT_EQ(scan->points.phases, phases);

@@ -16,15 +16,15 @@
 
 namespace lidar::test {
 
-/// One connection.
+/// A connection of one client.
 class Exchange {
  public:
   Exchange(int fd, const std::atomic<bool>& stopping) : fd_(fd), stopping_(stopping) {}
-  /// False once the client has left or the test is over.
+  /// Returns false once the client has left or the test is over.
   bool Send(const std::string& text) const {
     return !stopping_ && send(fd_, text.data(), text.size(), MSG_NOSIGNAL) > 0;
   }
-  /// An answer of status 200 with that body.
+  /// Sends an answer of status 200 with this body.
   bool Answer(const std::string& body) const {
     std::string text =
         "HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
@@ -35,7 +35,7 @@ class Exchange {
     }
     return true;
   }
-  /// False as Send().
+  /// Returns false as Send() does.
   bool Wait(std::chrono::milliseconds time) const {
     std::this_thread::sleep_for(time);
     char next = 0;
@@ -85,7 +85,7 @@ class HostileServer {
       if (!Readable(listener_)) continue;
       const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
       if (fd < 0) continue;
-      const timeval patience{0, 100'000};  // of a send to a client that does not read
+      const timeval patience{0, 100'000};  // limit of a send to a client that does not read
       setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
       char request[4096];
       while (!stopping_ && !Readable(fd)) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on a sensor of this machine, with what it gives and says.
+// ouster_src on a sensor of this machine, with its buffers and messages.
 #pragma once
 #include <functional>
 #include <string>
@@ -39,12 +39,12 @@ class Receiver {
   Receiver& operator=(const Receiver&) = delete;
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
-  /// The next buffer, or none.
+  /// Returns the next buffer, or none.
   gst::BufferPtr Pull() { return Pull(g_get_monotonic_time() + kPatience_us); }
   void Drain() {
     while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
   }
-  /// Takes buffers until one is as wanted; false where none is.
+  /// Takes buffers until one is as wanted; returns false if none is.
   bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
     const gint64 end = g_get_monotonic_time() + kPatience_us;
     while (const gst::BufferPtr buffer = Pull(end))
@@ -57,7 +57,7 @@ class Receiver {
     EXPECT_TRUE(info);
     return info.value_or(gst::CloudInfo{});
   }
-  /// The next element message of that name.
+  /// Returns the next element message of that name.
   gst::MessagePtr Await(const char* name) {
     for (;;) {
       gst::MessagePtr message(gst_bus_timed_pop_filtered(

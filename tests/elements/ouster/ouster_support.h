@@ -76,7 +76,7 @@ class UdpSender {
   GSocketAddress* to_;
 };
 
-/// A port that was free a moment ago.
+/// Returns a port that was free a moment ago.
 inline guint16 FreePort() {
   GSocket* socket =
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
@@ -103,10 +103,10 @@ inline guint64 Stat(GstElement* element, const char* name) {
 
 struct Ending {
   std::string error;     // with its details; "" after EOS
-  std::string warnings;  // all in one
+  std::string warnings;  // all warnings in one text
 };
 
-/// Text and details of an error or a warning.
+/// Returns text and details of an error or a warning.
 inline std::string TextOf(GstMessage* message) {
   GError* raw = nullptr;
   gchar* debug = nullptr;
@@ -146,7 +146,7 @@ inline Ending Run(const std::string& description) {
   return ending;
 }
 
-/// The text of its error, or "" after EOS.
+/// Runs a pipeline. Returns the text of its error, or "" after EOS.
 inline std::string RunToEnd(const std::string& description) { return Run(description).error; }
 
 }  // namespace lidar::test

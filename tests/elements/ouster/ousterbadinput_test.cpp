@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Captures and metadata that are not what they should be: a clear error, or counted and gone on.
+// Captures and metadata that are wrong: they give a clear error, or are counted and skipped.
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -38,7 +38,7 @@ Ending RunFile(const std::string& pcap, const std::string& metadata) {
 }
 
 struct BadInput {
-  const char* properties;  // @ stands for the folder of the data
+  const char* properties;  // @ means the folder of the data
   const char* error;       // part of the message
 };
 class OusterBadInput : public ::testing::TestWithParam<BadInput> {};
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "no network interface \"nope0\""},
         BadInput{"location=@crc_test.pcap min-range=9 max-range=3", "max-range"}));
 
-/// The classic header of a capture with that link type.
+/// Returns the classic header of a capture with this link type.
 std::string PcapHeader(std::uint32_t link) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -92,7 +92,7 @@ std::string PcapHeader(std::uint32_t link) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The same frames as pcapng has them, microseconds.
+/// Returns the same frames in pcapng, with times in microseconds.
 std::string ToPcapng(const std::string& pcap) {
   std::vector<std::uint8_t> out;
   ByteWriter w(&out);
@@ -185,7 +185,7 @@ TEST(OusterCapture, OfAnotherInitIdIsReadWithAWarning) {
 
 struct Hostile {
   const char* pointer;
-  const char* value;  // JSON, or what claims to be
+  const char* value;  // JSON, or invalid text
   const char* error;  // part of the message
 };
 class OusterHostileMetadata : public ::testing::TestWithParam<Hostile> {};

@@ -265,7 +265,7 @@ TEST(OusterFile, GivesImuSamplesOnAPadOfTheirOwn) {
       EXPECT_NEAR(static_cast<double>(t - last), 10e6, 1e6);
     }
     last = t;
-    // Gravity, and what the car adds to it.
+    // Gravity, and the accelerations of the car.
     EXPECT_NEAR(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), 9.81F, 4.0F);
   }
   std::remove(path.c_str());

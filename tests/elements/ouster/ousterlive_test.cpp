@@ -92,7 +92,7 @@ TEST(OusterLoss, IsCountedExactlyAsItWasInjected) {
       }
     }
   };
-  // Only what is lost between packets that came can be known.
+  // Only losses between packets that arrive can be seen.
   send(10);
   faults.loss = faults.reorder = faults.duplicate = 0.05;
   send(6000);
@@ -115,9 +115,8 @@ TEST(OusterLive, CountsWhatIsLostOnTheWay) {
     return sensor.counts().sent > end;
   }));
   const auto stat = [&](const char* name) { return Stat(receiver.source(), name); };
-  // What is lost is known when later packets have come, and a slow receiver is behind. Where the
-  // machine stopped the sensor for a second, its clock jumps, and the slices before end at their
-  // newest packet.
+  // Losses are seen when later packets have come, and a slow receiver lags. If the machine stops
+  // the sensor for a second, its clock jumps, and the slices before end at their newest packet.
   const auto lost = [&] { return stat("packets-lost") - before; };
   const auto known = [&] { return lost() >= sensor.counts().lost || stat("clock-jumps") > 0; };
   EXPECT_TRUE(receiver.PullUntil([&](GstBuffer*) { return known(); }));
@@ -133,7 +132,7 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   const gint64 end = g_get_monotonic_time() + kPatience_us;
   while (sensor.counts().corrupted < 50 && g_get_monotonic_time() < end) g_usleep(1000);
   sensor.Fault({{"corrupt", 0.0}});
-  // On a busy machine the sensor may have been within a scan; it goes on for a while.
+  // The sensor may have been within a scan on a busy machine, so a few packets may be missing.
   ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) {
     return Stat(receiver.source(), "packets-damaged") + 2 >= sensor.counts().corrupted;
   }));
@@ -218,7 +217,7 @@ TEST(OusterLive, APauseIsNoLossAndLeavesNothingOldBehind) {
   for (int i = 0; i < 20; ++i) {
     const BufferPtr buffer = receiver.Pull();
     ASSERT_TRUE(buffer);
-    // The first may be of packets that were read before the pause.
+    // The first slices may have packets that were read before the pause.
     if (i < 8) continue;
     EXPECT_GT(gst_lidar_buffer_get_capture_time(buffer.get()), resumed - 200 * GST_MSECOND) << i;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on all kinds of addresses, and several of them on one port. Multicast wants a network
+// ouster_src on all kinds of addresses, and several of them on one port. Multicast needs a network
 // namespace of the test's own, hence root.
 #include <net/if.h>
 #include <sched.h>
@@ -20,7 +20,8 @@ namespace {
 
 using gst::BufferPtr;
 
-/// A network of loopback only, which carries multicast; false where the user may not make one.
+/// Enters a network of loopback only, which carries multicast. Returns false if the user may not
+/// make one.
 bool EnterOwnNetwork() {
   if (unshare(CLONE_NEWNET) != 0) return false;
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -33,8 +34,8 @@ bool EnterOwnNetwork() {
   return ok;
 }
 
-/// Two Ethernets, since loopback carries no multicast over IPv6; false without iproute2. Unless it
-/// is told, the kernel takes the first for multicast.
+/// Adds two Ethernets, because loopback carries no multicast over IPv6. Returns false without
+/// iproute2. The kernel takes the first one for multicast, unless a socket names the interface.
 bool AddEthernets() {
   return std::system(
              "for i in 0 2; do ip link add lidar$i type veth peer name lidar$((i + 1)) && "
@@ -42,7 +43,7 @@ bool AddEthernets() {
              "ip addr add fd00:6c69:$i::1/64 dev lidar$i nodad || exit 1; done 2>/dev/null") == 0;
 }
 
-// Before main, as GLib's threads inherit the namespace of the one that starts them.
+// Runs before main, because GLib's threads inherit the namespace of the thread that starts them.
 const bool kOwnNetwork = EnterOwnNetwork();
 const bool kEthernet = kOwnNetwork && AddEthernets();
 
@@ -97,7 +98,7 @@ TEST(OusterMulticast, ReachesEveryReceiverOfTheGroup) {
   const Receiver::Ports ports{FreePort(), FreePort()};
   Receiver first(sensor.host(), properties, ports);
   ASSERT_TRUE(first.Pull());
-  // As another program does, which cannot share the socket.
+  // Another program opens its socket so that it cannot be shared.
   GError* raw = nullptr;
   const gst::UdpBind bind{"", ports.lidar, G_SOCKET_FAMILY_IPV4, true};
   const std::unique_ptr<GSocket, gst::GObjectUnref> other(gst::OpenUdpSocket(bind, &raw));
@@ -136,8 +137,8 @@ class OusterOnePort : public ::testing::Test {
   const Receiver::Ports ports_{FreePort(), FreePort()};
 };
 
-/// Takes buffers, which have gaps only where the kernel's buffer was full, packets of a sensor that
-/// changed its processor were reordered, or the machine stopped the sensor for a second.
+/// Takes buffers. Gaps are allowed only if the kernel's buffer was full, a sensor's packets were
+/// reordered by a change of its processor, or the machine stopped the sensor for a second.
 void ExpectWholeScans(Receiver* receiver, int buffers) {
   int gaps = 0;
   for (int i = 0; i < buffers; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sensor whose metadata has angles for every pixel: points by those angles, no sensor model, and
-// so xyz geometry for the encoder.
+// A sensor whose metadata has angles for every pixel: points follow those angles. There is no
+// sensor model, so the encoder takes xyz geometry.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -19,7 +19,7 @@ using gst::CloudInfo;
 
 const char* const kPcap = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 
-/// The capture's sensor, as if it did not turn: 120 degrees wide, 50 high.
+/// The capture's sensor, as if it did not turn: 120 degrees wide, 50 degrees high.
 class OusterPixels : public ::testing::Test {
  protected:
   OusterPixels() {

@@ -18,7 +18,7 @@ using gst::EventPtr;
 
 constexpr GstClockTime kSlice = 12500 * GST_USECOND;
 
-/// What a slice is, wherever the playback came from.
+/// The parts of a slice that must not depend on where playback began.
 struct Played {
   GstClockTime pts = 0;
   GstClockTime captured = 0;
@@ -38,7 +38,7 @@ Harness Open(const std::string& location, const char* more = "") {
   return h;
 }
 
-/// To the end of the stream.
+/// Plays to the end of the stream. Returns the slices.
 std::vector<Played> PlayOn(const Harness& h) {
   for (bool ended = false; !ended;) {
     const EventPtr event(gst_harness_pull_event(h.get()));
@@ -74,7 +74,7 @@ std::vector<Played> After(const std::vector<Played>& all, std::size_t n) {
   return {all.begin() + static_cast<std::ptrdiff_t>(n), all.end()};
 }
 
-/// The same frames as the pcap file, as pcapng: with a clock of microseconds, or of nanoseconds.
+/// Writes the frames of the pcap file as pcapng, with a clock of microseconds or of nanoseconds.
 std::string WritePcapNg(const std::string& pcap) {
   std::ifstream in(pcap, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -126,7 +126,7 @@ TEST(OusterSeek, GoesToTheSliceOfATimeAndPlaysTheSameFromThere) {
   const auto all = PlayOn(h);
   ASSERT_EQ(all.size(), 24U);
   for (const std::size_t n : {23U, 5U, 12U, 0U, 20U}) {
-    // To its beginning and into its middle.
+    // Seeks to the begin of slice n and into its middle.
     for (const GstClockTime into : {GstClockTime{0}, kSlice / 2}) {
       ASSERT_TRUE(Seek(h, {static_cast<gint64>(all[n].pts + into)}));
       const auto rest = PlayOn(h);
@@ -204,7 +204,7 @@ TEST(OusterSeek, NeitherBackwardsNorLiveNorInALoop) {
   }
 }
 
-/// What a pad carried: the start of its newest segment and the times since.
+/// What passed a pad: the start of its newest segment, and the times since.
 struct Seen {
   std::mutex mutex;
   GstClockTime start = 0;
@@ -276,7 +276,7 @@ TEST(OusterSeek, TakesTheImuAlongOnce) {
   }
   EXPECT_NEAR(static_cast<double>(samples.times.size()), all / 2.0, 2.0);
   EXPECT_GE(samples.times.front(), middle);
-  // Their times are those of the first pass.
+  // The times are those of the first pass.
   ASSERT_LE(samples.times.size(), first_pass.size());
   EXPECT_TRUE(std::equal(samples.times.rbegin(), samples.times.rend(), first_pass.rbegin()));
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// HTTP servers that are no sensor, but stand where one is expected: the element says so, stays
-// within its bounds and stops when it is told to.
+// HTTP servers that are not sensors, at the address of one: the element reports that, stays within
+// its bounds and stops on request.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -81,8 +81,8 @@ void AwaitRequest(const HostileServer& server, int earlier) {
   ASSERT_GT(server.requests(), earlier);
 }
 
-/// How long the element takes to stop [s], `wait_ms` after its first request: the shortest of three
-/// times, as other programs may keep the machine busy.
+/// Returns how long the element takes to stop [s], `wait_ms` after its first request: the shortest
+/// of three times, because other programs may keep the machine busy.
 double SecondsToStop(const HostileServer& server, const char* properties, guint wait_ms) {
   double shortest = 1e9;
   for (int i = 0; i < 3 && shortest >= 1; ++i) {
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(All, OusterServer, ::testing::ValuesIn(kAttacks),
                            return std::string(attack.param.name);
                          });
 
-/// What ouster_src says where it cannot start; `scarcity` is created before it tries.
+/// Returns the error of ouster_src if it cannot start; `scarcity` is created before it tries.
 template <class Scarcity>
 std::string ErrorAmid() {
   const gst::ElementPtr source(
@@ -148,7 +148,7 @@ TEST(OusterThread, ThatCannotBeStartedIsAnElementError) {
   EXPECT_NE(error.find("Cannot start a thread"), std::string::npos) << error;
 }
 
-/// `ulimit -n` leaves ten files more.
+/// Leaves ten more files to the process, as `ulimit -n` does.
 class ScarceFiles {
  public:
   ScarceFiles() {

@@ -41,7 +41,7 @@ TEST_F(OusterUdp, GivesASliceOnceItsLastPacketCame) {
     GstLidarSlice slice{};
     ASSERT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
     EXPECT_EQ(slice.slice_index, i / 8);
-    // Without PTP, the capture time follows the arrival.
+    // The capture time follows the arrival if the sensor has no PTP.
     const auto now = static_cast<gint64>(g_get_real_time()) * 1000;
     const auto age = now - static_cast<gint64>(gst_lidar_buffer_get_capture_time(buffer.get()));
     EXPECT_GT(age, 0);
@@ -111,7 +111,7 @@ TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
 }
 
 TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
-  // More than the kernel grants even to root.
+  // The size is more than the kernel grants even to root.
   const std::string launch =
       "ouster_src buffer-size=2147483647 lidar-port=" + std::to_string(FreePort()) +
       " imu=false metadata=" + DataPath(kJson) + " ! fakesink";

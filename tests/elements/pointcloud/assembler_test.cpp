@@ -40,7 +40,7 @@ struct SliceSpec {
   guint first_column = 0;
 };
 
-/// Every byte of a slice is 1 + its index, so that zeros are missing columns.
+/// Returns a slice whose bytes all are 1 + its index, so that zeros are missing columns.
 BufferPtr MakeSlice(const SliceSpec& spec, gsize size = SliceInfo().FrameSize()) {
   BufferPtr buffer(gst_buffer_new_allocate(nullptr, size, nullptr));
   gst_buffer_memset(buffer.get(), 0, static_cast<guint8>(1 + spec.index), size);
@@ -87,7 +87,7 @@ class Assembler : public ::testing::Test {
   Harness h_;
 };
 
-/// First byte of each column, beam by beam: which slice it came from, plus one.
+/// Returns the first byte of each column, beam by beam: the index of its slice, plus one.
 std::vector<int> ColumnsOf(const BufferPtr& scan, gsize step = 13) {
   const BufferMap map(scan.get(), GST_MAP_READ);
   std::vector<int> columns;
@@ -135,7 +135,7 @@ TEST_F(Assembler, TakesSlicesInAnyOrder) {
 TEST_F(Assembler, FlagsALostSliceAndLeavesItsColumnsZero) {
   for (const guint i : {0U, 1U, 3U}) Push(Slice(0, i));
   EXPECT_EQ(Waiting(), 0U);
-  Push(Slice(1, 0));  // not live: the next scan says that nothing more will come
+  Push(Slice(1, 0));  // not live: the next scan ends this one
   const BufferPtr scan = Pull();
   EXPECT_EQ(ColumnsOf(scan), Columns({1, 2, 0, 4}));
   EXPECT_TRUE(IsCorrupted(scan));
@@ -261,7 +261,7 @@ TEST_F(Assembler, StringsUnorganisedPointsTogether) {
   info.height = 1;
   info.sensor_model.reset();
   for (guint i = 0; i < kSlices; ++i) {
-    info.width = 10 + i;  // as many points as the slice happened to have
+    info.width = 10 + i;  // as many points as the slice has
     SetCaps(info);
     Push(MakeSlice({0, i, kSlices, 0}, info.FrameSize()));
   }
@@ -281,7 +281,7 @@ TEST_F(Assembler, OpenScansLeaveWithTheirCapsBeforeNewOnes) {
   EXPECT_FALSE(IsCorrupted(Pull()));
 }
 
-/// Caps that slices of one scan cannot differ in.
+/// Changes of the caps after which slices cannot belong to the same scan.
 class AssemblerOfTwoLayouts : public Assembler,
                               public ::testing::WithParamInterface<void (*)(CloudInfo*)> {};
 TEST_P(AssemblerOfTwoLayouts, NeverMixesThemInAScan) {
@@ -327,7 +327,7 @@ INSTANTIATE_TEST_SUITE_P(All, AssemblerOfTwoLayouts,
                                cloud->sensor_model->beams.push_back({0, -3, 0});
                              }));
 
-/// One beam with or without a sensor model: columns with places, or points that are joined.
+/// The sensor has one beam: its model gives columns places; without a model points are appended.
 TEST_F(Assembler, NeverMixesColumnsAndPoints) {
   CloudInfo columns = SliceInfo();
   columns.height = 1;
@@ -376,7 +376,7 @@ TEST_F(Assembler, RefusesCapsThatAreNoCloud) {
 class LiveAssembler : public Assembler {
  protected:
   LiveAssembler() {
-    // The harness answers the latency query of the element for upstream: live, one slice.
+    // The harness answers the element's latency query as a live source with the latency of a slice.
     gst_harness_set_live(h_.get(), TRUE);
     gst_harness_set_upstream_latency(h_.get(), kSweep);
     gst_harness_use_testclock(h_.get());
@@ -386,7 +386,7 @@ class LiveAssembler : public Assembler {
 TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
   for (guint i = 0; i < 3; ++i) Push(Slice(0, i));
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
-  // One scan, the latency of the source and max-wait after its first column.
+  // The deadline is one scan, the latency of the source and max-wait after the first column.
   EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h_->element))),
             (100 + 25 + 20) * GST_MSECOND);
   EXPECT_EQ(Waiting(), 0U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps that an element cannot take: one error that names the reason, however often they come.
+// Caps that an element cannot take: they give one error with the reason, however often they come.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@ INSTANTIATE_TEST_SUITE_P(All, RefusedCapsOf,
                          ::testing::Values("pointcloudparse", "scanassembler", "pcdenc", "plyenc",
                                            "pointcloudview"));
 
-/// Texts of the errors that the element posts on a buffer after another.
+/// Returns the errors that the element posts, pushed three buffers.
 std::vector<std::string> ErrorsOf(const char* element, const std::string& caps) {
   const test::Harness h(gst_harness_new(element));
   GstBus* bus = gst_bus_new();

@@ -15,7 +15,7 @@ namespace {
 
 using test::Harness;
 
-/// 24 bytes with a gap behind z, as files of PCL often have.
+/// Takes 24 bytes with a gap behind z, as points in PCL's files often do.
 struct Point {
   float x, y, z;
   std::uint32_t gap;
@@ -39,7 +39,7 @@ const std::vector<Point> kPoints = {{1.5F, -2.25F, 0.1F, 99, 17, 3, 99},
                                     {0, 0, 0, 99, 0, 4, 99},
                                     {-7, 8, 9.5F, 99, 255, 65535, 99}};
 
-/// The file that the element makes of `points`.
+/// Returns the file that the element makes of `points`.
 std::string Encode(const std::string& element, const CloudInfo& info,
                    const std::vector<Point>& points = kPoints) {
   const Harness h(gst_harness_new_parse(element.c_str()));

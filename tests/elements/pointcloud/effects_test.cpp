@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Each property does something, and each counter counts.
+// Each property has an effect, and each counter counts.
 #include <gtest/gtest.h>
 
 #include <algorithm>

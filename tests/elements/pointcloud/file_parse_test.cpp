@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pointcloudparse reads what pcdenc and plyenc wrote, and what others write.
+// pointcloudparse reads files of pcdenc, plyenc and other programs.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -46,7 +46,7 @@ TEST_F(FileParse, PcdComesBackAsItWas) {
 TEST_F(FileParse, PlyComesBackWithoutWhatIsMissing) {
   for (const char* encoder : {"plyenc", "plyenc binary=false"}) {
     Write(encoder, "scan%d.ply");
-    // One large file comes in pieces.
+    // The file is large and comes in pieces.
     const auto read =
         Play("filesrc" + At("scan1.ply") + " ! typefind ! pointcloudparse ! fakesink name=see");
     EXPECT_EQ(read.error, "");
@@ -70,7 +70,7 @@ TEST_F(FileParse, CloudsOfOtherSizesFollowEachOther) {
   ASSERT_EQ(read.buffers.at("see").size(), 2U);
   EXPECT_EQ(read.buffers.at("see")[0].bytes.size(), 12U);  // doubles became floats
   EXPECT_EQ(read.buffers.at("see")[1].bytes.size(), 24U);
-  EXPECT_NE(read.warning, "");  // of the empty one
+  EXPECT_NE(read.warning, "");  // about the empty file
 }
 
 TEST_F(FileParse, AFolderPlaysAtTheRateThatIsAskedFor) {

@@ -15,7 +15,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A thread that does something once, and that others see asleep while it waits for them.
+/// A thread that does some work once. Tests can see that it sleeps.
 class Waiter {
  public:
   explicit Waiter(std::function<void()> work)
@@ -26,7 +26,7 @@ class Waiter {
         }) {}
   ~Waiter() { thread_.join(); }
 
-  /// Until the kernel says that it sleeps; false where it comes to its end.
+  /// Waits until the kernel reports that the thread sleeps. Returns false if it ends before.
   bool AwaitSleep() const {
     while (!done_) {
       std::ifstream stat("/proc/self/task/" + std::to_string(id_) + "/stat");
@@ -45,7 +45,7 @@ class Waiter {
   std::thread thread_;
 };
 
-/// pointcloudfilter, and what gives it transforms.
+/// pointcloudfilter, and a source of its transforms.
 class FilterByTransforms : public Filter {
  protected:
   void Start(const std::string& properties, const std::string& frame = "os") {
@@ -114,7 +114,7 @@ TEST_F(FilterByTransforms, CloudsGoToTheTargetFrameAsItIsAtTheirTime) {
   EXPECT_EQ(PulledX(), 2011);
   EXPECT_EQ(FrameOut(), "map");
   EXPECT_EQ(Stat("transforms"), 3U);
-  // Clouds that do not say when they were taken: the newest counts.
+  // The newest transform counts for clouds without a capture time.
   ASSERT_EQ(Push(std::vector<std::uint8_t>(12, 0)), GST_FLOW_OK);
 }
 

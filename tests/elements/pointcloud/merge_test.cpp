@@ -71,7 +71,7 @@ TEST_F(Merge, ASensorThatStartsLaterIsJoinedAtItsTurn) {
   gst_pad_set_offset(pad.get(), 300 * GST_MSECOND);
   const auto outcome = p.Run();
   EXPECT_EQ(outcome.error, "");
-  // Three scans of the first sensor have no partner, and its last ones are alone again.
+  // Three scans of the first sensor have no partner, nor do its last ones.
   const auto& merged = outcome.buffers.at("see");
   ASSERT_GE(merged.size(), 5U);
   EXPECT_EQ(merged.front().pts, 300 * GST_MSECOND);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pointcloudparse behind a source of bytes.
+// pointcloudparse after a source of bytes.
 #pragma once
 #include <gtest/gtest.h>
 

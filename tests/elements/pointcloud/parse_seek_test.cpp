@@ -11,7 +11,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A source of bytes that can seek and is under way: two clouds come while it is told to.
+/// A source of bytes that can seek and is playing: two clouds come while it gets the seek.
 class ParseUnderWay : public Parse {
  protected:
   static constexpr gsize kCloud = 160;
@@ -64,7 +64,7 @@ class ParseUnderWay : public Parse {
     while (BufferPtr next{gst_harness_try_pull(h_.get())}) last = std::move(next);
     return last;
   }
-  /// When the last cloud that came is shown.
+  /// Returns the running time of the last cloud.
   GstClockTime RunningTime() {
     const BufferPtr last = LastCloud();
     const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
@@ -128,7 +128,7 @@ TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   PushClouds(3);
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_NONE, 0, GST_SEEK_TYPE_NONE));
   EXPECT_EQ(RunningTime(), 400 * GST_MSECOND);
-  PushClouds(4);  // the bytes begin after the third again
+  PushClouds(4);  // the bytes restart after the third cloud
   EXPECT_EQ(gst_harness_buffers_in_queue(h_.get()), 2U);
   EXPECT_EQ(RunningTime(), 600 * GST_MSECOND);
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH, 0, GST_SEEK_TYPE_NONE));
@@ -138,7 +138,7 @@ TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   EXPECT_EQ(GST_BUFFER_OFFSET_END(last.get()), 8U);
 }
 
-/// Clouds a second whose times are no whole nanoseconds, and others.
+/// Rates of clouds, some whose times are not whole nanoseconds.
 class ParseAnyCloud : public ParseUnderWay,
                       public ::testing::WithParamInterface<std::pair<guint64, guint64>> {};
 TEST_P(ParseAnyCloud, IsFoundByItsTimeAndKnowsItsOffset) {
@@ -194,7 +194,7 @@ TEST_F(ParseUnderWay, BuffersThatAreCloudsGoOnWhereTheLastCloudEnded) {
   EXPECT_EQ(RunningTime(), 300 * GST_MSECOND);
   PushClouds(2);
   EXPECT_EQ(RunningTime(), 500 * GST_MSECOND);
-  // At another rate the number of a cloud stands for another time.
+  // A cloud's number means another time at another rate.
   PushCaps("application/x-pointcloud2,point-step=16,fields=(string)\"x:F32:0\",framerate=20/1");
   PushBytesFrom(0, 4712);
   PushClouds(2);
@@ -245,7 +245,7 @@ class ParseSeek : public ::testing::Test {
                             static_cast<GstSeekFlags>(flags), GST_SEEK_TYPE_SET,
                             static_cast<gint64>(start), GST_SEEK_TYPE_SET, stop) != FALSE;
   }
-  /// The clouds from now to the message.
+  /// Plays until the message. Returns the clouds until then.
   std::vector<int> PlayTo(GstMessageType type) {
     clouds_.clear();
     times_.clear();
@@ -259,13 +259,13 @@ class ParseSeek : public ::testing::Test {
     return clouds_;
   }
 
-  /// The source posts its message before it pushes the event.
+  /// Waits for the end of the segment: the source posts its message before it pushes the event.
   gint64 AwaitEndOfSegment() const {
     test::Eventually([&] { return end_of_segment_ >= 0; });
     return end_of_segment_;
   }
 
-  /// Running time at which the segment of now begins.
+  /// Returns the running time at which the current segment begins.
   GstClockTime Base() {
     const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
     const PadPtr pad(gst_element_get_static_pad(sink.get(), "sink"));
@@ -315,7 +315,7 @@ TEST_F(ParseSeek, ASegmentEndsNoLaterThanItsStop) {
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT, 0, 250 * GST_MSECOND));
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(AwaitEndOfSegment(), gint64{250 * GST_MSECOND});
-  // What follows goes on where the segment ended, for a clock.
+  // The next segment continues at the running time of the end.
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
   EXPECT_EQ(Base(), 250 * GST_MSECOND);

@@ -47,7 +47,7 @@ TEST_F(Parse, ThePropertyGoesBeforeTheFrameRateOfTheCaps) {
   EXPECT_EQ(CloudInfo::FromCaps(caps.get())->framerate_n, 20);
 }
 
-/// A source of times seeks by times, one of bytes by bytes.
+/// A source in time format gets seeks by time, a source in bytes gets seeks by bytes.
 TEST_F(Parse, ASeekReachesTheSourceInTheFormatThatItSends) {
   for (const GstFormat format : {GST_FORMAT_TIME, GST_FORMAT_BYTES}) {
     Start(std::string(kKitti) + ",width=10");

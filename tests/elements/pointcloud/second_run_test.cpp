@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An element that was stopped, or flushed, is as a new one.
+// An element that was stopped or flushed behaves as a new one.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -42,7 +42,7 @@ gst::BufferPtr At(gst::BufferPtr buffer, GstClockTime ms, guint scan, guint slic
 
 void Push(GstHarness* h, gst::BufferPtr buffer) { gst_pad_push(h->srcpad, buffer.release()); }
 
-/// A run leaves as much behind as it can: what is under way, what was warned of, what was counted.
+/// `run` leaves much state behind: clouds under way, warnings, counts.
 struct Case {
   const char* name;
   const char* element;
@@ -68,7 +68,7 @@ void FilterToAFrame(GstHarness* h) {
 
 void ParseClouds(GstHarness* h) {
   Push(h, Bytes(24, 1));
-  Push(h, Bytes(0, 0));  // is warned of, and the next cloud follows a gap
+  Push(h, Bytes(0, 0));  // gives a warning, and the next cloud follows a gap
   Push(h, Bytes(24, 2));
   Push(h, Bytes(0, 0));
 }
@@ -95,7 +95,7 @@ void AssembleScans(GstHarness* h) {
 }
 
 void WriteFiles(GstHarness* h) {
-  for (guint i = 0; i < 2; ++i) Push(h, At(Points(1, 2), 50 * i, 3, i, 2));  // is warned of
+  for (guint i = 0; i < 2; ++i) Push(h, At(Points(1, 2), 50 * i, 3, i, 2));  // gives a warning
 }
 
 class SecondRun : public ::testing::TestWithParam<Case> {
@@ -132,7 +132,7 @@ TEST_P(SecondRun, GivesTheSameCloudsBehindAFlush) {
   trace_->Take();
   Run();
   Lines behind = trace_->TakeBuffers();
-  // The first one behind a flush may be marked as a discontinuity.
+  // The first buffer after a flush may be marked as a discontinuity.
   for (Lines* lines : {&first, &behind}) {
     if (lines->empty()) continue;
     std::string& line = lines->front();
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"PlyFiles", "plyenc", kPoints, WriteFiles}),
     [](const auto& which) { return which.param.name; });
 
-/// Files of one point each, by their type, and the caps that come before; none: by their content.
+/// Files of one point each. With caps they are read by their type, without by their content.
 struct FileCase {
   const char* name;
   const char* caps;
@@ -199,7 +199,7 @@ class FileAfterAnother : public ::testing::Test {
     for (int i = 0; i < 2; ++i)
       Push(h_.get(), gst::BufferPtr(gst_buffer_new_memdup(which.file.data(), which.file.size())));
   }
-  /// Stops the source as well, whose caps would stand.
+  /// Stops the source, too, because its caps would stay.
   void StopAll() {
     trace_->Stop();
     gst_pad_set_active(h_->srcpad, FALSE);
@@ -242,7 +242,7 @@ TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondRun) {
 TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondStream) {
   for (const FileCase& first : FileCases())
     for (const FileCase& second : FileCases()) {
-      if ((second.caps == nullptr) != (first.caps == nullptr)) continue;  // caps hold on
+      if ((second.caps == nullptr) != (first.caps == nullptr)) continue;  // caps stay
       SCOPED_TRACE(std::string(second.name) + " behind " + first.name);
       PlayFile(second);
       const Lines alone = BytesOf(trace_->TakeBuffers());
@@ -255,7 +255,7 @@ TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondStream) {
     }
 }
 
-/// A source that knows the size of its file, and reads it in blocks.
+/// A source that has the size of its file, and reads it in blocks.
 class FileInBlocks : public FileAfterAnother {
  protected:
   FileInBlocks() {

@@ -24,7 +24,7 @@ ByteView ViewOf(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 constexpr std::uint32_t kStep = 26;
 constexpr std::uint32_t kRow = 500;
 
-/// As Hesai's driver publishes it; points 1 and 2 are the same.
+/// A cloud as Hesai's driver publishes it; points 1 and 2 are the same.
 class CompressedClouds : public ::testing::TestWithParam<CloudCompression> {
  protected:
   CompressedClouds() {
@@ -130,7 +130,7 @@ TEST_P(CompressedClouds, ThatAreDamagedAreRefused) {
     EXPECT_FALSE(Decompress(shorter, &why)) << cut;
     EXPECT_EQ(why, "its compressed data are damaged");
   }
-  // What differs in the data may come through, but never as more points.
+  // Damaged data may pass, but never as more points.
   std::mt19937 random(7);
   for (int round = 0; round < 2'000; ++round) {
     Bytes data(whole->cloud.data.begin(), whole->cloud.data.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who makes the DDS domains of a process, and who ends them.
+// Which code makes and ends the DDS domains of a process.
 #include "ext/ros2/domain.h"
 
 #include <dds/dds.h>
@@ -11,7 +11,7 @@
 namespace lidar::dds {
 namespace {
 
-// No element uses it.
+// No element uses this domain.
 constexpr std::uint32_t kDomain = 231;
 
 std::unique_ptr<Domain> Join() {
@@ -21,7 +21,7 @@ std::unique_ptr<Domain> Join() {
   return domain;
 }
 
-/// Whether nobody has made the domain: it is made and goes.
+/// Returns true if the domain can be made, so that it did not exist. It is deleted again.
 bool IsFree() {
   const dds_entity_t made = dds_create_domain(kDomain, "");
   if (made > 0) dds_delete(made);

@@ -22,7 +22,7 @@
 #include <type_traits>
 
 #ifdef __SANITIZE_ADDRESS__
-/// Fast DDS 2.9.1 deletes an object of its own by another size than it has made it.
+/// Fast DDS 2.9.1 deletes an object with another size than it was made with.
 extern "C" const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }
 #endif
 
@@ -35,7 +35,7 @@ using eprosima::fastcdr::FastBuffer;
 using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 
-/// Writes and reads members by the same call.
+/// Out and In have the same call, which writes or reads members.
 struct Out {
   Cdr& cdr;
   template <class T>
@@ -204,7 +204,7 @@ std::string ToText(const Octets& octets) {
 
 }  // namespace
 
-/// Notes what discovery finds.
+/// Notes the endpoints and participants that discovery finds.
 class DiscoveryListener : public DomainParticipantListener {
  public:
   void on_publisher_discovery(DomainParticipant*,

@@ -68,12 +68,12 @@ struct PeerGraph {
   std::vector<std::uint8_t> participant;
   std::vector<PeerGraphNode> nodes;
 };
-/// A message with its encapsulation header, whatever is in it.
+/// A message with its encapsulation header, and any content.
 struct PeerBytes {
   std::vector<std::uint8_t> bytes;
 };
 
-/// What discovery says of an endpoint of others.
+/// The description of another's endpoint by discovery.
 struct PeerEndpoint {
   std::string topic;
   std::string type;
@@ -81,24 +81,24 @@ struct PeerEndpoint {
   std::vector<std::uint8_t> guid;
 };
 
-/// Speaks on the loopback interface only.
+/// A node that uses the loopback interface only.
 class FastPeer {
  public:
   explicit FastPeer(std::uint32_t domain);
   ~FastPeer();
 
   enum class Qos { kBestEffort, kReliable, kReliableTransient };
-  /// `type` is the name in DDS; Message is one of the above.
+  /// `type` is the name in DDS; Message is one of the structs above.
   template <class Message>
   void Subscribe(const std::string& topic, const std::string& type, Qos qos);
   template <class Message>
   void Advertise(const std::string& topic, const std::string& type, Qos qos);
 
-  /// True once there is somebody at the other end.
+  /// Returns true once a peer matches.
   bool WaitForMatch(std::chrono::milliseconds timeout);
   template <class Message>
   bool Publish(const Message& message);
-  /// The next message; false where none comes.
+  /// Takes the next message; returns false if none comes.
   template <class Message>
   bool Take(Message* message, std::chrono::milliseconds timeout);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What messages become and are made of, without a network.
+// Conversions from and to messages, without a network.
 #include <gtest/gtest.h>
 
 #include "ext/ros2/message_reader.h"
@@ -28,7 +28,7 @@ class CloudMessages : public ::testing::Test {
     cloud_.data = AsView(points);
     return reader_.Read(AsView(cdr::WritePointCloud2(cloud_)));
   }
-  /// A field of the caps that are new; empty where none are.
+  /// Returns a field of the new caps; empty without new caps.
   std::string NewField(const char* name) {
     const CapsPtr caps = reader_.TakeNewCaps();
     if (!caps) return "";
@@ -44,7 +44,7 @@ class CloudMessages : public ::testing::Test {
                           ++asked_;
                           return CapsPtr(wanted_ ? gst_caps_ref(wanted_.get()) : nullptr);
                         }};
-  int asked_ = 0;  // what downstream takes
+  int asked_ = 0;  // how often downstream was asked for its caps
 };
 
 TEST_F(CloudMessages, HaveNewCapsWhereAnythingOfThemChanges) {
@@ -102,7 +102,7 @@ TEST_F(CloudMessages, MayNameAFrameThatIsNoText) {
 struct Driver {
   const char* name;
   std::uint32_t width, height;
-  std::vector<cdr::RosField> fields;  // its own, behind x, y and z
+  std::vector<cdr::RosField> fields;  // its own fields, behind x, y and z
   std::uint32_t point_step;
   bool is_dense;
   const char* caps;  // of the fields
@@ -204,7 +204,7 @@ INSTANTIATE_TEST_SUITE_P(
                "ring:U16:26,ambient:U16:28,range:U32:32"}),
     [](const auto& made) { return made.param.name; });
 
-/// Reads `message` and gives the buffer and a text of its caps.
+/// The buffer of a message, and a text of its caps.
 struct Taken {
   BufferPtr buffer;
   std::string caps;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What ros2src and ros2sink cost: processor, latency and loss beside a peer in a process of its
-// own. Run by hand; docs/results/ecosystem.md has the figures.
-//
-//     ros2-bench src|sink fast|cyclone reliable|sensor-data WIDTH COUNT
+// Costs of ros2src and ros2sink: processor time, latency and loss, with a peer in another process.
+// Run by hand; docs/results/ecosystem.md has the figures.
 #include <gst/gst.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -43,7 +41,7 @@ double CpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// What one side counted.
+/// The counts of one side.
 struct Report {
   unsigned taken = 0;
   unsigned wrong = 0;
@@ -76,7 +74,7 @@ std::string Properties(const Arguments& a, const char* element) {
          " qos=" + (a.reliable ? "reliable" : "sensor-data");
 }
 
-/// Clouds until nobody sends any more.
+/// Takes clouds until no more come.
 void Receive(const Arguments& a, bool fast, const PeerCloud& sent, const char* who) {
   Report report;
   if (fast) {

@@ -24,9 +24,9 @@ namespace lidar::test {
 
 constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
 
-/// A domain of this program's own, until it ends. Domains 1 to 9 have the UDP ports 7650 to 9899:
-/// below those that the kernel hands out and those of other tests. The TCP port of a domain's first
-/// marks it taken.
+/// Returns a domain that only this program has, until it ends. Domains 1 to 9 have the UDP ports
+/// 7650 to 9899: below those that the kernel assigns and those of other tests. The TCP port of a
+/// domain's first UDP port marks it as taken.
 inline std::uint32_t TestDomain() {
   using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
   static const Object mark(
@@ -44,7 +44,8 @@ inline std::uint32_t TestDomain() {
   return domain;
 }
 
-/// Points of x, y, z, intensity and a time, 24 bytes, with all bytes different from cloud to cloud.
+/// Returns points of x, y, z, intensity and a time, 24 bytes each. All bytes differ from cloud to
+/// cloud.
 inline PeerCloud TestCloud(std::uint32_t width, std::uint32_t height, unsigned seed = 1) {
   PeerCloud cloud;
   cloud.header = {1'700'000'000 + static_cast<std::int32_t>(seed), 123'456'789, "os_lidar"};
@@ -75,7 +76,7 @@ inline gst::CapsPtr CloudCaps(const PeerCloud& cloud, const char* extra = "") {
   return gst::CapsPtr(gst_caps_from_string(text));
 }
 
-/// A buffer of the cloud's points with its time.
+/// Returns a buffer of the cloud's points with its time.
 inline GstBuffer* CloudBuffer(const PeerCloud& cloud) {
   GstBuffer* buffer = gst_buffer_new_memdup(cloud.data.data(), cloud.data.size());
   gst_lidar_buffer_set_capture_time(
@@ -88,7 +89,7 @@ inline std::vector<std::uint8_t> BytesOf(GstBuffer* buffer) {
   return {map.view().begin(), map.view().end()};
 }
 
-/// An element of the domain, alone or with what stands before and behind it.
+/// An element in the domain, alone or with elements before and after it.
 class Ros2Test : public ::testing::Test {
  protected:
   void Start(const std::string& element, const std::string& properties,
@@ -109,7 +110,7 @@ class Ros2Test : public ::testing::Test {
     if (bus_ != nullptr) gst_object_unref(bus_);
   }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
-  /// A field of the caps that came, as text.
+  /// Returns a field of the received caps, as text.
   std::string Field(const char* name) {
     const gst::CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
     const GValue* value = gst_structure_get_value(gst_caps_get_structure(caps.get(), 0), name);
@@ -128,14 +129,14 @@ class Ros2Test : public ::testing::Test {
       value = small;
     return value;
   }
-  /// False where it takes too long.
+  /// Returns false if it takes too long.
   bool WaitForStat(const char* name, guint64 least) {
     return Eventually([&] { return Stat(name) >= least; });
   }
   bool WaitForNone(const char* name) {
     return Eventually([&] { return Stat(name) == 0; });
   }
-  /// The text of the next warning or error, or nothing.
+  /// Returns the text of the next warning or error, or nothing.
   std::string NextComplaint(GstClockTime timeout = kPatience_ns) {
     const gst::MessagePtr message(gst_bus_timed_pop_filtered(
         bus_, timeout, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)));
@@ -148,7 +149,7 @@ class Ros2Test : public ::testing::Test {
     const gst::ErrorPtr error(raw);
     return error->message;
   }
-  /// As NextComplaint(), without what the machine's settings bring.
+  /// Returns NextComplaint(), without warnings about the machine's settings.
   std::string NextOwnComplaint() {
     std::string text = NextComplaint();
     if (text.find("receive buffer") != std::string::npos) text = NextComplaint();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Transforms that ros2src takes, and clouds that they place.
+// Transforms that ros2src receives, and clouds that they place.
 #include <set>
 
 #include "src/cdr/messages.h"
@@ -28,7 +28,7 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   peer_->Advertise<PeerTransforms>("rt/tf", kTransformsType, Qos::kReliable);
   ASSERT_TRUE(peer_->WaitForMatch(kPatience));
   ASSERT_TRUE(WaitForStat("publishers", 1));
-  // What goes before the two know each other is not seen.
+  // Messages sent before the two are matched are lost.
   for (int i = 0; i < 600 && Stat("messages-empty") == 0; ++i) {
     ASSERT_TRUE(peer_->Publish(PeerTransforms{}));
     g_usleep(50'000);
@@ -47,7 +47,7 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   EXPECT_EQ(Field("static"), "false");
 }
 
-/// Hundreds of messages may wait: none of them may be as large as a cloud.
+/// Hundreds of messages may wait, so that no message may be as large as a cloud.
 TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
   Start("ros2src", "topic=/tf type=tf qos=reliable");
   peer_ = std::make_unique<FastPeer>(TestDomain());
@@ -60,7 +60,7 @@ TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
   const auto publish = [&](std::size_t count) {
     return peer_->Publish(PeerBytes{cdr::WriteTransforms(cdr::Transforms(count, one))});
   };
-  // What goes before the two know each other is not seen.
+  // Messages sent before the two are matched are lost.
   for (int i = 0; i < 600 && Stat("messages-damaged") == 0; ++i) {
     ASSERT_TRUE(publish(15'000));
     g_usleep(50'000);
@@ -85,7 +85,7 @@ TEST_F(Ros2Transforms, TakesStaticTransformsFromBeforeItWasThere) {
 }
 
 TEST_F(Ros2Transforms, TakesAllStaticTransformsOfAllThatKeepSome) {
-  constexpr int kEach = 10;  // what a peer keeps
+  constexpr int kEach = 10;  // history of a peer
   std::vector<std::unique_ptr<FastPeer>> peers;
   for (int peer = 0; peer < 3; ++peer) {
     peers.push_back(std::make_unique<FastPeer>(TestDomain()));
@@ -115,7 +115,7 @@ TEST_F(Ros2Transforms, TellsOfStaticTransformsThatNobodyKeeps) {
   EXPECT_NE(text.find("transient local"), std::string::npos) << text;
 }
 
-/// Clouds of a lidar in the frame map: one transform holds for good, another moves.
+/// Clouds of a lidar are in the frame map: one transform is static, another moves.
 TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   const std::string domain = " domain-id=" + std::to_string(TestDomain());
   FastPeer fixed(TestDomain());
@@ -139,8 +139,8 @@ TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   const float x = 4;
   std::memcpy(cloud.data.data(), &x, sizeof x);
   ASSERT_TRUE(peer_->Publish(cloud));
-  // The cloud waits for a transform that is as new as it. Those from before the two know each other
-  // are not seen.
+  // The cloud waits for a transform that is as new. Transforms sent before the two are matched are
+  // lost.
   BufferPtr buffer;
   for (int i = 0; i < 600 && !buffer; ++i) {
     for (const int later : {0, 1})
@@ -151,7 +151,7 @@ TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   ASSERT_TRUE(buffer);
   float moved = 0;
   std::memcpy(&moved, BytesOf(buffer.get()).data(), sizeof moved);
-  EXPECT_NEAR(moved, 4 + 1 + 100.123, 0.001);  // 0.123 s on the way from 100 m to 101 m
+  EXPECT_NEAR(moved, 4 + 1 + 100.123, 0.001);  // 0.123 s after 100 m, at 1 m/s
   EXPECT_EQ(Field("frame-id"), "map");
 }
 

@@ -97,7 +97,7 @@ TEST_F(Ros2Sink, DropsAndCountsBuffersThatAreNotAsTheirCapsSay) {
               GST_FLOW_OK);
   EXPECT_EQ(Stat("buffers-refused"), 4u);
   EXPECT_NE(NextComplaint().find("not as its caps say"), std::string::npos);
-  EXPECT_EQ(NextComplaint(0), "");  // one for all
+  EXPECT_EQ(NextComplaint(0), "");  // one warning for all
   ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
   EXPECT_EQ(Taken().data, cloud.data);
 }
@@ -137,7 +137,7 @@ TEST_F(Ros2Sink, TellsOfSubscribersThatItsReliabilityDoesNotFit) {
   }
   EXPECT_NE(text.find("qos=sensor-data"), std::string::npos);
   ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
-  EXPECT_EQ(NextComplaint(0), "");  // once for each
+  EXPECT_EQ(NextComplaint(0), "");  // one warning for each
 }
 
 TEST_F(Ros2Sink, RefusesACloudOfOneRowThatEndsWithinAPoint) {
@@ -220,7 +220,7 @@ TEST_F(Ros2Sink, GivesTrackedPosesTheVarianceThatItIsTold) {
                               CapsPtr(gst_caps_from_string("application/x-odometry")));
   for (const auto tracking : {GST_LIDAR_TRACKING_OK, GST_LIDAR_TRACKING_LOST}) {
     const bool tracked = tracking == GST_LIDAR_TRACKING_OK;
-    // What goes before the two know each other is not seen.
+    // Messages sent before the two are matched are lost.
     PeerOdometry odometry;
     for (int i = 0; i < 300 && odometry.pose_covariance[7] != (tracked ? 0.01 : 1e6); ++i) {
       ASSERT_EQ(gst_harness_push(h_.get(), PoseBuffer(tracking)), GST_FLOW_OK);
@@ -240,7 +240,7 @@ TEST_F(Ros2Sink, ItsTransformsAreThoseThatTheSourceTakes) {
   const Harness sink(gst_harness_new_parse(line.c_str()));
   gst_harness_set_src_caps_str(sink.get(), "application/x-odometry,child-frame-id=base");
   ASSERT_TRUE(WaitForStat("publishers", 1));
-  // What goes before the two know each other is not seen.
+  // Messages sent before the two are matched are lost.
   for (int i = 0; i < 600 && Stat("messages") == 0; ++i) {
     ASSERT_EQ(gst_harness_push(sink.get(), PoseBuffer()), GST_FLOW_OK);
     g_usleep(50'000);
@@ -293,8 +293,8 @@ TEST_F(Ros2Sink, ShowsItselfToTheToolsOfRos) {
                          graph.nodes[0].writers[0].begin()));
 }
 
-/// Fast DDS to ros2src to ros2sink and back: as many clouds as an OS1-128 has in a second and a
-/// half, each of 131072 points of 24 bytes.
+/// Clouds go from Fast DDS to ros2src to ros2sink and back: as many as an OS1-128 has in a second
+/// and a half, each of 131072 points of 24 bytes.
 TEST(Ros2Bridge, CarriesWholeScansIntact) {
   constexpr unsigned kClouds = 15;
   const std::string domain = " domain-id=" + std::to_string(TestDomain());
@@ -322,7 +322,7 @@ TEST(Ros2Bridge, CarriesWholeScansIntact) {
   for (unsigned i = 0; i < kClouds; ++i) {
     const PeerCloud cloud = TestCloud(1024, 128, i + 10);
     ASSERT_TRUE(in.Publish(cloud));
-    do {  // of the clouds before, some may still be under way
+    do {  // earlier clouds may still be under way
       ASSERT_TRUE(out.Take(&taken, kPatience)) << i;
     } while (taken.header.sec == first.header.sec);
     ASSERT_EQ(taken.header.sec, cloud.header.sec);

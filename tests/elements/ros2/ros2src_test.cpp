@@ -19,7 +19,7 @@ class Ros2Src : public Ros2Test {
     ASSERT_TRUE(peer_->WaitForMatch(kPatience));
     ASSERT_TRUE(WaitForStat("publishers", 1));
   }
-  /// Where a test publishes what is no cloud.
+  /// Starts with a peer that publishes invalid messages.
   void StartWithRawPeer(const std::string& type = kCloudType) {
     Start("ros2src", "topic=/points qos=reliable");
     peer_ = std::make_unique<FastPeer>(TestDomain());
@@ -113,7 +113,7 @@ TEST_F(Ros2Src, ConvertsBigEndianDoublesForWhoeverIsBehind) {
   ASSERT_GE(points.size(), 24u);
   float last[3];
   std::memcpy(last, points.data() + 12, sizeof last);
-  EXPECT_NEAR(last[0] + last[1] + last[2], 15, 9.1);  // in either order
+  EXPECT_NEAR(last[0] + last[1] + last[2], 15, 9.1);  // 24 with both, in any order
 }
 
 TEST_F(Ros2Src, GivesTheFieldsAndTheRateThatAFilterNames) {
@@ -157,7 +157,7 @@ TEST_F(Ros2Src, DropsAndCountsWhatIsDamagedAndGoesOn) {
   huge[good.size() - 1 - 96 - 1] = 0x40;  // 1 GiB of data
   cloud.layout.width = 5;                 // more than the data hold
   const auto wrong_step = cdr::WritePointCloud2(cloud);
-  // Cyclone itself refuses what has no known encapsulation.
+  // Cyclone itself refuses messages without a known encapsulation.
   std::vector<std::uint8_t> garbage(100, 0xFF);
   std::vector<std::uint8_t> short_one(24, 0);
   for (auto* message : {&garbage, &short_one}) std::copy_n(good.begin(), 4, message->begin());
@@ -167,10 +167,10 @@ TEST_F(Ros2Src, DropsAndCountsWhatIsDamagedAndGoesOn) {
   ASSERT_TRUE(peer_->Publish(PeerBytes{good}));
   EXPECT_EQ(BytesOf(Pull().get()), points);
   EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);
-  EXPECT_EQ(NextComplaint(0), "");  // one for all
+  EXPECT_EQ(NextComplaint(0), "");  // one warning for all
   EXPECT_EQ(Stat("messages"), 6u);
   ASSERT_TRUE(peer_->Publish(PeerBytes{garbage}));
-  EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);  // after a good one
+  EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);  // after a good message
 }
 
 TEST_F(Ros2Src, CountsCloudsOfNoPoints) {
@@ -209,7 +209,7 @@ TEST_F(Ros2Src, TellsOfPublishersThatItsReliabilityDoesNotFit) {
   EXPECT_NE(text.find("best-effort"), std::string::npos) << text;
 }
 
-/// What was told of in one run is told of in the next, and its counters begin anew.
+/// A warning of one run comes again in the next, and counters begin anew.
 TEST_F(Ros2Src, TellsInEachRunOfWhatDoesNotFit) {
   FastPeer best_effort(TestDomain());
   best_effort.Advertise<PeerCloud>("rt/points", kCloudType, Qos::kBestEffort);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What buffers become as messages, and what the settings become for DDS, without a network.
+// Messages made of buffers, and DDS settings made of properties, without a network.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -125,7 +125,7 @@ TEST_F(WrittenMessages, OfCloudsAreAsLargeAsTheirCapsSayOfOneRowAnySize) {
       "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
   EXPECT_TRUE(written(rows, 48));
   for (const gsize size : {24U, 49U, 72U}) EXPECT_FALSE(written(rows, size)) << size;
-  // Where the width is not known it follows from the size.
+  // The width follows from the size if the caps have none.
   const std::string open =
       "application/x-pointcloud2,height=2,point-step=12,"
       "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
@@ -176,7 +176,7 @@ class RosOptions : public ::testing::Test {
   std::optional<dds::EndpointOptions> Options() {
     return ToOptions(element_.get(), settings_, cdr::RosType::kImu);
   }
-  /// The domain that the variable names; -1 where it names none.
+  /// Returns the domain that the variable names; -1 for a wrong one.
   int DomainOf(const char* variable) {
     g_setenv("ROS_DOMAIN_ID", variable, TRUE);
     const auto options = Options();
@@ -197,7 +197,7 @@ TEST_F(RosOptions, TakeTheDomainOfTheVariableWhereNobodySaysOtherwise) {
   EXPECT_EQ(Options()->domain, 0U);
   settings_.domain_id = 0;
   EXPECT_EQ(DomainOf("7"), 0);
-  EXPECT_EQ(DomainOf("x"), 0);  // nobody asks it
+  EXPECT_EQ(DomainOf("x"), 0);  // the property counts, not the variable
   settings_.domain_id = 9;
   EXPECT_EQ(DomainOf("7"), 9);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Stream configs that change, or that nobody here can decode.
+// Stream configs that change, or that no decoder of this set can decode.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ GstBuffer* RtpOf(const std::vector<std::uint8_t>& payload, guint32 ssrc, guint16
   return buffer;
 }
 
-/// A unit as the only one of its payload.
+/// Returns a payload with one unit.
 std::vector<std::uint8_t> PayloadOf(const rtp::Unit& unit, const std::vector<std::uint8_t>& bytes) {
   auto payload = rtp::Packetize(unit, {bytes.data(), bytes.size()}, 1'400).at(0).header;
   payload.insert(payload.end(), bytes.begin(), bytes.end());
@@ -41,7 +41,7 @@ std::vector<std::uint8_t> ConfigPayload(const char* fields, std::uint8_t* id) {
   return PayloadOf(unit, bytes);
 }
 
-/// A config of `fields` as the packet that comes just before `next`.
+/// Returns a config of `fields` as the packet just before `next`.
 GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
   std::uint8_t id = 0;
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
@@ -52,7 +52,7 @@ GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
   return buffer;
 }
 
-/// For each buffer that leaves, the fields of the caps that it leaves under.
+/// Notes the fields of the caps under which each buffer leaves.
 GstPadProbeReturn NoteFields(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
   const guint buffers = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0
                             ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info))
@@ -87,7 +87,7 @@ TEST(RtpLidarDepay, SlicesOfTwoConfigsInOnePacketLeaveEachUnderItsCaps) {
   EXPECT_EQ(seen, fields);
 }
 
-/// An aggregate of `slices` slices whose formats take turns; their configs went before.
+/// Returns an aggregate of `slices` slices whose formats alternate; their configs were sent before.
 std::vector<std::uint8_t> TakingTurns(const std::vector<std::uint8_t>& ids, std::uint32_t scan,
                                       std::uint16_t slices) {
   std::vector<std::uint8_t> packet = {0x20};
@@ -156,7 +156,7 @@ constexpr const char* kVoxels =
     "framerate=(fraction)10/1, sensor-model=(buffer)0102ff, levels=(uint)7, loss=(double)0.25, "
     "dense=(boolean)true";
 
-/// Packets of `scans` scans of a coder that nobody here knows.
+/// Returns packets of `scans` scans of a coder that no plugin of this set has.
 std::vector<gst::BufferPtr> PacketsOfVoxels(guint scans) {
   Harness pay(gst_harness_new("rtplidarpay"));
   gst_harness_set_src_caps_str(pay.get(), kVoxels);
@@ -204,7 +204,7 @@ TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
   gst_object_unref(bus);
 }
 
-/// What a depayloader warns of, from packets that keep giving it reason to.
+/// Warnings of a depayloader, from packets that cause them again and again.
 class OneWarning : public ::testing::Test {
  protected:
   OneWarning() { gst_element_set_bus(h_->element, bus_); }
@@ -223,7 +223,7 @@ class OneWarning : public ::testing::Test {
     gst_element_set_state(h_->element, GST_STATE_PLAYING);
     gst_harness_set_src_caps_str(h_.get(), kRtpCaps);
   }
-  /// `cause` is repeated: a warning comes once in each run of the element.
+  /// Repeats `cause`, and expects one warning in each run of the element.
   template <class Cause>
   void ExpectOne(const Cause& cause) {
     for (int run = 0; run < 2; ++run) {

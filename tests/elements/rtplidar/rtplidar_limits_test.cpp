@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where payloader and depayloader begin to do something, and what they begin anew.
+// Limits of payloader and depayloader, and what they begin anew.
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"
@@ -7,7 +7,7 @@
 namespace lidar::test {
 namespace {
 
-/// As a seek does it.
+/// Flushes as a seek does.
 void Flush(GstHarness* h) {
   gst_harness_push_event(h, gst_event_new_flush_start());
   gst_harness_push_event(h, gst_event_new_flush_stop(TRUE));
@@ -28,7 +28,7 @@ class PayLimits : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer, &meta);
     return gst_harness_push(h_.get(), buffer);
   }
-  /// How many configs went out since the last call.
+  /// Returns how many configs went out since the last call.
   std::size_t Configs() {
     std::size_t n = 0;
     for (const Rtp& p : PullAll(h_.get())) n += p.IsConfig() ? 1U : 0U;
@@ -194,7 +194,7 @@ class DepayLimits : public ::testing::Test {
     GST_BUFFER_PTS(copy) = pts;
     gst_harness_push(h_.get(), copy);
   }
-  /// How many slices came out since the last call.
+  /// Returns how many slices came out since the last call.
   std::size_t Slices() {
     std::size_t n = 0;
     while (const gst::BufferPtr slice{gst_harness_try_pull(h_.get())}) ++n;
@@ -209,7 +209,7 @@ TEST_F(DepayLimits, APacketOfBeforeDoesNotTurnTheTimeBack) {
   const auto stream = Packets(3), another = Packets(3);
   for (std::size_t i = 0; i + 1 < stream.size(); ++i) Push(stream[i], 10 * GST_SECOND);
   Push(stream.back(), GST_SECOND);
-  // The stream is not silent: a second one has to come for longer.
+  // The stream is not silent: packets of a second one must come for longer.
   for (const auto& packet : another) Push(packet, 10 * GST_SECOND);
   EXPECT_EQ(Slices(), 12U);
   EXPECT_EQ(Stat(h_.get(), "sender-restarts"), 0U);

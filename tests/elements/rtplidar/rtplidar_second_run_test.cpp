@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A payloader or depayloader that was stopped, or flushed, is as a new one.
+// A payloader or depayloader that was stopped or flushed behaves as a new one.
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"
@@ -10,7 +10,7 @@ namespace {
 
 void Give(GstHarness* h, GstBuffer* buffer) { gst_pad_push(h->srcpad, buffer); }
 
-/// Some slices, one without bytes, and bounds. What is put together for a packet is under way.
+/// Pushes some slices, one of them empty, and bounds. An aggregate is under way at the end.
 void PayRun(GstHarness* h, bool aggregate) {
   g_object_set(h->element, "aggregate", aggregate, nullptr);
   const GstLidarBitrateBounds bounds{1'000, 2'000, 3'000};
@@ -33,7 +33,7 @@ TEST_P(PaySecondRun, IsAsTheFirst) {
     trace_.Begin(EncodedCaps());
     PayRun(h_.get(), GetParam());
     Lines lines = trace_.Take();
-    // The fields of every payloader have random numbers.
+    // The stats and the SSRC of every payloader are random.
     if (lines.back().rfind("stats", 0) == 0) lines.pop_back();
     for (std::string& line : lines)
       if (line.rfind("event caps", 0) == 0) line.resize(line.find("ssrc"));
@@ -63,7 +63,7 @@ TEST_P(PaySecondRun, BeginsWithTheConfigBehindAFlush) {
 
 INSTANTIATE_TEST_SUITE_P(AloneAndTogether, PaySecondRun, ::testing::Bool());
 
-/// Losses, garbage, packets of others and of another type; a slice is under way at the end.
+/// Sends losses, garbage, packets of others and of another type; a slice is under way at the end.
 class DepaySecondRun : public ::testing::Test {
  protected:
   void Run() {
@@ -94,7 +94,7 @@ TEST_F(DepaySecondRun, IsAsTheFirst) {
     const auto warnings = std::count_if(lines.begin(), lines.end(), [](const auto& line) {
       return line.rfind("message warning", 0) == 0;
     });
-    EXPECT_EQ(warnings, 2);  // of the type, and of the other sender
+    EXPECT_EQ(warnings, 2);  // about the type, and about the other sender
     if (run == 0) first = lines;
     EXPECT_EQ(lines, first);
     trace_.Stop();

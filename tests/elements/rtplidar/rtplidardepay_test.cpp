@@ -65,7 +65,7 @@ TEST(RtpLidarDepay, RestoresSlicesMetasTimesAndCaps) {
   }
 }
 
-/// A slice with all times, and others that each lack one.
+/// A slice with all times, and slices that each lack one of them.
 class SliceWithout : public ::testing::TestWithParam<int> {};
 TEST_P(SliceWithout, ATimeComesOutWithoutItAndWithTheOthers) {
   for (const bool aggregate : {false, true}) {
@@ -146,7 +146,7 @@ TEST(RtpLidarDepay, DropsWhatIsNotItsPayloadTypeOrNotRtpWithoutAMessage) {
   EXPECT_EQ(Pull(h.get()).size(), 4U);
 }
 
-/// Warnings that an element posts while it lives.
+/// Warnings that an element posts during the lifetime of this object.
 class Warnings {
  public:
   explicit Warnings(GstElement* element) : element_(GST_ELEMENT(gst_object_ref(element))) {
@@ -159,7 +159,7 @@ class Warnings {
   }
   Warnings(const Warnings&) = delete;
   Warnings& operator=(const Warnings&) = delete;
-  /// Those since the last call.
+  /// Returns the warnings since the last call.
   std::vector<std::string> Take() {
     std::vector<std::string> texts;
     while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) {

@@ -122,7 +122,7 @@ TEST(RtpLidarPay, AggregatesTheSmallSlicesOfAScan) {
   EXPECT_EQ(packets[1].payload[0], 0x20);
   EXPECT_TRUE(packets[1].marker);
   EXPECT_EQ(packets[2].payload.size(), 1 + kSlices * (4 + 36 + 200));
-  // A slice that does not fit pushes out what is there; at the end nothing stays behind.
+  // A slice that does not fit sends the aggregate before it; at EOS the last one leaves.
   gst_harness_push(h.get(), EncodedSlice(2, 0, 200));
   gst_harness_push(h.get(), EncodedSlice(2, 1, 5'000));
   gst_harness_push(h.get(), EncodedSlice(2, 2, 200));
@@ -142,8 +142,8 @@ TEST(RtpLidarPay, HoldsAggregatesNoLongerThanMaxPtime) {
   EXPECT_EQ(gst_harness_query_latency(h.get()), 50 * GST_MSECOND);
 }
 
-/// Slices take 25 ms each: what is held is the time from the first one's begin to the last one's
-/// end.
+/// Slices take 25 ms each. The duration of an aggregate is from its first slice's begin to its last
+/// one's end.
 TEST(RtpLidarPay, CountsTheDurationOfTheLastSliceInMaxPtime) {
   for (const gint64 max_ms : {49, 50, 51}) {
     const Harness h(gst_harness_new("rtplidarpay"));
@@ -202,7 +202,7 @@ TEST(RtpLidarPay, TakesItsHeadersOffTheTargetBitrate) {
     if (gst_lidar_event_parse_target_bitrate(e, &t)) seen.push_back(t);
   }
   ASSERT_EQ(seen.size(), 2U);
-  // Before anything is known: 10 bytes of header in each full packet.
+  // The first guess is 10 bytes of header in each full packet.
   EXPECT_NEAR(seen[0].bitrate, 5e6 * (1 - 10.0 / 1'388), 2);
   const double share = static_cast<double>(Stat(h.get(), "slice-bytes")) /
                        static_cast<double>(Stat(h.get(), "payload-bytes"));
@@ -223,7 +223,7 @@ TEST(RtpLidarPay, AddsItsHeadersToTheBoundsOfTheEncoder) {
     GstLidarBitrateBounds bounds{};
     if (gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) seen.push_back(bounds);
   }
-  // A guess at first, then as measured, and no more often than that.
+  // The bounds are a guess at first, then measured, and sent no more often than that.
   ASSERT_GE(seen.size(), 2U);
   EXPECT_LE(seen.size(), 8U);
   const double share = static_cast<double>(Stat(h.get(), "slice-bytes")) /
@@ -247,7 +247,7 @@ TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
   EXPECT_TRUE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));
-  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));  // no second
+  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));  // no second one
   gst_element_set_bus(h->element, nullptr);
   gst_object_unref(bus);
 }

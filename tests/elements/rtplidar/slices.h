@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Encoded slices without an encoder, RTP buffers taken apart, and a depayloader for them.
+// Encoded slices without an encoder, parsed RTP buffers, and a depayloader for them.
 #pragma once
 #include <gst/check/gstharness.h>
 #include <gst/rtp/gstrtpbuffer.h>
@@ -63,7 +63,7 @@ struct Rtp {
   guint16 sequence = 0;
   guint32 timestamp = 0;
   std::vector<guint8> payload;
-  /// First byte of the payload: packet type and unit type.
+  /// Reads packet type and unit type in the first byte of the payload.
   bool IsConfig() const { return (payload.at(0) & 31) == 0 && payload.at(0) >> 5 != 1; }
 };
 
@@ -85,7 +85,7 @@ inline guint64 Stat(GstHarness* h, const char* name) {
 inline constexpr const char* kRtpCaps =
     "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96";
 
-/// The packets of `scans` scans.
+/// Returns the packets of `scans` scans.
 inline std::vector<gst::BufferPtr> Packets(guint scans, gsize size = 3'000,
                                            bool aggregate = false) {
   Harness h(gst_harness_new("rtplidarpay"));
@@ -115,7 +115,7 @@ inline std::vector<gst::BufferPtr> Pull(GstHarness* h) {
   return out;
 }
 
-/// The packets with another payload type.
+/// Returns the packets with another payload type.
 inline std::vector<gst::BufferPtr> WithType(std::vector<gst::BufferPtr> packets, guint8 type) {
   for (auto& packet : packets) {
     GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// bitrateadapter behind real encoders, and behind stand-ins for those that need their hardware.
+// bitrateadapter after real encoders, and after stand-ins for encoders that need hardware.
 #include <gst/base/gstbasetransform.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using lidar::gst::EventPtr;
 using lidar::gst::PadPtr;
 using lidar::gst::StructurePtr;
 
-// A stand-in: passes everything, and has the bitrate properties of all encoders at once.
+// A stand-in: passes all buffers, and has the bitrate properties of all encoders at once.
 struct StandIn {
   GstBaseTransform parent;
   guint bitrate;
@@ -79,7 +79,7 @@ void stand_in_class_init(StandInClass* klass) {
                                         "The gst-lidar developers");
 }
 
-/// A factory has a type of its own: GStreamer finds the factory by it.
+/// Registers a type for the factory, because GStreamer finds the factory by the type.
 void RegisterStandIn(const std::string& factory) {
   if (GstElementFactory* known = gst_element_factory_find(factory.c_str()); known != nullptr) {
     gst_object_unref(known);
@@ -93,8 +93,8 @@ void RegisterStandIn(const std::string& factory) {
   gst_element_register(nullptr, factory.c_str(), GST_RANK_NONE, type);
 }
 
-/// `description` ends in a bitrateadapter of the name a, the only element that runs: hardware
-/// encoders need none of their devices to be told a bitrate.
+/// `description` ends in a bitrateadapter called a, the only element that runs: a bitrate can be
+/// set on hardware encoders without their devices.
 class Chain {
  public:
   explicit Chain(const std::string& description)
@@ -106,7 +106,7 @@ class Chain {
   }
   ~Chain() { gst_element_set_state(bin_.get(), GST_STATE_NULL); }
 
-  /// A target that comes from downstream.
+  /// Sends a target from downstream.
   bool Send(guint bps) {
     const GstLidarTargetBitrate target{bps, 1, 0, 0, 0, 0, "update"};
     const ElementPtr end(Find("end"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink and screamsrc that agree on a key by DTLS, over two links and over one.
+// screamsink and screamsrc agree on a key by DTLS, over two links and over one.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -22,7 +22,7 @@ guint64 PacketsOf(GstElement* sink) {
   return std::accumulate(first.begin(), first.end(), guint64{0});
 }
 
-/// Plays until so many packets came through, which ends both.
+/// Plays until so many packets came through, then ends both.
 void Stream(Pipeline& sender, BondReceiver& receiver, guint packets) {
   g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
   sender.Play();
@@ -32,8 +32,8 @@ void Stream(Pipeline& sender, BondReceiver& receiver, guint packets) {
   EXPECT_TRUE(receiver.pipeline.Ends());
 }
 
-/// Datagrams that the second link carries before it dies: no hello, part of it, more of the
-/// handshake, the handshake and some packets.
+/// The parameter is the number of datagrams on the second link before it dies: before the hello,
+/// within it, within the handshake, after the handshake, after some packets.
 class BondedDtls : public ::testing::TestWithParam<int> {};
 
 TEST_P(BondedDtls, GoesOnOverOneLinkWhereTheOtherDies) {

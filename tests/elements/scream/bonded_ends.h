@@ -23,7 +23,7 @@ inline const std::string kBondedAudio =
     "audiotestsrc name=src num-buffers=150 samplesperbuffer=441 is-live=true ! "
     "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! ";
 
-/// Of the screamsrc `in`.
+/// Returns the port of the screamsrc `in`.
 inline std::string BoundPort(Pipeline& pipeline) {
   GSocket* socket = nullptr;
   g_object_get(pipeline.Get("in").get(), "used-socket", &socket, nullptr);
@@ -34,7 +34,7 @@ inline std::string BoundPort(Pipeline& pipeline) {
   return std::to_string(port);
 }
 
-/// A screamsrc of raw audio on a free port, and what comes out of it.
+/// A screamsrc of raw audio on a free port, and the number of buffers that came through.
 struct BondReceiver {
   explicit BondReceiver(const std::string& options = "")
       : pipeline("screamsrc name=in port=0 " + options +
@@ -58,7 +58,7 @@ inline std::string Bonded(const std::string& addresses, const std::string& more 
   return kBondedAudio + "screamsink name=out bonding-addresses=\"" + addresses + "\" " + more;
 }
 
-/// Of each element of the array `links` in `stats`.
+/// Returns a field of each element of the array `links` in `stats`.
 inline std::vector<guint64> OfLinks(GstElement* element, const char* field) {
   GstStructure* raw = nullptr;
   g_object_get(element, "stats", &raw, nullptr);
@@ -74,8 +74,8 @@ inline std::vector<guint64> OfLinks(GstElement* element, const char* field) {
   return values;
 }
 
-/// A router between the links of a sender and one receiver: each link has a port of its own here,
-/// and another address for the receiver.
+/// A router between the links of a sender and one receiver. Each link has a port of its own here,
+/// and comes from an address of its own to the receiver.
 class Router {
  public:
   static constexpr int kLinks = 2;
@@ -103,17 +103,17 @@ class Router {
            "@127.0.0.2";
   }
 
-  /// Link 1 dies after so many datagrams, both ways together.
+  /// Link 1 dies after so many datagrams in both directions together.
   std::atomic<int> left{1 << 30};
-  /// No link carries anything.
+  /// No link carries any datagram.
   std::atomic<bool> dark{false};
   /// Feedback of each link goes to the other one.
   std::atomic<bool> swaps{false};
-  /// Link 1 loses what the sender sends.
+  /// Link 1 loses the sender's datagrams.
   std::atomic<bool> loses{false};
-  /// Link 1 loses what the receiver sends.
+  /// Link 1 loses the receiver's datagrams.
   std::atomic<bool> mutes{false};
-  /// The receiver sees link 1 at another address each time so many milliseconds have passed.
+  /// Link 1 has a new address at the receiver each time so many milliseconds have passed.
   std::atomic<int> moves_each_ms{0};
   std::atomic<int> moves{0};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans over several links: how they are coded makes no difference.
+// Scans over several links: the coder makes no difference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,14 +23,14 @@ struct Coding {
 
 std::string NameOf(const ::testing::TestParamInfo<Coding>& info) { return info.param.name; }
 
-/// The coded slices that pass an identity: scan, slice of how many, bytes.
+/// Keeps the coded slices that pass an identity: scan, index and count, bytes.
 class PassingSlices {
  public:
   explicit PassingSlices(const ElementPtr& identity) {
     g_object_set(identity.get(), "signal-handoffs", TRUE, nullptr);
     g_signal_connect(identity.get(), "handoff", G_CALLBACK(OnSlice), this);
   }
-  /// The links may change their order.
+  /// Returns them sorted, because the links may change their order.
   std::vector<std::string> sorted() const {
     const std::lock_guard lock(mutex_);
     std::vector<std::string> slices = slices_;
@@ -77,7 +77,7 @@ TEST_P(BondedScans, ComeOnceAndWholeOverTwoLinks) {
   sender.Play();
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.Ends());
-  // A live encoder that is late leaves slices out.
+  // The slices sent are compared, because a live encoder that is late leaves slices out.
   const std::vector<std::string> slices = sent.sorted();
   EXPECT_FALSE(slices.empty());
   EXPECT_TRUE(got.sorted() == slices) << got.sorted().size() << " of " << slices.size();

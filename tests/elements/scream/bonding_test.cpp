@@ -335,7 +335,7 @@ TEST(Bonding, StartsAgainAndWithOneLink) {
   EXPECT_EQ(receiver.passed, 5U);
 }
 
-/// RTP datagrams that a sender of fixed audio puts on the wire.
+/// Returns the RTP datagrams that a sender of fixed audio puts on the wire.
 std::vector<std::string> Datagrams(const std::string& sink_options, const std::string& to_suffix) {
   GSocket* socket =
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);

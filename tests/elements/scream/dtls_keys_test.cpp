@@ -82,7 +82,7 @@ class DtlsEnds : public ::testing::Test {
     end.Take(buffer.get());
   }
   static bool IsOfHello(const Bytes& datagram) { return datagram[0] == 22 && datagram[13] == 1; }
-  /// The client's first hello, which may be of several datagrams.
+  /// Returns the client's first hello, which may take several datagrams.
   std::vector<Bytes> HelloOfClient() {
     std::vector<Bytes> hello;
     StartClient();
@@ -93,7 +93,7 @@ class DtlsEnds : public ::testing::Test {
     client_.reset();
     return hello;
   }
-  /// Ports that are answered to: as many as are expected, and what comes within 0.2 s after them.
+  /// Returns the ports that get answers: waits for `expected` ports, and then for 0.2 s.
   std::set<guint16> Answered(std::size_t expected) {
     std::set<guint16> ports;
     const auto take = [&] {
@@ -130,7 +130,7 @@ TEST_F(DtlsEnds, AgreeWhereEachOfTwoLinksLosesEveryThirdDatagram) {
   EXPECT_EQ(client_key_.size(), 30U);
 }
 
-/// The clock stands, so that this handshake is the only one.
+/// The clock stands still, so that this handshake is the only one.
 TEST_F(DtlsEnds, AgreeOverALinkThatLostTheHelloWhereTheOtherDies) {
   frozen_at = g_get_monotonic_time();
   StartServer();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A peer of several links: who becomes one, what each hears, and what came twice.
+// A peer of several links: which address becomes one, which links get reports, and which packets
+// are copies.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -21,11 +22,11 @@ using LinkAddress = std::unique_ptr<GSocketAddress, gst::GObjectUnref>;
 using Verdict = PeerLatch::Verdict;
 
 struct PeerLinks : ::testing::Test {
-  /// Packets of one SSRC are equal where their numbers are.
+  /// Sends a packet. Packets of one SSRC are equal if their numbers are.
   Verdict Send(const LinkAddress& from, std::uint16_t number, std::uint64_t salt = 1) {
     return latch.OnPacket(now, {from.get(), 1, number, {}, number * 1000003U + salt});
   }
-  /// Each packet over both links, 10 ms apart.
+  /// Sends each packet over both links, 10 ms apart.
   void SendBoth(const LinkAddress& sooner, const LinkAddress& later, int packets) {
     for (int i = 0; i < packets; ++i, ++seq, now += 10ms) {
       Send(sooner, seq);
@@ -57,7 +58,7 @@ TEST_F(PeerLinks, CopiesThatComeBeforeTheirOriginalsCountToo) {
   EXPECT_EQ(latch.links(), 2U);
 }
 
-// The first link's packets have no digests while nobody else sends.
+// Digests are made only once a second address sends.
 TEST_F(PeerLinks, ALinkThatRunsAheadAtTheStartIsNoRival) {
   for (std::uint16_t n = 0; n < PeerLatch::kProbation; ++n)
     latch.OnPacket(now, {first.get(), 1, static_cast<std::uint16_t>(seq + n), {}});
@@ -175,7 +176,7 @@ TEST(LinkStats, HaveEachItsOwnName) {
   }
 }
 
-/// Packets and copies of them in any order, over the wrap of their numbers.
+/// Sends packets and copies of them in any order, over the wrap of their numbers.
 TEST(SeenPackets, PassEachOfManyOnceOverTheWrapOfTheirNumbers) {
   SeenPackets seen;
   std::mt19937 random(9);

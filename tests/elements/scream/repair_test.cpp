@@ -21,7 +21,7 @@ struct Repair {
   const char* name;
   std::string sender, receiver;
   const char* repairer;
-  const char* counter;  // of what the repairer brought back
+  const char* counter;  // property with the number of repaired packets
   guint ssrcs;
 };
 void PrintTo(const Repair& r, std::ostream* out) { *out << r.name; }
@@ -48,7 +48,7 @@ struct Wire {
   int media = 0;
   int lost = 0;
 };
-/// Loses media packets evenly, but at both ends of the stream: nothing is repaired behind its end.
+/// Drops media packets evenly, except near both ends: a loss at the end is not repaired.
 GstPadProbeReturn Lose(GstPad*, GstPadProbeInfo* info, gpointer data) {
   Wire& wire = *static_cast<Wire*>(data);
   if (ReadRtp(GST_PAD_PROBE_INFO_BUFFER(info)).payload_type != kMediaType) return GST_PAD_PROBE_OK;
@@ -60,7 +60,7 @@ GstPadProbeReturn Lose(GstPad*, GstPadProbeInfo* info, gpointer data) {
 
 void Count(GstElement*, GstBuffer*, GstPad*, int* arrived) { ++*arrived; }
 
-/// The way back: a link would close a loop in the graph.
+/// Carries reports back to the sender: a link would close a loop in the graph.
 GstPadProbeReturn Back(GstPad*, GstPadProbeInfo* info, gpointer rtcp_sink) {
   gst_pad_chain(GST_PAD(rtcp_sink), gst_buffer_ref(GST_PAD_PROBE_INFO_BUFFER(info)));
   return GST_PAD_PROBE_DROP;
@@ -102,9 +102,9 @@ TEST_P(RepairTest, BringsBackWhatTheWireLostAndCongestionControlSeesItAll) {
   EXPECT_EQ(lost, 6);
   guint repaired = 0;
   g_object_get(pipeline.Get(repair.repairer).get(), repair.counter, &repaired, nullptr);
-  // On a busy machine the jitter buffer may give one up too early.
+  // The jitter buffer may give up a packet too early on a busy machine.
   EXPECT_GE(repaired, static_cast<guint>(lost / 2));
-  // One that was asked for twice is counted twice.
+  // A packet that was requested twice is counted twice.
   EXPECT_EQ(arrived, std::min(kPackets, kPackets - lost + static_cast<int>(repaired)));
   const Stats sent(tx.get());
   const Stats received(pipeline.Get("rx").get());
@@ -112,7 +112,7 @@ TEST_P(RepairTest, BringsBackWhatTheWireLostAndCongestionControlSeesItAll) {
   EXPECT_EQ(received["packets-received"], sent["packets-sent"] - static_cast<guint64>(lost));
   EXPECT_EQ(received["ssrcs"], repair.ssrcs);
   EXPECT_EQ(sent["feedback-foreign-blocks"], 0U);
-  // The last packets may end the stream before their report.
+  // The stream may end before its last packets' report.
   EXPECT_NEAR(static_cast<double>(sent["packets-lost"]), lost, 1);
   EXPECT_GE(sent["packets-acked"] + 40, received["packets-received"]);
 }

@@ -35,11 +35,11 @@ struct Rtp {
   bool marker = false;
   guint32 ssrc = 0x1234;
   guint8 payload_type = 96;
-  guint size = 1188;  // of the payload, where it is not given
+  guint size = 1188;  // of the payload, unless it is given
   std::vector<std::uint8_t> payload{};
 };
 
-/// The payload of a packet with a slice of its own.
+/// Returns the payload of a packet with a whole slice.
 inline std::vector<std::uint8_t> WholeSlice(std::uint64_t capture_ntp = 0) {
   lidar::rtp::Unit unit;
   const std::vector<std::uint8_t> bytes(100, 7);
@@ -114,7 +114,7 @@ class Stats {
     stats_.reset(s);
   }
   explicit Stats(const GstStructure* stats) : stats_(gst_structure_copy(stats)) {}
-  /// Member `index` of the array `name`.
+  /// Returns member `index` of the array `name`.
   Stats Of(const char* name, guint index) const {
     const GValue* array = gst_structure_get_value(stats_.get(), name);
     if (array == nullptr || gst_value_array_get_size(array) <= index) {
@@ -149,7 +149,7 @@ class Stats {
   StructurePtr stats_;
 };
 
-/// A clock that only the test moves, in the place of the system clock.
+/// A clock that only the test moves, in place of the system clock.
 class FakeTime {
  public:
   FakeTime() : clock_(gst_test_clock_new_with_start_time(1000 * GST_SECOND)) {
@@ -164,7 +164,7 @@ class FakeTime {
 
   GstTestClock* clock() const { return GST_TEST_CLOCK(clock_); }
   GstClockTime now() const { return gst_clock_get_time(clock_); }
-  /// Moves to `goal`, and lets whoever waits until then go on at its time.
+  /// Moves to `goal`, and wakes each waiter at its time.
   void AdvanceTo(GstClockTime goal) {
     for (;;) {
       GstClockID id = nullptr;
@@ -177,7 +177,7 @@ class FakeTime {
     }
     if (goal > now()) gst_test_clock_set_time(clock(), goal);
   }
-  /// Returns once the element's thread has done what there was to do, and waits.
+  /// Returns once the element's thread has finished its work and waits.
   void Settle() const { gst_test_clock_wait_for_next_pending_id(clock(), nullptr); }
   void Advance(GstClockTime time) { AdvanceTo(now() + time); }
 

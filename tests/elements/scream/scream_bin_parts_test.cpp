@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How screamsink and screamsrc set up what is in them, mostly without a packet.
+// How screamsink and screamsrc set up their elements, mostly without a packet.
 #include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ class ScreamBin : public ::testing::Test {
     return OwnedSocket(Of<GSocket*>(element, property));
   }
 
-  // What the bin's signals tell of, also as it goes.
+  // Notes of the bin's signals, which it also emits while it is freed.
   std::string added_, removed_;
   int notified_ = 0;
   OwnedElement bin_;
@@ -66,7 +66,7 @@ TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
   EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28U + 10);  // the tag
 }
 
-/// Else it would begin again in the clear.
+/// The bin would begin again in the clear if it dropped the key.
 TEST_F(ScreamBin, AKeyThatIsRefusedWhileItRunsLeavesTheOneBefore) {
   const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
   if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
@@ -257,7 +257,7 @@ TEST_F(ScreamBin, StatisticsHaveWhatTheSocketsCount) {
   EXPECT_EQ(Stats(bin_.get())["dropped-by-kernel"], 0U);
 }
 
-/// Feedback as the sink's socket gives it: alone or in a list.
+/// Pushes feedback as the sink's socket does: alone or in a list.
 class ScreamFeedbackFilter : public ScreamBin {
  protected:
   void Start(const char* host, bool strict) {
@@ -271,7 +271,7 @@ class ScreamFeedbackFilter : public ScreamBin {
       return GST_PAD_PROBE_OK;
     };
     gst_pad_add_probe(behind.get(), GST_PAD_PROBE_TYPE_BUFFER, count, &taken_, nullptr);
-    // The source waits for its socket meanwhile.
+    // The source is blocked and waits for its socket meanwhile.
     pad_.reset(gst_element_get_static_pad(Child("ecnudpsrc").get(), "src"));
     gst_pad_push_event(pad_.get(), gst_event_new_stream_start("feedback"));
     const gst::CapsPtr caps(gst_caps_new_empty_simple("application/x-rtcp"));
@@ -288,7 +288,7 @@ class ScreamFeedbackFilter : public ScreamBin {
     g_object_unref(from);
     return buffer;
   }
-  /// How many packets got through, and how many did not.
+  /// Returns how many packets passed, and how many did not.
   std::pair<guint64, guint64> Counts() {
     return {taken_, Stats(bin_.get())["feedback-foreign-address"]};
   }
@@ -307,7 +307,7 @@ TEST_F(ScreamFeedbackFilter, TakesItFromHostAndPortOrFromTheHost) {
     EXPECT_EQ(Counts(), strict ? Pair(1, 1) : Pair(2, 0));
     gst_pad_push(pad_.get(), From("127.0.0.2", 5004));
     EXPECT_EQ(Counts(), strict ? Pair(1, 2) : Pair(2, 1));
-    gst_pad_push(pad_.get(), gst_buffer_new_allocate(nullptr, 12, nullptr));  // from nobody
+    gst_pad_push(pad_.get(), gst_buffer_new_allocate(nullptr, 12, nullptr));  // without an address
     EXPECT_EQ(Counts(), strict ? Pair(1, 3) : Pair(2, 2));
     To(GST_STATE_NULL);
     To(GST_STATE_READY);

@@ -109,7 +109,7 @@ struct Latch : ::testing::Test {
     const ByteView payload = with_slice ? ByteView{kSlice.data(), kSlice.size()} : ByteView{};
     return latch.OnPacket(now, {from.get(), ssrc, seq, payload});
   }
-  /// A packet each 10 ms; true where the latch moved.
+  /// Sends a packet each 10 ms. Returns true if the latch moved.
   bool Stream(const AddressPtr& from, std::uint32_t ssrc, std::uint16_t first, int packets,
               bool with_slices = false) {
     bool moved = false;

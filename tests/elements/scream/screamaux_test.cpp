@@ -20,7 +20,7 @@ struct Told {
   guint64 arrival = GST_SECOND;
 };
 
-/// As rtpsession has it.
+/// Returns a report in the form of rtpsession's event.
 GstEvent* Report(const std::vector<Told>& packets) {
   GValue list = G_VALUE_INIT;
   g_value_init(&list, g_type_from_name("GValueArray"));
@@ -54,7 +54,7 @@ class ScreamAux : public ::testing::Test {
   guint8 extension = kExtension;  // of packets that Push() numbers
 
   void SetUp() override {
-    // The name of the list's type is known once somebody used it.
+    // The type of the list has a name once it was used.
     g_type_class_ref(G_TYPE_OBJECT);
     ASSERT_NE(g_type_from_name("GValueArray"), G_TYPE_INVALID);
     gst_harness_set_src_caps_str(
@@ -130,11 +130,11 @@ TEST_F(ScreamAux, TheSizeOfAPacketIsKnownAsLongAsAReportMayTellOfIt) {
   for (const guint size : {99U, 101U, 1200U}) Tell({{0, size}});
   EXPECT_EQ(Stat("twcc-mismatched"), 3U);
   EXPECT_EQ(Stat("packets-acked"), 0U);
-  // One wrong packet is enough.
+  // A wrong packet makes the whole report wrong.
   Tell({{0}, {1}, {2, 99}});
   EXPECT_EQ(Stat("twcc-mismatched"), 4U);
   EXPECT_EQ(Stat("twcc-packets"), 0U);
-  Tell({{0, 0}, {1}});  // a session that does not tell the size
+  Tell({{0, 0}, {1}});  // from a session that does not give the size
   EXPECT_EQ(Stat("packets-acked"), 2U);
   EXPECT_EQ(Stat("twcc-packets"), 2U);
   Tell({{40}});  // not sent yet
@@ -147,7 +147,7 @@ TEST_F(ScreamAux, TheTimesOfAReportMayReachIntoASecondPeriodOfItsClock) {
   constexpr auto kPeriod = static_cast<guint64>(scream::kTwccPeriod.count());
   Tell({{0, 100, false, kPeriod + GST_SECOND}, {1, 100, false, kPeriod + GST_SECOND}});
   EXPECT_EQ(Stat("packets-acked"), 2U);
-  Tell({{2, 100, false, 2 * kPeriod + 1}});  // no report can say that
+  Tell({{2, 100, false, 2 * kPeriod + 1}});  // beyond what a report can express
   EXPECT_EQ(Stat("packets-acked"), 2U);
 }
 
@@ -155,7 +155,7 @@ TEST_F(ScreamAux, NoReportReachesFurtherThanItsFormat) {
   Push();
   ASSERT_EQ(Leave(), 1);
   constexpr guint kMost = scream::kMaxTwccPackets;
-  Tell({{0}, {kMost - 1}});  // which may have been sent since
+  Tell({{0}, {kMost - 1}});  // may have been sent meanwhile
   EXPECT_EQ(Stat("twcc-mismatched"), 0U);
   Tell({{0}, {kMost}});
   EXPECT_EQ(Stat("twcc-mismatched"), 1U);
@@ -174,7 +174,7 @@ TEST_F(ScreamAux, FindsTheExtensionByItsUriHoweverCapsHaveIt) {
     extension = 14;
     Push();
     extension = kExtension;
-    Push();  // of another extension now
+    Push();  // with another extension now
     ASSERT_EQ(Leave(), 3);
     Tell({{next++}});
     EXPECT_EQ(Stat("packets-acked"), before + 1) << extmap;
@@ -208,7 +208,7 @@ TEST(ScreamAuxSettings, FitASessionWithTransportWideFeedback) {
   EXPECT_EQ(overhead, 20U + 8 + 10);  // IPv4, UDP and the tag of SRTP
   EXPECT_EQ(interval, 500 * GST_MSECOND);
   EXPECT_EQ(ecn, 0);
-  // Its estimate is that of screamtx.
+  // The estimate of screamaux is that of its screamtx.
   g_signal_connect(element.get(), "notify::estimated-bitrate",
                    G_CALLBACK(+[](GObject*, GParamSpec*, int* n) { ++*n; }), &notified);
   g_object_notify(G_OBJECT(tx.get()), "estimated-bitrate");
@@ -232,8 +232,8 @@ TEST_F(ScreamAux, AbsurdReportsDoNoHarm) {
 }
 
 TEST_F(ScreamAux, MeasuresDelayInTicksOfTheReport) {
-  // Two packets of a report arrive 21 ms apart. Where times are in 1/1024 s, the first seems to
-  // have come almost half a millisecond earlier.
+  // Two packets of a report arrive 21 ms apart. If times were in 1/1024 s, the first would seem to
+  // come almost half a millisecond earlier.
   constexpr guint64 kTick = 250 * GST_USECOND;
   guint number = 0;
   for (int report = 0; report < 8; ++report) {
@@ -242,7 +242,7 @@ TEST_F(ScreamAux, MeasuresDelayInTicksOfTheReport) {
       time.Advance(11 * GST_MSECOND);
       Push();
       ASSERT_EQ(Leave(1), 1);
-      // All of the last report's packets waited for one tick.
+      // All packets of the last report waited for one tick.
       const guint64 delay = 40 * kTick + (report == 7 ? kTick : 0);
       told.push_back({number++, 100, false, time.now() + delay - i * GST_MSECOND});  // as Report()
     }
@@ -255,7 +255,7 @@ TEST_F(ScreamAux, ForgetsTheExtensionWhereNewCapsHaveNone) {
   Push();
   ASSERT_EQ(Leave(), 1);
   gst_harness_set_src_caps_str(harness.get(), kRtpCaps);
-  Push();  // what has the extension's id means something else now
+  Push();  // the extension's id now means something else
   ASSERT_EQ(Leave(), 1);
   gst_harness_set_src_caps_str(
       harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + scream::kTwccUri).c_str());
@@ -270,7 +270,7 @@ TEST_F(ScreamAux, ReportsThatAnAttackerMakesUpMoveNothing) {
   const int sent = Leave();
   ASSERT_GT(sent, 2);
   const guint64 target = Stat("target-bitrate");
-  // Packets that were never sent, sizes of others, arrivals long before and after, all at once.
+  // Reports of packets that were never sent, with wrong sizes, with arrivals long before and after.
   for (guint first : {100U, 20000U, 65000U}) Tell({{first}, {first + 1}, {first + 2}});
   Tell({{0, 1200}, {1, 1200}});
   for (guint64 arrival : {guint64{1}, guint64{12 * 24 * 3600} * GST_SECOND, G_MAXUINT64 / 2}) {
@@ -331,8 +331,8 @@ TEST_F(ScreamAux, TellsTheEncoderItsTargetAndHasTheSendersProperties) {
   EXPECT_TRUE(told);
 }
 
-/// Sender and receiver are stock rtpbins; nothing of ours but screamaux, before the sender's or in
-/// it, as its request-aux-sender puts it.
+/// Sender and receiver are stock rtpbins. The only element of ours is screamaux, before the
+/// sender's rtpbin or in it, where request-aux-sender puts it.
 class ScreamAuxWithRtpbin : public ::testing::TestWithParam<bool> {};
 TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
   const bool inside = GetParam();

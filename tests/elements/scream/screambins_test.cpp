@@ -192,7 +192,7 @@ TEST(ScreamBins, InputThatIsNotLiveTakesItsTimeAfterAFlushingSeekToo) {
   EXPECT_TRUE(Eventually([&] { return Stats(out.get())["packets-sent"] >= sent + 100; }));
   const auto after = static_cast<double>(Stats(out.get())["packets-sent"] - sent);
   const double seconds = static_cast<double>(g_get_monotonic_time() - start) / 1e6;
-  EXPECT_LE(after, 100 * seconds + 25);  // packets of 10 ms, and what the queue may hold
+  EXPECT_LE(after, 100 * seconds + 25);  // packets of 10 ms, and what the queue may contain
 }
 
 TEST(ScreamBins, MoreThanTheNetworkTakesIsHeldBackNotDroppedWhereInputIsNotLive) {

@@ -65,7 +65,8 @@ class ScreamRx : public ::testing::Test {
     EXPECT_TRUE(report);
     return report.value_or(CongestionFeedback{});
   }
-  /// The first packet of all is reported at once; those behind it show the rules.
+  /// Pushes the very first packet, which is reported at once. Later packets follow the rules of
+  /// reports.
   void PushFirst(guint16 seq) {
     Rtp r;
     r.seq = seq;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The streams of a screamrx: how they end, what their sender says, and the pad of each.
+// The streams of a screamrx: how they end, their sender's reports, and the pad of each.
 #include "tests/elements/scream/screamrx_fixture.h"
 
 namespace lidar::test {
@@ -12,7 +12,7 @@ TEST_F(ScreamRx, EndsWhenEveryStreamSaidGoodbye) {
   ASSERT_EQ(Push({}), GST_FLOW_OK);
   ASSERT_EQ(Push(other), GST_FLOW_OK);
   EXPECT_EQ(PushBye({0x1234}), GST_FLOW_OK);
-  EXPECT_EQ(PushBye({0x9999}), GST_FLOW_OK);  // of nobody we know
+  EXPECT_EQ(PushBye({0x9999}), GST_FLOW_OK);  // of an unknown SSRC
   EXPECT_EQ(Push(other), GST_FLOW_OK);
   EXPECT_EQ(PushBye({0x5678}), GST_FLOW_EOS);
   EXPECT_EQ(Push(other), GST_FLOW_EOS);
@@ -44,7 +44,7 @@ TEST_F(ScreamRx, EndsWithASenderThatRestartedThoughItsFirstSsrcNeverSaidGoodbye)
   time.Settle();
   time.Advance(3 * GST_SECOND);
   ASSERT_EQ(Push(next), GST_FLOW_OK);
-  EXPECT_EQ(PushBye({0x5678}), GST_FLOW_OK);  // the first may go on
+  EXPECT_EQ(PushBye({0x5678}), GST_FLOW_OK);  // the first stream may continue
   next.seq = 1;
   ASSERT_EQ(Push(next), GST_FLOW_OK);
   time.Settle();
@@ -82,13 +82,13 @@ TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
   EXPECT_EQ(stats["sender-queue-delay"], 3 * GST_MSECOND);
   EXPECT_EQ(stats["sender-packets-lost"], 11U);
   EXPECT_EQ(stats["sender-report-age"], 250 * GST_MSECOND);
-  report.time_ms += 1000;  // over the wrap
+  report.time_ms += 1000;  // over the wrap of the time
   report.packets_lost = 12;
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["sender-packets-lost"], 12U);
   EXPECT_EQ(Passed(), 1U);
   time.Advance(11 * GST_SECOND);
-  report.time_ms = 5;  // the sender was started anew
+  report.time_ms = 5;  // the sender was restarted
   report.packets_lost = 0;
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["sender-packets-lost"], 0U);
@@ -165,7 +165,7 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
     Rtp lidar;
     lidar.seq = seq;
     ASSERT_EQ(Push(lidar), GST_FLOW_OK);
-    Rtp repair;  // not in the map: stays with the first
+    Rtp repair;  // not in the map: stays with the first stream
     repair.ssrc = 0x9abc;
     repair.payload_type = 110;
     repair.seq = seq;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamrx under a test clock: what it reports, to whom, and whom it believes.
+// screamrx under a test clock: what it reports, to which addresses, and which packets it accepts.
 #include <set>
 
 #include "gst/net/udp_socket.h"
@@ -152,7 +152,7 @@ TEST_F(ScreamRx, PassesOnceWhatCameByTwoLinksAndAnswersBoth) {
     answered.insert(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(meta->addr)));
   }
   EXPECT_EQ(answered, (std::set<guint16>{4711, 4712}));
-  // The first copies only proved that the second address is a link.
+  // The first copies only showed that the second address is a link.
   EXPECT_EQ(Stats(element)["packets-foreign"], 3U);
   EXPECT_EQ(Stats(element)["packets-copies"], 17U);
 }
@@ -179,7 +179,7 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
     r.seq = seq;
     ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
   }
-  EXPECT_EQ(Passed(), 7U);  // four of the new address had to prove themselves
+  EXPECT_EQ(Passed(), 7U);  // the first four packets of the new address were its probation
   EXPECT_EQ(Stats(element)["peer-moves"], 1U);
   r.seq = 11;
   r.marker = true;
@@ -190,7 +190,7 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
     ASSERT_EQ(report.blocks.size(), 1U);
     last = report.blocks[0];
   } while (last.begin_seq + last.metrics.size() <= 11);
-  EXPECT_EQ(last.begin_seq, 5);  // what the old address sent is none of the new one's business
+  EXPECT_EQ(last.begin_seq, 5);  // the report has no packets of the old address
 }
 
 TEST_F(ScreamRx, BelievesTheSenderWhoseSlicesAreWholeOverOneWhoSendsOften) {
@@ -227,7 +227,7 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
       ASSERT_EQ(Push(r), GST_FLOW_OK);
     }
     ++r.seq;
-    r.payload = WholeSlice();  // says nothing: as the one before
+    r.payload = WholeSlice();  // without a time: as the one before
     ASSERT_EQ(Push(r), GST_FLOW_OK);
     EXPECT_EQ(Passed(), asked ? 2U : 5U);
     EXPECT_EQ(Stats(element)["packets-old"], asked ? 3U : 0U);
@@ -250,7 +250,7 @@ TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
   Rtp recorded = r;
   recorded.payload = WholeSlice(lidar::rtp::ToNtp(now - 3600 * GST_SECOND));
   ASSERT_EQ(Push(recorded, GST_LIDAR_ECN_ECT1, "10.0.0.9"), GST_FLOW_OK);
-  r.payload = WholeSlice();  // says nothing: as the one before
+  r.payload = WholeSlice();  // without a time: as the one before
   ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   EXPECT_EQ(Passed(), 2U);
   EXPECT_EQ(Stats(element)["packets-old"], 1U);
@@ -341,7 +341,7 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
   for (const char* counter :
        {"packets-received", "ssrcs", "packets-foreign", "sender-reports", "goodbyes"})
     EXPECT_EQ(Stats(element)[counter], 0U) << counter;
-  // The address that was foreign is the first now.
+  // The address that was foreign is now the first.
   EXPECT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["packets-foreign"], 0U);
 }

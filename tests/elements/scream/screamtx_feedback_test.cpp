@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What screamtx makes of RTCP: reports, lies, and what is not for it.
+// What screamtx makes of RTCP: reports, forgeries, and packets for others.
 #include <gtest/gtest.h>
 #include <time.h>
 
@@ -59,7 +59,7 @@ TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
   EXPECT_GT(told.rtt, 0U);
 }
 
-/// Sends a packet each 10 ms. `arrives` says how the reports have the packet of a number.
+/// Sends a packet each 10 ms. `arrives` returns what reports contain for a packet's number.
 class ScreamTxFates : public ScreamTx {
  protected:
   template <class Arrives>
@@ -99,8 +99,8 @@ TEST_F(ScreamTxFates, AreCountedEachByItsName) {
   Run(60, arrives);
   EXPECT_EQ(Stats(element)["packets-lost"], 3U);
   EXPECT_EQ(Stats(element)["packets-late"], 0U);
-  Run(1, [&](guint16 seq) { return seq == 4 ? arrived : arrives(seq); });  // one of them comes
-  // A block of another sender's packets, a lie, and a report that is cut off.
+  Run(1, [&](guint16 seq) { return seq == 4 ? arrived : arrives(seq); });  // a lost one arrives
+  // A block of another sender's packets, a forgery, and a report that is cut off.
   CongestionFeedback report = ReportOf(arrives);
   report.blocks.push_back({0x9999, 0, {arrived}});
   Feed(report);
@@ -129,7 +129,7 @@ TEST_F(ScreamTxFates, AreCountedEachByItsName) {
 
 TEST_F(ScreamTx, TellsTheEncoderTheRoundTripAndTheQueueThatItShows) {
   Start();
-  // An empty path of 40 ms, then one whose queue takes 30 ms more.
+  // The path is empty with 40 ms at first, then a queue adds 30 ms.
   for (const guint64 round_trip_ms : {40U, 70U})
     for (guint32 i = 0; i < 30; ++i) {
       PushFrame(next_seq_ * 900U, 1);
@@ -196,7 +196,8 @@ TEST_F(ScreamTx, TellsThePayloaderOfNoPacketThatHasNotArrived) {
 
 TEST_F(ScreamTx, TakesNoReceiptsFromReportsThatNameNoReceiver) {
   Start(kLidarCaps);
-  // As transport-wide feedback does, whose packets may still be dropped behind it.
+  // Transport-wide feedback names no receiver, and the packets that it reports may still be
+  // dropped.
   for (const guint32 ssrc : {0U, 9U}) {
     receiver = ssrc;
     const std::size_t before = acknowledged_;
@@ -260,8 +261,8 @@ TEST_F(ScreamTx, SleepsWhileAKeyUnitHasToWait) {
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
   ASSERT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
-  // The clock of the test stands, so the second one waits on; who tells upstream looks at it every
-  // 200 ms.
+  // The clock of the test stands still, so the second request waits; the control thread looks at it
+  // every 200 ms.
   const auto processor_time = [] {
     timespec spent{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
@@ -284,7 +285,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   const auto ccfb = scream::BuildCcfb(ours);
   auto compound = receiver_report;
   compound.insert(compound.end(), ccfb.begin(), ccfb.end());
-  // rtpbin behind it computes round trips from the time, and knows the sender by the address.
+  // An rtpbin downstream computes round trips from the time, and finds the sender by the address.
   GstBuffer* datagram = FromBytes(compound);
   GST_BUFFER_PTS(datagram) = 7 * GST_SECOND;
   const std::unique_ptr<GSocketAddress, gst::GObjectUnref> peer(
@@ -298,7 +299,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   ASSERT_TRUE(meta);
   EXPECT_EQ(meta->addr, peer.get());
 
-  ours.blocks[0].ssrc = 0x9999;  // of another sender behind us
+  ours.blocks[0].ssrc = 0x9999;  // of another sender after us
   const auto theirs = scream::BuildCcfb(ours);
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(theirs)), GST_FLOW_OK);
   const BufferPtr passed(gst_harness_pull(rtcp.get()));
@@ -424,7 +425,7 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
   EXPECT_TRUE(tells(next(), FALSE));
   Collect();
-  acknowledged_ = sent.size();  // some between them were dropped
+  acknowledged_ = sent.size();  // some packets between were dropped
   run(40, true);
   EXPECT_TRUE(tells(next(), TRUE));
   run(60, false);
@@ -435,7 +436,7 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   gst_harness_play(rtp.get());
   run(38, false);
   EXPECT_FALSE(next());
-  run(10, false);  // nobody was told of this run yet
+  run(10, false);  // in this run there was no message yet
   message = next();
   ASSERT_TRUE(message);
   EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
@@ -444,7 +445,7 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   gst_object_unref(bus);
 }
 
-/// A stream that ends after some time, and whether a warning says that nobody received it.
+/// A stream that ends after some time, and whether a warning says that no receiver answered.
 class ScreamTxEnds : public ScreamTx {
  protected:
   ScreamTxEnds() { gst_element_set_bus(element, bus_); }
@@ -454,7 +455,7 @@ class ScreamTxEnds : public ScreamTx {
     gst_object_unref(bus_);
     ScreamTx::TearDown();
   }
-  /// Returns the warnings that stand before the end.
+  /// Returns the number of warnings before the end.
   int WarningsOf(GstClockTime length, bool answered) {
     Start();
     for (GstClockTime at = 0; at < length; at += 10 * GST_MSECOND) {

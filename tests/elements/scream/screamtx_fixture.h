@@ -30,7 +30,7 @@ class ScreamTx : public ::testing::Test {
     gst_harness_set_src_caps_str(rtp.get(), caps);
     gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
   }
-  /// As the end of RTCP's way, which nobody gets the rest of.
+  /// Starts without an element after rtcp_src, so that other RTCP is dropped.
   void StartAsLast(const char* caps) {
     rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
     rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
@@ -43,7 +43,7 @@ class ScreamTx : public ::testing::Test {
     gst_object_unref(element);
   }
   GstFlowReturn Push(const Rtp& r) { return gst_harness_push(rtp.get(), NewRtp(r)); }
-  /// A frame of `packets`, with the next sequence numbers.
+  /// Pushes a frame of `packets` packets, with the next sequence numbers.
   void PushFrame(guint32 timestamp, int packets) {
     for (int i = 0; i < packets; ++i) {
       Rtp r;
@@ -53,7 +53,7 @@ class ScreamTx : public ::testing::Test {
       ASSERT_EQ(Push(r), GST_FLOW_OK);
     }
   }
-  /// Takes what has left so far.
+  /// Takes the packets that have left so far.
   void Collect() {
     time.Settle();
     while (BufferPtr buffer{gst_harness_try_pull(rtp.get())}) {
@@ -68,7 +68,7 @@ class ScreamTx : public ::testing::Test {
                                                                            : -1);
     }
   }
-  /// A report of all packets sent and not yet reported.
+  /// Reports all packets that were sent and not yet reported.
   void Acknowledge(scream::Ecn ecn = scream::Ecn::kEct1) {
     Collect();
     if (acknowledged_ == sent.size()) return;
@@ -92,7 +92,7 @@ class ScreamTx : public ::testing::Test {
     if (from) gst_buffer_add_net_address_meta(buffer, from.get());
     ASSERT_EQ(gst_harness_push(rtcp.get(), buffer), GST_FLOW_OK);
   }
-  /// The target-bitrate events that reached upstream so far.
+  /// Returns the target-bitrate events that reached upstream so far.
   static std::vector<GstLidarTargetBitrate> Targets(GstHarness* h) {
     std::vector<GstLidarTargetBitrate> targets;
     while (EventPtr event{gst_harness_try_pull_upstream_event(h)}) {
@@ -111,7 +111,7 @@ class ScreamTx : public ::testing::Test {
       gst_event_unref(event);
     }
   }
-  /// The names of all events that go upstream, those of three more pulses included.
+  /// Returns the names of all events upstream, those of three more pulses included.
   std::multiset<std::string> NamesUpstream(GstHarness* h) {
     std::multiset<std::string> names;
     const auto note = [&](GstEvent* event) {
@@ -127,9 +127,9 @@ class ScreamTx : public ::testing::Test {
     }
     return names;
   }
-  /// The target that the pulse brings, long after everything before.
+  /// Returns the target of the next pulse, long after earlier events.
   GstLidarTargetBitrate NextTarget(GstHarness* h) {
-    g_usleep(20'000);  // the control thread runs on real time; what is left over comes now
+    g_usleep(20'000);  // the control thread runs on real time; its late events come now
     Targets(h);
     time.Advance(250 * GST_MSECOND);
     GstLidarTargetBitrate target{};
@@ -145,7 +145,7 @@ class ScreamTx : public ::testing::Test {
   }
 
   std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;  // of feedback; none by default
-  guint32 receiver = 9;                                     // that reports come from
+  guint32 receiver = 9;                                     // SSRC that reports come from
   std::vector<int> ecns;
   std::vector<std::vector<std::uint8_t>> byes;
   guint16 next_seq_ = 0;

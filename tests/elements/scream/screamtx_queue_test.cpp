@@ -37,7 +37,7 @@ TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
   Collect();
   std::map<guint32, int> packets;
   for (const Rtp& r : sent) ++packets[r.timestamp];
-  EXPECT_EQ(packets[0], 30);  // it had begun to leave
+  EXPECT_EQ(packets[0], 30);  // its first packet had left
   EXPECT_EQ(packets[99999], 2);
   EXPECT_EQ(packets.size(), 2U);
   const Stats stats(element);
@@ -165,7 +165,7 @@ TEST_F(ScreamTx, AnswersNoQueryThatWouldOvertakeThePackets) {
   EXPECT_FALSE(gst_pad_peer_query(rtp->srcpad, drain.get()));
 }
 
-/// Upstream of a screamtx that is live or not, as it says itself.
+/// A screamtx whose upstream answers that it is live, or not.
 class ScreamTxOf : public ScreamTx {
  protected:
   void StartLive(bool live) {
@@ -192,7 +192,7 @@ class ScreamTxOf : public ScreamTx {
 
 TEST_F(ScreamTxOf, ALiveStreamThatFollowsOneThatIsNotEntersAtOnce) {
   StartLive(false);
-  ASSERT_EQ(Push({}), GST_FLOW_OK);  // without a time to wait for
+  ASSERT_EQ(Push({}), GST_FLOW_OK);  // without a time
   live_ = true;
   ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("live")));
   auto pushed = PushAt(1, 3600 * GST_SECOND);
@@ -297,8 +297,8 @@ TEST_F(ScreamTx, HoldsNoMoreThanItsDelayThroughAnOutageAndRecoversWithinASecond)
   EXPECT_LT(down["sent-bitrate"], 400'000U);
   EXPECT_GT(down["feedback-timeouts"], 0U);
   EXPECT_GT(down["frames-dropped"], 1000U);
-  // 4 packets each 20 ms for at most five times the 200 ms: the rest of a frame that has begun may
-  // stay so long, and what came after it waits behind it.
+  // The queue has 4 packets each 20 ms, for at most five times the 200 ms: the rest of a frame that
+  // has begun may stay so long, and later frames wait behind it.
   EXPECT_LE(down["queued-bytes"], 51U * 4 * 1228);
   EXPECT_GT(down["packets-sent"], 0U);
   run(GST_SECOND, true);

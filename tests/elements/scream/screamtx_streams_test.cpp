@@ -14,7 +14,7 @@
 namespace lidar::test {
 namespace {
 
-/// Frame `i` of another stream, in one packet.
+/// Pushes frame `i` of another stream, in one packet.
 void PushSmallFrame(GstHarness* stream, int i) {
   Rtp r;
   r.ssrc = 0x5678;
@@ -107,7 +107,7 @@ TEST_F(ScreamTx, APadThatComesAndGoesWhilePlayingTakesItsShareAndLeavesIt) {
     Rtp r;
     r.ssrc = 0x5678;
     r.marker = true;
-    for (guint16 i = 0; i < 30; ++i) {  // more than the window lets go: some are in the queue
+    for (guint16 i = 0; i < 30; ++i) {  // more than the window allows: some wait in the queue
       r.seq = i;
       ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
     }
@@ -127,7 +127,7 @@ TEST_F(ScreamTx, APadThatComesAndGoesWhilePlayingTakesItsShareAndLeavesIt) {
 }
 
 TEST_F(ScreamTx, PadsThatAreAskedForByAllAtOnceAreGivenOnce) {
-  // Without the check for a taken name that gst_element_request_pad makes before it asks.
+  // Requests pads without gst_element_request_pad(), which checks for a taken name first.
   GstElementClass* klass = GST_ELEMENT_GET_CLASS(element);
   GstPadTemplate* templ = gst_element_class_get_pad_template(klass, "sink_%u");
   std::atomic<int> given{0};
@@ -165,7 +165,7 @@ TEST_F(ScreamTx, APadWithStrictPriorityGoesBeforeWhatWaits) {
   gst_harness_set_src_caps_str(audio.get(), kVideoCaps);
   const gst::PadPtr pad(gst_element_get_static_pad(element, "sink_1"));
   g_object_set(pad.get(), "strict-priority", TRUE, "max-bitrate", 100'000U, nullptr);
-  PushFrame(0, 60);  // half a second of the first target
+  PushFrame(0, 60);  // takes half a second at the first target
   Collect();
   const std::size_t before = sent.size();
   ASSERT_LT(before, 60U);
@@ -203,7 +203,7 @@ TEST_F(ScreamTx, AStrictPadGetsItsMaximumBeforeOthersGetMoreThanTheyNeed) {
 }
 
 TEST_F(ScreamTx, BitratesOfAPadWinOverThoseOfTheElement) {
-  for (const guint min : {2'000'000U, 9'000'000U}) {  // the second above the maximum
+  for (const guint min : {2'000'000U, 9'000'000U}) {  // the second is above the maximum
     const gst::PadPtr pad(gst_element_request_pad_simple(element, "sink_0"));
     g_object_set(pad.get(), "min-bitrate", min, "start-bitrate", 3'000'000U, "max-bitrate",
                  5'000'000U, nullptr);

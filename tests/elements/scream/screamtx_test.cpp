@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamtx under a test clock: what goes upstream, what leaves, what it says of itself.
+// screamtx under a test clock: its events upstream, its packets, its statistics.
 #include <gtest/gtest.h>
 
 #include "src/scream/feedback/sender_report.h"
@@ -15,7 +15,7 @@ TEST_F(ScreamTx, TellsTheEncoderItsStartBitrateWithTheCaps) {
   const auto targets = Targets(rtp.get());
   ASSERT_GE(targets.size(), 1U);
   EXPECT_STREQ(targets[0].reason, "start");
-  // The headers of 1200-byte packets are taken off.
+  // The target is without the headers of 1200-byte packets.
   EXPECT_NEAR(targets[0].bitrate, 2'000'000.0 * 1188 / 1228, 1000);
 }
 

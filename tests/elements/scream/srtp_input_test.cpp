@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a receiver with a key believes: other keys, replays, recordings, wraps and floods, by a
-// clock that the test sets.
+// What a receiver with a key accepts: other keys, replays, recordings, wraps and floods, by a clock
+// that the test sets.
 #include <dlfcn.h>
 #include <gst/check/gstharness.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 
 using lidar::test::frozen_at;
 
-/// Stands before GLib's in this program. Libraries do not see it: GStreamer's system clock would
-/// sleep until a time that the test has set.
+/// Replaces GLib's function in this program. It is hidden from libraries: GStreamer's system clock
+/// would sleep until a time that the test has set.
 extern "C" __attribute__((visibility("hidden"))) gint64 g_get_monotonic_time() {
   if (frozen_at != 0) return frozen_at;
   timespec now{};
@@ -75,7 +75,7 @@ class SrtpIn : public ::testing::Test {
     gst_object_unref(bus_);
   }
 
-  /// Whether the datagram came out.
+  /// Returns true if the datagram came out.
   bool Passes(const BufferPtr& datagram) {
     const std::size_t before = passed_.size();
     gst_pad_push(socket_, gst_buffer_ref(datagram.get()));
@@ -173,7 +173,7 @@ TEST_F(SrtpIn, JoinsAStreamThatHasWrappedWhoseReportsComeFirst) {
     Wait(0.2);
   }
   EXPECT_GE(refused, 2) << "so reports came in between";
-  // Once the media is found, its reports are still known, and no replay of them passes.
+  // Reports still pass once the media is found, and no replay of them does.
   const BufferPtr report = sender.ProtectReport();
   EXPECT_TRUE(Passes(report));
   EXPECT_FALSE(Passes(report));
@@ -206,7 +206,7 @@ TEST_F(SrtpIn, RefusesARecordingOfAStreamThatFellSilent) {
   Forge(30);
   for (int round = 0; round < 20; ++round)
     for (const BufferPtr& packet : recording) EXPECT_FALSE(Passes(packet));
-  // It goes on where it was.
+  // The stream continues at its place.
   EXPECT_TRUE(Passes(sender.Protect(7)));
 }
 
@@ -250,7 +250,7 @@ TEST_F(SrtpIn, ForgersDoNotMakeAStreamLost) {
   EXPECT_TRUE(Passes(sender.Protect(1)));
   Forge(3'000);
   EXPECT_TRUE(Passes(sender.Protect(2)));
-  // Nor did they use up what may be tried on strangers.
+  // The forgeries did not use up the tries for strangers, either.
   EXPECT_TRUE(Passes(sender.Protect(1, 99)));
 }
 
@@ -258,8 +258,8 @@ TEST_F(SrtpIn, TriesFiveHundredStrangersASecond) {
   Protector sender(Key(5));
   EXPECT_TRUE(Passes(sender.Protect(1)));
   for (guint32 ssrc = 1'000; ssrc < 1'600; ++ssrc) Forge(1, ssrc);
-  EXPECT_TRUE(Passes(sender.Protect(2)));       // it is no stranger
-  EXPECT_FALSE(Passes(sender.Protect(1, 99)));  // this one has to wait
+  EXPECT_TRUE(Passes(sender.Protect(2)));       // a known sender
+  EXPECT_FALSE(Passes(sender.Protect(1, 99)));  // a stranger that has to wait
   Wait(0.1);
   EXPECT_TRUE(Passes(sender.Protect(2, 99)));
 }
@@ -296,7 +296,7 @@ TEST_F(SrtpIn, RefusesReportsThatBeginAnewUnderTheSameKeyAndSsrc) {
 TEST_F(SrtpIn, KnowsItsStreamsAmongAnyNumberOfOthers) {
   Protector sender(Key(5));
   const BufferPtr recorded = sender.Protect(5);
-  for (int turns = 0; turns < 20; ++turns) sender.Wrap();  // more than a first guess finds
+  for (int turns = 0; turns < 20; ++turns) sender.Wrap();  // more than the first tries find
   for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(seq, 300);
   for (guint32 ssrc = 0; ssrc < 2'000; ++ssrc) {
     if (ssrc % 100 == 0) Wait(1);
@@ -340,20 +340,20 @@ TEST_F(SrtpIn, RefusesARecordingOfTheKeyBefore) {
 }
 
 TEST_F(SrtpIn, IsNotStoppedWhileItMayDecode) {
-  // srtpdec complains of a packet that it decodes while it stops; the socket stops by itself.
+  // srtpdec would warn of a packet that it decodes while it stops. The socket stops by itself.
   Protector sender(Key(5));
   const BufferPtr first = sender.Protect(1);
   EXPECT_TRUE(Passes(first));
   gst_element_set_state(bin_.get(), GST_STATE_READY);
   EXPECT_TRUE(Passes(sender.Protect(2)));
-  // A start finds nothing of the stream before.
+  // The stream is unknown after a new start.
   gst_element_set_state(bin_.get(), GST_STATE_PLAYING);
   EXPECT_FALSE(Passes(first));
   gst_pad_push_event(socket_, gst_event_new_stream_start("again"));
   EXPECT_TRUE(Passes(first));
 }
 
-/// The datagram as it comes from another host.
+/// Returns the datagram as it comes from another host.
 BufferPtr From(const char* host, const BufferPtr& datagram) {
   BufferPtr copy(gst_buffer_copy_deep(datagram.get()));
   test::SetSource(copy.get(), host, 9);
@@ -363,7 +363,7 @@ BufferPtr From(const char* host, const BufferPtr& datagram) {
 TEST_F(SrtpIn, PassesACopyOnceFromEachAddress) {
   Protector sender(Key(5));
   EXPECT_TRUE(Passes(From("10.0.0.1", sender.Protect(1))));
-  EXPECT_TRUE(Passes(From("10.0.0.2", sender.Protect(2))));  // from here on, several send
+  EXPECT_TRUE(Passes(From("10.0.0.2", sender.Protect(2))));  // several addresses send from here on
   const BufferPtr third = sender.Protect(3);
   EXPECT_TRUE(Passes(From("10.0.0.1", third)));
   EXPECT_TRUE(Passes(From("10.0.0.2", third)));

@@ -33,14 +33,14 @@ class Protector {
     r.size = size;
     return BufferPtr(gst_harness_push_and_pull(harness_.get(), test::NewRtp(r)));
   }
-  /// RTCP of the stream, as a sender's report.
+  /// Returns a sender's report of the stream, protected.
   BufferPtr ProtectReport(guint32 ssrc = kSsrc) {
     scream::SenderReport report;
     report.ssrc = ssrc;
     GstBuffer* rtcp = test::FromBytes(scream::BuildSenderReport(report));
     return BufferPtr(gst_harness_push_and_pull(reports_.get(), rtcp));
   }
-  /// As a sender that has sent 65,536 packets more.
+  /// Protects packets until the sequence number has wrapped once more.
   void Wrap(guint32 ssrc = kSsrc) {
     for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5}) Protect(seq, ssrc);
   }

@@ -55,7 +55,7 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
     return info_.fields.Find("ring") != nullptr ? At<std::uint16_t>(point, "ring")
                                                 : At<std::uint8_t>(point, "line");
   }
-  /// Since the first column of the scan [s].
+  /// Returns the time since the first column of the scan [s].
   double TimeAt(std::size_t point) const {
     if (info_.fields.Find("time") != nullptr) return static_cast<double>(At<float>(point, "time"));
     const auto begin =
@@ -76,7 +76,7 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
 
   const Firing& firing_;
   Harness h_;
-  // Of each cloud that came.
+  // caps of each cloud that came
   GAsyncQueue* const caps_ =
       g_async_queue_new_full([](gpointer caps) { gst_caps_unref(static_cast<GstCaps*>(caps)); });
   BufferPtr cloud_;
@@ -103,7 +103,7 @@ TEST_P(DriverModel, PublishesOneRowOfReturnsInTheDriversLayout) {
 TEST_P(DriverModel, FiresEveryLaserInTurnOverTheWholeScan) {
   Pull();
   std::set<std::uint32_t> rings;
-  // An F64 of seconds since 1970 ends at a quarter of a microsecond.
+  // Seconds since 1970 in an F64 have steps of a quarter of a microsecond.
   const double slack = 5e-7;
   for (std::size_t i = 0; i < info_.width; ++i) {
     rings.insert(RingAt(i));
@@ -145,7 +145,7 @@ TEST_P(DriverModel, PointsLieWhereTheTableSays) {
 INSTANTIATE_TEST_SUITE_P(All, DriverModel, ::testing::Values("vlp-16", "xt32", "at128", "mid-360"));
 
 TEST(DriverModels, ScansOfAMid360DoNotRepeat) {
-  // It stands still, and sees without noise.
+  // The sensor stands still, and has no noise.
   Harness h(gst_harness_new_parse("lidartestsrc model=mid-360 speed=0 noise=0 num-buffers=2"));
   gst_harness_play(h.get());
   std::set<std::array<float, 3>> first;

@@ -186,14 +186,14 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   gst_harness_play(h.get());
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), 1'030 * GST_MSECOND);
-  // The test clock keeps who waits for a time that has passed until it is told.
+  // The test clock holds a waiter whose time has passed until it is processed.
   const auto release = [&] {
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
     gst_clock_id_unref(
         gst_test_clock_process_next_clock_id(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))));
   };
   release();
-  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // was on its way
+  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // it was under way
   release();
   const BufferPtr next = Pull(h);
   EXPECT_EQ(SliceOf(next).scan_id, 10U);
@@ -258,7 +258,7 @@ TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
   }
 }
 
-/// The error of a pipeline that does not start; null where it has none.
+/// Returns the error of a pipeline that does not start; null without one.
 ErrorPtr ErrorOfStart(const char* launch) {
   const ElementPtr pipeline(gst_parse_launch(launch, nullptr));
   EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
@@ -302,7 +302,7 @@ TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
-/// Its caps have the size of the first cloud, which takes long to make.
+/// The caps have the size of the first cloud, which takes long to make.
 TEST(LidarTestSrc, AStopBeforeItsFirstCapsIsNoError) {
   const ElementPtr pipeline(gst_parse_launch("lidartestsrc model=at128 ! fakesink", nullptr));
   g_object_set(pipeline.get(), "auto-flush-bus", FALSE, nullptr);
@@ -313,7 +313,7 @@ TEST(LidarTestSrc, AStopBeforeItsFirstCapsIsNoError) {
   EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_ERROR)));
 }
 
-/// What a source gives at its pads, until its end.
+/// What a source pushes from its pads, until its end.
 struct Played {
   std::vector<BufferPtr> clouds;
   std::vector<BufferPtr> samples;
@@ -403,7 +403,7 @@ TEST(LidarTestSrc, ItsImuGivesTheSameSamplesAgain) {
     EXPECT_EQ(BytesOf(first.samples[i]), BytesOf(again.samples[i]));
 }
 
-using Offsets = std::vector<GstClockTime>;  // of capture times from PTS
+using Offsets = std::vector<GstClockTime>;  // capture times minus PTS
 void KeepOffsets(GstElement*, GstPad* pad, Offsets* offsets) {
   gst_pad_add_probe(
       pad, GST_PAD_PROBE_TYPE_BUFFER,

@@ -53,7 +53,7 @@ class View : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer.get(), &slice);
     return Push(std::move(buffer), slice.scan_id * 100 * GST_MSECOND);
   }
-  /// A scan taken at `place`, without a rotation.
+  /// Pushes a scan taken at `place`, without a rotation.
   GstFlowReturn PushFrom(std::array<float, 3> place, const std::vector<Point>& points, guint scan) {
     BufferPtr buffer = Cloud(points);
     const GstLidarSlice slice{scan, 0, 1, 0};
@@ -81,13 +81,14 @@ class View : public ::testing::Test {
     gst_video_frame_unmap(&frame);
     return rgb;
   }
-  /// Points are bright, the background is dark, the rings between.
+  /// Returns true for a bright pixel: a point. The background is dark, rings are between.
   bool IsPoint(int x, int y) {
     const auto p = Pixel(x, y);
     return std::max({p[0], p[1], p[2]}) > 130;
   }
 
-  /// The map is dimmer than a point, and brighter than the background.
+  /// Returns true for a point or the map, which is dimmer than a point and brighter than the
+  /// background.
   bool IsDrawn(int x, int y) {
     const auto p = Pixel(x, y);
     return std::max({p[0], p[1], p[2]}) > 60;
@@ -115,7 +116,7 @@ TEST_F(View, WhatIsHighHidesWhatIsLowFromAbove) {
   Push(Cloud({{25, 0, 10, 1}, {25, 0, 0, 1}}));
   Pull();
   const auto p = Pixel(150, 50);
-  EXPECT_GT(p[0], p[2]);  // the warm end
+  EXPECT_GT(p[0], p[2]);  // the warm end of the colours
 }
 
 TEST_F(View, InPerspectiveTheTargetIsInTheMiddle) {
@@ -197,7 +198,7 @@ TEST_F(View, TheMapKeepsWhatWasSeenWhereItWas) {
     PushFrom({driven, 0, 0}, {{wall, 12, 0, 1}, {wall, 12.5F, 0, 1}}, scan);
     Pull();
   }
-  // The middle of the way, x = 5, is the middle of the picture.
+  // The middle of the way, x = 5, is the centre of the picture.
   EXPECT_TRUE(IsDrawn(140, 25));
   EXPECT_FALSE(IsDrawn(160, 25));
   EXPECT_TRUE(IsDrawn(95, 50));  // the way
@@ -254,7 +255,7 @@ TEST(TrailMap, IsBoundedHoweverLongTheWay) {
     ASSERT_LE(map.points().size(), 1000U);
     ASSERT_LE(map.way().size(), TrailMap::kMostPlaces);
   }
-  EXPECT_LT(map.points().front().at[0], 100);  // the beginning is still there
+  EXPECT_LT(map.points().front().at[0], 100);  // the first points are still there
   EXPECT_GT(map.points().back().at[0], 39'000);
   EXPECT_GT(map.way().back()[0], 39'990);
 }

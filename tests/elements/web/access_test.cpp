@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who reaches foxglovesink: its page, its token, its port.
+// Access to foxglovesink: its page, its token, its port.
 #include <gtest/gtest.h>
 
 #include "ext/web/admission.h"
@@ -47,7 +47,7 @@ TEST(FoxgloveSink, AdmitsNoMoreThanMaxClientsAtATime) {
   EXPECT_TRUE(Peer(&sink).connected());
 }
 
-/// What a start with these properties says.
+/// Returns the error of a start with these properties.
 std::string ErrorOf(const std::string& properties) {
   const gst::ElementPtr element(gst_parse_launch(("foxglovesink " + properties).c_str(), nullptr));
   GstBus* bus = gst_bus_new();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A connection, by the clock of the test: whose peer reads nothing, says nothing, or lies.
+// A connection on a test clock, whose peer reads nothing, says nothing, or lies.
 #include "ext/web/client.h"
 
 #include <gio/gunixsocketaddress.h>
@@ -38,7 +38,7 @@ class Connection : public ::testing::Test {
     const ssize_t size = recv(peer_, bytes.data(), bytes.size(), MSG_DONTWAIT);
     return {bytes.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
   }
-  /// More than the buffers of sockets hold.
+  /// Returns a message larger than the buffers of sockets.
   static SharedMessage Large() {
     auto message = std::make_shared<Message>();
     message->payload.resize(4 << 20);
@@ -90,7 +90,7 @@ TEST_F(Connection, ThatHasDrawnWhatItDidNotReadEnds) {
   EXPECT_EQ(closed_, 1);
 }
 
-/// A frame of the server, of less than 64 KiB or of any size.
+/// A frame of the server.
 struct ServerFrame {
   unsigned opcode = 0;
   std::string payload;
@@ -99,7 +99,7 @@ struct ServerFrame {
 /// A peer that speaks the protocol.
 class Conversation : public Connection {
  protected:
-  /// All that comes until nothing is under way.
+  /// Returns all frames until none is under way.
   std::vector<ServerFrame> Frames() {
     std::array<char, 1 << 16> bytes{};
     for (int idle = 0; idle < 3;) {
@@ -122,7 +122,7 @@ class Conversation : public Connection {
       read_.erase(0, r.position());
     }
   }
-  /// A masked frame, as clients send them; the mask is zero.
+  /// Sends a masked frame, as clients do; the mask is zero.
   void Say(unsigned opcode, const std::string& payload) {
     std::string frame{static_cast<char>(0x80U | opcode), static_cast<char>(0x80U | payload.size())};
     frame += std::string(4, '\0') + payload;
@@ -138,7 +138,7 @@ class Conversation : public Connection {
     slice->payload.assign(text.begin(), text.end());
     return slice;
   }
-  /// The ends of the frames' payloads, which tell them apart.
+  /// Returns the ends of the frames' payloads, which differ.
   static std::vector<std::string> EndsOf(const std::vector<ServerFrame>& frames) {
     std::vector<std::string> ends;
     for (const ServerFrame& f : frames) ends.push_back(f.payload.substr(f.payload.size() - 2));
@@ -193,7 +193,7 @@ TEST_F(Conversation, CountsWhatThePeerGot) {
   EXPECT_EQ(client_->counters().bytes, bytes_);
 }
 
-/// While a large frame is under way, all others wait.
+/// Other messages wait while a large frame is under way.
 TEST_F(Conversation, SendsControlsThenSlicesThenMessages) {
   client_->Send({1, 1, Large()}, 1);
   client_->Send({1, 1, Text("m1")}, 4);

@@ -93,12 +93,12 @@ TEST(FoxgloveSink, OfTwoSubscriptionsOfATopicTheNewestCounts) {
   sink.PushCloud(7);
   EXPECT_EQ(peer.Next().subscription, 2U);
   const guint64 sent = sink.Stat("points-sent");
-  peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");  // gave way
+  peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");  // replaced by 2
   peer.Sync();
   sink.PushCloud(8);
   EXPECT_EQ(FirstX(peer.Next()), 8.0F);
   EXPECT_GT(sink.Stat("points-sent"), sent);
-  // With the only one gone, nobody wants the topic.
+  // The topic has no subscriber once the last one is gone.
   peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[2]})");
   peer.Sync();
   const guint64 before = sink.Stat("points-sent");
@@ -120,7 +120,7 @@ TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
   const guint64 before = sink.Stat("points-sent");
   sink.PushCloud(8);
   EXPECT_EQ(sink.Stat("points-sent"), before);
-  // What it was sent counts although it is gone.
+  // Messages of a client count although it is gone.
   Peer second(&sink);
   second.Subscribe("/points", 1);
   sink.PushCloud(9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lets connections in, by a clock of the test's own.
+// The code that lets connections in, on a test clock.
 #include "ext/web/front_door.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ ObjectPtr<GSocketConnection> Connect(guint16 port, const char* from = "127.0.0.1
       g_socket_client_connect_to_host(client.get(), "127.0.0.1", port, nullptr, nullptr));
 }
 
-/// The other end has ended the connection.
+/// Returns true if the other end has ended the connection.
 bool HasEnded(const ObjectPtr<GSocketConnection>& connection) {
   GSocket* socket = g_socket_connection_get_socket(connection.get());
   return (g_socket_condition_check(socket, G_IO_IN) & G_IO_IN) != 0;
@@ -43,7 +43,7 @@ TEST(FrontDoor, EndsAfterAMinuteWhatAsksForNothing) {
   const auto silent = Connect(port);
   ASSERT_TRUE(silent);
   const gint64 begin = g_get_monotonic_time();
-  // It counts from when the door saw it, which may be a while after.
+  // The minute begins when the door sees the connection, which may be later.
   EXPECT_TRUE(test::WaitUntil([&] {
     door.Tick(begin + 55 * kSecond_us);
     EXPECT_EQ(door.evicted(), 0U);
@@ -53,7 +53,7 @@ TEST(FrontDoor, EndsAfterAMinuteWhatAsksForNothing) {
   EXPECT_TRUE(test::WaitUntil([&] { return HasEnded(silent); }));
 }
 
-/// Peers that begin a handshake and say no more.
+/// Peers that begin a handshake and stop.
 class TwoAddresses : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -83,7 +83,7 @@ class TwoAddresses : public ::testing::Test {
   std::size_t Ended() const {
     return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), HasEnded));
   }
-  /// All that run take too long now.
+  /// Makes all running handshakes take too long.
   void EndThoseThatRun() { handshakes_.Tick(g_get_monotonic_time() + 11 * kSecond_us); }
 
   std::string folder_;
@@ -97,7 +97,7 @@ class TwoAddresses : public ::testing::Test {
 TEST_F(TwoAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
   for (int i = 0; i < 9; ++i) Begin("127.0.0.2");
   Begin("127.0.0.1");
-  // Those that are there are seen before a round ends.
+  // Handshakes that wait are seen before a round ends.
   for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
   EndThoseThatRun();
   EXPECT_TRUE(test::WaitUntil([this] { return HasEnded(peers_.back()); }))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Signed tokens: which are read, and what they open.
+// Signed tokens: which are read, and what they allow.
 #include "ext/web/grant.h"
 
 #include <gtest/gtest.h>
@@ -121,7 +121,7 @@ TEST(SignedToken, ShowsAClientTheTopicsOfItsRobotOnly) {
   Peer peer(sink.Url("ws", "/?token=" + Sign(Claims(100, R"(["/r7/*"])"))), {"foxglove.sdk.v1"});
   const std::uint32_t id = peer.Channel("/r7/points");
   EXPECT_EQ(peer.channels.count("/statistics"), 0U);
-  // To know its number does not help.
+  // A known number does not help.
   const nlohmann::json item = {{"id", 1}, {"channelId", id}};
   stranger.SendText(nlohmann::json{{"op", "subscribe"}, {"subscriptions", {item}}}.dump());
   stranger.Sync();

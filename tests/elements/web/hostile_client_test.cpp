@@ -13,7 +13,7 @@
 namespace lidar::test {
 namespace {
 
-/// A connection that says what it likes, and blocks where it reads.
+/// A connection that sends any bytes, and blocks when it reads.
 class RawClient {
  public:
   explicit RawClient(Sink* sink, const char* from = "127.0.0.1") {
@@ -37,7 +37,7 @@ class RawClient {
                                      bytes.data(), bytes.size(), nullptr, nullptr,
                                      nullptr) != FALSE;
   }
-  /// At most `size` bytes; empty at the end of the stream.
+  /// Returns at most `size` bytes; empty at the end of the stream.
   std::string Read(std::size_t size) {
     std::string bytes(size, 0);
     const gssize n = g_input_stream_read(g_io_stream_get_input_stream(G_IO_STREAM(connection_)),
@@ -45,7 +45,7 @@ class RawClient {
     bytes.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
     return bytes;
   }
-  /// Reads whole; empty where the stream ends before.
+  /// Returns `size` bytes; empty if the stream ends before.
   std::string ReadAll(std::size_t size) {
     std::string all;
     while (all.size() < size) {
@@ -79,7 +79,7 @@ class RawClient {
     }
     Send(frame + std::string(4, '\0') + text);  // a mask of zeros
   }
-  /// The payload of the next frame that is no ping; empty where the connection ends.
+  /// Returns the payload of the next frame that is not a ping; empty if the connection ends.
   std::string ReadFrame() {
     for (;;) {
       const std::string head = ReadAll(2);
@@ -100,7 +100,7 @@ class RawClient {
   GSocketConnection* connection_;
 };
 
-/// Subscribed to /points: with the ids of a server that has just started.
+/// Returns a client that is subscribed to /points.
 RawClient SubscribedClient(Sink* sink) {
   RawClient client(sink);
   client.Upgrade();
@@ -145,7 +145,7 @@ TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
     quick.Next();
   }
   EXPECT_LT(longest_us, 2 * G_USEC_PER_SEC);
-  // The slow one has what was in the sockets' buffers, and then the last cloud.
+  // The slow client gets what was in the sockets' buffers, and then the last cloud.
   ASSERT_TRUE(WaitUntil([&] { return sink.Stat("messages-dropped") > kClouds / 2; }));
   int got = 0;
   float newest = 0;
@@ -170,7 +170,7 @@ TEST(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
   ASSERT_TRUE(WaitUntil([&] { return sink.Stat("messages-dropped") > 2; }));
   slow.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
   slow.SendText(R"({"op":"nothing"})");
-  // The answer comes behind what is in the sockets' buffers.
+  // The answer comes after what is in the sockets' buffers.
   std::string frame;
   do {
     frame = slow.ReadFrame();
@@ -240,7 +240,8 @@ struct Named {
   const char* status;
 };
 class HostName : public ::testing::TestWithParam<Named> {};
-/// The owner of a name can let it point to 127.0.0.1, and his page is then of the same origin.
+/// The owner of a name can let it point to 127.0.0.1, so that a page of that name has the same
+/// origin.
 TEST_P(HostName, OfAnotherSiteReadsNothing) {
   Sink sink;
   for (const std::string request : {"GET /session HTTP/1.1\r\n", "GET / HTTP/1.1\r\n"}) {

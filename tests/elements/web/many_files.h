@@ -7,7 +7,7 @@
 
 namespace lidar::test {
 
-/// This process holds both ends of its connections.
+/// Raises the limit of open files: this process has both ends of its connections.
 class ManyFiles {
  public:
   explicit ManyFiles(rlim_t wanted) {

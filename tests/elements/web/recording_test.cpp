@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Viewers that go back into what mcapsink has written, or still writes.
+// Viewers that go back to what mcapsink has written, or still writes.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the first slice; they follow each other by 25 ms.
+/// Time of the first slice; slices follow each other by 25 ms.
 constexpr std::uint64_t kFirst_ns = 1'700'000'000'000'000'000;
 constexpr std::uint64_t kSlice_ns = 25'000'000;
 
@@ -38,7 +38,7 @@ class Recordings : public ::testing::Test {
   std::string path() const { return folder_ + "/r%d.mcap"; }
   std::string file() const { return folder_ + "/r0.mcap"; }
   void OpenEdge() { edge_.emplace("sink_0::recording=" + path(), "effort=2", 700); }
-  /// Both get the next `n` slices.
+  /// Edge and recorder get slices.
   void Push(guint n) {
     for (guint i = 0; i < n; ++i) {
       gst::BufferPtr buffer(gst_buffer_make_writable(edge_->robot.Next().release()));
@@ -56,7 +56,7 @@ class Recordings : public ::testing::Test {
       edge_->Push(std::move(buffer));
     }
   }
-  /// The file is complete.
+  /// Completes the file.
   void EndRecording() { recorder_.reset(); }
 
   const std::string folder_;
@@ -102,7 +102,7 @@ TEST_F(Recordings, ArePlayedFromATimeOnInPlaceOfWhatIsNew) {
   const std::uint64_t time = kFirst_ns + 200 * kSlice_ns;
   Replay(&viewer, 3, Seconds(time));
   AwaitStatus(&viewer, 3);
-  // All decode: what they refer to comes before them.
+  // All slices decode, because those that they refer to come before them.
   std::uint64_t last = 0;
   unsigned at_time = 0;
   while (last < time + 20 * kSlice_ns) {
@@ -144,7 +144,7 @@ TEST_F(Recordings, AreSentAsFastAsTheViewerDrawsThem) {
   Viewer viewer(&edge_->sink);
   Replay(&viewer, 1, Seconds(kFirst_ns + 10 * kSlice_ns));
   for (int i = 0; i < 8; ++i) viewer.Draw();
-  // It acknowledges no more: the last slices of the recording wait.
+  // The viewer acknowledges no more, so that the last slices of the recording wait.
   for (int i = 0; i < 40; ++i) viewer.peer.Sync();
   EXPECT_LE(viewer.peer.received.size(), 512U);
 }
@@ -262,7 +262,7 @@ TEST_F(Recordings, AreNotThereForAStreamWithoutOne) {
   EXPECT_EQ(SliceReader(viewer.last).replay, 0U);
 }
 
-/// A source of slices and poses that keeps what it sent, as natssrc knows to be kept by JetStream.
+/// A source of slices and poses that keeps what it sent, as JetStream does for natssrc.
 class KeptStream {
  public:
   explicit KeptStream(GstPad* pad) : pad_(pad) {
@@ -286,7 +286,7 @@ class KeptStream {
     buffers_.emplace_back(gst_sample_new(kept, caps.get(), nullptr, nullptr));
     gst_buffer_unref(kept);
   }
-  /// The server is gone.
+  /// Makes the server unreachable.
   void End() {
     const std::lock_guard lock(mutex_);
     is_there_ = false;
@@ -302,7 +302,7 @@ class KeptStream {
     gst::HistoryAnswer answer;
     if (!buffers_.empty()) answer.from = TimeOf(buffers_.front());
     if (!buffers_.empty()) answer.to = TimeOf(buffers_.back());
-    // Some before the time, as JetStream gives them.
+    // The answer begins before the time, as that of JetStream.
     const bool by_time = GST_CLOCK_TIME_IS_VALID(question.time);
     const auto first = std::find_if(buffers_.begin(), buffers_.end(), [&](const auto& sample) {
       return by_time ? TimeOf(sample) + GST_SECOND >= question.time
@@ -343,13 +343,13 @@ class Histories : public ::testing::Test {
   std::uint64_t pushed_ = 0;
 };
 
-/// An item that is no other stream's: the place behind it, and the number of slices up to there.
+/// An item of the archive: the position after it, and the number of slices up to there.
 struct PlaceInArchive {
   std::uint64_t position = 0;
   std::size_t slices = 0;
 };
 
-/// The times of the slices that follow.
+/// Returns the times of the slices that follow.
 std::vector<std::uint64_t> RestOf(web::Archive* archive,
                                   std::vector<PlaceInArchive>* places = nullptr) {
   std::vector<std::uint64_t> times;
@@ -362,7 +362,7 @@ std::vector<std::uint64_t> RestOf(web::Archive* archive,
   return times;
 }
 
-/// Pieces that begin where another one ended have what it had not, and no slice twice.
+/// Expects a piece that begins where another ended to have the other slices, and no slice twice.
 void ExpectPiecesToFit(web::Archive* archive, guint slices) {
   std::string why;
   const auto times = archive->Look(&why);

@@ -15,8 +15,8 @@ inline gst::CapsPtr CapsOf(GstHarness* harness) {
   return gst::CapsPtr(gst_pad_get_current_caps(harness->sinkpad));
 }
 
-/// A sensor that stands still, and a coder that hears that each slice arrives: it refers to them,
-/// however long a slow machine takes.
+/// A sensor that stands still, and a coder whose slices are all acknowledged: it refers to them,
+/// however slow the machine is.
 class Robot {
  public:
   explicit Robot(const std::string& options = "effort=2", unsigned slices = 400) {
@@ -43,7 +43,7 @@ class Robot {
     return slice;
   }
   gst::CapsPtr caps() { return CapsOf(coder_.get()); }
-  /// The next slices stand alone.
+  /// Makes the next slices stand alone.
   void AskForKey() {
     gst_harness_push_upstream_event(
         coder_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
@@ -83,7 +83,7 @@ struct SliceReader {
   ByteView slice;
 };
 
-/// A page: decodes what comes, and acknowledges it.
+/// A page that decodes slices, and acknowledges them.
 class Viewer {
  public:
   explicit Viewer(Sink* sink) : peer(sink) {
@@ -99,20 +99,20 @@ class Viewer {
         {*fields, fields->MinimumStep()}, static_cast<std::uint32_t>(model->beams.size()), *model};
     decoder_.emplace(format_, 1U << 20);
   }
-  /// The next slice; it decodes. Poses of a replay come before it.
+  /// Takes the next slice and decodes it. Poses of a replay come before it.
   void Draw(bool acknowledge = true) {
     for (last = peer.Next(); (SliceReader(last).flags & 2) != 0; last = peer.Next())
       poses.push_back(last);
     const SliceReader slice(last);
     EXPECT_TRUE(decoder_->Decode(slice.slice)) << slice.scan << "." << slice.index;
-    // Robot's, be it as it was or coded anew.
+    // The slice is the robot's, unchanged or coded anew.
     EXPECT_EQ(slice.first_column, slice.index * 512 / slice.count);
     if (slice.flags == 0) ++own;
     if (slice.flags == 1) ++recoded;
     if (acknowledge) Acknowledge(slice.scan, slice.index);
   }
-  /// Returns when the server has taken it: else the next scan would come while this one is on its
-  /// way, and a slow machine's viewer would be left out of it.
+  /// Returns when the server has the acknowledgement: otherwise the next scan could come before it,
+  /// and a slow machine's viewer would not get that scan.
   void Acknowledge(std::uint32_t scan, std::uint32_t index, unsigned subscription = 9) {
     peer.SendText(nlohmann::json{
         {"op", "drawn"}, {"subscriptionId", subscription}, {"scan", scan}, {"slice", index}}
@@ -151,7 +151,7 @@ struct Edge {
     EXPECT_EQ(gst_harness_push(sink.harness(), buffer.release()), GST_FLOW_OK);
     return bytes;
   }
-  /// What the element has asked the robot for.
+  /// Returns how often the element asked the robot for a key unit.
   guint key_requests() {
     guint n = 0;
     while (const gst::EventPtr event{gst_harness_try_pull_upstream_event(sink.harness())})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Coded slices: to viewers as they are, decoded for others, re-coded for those that came late.
+// Coded slices: to viewers unchanged, decoded for others, coded anew for late viewers.
 #include <gtest/gtest.h>
 
 #include "src/codec/slice_links.h"
@@ -85,7 +85,7 @@ TEST(Slices, OfPointsBringTheirFurtherFields) {
     std::uint32_t range_mm = 0;
     std::memcpy(p, &points[at], sizeof p);
     std::memcpy(&range_mm, &points[at + field.Number(2)], sizeof range_mm);
-    // Beams begin beside the sensor's middle.
+    // Beams begin away from the sensor's middle.
     ASSERT_NEAR(std::hypot(p[0], p[1], p[2]), 1e-3 * range_mm, 0.06);
   }
 }
@@ -141,7 +141,7 @@ TEST(Slices, TakeNoMoreThanMaxBitrate) {
     edge.Push();
     viewer.Draw();
   }
-  // The scan that has begun has spent the bits of hours.
+  // The first scan has used up the bits of hours.
   edge.PushScans(5);
   viewer.peer.Sync();
   EXPECT_TRUE(viewer.peer.received.empty());

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// An element whose property `stats` is what a test says.
+/// An element with a property `stats` that the test sets.
 struct TalkingElement {
   GstElement parent;
   GstStructure* stats;
@@ -83,7 +83,7 @@ TEST(Statistics, OfAnElementWithoutAPipelineAreItsOwn) {
   const gst::ElementPtr alone(GST_ELEMENT(gst_object_ref_sink(Talking("a", "s,rtt=(guint64)1;"))));
   const auto message = nlohmann::json::parse(StatisticsOf(alone.get()));
   EXPECT_EQ(message["elements"].size(), 1U);
-  EXPECT_FALSE(message.contains("rtt"));  // no sender's
+  EXPECT_FALSE(message.contains("rtt"));  // the element is no sender
 }
 
 }  // namespace

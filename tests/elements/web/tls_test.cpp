@@ -25,7 +25,7 @@ class Tls : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// A certificate of that name, in place of what was there.
+  /// Makes a certificate of that name, in place of the last one.
   bool Make(const std::string& name, const char* days = "2") {
     const std::string make =
         "cd " + folder_.string() +
@@ -34,7 +34,7 @@ class Tls : public ::testing::Test {
         name + " -days " + days + " 2>/dev/null && mv new-key.pem key.pem && mv new.pem cert.pem";
     return std::system(make.c_str()) == 0;
   }
-  /// The same, that was valid in January 2020.
+  /// Makes a certificate that was valid in January 2020.
   bool MakeOld() {
     const std::string make =
         "cd " + folder_.string() +
@@ -141,7 +141,7 @@ TEST_F(Tls, SaysOnceThatACertificateRunsOutMeanwhile) {
   EXPECT_NE(certificate.NoticeOfEnd(now_s + 3 * 86'400), "");
 }
 
-/// Connected from any address of this machine, as 127.0.0.7.
+/// Connects from any address of this machine, as 127.0.0.7.
 GSocketConnection* ConnectFrom(const std::string& address, guint port) {
   GSocketClient* client = g_socket_client_new();
   GSocketAddress* local = g_inet_socket_address_new_from_string(address.c_str(), 0);
@@ -166,7 +166,7 @@ TEST_F(Tls, LetsAThousandHalfHandshakesHoldUpTheirOwn) {
                           nullptr, nullptr);
     silent.push_back(connection);
   }
-  // While others wait, a handshake has a second, which a busy machine may take.
+  // A handshake has a second while others wait, and a busy machine may take that long.
   EXPECT_TRUE(Eventually([&] { return HttpGet(sink.Url("https")).status == 200U; }));
   // The server counts once a second.
   const auto evicted = static_cast<guint64>(std::max(0, count - 20 * 32) / 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The camera beside the cloud: whole from a key frame on, with the time of its capture.
+// The camera next to the cloud: whole from a key frame on, with the time of its capture.
 #include <gtest/gtest.h>
 
 #include "tests/elements/web/web_peer.h"
@@ -137,7 +137,7 @@ TEST_P(StockCoder, IsShown) {
   }
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
-/// Annex B, with parameter sets before the picture.
+/// Returns true for Annex B with parameter sets before the picture.
 bool BeginsWithSps(const std::string& frame) {
   const std::size_t sps = frame.find(std::string("\0\0\1\x67", 4));
   return sps != std::string::npos && sps < frame.find(std::string("\0\0\1\x65", 4));

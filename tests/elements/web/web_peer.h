@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The element under test, and a client of its server that libsoup is.
+// The element under test, and a client of its server by libsoup.
 #pragma once
 #include <libsoup/soup.h>
 
@@ -47,7 +47,7 @@ class Sink {
   std::string Url(const char* scheme, const std::string& path = "/") {
     return std::string(scheme) + "://127.0.0.1:" + std::to_string(Stat("port")) + path;
   }
-  /// `columns` points of 16 bytes on a line, the first at x = `first`.
+  /// Pushes `columns` points of 16 bytes on a line, the first at x = `first`.
   GstFlowReturn PushCloud(float first, guint columns = 4, GstClockTime capture_time = 0) {
     std::vector<float> points;
     for (guint i = 0; i < columns; ++i)
@@ -69,7 +69,7 @@ class Sink {
   Harness harness_;
 };
 
-/// Runs the default context until `done`; false where that takes too long.
+/// Runs the default context until `done`. Returns false if that takes too long.
 inline bool WaitUntil(const std::function<bool()>& done) {
   const gint64 until = g_get_monotonic_time() + kPatience_us;
   while (!done()) {
@@ -79,14 +79,14 @@ inline bool WaitUntil(const std::function<bool()>& done) {
   return true;
 }
 
-/// Certificates of tests are signed by nobody.
+/// Accepts any certificate: those of tests are self-signed.
 inline void AcceptCertificates(SoupMessage* message) {
   g_signal_connect(message, "accept-certificate",
                    G_CALLBACK(+[](SoupMessage*, GTlsCertificate*, int, gpointer) { return TRUE; }),
                    nullptr);
 }
 
-/// One answer over HTTP.
+/// An answer over HTTP.
 struct HttpAnswer {
   guint status = 0;
   std::string type;
@@ -114,7 +114,7 @@ inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET") {
       },
       &call);
   EXPECT_TRUE(WaitUntil([&] { return done; }));
-  if (!done) soup_session_abort(session);  // its answer would write to what is gone
+  if (!done) soup_session_abort(session);  // its answer would write to freed memory
   while (!done) g_main_context_iteration(nullptr, TRUE);
   HttpAnswer answer;
   answer.status = soup_message_get_status(message);
@@ -189,12 +189,12 @@ class Peer {
   void SendText(const std::string& text) {
     soup_websocket_connection_send_text(connection_, text.c_str());
   }
-  /// The id of a channel once it is advertised; 0 where that never happens.
+  /// Returns the id of a channel once it is advertised; 0 if that never happens.
   std::uint32_t Channel(const std::string& topic) {
     EXPECT_TRUE(WaitUntil([&] { return channels.count(topic) > 0; })) << topic;
     return channels.count(topic) > 0 ? channels[topic]["id"].get<std::uint32_t>() : 0;
   }
-  /// Returns when the server has taken it: it answers requests in order.
+  /// Returns when the server has subscribed: it answers requests in order.
   void Subscribe(const std::string& topic, std::uint32_t id) {
     const nlohmann::json item = {{"id", id}, {"channelId", Channel(topic)}};
     SendText(nlohmann::json{{"op", "subscribe"}, {"subscriptions", {item}}}.dump());
@@ -216,7 +216,7 @@ class Peer {
   nlohmann::json server_info;
   std::map<std::string, nlohmann::json> channels;  // by topic
   std::vector<std::string> statuses;
-  nlohmann::json recording;  // the last word about one
+  nlohmann::json recording;  // the last message about a recording
   std::deque<Received> received;
 
  private:
