@@ -31,7 +31,7 @@ class Context:
 
 
 def run(attack, context):
-    """(name, whether the promises held, what was seen)"""
+    """Returns (name, whether the promises held, what was seen)."""
     try:
         return attack.__name__, True, attack(context)
     except AssertionError as broken:

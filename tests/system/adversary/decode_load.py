@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The processor time that lidardec takes of a robot that sends the dearest slices within its bandwidth.
+"""The processor time of lidardec for a robot that sends the dearest slices within its bandwidth.
 
 Prints a line of JSON without and with max-decode-load.
 """

@@ -45,11 +45,11 @@ class Victim:
     """The program `victim` with a pipeline; the attribute `last` is its last report."""
 
     program = None  # set once by the main program
-    longest_stop = 0  # of all that were closed [s]
+    longest_stop = 0  # the longest of all closes [s]
 
     def __init__(self, pipeline, **process):
         env = dict(os.environ)
-        # Freed memory that AddressSanitizer holds back is not the pipeline's.
+        # AddressSanitizer keeps freed memory, which would count as memory of the pipeline.
         env["ASAN_OPTIONS"] = ":".join(filter(None, [env.get("ASAN_OPTIONS"), "quarantine_size_mb=8"]))
         self.process = subprocess.Popen([self.program, pipeline], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         text=True, env=env, **process)
@@ -86,7 +86,7 @@ class Victim:
         assert code == 0, f"the pipeline ended with exit code {code}"
 
     def timed_close(self):
-        """Seconds until the process is gone."""
+        """Closes the process. Returns the seconds until it is gone."""
         begin = time.monotonic()
         self.close()
         return time.monotonic() - begin
@@ -199,7 +199,7 @@ class HonestSender(threading.Thread):
         self.sequence = random.getrandbits(16)
         self.sent = 0
         self.packets = []  # all that was sent
-        self.companions = []  # SSRCs of other media, a packet of each beside every slice
+        self.companions = []  # SSRCs of other media: a packet of each goes with every slice
         self.feedback_bytes = 0
         self.config_id = wire.config_id(recording.config)
         self._scan_number = random.getrandbits(32)
@@ -246,7 +246,7 @@ class HonestSender(threading.Thread):
         try:
             self.socket.sendto(packet, self.to)
         except ConnectionRefusedError:
-            pass  # the receiver is not there yet, or no more
+            pass  # there is no receiver yet, or no longer
 
     def pause(self, paused=True):
         self._paused = paused
@@ -300,7 +300,7 @@ class Relay(threading.Thread):
 
 
 def whole_scans(slices):
-    """The slices of those scans that are there as a whole."""
+    """Returns the slices of the scans that are complete."""
     scans = {}
     for s in slices:
         scans.setdefault(s.scan_number, []).append(dataclasses.replace(s, skipped=0))
@@ -308,7 +308,7 @@ def whole_scans(slices):
 
 
 def record(seed, scans):
-    """What a real sender sends, read by the document's rules: at least so many whole scans."""
+    """Records at least `scans` whole scans of a real sender, read by the rules of docs/wire-format.md."""
     receiver = HonestReceiver()
     victim = Victim(SENDER.format(port=receiver.port, seed=seed, options=""))
     until = time.monotonic() + 30

@@ -28,7 +28,7 @@ class SenderBench:
         return self.sender.ask()["net"]
 
     def net_when(self, holds):
-        """The statistics as soon as they hold: a slow sender has yet to read what came."""
+        """Returns the statistics once `holds` accepts them: a slow sender has yet to read what came."""
         start = time.monotonic()
         while not holds(net := self.net()):
             assert time.monotonic() - start < MOST_PATIENCE, net
@@ -105,11 +105,11 @@ def hostile_feedback(context):
             mutate(rng, honest), rng.randbytes(rng.randrange(1, 200)),
             wire.ccfb(9, [(ssrc, last + 20_000, [(True, 0, 0)] * 10)], now),  # never sent
             wire.ccfb(9, [(ssrc ^ 1, last, [(True, 3, 0)] * 10)], now),
-            wire.ccfb(9, [(ssrc, last - 9, [(True, 1, 0x1FFD)] * 10)], now),  # came before it was sent
+            wire.ccfb(9, [(ssrc, last - 9, [(True, 1, 0x1FFD)] * 10)], now),  # arrived before it was sent
             wire.ccfb(9, [(n, 0, [(True, 1, 0)]) for n in range(2000)], now),
             wire.ccfb(9, [(ssrc, 0, [(False, 0, 0)] * 16_000)], now),
             wire.ccfb(9, [], now - 1000), honest[:-4] + honest, wire.bye(ssrc),
-            struct.pack(">BBHI", 0x8B, 205, 1, 9),  # no report in it
+            struct.pack(">BBHI", 0x8B, 205, 1, 9),  # an empty report
         ]
         for report in hostile:
             bench.receiver.socket.sendto(report, bench.receiver.sender)
@@ -122,7 +122,7 @@ def hostile_feedback(context):
 
 
 def hostile_twcc(context):
-    """Transport-wide feedback that lies: the session takes it from anyone, and screamaux stays sound."""
+    """Forged transport-wide feedback: the session takes it from any address, and screamaux stays sound."""
     receiver = ends.TwccReceiver()
     bench = SenderBench(ends.TWCC_SENDER, receiver, rtcp_port=receiver.rtcp_to[1])
     rng = random.Random(context.random.random())
@@ -136,10 +136,10 @@ def hostile_twcc(context):
             wire.twcc_packet(last, 9, ticks, sent, [], rng.randbytes(rng.randrange(99))),
             wire.twcc_packet(last + 20_000, 10, ticks, sent, [received | 10], bytes(10)),  # never sent
             wire.twcc_packet(last - 9, 10, ticks, sent, [received | 10], bytes(3)),  # deltas are missing
-            wire.twcc_packet(last - 9, 10, ticks - 10**6, sent, [received | 10], bytes(10)),  # came long ago
-            wire.twcc_packet(last - 9, 10, 0xFF_FFFF, sent, [0x4000 | 10], b"\x7f\xff" * 10),  # and long from now
-            wire.twcc_packet(last - 9, 10, ticks, sent, [0x4000 | 10], b"\x80\x00" * 10),  # each before the one before
-            wire.twcc_packet(last - 9, 10, ticks, sent, [0x6000 | 10], bytes(40)),  # a status that there is not
+            wire.twcc_packet(last - 9, 10, ticks - 10**6, sent, [received | 10], bytes(10)),  # arrived long ago
+            wire.twcc_packet(last - 9, 10, 0xFF_FFFF, sent, [0x4000 | 10], b"\x7f\xff" * 10),  # arrives long from now
+            wire.twcc_packet(last - 9, 10, ticks, sent, [0x4000 | 10], b"\x80\x00" * 10),  # each before its predecessor
+            wire.twcc_packet(last - 9, 10, ticks, sent, [0x6000 | 10], bytes(40)),  # a status that does not exist
             wire.twcc_packet(last, 0xFFFF, ticks, sent, [received | 0x1FFF] * 8, bytes(0x1FFF)),
             wire.twcc_packet(last - 9, 0, ticks, sent, [received | 10], bytes(10)),
             wire.twcc_packet(last - 9, 10, ticks, sent, [lost | 0] * 300 + [received | 10], bytes(10)),

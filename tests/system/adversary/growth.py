@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Many of what a stranger may bring: connections, topics, robots, sensors and formats.
+"""What many connections, topics, robots, sensors and formats of a stranger cost.
 
-Prints a line of JSON for each kind and number: processor time of the victim, its most memory, what it told, and how
-long it took to stop. Ends with 1 where the time grows faster than the number, or a stop takes longer than a second.
+Prints a line of JSON for each kind and number: processor time of the victim, its most memory, what it reported, and
+how long it took to stop. Ends with 1 if the time grows faster than the number, or a stop takes longer than a second.
 """
 import argparse
 import collections
@@ -25,7 +25,7 @@ import ends
 import nats
 
 COUNTS = (1_000, 8_000, 65_000)
-BOMBS = 600  # they take longer than the victim waits for its state
+BOMBS = 600  # reading them takes longer than the victim waits for its state
 MOST_STOP = 1  # s
 SLICES = "application/x-lidar-slice, alignment=(string)slice, number=(int)"
 RECORDING = "mcapsrc name=src location={path} ! fakesink name=out"
@@ -65,7 +65,7 @@ def metric(url, name):
 
 
 def connections(args, count, folder):
-    """Silent ones to the metrics of lidar-edge."""
+    """Silent connections to the metrics of lidar-edge."""
     config = folder / "edge.json"
     config.write_text(json.dumps({"http-port": 0, "interval": 0.5, "robots": [{"name": "r7", "port": ends.free_port()}]}))
     edge = Process(program(args.build, "lidar-edge"), config, stderr=subprocess.DEVNULL)
@@ -74,7 +74,7 @@ def connections(args, count, folder):
     begin, silent = edge.cpu(), collections.deque()
     for _ in range(count):
         silent.append(socket.create_connection((ends.LOOPBACK, port)))
-        if len(silent) > 40:  # one of those that made room
+        if len(silent) > 40:  # a connection that made room for a newer one
             oldest = silent.popleft()
             oldest.settimeout(PATIENCE)
             assert oldest.recv(1) == b"", "a silent connection got an answer"
@@ -98,7 +98,7 @@ def mcap_text(text):
 
 
 def topics(args, count, folder):
-    """Of a recording, a message in each."""
+    """Topics of a recording, with a message in each."""
     path = folder / "topics.mcap"
     with path.open("wb") as file:
         file.write(b"\x89MCAP0\r\n" + mcap_record(1, mcap_text("") * 2))
@@ -119,7 +119,7 @@ def topics(args, count, folder):
 
 
 def bombs(args, count, folder):
-    """Chunks of 128 MiB of nothing in a recording: it is stopped while it is read."""
+    """Chunks of 128 MiB of zeros in a recording; the pipeline is stopped while it reads them."""
     path, file = folder / "bombs.mcap", bytearray(b"\x89MCAP0\r\n")
     blocks = 1024
     zeros = b"\x28\xb5\x2f\xfd\xa0" + struct.pack("<I", blocks << 17)
@@ -177,17 +177,17 @@ def watched_subjects(args, folder, subjects):
 
 
 def sensors(args, count, folder):
-    """Made up by one robot; lidar-worker follows all."""
+    """Sensors made up by one robot; lidar-worker follows all."""
     return watched_subjects(args, folder, [f"fleet.r7.lidar.s{i}" for i in range(count)])
 
 
 def robots(args, count, folder):
-    """Made up by whoever may; lidar-worker follows all."""
+    """Robots made up by a client that may publish; lidar-worker follows all."""
     return watched_subjects(args, folder, [f"fleet.r{i}.lidar.front" for i in range(count)])
 
 
 def formats(args, count, folder):
-    """Of a stream over NATS, and one that is none."""
+    """Formats of a stream over NATS, and a damaged one."""
     with server(folder) as client:
         receiver = ends.Victim(f"natssrc name=src url={client.url} subject={SUBJECT} ! fakesink name=out")
         client.flush()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Attacks by somebody who writes what a receiver decodes.
+"""Attacks by a sender that writes what a receiver decodes.
 
-As all attacks they assert what docs/security.md promises, and return a line on what they saw.
+Like all attacks they assert what docs/security.md promises, and return a line on what they saw.
 """
 import dataclasses
 import pathlib
@@ -25,7 +25,7 @@ def another_writer(context):
             sender.sent += 1
         payloads = [wire.config_unit(context.recording.config)] if scan % 5 == 0 else []
         marks = [False] * len(payloads)
-        if scan % 4 == 3:  # the others are announced as skipped
+        if scan % 4 == 3:  # the scan's other slices are announced as skipped
             parts = parts[:2] + [dataclasses.replace(parts[-1], skipped=(1 << (len(parts) - 3)) - 1)]
         if scan % 4 == 2:
             small = [dataclasses.replace(p, count=len(parts)) for p in parts]
@@ -135,25 +135,25 @@ def varint(n):
 
 
 def table_version():
-    """What the payloads of the mixing coder begin with."""
+    """Returns the version of tables with which payloads of the mixing coder begin."""
     source = pathlib.Path(__file__).parents[3] / "src/codec/mixing/start_states.h"
     return int(re.search(r"kTableVersion = (\d+)", source.read_text(encoding="utf-8"))[1])
 
 
-DEAR_BEAMS, DEAR_COLUMNS = 64, 300  # as many pixels as the mixing coder takes of a payload of 60 bytes
+DEAR_BEAMS, DEAR_COLUMNS = 64, 300  # as many pixels as the mixing coder accepts for a payload of 60 bytes
 DEAR_CONFIG = wire.build_config(b"x:F32:0,y:F32:4,z:F32:8,range:U32:12", wire.sensor_model(DEAR_BEAMS, DEAR_COLUMNS))
 
 
 def dear_slice(n):
-    """Dozens of bytes that claim as many pixels as they may."""
-    # A version of yesterday would be refused before it costs anything.
+    """Returns a slice of dozens of bytes that claims as many pixels as it may."""
+    # An old version of the tables would be refused before it costs processor time.
     payload = bytes([table_version() << 4 | 3 | (n & 1) << 2]) + b"\xff" * (60 + n % 4)
     block = bytes([0x34, (n & 1) << 7]) + b"".join(map(varint, (DEAR_BEAMS, 0, DEAR_COLUMNS, 1, 256, len(payload))))
     return wire.Slice(block + payload, wire.config_id(DEAR_CONFIG), n, 0, 1, n)
 
 
 def dear_slices(context):
-    """Slices that cost as much processor time as bytes of the mixing coder can."""
+    """Slices that cost the mixing coder as much processor time as their bytes allow."""
     bench = Bench(context)
     bench.settle()
     for unit in split_unit(wire.config_unit(DEAR_CONFIG), bench.sender.room):
@@ -173,7 +173,7 @@ def dear_slices(context):
 
 
 def split_unit(unit, room):
-    """A config unit as fragments."""
+    """Splits a config unit into fragments."""
     if len(unit) <= room:
         return [unit]
     parts = [bytes([wire.FIRST << 5 | wire.CONFIG]) + unit[1:room]]

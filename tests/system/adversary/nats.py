@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""As much of NATS as a stranger needs who publishes."""
+"""The part of NATS that a stranger needs to publish."""
 import json
 import socket
 
@@ -17,7 +17,7 @@ CRC64 = _table()
 
 
 def crc64(data):
-    """CRC-64/XZ: the name of a format is that of its text."""
+    """CRC-64/XZ: a format is named by the CRC of its text."""
     crc = 2**64 - 1
     for byte in data:
         crc = crc >> 8 ^ CRC64[(crc ^ byte) & 255]
@@ -37,7 +37,7 @@ class Client:
         self.socket.sendall(f"PUB {subject} {reply} {len(data)}\r\n".encode() + data + b"\r\n")
 
     def _read(self):
-        """A line, or the data of a message."""
+        """Reads a line, or the data of a message."""
         line = self.file.readline()
         assert line, "the server has left"
         if line == b"PING\r\n":
@@ -49,7 +49,7 @@ class Client:
         return data
 
     def flush(self):
-        """Until the server has all that was published."""
+        """Waits until the server has all that was published."""
         self.socket.sendall(b"PING\r\n")
         while self._read() != b"PONG\r\n":
             pass

@@ -93,7 +93,7 @@ class Server(threading.Thread):
                 while connection.recv(65536):
                     pass
             except OSError:
-                pass  # the client has had enough
+                pass  # the client has left
 
     def close(self):
         self.listener.close()

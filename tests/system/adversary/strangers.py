@@ -10,7 +10,7 @@ from bench import Bench
 
 def come_first(context, junk, before, after, pause, ask_every=1):
     """A stranger's packets `junk(bench, n)`: those of `before` come before the sender's first, and those of `after`
-    beside its stream. Asks at each so many of them whether the sender was let in."""
+    during its stream. Asks after every `ask_every` of them whether the sender was let in."""
     bench = Bench(context)
     bench.sender.pause()
     stranger = ends.udp_socket()
@@ -41,7 +41,7 @@ def stranger_first(context):
 
 
 def stream_of_garbage(context):
-    """A stranger with a whole stream that decodes to nothing is there first."""
+    """A stranger's whole stream of garbage comes first."""
     return come_first(context, lambda bench, n: wire.rtp(bench.random.randbytes(300), n, 0, 99), range(100),
                       range(100, 100 + int(200 * max(1, context.seconds))), 0.005, ask_every=10)
 

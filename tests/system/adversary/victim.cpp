@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A pipeline that is attacked, or has a hard time: plays it, and answers each line of standard
-// input with a line of JSON about it.
+// A pipeline under attack or hardship: plays it, and answers each line of standard input with a
+// line of JSON about it.
 #include <gst/gst.h>
 #include <gst/net/net.h>
 #include <sys/resource.h>
@@ -125,14 +125,15 @@ double CpuSeconds() {
          static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) / 1e6;
 }
 
-/// The application forks, as Python's subprocess does: how the child ended, or -1 where it did not
-/// within 5 s. A child that becomes another program ends with the number of sockets that it sees.
+/// The application forks, as Python's subprocess does. Returns how the child ended, or -1 if it did
+/// not within 5 s. A child that becomes another program ends with the number of sockets that it
+/// sees.
 int ForkAndWait(bool becomes_another) {
   std::fflush(stdout);
   const pid_t child = fork();
   if (child == 0) {
     if (!becomes_another) _exit(0);
-    // GStreamer's bus has a pair of sockets, too, which are no network's.
+    // GStreamer's bus has a pair of sockets, too, which do not count.
     execl("/bin/sh", "sh", "-c",
           "exit $(ls -l /proc/self/fd | sed -n 's/.*socket:.\\([0-9]*\\).*/\\1/p' | while read -r "
           "i; do "
@@ -166,7 +167,7 @@ class Branch {
     gst_pad_link(from.get(), pad_.get());
     gst_element_sync_state_with_parent(bin_);
   }
-  /// The pad may go while packets are under way.
+  /// The pad is released while packets may be on their way.
   ~Branch() {
     gst_element_set_locked_state(bin_, TRUE);
     const PadPtr from(gst_element_get_static_pad(bin_, "src"));
@@ -207,7 +208,7 @@ class Victim {
 
   bool exists() const { return pipeline_ != nullptr; }
 
-  /// Milliseconds that it took; a state that is not reached within 10 s is left to come.
+  /// Returns the milliseconds that it took. A state that is not reached within 10 s may come later.
   long SetState(GstState state) {
     const auto start = std::chrono::steady_clock::now();
     if (gst_element_set_state(pipeline_.get(), state) == GST_STATE_CHANGE_ASYNC)
@@ -248,7 +249,7 @@ class Victim {
   }
 
  private:
-  /// The port at which this pipeline's clock is served.
+  /// Returns the port at which this pipeline's clock is served.
   long ProvideClock() {
     const std::unique_ptr<GstClock, Unref> clock(
         gst_pipeline_get_clock(GST_PIPELINE(pipeline_.get())));
@@ -258,7 +259,7 @@ class Victim {
     return port;
   }
 
-  /// Plays by the clock at a port; 1 once it runs with that one.
+  /// Plays by the clock at a port. Returns 1 if the pipeline then uses that clock.
   long FollowClock(int port) {
     const std::unique_ptr<GstClock, Unref> clock(
         gst_net_client_clock_new("net", "127.0.0.1", port, 0));
@@ -276,7 +277,7 @@ class Victim {
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) eos_ = true;
       if (GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_ERROR) continue;
-      // A source whose pad is taken away in the midst of a stream may find itself not linked.
+      // A source whose pad was removed during a stream may post an error that it is not linked.
       if (!gst_object_has_as_ancestor(GST_MESSAGE_SRC(message.get()), GST_OBJECT(pipeline_.get())))
         continue;
       GError* error = nullptr;

@@ -123,7 +123,7 @@ def parse_rtp(packet):
 
 
 class Reader:
-    """Puts the units of one stream together again, and refuses whatever the format does not allow."""
+    """Puts the units of one stream together again, and refuses all that the format does not allow."""
 
     def __init__(self):
         self.configs = {}  # id: bytes
@@ -202,7 +202,7 @@ def ccfb(sender_ssrc, blocks, report_time):
 
 
 def transport_number(packet, extension_id):
-    """The transport-wide number in an extension of one byte (RFC 8285); None where there is none."""
+    """The transport-wide number in an extension of one byte (RFC 8285); None if there is none."""
     profile, words = struct.unpack_from(">HH", packet, 12) if packet[0] & 0x10 else (0, 0)
     at, end = 16, 16 + 4 * words
     while profile == 0xBEDE and at < end:
@@ -217,7 +217,7 @@ TWCC_TICK = 1 / 4000  # seconds; a reference time is 256 of them
 
 
 def twcc_packet(base, count, reference, number, chunks, deltas, media_ssrc=0):
-    """draft-holmer-rmcat-transport-wide-cc-extensions-01 behind an empty receiver report; any field may lie."""
+    """draft-holmer-rmcat-transport-wide-cc-extensions-01 behind an empty receiver report; any field may be wrong."""
     fci = struct.pack(">HHI", base & 0xFFFF, count & 0xFFFF, (reference & 0xFF_FFFF) << 8 | number & 0xFF)
     fci += b"".join(struct.pack(">H", c) for c in chunks) + deltas
     padding = -len(fci) % 4
@@ -227,7 +227,7 @@ def twcc_packet(base, count, reference, number, chunks, deltas, media_ssrc=0):
 
 
 def twcc(base, arrivals, number):
-    """What a receiver saw from a number on: arrival in seconds, or None."""
+    """Reports what a receiver saw from number `base` on: `arrivals` in seconds, or None."""
     first = next(a for a in arrivals if a is not None)
     reference = int(first / TWCC_TICK) // 256
     before, deltas, symbols = 256 * reference, b"", []

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams, and what the decoder of this machine makes of them, for decoder_test.mjs:
+// Streams, and what the native decoder makes of them, for decoder_test.mjs:
 //   decoder_cases GOLDEN_FOLDER CORPUS_FOLDER
 // Numbers are u32, little-endian. A stream is a name, a sensor model (empty: points), the count of
-// slices, and each slice with its result, the count of its points, and those as RawPoint.
+// slices, and each slice with its result, the count of its points, and the points as RawPoint.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -46,7 +46,7 @@ void PutStream(const std::string& name, const std::optional<SensorModel>& model,
   Put(static_cast<std::uint32_t>(slices.size()));
   const codec::CloudLayout layout = test::OrganisedLayout();
   std::optional<codec::SliceDecoder> ranges;
-  // As a receiver has it: through the bytes.
+  // The model passes through its bytes, as at a receiver.
   if (model) {
     const Bytes sent = model->Serialise();
     ranges.emplace(codec::CloudFormat{layout, static_cast<std::uint32_t>(model->beams.size()),
@@ -112,7 +112,7 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) 
   return files;
 }
 
-/// The golden blocks are of GoldenSensor(), whose beams and columns their names stand for.
+/// The golden blocks are of GoldenSensor().
 void PutGolden(const std::filesystem::path& folder) {
   for (const auto& file : FilesOf(folder)) {
     const std::string name = file.stem();
@@ -159,7 +159,7 @@ void PutClouds() {
   const codec::CloudLayout layout = test::OrganisedLayout();
   for (unsigned effort = 0; effort < 5; ++effort) {
     codec::cloud::ExactChoice exact;
-    // The page draws the points of such slices, and passes over their ranges and order.
+    // The page draws the points of such slices, and ignores their ranges and order.
     if (effort == 4) exact = {{*layout.fields.Find("range")}, true};
     auto encoder = codec::cloud::CloudEncoder::Create(layout, exact);
     encoder->set_effort(std::min(effort, 3U));
@@ -182,7 +182,7 @@ SensorModel CorpusSensor(unsigned choice) {
   return test::GoldenSensor((choice & 1) != 0 ? 16 : 4, (choice & 2) != 0 ? 96 : 32);
 }
 
-/// A payload of the mixing coder behind the header that its first byte chooses.
+/// A payload of the mixing coder, after the header that its first byte chooses.
 Bytes BlockOf(const Bytes& input) {
   const unsigned choice = input[0];
   const SensorModel model = CorpusSensor(choice);

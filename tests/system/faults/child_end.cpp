@@ -70,7 +70,7 @@ milliseconds ChildEnd::CpuTime() const {
   const std::string stat = Proc("stat");
   std::istringstream words(stat.substr(stat.rfind(')') + 2));
   std::string skipped;
-  for (int i = 0; i < 11; ++i) words >> skipped;  // utime and stime are the 14th and 15th of all
+  for (int i = 0; i < 11; ++i) words >> skipped;  // then utime and stime follow
   long user = 0, system = 0;
   words >> user >> system;
   return milliseconds((user + system) * 1'000 / sysconf(_SC_CLK_TCK));
@@ -80,7 +80,7 @@ std::uint64_t ChildEnd::PeakMemory() const {
   const std::string status = Proc("status");
   const auto at = status.find("VmHWM:");
   return at == std::string::npos ? UINT64_MAX
-                                 : std::stoull(status.substr(at + 6)) * 1'024;  // it says kB
+                                 : std::stoull(status.substr(at + 6)) * 1'024;  // the file has kB
 }
 
 }  // namespace lidar::test

@@ -34,7 +34,7 @@ class ChildEnd {
   std::chrono::milliseconds CpuTime() const;
   /// Most resident memory so far [bytes].
   std::uint64_t PeakMemory() const;
-  /// Ends it; whether it ended well, without an error on its bus.
+  /// Ends the process. Returns whether it ended well, without an error on its bus.
   bool Close();
 
  private:

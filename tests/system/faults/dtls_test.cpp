@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// Each end makes a certificate for itself; here nobody looks at that of the other.
+/// Each end makes a certificate for itself, and does not check that of the other.
 struct DtlsPath {
   DtlsPath()
       : port(FreePort()),
@@ -58,10 +58,10 @@ TEST(Dtls, ShowsTheMarksOfTheNetworkToTheCongestionControl) {
   std::this_thread::sleep_for(milliseconds(500));
   const auto marked = path.receiver.Stat("rx", "packets-ce");
   EXPECT_GT(marked, 100U);
-  // The reports come back protected, and tell the sender of every mark.
+  // The reports come back encrypted, and contain every mark.
   EXPECT_GT(path.sender.Stat("tx", "feedback-accepted"), 100U);
   EXPECT_EQ(path.sender.Stat("tx", "packets-ce"), marked);
-  // The link sees packets, but no slices in them; none is missing.
+  // The link sees packets, but cannot see slices in them. No slice is missing.
   EXPECT_LT(path.link.counts().slices, 3U);
   EXPECT_GT(path.receiver.Stat("depay", "slices-received"), 200U);
   EXPECT_EQ(path.receiver.Stat("depay", "slices-damaged"), 0U);

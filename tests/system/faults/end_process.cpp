@@ -28,8 +28,8 @@ struct End {
   }
   Pipeline& pipeline() { return sender ? sender->pipeline() : receiver->pipeline(); }
 
-  /// slices sent, received, lost, damaged or mismatching, clouds, reports accepted, datagrams that
-  /// the kernel dropped, and the clock
+  /// Prints slices sent, received, lost, damaged or mismatching, clouds, reports accepted,
+  /// datagrams that the kernel dropped, and the clock.
   void Report() {
     const Accounts a = receiver ? receiver->accounts() : Accounts();
     std::printf("%" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64

@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kRemembered = 20'000;  // minutes
+constexpr std::size_t kRemembered = 20'000;  // slices of four minutes
 
 /// Calls `call(buffer)` for each buffer of the pad.
 template <class Call>

@@ -16,7 +16,7 @@
 
 namespace lidar::test {
 
-/// The last slices that any sender of a test put out, by their content.
+/// Hashes of the last slices that all senders of a test sent.
 class SentSlices {
  public:
   void Add(std::uint32_t hash);
@@ -30,7 +30,7 @@ class SentSlices {
 
 std::uint32_t Hash(GstBuffer* buffer);
 
-/// A pipeline that is stopped when it goes.
+/// A pipeline that is stopped when it is destroyed.
 class Pipeline {
  public:
   explicit Pipeline(const std::string& description);
@@ -39,10 +39,11 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   void SetState(GstState state);
-  /// Sends EOS and waits for it; false if it does not come in time.
+  /// Sends EOS and waits for it. Returns false if it does not come in time.
   bool Finish(std::chrono::milliseconds limit);
   bool AwaitEnd(std::chrono::milliseconds limit);
-  /// A number of the property `stats` of an element; all bits set where it has none.
+  /// Returns a number of the property `stats` of an element; all bits are set if it lacks the
+  /// number.
   std::uint64_t Stat(const char* element, const char* name) const;
   gst::ElementPtr Child(const char* name) const;
   /// The first error on the bus, or empty.
@@ -60,7 +61,7 @@ class SendingEnd {
   SendingEnd(SentSlices* sent, std::uint16_t port, const std::string& sink_options = "");
   Pipeline& pipeline() { return pipeline_; }
   std::uint64_t slices_sent() const { return pipeline_.Stat("pay", "slices-sent"); }
-  /// As many as the sensor has since it was made: 80 a second.
+  /// Returns how many slices the sensor has captured at most: 80 a second.
   std::uint64_t slices_captured() const {
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - made_;
     return static_cast<std::uint64_t>(80 * time.count()) + 1;
@@ -81,14 +82,14 @@ struct Accounts {
 /// screamsrc ! rtplidardepay ! dracodec ! fakesink
 class ReceivingEnd {
  public:
-  /// Without `sent` nothing counts as foreign.
+  /// Counts no slice as foreign if `sent` is null.
   ReceivingEnd(const SentSlices* sent, std::uint16_t port, const std::string& source_options = "");
   Pipeline& pipeline() { return pipeline_; }
   Accounts accounts() const;
-  /// Decoded clouds so far, and slices that nobody sent.
+  /// Decoded clouds so far, and slices that no sender sent.
   std::uint64_t clouds() const { return clouds_; }
   std::uint64_t foreign() const { return foreign_; }
-  /// Time until the next cloud; none if none comes within `limit`.
+  /// Time until the next cloud; max() if that takes longer than `limit`.
   std::chrono::milliseconds NextCloud(std::chrono::milliseconds limit) const;
 
  private:

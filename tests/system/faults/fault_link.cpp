@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kRtpHeader = 12;
 constexpr std::size_t kIpAndUdp = 28;
 constexpr std::size_t kMaxSlices = 10'000;
-constexpr std::uint32_t kOpenScans = 8;  // whose slices may still get packets
+constexpr std::uint32_t kOpenScans = 8;  // scans whose slices may still get packets
 
 sockaddr_in Loopback(std::uint16_t port) {
   sockaddr_in a{};
@@ -161,7 +161,7 @@ void FaultLink::Fold(const SliceKey& newest) {
   }
 }
 
-/// A sender may give up a slice half sent.
+/// Returns whether every packet passed: a sender may give up a slice that is half sent.
 bool FaultLink::Seen::IsWhole() const {
   // Sequence numbers that wrap within a slice give two runs instead of one.
   const std::size_t span = std::size_t{*sequences.rbegin()} - *sequences.begin() + 1;
@@ -212,7 +212,7 @@ void FaultLink::Deliver() {
   for (const Datagram& datagram : through) Send(datagram);
 }
 
-/// How long nothing has to be done but for what comes in.
+/// Returns how long the thread may wait for incoming packets.
 int FaultLink::WaitMs() const {
   constexpr int kLongestMs = 20;
   std::lock_guard lock(mutex_);

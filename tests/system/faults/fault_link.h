@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A UDP relay that breaks what it carries on request, and knows slice by slice what it dropped.
+// A UDP relay that breaks what it carries on request, and notes of each slice whether it passed
+// whole.
 #pragma once
 #include <netinet/in.h>
 
@@ -35,7 +36,7 @@ struct Fault {
   bool down = false;           // nothing passes either way
 };
 
-/// A scan of one sender: its SSRC and scan number.
+/// A slice: the SSRC of its sender, its scan number and its index.
 struct SliceKey {
   std::uint32_t ssrc;
   std::uint32_t scan_number;
@@ -46,15 +47,15 @@ struct SliceKey {
 };
 
 struct LinkCounts {
-  std::uint64_t packets = 0;  // of media, that came in
+  std::uint64_t packets = 0;  // of media
   std::uint64_t dropped = 0;
   std::uint64_t garbage = 0;
   std::uint64_t slices = 0;
-  std::uint64_t slices_whole = 0;  // that went through, and as they came
+  std::uint64_t slices_whole = 0;  // passed unchanged
 };
 
 /// Relays 127.0.0.1:port() to 127.0.0.1:`receiver_port`, ECN bits included, and feedback back to
-/// whoever sent last. A thread of its own.
+/// the address that sent last. Has its own thread.
 class FaultLink {
  public:
   explicit FaultLink(std::uint16_t receiver_port, unsigned seed = 1);
@@ -64,8 +65,8 @@ class FaultLink {
 
   std::uint16_t port() const { return port_; }
   void Set(const Fault& fault);
-  /// Media passes a queue before a link of this capacity (see link::Capacity::ParseTrace), which
-  /// marks and drops nothing for want of room. From now on; the last rate stays.
+  /// Puts a queue and a link of this capacity (see link::Capacity::ParseTrace) into the path of
+  /// media: it marks, and never drops for lack of room. The trace begins now; its last rate stays.
   void SetCapacity(const std::string& trace);
   /// Media goes on from another source port, as after NAT rebinding.
   void Rebind();
@@ -103,7 +104,7 @@ class FaultLink {
   std::map<SliceKey, Seen> slices_;
   LinkCounts counts_;
   bool rebind_ = false;
-  std::unique_ptr<link::Bottleneck> bottleneck_;  // none: no limit
+  std::unique_ptr<link::Bottleneck> bottleneck_;  // null: no limit
 
   // State of the thread.
   std::map<std::uint64_t, Datagram> queued_;  // by the bottleneck's id
@@ -113,7 +114,7 @@ class FaultLink {
   int in_ = -1;
   int out_ = -1;
   std::uint16_t sender_port_ = 0;
-  std::optional<std::pair<Datagram, unsigned>> held_;  // and after how many packets it goes
+  std::optional<std::pair<Datagram, unsigned>> held_;  // and after how many packets it is sent
   unsigned until_hold_ = 50;
   std::mt19937 random_;
   std::atomic<bool> stop_{false};

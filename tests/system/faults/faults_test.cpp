@@ -137,7 +137,7 @@ TEST_F(Faults, AnotherAddressOfTheSenderIsFollowed) {
   EXPECT_GT(sender_->pipeline().Stat("net", "feedback-accepted"), before);
   EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));
   std::this_thread::sleep_for(milliseconds(300));
-  // What came from the new address before it was believed is missing, once.
+  // Slices that came from the new address before it was trusted count as missing, once.
   EXPECT_EQ(receiver_->accounts().slices(), sender_->slices_sent());
   EXPECT_EQ(receiver_->clouds(), receiver_->accounts().received);
   EXPECT_EQ(receiver_->foreign(), 0U);

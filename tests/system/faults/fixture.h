@@ -40,17 +40,16 @@ class Faults : public ::testing::Test {
     std::this_thread::sleep_for(length);
     link_.Set({});
   }
-  /// Clouds come again within `limit`; the time goes to the table.
+  /// Expects a cloud within `limit`, and prints the time that it took.
   void ExpectRecovery(const char* what, milliseconds limit) {
     const auto time = receiver_->NextCloud(limit);
     EXPECT_LE(time, limit) << what;
     std::printf("recovery: %-44s %5lld ms\n", what, static_cast<long long>(time.count()));
   }
-  /// Lets the sender end well and holds both sides' books against each other: what the payloader
-  /// sent is what the depayloader received or misses, each slice once; what it received is what
-  /// the link let through.
-  /// A slice tells of 64 before it: what a sender in need left out before that, while nothing
-  /// came through, counts as lost. Where that may be, `sends_all` is false.
+  /// Lets the sender end well and compares the counts of both sides: what the payloader sent is
+  /// what the depayloader received or misses, each slice once; what it received is what the link
+  /// let through. A slice announces which of the 64 before it were left out. If a sender left out
+  /// older ones while nothing came through, they count as lost: then `sends_all` is false.
   void ExpectBooksAgree(bool sends_all = true) {
     std::this_thread::sleep_for(milliseconds(500));
     EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Links with gaps, between elements and in real time: short ones of the traces that the simulation
+// Links with gaps between elements in real time: short versions of the traces that the simulation
 // has for hours.
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::string Gaps(milliseconds gap, milliseconds every) {
 struct GapCase {
   const char* name;
   std::string trace;
-  double complete;  // part of the scans at least; the rest fell into gaps
+  double complete;  // least part of the scans that is complete
   bool srtp = false;
 };
 void PrintTo(const GapCase& c, std::ostream* out) { *out << c.name; }
@@ -38,14 +38,14 @@ TEST_P(Gap, CostsWhatItTookAndTheStreamIsBackAtOnce) {
   if (GetParam().srtp) options_ = "srtp-key=" + std::string(60, '5');
   Start();
   const std::uint64_t before = receiver_->accounts().complete;
-  link_.SetCapacity(GetParam().trace + "13 6\n");  // a trace ends with the gap that it is in
+  link_.SetCapacity(GetParam().trace + "13 6\n");  // the trace may end in a gap
   std::this_thread::sleep_for(kWithGaps);
   ExpectRecovery(GetParam().name, seconds(1));
   const auto complete = static_cast<double>(receiver_->accounts().complete - before);
   EXPECT_GE(complete, GetParam().complete * kScansPerSecond * kWithGaps.count());
   std::printf("  %.0f of %d scans complete\n", complete,
               static_cast<int>(kScansPerSecond * kWithGaps.count()));
-  // The link cannot see slices in what is encrypted.
+  // The link cannot see slices in encrypted packets.
   if (!GetParam().srtp) ExpectBooksAgree();
   EXPECT_EQ(receiver_->foreign(), 0U);
   EXPECT_EQ(sender_->pipeline().Error() + receiver_->pipeline().Error(), "");

@@ -15,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// What was sent has been received, slice by slice, and the link saw the same.
+/// Expects that the receiver and the link saw every slice that was sent.
 void ExpectNothingLost(ChildEnd* sender, ChildEnd* receiver, const FaultLink& link) {
   std::this_thread::sleep_for(milliseconds(500));
   const ChildReport s = sender->Finish();
@@ -42,7 +42,7 @@ TEST_P(ClockStep, OfAnHourCostsNothing) {
   ChildEnd& end = std::string(GetParam().side) == "receiver" ? receiver : sender;
   const std::int64_t before = end.Report().wall_clock;
   end.StepClock(GetParam().seconds);
-  // The clock did step.
+  // The clock was indeed stepped.
   EXPECT_NEAR(static_cast<double>(end.Report().wall_clock - before), 1e6 * GetParam().seconds, 1e6);
   const auto time = receiver.NextCloud(seconds(3));
   EXPECT_LT(time, milliseconds(500));
@@ -89,7 +89,7 @@ struct Flood {
   bool is_rtp;
   bool srtp;
 };
-/// Ten seconds of the flood: the receiver's CPU time and memory meanwhile.
+/// Floods the receiver for ten seconds, and checks its CPU time and memory meanwhile.
 void Suffer(FaultLink* link, ChildEnd* receiver, const Flood& flood) {
   Fault fault;
   fault.garbage_ratio = 100;
@@ -131,7 +131,7 @@ TEST_P(Garbage, AtAHundredTimesTheRateCostsLessThanACoreAndHidesNothing) {
               static_cast<unsigned long long>(sender.slices_sent()),
               static_cast<unsigned long long>(r.received),
               static_cast<unsigned long long>(r.dropped_by_kernel));
-  // The kernel drops what it has no room for; all that it gave is shown.
+  // The kernel drops datagrams that it has no room for; the receiver shows all others.
   if (r.dropped_by_kernel == 0) {
     EXPECT_EQ(r.received, sender.slices_sent());
   }
@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Floods, Garbage,
                                            Flood{"random bytes, SRTP", false, true},
                                            Flood{"RTP of random streams, SRTP", true, true}));
 
-/// A second LiDAR for a sink that plays: its elements, and the pad that it got.
+/// A second LiDAR for a sink that plays: its elements and its pad.
 struct Branch {
   explicit Branch(Pipeline* pipeline) : owner(pipeline), net(pipeline->Child("net")) {
     bin = gst_parse_bin_from_description(
@@ -158,7 +158,7 @@ struct Branch {
     gst_pad_link(from.get(), pad.get());
     gst_element_sync_state_with_parent(bin);
   }
-  /// Slices that it sent.
+  /// Returns how many slices the LiDAR sent.
   std::uint64_t Remove() {
     gst_element_set_state(bin, GST_STATE_PAUSED);
     std::this_thread::sleep_for(milliseconds(200));  // a slice may be in the encoder

@@ -24,13 +24,13 @@ using std::chrono::seconds;
 
 constexpr std::uint64_t kMaxGrowth = std::uint64_t{16} << 20;  // bytes, since the fifth minute
 constexpr unsigned kWarmUp = 5;                                // minutes
-constexpr std::uint64_t kInFlight = 4;                         // slices, when the books are read
+constexpr std::uint64_t kInFlight = 4;                         // slices on their way during a check
 
 struct Options {
   unsigned minutes = 0;
   unsigned seed = 1;
   bool srtp = false;
-  std::string link;   // the program lidar-link, where there is a trace
+  std::string link;   // the program lidar-link, if there is a trace
   std::string trace;  // file with the capacity of the link; empty: without limit
 };
 
@@ -117,11 +117,11 @@ class Soak {
 
   unsigned compared() const { return compared_; }
 
-  /// One minute of faults and peace; false where something that must hold did not.
+  /// Streams for a minute with faults in it. Returns false if a check fails.
   bool Minute(unsigned minute) {
     const auto end = std::chrono::steady_clock::now() + seconds(60);
     std::string story;
-    // Slices cannot be seen in what is encrypted.
+    // Slices cannot be seen in encrypted packets.
     comparable_ = !options_.srtp;
     while (std::chrono::steady_clock::now() + seconds(16) < end) {
       std::this_thread::sleep_for(milliseconds(1'000 + random_() % 4'000));
@@ -157,7 +157,7 @@ class Soak {
       foreign_ += receiver_->foreign();
       receiver_.reset();
       StartReceiver();
-      last_ = {};  // it counts from its start
+      last_ = {};  // the new receiver counts from zero
       comparable_ = false;
       return "receiver restarts";
     }
@@ -167,7 +167,8 @@ class Soak {
       return "address changes";
     }
     const Fall fall = RandomFall(&random_);
-    // What comes too late counts as lost, though the link let it pass; a flood may cost some too.
+    // Packets that come too late count as lost, though the link let them pass; a flood may cost
+    // some, too.
     if (fall.fault.reorder_by > 0 || fall.fault.garbage_ratio > 0) comparable_ = false;
     link_.Set(fall.fault);
     std::this_thread::sleep_for(fall.length);
@@ -175,8 +176,8 @@ class Soak {
     return fall.name;
   }
 
-  /// What the receiver counts as received is what the link let through whole, in a minute in which
-  /// nothing else took any.
+  /// Returns whether the receiver counts as received what the link let through whole. Minutes in
+  /// which slices may be lost otherwise are not compared.
   bool BooksAgree(const Accounts& a) {
     const std::uint64_t whole = link_.counts().slices_whole;
     const std::uint64_t passed = whole - last_whole_;
@@ -226,7 +227,7 @@ class Soak {
   std::uint64_t foreign_ = 0;
   std::uint64_t base_memory_ = 0;
   std::uint64_t last_whole_ = 0;
-  bool comparable_ = true;  // this minute's books with the link's
+  bool comparable_ = true;  // whether this minute's counts are those of the link
   unsigned compared_ = 0;   // minutes
   Accounts last_;
 };

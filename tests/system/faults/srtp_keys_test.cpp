@@ -15,7 +15,7 @@ using std::chrono::seconds;
 TEST_P(Srtp, ChangesItsKeyWithoutALoss) {
   const std::string options = GetParam().options + std::string(" ");
   Path path(options + Key(GetParam().key_bytes), options + Key(GetParam().key_bytes));
-  // The rollover counter stands at 1 when the key changes, and at 0 again after.
+  // The rollover counter is 1 when the key changes, and 0 again with the new key.
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'450, nullptr);
   path.Play();
   ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
@@ -79,7 +79,7 @@ TEST(Srtp, AKeyThatIsNoneOrWasUsedBeforeChangesNothing) {
     SetKey(sender, key);
     EXPECT_EQ(sender.Messages(GST_MESSAGE_WARNING), 1U) << key;
   }
-  SetKey(sender, std::string(60, '6'));  // the one in use is no change
+  SetKey(sender, std::string(60, '6'));  // the key in use is no change
   EXPECT_EQ(sender.Messages(GST_MESSAGE_WARNING), 0U);
   std::this_thread::sleep_for(milliseconds(500));
   ExpectNothingLost(&path);
@@ -91,7 +91,7 @@ TEST(Srtp, FindsAStreamWhoseKeyItGetsLate) {
   path.Play();
   ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
   SetKey(path.sender.pipeline(), std::string(60, '6'));
-  WaitForRefused(path, 150);  // behind the wrap: the rollover counter of the new key stands at 1
+  WaitForRefused(path, 150);  // after the wrap: the rollover counter of the new key is 1
   SetKey(path.receiver.pipeline(), std::string(60, '6'));
   EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(3));
 }
@@ -104,7 +104,7 @@ TEST(Srtp, KeepsItsKeyWhereOneIsRefused) {
   path.sender.pipeline().SetState(GST_STATE_NULL);
   path.sender.pipeline().SetState(GST_STATE_PLAYING);
   EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  // Two keys may wait for the sender; with a third the one in use would have to go.
+  // Two keys may wait for the sender. A third would replace the key in use, and is refused.
   for (const char digit : {'6', '7'}) SetKey(path.receiver.pipeline(), std::string(60, digit));
   EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 0U);
   SetKey(path.receiver.pipeline(), std::string(60, '8'));

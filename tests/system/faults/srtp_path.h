@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink and screamsrc with SRTP, and a link between them that can look and forge.
+// screamsink and screamsrc with SRTP, and a link between them that can read and forge packets.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ struct Suite {
 };
 class Srtp : public ::testing::TestWithParam<Suite> {};
 
-/// Everything that was sent came out, and nothing else; both ends have ended.
+/// Expects that everything that was sent came out, and nothing else, and that both ends have ended.
 inline void ExpectNothingLost(Path* path) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_TRUE(path->sender.pipeline().Finish(std::chrono::seconds(5)));
@@ -57,7 +57,7 @@ inline void SetKey(Pipeline& pipeline, const std::string& key) {
   g_object_set(pipeline.Child("net").get(), "srtp-key", key.c_str(), nullptr);
 }
 
-/// Until the receiver has refused so many packets.
+/// Waits until the receiver has refused so many packets.
 inline void WaitForRefused(Path& path, std::uint64_t packets) {
   for (int i = 0; i < 3'000; ++i) {
     if (path.receiver.pipeline().Stat("net", "srtp-refused") >= packets) return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// SRTP in screamsink and screamsrc, over loopback and through a link that can look and forge.
+// SRTP in screamsink and screamsrc, over loopback and through a link that can read and forge
+// packets.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -21,7 +22,7 @@ TEST_P(Srtp, CarriesTheStreamAndItsFeedbackHidden) {
   EXPECT_GT(path.receiver.clouds(), 80U);
   EXPECT_EQ(path.receiver.foreign(), 0U);
   EXPECT_EQ(path.receiver.accounts().lost, 0U);
-  // The link sees packets, but no slices in them.
+  // The link sees packets, but cannot see slices in them.
   EXPECT_GT(path.link.counts().packets, 100U);
   EXPECT_LT(path.link.counts().slices, 3U);
   Pipeline& sender = path.sender.pipeline();
@@ -29,7 +30,7 @@ TEST_P(Srtp, CarriesTheStreamAndItsFeedbackHidden) {
   EXPECT_EQ(sender.Stat("net", "packets-lost"), 0U);
   EXPECT_EQ(sender.Stat("net", "srtp-refused"), 0U);
   EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
-  // EOS still says goodbye, protected, and the receiver ends.
+  // EOS still sends a goodbye, encrypted, and the receiver ends.
   EXPECT_TRUE(sender.Finish(seconds(5)));
 }
 INSTANTIATE_TEST_SUITE_P(Ciphers, Srtp,
@@ -103,11 +104,11 @@ TEST(Srtp, IsJoinedAmongAFloodOfStrangers) {
   std::this_thread::sleep_for(seconds(1));
   const auto clouds = path.receiver.clouds();
   std::this_thread::sleep_for(seconds(1));
-  EXPECT_GT(path.receiver.clouds(), clouds + 30);  // of 80
+  EXPECT_GT(path.receiver.clouds(), clouds + 30);  // of 80 sent
   EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 1U);
 }
 
-/// Until the sender has put out so many packets.
+/// Waits until the sender has sent so many packets.
 void WaitForPackets(const Path& path, std::uint64_t packets) {
   for (int i = 0; i < 3'000; ++i) {
     if (path.link.counts().packets >= packets) return;
@@ -120,12 +121,12 @@ TEST(Srtp, IsJoinedAfterTheSequenceNumbersWrapped) {
   Path path(Key(30) + " sender-report-interval=100000000", Key(30));
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'526, nullptr);
   path.sender.pipeline().SetState(GST_STATE_PLAYING);
-  // Ten come before the wrap. Behind its first window, of 57, the sender waits for feedback: its
-  // reports come between few packets.
+  // Ten packets come before the wrap. After its first window of 57 packets the sender waits for
+  // feedback, so only few packets come between its reports.
   WaitForPackets(path, 65);
   path.receiver.pipeline().SetState(GST_STATE_PLAYING);
   EXPECT_NE(path.receiver.NextCloud(seconds(20)), milliseconds::max());
-  // The first packet is tried with more values of the rollover counter than that.
+  // The receiver tries more values of the rollover counter than 0 for the first packet.
   EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
 }
 
@@ -162,7 +163,7 @@ TEST(Srtp, ForgetsNothingForForgedPackets) {
   std::this_thread::sleep_for(seconds(2));
   path.link.Set({});
   EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(1));
-  // What was received is still known.
+  // The receiver still refuses duplicates of what it received.
   const auto before = path.receiver.pipeline().Stat("net", "srtp-refused");
   Fault twice;
   twice.duplicate = 1;

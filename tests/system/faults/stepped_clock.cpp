@@ -24,7 +24,7 @@ void StepArrival(msghdr* message) {
 
 void lidar::test::StepWallClock(int seconds) { offset += seconds; }
 
-// The program's own come before those of libc, for the plugins that it loads too.
+// The program's functions come before those of libc, for the plugins that it loads, too.
 extern "C" {
 
 __attribute__((visibility("default"))) int clock_gettime(clockid_t clock, timespec* t) noexcept {

@@ -20,11 +20,11 @@ import ends  # noqa: E402
 from machine import Skip, cpu_group, small_disk  # noqa: E402
 
 AT_ONCE = 3
-PATIENCE = 30  # seconds for what takes a moment where nothing else runs
+PATIENCE = 30  # seconds for what takes a moment on an idle machine
 
 
 def comes_true(condition):
-    """Whether it does within the time that a busy machine may take."""
+    """Returns whether `condition` becomes true within PATIENCE."""
     start = time.monotonic()
     while not condition():
         if time.monotonic() - start > PATIENCE:
@@ -46,7 +46,7 @@ class Stream:
         return self.receiver.ask()["clouds"]
 
     def await_clouds(self, more=5):
-        """Seconds until so many more came."""
+        """Waits until so many more clouds came. Returns the seconds that it took."""
         start, before = time.monotonic(), self.clouds()
         while self.clouds() < before + more:
             assert time.monotonic() - start < PATIENCE, f"no clouds within {PATIENCE} s"
@@ -54,13 +54,13 @@ class Stream:
         return time.monotonic() - start
 
     def rate(self, seconds=1.0):
-        """Clouds a second; 80 are sent."""
+        """Returns the clouds a second; 80 are sent."""
         before, start = self.clouds(), time.monotonic()
         time.sleep(seconds)
         return (self.clouds() - before) / (time.monotonic() - start)
 
     def full_rate(self):
-        """Clouds a second, once nearly all of them come: other work may take its share for a while."""
+        """Returns the clouds a second once nearly all come: other programs may use the machine for a while."""
         start = time.monotonic()
         while (rate := self.rate()) <= 60:
             assert time.monotonic() - start < PATIENCE, f"{rate:.0f} clouds a second come after {PATIENCE} s"
@@ -217,7 +217,7 @@ FEW_FILES = {
 
 
 def few_files(options):
-    """ulimit -n from what a process has up to what it needs: an error that says so, or it works."""
+    """Limits of `ulimit -n` around what pipelines need: each gives an error that says so, or works."""
     data = pathlib.Path(__file__).resolve().parents[2] / "data" / "ouster"
     told = worked = 0
     with tempfile.TemporaryDirectory() as folder:
@@ -226,7 +226,7 @@ def few_files(options):
                 run = subprocess.run(
                     [ends.Victim.program, pipeline.format(data=data, folder=folder)], input="report\n", text=True,
                     capture_output=True, timeout=60, check=False,
-                    env=dict(os.environ, G_DEBUG=""),  # GStreamer 1.26 has a critical of its own there
+                    env=dict(os.environ, G_DEBUG=""),  # GStreamer 1.26 logs a critical there
                     preexec_fn=lambda n=limit: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)))
                 said = run.stdout + run.stderr
                 assert run.returncode >= 0, f"{name} with {limit} files: signal {-run.returncode}: {said[-300:]}"
@@ -239,7 +239,7 @@ def few_files(options):
     return f"{told} runs said that there are too few files, {worked} worked"
 
 
-WRITERS = {  # elements; {file} is what they write
+WRITERS = {  # elements; {file} is the file that they write
     "lidarodometry": "lidartestsrc num-buffers=2000 model=os0-32 mode=512x10 ! lidarodometry trajectory={file} ! "
                      "fakesink async=false",
     "lidartestsrc": "lidartestsrc num-buffers=4000 model=os0-32 mode=512x10 slices-per-scan=64 "
@@ -264,7 +264,7 @@ def play_to_the_end(pipeline, limit=30):
 
 
 def full_disk(_options):
-    """A disk without room: every writer says so, and leaves nothing empty behind."""
+    """A disk without room: every writer reports it, and leaves no empty file."""
     with small_disk() as disk:
         (disk / "ballast").write_bytes(b"x" * 65536)
         for name, pipeline in WRITERS.items():
@@ -278,7 +278,7 @@ def full_disk(_options):
 
 
 def disk_that_fills(_options):
-    """A disk that is full after the first rows: what is there stays, and the error says why."""
+    """A disk that is full after the first rows: what was written stays, and the error names the reason."""
     with small_disk() as disk:
         for name in ("lidarodometry", "lidartestsrc"):
             (disk / "ballast").write_bytes(b"x" * (65536 - 8192))

@@ -9,12 +9,12 @@ import time
 
 
 class Skip(Exception):
-    """This machine cannot do it; the text says why."""
+    """This machine cannot do it; the text names the reason."""
 
 
 @contextlib.contextmanager
 def cpu_group(percent):
-    """A group of processes with so much of a processor; gives what a process does to join it."""
+    """Makes a cgroup that gets `percent` of a processor; yields its file cgroup.procs."""
     name = f"lidar-hardship-{os.getpid()}"
     v1, v2 = pathlib.Path("/sys/fs/cgroup/cpu"), pathlib.Path("/sys/fs/cgroup")
     try:

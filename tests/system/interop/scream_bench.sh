@@ -37,7 +37,7 @@ assert float(rows[-1]["rtt_ms"]) > 0, "no feedback"
 PYTHON
 }
 
-# Nobody answers: that is no success.
+# Without an answer the program fails.
 status=0
 "$build/src/tools/scream-bench" tx --host 127.0.0.1 --port "$port" --duration 1 >/dev/null 2>"$folder/tx.err" || status=$?
 [ $status = 1 ] && grep -q "Nobody has answered" "$folder/tx.err" || { echo "tx without rx: exit code $status"; cat "$folder/tx.err"; exit 1; }

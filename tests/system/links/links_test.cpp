@@ -42,7 +42,7 @@ class Links : public ::testing::Test {
     WaitForMore(20);
   }
 
-  /// Until the receiver has so many packets more.
+  /// Waits until the receiver has so many packets more.
   void WaitForMore(guint packets) {
     const guint from = receiver_->passed;
     for (int i = 0; i < 2'000 && receiver_->passed < from + packets; ++i) g_usleep(10'000);
@@ -57,7 +57,7 @@ class Links : public ::testing::Test {
     ADD_FAILURE() << "link " << link << " is not in use";
   }
 
-  /// The next message; a warning or an error instead of one fails.
+  /// Returns the next message. A warning or an error instead of it fails the test.
   Changed NextChange() {
     const MessagePtr message = sender_->Wait(
         static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_WARNING | GST_MESSAGE_ERROR));

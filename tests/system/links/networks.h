@@ -7,17 +7,17 @@ namespace lidar::test {
 
 class Networks {
  public:
-  /// False where the user may not make networks, or iproute2 is missing.
+  /// Returns false if the user may not make networks, or iproute2 is missing.
   bool Create();
   ~Networks();
 
-  /// The calling thread, and those that it starts, are there from now on.
+  /// The calling thread, and threads that it starts, are in this network from now on.
   void EnterRobot() const;
   void EnterEdge() const;
-  /// Ethernet `n`: the robot's interface rN with 10.9.N.`host`, the edge's eN with 10.9.N.1.
+  /// Makes Ethernet `n`: the robot's interface rN has 10.9.N.`host`, the edge's eN has 10.9.N.1.
   void Connect(int n, int host = 2) const;
   void Disconnect(int n) const;
-  /// Runs a command in the robot's network; fails the test where it fails.
+  /// Runs a command in the robot's network. The test fails if it fails.
   void Robot(const std::string& command) const;
 
  private:

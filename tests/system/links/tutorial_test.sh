@@ -20,7 +20,7 @@ if ! { ip netns add "$robot" && ip netns add "$edge"; } 2>/dev/null; then
   exit 77
 fi
 
-# printed PATTERN: the commands of the page that begin so.
+# printed PATTERN: prints the commands of the page that begin with PATTERN.
 printed() { grep -E "^    $1" "$page" | sed 's/^    //'; }
 on() { ip netns exec "$@"; }
 wait_for() {

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs the demo and looks each second at how much memory its processes have of their own; fails where an end or the
-# link has grown since the first minute. Usage: memory.sh [MINUTES [OPTIONS OF THE DEMO]]
+# Runs the demo and looks each second at how much memory its processes have of their own; fails if
+# an end or the link has grown since the first minute. Usage: memory.sh [MINUTES [OPTIONS OF THE
+# DEMO]]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 seconds=$((60 * ${1:-4}))
@@ -22,7 +23,7 @@ while kill -0 $demo 2>/dev/null; do
 done >"$work/samples"
 wait $demo || { tail -5 "$work/log"; echo "FAILED: the demo does not hold" >&2; exit 1; }
 
-# The last two seconds are those of the end.
+# The last two seconds do not count: the demo ends then.
 awk -v allowed="$allowed" '
   $1 !~ /^lidar/ { next }
   !($1 in start) { start[$1] = $2 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Streams for hours, encrypted, through a drive with gaps and random faults; each minute a line, and what must
-# hold is checked.
+# Streams for hours, encrypted, through a drive with gaps and random faults. Each minute it checks
+# what must hold, and prints a line.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 build=${BUILD_DIR:-$root/build}

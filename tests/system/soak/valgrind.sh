@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Both ends of a stream under valgrind's memcheck: no invalid access, no use of what was never set, and nothing lost
-# that was allocated in a function of ours. Valgrind slows them thirtyfold, so the sensor is a small one.
+# Both ends of a stream under valgrind's memcheck: no invalid access, no use of uninitialised
+# memory, and no leak from a function of ours. Valgrind slows them thirtyfold, so the sensor is a
+# small one.
 set -euo pipefail
 command -v valgrind >/dev/null || { echo "Install valgrind." >&2; exit 1; }
 source "$(dirname "$0")/../../../pipelines/environment.sh"
@@ -33,7 +34,7 @@ wait $receiver
 echo "$(stat -c %s "$work/scans") bytes of scans came out"
 status=0
 for name in sender receiver; do
-  # A record ends with an empty line; a leak counts where a frame lies in a library of ours.
+  # A record ends with an empty line. A leak counts if one of its frames lies in a library of ours.
   awk -v RS='\n==[0-9]+== \n' '!/definitely lost/ || /(libgstlidar|libgstrtplidar|libgstecnudp|libgstouster)/' "$work/$name" >"$work/$name.found"
   echo "$name: $(grep -c 'definitely lost' "$work/$name" || true) leaks in libraries of others, $(grep -cE 'Invalid|uninitialised|definitely lost' "$work/$name.found" || true) errors of ours"
   if grep -qE 'Invalid|uninitialised|definitely lost|Mismatched' "$work/$name.found"; then cat "$work/$name.found"; status=1; fi

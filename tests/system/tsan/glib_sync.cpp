@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Tells ThreadSanitizer what GLib and GStreamer order: their locks are futexes of their own and
-// their reference counts inline atomics, which it cannot see. Preloaded by tests/run.sh --tsan.
+// Shows ThreadSanitizer the order that GLib and GStreamer make: their locks are futexes of their
+// own and their reference counts inline atomics, which it cannot see. Preloaded by tests/run.sh
+// --tsan.
 #include <dlfcn.h>
 #include <glib.h>
 #include <gst/gst.h>
@@ -18,7 +19,7 @@ void __tsan_release(void*) __attribute__((weak));
 
 namespace {
 
-// Programs that a test starts have it preloaded too, but not ThreadSanitizer.
+// Programs that a test starts preload this library, too, but lack ThreadSanitizer.
 void Acquire(void* p) {
   if (__tsan_acquire != nullptr) __tsan_acquire(p);
 }
@@ -33,7 +34,8 @@ Function Next(const char* name) {
 
 }  // namespace
 
-// NAME of GLib: what is before it in other threads is seen after it.
+// Wraps the function NAME of GLib: what other threads did before they unlocked `m` is seen after it
+// is locked.
 #define LOCKS(name, type)                                   \
   extern "C" void name(type* m) {                           \
     static auto* const next = Next<decltype(&name)>(#name); \
@@ -53,7 +55,8 @@ Function Next(const char* name) {
     Release(m);                                             \
     next(m);                                                \
   }
-// A reference that is dropped: whoever frees has seen all that the others did.
+// Wraps a function that drops a reference: the thread that frees the object has seen all that
+// others did.
 #define UNREFS(name, type)                                  \
   extern "C" void name(type o) {                            \
     static auto* const next = Next<decltype(&name)>(#name); \
@@ -93,7 +96,7 @@ gboolean g_cond_wait_until(GCond* cond, GMutex* mutex, gint64 end) {
   return signalled;
 }
 
-// A buffer is handed on by whoever holds it, and written to by whoever holds it alone.
+// Each holder hands a buffer on, and only a sole holder writes to it.
 gboolean gst_mini_object_is_writable(const GstMiniObject* o) {
   static auto* const next =
       Next<decltype(&gst_mini_object_is_writable)>("gst_mini_object_is_writable");
@@ -115,7 +118,7 @@ GstMiniObject* gst_mini_object_ref(GstMiniObject* o) {
   return next(o);
 }
 
-// Queues: what a thread did before it put something in is seen by whoever takes it out.
+// Queues: what a thread did before it put something in is seen by the thread that takes it out.
 void g_async_queue_push(GAsyncQueue* queue, gpointer data) {
   g_async_queue_lock(queue);
   Acquire(queue);
@@ -187,8 +190,8 @@ GstMessage* gst_bus_timed_pop_filtered(GstBus* bus, GstClockTime timeout, GstMes
   GstMessage* const message = next(bus, timeout, types);
   Acquire(bus);
   if (message != nullptr) Acquire(message);
-  // The poster drops its reference inside GStreamer, where nothing tells of it. Waiting for that
-  // makes sure that it is not the one who frees the message.
+  // GStreamer drops the poster's reference where ThreadSanitizer does not see it. Waiting for that
+  // makes sure that the poster does not free the message.
   for (int i = 0; message != nullptr && i < 100 && GST_MINI_OBJECT_REFCOUNT_VALUE(message) > 1; ++i)
     g_usleep(1000);
   return message;
@@ -202,8 +205,8 @@ GstMessage* gst_bus_pop_filtered(GstBus* bus, GstMessageType types) {
 }
 GstMessage* gst_bus_pop(GstBus* bus) { return gst_bus_pop_filtered(bus, GST_MESSAGE_ANY); }
 
-// Main contexts: whoever dispatches a source has seen what was done before it was attached. One
-// lock is for all of them, as a function that polls is not told for which.
+// Main contexts: the thread that dispatches a source has seen what was done before it was attached.
+// All contexts share a lock, because a function that polls does not get its context.
 static std::mutex attaching;
 
 guint g_source_attach(GSource* source, GMainContext* context) {
@@ -229,7 +232,7 @@ GMainContext* g_main_context_new() {
   return context;
 }
 
-// A context with a source of high priority does not poll before it dispatches that.
+// A context with a source of high priority does not poll before it dispatches that source.
 void g_main_loop_quit(GMainLoop* loop) {
   static auto* const next = Next<decltype(&g_main_loop_quit)>("g_main_loop_quit");
   const std::lock_guard lock(attaching);

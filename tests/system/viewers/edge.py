@@ -21,7 +21,8 @@ class Edge:
 
     def __init__(self, model="os1-64", coder="", mbit=2, sink=""):
         self.port, media = free_port("tcp"), free_port("udp")
-        # A tee serves its branches in turn: what foxglovesink holds up comes late to the second.
+        # A tee serves its branches in turn: a slice that foxglovesink holds up comes late to the
+        # second.
         pipeline = (
             f"screamsrc port={media} ! rtplidardepay ! tee name=t t. ! identity ! foxglovesink port={self.port} {sink} "
             "t. ! fakesink name=behind sync=false async=false signal-handoffs=true"
@@ -51,12 +52,13 @@ class Edge:
             process.wait()
 
     def processor_seconds(self):
-        """Of the edge, so far."""
+        """Returns the processor time of the edge so far."""
         fields = open(f"/proc/{self.edge.pid}/stat").read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def delay_ms(self):
-        """Of the pipeline, since the last call: from capture to the other side of foxglovesink, p95."""
+        """Returns the delay of the pipeline since the last call: from capture to the other side of foxglovesink,
+        p95."""
         self.edge.stdin.write("\n")
         self.edge.stdin.flush()
         return float(self.edge.stdout.readline())

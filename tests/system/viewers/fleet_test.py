@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Robots of a fleet behind one foxglovesink: lidar-edge, NATS, natssrc, and a viewer for each token.
 
-A token opens its own robot, one that is changed, over or of another robot nothing; a robot that talks nonsense
-disturbs nobody; viewers go back into what JetStream keeps.
+A token opens its own robot; a token that is changed, expired or of another robot opens nothing. A robot that sends
+garbage disturbs no viewer. Viewers go back into what JetStream keeps.
 """
 import base64
 import hashlib
@@ -100,7 +100,7 @@ class Fleet:
 
 
 def go_back(viewer):
-    """Into what came before the viewer did, and back to live."""
+    """Replays what came before the viewer did, then goes back to live."""
     viewer.until("what JetStream keeps", lambda: viewer.recording and viewer.recording["to"] > viewer.recording["from"] + 2)
     begin = viewer.recording["from"]
     viewer.forget()

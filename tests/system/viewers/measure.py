@@ -19,8 +19,8 @@ LINKS = [
     ("1 Mbit/s, 80 ms round trip", 1, 0.04, 3, 600),
 ]
 MOST_OVER_SLICES, MOST_CORES = 1.1, 0.5
-# A slice takes 6 ms of the sensor: twenty viewers share two cores with it.
-MOST_DELAY = 10  # [ms], above that without viewers
+# A slice spans 6 ms of the sensor's time; twenty viewers share two cores with the sensor.
+MOST_DELAY = 10  # [ms] above the delay without viewers
 misses = []
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """foxglovesink behind nginx and Caddy, by the configurations that docs/viewing.md prints.
 
-Each serves the page and its sockets below a path, over TLS, to who has a token; an idle connection lives on.
+Each serves the page and its sockets below a path, over TLS, to clients with a token; an idle connection lives on.
 """
 import http.client
 import pathlib
@@ -21,7 +21,7 @@ from viewer import Viewer
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 TOKEN = "a-token-of-this-test"
 SKIPPED = 77
-# nginx cuts a connection that is silent for longer; a ping comes each 10 s.
+# nginx cuts a connection that is silent for longer than IDLE_LIMIT [s]; a ping comes each 10 s.
 IDLE_LIMIT, IDLE = 13, 20
 
 

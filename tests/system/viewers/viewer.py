@@ -48,7 +48,7 @@ class Socket:
         self.socket.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)  # a mask of zeros
 
     def frame(self):
-        """A frame that is there: its opcode and payload; None where more bytes are needed."""
+        """A frame that is there: its opcode and payload; None if more bytes are needed."""
         b = self.bytes
         if len(b) < 2:
             return None
@@ -83,7 +83,7 @@ class Socket:
 
 
 class Viewer:
-    """Acknowledges what comes once a frame, as the page does, and remembers how old it was."""
+    """Acknowledges the newest slice each FRAME_SECONDS, as the page does, and notes the age of all."""
 
     SUBSCRIPTION, FRAME = 9, 4  # bytes of a frame's head
 
@@ -92,7 +92,7 @@ class Viewer:
         self.topic = topic
         self.slices = []  # (scan, index, age [s], bytes, is recoded, number of the replay)
         self.channels = {}
-        self.recording = None  # the last word about it
+        self.recording = None  # the last message about it
 
     def run(self, seconds):
         until = time.monotonic() + seconds
@@ -128,7 +128,7 @@ class Viewer:
         return scan, index
 
     def until(self, what, holds, seconds=30):
-        """Runs until it holds."""
+        """Runs until `holds()` is true."""
         end = time.monotonic() + seconds
         while not holds():
             assert time.monotonic() < end, what
@@ -144,7 +144,8 @@ class Viewer:
         self.slices = []
 
     def figures(self, seconds):
-        """Scans a second, the age [ms] that 95 % are below, Mbit/s, bytes over those of the slices, the part coded anew."""
+        """Scans a second, the age [ms] that 95 % are below, Mbit/s, bytes per byte of the slices, the part of slices
+        coded anew."""
         ages = sorted(s[2] for s in self.slices)
         scans = len({s[0] for s in self.slices})
         return {
@@ -171,7 +172,7 @@ class Bottleneck:
         while True:
             client = self.listener.accept()[0]
             server = socket.socket()
-            # What the kernel would buffer is not of the link.
+            # A buffer of the kernel would add to that of the link.
             server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.BUFFER)
             server.connect(("127.0.0.1", self.target))
             for s in (client, server):

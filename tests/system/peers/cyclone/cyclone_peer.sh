@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# ros2sink and ros2src beside a program of Cyclone DDS, with the types of Cyclone's own compiler: with
-# and without their descriptions. Skipped where there is no compiler of types.
+# ros2sink and ros2src with a program of Cyclone DDS, whose types Cyclone's own compiler makes: with
+# and without their descriptions. Skipped if that compiler is missing.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../../.." && pwd)

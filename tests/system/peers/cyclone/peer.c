@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A ROS 2 node on Cyclone DDS, whose types are those of Cyclone's own compiler.
 //
-//     peer sub TOPIC FRAME   takes three clouds; fails where one is not as it should be
+//     peer sub TOPIC FRAME   takes three clouds; fails if one is wrong
 //     peer pub TOPIC FRAME   publishes clouds until it is killed
 //     peer data              prints the points of those clouds
 #include <dds/dds.h>
@@ -30,7 +30,8 @@ static dds_qos_t* reliable(void) {
   return qos;
 }
 
-/// A cloud of lidartestsrc: x, y, z, intensity and range, which stand behind each other.
+/// Returns what is wrong with a cloud of lidartestsrc, whose fields are x, y, z, intensity and
+/// range in this order; NULL if it is right.
 static const char* wrong_with(const Cloud* cloud, const char* frame) {
   static const char* const names[] = {"x", "y", "z", "intensity", "range"};
   static const unsigned char types[] = {7, 7, 7, 7, 6};

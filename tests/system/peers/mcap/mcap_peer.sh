@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Recordings of mcapsink are what MCAP's own library for JavaScript takes them for. Skipped where npm
-# cannot install it.
+# MCAP's own library for JavaScript reads recordings of mcapsink. Skipped if npm cannot install it.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../../.." && pwd)
