@@ -34,7 +34,7 @@ LINK_PORT, RX_PORT = 45204, 45304
 
 
 def parse_case(name):
-    """Kind of the other flow, options of the link, and the rate [bit/s]."""
+    """Returns the kind of the other flow, options of the link, and the rate [bit/s]."""
     parts = name.split("_")
     kind, rate = parts[0], float(parts[-1].rstrip("M"))
     options = ["--rate", str(rate), "--rtt", str(RTT_MS)]
@@ -45,7 +45,7 @@ def parse_case(name):
         options += ["--aqm", parts[1]]
         if parts[1] == "step":
             options += ["--aqm-high", parts[2].removesuffix("ms")]
-        if parts[1] == "pi2":  # as most that are out there: no L4S
+        if parts[1] == "pi2":  # as most AQMs in use: without L4S
             options.append("--aqm-classic")
     return kind, options, rate * 1e6
 
@@ -116,7 +116,7 @@ def run(build, other, name, seconds, folder):
 
 
 def measure(folder, seconds):
-    """Mbit/s and loss of both flows; ours was first."""
+    """Returns Mbit/s and loss of both flows, ours first."""
     delivered, lost, sent = [0, 0], [0, 0], [0, 0]
     sojourn = []
     with open(folder / "link.csv") as log:

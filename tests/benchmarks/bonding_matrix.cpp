@@ -24,10 +24,10 @@ using lidar::scream::test::TcpKind;
 
 constexpr std::uint64_t kPairs = 10;
 constexpr unsigned kRuns = 20;
-/// The other flow starts later by this in each run.
+/// Each run starts the other flow later by this.
 constexpr Duration kPhase = 137ms;
 
-/// Less than a packet in a gap.
+/// Less than a packet passes in a gap at this rate.
 constexpr lidar::DataRate kNothing = lidar::DataRate::BitsPerSecond(1e3);
 
 Capacity Drive(std::uint64_t seed,
@@ -60,7 +60,7 @@ double Uncertainty(const std::vector<double>& values) {
   return 1.96 * std::sqrt(squares / (n - 1) / n) / mean;
 }
 
-/// A pair of generated drives beside a sender that knew them and sends as much, evenly.
+/// Compares a pair of generated drives with a sender that knew them and sends as much, evenly.
 void PrintPair(std::uint64_t seed, bool adapts, Duration duration) {
   RunConfig config;
   config.links = {{Drive(seed)}, {Drive(seed + 1)}};
@@ -94,7 +94,7 @@ void PrintDrives(Duration duration) {
     for (std::uint64_t i = 0; i < kPairs; ++i) PrintPair(2 * i + 1, adapts, duration);
 }
 
-/// A stream over one link, and over two, passes a queue beside a greedy flow.
+/// A stream over one link, and over two, shares a queue with a greedy flow.
 void PrintOneBottleneck(TcpKind kind, double mbps, Duration duration) {
   LinkConfig link{Capacity::Constant(Mbps(mbps))};
   if (kind == TcpKind::kPrague)

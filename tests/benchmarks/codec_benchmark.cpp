@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Size and speed of the range and xyz codecs on real scans; one thread where nothing else is said.
+// Size and speed of the range and xyz codecs on real scans; in one thread unless stated.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -33,7 +33,7 @@ const Capture& CaptureOf(std::int64_t source, std::int64_t slices) {
   return captures[{source, slices}] = *std::move(capture);
 }
 
-// The argument `coder` is a codec::RangeCoder, or this and an effort of kMixing.
+// The argument `coder` is a codec::RangeCoder, or for kMixing kEffort plus the effort.
 constexpr std::int64_t kEffort = 10;
 
 codec::RangeCoder CoderOf(std::int64_t coder) {
@@ -89,7 +89,7 @@ void Encode(benchmark::State& state, Geometry geometry) {
   EncodeAll(&setup, state);
 }
 
-/// Whole scans; by the clock, because the threads share it.
+/// Encodes whole scans. It measures wall-clock time, because the threads share the work.
 void EncodeWithThreads(benchmark::State& state) {
   Setup setup(state, Geometry::kRange);
   setup.encoder.set_threads(static_cast<unsigned>(state.range(5)));

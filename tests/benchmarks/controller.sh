@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# All simulated cases of the controller from one commit: goals met and missed, or (--ablation) what
-# each part is worth. usage: controller.sh BUILD [--ablation] [options of controller-goals]
+# Runs all simulated cases of the controller of one commit: prints goals met and missed, or
+# (--ablation) what each part is worth. usage: controller.sh BUILD [--ablation] [options of
+# controller-goals]
 set -eu
 build=$1
 shift

@@ -22,7 +22,7 @@ using namespace lidar::scream::test;
 
 struct Options {
   std::vector<std::string> cases;
-  std::string group;  // what names of cases begin with
+  std::string group;  // how names of its cases begin
   Parameters parameters;
   int starts = 12;
   bool all_figures = false;
@@ -128,7 +128,7 @@ std::vector<Case> Cases(const Options& options) {
   return wanted;
 }
 
-/// Each processor takes the next case.
+/// Runs the cases on all processors: each takes the next case.
 Results Run(const std::vector<Case>& cases, const Parameters& parameters) {
   Results results(cases.size());
   std::atomic<std::size_t> next{0};
@@ -166,7 +166,7 @@ struct Change {
   double size = 0;
 };
 
-/// What differs between two runs of all cases, the largest first.
+/// Returns the differences between two runs of all cases, the largest first.
 std::vector<Change> Changes(const std::vector<Case>& cases, const Results& base,
                             const Results& other) {
   std::vector<Change> changes;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Searches slices that cost a decoder the most processor time for each byte that is sent: true
-// slices, and some of which all points are alike, are damaged at random, and the dearest of them
-// further. Prints a line for each coder.
-// usage: decode-cost [SECONDS]
+// slices, and slices whose points are all equal, are damaged at random, and the dearest of them
+// again. Prints a line for each coder. usage: decode-cost [SECONDS]
 #include <time.h>
 
 #include <algorithm>
@@ -20,7 +19,7 @@ namespace lidar::bench {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-constexpr std::uint32_t kMaxPoints = 1U << 20;  // as lidardec has it
+constexpr std::uint32_t kMaxPoints = 1U << 20;  // the limit of lidardec
 constexpr std::size_t kKept = 32;
 constexpr double kHeaders = 72;  // bytes of IP, UDP, RTP and the slice's unit
 
@@ -39,7 +38,7 @@ struct Slice {
   double CostOfAByte() const { return cost_s / (kHeaders + static_cast<double>(bytes.size())); }
 };
 
-/// The least of three times: what else runs adds to them.
+/// Takes the least of three times: other programs add to them.
 Slice Measure(const Decode& decode, Bytes bytes) {
   Slice slice{std::move(bytes), 1e9};
   for (int i = 0; i < 3; ++i) {
@@ -54,7 +53,7 @@ Bytes Damaged(const Bytes& from, std::mt19937* random) {
   Bytes bytes = from;
   const auto any = [random](std::size_t n) { return (*random)() % n; };
   for (std::size_t n = 1 + any(3); n > 0; --n) {
-    // What is dear stands in front: in headers, sizes and counts.
+    // Half of the changes are at the front, where headers, sizes and counts cost most.
     const std::size_t at =
         any(2) == 0 ? any(std::min<std::size_t>(bytes.size(), 24)) : any(bytes.size());
     constexpr std::uint8_t kEdges[] = {0, 1, 0x7F, 0x80, 0xFF};
@@ -100,7 +99,7 @@ void Search(const char* coder, const std::vector<Bytes>& seeds, const Decode& de
   std::fflush(stdout);
 }
 
-/// The slices of a capture as a coder of ranges makes them, and as Draco's own files.
+/// Returns the slices of a capture as a coder of ranges makes them, and as Draco's own files.
 std::vector<Bytes> Code(const Capture& capture, Geometry geometry, codec::RangeCoder coder,
                         unsigned effort) {
   auto encoder = *draco::SliceEncoder::Create(capture.format, geometry, coder);
@@ -130,7 +129,7 @@ std::vector<Bytes> CodeAsCloud(const Capture& capture, const codec::cloud::Exact
   return all;
 }
 
-/// A whole scan that takes few bytes: each point of it is the first one of the capture's.
+/// Returns a whole scan that takes few bytes: each of its points is the capture's first.
 CapturedSlice Alike(const Capture& capture) {
   const codec::CloudFormat& format = capture.format;
   const std::vector<std::uint8_t>& points = capture.slices.front().points;

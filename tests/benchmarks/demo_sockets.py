@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs the demo several times over each link, over sockets, and prints the rows of docs/results/demo.md: the middle run.
 
-Beside each figure stands that of a sender that knew the link (the demo's oracle). The links: the
+Each figure is followed by that of a sender that knew the link (the demo's oracle). The links: the
 demo's own steps and drive, regular gaps that lidar-trace makes, and the traces given. Run it with
 real-time priority (chrt -r 10) on a machine that does nothing else.
 """
@@ -50,7 +50,7 @@ def parse_arguments():
 
 
 def links(args, folder):
-    """Name and options of each link."""
+    """Yields name and options of each link."""
     cases = args.case or ([] if args.trace else [*STEPS_AND_DRIVE, *GAPS])
     for name in cases:
         if name in STEPS_AND_DRIVE:
@@ -67,7 +67,7 @@ def links(args, folder):
 
 
 def source(args, folder):
-    """Options for the capture, or none for the synthetic sensor."""
+    """Returns options for the capture; none for the synthetic sensor."""
     if args.pcap is None:
         return []
     pcap = args.pcap
@@ -80,7 +80,7 @@ def source(args, folder):
 
 
 def run(args, options, duration, report):
-    """The summary of one run."""
+    """Returns the summary of one run."""
     command = [args.build / "src/tools/lidar-demo", "run", "--no-plots", "--duration", duration, "--max-error",
                args.max_error, "--output", report, *options, *args.more]
     done = subprocess.run([str(word) for word in command], env=build_tree.environment(args.build), capture_output=True, text=True, check=False)
@@ -91,7 +91,7 @@ def run(args, options, duration, report):
 
 
 def middle(values, form):
-    """The middle one of the values of the runs."""
+    """Returns the middle one of the values of the runs."""
     known = sorted(v for v in values if v is not None)
     return format(known[len(known) // 2], form) if known else "–"
 

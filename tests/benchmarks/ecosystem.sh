@@ -45,7 +45,7 @@ export GST_PLUGIN_PATH_1_0 GST_REGISTRY=$build/benchmark-registry.bin
 export CYCLONEDDS_URI='<General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General>'
 GST_PLUGIN_PATH_1_0=$(printf "$build/%s\n" "${plugins[@]%/*}" | sort -u | paste -sd:)
 
-# measure ELEMENT PEER QOS WIDTH: what ros2-bench says, as a row of a table.
+# measure ELEMENT PEER QOS WIDTH: prints the figures of ros2-bench as a row of a table.
 measure() {
   "$bench" "$1" "$2" "$3" "$4" "$clouds" 2>/dev/null | awk -v element="ros2$1" -v peer="$2" -v qos="$3" '
     { who = $1; sub(":", "", who); cpu[who] = $2 " %" }
@@ -85,7 +85,7 @@ measure_ros2() {
   table 1024 "src fast reliable" "src cyclone reliable" "sink fast reliable"
 }
 
-# As Linux has it where nobody raised it.
+# Linux has this buffer by default.
 measure_small_buffer() {
   local setting=/proc/sys/net/core/rmem_max granted
   granted=$(cat "$setting")

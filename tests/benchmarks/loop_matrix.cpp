@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// loop-matrix: runs encoder, sender and link in simulated time over traces with gaps; prints the
-// figures beside those of a sender that knew the link.
+// loop-matrix: runs encoder, sender and link in simulated time over traces with gaps. Prints the
+// figures and those of a sender that knew the link.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -156,7 +156,7 @@ void PrintShort(const GoalResult& goal) {
   if (!goal.holds) std::printf("    short: %s\n", goal.text.c_str());
 }
 
-/// Where an encoder adapts, what one does that puts out the coarsest step.
+/// Compares an encoder that adapts with an encoder that always uses the coarsest step.
 void CompareWithFixed(LoopCase c, const LoopReport& report) {
   if (c.frames || !c.source.adapts) return;
   c.source.adapts = false;
@@ -181,7 +181,7 @@ void PrintRow(const LoopCase& c, const LoopReport& r) {
   std::fflush(stdout);
 }
 
-/// One figure over several runs.
+/// Mean and range of a figure over several runs.
 class Spread {
  public:
   void Add(double value) {
@@ -202,7 +202,7 @@ class Spread {
   int runs_ = 0;
 };
 
-/// Each figure of a report that PrintSpread() shows, and the digits behind its point.
+/// A figure of a report that PrintSpread() shows, and its number of decimals.
 struct Figure {
   const char* name;
   int digits;
@@ -248,7 +248,7 @@ void PrintSpread(const LoopCase& loop_case, int starts) {
   std::fflush(stdout);
 }
 
-/// A yardstick for senders that adapt.
+/// Prints figures of a sender that follows the link late, as a yardstick for senders that adapt.
 void PrintLate(const LoopCase& loop_case, double share, int starts) {
   LateSenderConfig config;
   config.duration = loop_case.duration;

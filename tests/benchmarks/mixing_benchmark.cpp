@@ -21,7 +21,7 @@ struct Source {
 constexpr Source kSources[] = {
     {"OS0-32", "OS-0-32-U1_v2.2.0_1024x10.pcap", "OS-0-32-U1_v2.2.0_1024x10.json"},
     {"OS1-128-lb_n3", "OS-1-128_v2.3.0_1024x10_lb_n3.pcap", "OS-1-128_v2.3.0_1024x10.json"}};
-// A block has them in front of its payload.
+// Each block has a header of this size in front of its payload.
 constexpr double kHeaderBytes = 12;
 
 /// Arguments: source, slices a scan, effort, error [mm], intensity bits.

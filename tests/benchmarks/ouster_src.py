@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Latency, load, loss and recovery of ouster_src against ouster-replay, over loopback sockets.
 
-Run in `meson devenv -C build`; prints Markdown tables. Fails where losses are not counted exactly.
+Run in `meson devenv -C build`; prints Markdown tables. Fails if losses are not counted exactly.
 """
 import argparse
 import json
@@ -86,7 +86,7 @@ def percentile(values, share):
 
 
 def load(tool, seconds, model, mode, speeds, loss):
-    """True where every loss was counted, no more and no less."""
+    """Measures each speed. Returns whether exactly the losses were counted."""
     exact = True
     with tempfile.TemporaryDirectory() as folder:
         pcap, metadata = f"{folder}/drive.pcap", f"{folder}/drive.json"
@@ -106,7 +106,7 @@ def load(tool, seconds, model, mode, speeds, loss):
             cpu, elapsed = receiver.cpu_seconds() - cpu, time.monotonic() - start
             sent = sensor.request("/replay/stats")["sent"] - before["sent"]
             sensor.request("/replay/faults", {"loss": 0})
-            time.sleep(2.5)  # losses are told once a second
+            time.sleep(2.5)  # losses are reported once a second
             after = sensor.request("/replay/stats")
             receiver.stop()
             sensor.stop()

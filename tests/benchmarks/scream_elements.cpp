@@ -94,7 +94,7 @@ GstFlowReturn Count(GstPad* pad, GstObject*, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Input that is not live: screamtx holds it back instead of dropping it.
+/// Makes the input not live: screamtx holds it back instead of dropping it.
 gboolean NotLive(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return gst_pad_query_default(pad, parent, query);
   gst_query_set_latency(query, FALSE, 0, GST_CLOCK_TIME_NONE);
@@ -120,7 +120,7 @@ void LinkReceiver(GstElement* tx, Receiver* receiver) {
   gst_pad_link(receiver->rtcp, rtcp.get());
 }
 
-/// CPU time of the whole process: input, pacing, feedback and the reports' making.
+/// Measures CPU time of the whole process: input, pacing, feedback, and making the reports.
 void ScreamTx(benchmark::State& state) {
   const ElementPtr tx(
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamtx", nullptr))));

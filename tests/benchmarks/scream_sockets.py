@@ -3,7 +3,7 @@
 """Runs the scenarios of docs/results/scream.md over real sockets and prints the table.
 
 Sender and receiver are scream-bench, or the programs of EricssonResearch/scream, as processes of
-their own; between them stands lidar-link, whose packet log is what is measured.
+their own; lidar-link is between them, and its packet log is measured.
 """
 import argparse
 import contextlib
@@ -141,7 +141,7 @@ class Run:
             start(self.peers.sender(self.senders[i], self.peers.link_port + i, self.ecn, self.fps,
                                     str(self.folder / f"tx{i}.json")), f"tx{i}.txt")
         time.sleep(self.seconds)
-        # Senders first, then receivers, then the link, which writes its summary.
+        # The senders end first, then the receivers, then the link, which writes its summary.
         count = len(self.senders)
         order = processes[count + 1:] + processes[:count] + [processes[count]]
         for p in order:
@@ -191,7 +191,7 @@ class Run:
         }
 
     def mean_capacity(self, start, end, link):
-        """Bit/s, of constant rates and of steps."""
+        """Returns the mean capacity [bit/s] of a constant rate or of steps."""
         if "--rate" in self.options:
             return float(self.options[self.options.index("--rate") + 1]) * 1e6
         steps = [float(s) for s in self.options[self.options.index("--steps") + 1].split(",")]

@@ -44,7 +44,7 @@ def sender(options, seconds):
 
 
 def run(options):
-    """CPU time of sender and receiver, and the bytes that came through."""
+    """Returns the CPU time of sender and receiver, and the bytes that came through."""
     out = tempfile.NamedTemporaryFile(dir="/dev/shm")
     receiver = launch(f"screamsrc port={PORT} caps={CAPS} {options} ! filesink location={out.name} sync=false async=false")
     time.sleep(1)
@@ -53,7 +53,7 @@ def run(options):
 
 
 def packet_size(options):
-    """Bytes of UDP payload in a full packet."""
+    """Returns the bytes of UDP payload in a full packet."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
         listener.bind(("127.0.0.1", PORT))
         listener.settimeout(5)
@@ -68,7 +68,7 @@ def main():
     suites = {"": "", **{c: f"srtp-cipher={c} srtp-key={'5a' * size}" for c, size in KEYS.items()},
               "hmac-sha1-32": f"srtp-auth=hmac-sha1-32 srtp-key={'5a' * 30}"}
     rounds = [{name: run(options) for name, options in suites.items()} for _ in range(ROUNDS)]
-    # What disturbs only adds.
+    # Disturbances only add, so the least counts.
     least = {name: [min(r[name][end] for r in rounds) for end in (0, 1)] for name in suites}
     size = packet_size("")
     came = [r[name][2] for r in rounds for name in suites]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// tcp-flow: a greedy flow of Reno, Cubic or Prague over UDP, to stand beside ours on lidar-link.
+// tcp-flow: a greedy flow of Reno, Cubic or Prague over UDP, to compete with ours on lidar-link.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
@@ -60,7 +60,7 @@ void Send(const std::string& to, TcpKind kind) {
   std::printf("{\"packets_sent\": %llu}\n", static_cast<unsigned long long>(packets));
 }
 
-/// Acknowledges each packet to where it came from.
+/// Acknowledges each packet to the address that it came from.
 void Receive(const std::string& at) {
   UdpSocket socket = UdpSocket::Bind(lidar::tools::ResolveAddress(at, "0.0.0.0"));
   EventLoop loop;

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Streams a recorded drive over two links and over each alone, over sockets, beside what a sender that knew them could deliver.
+"""Streams a recorded drive over two links and over each alone, over sockets, and compares it with what a sender that
+knew them could deliver.
 
 Without --trace the links are two drives that lidar-trace makes. The second trace may begin within:
---trace A --trace B@37. A scan is in time where all its slices are decoded within 0.2 s of their
+--trace A --trace B@37. A scan is in time if all its slices are decoded within 0.2 s of their
 capture. Run it with real-time priority (chrt -r 10) on a machine that does nothing else.
 """
 import argparse
@@ -24,7 +25,7 @@ import build_tree  # noqa: E402
 from ports import free_port  # noqa: E402
 
 MAX_AGE_NS = 200_000_000
-SETTLE_S = 3.0  # of a run: scans of its start do not count
+SETTLE_S = 3.0  # of a run: scans that start within it do not count
 CASES = {"first alone": (0,), "second alone": (1,), "both": (0, 1)}
 HEAD = ("| links | scans | in time [%] | bound [%] | p50 [ms] | p95, bound [ms] | p99, bound [ms] | Mbit/s | sent twice [%] "
         "| saved packets |\n|---|---|---|---|---|---|---|---|---|---|")
@@ -47,7 +48,7 @@ def parse_arguments():
 
 
 def traces(args, folder):
-    """File and start of each link's trace."""
+    """Returns file and start of each link's trace."""
     if args.trace:
         return [(pathlib.Path(t.partition("@")[0]), float(t.partition("@")[2] or 0)) for t in args.trace]
     made = []
@@ -60,7 +61,7 @@ def traces(args, folder):
 
 
 def rotated(trace, start, path):
-    """The trace from `start` on, as lidar-link begins with a file's first line."""
+    """Writes the trace from `start` on, as lidar-link begins with a file's first line."""
     steps = [tuple(map(float, line.split())) for line in trace.read_text().splitlines() if line.strip() and line[0] != "#"]
     end = steps[-1][0] + (steps[-1][0] - steps[-2][0])
     turned = sorted(((t - start) % end, rate) for t, rate in steps)
@@ -80,7 +81,7 @@ def start(command, log, **options):
 
 
 def end_with(command, folder, name):
-    """A process of lidar-demo, whose records go to a file; its clouds to nowhere."""
+    """Starts a process of lidar-demo. Its records go to a file, its clouds to /dev/null."""
     words = " ".join(shlex.quote(str(w)) for w in command)
     out = open(folder / f"{name}.jsonl", "w")
     return start(["bash", "-c", f"exec {words} 3>/dev/null"], folder / f"{name}.log", stdout=out)
@@ -127,7 +128,7 @@ def last_words(folder, name):
 
 
 def judge(folder):
-    """Figures of one run."""
+    """Returns the figures of one run."""
     captured, decoded, encoded, counts = {}, {}, 0, {}
     stats = {}
     for r in records(folder, "sender"):
@@ -165,7 +166,7 @@ def percentile(values, share):
 
 
 def bound(args, used, files, rate):
-    """Share in time, p95 and p99 of a sender that knew the links."""
+    """Returns the share in time, p95 and p99 of a sender that knew the links."""
     command = [args.build / "src/tools/lidar-trace", "--rate", f"{rate:.3f}", "--duration", str(args.duration)]
     for i in used:
         command += ["--bound", files[i]]

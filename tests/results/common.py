@@ -24,12 +24,12 @@ SOURCES = {
 }
 build = ROOT / "build"
 LIDARS = ROOT / "tests/data/lidars"
-# One row, without a sensor model.
+# These clouds have one row, and no sensor model.
 CLOUDS = {"AT128": f"{LIDARS}/at128.pcd", "VLP-16": f"{LIDARS}/vlp16.pcd"}
 
 
 def use(folder, captures):
-    """Takes the build tree `folder`, and more sources by their names."""
+    """Sets the build tree `folder`, and adds `captures` to the sources, by name."""
     global build
     build = pathlib.Path(folder).resolve()
     if not (build / "build.ninja").exists():
@@ -47,7 +47,7 @@ def program(name):
 
 @functools.lru_cache
 def environment():
-    """The plugins and programs of the build tree first, with a registry of their own."""
+    """Returns an environment with plugins and programs of the build tree first, and a registry of their own."""
     programs = {str(path.parent) for path in (build / "src").rglob("ouster-replay")}
     return {
         **build_tree.environment(build, "results-registry.bin"),
@@ -57,7 +57,7 @@ def environment():
 
 
 def run(*command, **options):
-    """What a command prints. It runs in the project's folder."""
+    """Returns what a command prints. It runs in the project's folder."""
     options = {"env": environment(), "cwd": ROOT, "check": True, **options}
     words = [str(word) for word in command]
     return subprocess.run(words, stdout=subprocess.PIPE, text=True, **options).stdout
@@ -68,7 +68,7 @@ def lidar_eval(*arguments):
 
 
 def rate_distortion(source, *arguments):
-    """Rows of `lidar-eval rd` for one source: coding, error bound's step, errors, bits, bitrate."""
+    """Returns rows of `lidar-eval rd` for one source: coding, error bound's step, errors, bits, bitrate."""
     with tempfile.NamedTemporaryFile(suffix=".csv") as file:
         lidar_eval("rd", source, *arguments, "--csv", file.name)
         with open(file.name) as table:
@@ -81,13 +81,13 @@ def table(head, rows):
 
 
 def as_printed(text):
-    """Tables that a command has printed; whatever else it says becomes code."""
+    """Returns the tables that a command has printed. Without tables, its output becomes code."""
     lines = [line for line in text.splitlines() if line.startswith("|")]
     return "\n".join(lines) if lines else "```\n" + text.strip() + "\n```"
 
 
 def provenance():
-    """Commit, date and machine, for the head of a table."""
+    """Returns commit, date and machine, for the head of a table."""
     commit = run("git", "rev-parse", "--short", "HEAD").strip()
     cpu = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
     model = cpu[1].strip() if cpu else os.uname().machine

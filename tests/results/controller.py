@@ -10,7 +10,7 @@ ROW = re.compile(r"^(\S+) +(.+?) +(-?[\d.]+)( +[<>] *-?[\d.]+ (?:met|MISSED))?$"
 
 @functools.lru_cache
 def figures(*options):
-    """Case to its figures by name; each is its value, and whether it misses a goal."""
+    """Returns {case: {name of a figure: (value, whether it misses a goal)}}."""
     found = {}
     text = common.run(common.ROOT / "tests/benchmarks/controller.sh", common.build, "--figures", *options)
     for case, figure, value, goal in ROW.findall(text):
@@ -19,7 +19,7 @@ def figures(*options):
 
 
 def cell(of, names, digits, bold=True):
-    """Figures of a case with slashes between. With `bold`, what misses a goal is bold."""
+    """Returns figures of a case with slashes between. With `bold`, figures that miss a goal are bold."""
     cells = []
     for name in names:
         if name not in of:

@@ -15,7 +15,7 @@ import common
 
 
 def pages():
-    """Page to the functions that measure its tables, by the names of the tables."""
+    """Returns {page: {name of a table: function that measures it}}."""
     found = {}
     for file in sorted(common.HERE.glob("page_*.py")):
         module = importlib.import_module(file.stem)

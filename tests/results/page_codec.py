@@ -69,8 +69,8 @@ def static():
     return common.table(head, [[*row[:4], row[4] + " %"] for row in rows])
 
 
-# Bits a point within 2 and 5 cm of other coders, measured 2026-11-24 by hand: the better of TMC13's
-# predictive and octree geometry, and the goals.
+# Bits a point of other coders within 2 and 5 cm, measured by hand on 2026-11-24: the better of
+# TMC13's predictive and octree geometry, and the goals.
 PEERS = {
     "XT32": ("2.09 / 1.03", "1.2 / 0.75"),
     "Pandar64": ("1.87 / 0.70", "1.5 / 0.65"),
@@ -87,7 +87,7 @@ PEERS = {
 
 
 def cloud_rows(text):
-    """Bits, and the times to encode and decode, by coder."""
+    """Returns bits, and the times to encode and decode, by coder."""
     found = {}
     for coder, *numbers in re.findall(r"^ +\d+ mm  (Draco|effort \d) +([\d.]+)(?: +[\d.]+ +(\d+) +(\d+))?$", text, re.M):
         found.setdefault(coder, []).append(numbers)
@@ -116,7 +116,7 @@ def clouds():
     return common.table(head, body)
 
 
-# Ring and time as drivers call them.
+# Names that drivers give to ring and time.
 DRIVERS = {
     "VLP-16, Nebula's": ("filesrc location=tests/data/lidars/vlp16.pcd ! pointcloudparse", "channel", "time_stamp"),
     "VLP-16, synthetic": ("lidartestsrc model=vlp-16 num-buffers=5", "ring", "time"),
@@ -127,7 +127,7 @@ DRIVERS = {
 
 
 def fields():
-    """Bits a point of fields and order, beside those of the points, at effort 1 within 2 cm."""
+    """Bits a point of fields and order, and of the points, at effort 1 within 2 cm."""
 
     def bits(source, options):
         coder = f"lidarenc effort=1 max-error=0.02 intensity-bits=0 stats-interval=1 {options}"

@@ -20,7 +20,7 @@ RUNS = {
 
 
 def gaps():
-    """The demo's own links, three runs each, beside a sender that knew the link."""
+    """The demo's own links, three runs each, compared with a sender that knew the link."""
     return common.as_printed(
         common.run("chrt", "-r", 10, common.ROOT / "tests/benchmarks/demo_sockets.py", "--build", common.build)
     )
@@ -36,7 +36,7 @@ def summary_of(options):
 
 
 def steps():
-    """One run of 40 s of each kind over steps of the capacity."""
+    """A run of 40 s of each kind over steps of the capacity."""
     body = []
     for name, options in RUNS.items():
         s = summary_of(options)

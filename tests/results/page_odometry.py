@@ -16,7 +16,7 @@ DRIVES = [
 ]
 
 
-# Sensor, scene, columns, speed [m/s], seed, scans, what is left out of them.
+# Sensor, scene, columns, speed [m/s], seed, scans, options that leave some of them out.
 CALIBRATED = [
     ("os0-32", "street", 512, 10, 50, 120, []),
     ("os0-32", "town", 512, 10, 50, 120, []),
@@ -58,7 +58,7 @@ def slam(model, scene, columns, speed, seed, scans, *options):
 
 
 def confidence():
-    """Each scan counts alike in the last row."""
+    """How well the deviation fits the error; the last row is the mean over all scans."""
     body = []
     kinds = ("deviation", "turn_deviation")
     sums = {(kind, part): 0 for kind in kinds for part in ("within_1_sigma", "within_3_sigma")}
@@ -89,7 +89,7 @@ def starts():
 
 
 def gyroscope():
-    """The smooth drive has all scans; of the rough one a second is missing after 10 s."""
+    """The smooth drive has all scans; the rough one lacks a second after 10 s."""
     body = []
     for scene, speed, seed, roughness in BUMPY:
         def ate(*options):

@@ -17,7 +17,7 @@ BITS = (3, 5, 8)
 
 
 def distortion():
-    """The paper's setting nearest to 2 cm beside ours."""
+    """The paper's setting nearest to 2 cm, and ours."""
     body = []
     for name, source in common.SOURCES.items():
         rows = common.rate_distortion(
@@ -61,7 +61,7 @@ def predict():
 
 
 def followed(source, *options):
-    """Rows of `lidar-eval track`: steady, walk, jump, and how far r_min is off over the walk."""
+    """Returns rows of `lidar-eval track`: steady, walk, jump, and how far r_min is off over the walk."""
     text = common.lidar_eval("track", source, "--scans", 22, "--length", 150, *options)
     found = {}
     for kind in ("steady", "walk", "jump"):
@@ -70,7 +70,7 @@ def followed(source, *options):
 
 
 def track():
-    """How closely targets are followed by 8 slices a scan, at a bound of 2 cm."""
+    """How closely 8 slices a scan follow targets, at a bound of 2 cm."""
     body = []
     for name, source in {**SYNTHETIC, **common.SOURCES}.items():
         row = followed(source)
@@ -81,7 +81,7 @@ def track():
 
 
 def below():
-    """What gives at a fifth of r_min."""
+    """Scans that are skipped at a fifth of r_min."""
     body = []
     for preference in ("maintain-accuracy", "maintain-framerate", "balanced"):
         row = followed(
@@ -92,7 +92,7 @@ def below():
 
 
 def r_min():
-    """The bitrate of geometry that a bound needs, whole scans, beside the paper's setting."""
+    """The bitrate of geometry that a bound needs, whole scans, and that of the paper's setting."""
     body = []
     for source in ("OS0-32", "OS1-128"):
         text = common.lidar_eval("bounds", common.SOURCES[source], "--errors", "0.02,0.05")
@@ -104,7 +104,7 @@ def r_min():
 
 
 def intensity():
-    """Bits a return that intensities cost beside geometry within 2 cm."""
+    """Bits a return that intensities cost in addition to geometry within 2 cm."""
     def bits_of(source, bits):
         rows = common.rate_distortion(
             source, "--scans", 3, "--modes", "range-adaptive", "--slices", 8, "--errors", "0.02", "--intensity-bits", bits
@@ -119,7 +119,7 @@ def intensity():
 
 
 def loop():
-    """Rate controller and SCReAM in simulated time: what swings over a constant link."""
+    """Rate controller and SCReAM in simulated time: what oscillates over a constant link."""
     body = []
     for parameter, slices in enumerate(("whole scans", "8 slices")):
         text = common.run(

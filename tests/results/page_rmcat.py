@@ -16,7 +16,7 @@ COLUMNS = {
 
 
 def rmcat():
-    """Ours / the draft alone; a goal of ours that is missed is bold."""
+    """Figures of ours / of the draft alone; a missed goal of ours is bold."""
     body = []
     ours, draft = (controller.figures("--group", "rfc", *more) for more in ([], ["--draft"]))
     for case, own in ours.items():

@@ -15,7 +15,7 @@ BESIDE = ("cubic_", "reno_", "prague_", "draft_")
 
 
 def ours_and_draft(prefixes):
-    """Case, figures of ours, figures of the draft alone."""
+    """Returns (case, figures of ours, figures of the draft alone) of each case."""
     ours = {
         case: of
         for case, of in controller.figures().items()
@@ -72,7 +72,7 @@ def gaps():
 
 
 def peer(name):
-    """Rows of a dated file of another implementation's figures, by scenario."""
+    """Returns rows of a dated file of another implementation's figures, by scenario."""
     with open(PEERS / name) as file:
         return {row["scenario"]: row for row in csv.DictReader(line for line in file if not line.startswith("#"))}
 

@@ -21,7 +21,7 @@ def srtp():
 
 
 def robot():
-    """lidar-edge beside a robot whose slices take turns between two formats."""
+    """What a robot whose slices take turns between two formats costs lidar-edge."""
     text = common.run(common.ROOT / "tests/system/adversary/hostile_robot.py", common.build, "--seconds", 600)
     without, beside = (json.loads(line) for line in text.splitlines())
     rows = [
@@ -37,13 +37,14 @@ def robot():
 
 
 def script(name, *arguments):
-    """The lines of JSON that a script of the adversary prints. It ends with 1 where a goal is missed, which shows."""
+    """Returns the lines of JSON that a script of the adversary prints. It ends with 1 if a goal is missed, which its
+    figures show."""
     text = common.run(common.ROOT / "tests/system/adversary" / name, common.build, *arguments, check=False)
     return [json.loads(line) for line in text.splitlines()]
 
 
 def growth():
-    """Many connections, topics, robots, sensors and formats, and a recording of bombs."""
+    """Costs of many connections, topics, robots, sensors and formats, and of a recording of bombs."""
     body = []
     for kind, runs in itertools.groupby(script("growth.py"), key=lambda run: run["kind"]):
         runs = list(runs)

@@ -9,7 +9,7 @@ SCENES = ("street", "tunnel", "field", "town")
 
 
 def cpu():
-    """CPU seconds of 30 scans, the start of the process left out."""
+    """CPU seconds of 30 scans, without the start of the process."""
     def seconds(model, mode, scene, scans):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         source = f"lidartestsrc model={model} mode={mode} scene={scene} slices-per-scan=8 num-buffers={8 * scans}"

@@ -6,7 +6,7 @@ import common
 
 
 def drives():
-    """Two generated drives, alone and together, beside a sender that knew them."""
+    """Two generated drives, alone and together, compared with a sender that knew them."""
     return common.as_printed(
         common.run("chrt", "-r", 10, common.ROOT / "tests/benchmarks/two_links.py", "--build", common.build)
     )
@@ -17,13 +17,13 @@ def simulated(what):
 
 
 def cells_of(text):
-    """Rows of the printed table, without its head."""
+    """Returns the rows of the printed table, without its head."""
     lines = [line for line in text.splitlines() if line.startswith("|")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
 
 
 def pairs_of(text):
-    """Mean and worst of the pairs of drives, a row for each encoder."""
+    """Mean and worst of the pairs of drives; each encoder has a row."""
     rows = cells_of(text)
     body = []
     for encoder in dict.fromkeys(row[1] for row in rows):
