@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# How far points are moved by the grid of the paper (q bits over the cube) and by the grid of ranges.
+# Measures how far the grid of the paper (q bits over the cube) and the grid of ranges move points.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 

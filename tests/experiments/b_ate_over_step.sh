@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# What a compression costs SLAM: trajectory error against q and against the step.
+# Measures what compression costs SLAM: trajectory error against q and against the step.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 
@@ -17,7 +17,7 @@ measure() { # SOURCE GRID SETTING [options]
   shift 3
   name=$(basename "${source##*:}" .pcap)
   whole=$output/b.$name.tum
-  # A trajectory of the uncompressed scans is the truth where nobody knows a better one.
+  # The trajectory of the uncompressed scans is the truth if no better one is known.
   if [ "$grid" = none ]; then
     one=$(slam "$source" --scans $offline_scans --out "$whole")
   else
@@ -27,7 +27,7 @@ measure() { # SOURCE GRID SETTING [options]
   echo "$name,$grid,$setting,$(number .error.ate_rmse_m "$one"),$other,$(number .error.drift "$one"),$(jq -r '.degenerate / .scans' <<<"$one")"
 }
 for source in "${sources[@]}"; do
-  # Where the scene hides the motion, no compression can be blamed.
+  # If the scene hides the motion, compression is not the cause of errors.
   measure "$source" none 0
   [[ $source != *:tunnel ]] || continue
   for step in $steps; do measure "$source" range "$step" --step "$step"; done

@@ -5,7 +5,7 @@ set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"
 
-# Over the first link, and over each further --trace.
+# It runs over the first link, and over each further --trace.
 names=(c)
 for trace in "${traces[@]:1}"; do names+=("c@$(basename "$trace" .txt)"); done
 printf '%s\n' "${names[@]}" | streams

@@ -55,7 +55,7 @@ done
 . "$root/pipelines/environment.sh"
 tools=$build/src/tools
 speed=12
-# In the bends of the town the vehicle is slower: its way there is a tenth shorter.
+# The vehicle is slower in the bends of the town: it moves a tenth less there.
 seconds=$((length / speed + 1))
 scans=$((seconds * 10))
 offline_scans=$((scans < 4200 ? scans : 4200)) # five kilometres
@@ -63,13 +63,13 @@ mkdir -p "$output"
 csv=$output/$letter.csv
 png=$output/$letter.png
 
-# verdict TEXT: the one line that an experiment ends with.
+# verdict TEXT: prints and keeps the line that an experiment ends with.
 verdict() {
   echo "$letter: $*" | tee "$output/$letter.txt"
 }
-# slam SOURCE [options]: one JSON object on a line.
+# slam SOURCE [options]: prints a JSON object on a line.
 slam() { "$tools/lidar-eval" slam --json --speed $speed --seed "$seed" "$@" 2>/dev/null | jq -c .; }
-# plot: gnuplot commands on standard input; the picture is $png.
+# plot: draws the picture $png by the gnuplot commands on standard input.
 plot() {
   { echo "set terminal pngcairo size ${plot_width:-1000},${plot_height:-460} font 'sans,10'"
     echo "set output '$png'; set datafile separator ','; set grid; set key outside right top"

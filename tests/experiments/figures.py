@@ -3,8 +3,8 @@
 """Figures of a run of the demo with --slam that take more than a line of awk.
 
 figures.py way FOLDER   x,y,step,error of each pose at the edge
-figures.py now FOLDER   error of the newest pose at the edge, moved on at its last velocity to each
-                        moment: RMSE and 95th percentile [m]
+figures.py now FOLDER   error of the newest pose at the edge, extrapolated at its last velocity to
+                        each moment: RMSE and 95th percentile [m]
 figures.py age FOLDER   how old points and poses at the edge are, and how wrong that makes them [ms, m]
 """
 import bisect
@@ -14,11 +14,11 @@ import sys
 
 SAMPLE_S = 0.005
 PERIOD_S = 0.1  # of a scan
-WARM_UP_S = 3  # until the rate has settled
+WARM_UP_S = 3  # s, until the rate has settled
 
 
 def trajectory(path):
-    """Times, and places x, y, z."""
+    """Returns times, and places x, y, z."""
     rows = [line.split() for line in open(path) if line.strip() and line[0] != "#"]
     rows = [row for row in rows if len(row) == 8]
     return [float(row[0]) for row in rows], [[float(c) for c in row[1:4]] for row in rows]
@@ -41,7 +41,7 @@ def percentile(values, p):
 
 
 def rotated(q, v):
-    """`v` turned by the quaternion w, x, y, z."""
+    """Returns `v` turned by the quaternion w, x, y, z."""
     w, x, y, z = q
     tx, ty, tz = 2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])
     return [
@@ -52,7 +52,7 @@ def rotated(q, v):
 
 
 def lay_over(places, truth):
-    """`places` turned and moved so that they fit `truth` best (Horn, 1987)."""
+    """Returns `places` turned and moved so that they fit `truth` best (Horn, 1987)."""
     n = len(places)
     mean_p = [sum(p[k] for p in places) / n for k in range(3)]
     mean_t = [sum(t[k] for t in truth) / n for k in range(3)]
@@ -68,8 +68,8 @@ def lay_over(places, truth):
         [zx - xz, xy + yx, yy - xx - zz, yz + zy],
         [xy - yx, zx + xz, yz + zy, zz - xx - yy],
     ]
-    # The quaternion is the eigenvector of the largest eigenvalue; the shift makes that the largest
-    # in magnitude.
+    # The quaternion is the eigenvector of the largest eigenvalue. A shift makes that eigenvalue the
+    # largest in magnitude.
     shift = max(sum(abs(v) for v in row) for row in matrix)
     q = [1.0, 0.1, 0.1, 0.1]
     for _ in range(5000):
@@ -84,14 +84,14 @@ def lay_over(places, truth):
 
 
 def offset_of(folder):
-    """From the time of the tables to that of the trajectories."""
+    """Returns the offset from the time of the tables to that of the trajectories."""
     with open(folder + "/packets.csv") as file:
         first = next(csv.DictReader(file))
     return int(first["unix_ns"]) / 1e9 - float(first["time_s"])
 
 
 def poses_of(folder):
-    """When each pose was known, its time and its place laid over the truth."""
+    """Returns when each pose was known, its time, and its place laid over the truth."""
     times, places = trajectory(folder + "/edge.tum")
     truth = trajectory(folder + "/truth.tum")
     offset = offset_of(folder)
@@ -131,14 +131,15 @@ def way(folder):
     timeline = table(folder + "/timeline.csv")
     for t, place, true in zip(times, lay_over(places, true_places), true_places):
         i = min(max(int((t - offset) * 10), 0), len(timeline) - 1)
-        # The step of a bin in which nothing was said is that of the one before.
+        # A bin without a report has the step of the bin before it.
         while i > 0 and timeline[i]["step_m"] == 0:
             i -= 1
         print(f"{place[0]:.3f},{place[1]:.3f},{timeline[i]['step_m']},{math.dist(place, true):.4f}")
 
 
 def ages(events, end):
-    """How old the newest thing is, over time; `events` are pairs of arrival and birth."""
+    """Returns, for many times, the birth of the newest event that has arrived; `events` are pairs of arrival and
+    birth."""
     events.sort()
     newest, i, found, t = None, 0, [], events[0][0] + WARM_UP_S
     while t < end:

@@ -7,7 +7,7 @@ set -euo pipefail
 source="lidartestsrc model=os0-32 scene=street speed=$speed seed=$seed num-buffers=$((8 * offline_scans)) trajectory-location=$output/h.truth.tum"
 # The automatic effort would follow how busy the machine is.
 encoder="lidarenc max-error=0.05 intensity-bits=0 effort=2"
-# What the bound needs: all slices at the coarsest step.
+# Measures the least bitrate for the bound: all slices at the coarsest step.
 # shellcheck disable=SC2086
 gst-launch-1.0 -q ${source/num-buffers=$((8 * offline_scans))/num-buffers=400} ! $encoder ! filesink location="$output/h.bin"
 minimum=$(($(stat -c %s "$output/h.bin") * 8 / 5))

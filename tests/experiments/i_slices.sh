@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Slices against whole scans: how old the newest point at the edge is, and what that does to the pose of now.
+# Slices against whole scans: the age of the newest point at the edge, and its effect on the current
+# pose.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"

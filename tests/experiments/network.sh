@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Sourced by the experiments over a network: sender, link and receiver in real time, with SLAM.
 
-# path_of NAME: what the run drives over. Where NAME has an @, the trace of --trace that is called so;
-# else the first, or a generated drive.
+# path_of NAME: sets `path` to the options of the link. If NAME has an @, it is the trace of --trace
+# of that name; else it is the first trace, or a generated drive.
 path_of() {
   local trace
   path=(--drive --rate "$rate")
@@ -22,7 +22,8 @@ stream() {
     "$@" >"$folder.log" 2>&1 || [ -f "$folder/summary.json" ] ||
     { tail -5 "$folder.log" >&2; return 1; }
 }
-# streams: all runs of lines of 'NAME [options of the demo]', --parallel of them side by side.
+# streams: runs each line of 'NAME [options of the demo]' of its input several times, --parallel of
+# them at a time.
 streams() {
   local lines run line pid pids=() failed=0
   mapfile -t lines
@@ -41,7 +42,7 @@ streams() {
 paper_codec="--encoder dracoenc --geometry xyz"
 [ -f "$output/started" ] || touch "$output/started"
 
-# uncompressed RUN: the ATE of the same drive without codec and network.
+# uncompressed RUN: prints the ATE of the same drive without codec and network.
 uncompressed() {
   local file=$output/uncompressed.$1.json
   [ -f "$file" ] && [ "$file" -nt "$output/started" ] ||
@@ -50,9 +51,9 @@ uncompressed() {
   jq -r .error.ate_rmse_m "$file"
 }
 
-# row NAME RUN: one line of the table of runs.
+# row NAME RUN: prints a line of the table of runs.
 row_header="name,run,scans,complete,oracle,skipped,slices_lost,rate_mbps,max_error_m,cloud_p95_ms,pose_p95_ms,ate_m,ate_uncompressed_m,now_rmse_m,now_p95_m,pauses,late_p95_ms,encode_p95_ms"
-# pauses FOLDER: how often the edge had no pose for half a second or more.
+# pauses FOLDER: prints how often the edge had no pose for half a second or more.
 pauses() { awk -F, 'NR > 2 && $1 - last > 5 { ++n } { last = $1 } END { print n + 0 }' "$1/poses.csv"; }
 row() {
   jq -r --arg name "$1" --arg run "$2" --arg plain "$(uncompressed "$2")" \
@@ -61,14 +62,14 @@ row() {
     .max_error_m, .capture_to_cloud_ms.p95, .slam.capture_to_pose_ms.p95, (.slam.ate_rmse_m // ""),
     $plain, $now, $pauses, .stages_ms.capture.p95, .stages_ms.encode.p95] | join(",")' "$output/$1.$2/summary.json"
 }
-# rows NAME...: all their runs.
+# rows NAME...: prints the rows of all their runs.
 rows() {
   local name run
   for name in "$@"; do
     for run in $(seq "$runs"); do row "$name" "$run"; done
   done
 }
-# middle COLUMN FILE NAME: median, and where the runs differ, least and most.
+# middle COLUMN FILE NAME: prints the median, and the least and most if there are several runs.
 middle() {
   awk -F, -v column="$1" -v name="$3" '
     NR == 1 { for (i = 1; i <= NF; ++i) if ($i == column) c = i; next }

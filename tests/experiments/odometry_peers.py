@@ -37,7 +37,7 @@ HEAD = ["ATE [m]", "drift [%]", "RPE [m]", "CPU of a scan [ms]", "memory [MB]", 
 
 
 def measure(command):
-    """What it prints, its processor time [s] and its largest memory [MB]."""
+    """Returns the output of a command, its processor time [s] and its largest memory [MB]."""
     with subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, text=True) as process:
         text = process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
@@ -48,7 +48,7 @@ def measure(command):
 
 
 def head_of(path, scans):
-    """The first poses of a trajectory, in a file beside it."""
+    """Writes the first poses of a trajectory to a second file. Returns its path."""
     lines = [line for line in path.read_text().splitlines() if line and line[0] != "#"]
     short = path.with_suffix(".start")
     short.write_text("\n".join(lines[:scans]) + "\n")
@@ -63,14 +63,15 @@ class Bench:
         return json.loads(measure([self.lidar_eval, "ate", truth, estimate, "--json"])[0])
 
     def figures(self, truth, estimate, cpu_s, memory_mb, scans):
-        """Those of HEAD, the last one as a truth value."""
+        """Returns the figures of HEAD; the last one is a truth value."""
         error, start = self.error(truth, estimate), self.error(truth, head_of(estimate, START))
         drift = f"{100 * error['drift']:.2f}" if "drift" in error else "–"
         return [f"{error['ate_rmse_m']:.3f}", drift, f"{error['rpe_rmse_m']:.3f}", f"{1000 * cpu_s / scans:.0f}",
                 f"{memory_mb:.0f}", start["end_error_m"] > 0.1 * start["length_m"]]
 
     def row(self, source, options, label):
-        """A cell has the figures of all odometries, ours first. They read one folder, so that times and memory compare."""
+        """Fills each cell with the figures of all odometries, ours first. They read one folder, so that times and
+        memory compare."""
         with tempfile.TemporaryDirectory() as temporary:
             folder = pathlib.Path(temporary) / "scans"
             measure([self.lidar_eval, "to-kitti", source, *options, "-o", folder])

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Every figure of docs/paper.md: a table, a plot and one line of verdict each.
+# Makes every figure of docs/paper.md: each experiment has a table, a plot and a line of verdict.
 set -uo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 
