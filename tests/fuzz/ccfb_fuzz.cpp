@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!feedback) continue;
     for (const auto reading :
          {lidar::scream::NumReports::kCount, lidar::scream::NumReports::kCountMinusOne}) {
-      // What was understood can be said again, and in no more bytes.
+      // Feedback that was read can be written again, in at most 4 bytes more.
       const auto again = lidar::scream::BuildCcfb(*feedback, reading);
       FUZZ_CHECK(again.size() <= packet.size + 4);
     }

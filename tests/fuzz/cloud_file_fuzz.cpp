@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!cloud) continue;
     const std::size_t points = std::size_t{cloud->width} * cloud->height;
     FUZZ_CHECK(cloud->points.size() == points * cloud->point_step);
-    // Text gives at most 8 bytes for 2, LZF at most 88 for 1.
+    // A byte of text gives at most 4 bytes, a byte of LZF at most 88.
     FUZZ_CHECK(cloud->points.size() <= 90 * size);
     for (const auto& field : cloud->fields)
       FUZZ_CHECK(field.offset + lidar::SizeOf(field.type) <= cloud->point_step);

@@ -15,24 +15,24 @@ using namespace lidar::codec;
 
 constexpr std::uint32_t kMaxPoints = 4'096;
 
-/// Names a field so that the encoder looks for paths where it may.
+/// Names a field so that the encoder looks for paths if it may.
 std::string NameOf(FieldType type, const PointFields& others) {
   const char* name = type == FieldType::kU8 ? "line" : "timestamp";
   return others.Find(name) == nullptr ? name : "f" + std::to_string(others.all().size());
 }
 
-/// Points with the fields that the slice says it has.
+/// Returns a layout of points with the fields of the slice.
 CloudLayout LayoutFor(ByteView section) {
   PointFields fields;
   for (const char* axis : {"x", "y", "z"}) fields.Add(axis, FieldType::kF32);
   const auto types = cloud::ExactTypesOf(section);
-  // Three names are taken.
+  // Three names are taken by x, y and z.
   for (std::size_t k = 0; types && k < types->size() && k + 3 < PointFields::kMaxFields; ++k)
     fields.Add(NameOf((*types)[k], fields), (*types)[k]);
   return {fields, fields.MinimumStep()};
 }
 
-/// What the slice says of fields and order comes back from an encoder, too.
+/// Checks that an encoder keeps fields and order of the slice, too.
 void CheckExact(const CloudLayout& layout, const std::vector<std::uint8_t>& raw) {
   cloud::ExactChoice choice;
   choice.fields = ExactFields(layout.fields);
@@ -63,7 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool has_points = geometry.Decode({data, size});
   const CloudLayout layout = LayoutFor(has_points ? geometry.exact_section() : ByteView());
   cloud::ExactDecoder decoder(ExactFields(layout.fields), kMaxPoints);
-  // Twice: what one slice leaves behind must not change the next.
+  // The slice is decoded twice: what it leaves behind must not change the next one.
   const bool first = decoder.Decode({data, size});
   FUZZ_CHECK(first == decoder.Decode({data, size}));
   FUZZ_CHECK(has_points || !first);
@@ -73,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FUZZ_CHECK(decoded.intensity.size() == (geometry.intensity_bits() > 0 ? decoded.size() : 0));
   for (const float v : decoded.xyz) FUZZ_CHECK(std::isfinite(v));
 
-  // What is accepted can be written again, with as many points.
+  // A slice that is accepted can be written again, with as many points.
   std::vector<std::uint8_t> raw(decoded.size() * layout.point_step);
   first ? decoder.Write(layout, raw.data()) : WriteXyz(decoded, layout, raw.data());
   auto encoder = cloud::CloudEncoder::Create(layout);

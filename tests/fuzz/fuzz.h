@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a fuzz target is made of: libFuzzer's entry point, and checks that also hold without
-// asserts.
+// Parts of a fuzz target: libFuzzer's entry point, and checks that also hold without asserts.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-/// Ends the process where `condition` does not hold, which libFuzzer takes for a finding.
+/// Ends the process if `condition` does not hold; libFuzzer reports that as a finding.
 #define FUZZ_CHECK(condition)                                                        \
   do {                                                                               \
     if (!(condition)) {                                                              \

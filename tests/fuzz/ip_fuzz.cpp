@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Frames of a capture down to UDP, IP fragments put together. The first byte chooses the link
-// type; then frames, each behind 2 bytes of size.
+// Frames of a capture down to UDP, IP fragments put together. The first byte chooses the link type;
+// then frames follow, each after 2 bytes of size.
 #include "src/ouster/udp_datagram.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages of NATS that anybody may publish: lines "Name: value" as headers, and behind an empty
-// line the bytes, which are read as caps, too.
+// Messages of NATS that any client may publish: lines "Name: value" as headers, and after an empty
+// line the payload, which is read as caps, too.
 #include <gst/gst.h>
 
 #include <string>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace lidar::nats;
 
-/// Sets the headers, and returns what is behind them.
+/// Sets the headers, and returns the text after them.
 std::string_view SetHeaders(natsMsg* message, std::string_view text) {
   while (!text.empty()) {
     const auto end = text.find('\n');
@@ -31,7 +31,7 @@ std::string_view SetHeaders(natsMsg* message, std::string_view text) {
   return text;
 }
 
-/// What was understood can be said again, and is then understood as the same.
+/// Checks that a message that was read can be written again, and is then read as the same.
 void CheckComesBack(const ReadMessage& read) {
   const MessagePtr said = WriteMessage("a", nullptr, read.format_id, read.place, read.buffer.get());
   FUZZ_CHECK(said);
@@ -64,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   static const bool ready = [] {
     if (!gst_init_check(nullptr, nullptr, nullptr)) return false;
     gst_lidar_init();
-    return nats_Open(-1) == NATS_OK;  // connections would do it
+    return nats_Open(-1) == NATS_OK;  // connections would open the library otherwise
   }();
   FUZZ_CHECK(ready);
   const std::string_view text = lidar::fuzz::Text(bytes, size);

@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto metadata = lidar::ouster::ParseMetadata(lidar::fuzz::Text(data, size), &error);
   FUZZ_CHECK(metadata.has_value() == error.empty());
   if (!metadata) return 0;
-  // What parses must do for a stream; a packet of zeros is then just a packet.
+  // Metadata that is parsed must suffice for a stream: a packet of zeros is then accepted.
   const auto bytes = metadata->model.Serialise();
   FUZZ_CHECK(lidar::SensorModel::Parse({bytes.data(), bytes.size()}).has_value());
   const std::size_t packet_size = metadata->format.packet_size();

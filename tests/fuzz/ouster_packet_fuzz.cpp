@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Packets of an Ouster sensor through parser, CRC check, clocks and batcher. The first byte chooses
-// the profile; then, for each packet, a byte of time step in ms and the packet, whole or changed:
-// 2 bytes of offset and 1 of length of what is changed in a packet of its right size.
+// the profile. Then follow, for each packet: a byte of time step in ms, and 2 bytes of offset, 1 of
+// length and the new bytes of a change to the packet before.
 #include <string>
 #include <vector>
 
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto change = r.Bytes(std::min<std::size_t>(r.U8(), r.remaining()));
     for (std::size_t i = 0; i < change.size; ++i)
       packet[(offset + i) % packet.size()] = change.data[i];
-    // Every 256th offset is a packet cut short.
+    // Offsets from 0xFF00 on cut the packet short.
     const std::size_t n = offset >> 8 == 0xFF ? offset & 0xFF : packet.size();
     const std::vector<std::uint8_t> sent(
         packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(std::min(n, packet.size())));

@@ -32,7 +32,7 @@ TEST(Corpus, IsHandledFileByFile) {
   }
 }
 
-// The crowd of inputs that no corpus holds: each file cut short at every length of a header, and at
+// Inputs that are too many for a corpus: each file is cut short at every length of a header, and at
 // 40 more.
 TEST(Corpus, IsHandledWhenCutShort) {
   for (const auto& entry : std::filesystem::directory_iterator(corpus)) {

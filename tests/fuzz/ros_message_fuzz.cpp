@@ -15,7 +15,7 @@ namespace {
 using lidar::ByteView;
 using Bytes = std::vector<std::uint8_t>;
 
-/// What was understood can be said again, and is then understood as the same.
+/// Checks that a message that was read can be written again, and is then read as the same.
 template <class Message>
 void CheckComesBack(ByteView data, std::optional<Message> (*read)(ByteView),
                     Bytes (*write)(const Message&)) {
@@ -45,7 +45,8 @@ void CheckCloud(ByteView data) {
              lidar::cdr::RowStride(*cloud).has_value());
 }
 
-/// Frames of strangers lead somewhere or nowhere, but to no number that is none.
+/// Checks that frames of strangers give a transform of finite numbers, or a reason why there is
+/// none.
 void CheckTree(ByteView data) {
   const auto transforms = lidar::cdr::ReadTransforms(data);
   if (!transforms) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RTP payload headers and everything behind them: fragments, accounting, joins and restarts.
-// Input: for each packet a byte of flags, sequence step, time step in ms, 2 bytes of size, payload.
+// RTP payload headers and what the receiver does with them: fragments, accounting, joins and
+// restarts. The input has for each packet a byte of flags, sequence step, time step in ms, 2 bytes
+// of size, and the payload.
 #include <vector>
 
 #include "src/rtp/receiver.h"
@@ -14,7 +15,7 @@ constexpr std::uint8_t kOtherSsrc = 1;
 constexpr std::uint8_t kFixCrc = 2;
 constexpr std::size_t kCrcOffset = 6;
 
-/// Gives a single unit the length and CRC that it should have: no fuzzer guesses those.
+/// Gives a single unit its right length and CRC, which no fuzzer guesses.
 void FixCrc(std::vector<std::uint8_t>* payload) {
   if (payload->size() <= kCrcOffset + 4 || (*payload)[0] >> 5 != 0) return;
   const std::size_t header = lidar::rtp::HeaderSize(
@@ -59,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   receiver.Finish();
   const auto a = receiver.accounts();
   FUZZ_CHECK(a.packets_received == packets);
-  // A candidate that never won has slices that are in no account.
+  // Slices of a candidate that never became the stream are in no account.
   FUZZ_CHECK(a.slices.slices_received == slices);
   FUZZ_CHECK(a.slices.slices_received >= a.slices.scans_complete);
   return 0;

@@ -77,7 +77,7 @@ fuzz_one() {
   local target=$1
   local grown=$work/$target findings=$work/$target-findings
   mkdir -p "$grown" "$findings"
-  # The limits are those that the product promises: no input may take a second or a gigabyte.
+  # The product promises these limits: no input may take a second or a gigabyte.
   "$build/tests/fuzz/fuzz_$target" "$grown" "$here/corpus/$target" -max_total_time="$seconds" \
     -timeout=5 -rss_limit_mb=1024 -max_len=65536 -print_final_stats=1 -artifact_prefix="$findings/" \
     >"$work/$target.log" 2>&1
@@ -90,7 +90,8 @@ fuzz_one() {
   return $status
 }
 
-# Keeps the committed corpora small: what a grown file adds, smallest first, to 64 kB a target.
+# Keeps the committed corpora small: adds the inputs of a grown file that cover more, smallest
+# first, up to 64 kB a target.
 merge_one() {
   local target=$1 minimal=$work/$target-minimal
   rm -rf "$minimal"

@@ -4,7 +4,8 @@
 #include "src/scream/feedback/twcc_mapper.h"
 #include "tests/fuzz/fuzz.h"
 
-// The input is a base number, and then an arrival in ticks of 250 us for each packet; 0: none.
+// The input is a base number, and then for each packet an arrival in ticks of 250 us; 0 means that
+// it did not arrive.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lidar::scream;
   TwccMapper mapper;
