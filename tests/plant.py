@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plants the bug of a patch into a tree, by what the code says, not by where it stands.
+"""Plants the bug of a patch into a tree. Finds the place by the code, not by line numbers.
 
-The lines that a hunk takes away, with as much of the context as can be found, are looked for in all
-sources; white space counts for nothing. So a patch survives moves of lines, files and folders, and
-line breaks. It fits where exactly one place is found.
+The lines that a hunk takes away, with as much of the context as can be found, are looked for in all sources, without
+regard to white space. So a patch survives moves of lines, files and folders, and line breaks. It fits if exactly one
+place is found.
 """
 import argparse
 import pathlib
@@ -16,11 +16,11 @@ ENDINGS = (".cpp", ".h", ".js", ".html", ".py", ".sh")
 
 
 class Misfit(Exception):
-    """The bug cannot be planted; the text says why."""
+    """The bug cannot be planted; the text names the reason."""
 
 
 def hunks(patch):
-    """Path and lines (kind, text) of each hunk."""
+    """Returns path and lines (kind, text) of each hunk."""
     found, path = [], None
     for line in patch.splitlines():
         if line.startswith("+++ "):
@@ -37,7 +37,7 @@ def sources(tree):
 
 
 def squeeze(text):
-    """The text without white space."""
+    """Returns the text without white space."""
     return "".join(text.split())
 
 
@@ -49,7 +49,7 @@ class Tree:
         self.changed = set()
 
     def find(self, wanted, name):
-        """All places of `wanted`: those in files called `name`, where there are any."""
+        """Returns all places of `wanted`; only those in files called `name`, if there are any."""
         found = [(p, m.start()) for p, text in self.squeezed.items() if wanted in text
                  for m in re.finditer(f"(?={re.escape(wanted)})", text)]
         return [f for f in found if f[0].name == name] or found
@@ -70,7 +70,7 @@ class Tree:
 
 
 def narrowed(lines):
-    """The hunk with less and less of its context, at its end and its begin by turns."""
+    """Yields the hunk with less and less of its context, cut at its end and its begin in turns."""
     lines = list(lines)
     first = True
     while True:

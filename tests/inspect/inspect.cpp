@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Prints what users see of the plugins (elements, pads, properties) as JSON, the same on every
-// machine.
+// Prints what users see of the plugins (elements, pads, properties) as JSON. The output is the same
+// on every machine.
 #include <gst/gst.h>
 
 #include <cstdio>
@@ -16,7 +16,7 @@ using lidar::gst::ElementPtr;
 using lidar::gst::StringPtr;
 using nlohmann::ordered_json;
 
-/// What a GParamSpec says of its range; empty where the type has none.
+/// Returns the range of a GParamSpec; empty if the type has none.
 ordered_json RangeOf(GParamSpec* spec) {
   if (G_IS_PARAM_SPEC_INT(spec))
     return {G_PARAM_SPEC_INT(spec)->minimum, G_PARAM_SPEC_INT(spec)->maximum};
@@ -31,7 +31,7 @@ ordered_json RangeOf(GParamSpec* spec) {
   return {};
 }
 
-/// Nick and description of each value of an enumeration or of flags.
+/// Returns nick and description of each value of an enumeration or of flags.
 ordered_json ValuesOf(GType type) {
   ordered_json values = ordered_json::object();
   if (G_TYPE_IS_ENUM(type)) {
@@ -43,7 +43,7 @@ ordered_json ValuesOf(GType type) {
   return values;
 }
 
-/// When a property may be written.
+/// Returns when a property may be written.
 std::string AccessOf(const GParamSpec* spec) {
   if ((spec->flags & G_PARAM_WRITABLE) == 0) return "read only";
   if (spec->flags & G_PARAM_CONSTRUCT_ONLY) return "at construction";
@@ -63,7 +63,7 @@ ordered_json DescribeProperty(GParamSpec* spec) {
   const ordered_json values = ValuesOf(spec->value_type);
   if (!values.empty()) property["values"] = values;
   if (G_IS_PARAM_SPEC_DOUBLE(spec)) {
-    // A serialised double shows the digits that binary adds.
+    // A serialised double would show digits of its binary value.
     property["default"] = G_PARAM_SPEC_DOUBLE(spec)->default_value;
   } else if (!G_IS_PARAM_SPEC_BOXED(spec) && !G_IS_PARAM_SPEC_OBJECT(spec)) {
     const StringPtr text(gst_value_serialize(g_param_spec_get_default_value(spec)));

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# docs/plugins_cache.json says what the plugins show: a change of a pad or property is meant, or a mistake.
-# Usage: inspect_test.sh PROGRAM [--update]
+# Compares the plugins with docs/plugins_cache.json: a change of a pad or property is intended, or a
+# mistake. Usage: inspect_test.sh PROGRAM [--update]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 snapshot=$root/docs/plugins_cache.json
@@ -10,7 +10,7 @@ trap 'rm -f "$now" "$now.kept"' EXIT
 "$1" >"$now"
 
 if [ "${2:-}" = --update ]; then
-  # Plugins that this build leaves out stay as they are.
+  # Plugins that this build leaves out keep their entries.
   [ -f "$snapshot" ] || echo '{}' >"$snapshot"
   jq -s '.[0] * {} | . + $new[0] | to_entries | sort_by(.key) | from_entries' \
     --slurpfile new "$now" "$snapshot" >"$now.kept"
@@ -19,8 +19,8 @@ if [ "${2:-}" = --update ]; then
   exit 0
 fi
 
-# A plugin that needs a missing library is not built here, and not compared. Newer versions of jq keep
-# 1.0 where it was not calculated.
+# A plugin that needs a missing library is not built here, and not compared. Newer versions of jq
+# keep 1.0 if it was not calculated.
 numbers='def numbers_as_values: walk(if type == "number" then . + 0 else . end);'
 jq --slurpfile new "$now" "$numbers"' with_entries(select(.key as $k | $new[0] | has($k))) | numbers_as_values' \
   "$snapshot" >"$now.kept"

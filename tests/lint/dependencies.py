@@ -44,7 +44,7 @@ LIBRARIES = {
     ),
     "threads": ("thread", "mutex", "shared_mutex", "condition_variable", "future"),
 }
-# Words of the table for several folders, and how paths in them begin. Programs are not part of src.
+# Words of the table for several folders, and how their paths begin. Programs are not part of src.
 GROUPS = {
     "all": "",
     "src": "src/",
@@ -53,7 +53,7 @@ GROUPS = {
 }
 SYSTEM = ("POSIX", "threads")  # GStreamer gives both to its elements
 FREE = ("emmintrin.h", "immintrin.h", "arm_neon.h", "wasm_simd128.h", "limits.h")
-# What src/ must not know, and what no include would betray. Programs are free of this rule.
+# Calls that src/ must not make, and that no include would show. Programs are free of this rule.
 WORLD = re.compile(
     r"\b(steady_clock|system_clock|high_resolution_clock|random_device|getenv"
     r"|printf|fprintf|cout|cerr)\b"
@@ -67,7 +67,7 @@ def cell_names(cell):
 
 
 def read_table(root):
-    """Folder to (folders it may use, libraries it may use)."""
+    """Returns {folder: (folders it may use, libraries it may use)}."""
     page = (root / "docs/architecture.md").read_text()
     rows = {}
     for line in page.splitlines():
@@ -79,7 +79,7 @@ def read_table(root):
 
 
 def row_of(path, rows):
-    """The row for a path: its own, a parent's, or the one with a star in place of its name."""
+    """Returns the row for a path: its own, a parent's, or the row with a star in place of its name."""
     parts = path.split("/")
     for length in range(len(parts), 0, -1):
         folder = "/".join(parts[:length])
@@ -92,7 +92,7 @@ def row_of(path, rows):
 
 
 def folder_of(path, row):
-    """The folder that `row` speaks of, its star filled in."""
+    """Returns the folder that `row` names, with its star filled in."""
     return "/".join(path.split("/")[: row.count("/") + 1])
 
 
@@ -125,7 +125,7 @@ def library_of(header):
 
 
 def check_line(root, path, line, rows, row, used):
-    """What is wrong with one line, or None."""
+    """Returns what is wrong with one line, or None."""
     uses, libraries = rows[row]
     match = re.match(r'\s*#\s*include\s*(["<])([^">]+)[">]', line)
     if not match:
@@ -174,7 +174,7 @@ def check(root):
     for folder, (uses, _) in rows.items():
         if "*" not in folder and not (root / folder).is_dir():
             problems.append(f"docs/architecture.md: there is no folder {folder}")
-        for use in uses:  # a licence that nobody needs is a mistake that nobody sees
+        for use in uses:  # a permission that is not used is a mistake that goes unseen
             target = use if "/" in use else "src/" + use
             if use in GROUPS or "*" in folder:
                 continue

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""debian/ knows what the build makes: each plugin, program, symbol and library has its place there."""
+"""debian/ lists what the build makes: each plugin, program, symbol and library."""
 import json
 import pathlib
 import re
 import sys
 
-# What tests need and packages do not.
+# Packages that tests need and the Debian packages do not.
 TESTS_ONLY = {
     "libbenchmark-dev",
     "libclang-rt-dev",
@@ -19,7 +19,7 @@ EXECUTABLE = re.compile(r"executable\('([\w-]+)',(?:[^()]|\([^()]*\))*\)")
 
 
 def installed(root):
-    """Programs that go into bindir."""
+    """Returns the programs that go into bindir."""
     for build in sorted((root / "src").rglob("meson.build")):
         for match in EXECUTABLE.finditer(build.read_text()):
             if "install: true" in match[0] and "install_dir" not in match[0]:

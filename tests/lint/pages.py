@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Each page of docs says what kind it is, each table of results where and when it was measured, and a column
-"held by" names tests that there are."""
+"""Each page of docs names its kind, each table of results where and when it was measured, and a column "held by"
+names tests that exist."""
 import pathlib
 import re
 import sys
 
 KIND = re.compile(r"\*(Tutorial|How-to|Reference|Explanation)\b.*")
-# "Held by": a test fails where the table is wrong.
+# "Held by" means that a test fails if the table is wrong.
 HEAD = re.compile(r"\*(Commit [0-9a-f]{7,}, \d{4}-\d\d-\d\d|Held by )")
 FREE = ("index.md",)
 
 
 def headless_tables(text):
-    """Numbers of the lines where a table begins whose section has no head before it."""
+    """Yields the numbers of the lines where a table begins whose section has no head before it."""
     head, fenced, before = False, False, ""
     for number, line in enumerate(text.splitlines(), 1):
         if line.startswith("```"):
@@ -28,7 +28,7 @@ def headless_tables(text):
 
 
 def tests_of(root):
-    """Suites, tests as Suite.Name, and what scripts of tests/system call their attacks."""
+    """Returns suites, tests as Suite.Name, and the names of attacks in scripts of tests/system."""
     names = set()
     for path in (root / "tests").rglob("*"):
         if path.suffix == ".cpp":
@@ -40,7 +40,7 @@ def tests_of(root):
 
 
 def unknown_tests(text, known):
-    """Lines of tables with a last column "held by", and what they name that is no test."""
+    """Yields (line number, name) of names in a last column "held by" that are no tests."""
     held = False
     for number, line in enumerate(text.splitlines(), 1):
         cells = line.strip("|").split("|") if line.startswith("|") else []

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every path and program that the docs or a comment name is there.
+"""Every path and program that the docs or a comment name exists.
 
 Every element has its page and every property its blurb, every message that docs/troubleshooting.md
 explains exists, and every page is in the site.
@@ -21,7 +21,7 @@ SOURCES = (".h", ".cpp", ".sh", ".py", ".build")
 
 
 def tree(root):
-    """The files that belong to the tree: those of git, or of the folder where there is no git."""
+    """Returns the files of the tree: those of git, or of the folder if there is no git."""
     listed = subprocess.run(
         ["git", "-C", root, "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True
     )
@@ -31,7 +31,7 @@ def tree(root):
 
 
 def programs(root, files):
-    """Patterns of the names of what meson builds to be run; what a loop fills in is open."""
+    """Returns patterns of the names of programs that meson builds; what a loop fills in is open."""
     found = []
     for file in files:
         if file.endswith("meson.build"):
@@ -45,7 +45,7 @@ def programs(root, files):
 
 
 def code_of(page):
-    """(line number, text) of everything that is set as code."""
+    """Yields (line number, text, whether it is a span in a line) of everything that is set as code."""
     fenced = False
     text = page.splitlines()
     for number, line in enumerate(text, 1):
@@ -64,7 +64,7 @@ class Checker:
         self.files = tree(root)
         self.names = {pathlib.PurePath(f).name for f in self.files}
         self.programs = programs(root, self.files)
-        # Properties and messages, which look like programs.
+        # Properties and messages look like programs.
         self.strings = {
             s
             for f in self.files
@@ -150,14 +150,14 @@ class Checker:
             self.properties(name, element.get("properties", {}))
 
     def pipelines(self, element, page):
-        """The test printed-pipelines runs what it finds."""
+        """Checks that the page has a pipeline with the element; the test printed-pipelines runs them."""
         text = (self.root / page).read_text()
         commands = re.findall(r"^ *(?:\w+=\S+ )*gst-launch-1\.0 (?:.*\\\n)*.*", text, re.M)
         if not any(re.search(rf"(?<![\w-]){element}\b", command) for command in commands):
             self.problems.append(f"{page}: no pipeline with {element}")
 
     def properties(self, element, properties):
-        """Pages leave to gst-inspect-1.0 what it says of each property."""
+        """Checks that each property has a blurb, because pages leave its description to gst-inspect-1.0."""
         self.problems += [
             f"{element}: no blurb of property {name}"
             for name, known in properties.items()

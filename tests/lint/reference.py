@@ -52,7 +52,7 @@ def element_lists(root):
 
 
 def page_of(root, name):
-    """A link to the page or the section about a program or a script; without one, its name."""
+    """Returns a link to the page or the section about a program or a script; its name if there is none."""
     code = f"`{name}`"
     stem = name.removesuffix(".sh")
     if (root / f"docs/{stem}.md").exists():

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Each rule of this folder finds what is planted in a small tree, and nothing in a sound one."""
+"""Each rule of this folder finds a violation that is planted in a small tree, and nothing in a sound tree."""
 import pathlib
 import subprocess
 import sys
@@ -132,7 +132,7 @@ auto* memory = g_aligned_alloc(1, 8, 8);
     "tests/core/test.cpp": '#include "ext/draco/draco.h"\n#include "src/tools/eval/main.h"\n',
 }
 
-# Rule, file, what it then has, what the rule must say of it.
+# Rule, file, its new content, and what the rule must report.
 PLANTED = [
     (
         "dependencies",
@@ -320,7 +320,7 @@ PLANTED = [
 
 
 def run(rule, tree):
-    """What the rule says of the tree: nothing where all is well."""
+    """Returns the report of the rule about the tree; empty if all is well."""
     if rule in MODULES:
         return "\n".join(MODULES[rule].check(pathlib.Path(tree)))
     result = subprocess.run([SCRIPTS[rule], tree], capture_output=True, text=True)

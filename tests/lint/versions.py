@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The tree uses nothing of GStreamer or GLib that is newer than meson.build asks for.
 
-The .gir files of the installed libraries say since when a symbol is there. What is newer must stand
-below `#if GST_CHECK_VERSION(...)` or `#if GLIB_CHECK_VERSION(...)` of that version.
+The .gir files of the installed libraries have the version that added each symbol. A newer symbol must
+stand below `#if GST_CHECK_VERSION(...)` or `#if GLIB_CHECK_VERSION(...)` of that version.
 """
 import functools
 import pathlib
@@ -31,13 +31,13 @@ def version(text):
 
 @functools.cache
 def newer(girs, bound):
-    """{symbol: (version, file)} of what came after `bound`."""
+    """Returns {symbol: (version, file)} of symbols that are newer than `bound`."""
     found = {}
 
     def visit(element, since, name):
         own = element.get("version", "")
         if element.tag.endswith(("}namespace", "}repository")):
-            own = ""  # there it is the version of the format
+            own = ""  # the version of the file format
         since = version(own) if re.fullmatch(r"\d+\.\d+(\.\d+)?", own) else since
         # An odd version is the development towards the next even one.
         if since and since[1] % 2:
@@ -56,10 +56,10 @@ def newer(girs, bound):
 
 
 class Guards:
-    """What the conditions around a line say of the versions there: (library, version, is it there)."""
+    """Follows the conditions around a line: each says (library, version, whether it has that version)."""
 
     def __init__(self):
-        self.stack = []  # a level: what its former branches leave, and what the present one says
+        self.stack = []  # a level: what follows from its former branches, and what the present one says
 
     def see(self, line):
         match = CONDITION.match(line)
@@ -71,14 +71,14 @@ class Guards:
         elif self.stack:
             left, said = self.stack.pop()
             if word != "endif":
-                # Where not all of several hold, nothing is known of one.
+                # If one of several terms does not hold, it is not known which.
                 if len(said) == 1:
                     left.append((said[0][0], said[0][1], not said[0][2]))
                 self.stack.append((left, self.read(rest)))
 
     @staticmethod
     def read(condition):
-        """What a condition says; an alternative says nothing of either."""
+        """Returns what a condition says; an alternative says nothing of its parts."""
         if "||" in condition:
             return []
         terms = [GUARD.search(term) for term in condition.split("&&")]

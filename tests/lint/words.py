@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Each comment of a file begins with its subject or verb, and constants say what they are.
+"""Each comment of a file begins with its subject or verb, and names of constants have a meaning.
 
 Usage: words.py [FILE ...], as a hook of git runs it over the files of a commit. Without files it
 reads all code but the rooms of LATER.
@@ -37,7 +37,7 @@ def comments(text):
         behind = re.search(r"[;,{})]\s+///?<? ([^\"]*)$", line)
         if behind:
             yield number, behind[1]
-            inside = True  # further lines of it
+            inside = True  # further lines of the same comment
 
 
 def check_file(name, text):
