@@ -73,10 +73,10 @@ done
 mkdir -p "$output" || exit 2
 output=$(cd "$output" && pwd)
 
-# wanted NAME: whether --only and --skip leave it.
+# wanted NAME: succeeds if --only and --skip leave the step NAME.
 wanted() { [[ (-z $only || ,$only, == *,$1,*) && ,$skip, != *,$1,* ]]; }
 
-# lacks NEEDS: the first of them that is not here.
+# lacks NEEDS: prints the first of NEEDS that this machine lacks.
 lacks() {
   local need
   while read -r need; do

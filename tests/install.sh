@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Installs the Debian packages that building, running and testing need; quiet where all are there.
-# Usage: install.sh [LIST]
+# Installs the Debian packages that building, running and testing need; prints nothing if all are
+# installed. Usage: install.sh [LIST]
 set -euo pipefail
 list=${1:-$(cd "$(dirname "$0")" && pwd)/packages.txt}
 
-# What is there, by its own name or by what it provides: Node.js of its makers brings npm along.
+# Lists what is installed, by its own name or by what it provides: Node.js of its makers brings npm
+# along.
 there=$(dpkg-query -W -f '${db:Status-Status}:${Package},${Provides}\n' | sed -n 's/^installed://p' | tr ',' '\n' |
   sed 's/(.*//; s/ //g')
 missing=()

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs each script of pipelines/ and each pipeline that the docs print, and fails where a process leaves objects
-# behind: GStreamer's leaks tracer looks when it ends. Takes about five minutes; needs a build.
+# Runs each script of pipelines/ and each pipeline that the docs print, and fails if a process
+# leaves objects behind: GStreamer's leaks tracer reports them when it ends. Takes about five
+# minutes; needs a build.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/pipelines/environment.sh"
@@ -10,13 +11,13 @@ trap 'rm -rf "$work"' EXIT
 export GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7,leaks:7 GST_DEBUG_NO_COLOR=1 GST_DEBUG_FILE=$work/log/%p
 status=0
 
-# The scripts ask gst-inspect-1.0 what there is; it never looks.
+# The scripts ask gst-inspect-1.0 which elements exist; it runs without the tracer.
 mkdir "$work/bin"
 printf '#!/bin/sh\nGST_TRACERS= GST_DEBUG= exec %s "$@"\n' "$(command -v gst-inspect-1.0)" >"$work/bin/gst-inspect-1.0"
 chmod +x "$work/bin/gst-inspect-1.0"
 export PATH=$work/bin:$PATH
 
-# look NAME COMMAND...: what its processes left.
+# look NAME COMMAND...: runs the command and prints the objects that its processes left.
 look() {
   local name=$1 alive processes silent
   shift
@@ -24,9 +25,9 @@ look() {
   mkdir "$work/log"
   "$@" >"$work/output" 2>&1 || { tail -5 "$work/output"; echo "FAILED: $name does not run"; status=1; return; }
   processes=$(find "$work/log" -type f -size +0 | wc -l)
-  # dtlsdec of GStreamer keeps an agent for certificates that it makes up as long as the process.
+  # GStreamer's dtlsdec keeps an agent for its generated certificates as long as the process lives.
   alive=$(grep -h 'object-alive, ' "$work"/log/* | sed -nE 's/.*type-name=\(string\)([A-Za-z]+).*/\1/p' | grep -v GstDtlsAgent | sort | uniq -c)
-  # One that was killed did not look. Only an empty log is that of gst-inspect-1.0.
+  # A process that was killed has no report. Empty logs are those of gst-inspect-1.0.
   silent=$(find "$work/log" -type f -size +0 -exec grep -L 'listed [0-9]* alive objects' {} + | wc -l)
   [ "$name" != secure-dtls ] || silent=$((silent - 1)) # the one that refuses a stranger ends at once
   printf '%-18s %3d processes, %d of which ended without looking, objects left: %s\n' "$name" "$processes" "$silent" "${alive:-none}"

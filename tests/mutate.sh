@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Plants one small bug at a time and says which of them the tests notice.
+# Plants one small bug at a time and prints which of them the tests notice.
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
@@ -57,7 +57,7 @@ tree=$folder/tree
 build=$tree/build  # as in a usual tree, so that a compiler cache knows what it compiled there
 log=$folder/log
 
-# Files that have not changed keep their times, so that only what changed is built again.
+# Files that have not changed keep their times, so that only changed ones are built again.
 copy_tree() {
   mkdir -p "$tree"
   git -C "$root" ls-files --cached --others --exclude-standard | sort >"$folder/files"
@@ -68,7 +68,7 @@ copy_tree() {
   done <"$folder/files"
 }
 
-# What a patch touched is as before.
+# Restores the files that a patch touched.
 restore() {
   local file
   while IFS= read -r file; do
@@ -82,13 +82,15 @@ compile() {
   ninja -C "$build" "$@" >"$log" 2>&1
 }
 
-# What belongs to which test stays as it is: no patch touches a meson.build.
+# Introspects the build once: no patch touches a meson.build, so the targets of a test stay the
+# same.
 introspect() {
   [ "$folder/$1.json" -nt "$build/build.ninja" ] || meson introspect "$build" "--$1" >"$folder/$1.json"
   echo "$folder/$1.json"
 }
 
-# What the named tests need, as ninja calls it; with no name, what those of both suites need.
+# Prints the targets that the named tests need, as ninja calls them; without a name, those that both
+# suites need.
 targets() {
   jq -rn --arg dir "$build/" --arg names "$*" \
     --slurpfile tests "$(introspect tests)" --slurpfile all "$(introspect targets)" '
@@ -105,7 +107,7 @@ first_failure() {
     "$build/meson-logs/testlog.json" | head -1
 }
 
-# What comes of one patch: "noticed by TEST", "NOT NOTICED", or why there is no answer.
+# Prints the outcome of one patch: "noticed by TEST", "NOT NOTICED", or why there is no answer.
 try_patch() {
   local patch=$1 tests failed wanted
   tests=$(sed -n 's/^Tests: //p;/^---/q' "$patch")

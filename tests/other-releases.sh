@@ -41,7 +41,7 @@ output=${output:-$top/build-releases/$name}
 mkdir -p "$output"
 output=$(cd "$output" && pwd)
 
-# Lint needs these; the rules about the text of the tree hold in every release.
+# Only lint needs these; the rules about the text of the tree hold in every release.
 only_lint='clang-format|clang-tidy|libgirepository1.0-dev'
 mapfile -t packages < <(sed 's/#.*//; /^[[:space:]]*$/d' "$top/tests/packages.txt" | grep -vxE "$only_lint")
 if [ "$name" = arm64 ]; then
@@ -61,7 +61,7 @@ trap 'leave_root "$root"' EXIT
 
 say() { echo "== $* ($SECONDS s)"; }
 
-# Which of the named packages the root can have: releases differ.
+# Installs those of the named packages that the root can have: releases differ.
 install_packages() {
   inside "$root" "
     there= missing=
@@ -86,7 +86,7 @@ install_for_arm64() {
   install_packages crossbuild-essential-arm64 qemu-user-static ccache git jq meson ninja-build pkg-config python3 "${foreign[@]}"
 }
 
-# How meson builds across. Version 1.0 calls pkg-config pkgconfig.
+# Writes how meson builds across. Version 1.0 calls pkg-config pkgconfig.
 write_cross_file() {
   cat >"$root/src/arm64.ini" <<EOF
 [binaries]
@@ -122,7 +122,8 @@ make_ready() {
   cp "$top/tests/packages.txt" "$root/src/ready"
 }
 
-# The options are those of tests/run.sh, but for newer compilers' new warnings to be counted, not fatal.
+# The options are those of tests/run.sh, except that warnings of newer compilers are counted, not
+# fatal.
 build_tree() {
   [ "$name" != arm64 ] || write_cross_file
   rm -rf "$root/src/gst-lidar"
@@ -132,7 +133,7 @@ build_tree() {
     ninja -C /src/build" >"$output/build.log" 2>&1
 }
 
-# test_suite NAME: "NAME passed/all", and the names of those that failed.
+# test_suite NAME: prints "NAME passed/all", and the names of tests that failed.
 test_suite() {
   local suite=$1 log
   rm -f "$root/src/build/meson-logs/testlog.json"

@@ -54,8 +54,8 @@ passed=0
 failed=0
 started=$SECONDS
 
-# Long simulations and command-line programs run the code of the other tests again, at many times
-# the price under a sanitizer.
+# Long simulations and command-line programs run the same code as other tests. A sanitizer makes
+# them many times slower.
 dear=(simulation programs)
 without_dear=("${dear[@]/#/--no-suite=}")
 # Tests of elements wait for half of their time, so more of them run at a time than there are cores.
@@ -63,10 +63,11 @@ waiting=(--num-processes $((2 * $(nproc))))
 # A time limit is for tests that hang: a busy machine only takes longer.
 patient=(--timeout-multiplier 20)
 
-# A compiler's own list of headers tells ccache what to look at, so what is not there yet is not preprocessed twice.
+# ccache takes the headers from the compiler's own list, so a file that it lacks is not preprocessed
+# twice.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 
-# targets DIR SUITE...: what the tests of the suites need, as ninja calls it.
+# targets DIR SUITE...: prints the targets that tests of the suites need, as ninja calls them.
 targets() {
   local dir=$1
   shift
@@ -77,9 +78,9 @@ targets() {
     | $all[0][] | select(.id | IN($needed[])) | .filename[] | ltrimstr($dir)'
 }
 
-# build DIR SUITES [meson options]: configures once, then builds what changed of what the suites need.
-# Reports need line numbers only; the rest of the debug information is a third of the compiler's time.
-# Most of what is left are headers: a unity build reads them once for many files.
+# build DIR SUITES [meson options]: configures once, then builds what the suites need. Reports need
+# line numbers only; other debug information takes a third of the compiler's time. Headers take most
+# of what is left: a unity build reads them once for many files.
 build() {
   local dir=$1 needed_by=$2 linker=()
   shift 2
@@ -95,28 +96,29 @@ build() {
     { grep -A12 -E 'FAILED|error:' "$dir.log" | head -60; return 1; }
 }
 
-# clang needs half of gcc's time for code full of checks. The optimizer takes minutes all the same, so
-# only what tests run for long has it. The plain build has refused real warnings.
+# clang needs half of gcc's time for code full of checks. Its optimizer would still take minutes, so
+# only code that tests run for long has it. The plain build has refused warnings already.
 build_sanitized() {
   local cache
   cache=$(command -v ccache)  # meson leaves it out where a compiler is named
   CC="$cache clang" CXX="$cache clang++" build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=0 \
     -Dbenchmarks=disabled -Dwerror=false
 }
-# It compiles behind the tests of the first build, with the time that they leave: they mostly wait.
+# The sanitized build uses the processor time that the tests of the first build leave: they mostly
+# wait.
 start_sanitized() {
   build_sanitized &
   sanitized_job=$!
   chrt --idle -p 0 "$sanitized_job"
 }
-# hurry PID: it and what it started have their share of a busy machine again. Where only root may do that, they
-# go on with the time that others leave.
+# hurry PID: gives a process and its children their share of a busy machine again. If only root may
+# do that, they go on with the time that other processes leave.
 hurry() {
   local child
   chrt --other -p 0 "$1" 2>/dev/null
   for child in $(pgrep -P "$1"); do hurry "$child"; done
 }
-# Waits for that build, or builds; 0 where it succeeded.
+# Waits for the sanitized build, or builds. Succeeds if the build succeeded.
 sanitized_ready() {
   if [ -z "$sanitized_result" ]; then
     if [ -n "$sanitized_job" ]; then
@@ -130,10 +132,10 @@ sanitized_ready() {
   return "$sanitized_result"
 }
 
-# What meson prints of a suite, without what is counted below.
+# Prints meson's output of a suite without the lines that are counted below.
 shorten() { grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'; }
 
-# results DIR NAME: meson's log of that name. A wrapper's name is part of it.
+# results DIR NAME: prints meson's log of that name. A wrapper's name is part of it.
 results() { cat "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json 2>/dev/null; }
 forget() { rm -f "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json; }
 
@@ -148,7 +150,7 @@ tally() {
   failed=$((failed + bad))
 }
 
-# settle DIR SUITE NAME: adds what a log of meson has of a suite to the totals.
+# settle DIR SUITE NAME: adds the results of a suite in a log of meson to the totals.
 settle() {
   local log=$1/meson-logs/settled.json
   # Names are "gst-lidar:SUITE+SUITE / TEST".
@@ -167,15 +169,15 @@ run() {
   echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
   forget "$dir" testlog
   meson test -C "$dir" --no-rebuild "${patient[@]}" "${chosen[@]}" --print-errorlogs "$@" 2>&1 | shorten
-  # Killed by a signal it may have left out tests.
+  # A meson that was killed by a signal may have left out tests.
   [ "${PIPESTATUS[0]}" -lt 128 ] || failed=$((failed + 1))
   [ "${suites[*]}" != pipelines ] || return 0
   for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog; done
 }
 
-# The pipelines stream in real time, so no more of them run at a time than there are cores. Those of the
-# suite beside wait for much of their time or are not judged by it, so they run beside the others, with
-# what time those leave.
+# The pipelines stream in real time, so no more of them run at a time than there are cores. Tests of
+# the suite `beside` mostly wait or are not judged by time, so they run at the same time, with what
+# the others leave.
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
@@ -190,7 +192,8 @@ run_pipelines() {
   settle "$dir" beside beside
 }
 
-# Tests of elements stream in real time and mostly wait. The others calculate, with the time that those leave.
+# Tests of elements stream in real time and mostly wait. Other tests calculate, with the time that
+# those leave.
 run_sanitized() {
   local dir=$1 rest
   forget "$dir" rest
@@ -207,7 +210,7 @@ run_sanitized() {
   settle "$dir" fuzz rest
 }
 
-# The outcome of a step that is no meson test.
+# Counts the outcome of a step that is no meson test.
 count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi; }
 
 [ "$install" = no ] || "$here/install.sh" || exit 1
@@ -216,8 +219,8 @@ case $install,${suites[*]} in
 esac
 if [ "$install" = yes ] && [ "${suites[*]}" = browser ]; then
   for folder in "$root/ext/web/page" "$here/system/browser"; do
-    # Newer npm refuses a lock file without the optional packages of all platforms; what it has still
-    # says which versions are taken.
+    # Newer npm refuses a lock file without the optional packages of all platforms. Then npm install
+    # still takes the versions of that file.
     (cd "$folder" && { npm ci --silent --no-audit --no-fund || npm install --no-save --silent --no-audit --no-fund; }) ||
       { echo "npm cannot install what $folder/package.json asks for"; exit 1; }
   done
@@ -256,7 +259,7 @@ fi
 if [ "$tsan" = yes ]; then
   if build "$root/build-tsan" "core elements" -Db_sanitize=thread -Db_lundef=false -Doptimization=1 \
     -Dbenchmarks=disabled -Dtools=disabled -Dwerror=false; then
-    # Once, so that no test is blamed for the plugins of others that the registry looks into.
+    # A first run makes the registry, so that no test is blamed for races in plugins of others.
     meson test -C "$root/build-tsan" --no-rebuild common >/dev/null 2>&1
     for suite in core elements; do
       run "$root/build-tsan" "$suite" "${without_dear[@]}"

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# clang-tidy over the sources, as a build directory of its own compiles them one by one, without
-# precompiled headers, so that a missing include is an error:
-# tests/tidy.sh [BUILD_DIR] [PATH_REGEX]
+# Runs clang-tidy over the sources. A build directory of its own compiles them one by one, without
+# precompiled headers, so that a missing include is an error: tests/tidy.sh [BUILD_DIR] [PATH_REGEX]
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${1:-$root/build-tidy}

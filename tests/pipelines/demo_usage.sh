@@ -36,7 +36,8 @@ expect 2 "--start-bitrate must not be above --max-bitrate" --start-bitrate 9 --m
 expect 1 "the sender ended early" --pcap "$folder/capture.pcap" --metadata "$folder/metadata.json"
 expect 0 "--duration" --help
 
-# The receiver has seen the end of the stream and still writes its clouds: a signal does not cut them off.
+# The receiver has seen the end of the stream and still writes its clouds: a signal does not stop
+# it.
 mkfifo "$folder/clouds"
 # shellcheck source=pipelines/environment.sh
 BUILD_DIR=$MESON_BUILD_ROOT source "$root/pipelines/environment.sh"

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs every gst-launch-1.0 command of the README and the docs, or of the pages named, as it is printed.
 
-A command passes where it ends with exit code 0, or still runs without an error a moment after it plays.
-With -q it does not say when it plays: then it passes where it runs for some seconds without an error.
-One that ends by itself and writes a file may take longer, as the next ones may read it.
-Windows become fakesinks, and each page has ports and a folder of its own: several run at a time. They leave
-the processor to what streams beside them.
+A command passes if it ends with exit code 0, or still runs without an error a moment after it plays. With -q it does
+not print when it plays: then it passes if it runs for some seconds without an error. A command that ends by itself
+and writes a file may take longer, because the next ones may read it.
+Windows become fakesinks, and each page has ports and a folder of its own: several pages run at a time. They leave
+the processor to other streams.
 The examples bring elements of their own, and have a test of their own.
-Commands that name a sensor by `hostname=` are left out, and said so.
+Commands that name a sensor by `hostname=` are left out, and reported.
 """
 import concurrent.futures
 import os
@@ -23,7 +23,7 @@ import time
 
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
 QUIET_SECONDS, PLAY_SECONDS, WRITE_SECONDS = 4, 1.5, 30
-PATIENCE = 180  # seconds, of a machine that others use
+PATIENCE = 180  # seconds, on a busy machine
 AT_A_TIME = 4
 FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
 
@@ -44,7 +44,7 @@ def commands(page):
 
 
 def with_ports(command, first):
-    """`command` with its ports replaced by those from `first` on, the same for the same."""
+    """Returns `command` with ports from `first` on; equal ports stay equal."""
     ports = {}
 
     def replace(match):
@@ -55,7 +55,7 @@ def with_ports(command, first):
 
 
 def output_for_a_while(process, quiet, play_seconds):
-    """What the process prints until it ends or is told to stop, and whether it was stopped before it played."""
+    """Returns what the process prints until it ends or is stopped, and whether it was stopped before it played."""
     output, plays = b"", False
     until = time.monotonic() + (QUIET_SECONDS if quiet else PATIENCE)
     while select.select([process.stdout], [], [], max(0, until - time.monotonic()))[0]:
@@ -73,7 +73,7 @@ def output_for_a_while(process, quiet, play_seconds):
 
 
 def run(command, folder, first_port):
-    """None, or what went wrong."""
+    """Returns what went wrong, or None."""
     shown = with_ports(command.replace("autovideosink", "fakesink"), first_port)
     process = subprocess.Popen(
         ["bash", "-c", "exec " + shown],
@@ -107,7 +107,7 @@ def run(command, folder, first_port):
 
 
 def run_page(page, root, folder, first_port):
-    """What is to be said of the page's commands, and how many ran and failed."""
+    """Returns lines about the page's commands, and how many ran and failed."""
     folder.mkdir()
     # Pages name the committed captures from the project's folder; what commands write goes elsewhere.
     (folder / "tests").symlink_to(root / "tests")

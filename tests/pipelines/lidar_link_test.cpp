@@ -36,7 +36,7 @@ struct Got {
   Time at;
 };
 
-/// What arrives until `count` datagrams are there or nothing comes for the time of `silence`.
+/// Returns what arrives until `count` datagrams are there, or none has come for `silence`.
 std::vector<Got> Receive(UdpSocket* socket, std::size_t count, Duration silence = 30s) {
   std::vector<Got> all;
   Time last = Now();
@@ -126,7 +126,7 @@ class LidarLink : public testing::Test {
 TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
   Start({"--rate", "100", "--rtt", "40"});
   auto sender = Sender();
-  // A busy machine is late now and then, but not for half a minute.
+  // A busy machine is late now and then, but not for all of half a minute.
   Duration best = 1h;
   const Time end = Now() + 30s;
   std::uint8_t i = 0;
@@ -152,7 +152,7 @@ TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
 }
 
 TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
-  // 972 + 28 bytes at 8 Mbit/s: a millisecond each.
+  // A packet of 972 + 28 bytes takes a millisecond at 8 Mbit/s.
   const std::string log = testing::TempDir() + "lidar_link_burst.csv";
   Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "9.5", "--log", log});
   auto sender = Sender();
@@ -167,7 +167,7 @@ TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
   const auto summary = Stop();
   EXPECT_EQ(summary["marked"], marked);
   EXPECT_EQ(summary["ecn_out"]["ce"], marked);
-  // However slowly the sender and the link run, each packet waits for those before it.
+  // Each packet waits for those before it, however slowly the sender and the link run.
   const auto rows = ReadLog(log);
   ASSERT_EQ(rows.size(), 50U);
   double free_ms = 0;
@@ -194,7 +194,8 @@ TEST_F(LidarLink, LeavesPacketsWithoutEcnUnmarkedAndDropsTheTail) {
 }
 
 TEST_F(LidarLink, MarksEct1AsSeldomAsEct0WhereItKnowsNoL4s) {
-  // A burst of 160 ms: what is rare for classic packets is squared.
+  // The burst takes 160 ms. A classic packet is marked with the square of the probability, so less
+  // often.
   const auto marks = [this](std::vector<std::string> options) {
     options.insert(options.end(),
                    {"--rtt", "0", "--rate", "2", "--aqm", "pi2", "--aqm-target", "5"});

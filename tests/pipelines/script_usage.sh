@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The scripts of pipelines/, and those that take hours: help, and wrong options that are refused at once with a reason. Nothing is streamed.
+# Scripts of pipelines/, and those that take hours, print help and refuse wrong options at once with
+# a reason. Nothing is streamed.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 failed=0

@@ -23,7 +23,7 @@ inline Pose TrueAt(int scan) {
   return pose;
 }
 
-/// Ground, and pillars of many sizes that stand anywhere.
+/// Makes ground, and pillars of many sizes at random places.
 inline Points MakeWorld() {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> anywhere(-130, 130);
@@ -47,13 +47,13 @@ inline Points MakeWorld() {
 inline Points SeenFrom(const Pose& pose, const Points& world, int scan) {
   const Pose back = pose.Inverse();
   Points points;
-  // Together the scans of a local map see every point.
+  // The scans of a local map together see every point.
   for (std::size_t i = static_cast<std::size_t>(scan % 16); i < world.size(); i += 16)
     if ((world[i] - pose.position).squaredNorm() < 3600) points.push_back(back * world[i]);
   return points;
 }
 
-/// What an odometry makes of the lap: each step is a little too long and turns a little too far.
+/// The odometry's estimate of the lap: each step is a little too long and turns a little too far.
 inline odometry::Trajectory Drive(int scans) {
   odometry::Trajectory way;
   for (int i = 0; i < scans; ++i) {

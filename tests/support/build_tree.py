@@ -5,7 +5,7 @@ import pathlib
 
 
 def environment(build, registry="benchmark-registry.bin"):
-    """os.environ with the plugins of `build` first, and a registry of their own."""
+    """Returns os.environ with the plugins of `build` first, and a registry of their own."""
     build = pathlib.Path(build).resolve()
     plugins = sorted({str(path.parent) for part in ("gst", "ext") for path in (build / part).rglob("libgst*.so")})
     if not plugins:

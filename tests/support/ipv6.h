@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether this machine has IPv6, for tests that use its loopback.
+// A check whether this machine has IPv6, for tests that use its loopback.
 #pragma once
 #include <netinet/in.h>
 #include <sys/socket.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How long a test waits for what must happen.
+// Time limits of tests for events that must happen.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace lidar::test {
 
-/// The machine may be busy: only a failure takes so long.
+/// A busy machine stays below this: only a failure takes so long.
 constexpr std::chrono::seconds kPatience{180};
 constexpr std::int64_t kPatience_us = kPatience / std::chrono::microseconds(1);
 constexpr std::int64_t kPatience_ns = kPatience / std::chrono::nanoseconds(1);
 
-/// True once `holds` is, false where that takes too long.
+/// Returns true once `holds` returns true, false after kPatience.
 inline bool Eventually(const std::function<bool()>& holds) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (!holds()) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ports for programs that are told theirs. Prints one for each argument, `udp` or `tcp`."""
+"""Ports for programs that get theirs as options. Prints one for each argument, `udp` or `tcp`."""
 import random
 import socket
 import sys
@@ -8,7 +8,7 @@ KINDS = {"udp": socket.SOCK_DGRAM, "tcp": socket.SOCK_STREAM}
 
 
 def free_port(kind="udp"):
-    """A port that is free, below those that the kernel hands out until the program has bound it."""
+    """Returns a free port below those that the kernel hands out, so that it stays free until the program binds it."""
     while True:
         port = random.SystemRandom().randrange(10000, 32768)
         with socket.socket(type=KINDS[kind]) as s:

@@ -164,7 +164,7 @@ class RunTrace {
       case GST_MESSAGE_LATENCY:
         break;
       default:
-        return;  // of GStreamer's own
+        return;  // GStreamer's own message
     }
     const gst::ErrorPtr error(raw);
     lines->push_back(std::string("message ") + GST_MESSAGE_TYPE_NAME(message) + " " +

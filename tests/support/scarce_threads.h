@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A machine on which the calling thread can start no other: pthread_create() of the test program
-// stands before that of libc. Include it in one file of a program.
+// replaces that of libc. Include it in one file of a program.
 #pragma once
 #include <dlfcn.h>
 #include <pthread.h>
@@ -11,7 +11,7 @@ namespace lidar::test {
 
 inline thread_local bool no_more_threads = false;
 
-/// No thread starts from this one while it lives.
+/// The calling thread can start no thread while this object lives.
 class ScarceThreads {
  public:
   ScarceThreads() { no_more_threads = true; }

@@ -28,7 +28,7 @@ class TestCertificates {
 
   std::string Public(const std::string& name) const { return folder_ + "/" + name + ".crt"; }
   std::string WithKey(const std::string& name) const { return folder_ + "/" + name + ".pem"; }
-  /// Properties of screamsink and screamsrc.
+  /// Returns properties of screamsink and screamsrc.
   std::string Trusting(const std::string& own, const std::string& peer) const {
     return " dtls-certificate=" + WithKey(own) + " dtls-peer-certificate=" + Public(peer) + " ";
   }
