@@ -87,7 +87,7 @@ TEST(Standstill, ForgetsASourceThatBeginsInMoreColumnsThanASensorHasSectors) {
   }
 }
 
-/// The first pixel of a row has no neighbour: the last one of the row above looks elsewhere.
+/// The first pixel of a row has no neighbour: the last pixel of the row above has another azimuth.
 TEST(Standstill, ComparesNoPixelWithTheRowAbove) {
   RangeImage image;
   image.beams = 64;

@@ -78,7 +78,7 @@ TEST(ClockMapper, RemembersTheFastestPacketOfTheWindowBefore) {
   EXPECT_EQ(ErrorAfter(&mapper, 0s, 4s, 0ms), 0ms);
   // A window of slow packets only: the fast ones before still count.
   EXPECT_EQ(ErrorAfter(&mapper, 4s, 8s, 10ms), 0ms);
-  // The fast ones are forgotten after that, and the offset creeps up as fast as clocks drift.
+  // Later the fast packets are forgotten, and the offset rises as fast as clocks may drift.
   const Duration error = ErrorAfter(&mapper, 8s, 16s, 10ms);
   EXPECT_GT(error, 2ms);
   EXPECT_LT(error, 4ms);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the extensions are for: the scenarios of the matrix and what must be reached in each.
+// Goals of the extensions: the scenarios of the matrix, and what each must reach.
 #include <gtest/gtest.h>
 
 #include "src/sim/figures.h"

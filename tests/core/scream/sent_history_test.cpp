@@ -273,7 +273,7 @@ TEST_F(SentHistoryTest, AMissingPacketThatExpiredIsNotLost) {
   Send(0, 20);
   Apply(Report(0, "r-r"));
   now_ += 20ms;
-  Apply(Report(0, "rrr-r"));  // may be as late as the second one
+  Apply(Report(0, "rrr-r"));  // packet 3 may be as late as packet 1
   ASSERT_TRUE(summary_.lost.empty());
   history_.Expire(now_);
   EXPECT_EQ(LostWithin(1s), 0U);

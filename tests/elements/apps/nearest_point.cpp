@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   GError* error = nullptr;
   GstElement* pipeline =
       gst_parse_launch((source + " ! appsink name=sink sync=false").c_str(), &error);
-  // A partial pipeline may exist with an error: the elements that were found.
+  // If an element is missing, there are both an error and a pipeline of the others.
   const bool ended = error == nullptr && show_all(pipeline);
   if (error != nullptr) {
     std::fprintf(stderr, "%s\n", error->message);

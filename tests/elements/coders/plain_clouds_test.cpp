@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds of one row without a sensor model, whatever is in them.
+// Clouds of one row without a sensor model, with any points in them.
 #include <gtest/gtest.h>
 
 #include <tuple>

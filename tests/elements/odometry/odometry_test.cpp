@@ -28,7 +28,7 @@ std::string Format(const char* format, unsigned a, unsigned b) {
   return text;
 }
 
-/// A drive of 10 m/s through lidarodometry, until its end.
+/// Plays a drive at 10 m/s through lidarodometry, to its end.
 class Odometry : public ::testing::Test {
  protected:
   void Start(unsigned slices, unsigned scans, const std::string& properties = "") {

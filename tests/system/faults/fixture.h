@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Two ends and a link that suffers between them.
+// Two ends, and a link with faults between them.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -19,7 +19,7 @@ struct StatisticsSettings {
   double interval_s = 5;
 };
 
-/// For one thread.
+/// Only one thread may use it.
 class Statistics {
  public:
   /// NATS gets nothing if `connection` is missing. Prints the address for Prometheus. Throws
