@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/monotonic_time.h"
 #include "gst/scream/rtp_packet.h"
 
 namespace lidar::gst {
@@ -14,10 +15,10 @@ namespace {
 constexpr std::chrono::milliseconds kDtlsTick{100};
 // A client's handshake begins anew after it, as the pauses of DTLS double, and so does one after
 // packets that stay without an answer.
-constexpr gint64 kPatienceUs = 5 * G_USEC_PER_SEC;
-constexpr gint64 kPauseUs = G_USEC_PER_SEC;  // between handshakes that fail
+constexpr std::chrono::seconds kDtlsPatience{5};
+constexpr std::chrono::seconds kDtlsPause{1};  // between handshakes that fail
 // A server may have to repeat its last datagram.
-constexpr gint64 kServerKeepsUs = 10 * G_USEC_PER_SEC;
+constexpr std::chrono::seconds kServerKeeps{10};
 
 constexpr gsize kRecordHeader = 13;
 constexpr gsize kHandshakeHeader = 12;
@@ -77,10 +78,10 @@ void DtlsKeys::Run() {
     lock.unlock();
     for (const BufferPtr& datagram : taken) {
       Process(datagram.get());
-      Settle(g_get_monotonic_time());
+      Settle(MonotonicTime());
     }
-    if (is_client_) BeginAsClient(g_get_monotonic_time());
-    Settle(g_get_monotonic_time());
+    if (is_client_) BeginAsClient(MonotonicTime());
+    Settle(MonotonicTime());
     lock.lock();
     wake_.wait_for(lock, kDtlsTick, [this] { return stop_ || !waiting_.empty(); });
   }
@@ -100,7 +101,7 @@ void DtlsKeys::Process(GstBuffer* datagram) {
 
 /// Another address that brings the same hello to a server is another link of the same peer.
 DtlsKeys::Session* DtlsKeys::SessionOf(const std::string& hello, GSocketAddress* from) {
-  const gint64 now = g_get_monotonic_time();
+  const Time now = MonotonicTime();
   const auto is_of = [from](const Session& session) {
     const std::lock_guard lock(session.route->mutex);
     const Addresses& known = session.route->addresses;
@@ -111,7 +112,7 @@ DtlsKeys::Session* DtlsKeys::SessionOf(const std::string& hello, GSocketAddress*
   for (Session& s : sessions_)
     if (hello.empty() ? is_of(s) : s.hello == hello) session = &s;
   if (hello.empty()) return session;
-  if (session == nullptr && MayBegin(now)) session = Begin(now, hello);
+  if (session == nullptr && hellos_.Take(now)) session = Begin(now, hello);
   if (session == nullptr || is_of(*session)) return session;
   const std::lock_guard lock(session->route->mutex);
   if (session->route->addresses.size() >= kMaxAddresses) return nullptr;
@@ -119,16 +120,7 @@ DtlsKeys::Session* DtlsKeys::SessionOf(const std::string& hello, GSocketAddress*
   return session;
 }
 
-bool DtlsKeys::MayBegin(gint64 now) {
-  const double refill = static_cast<double>(now - filled_at_) * kHellosPerSecond / 1e6;
-  allowance_ = std::min(allowance_ + refill, kHellosPerSecond);
-  filled_at_ = now;
-  if (allowance_ < 1) return false;
-  --allowance_;
-  return true;
-}
-
-DtlsKeys::Session* DtlsKeys::Begin(gint64 now, std::string hello) {
+DtlsKeys::Session* DtlsKeys::Begin(Time now, std::string hello) {
   if (sessions_.size() >= kMaxHandshakes) sessions_.pop_front();
   Session session;
   session.hello = std::move(hello);
@@ -152,21 +144,21 @@ void DtlsKeys::Send(Route* route, GstBuffer* datagram) {
   calls_.send(datagram, route->addresses);
 }
 
-void DtlsKeys::BeginAsClient(gint64 now) {
+void DtlsKeys::BeginAsClient(Time now) {
   const SrtpTraffic traffic = calls_.traffic();
-  if (heard_at_ != 0 && (traffic.passed > seen_.passed || traffic.sent == seen_.sent)) {
+  if (heard_at_ && (traffic.passed > seen_.passed || traffic.sent == seen_.sent)) {
     heard_at_ = now;
     seen_ = traffic;
     sessions_.clear();
   }
-  const bool is_silent = heard_at_ == 0 || now - heard_at_ > kPatienceUs;
+  const bool is_silent = !heard_at_ || now - *heard_at_ > kDtlsPatience;
   if (!is_silent || !sessions_.empty() || now < paused_until_) return;
-  paused_until_ = now + kPauseUs;
+  paused_until_ = now + kDtlsPause;
   Begin(now, "");
 }
 
 /// Takes keys, and ends what is over.
-void DtlsKeys::Settle(gint64 now) {
+void DtlsKeys::Settle(Time now) {
   for (Session& session : sessions_) {
     const auto state = session.handshake->state();
     if (state == DtlsHandshake::State::kDone && !session.has_key) {
@@ -187,12 +179,12 @@ void DtlsKeys::Settle(gint64 now) {
     const auto state = session.handshake->state();
     if (state == DtlsHandshake::State::kRefused || state == DtlsHandshake::State::kFailed)
       return true;
-    const gint64 age = now - session.began;
-    if (!is_client_) return age > kServerKeepsUs;
-    if (!session.has_key && age > kPatienceUs && !std::exchange(told_of_silence_, true))
+    const Duration age = now - session.began;
+    if (!is_client_) return age > kServerKeeps;
+    if (!session.has_key && age > kDtlsPatience && !std::exchange(told_of_silence_, true))
       calls_.warn("The other end does not answer the DTLS handshake; it is tried again.",
                   "is it there, with dtls-certificate, and does it trust our certificate?");
-    return session.has_key || age > kPatienceUs;
+    return session.has_key || age > kDtlsPatience;
   };
   sessions_.erase(std::remove_if(sessions_.begin(), sessions_.end(), is_over), sessions_.end());
 }

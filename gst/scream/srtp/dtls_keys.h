@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@
 #include "gst/net/udp_socket.h"
 #include "gst/scream/srtp/handshake.h"
 #include "gst/scream/srtp/key.h"
+#include "src/base/allowance.h"
+#include "src/base/time.h"
 
 namespace lidar::gst {
 
@@ -40,7 +43,7 @@ struct SrtpTraffic {
 class DtlsKeys {
  public:
   static constexpr std::size_t kMaxHandshakes = 4;  // of a server at a time
-  static constexpr double kHellosPerSecond = 5;     // that begin a handshake of a server
+  static constexpr int kHellosPerSecond = 5;        // that begin a handshake of a server
   static constexpr std::size_t kMaxAddresses = 4;   // of a handshake
   static constexpr std::size_t kMaxWaiting = 64;    // datagrams
 
@@ -75,18 +78,17 @@ class DtlsKeys {
     std::string hello;  // of a server's peer
     std::shared_ptr<Route> route;
     std::unique_ptr<DtlsHandshake> handshake;
-    gint64 began = 0;  // monotonic time [us]
+    Time began{};
     bool has_key = false;
   };
 
   void Run();
   void Process(GstBuffer* datagram);
   Session* SessionOf(const std::string& hello, GSocketAddress* from);
-  Session* Begin(gint64 now, std::string hello);
+  Session* Begin(Time now, std::string hello);
   void Send(Route* route, GstBuffer* datagram);
-  void BeginAsClient(gint64 now);
-  void Settle(gint64 now);
-  bool MayBegin(gint64 now);
+  void BeginAsClient(Time now);
+  void Settle(Time now);
 
   Certificates certificates_;
   bool is_client_;
@@ -99,10 +101,9 @@ class DtlsKeys {
 
   // Used by the thread only:
   std::deque<Session> sessions_;  // oldest first
-  double allowance_ = kHellosPerSecond;
-  gint64 filled_at_ = 0;
-  gint64 heard_at_ = 0;  // last sign of the other end; 0 before the first key
-  gint64 paused_until_ = 0;
+  Allowance hellos_{kHellosPerSecond, Duration(std::chrono::seconds(1)) / kHellosPerSecond};
+  std::optional<Time> heard_at_;  // last sign of the other end; none before the first key
+  Time paused_until_{};
   SrtpTraffic seen_;
   bool told_of_stranger_ = false;
   bool told_of_silence_ = false;

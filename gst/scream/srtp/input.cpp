@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gst/common/monotonic_time.h"
 #include "gst/scream/rtp_packet.h"
 
 namespace lidar::gst {
@@ -10,15 +11,16 @@ namespace {
 
 // The present key, the last one and the next one.
 constexpr std::size_t kMaxKeys = 3;
-constexpr gint64 kStragglersUs = 10 * G_USEC_PER_SEC;
+constexpr std::chrono::seconds kStragglers{10};
 constexpr std::size_t kMaxStreams = 2'048;
 // Long losses hide rollovers and cause such failures. A sender without feedback is slow.
 constexpr unsigned kFailuresUntilLost = 20;
-constexpr gint64 kSilenceUntilLostUs = 2 * G_USEC_PER_SEC;
+constexpr std::chrono::seconds kSilenceUntilLost{2};
 constexpr std::uint32_t kMaxRollover = 100'000;  // reached after months
 constexpr unsigned kFailuresUntilWarning = 20;
 // Each trial derives keys, which takes about 50 us.
-constexpr double kTrialsPerSecond = 500;
+constexpr int kMaxTrials = 500;
+constexpr std::chrono::seconds kTrialsPeriod{1};
 constexpr unsigned kTriedUntilCleared = 64;
 constexpr unsigned kMaxGuesses = 32;  // for one packet: about 2 ms per key
 
@@ -29,7 +31,10 @@ SrtpInput* InputOf(GstPad* pad) {
 }  // namespace
 
 SrtpInput::SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_key)
-    : bin_(bin), policy_(policy), on_new_key_(std::move(on_new_key)) {
+    : bin_(bin),
+      policy_(policy),
+      on_new_key_(std::move(on_new_key)),
+      trials_(kMaxTrials, Duration(kTrialsPeriod) / kMaxTrials) {
   InstallEntry();
   InstallExit();
 }
@@ -161,13 +166,15 @@ BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
 }
 
 /// RTP does not carry its rollover counter. If no other stranger asks, many values are tried for
-/// one packet, as a sender without feedback sends few.
+/// one packet, as a sender without feedback sends few. Half of the trials are for first ones.
 BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
-  if (!allowance_.Take(g_get_monotonic_time())) return nullptr;
+  const Time now = MonotonicTime();
+  if (!trials_.Take(now)) return nullptr;
   BufferPtr decoded = TryRollover(datagram, head, 0);
   // RTCP carries its index.
   const unsigned guesses = head.rtcp ? 0 : kMaxGuesses;
-  for (unsigned n = 0; !decoded && n < guesses && (n == 0 || allowance_.TakeSpare()); ++n)
+  for (unsigned n = 0; !decoded && n < guesses && (n == 0 || trials_.Take(now, kMaxTrials / 2));
+       ++n)
     decoded = TryRollover(datagram, head, StreamOf(head.stream()).search.Next());
   Stream& stream = StreamOf(head.stream());
   if (!decoded && !stream.known) ++stream.failures;
@@ -214,9 +221,9 @@ void SrtpInput::UpdateKeys() {
     added_.clear();
   }
   if (keys_.size() > kMaxKeys) drop = keys_.size() - kMaxKeys;
-  if (forget_old_at_ != 0 && g_get_monotonic_time() > forget_old_at_) {
+  if (forget_old_at_ && MonotonicTime() > *forget_old_at_) {
     drop = std::max(drop, newest_used_);
-    forget_old_at_ = 0;
+    forget_old_at_.reset();
   }
   keys_.erase(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(drop));
   in_use_ -= std::min(in_use_, drop);
@@ -252,12 +259,12 @@ void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollov
   }
   stream.known = true;
   stream.failures = 0;
-  stream.passed_at = g_get_monotonic_time();
+  stream.passed_at = MonotonicTime();
   stream.search = {};
   if (key <= newest_used_) return;
   waiting_ -= std::min<std::size_t>(waiting_, key - newest_used_);
   newest_used_ = key;
-  forget_old_at_ = g_get_monotonic_time() + kStragglersUs;
+  forget_old_at_ = MonotonicTime() + kStragglers;
   ++key_changes_;
   on_new_key_(keys_[key].media->key());
 }
@@ -266,7 +273,7 @@ void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollov
 /// its packets pass, a forger cannot make a stream lost.
 bool SrtpInput::IsLost(const Stream& stream) {
   return stream.failures >= kFailuresUntilLost &&
-         g_get_monotonic_time() - stream.passed_at >= kSilenceUntilLostUs;
+         MonotonicTime() - stream.passed_at >= kSilenceUntilLost;
 }
 
 std::uint32_t SrtpInput::Search::Next() {
@@ -286,21 +293,6 @@ void SrtpInput::Warn() {
                       ("Packets arrive that do not fit the SRTP key, and are dropped."),
                       ("check that both ends have the same srtp-key, srtp-cipher and srtp-auth; "
                        "this is said once, the property stats counts them"));
-}
-
-bool SrtpInput::Allowance::Take(gint64 now_us) {
-  const double refill = static_cast<double>(now_us - filled_at_) * kTrialsPerSecond / 1e6;
-  left_ = std::min(left_ + refill, kTrialsPerSecond);
-  filled_at_ = now_us;
-  if (left_ < 1) return false;
-  --left_;
-  return true;
-}
-
-bool SrtpInput::Allowance::TakeSpare() {
-  if (left_ < kTrialsPerSecond / 2) return false;
-  --left_;
-  return true;
 }
 
 }  // namespace lidar::gst

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,8 @@
 #include "gst/scream/srtp/copies.h"
 #include "gst/scream/srtp/decoder.h"
 #include "gst/scream/srtp/key.h"
+#include "src/base/allowance.h"
+#include "src/base/time.h"
 
 namespace lidar::gst {
 
@@ -80,7 +83,7 @@ class SrtpInput {
     std::uint32_t rollover = 0;
     std::uint16_t sequence = 0;
     unsigned failures = 0;  // since the last packet that passed
-    gint64 passed_at = 0;   // monotonic time [us] of that packet
+    Time passed_at{};       // of that packet
     Search search;
   };
   struct Key {
@@ -92,18 +95,6 @@ class SrtpInput {
     std::unique_ptr<SrtpDecoder> trial;
     SrtpDecoder& DecoderOf(const Head& head) const { return head.rtcp ? *rtcp : *media; }
   };
-  /// Budget of the trials for strangers.
-  class Allowance {
-   public:
-    bool Take(gint64 now_us);
-    /// Takes a further trial for the same packet, if more than half of the allowance is left.
-    bool TakeSpare();
-
-   private:
-    gint64 filled_at_ = 0;
-    double left_ = 0;
-  };
-
   void InstallEntry();
   void InstallExit();
   GstFlowReturn OnDatagram(GstBuffer* datagram);
@@ -135,10 +126,10 @@ class SrtpInput {
   std::vector<Key> keys_;   // oldest first
   std::size_t in_use_ = 0;  // key of the last packet that passed
   std::size_t newest_used_ = 0;
-  gint64 forget_old_at_ = 0;  // monotonic time [us]
+  std::optional<Time> forget_old_at_;
   std::map<StreamId, Stream> streams_;
   SrtpCopies copies_;
-  Allowance allowance_;
+  Allowance trials_;    // of strangers
   unsigned tried_ = 0;  // strangers since the trial decoders were cleared
   bool warned_ = false;
 

@@ -38,5 +38,15 @@ TEST(Allowance, DoesNotComeBackWhereTimeStandsStillOrGoesBack) {
   EXPECT_FALSE(allowance.Take(Time{}));
 }
 
+TEST(Allowance, KeepsAReserveForOthers) {
+  Allowance allowance(5, milliseconds(1'000));
+  const Time start{milliseconds(5'000)};
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(allowance.Take(start, 2));
+  EXPECT_FALSE(allowance.Take(start, 2));
+  EXPECT_EQ(Taken(&allowance, start), 2);
+  EXPECT_FALSE(allowance.Take(start + milliseconds(2'000), 2));
+  EXPECT_TRUE(allowance.Take(start + milliseconds(3'000), 2));
+}
+
 }  // namespace
 }  // namespace lidar

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The clock of what no pipeline's clock times.
+#pragma once
+#include <glib.h>
+
+#include "src/base/time.h"
+
+namespace lidar::gst {
+
+inline Time MonotonicTime() { return Time{std::chrono::microseconds(g_get_monotonic_time())}; }
+
+}  // namespace lidar::gst
