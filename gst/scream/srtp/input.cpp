@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-// The present key, the last one and the next one.
+// The key in use, and the last one and the next one, or two next ones.
 constexpr std::size_t kMaxKeys = 3;
 constexpr std::chrono::seconds kStragglers{10};
 constexpr std::size_t kMaxStreams = 2'048;
@@ -96,7 +96,10 @@ bool SrtpInput::AddKey(const SrtpKey& key) {
   return true;
 }
 
-SrtpCounts SrtpInput::counts() const { return {received_, refused_, copied_, key_changes_}; }
+SrtpCounts SrtpInput::counts() const {
+  const std::uint64_t refused = refused_, copies = copied_;
+  return {passed_ + refused + copies, refused, copies, key_changes_};
+}
 
 void SrtpInput::Reset() {
   streams_.clear();
@@ -123,7 +126,6 @@ GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
     return GST_FLOW_OK;
   }
   UpdateKeys();
-  ++received_;
   const Head head = HeadOf(datagram);
   if (!head.rtcp) copies_.OnArrival(datagram);
   if (BufferPtr copy = head.rtcp ? nullptr : copies_.Take(datagram)) {
@@ -131,6 +133,7 @@ GstFlowReturn SrtpInput::OnDatagram(GstBuffer* datagram) {
     return gst_pad_push(exit_.get(), copy.release());
   }
   if (BufferPtr decoded = Decode(datagram, head)) {
+    ++passed_;
     if (!head.rtcp) copies_.OnPassed(datagram, decoded.get());
     return gst_pad_push(exit_.get(), decoded.release());
   }
@@ -211,7 +214,6 @@ bool SrtpInput::Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc,
 }
 
 void SrtpInput::UpdateKeys() {
-  std::size_t drop = 0;
   {
     std::lock_guard lock(mutex_);
     // A stream whose key was missing may have any rollover counter under the new key.
@@ -220,14 +222,17 @@ void SrtpInput::UpdateKeys() {
     for (Key& key : added_) keys_.push_back(std::move(key));
     added_.clear();
   }
-  if (keys_.size() > kMaxKeys) drop = keys_.size() - kMaxKeys;
-  if (forget_old_at_ && MonotonicTime() > *forget_old_at_) {
-    drop = std::max(drop, newest_used_);
-    forget_old_at_.reset();
-  }
-  keys_.erase(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(drop));
-  in_use_ -= std::min(in_use_, drop);
-  newest_used_ -= std::min(newest_used_, drop);
+  while (keys_.size() > kMaxKeys) DropKey(newest_used_ > 0 ? 0 : 1);
+  if (!forget_old_at_ || MonotonicTime() <= *forget_old_at_) return;
+  while (newest_used_ > 0) DropKey(0);
+  forget_old_at_.reset();
+}
+
+void SrtpInput::DropKey(std::size_t index) {
+  keys_.erase(keys_.begin() + static_cast<std::ptrdiff_t>(index));
+  if (index > newest_used_) --waiting_;
+  if (index < in_use_) --in_use_;
+  if (index < newest_used_) --newest_used_;
 }
 
 SrtpInput::Stream& SrtpInput::StreamOf(const StreamId& id) {

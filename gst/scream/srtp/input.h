@@ -23,7 +23,7 @@
 namespace lidar::gst {
 
 struct SrtpCounts {
-  std::uint64_t received = 0;  // datagrams
+  std::uint64_t received = 0;  // datagrams that were decided on
   std::uint64_t refused = 0;   // wrong key, replayed, damaged or not protected
   std::uint64_t copies = 0;    // came by another link of the sender
   std::uint64_t key_changes = 0;
@@ -49,8 +49,8 @@ class SrtpInput {
   bool Link(GstPad* socket, GstPad* target);
   /// Gives datagrams of DTLS to `on_dtls`, which are refused without it. Call it before Link().
   void SetDtls(OnDtls on_dtls) { on_dtls_ = std::move(on_dtls); }
-  /// All threads may call it. Returns false without the srtp plugin. A fifth key replaces the
-  /// oldest.
+  /// All threads may call it. Returns false without the srtp plugin. The key of the packets that
+  /// pass stays; of more than two newer ones the oldest goes.
   bool AddKey(const SrtpKey& key);
   /// Keys newer than the present one that no packet has fitted yet.
   std::size_t waiting_keys() const { return waiting_; }
@@ -105,6 +105,7 @@ class SrtpInput {
   BufferPtr TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead);
   bool Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc, std::uint32_t rollover);
   void UpdateKeys();
+  void DropKey(std::size_t index);
   void OnPassed(const Head& head, std::size_t key, std::uint32_t rollover);
   static bool IsLost(const Stream& stream);
   void Warn();
@@ -134,7 +135,7 @@ class SrtpInput {
   bool warned_ = false;
 
   std::atomic<std::size_t> waiting_{0};
-  std::atomic<std::uint64_t> received_{0};
+  std::atomic<std::uint64_t> passed_{0};
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> copied_{0};
   std::atomic<std::uint64_t> key_changes_{0};

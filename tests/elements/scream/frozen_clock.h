@@ -4,9 +4,12 @@
 #include <glib.h>
 
 #include <atomic>
+#include <functional>
 
 namespace lidar::test {
 
 inline std::atomic<gint64> frozen_at{0};  // [us]; 0: the clock runs
+inline std::atomic<unsigned> looks{0};    // of all threads at the clock
+inline thread_local std::function<void()> on_look;
 
 }  // namespace lidar::test

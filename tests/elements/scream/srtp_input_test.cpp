@@ -18,6 +18,8 @@ using lidar::test::frozen_at;
 /// Replaces GLib's function in this program. It is hidden from libraries: GStreamer's system clock
 /// would sleep until a time that the test has set.
 extern "C" __attribute__((visibility("hidden"))) gint64 g_get_monotonic_time() {
+  ++lidar::test::looks;
+  if (lidar::test::on_look) lidar::test::on_look();
   if (frozen_at != 0) return frozen_at;
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -133,6 +135,20 @@ TEST_F(SrtpIn, RefusesWhatWasChangedOrRepeated) {
     EXPECT_FALSE(Passes(changed)) << at;
   }
   EXPECT_TRUE(Passes(second));
+}
+
+TEST_F(SrtpIn, CountsNoPacketAsPassedWhileItIsDecoded) {
+  Protector sender(Key(5));
+  EXPECT_TRUE(Passes(sender.Protect(1)));
+  unsigned looks = 0;
+  test::on_look = [&] {
+    ++looks;
+    EXPECT_EQ(input_->counts().received - input_->counts().refused, 1U);
+  };
+  Forge(3, 99);
+  test::on_look = nullptr;
+  EXPECT_GE(looks, 3U);
+  EXPECT_EQ(input_->counts().received, 4U);
 }
 
 TEST_F(SrtpIn, WarnsOnceOfPacketsThatDoNotFit) {
@@ -430,14 +446,27 @@ TEST_F(SrtpIn, RemembersSoManyBytesOfCopiesOnly) {
   EXPECT_FALSE(Passes(From("10.0.0.2", old)));
 }
 
-TEST_F(SrtpIn, OfFourKeysTheOldestGoes) {
-  for (const std::uint8_t digit : SrtpKey{6, 7, 8}) EXPECT_TRUE(input_->AddKey(Key(digit)));
-  Protector oldest(Key(5));
-  Protector next(Key(6));
-  Protector newest(Key(8));
-  EXPECT_FALSE(Passes(oldest.Protect(1)));
-  EXPECT_TRUE(Passes(next.Protect(1)));
-  EXPECT_TRUE(Passes(newest.Protect(2)));
+TEST_F(SrtpIn, KeepsTheKeyInUseAndTheTwoNewestOfManyThatNoPacketFits) {
+  Protector used(Key(5));
+  EXPECT_TRUE(Passes(used.Protect(1)));
+  for (const std::uint8_t digit : SrtpKey{6, 7, 8, 9}) {
+    EXPECT_TRUE(input_->AddKey(Key(digit)));
+    EXPECT_TRUE(Passes(used.Protect(digit)));
+  }
+  EXPECT_EQ(input_->waiting_keys(), 2U);
+  EXPECT_FALSE(Passes(Protector(Key(7)).Protect(10)));
+  EXPECT_TRUE(Passes(Protector(Key(8)).Protect(11)));
+  EXPECT_TRUE(Passes(Protector(Key(9)).Protect(12)));
+  EXPECT_EQ(input_->waiting_keys(), 0U);
+  EXPECT_TRUE(Passes(used.Protect(13))) << "overtaken";
+}
+
+TEST_F(SrtpIn, OfFourKeysTheOneBeforeThatInUseGoes) {
+  EXPECT_TRUE(input_->AddKey(Key(6)));
+  EXPECT_TRUE(Passes(Protector(Key(6)).Protect(1)));
+  for (const std::uint8_t digit : SrtpKey{7, 8}) EXPECT_TRUE(input_->AddKey(Key(digit)));
+  EXPECT_FALSE(Passes(Protector(Key(5)).Protect(2)));
+  EXPECT_TRUE(Passes(Protector(Key(7)).Protect(3)));
 }
 
 }  // namespace
