@@ -29,6 +29,14 @@ void GiveSocket(GstElement* child, GSocket* socket) {
   g_object_set(child, "socket", socket, "close-socket", FALSE, nullptr);
 }
 
+void PlaySrtp(BinState& state, GstStateChange change) {
+  const GstState next = GST_STATE_TRANSITION_NEXT(change);
+  std::unique_lock lock(state.mutex);
+  const std::shared_ptr<SrtpLayer> srtp = state.srtp;
+  lock.unlock();
+  if (srtp) srtp->SetPlaying(next == GST_STATE_PLAYING);
+}
+
 void EndSrtp(BinState& state) {
   std::unique_lock lock(state.mutex);
   const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);

@@ -33,6 +33,8 @@ struct Child {
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
 /// Sets a child's socket (NULL: none), which the child does not own.
 void GiveSocket(GstElement* child, GSocket* socket);
+/// Starts and stops DTLS with PLAYING.
+void PlaySrtp(BinState& state, GstStateChange change);
 /// Removes the layer's elements from the bin.
 void EndSrtp(BinState& state);
 /// Takes the socket from the children, ends SRTP and closes the socket. A socket of the user is

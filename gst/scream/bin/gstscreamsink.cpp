@@ -364,7 +364,10 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
       GST_ELEMENT_CLASS(gst_lidar_scream_sink_parent_class)->change_state(element, change);
   // NO_PREROLL comes from the feedback's source, not from the media.
   if (result == GST_STATE_CHANGE_NO_PREROLL) result = GST_STATE_CHANGE_SUCCESS;
-  if (change == GST_STATE_CHANGE_READY_TO_NULL) Close(self);
+  if (change == GST_STATE_CHANGE_READY_TO_NULL)
+    Close(self);
+  else if (result != GST_STATE_CHANGE_FAILURE)
+    PlaySrtp(*self->state, change);
   return result;
 }
 

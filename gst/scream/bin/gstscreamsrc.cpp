@@ -141,7 +141,10 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   }
   const GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_src_parent_class)->change_state(element, change);
-  if (change == GST_STATE_CHANGE_READY_TO_NULL) Close(self);
+  if (change == GST_STATE_CHANGE_READY_TO_NULL)
+    Close(self);
+  else if (result != GST_STATE_CHANGE_FAILURE)
+    PlaySrtp(*self->state, change);
   return result;
 }
 

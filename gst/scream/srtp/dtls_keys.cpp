@@ -45,7 +45,14 @@ std::string HelloIn(ByteView d) {
 }  // namespace
 
 DtlsKeys::DtlsKeys(const Certificates& certificates, bool is_client, Calls calls)
-    : certificates_(certificates), is_client_(is_client), calls_(std::move(calls)) {
+    : certificates_(certificates), is_client_(is_client), calls_(std::move(calls)) {}
+
+DtlsKeys::~DtlsKeys() { Stop(); }
+
+void DtlsKeys::Start() {
+  if (thread_ != nullptr) return;
+  stop_ = false;
+  if (heard_at_) heard_at_ = MonotonicTime();
   thread_ = g_thread_new(
       "dtls",
       [](gpointer self) -> gpointer {
@@ -55,18 +62,23 @@ DtlsKeys::DtlsKeys(const Certificates& certificates, bool is_client, Calls calls
       this);
 }
 
-DtlsKeys::~DtlsKeys() {
+void DtlsKeys::Stop() {
+  if (thread_ == nullptr) return;
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;
     wake_.notify_one();
   }
-  g_thread_join(thread_);
+  g_thread_join(std::exchange(thread_, nullptr));
+  sessions_.clear();
 }
 
 void DtlsKeys::Take(GstBuffer* datagram) {
   const std::lock_guard lock(mutex_);
-  if (waiting_.size() >= kMaxWaiting) return;
+  if (waiting_.size() >= kMaxWaiting) {
+    ++dropped_;
+    return;
+  }
   waiting_.emplace_back(gst_buffer_ref(datagram));
   wake_.notify_one();
 }
@@ -83,7 +95,11 @@ void DtlsKeys::Run() {
     if (is_client_) BeginAsClient(MonotonicTime());
     Settle(MonotonicTime());
     lock.lock();
-    wake_.wait_for(lock, kDtlsTick, [this] { return stop_ || !waiting_.empty(); });
+    const auto has_work = [this] { return stop_ || !waiting_.empty(); };
+    if (is_client_ || !sessions_.empty())
+      wake_.wait_for(lock, kDtlsTick, has_work);
+    else
+      wake_.wait(lock, has_work);
   }
 }
 
@@ -157,36 +173,38 @@ void DtlsKeys::BeginAsClient(Time now) {
   Begin(now, "");
 }
 
-/// Takes keys, and ends what is over.
 void DtlsKeys::Settle(Time now) {
-  for (Session& session : sessions_) {
-    const auto state = session.handshake->state();
-    if (state == DtlsHandshake::State::kDone && !session.has_key) {
-      session.has_key = true;
-      ++handshakes_;
-      told_of_stranger_ = told_of_silence_ = false;
-      calls_.on_key(session.handshake->key());
-      heard_at_ = now;
-      seen_ = calls_.traffic();
-    } else if (state == DtlsHandshake::State::kRefused) {
-      ++refused_;
-      if (!std::exchange(told_of_stranger_, true))
-        calls_.warn("The other end has another certificate than the one to trust, and is refused.",
-                    "dtls-peer-certificate names the one to trust");
-    }
+  for (auto session = sessions_.begin(); session != sessions_.end();)
+    session = GoesOn(now, &*session) ? std::next(session) : sessions_.erase(session);
+}
+
+/// Takes the session's key. Returns false once the session is over.
+bool DtlsKeys::GoesOn(Time now, Session* session) {
+  using State = DtlsHandshake::State;
+  const State state = session->handshake->state();
+  const bool is_old = now - session->began > (is_client_ ? kDtlsPatience : kServerKeeps);
+  if (state == State::kRefused) {
+    ++refused_;
+    WarnOnce(&told_of_stranger_,
+             "The other end has another certificate than the one to trust, and is refused.",
+             "dtls-peer-certificate names the one to trust");
+  } else if (state == State::kDone && !std::exchange(session->has_key, true)) {
+    ++handshakes_;
+    told_of_stranger_ = told_of_silence_ = false;
+    calls_.on_key(session->handshake->key());
+    heard_at_ = now;
+    seen_ = calls_.traffic();
+  } else if (state == State::kOpen && is_client_ && is_old) {
+    WarnOnce(&told_of_silence_,
+             "The other end does not answer the DTLS handshake; it is tried again.",
+             "is it there, with dtls-certificate, and does it trust our certificate?");
   }
-  const auto is_over = [&](const Session& session) {
-    const auto state = session.handshake->state();
-    if (state == DtlsHandshake::State::kRefused || state == DtlsHandshake::State::kFailed)
-      return true;
-    const Duration age = now - session.began;
-    if (!is_client_) return age > kServerKeeps;
-    if (!session.has_key && age > kDtlsPatience && !std::exchange(told_of_silence_, true))
-      calls_.warn("The other end does not answer the DTLS handshake; it is tried again.",
-                  "is it there, with dtls-certificate, and does it trust our certificate?");
-    return session.has_key || age > kDtlsPatience;
-  };
-  sessions_.erase(std::remove_if(sessions_.begin(), sessions_.end(), is_over), sessions_.end());
+  const bool is_of_use = state == State::kOpen || (state == State::kDone && !is_client_);
+  return is_of_use && !is_old;
+}
+
+void DtlsKeys::WarnOnce(bool* warned, const char* what, const char* to_do) {
+  if (!std::exchange(*warned, true)) calls_.warn(what, to_do);
 }
 
 }  // namespace lidar::gst

@@ -27,6 +27,7 @@ namespace lidar::gst {
 struct DtlsCounts {
   std::uint64_t handshakes = 0;  // that brought a key
   std::uint64_t refused = 0;     // with another certificate than the one to trust
+  std::uint64_t dropped = 0;     // datagrams that came while too many waited
   std::uint64_t unkeyed = 0;  // packets of media that came before there was a key, and were dropped
 };
 
@@ -45,7 +46,7 @@ class DtlsKeys {
   static constexpr std::size_t kMaxHandshakes = 4;  // of a server at a time
   static constexpr int kHellosPerSecond = 5;        // that begin a handshake of a server
   static constexpr std::size_t kMaxAddresses = 4;   // of a handshake
-  static constexpr std::size_t kMaxWaiting = 64;    // datagrams
+  static constexpr std::size_t kMaxWaiting = 64;    // datagrams of handshakes
 
   using Addresses = std::vector<SocketAddressPtr>;
   struct Calls {
@@ -57,15 +58,18 @@ class DtlsKeys {
     std::function<void(const char* what, const char* to_do)> warn;
   };
 
-  /// The server's handshakes are made as hellos come.
   DtlsKeys(const Certificates& certificates, bool is_client, Calls calls);
   ~DtlsKeys();
   DtlsKeys(const DtlsKeys&) = delete;
   DtlsKeys& operator=(const DtlsKeys&) = delete;
 
+  /// Shakes hands until Stop(): a client at once, a server as hellos come.
+  void Start();
+  /// Forgets open handshakes.
+  void Stop();
   /// Takes a datagram that has its source's address; any thread.
   void Take(GstBuffer* datagram);
-  DtlsCounts counts() const { return {handshakes_, refused_, 0}; }
+  DtlsCounts counts() const { return {handshakes_, refused_, dropped_, 0}; }
 
  private:
   /// The addresses of one peer, or the first part of a client's hello, for the encoder's thread.
@@ -89,6 +93,8 @@ class DtlsKeys {
   void Send(Route* route, GstBuffer* datagram);
   void BeginAsClient(Time now);
   void Settle(Time now);
+  bool GoesOn(Time now, Session* session);
+  void WarnOnce(bool* warned, const char* what, const char* to_do);
 
   Certificates certificates_;
   bool is_client_;
@@ -99,7 +105,7 @@ class DtlsKeys {
   std::deque<BufferPtr> waiting_;
   bool stop_ = false;
 
-  // Used by the thread only:
+  // Used by the thread, and while there is none:
   std::deque<Session> sessions_;  // oldest first
   Allowance hellos_{kHellosPerSecond, Duration(std::chrono::seconds(1)) / kHellosPerSecond};
   std::optional<Time> heard_at_;  // last sign of the other end; none before the first key
@@ -110,7 +116,8 @@ class DtlsKeys {
 
   std::atomic<std::uint64_t> handshakes_{0};
   std::atomic<std::uint64_t> refused_{0};
-  GThread* thread_;
+  std::atomic<std::uint64_t> dropped_{0};
+  GThread* thread_ = nullptr;
 };
 
 }  // namespace lidar::gst

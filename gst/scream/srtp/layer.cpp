@@ -71,7 +71,7 @@ std::unique_ptr<SrtpLayer> SrtpLayer::Create(const SrtpSettings& settings, const
       input->SetDtls([l = layer.get()](GstBuffer* datagram) { l->dtls_->Take(datagram); });
   *error = "the elements of the srtp plugin cannot be linked";
   if (!layer->Link()) return nullptr;
-  if (settings.by_dtls()) layer->StartDtls(certificates);
+  if (settings.by_dtls()) layer->CreateDtls(certificates);
   return layer;
 }
 
@@ -90,7 +90,7 @@ bool SrtpLayer::AddKey(const SrtpKey& key) {
   return true;
 }
 
-void SrtpLayer::StartDtls(const Certificates& certificates) {
+void SrtpLayer::CreateDtls(const Certificates& certificates) {
   DtlsKeys::Calls calls;
   calls.send = places_.send_dtls;
   calls.on_key = [this](const SrtpKey& key) { AddKey(key); };
@@ -102,6 +102,11 @@ void SrtpLayer::StartDtls(const Certificates& certificates) {
     GST_ELEMENT_WARNING(bin, RESOURCE, NOT_AUTHORIZED, ("%s", what), ("%s", to_do));
   };
   dtls_ = std::make_unique<DtlsKeys>(certificates, places_.sends_media, std::move(calls));
+}
+
+void SrtpLayer::SetPlaying(bool playing) {
+  if (!dtls_) return;
+  playing ? dtls_->Start() : dtls_->Stop();
 }
 
 SrtpCounts SrtpLayer::counts() const {

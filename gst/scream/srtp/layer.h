@@ -59,6 +59,8 @@ class SrtpLayer {
   /// All zero without DTLS.
   DtlsCounts dtls_counts() const;
   bool by_dtls() const { return dtls_ != nullptr; }
+  /// The sockets are read while the bin plays, so DTLS runs then only.
+  void SetPlaying(bool playing);
   /// Opens with the first key, and with the end of the layer, which it outlives.
   std::shared_ptr<KeyGate> gate() const { return gate_; }
   /// Bytes added to each RTP packet.
@@ -71,7 +73,7 @@ class SrtpLayer {
  private:
   SrtpLayer(const SrtpPolicy& policy, const SrtpPlaces& places);
   bool AddKey(const SrtpKey& key);
-  void StartDtls(const Certificates& certificates);
+  void CreateDtls(const Certificates& certificates);
   bool Link();
   bool IsDone(GstBuffer* packet) const;
   static GstPadProbeReturn OnOut(GstPad* pad, GstPadProbeInfo* info, gpointer self);

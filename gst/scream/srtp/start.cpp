@@ -52,9 +52,10 @@ void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats) {
       {"srtp-copies", &SrtpCounts::copies},
       {"srtp-key-changes", &SrtpCounts::key_changes},
   }};
-  static const std::array<Stat<DtlsCounts>, 3> kDtlsStats = {{
+  static const std::array<Stat<DtlsCounts>, 4> kDtlsStats = {{
       {"dtls-handshakes", &DtlsCounts::handshakes},
       {"dtls-refused", &DtlsCounts::refused},
+      {"dtls-dropped", &DtlsCounts::dropped},
       {"packets-unkeyed", &DtlsCounts::unkeyed},
   }};
   if (layer != nullptr) AddStats(stats, kStats, layer->counts());

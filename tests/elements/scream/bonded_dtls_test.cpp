@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "gst/net/udp_socket.h"
 #include "tests/elements/scream/bonded_ends.h"
 #include "tests/support/test_certificates.h"
 
@@ -110,6 +111,30 @@ TEST(Dtls, ARobotRefusesAnotherEdge) {
   EXPECT_EQ(Stats(sender.Get("out").get())["dtls-handshakes"], 0U);
   EXPECT_EQ(Stats(sender.Get("out").get())["packets-sent"], 0U) << "nothing leaves without a key";
   EXPECT_GT(Stats(sender.Get("out").get())["packets-unkeyed"], 0U);
+}
+
+TEST(Dtls, ShakesHandsWhileItPlaysOnly) {
+  const gst::SocketPtr edge(
+      gst::OpenUdpSocket({"127.0.0.1", 0, G_SOCKET_FAMILY_INVALID, false}, nullptr));
+  const gst::SocketAddressPtr address(g_socket_get_local_address(edge.get(), nullptr));
+  const auto port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address.get()));
+  Pipeline sender(kBondedAudio + "screamsink name=out port=" + std::to_string(port) + OfRobot());
+  char bytes[2'000];
+  const auto heard = [&] {
+    return g_socket_receive(edge.get(), bytes, sizeof bytes, nullptr, nullptr) > 0;
+  };
+  for (const GstState state : {GST_STATE_READY, GST_STATE_PAUSED}) {
+    sender.Set(state);
+    g_usleep(200'000);
+    EXPECT_FALSE(heard()) << "no answer would be read";
+  }
+  sender.Play();
+  EXPECT_TRUE(Eventually(heard));
+  sender.Set(GST_STATE_PAUSED);
+  g_usleep(100'000);
+  while (heard()) continue;
+  g_usleep(1'500'000);
+  EXPECT_FALSE(heard()) << "a hello that is repeated after 1 s";
 }
 
 TEST(Dtls, FailsWithAWordWhereItCannotStart) {

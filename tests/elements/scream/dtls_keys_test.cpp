@@ -50,7 +50,7 @@ class DtlsEnds : public ::testing::Test {
  protected:
   ~DtlsEnds() override { frozen_at = 0; }
 
-  std::unique_ptr<DtlsKeys> Start(bool is_client, Wire* out, std::atomic<unsigned>* keys) {
+  std::unique_ptr<DtlsKeys> Make(bool is_client, Wire* out, std::atomic<unsigned>* keys) {
     static const test::TestCertificates papers({"robot", "edge"});
     Certificates certificates;
     std::string error;
@@ -70,11 +70,17 @@ class DtlsEnds : public ::testing::Test {
       ++*keys;
     };
     calls.traffic = [this] { return SrtpTraffic{sent_, passed_}; };
-    calls.warn = [](const char*, const char*) {};
+    calls.warn = [this](const char*, const char*) { ++warnings_; };
     return std::make_unique<DtlsKeys>(certificates, is_client, calls);
   }
-  void StartClient() { client_ = Start(true, &up_, &client_keys_); }
-  void StartServer() { server_ = Start(false, &down_, &server_keys_); }
+  void StartClient() {
+    client_ = Make(true, &up_, &client_keys_);
+    client_->Start();
+  }
+  void StartServer() {
+    server_ = Make(false, &down_, &server_keys_);
+    server_->Start();
+  }
 
   void Give(DtlsKeys& end, const Carried& datagram) {
     const BufferPtr buffer(FromBytes(datagram.bytes));
@@ -109,6 +115,7 @@ class DtlsEnds : public ::testing::Test {
   Wire up_, down_;
   SrtpKey server_key_, client_key_;
   std::atomic<unsigned> server_keys_{0}, client_keys_{0};
+  std::atomic<unsigned> warnings_{0};
   std::atomic<std::uint64_t> sent_{0}, passed_{0};
   std::unique_ptr<DtlsKeys> server_, client_;
 };
@@ -201,6 +208,52 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
   EXPECT_EQ(flood(0), std::set<guint16>{});
   frozen_at += G_USEC_PER_SEC / 5;
   EXPECT_EQ(flood(1), std::set<guint16>{5'001});
+}
+
+TEST_F(DtlsEnds, AClientThatWasStoppedWarnsOfNoSilence) {
+  frozen_at = g_get_monotonic_time();
+  StartClient();
+  EXPECT_TRUE(test::Eventually([&] { return !up_.Take().empty(); }));
+  client_->Stop();
+  frozen_at += 60 * G_USEC_PER_SEC;
+  client_->Start();
+  EXPECT_TRUE(test::Eventually([&] { return !up_.Take().empty(); })) << "another handshake";
+  EXPECT_EQ(warnings_, 0U);
+}
+
+TEST_F(DtlsEnds, AKeyedClientTakesThePauseBetweenStopAndStartForNoSilence) {
+  StartServer();
+  StartClient();
+  EXPECT_TRUE(test::Eventually([&] {
+    for (Carried& d : up_.Take()) Give(*server_, {5'001, d.bytes});
+    for (const Carried& d : down_.Take()) Give(*client_, d);
+    return client_keys_ == 1;
+  }));
+  sent_ = 10;
+  frozen_at = g_get_monotonic_time();
+  client_->Stop();
+  up_.Take();
+  frozen_at += 60 * G_USEC_PER_SEC;
+  client_->Start();
+  g_usleep(300'000);
+  EXPECT_TRUE(up_.Take().empty());
+  frozen_at += 6 * G_USEC_PER_SEC;
+  EXPECT_TRUE(test::Eventually([&] { return !up_.Take().empty(); }));
+}
+
+TEST_F(DtlsEnds, AServerLooksAtNoClockBeforeSomethingComes) {
+  StartServer();
+  EXPECT_TRUE(test::Eventually([] {
+    const unsigned before = test::looks;
+    g_usleep(500'000);
+    return test::looks == before;
+  }));
+}
+
+TEST_F(DtlsEnds, DatagramsThatComeTooFastAreCounted) {
+  server_ = Make(false, &down_, &server_keys_);
+  for (std::size_t n = 0; n < DtlsKeys::kMaxWaiting + 7; ++n) Give(*server_, {5'001, Bytes(30)});
+  EXPECT_EQ(server_->counts().dropped, 7U);
 }
 
 TEST_F(DtlsEnds, AServerAnswersToNothingButAHello) {

@@ -30,7 +30,8 @@ class Pipeline {
     if (element_) gst_element_set_state(element_.get(), GST_STATE_NULL);
   }
   Pipeline(Pipeline&&) = default;
-  void Play() { gst_element_set_state(element_.get(), GST_STATE_PLAYING); }
+  void Set(GstState state) { gst_element_set_state(element_.get(), state); }
+  void Play() { Set(GST_STATE_PLAYING); }
   ElementPtr Get(const char* name) {
     return ElementPtr(gst_bin_get_by_name(GST_BIN(element_.get()), name));
   }
