@@ -280,23 +280,12 @@ static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenL
   return {GST_ELEMENT(self), true, std::move(places), send_dtls};
 }
 
-/// Drops packets until there is a key: screamtx would count them as lost.
-static void DropUntilKeyed(GstLidarScreamSink* self, GstPad* pad) {
-  using Gate = std::shared_ptr<KeyGate>;
+/// Lets no packet in before there is a key: screamtx would count it as lost.
+static void AwaitKey(GstLidarScreamSink* self, GstPad* pad) {
   std::unique_lock lock(self->state->mutex);
-  const Gate gate = self->state->srtp ? self->state->srtp->gate() : nullptr;
+  const std::shared_ptr<SrtpLayer> srtp = self->state->srtp;
   lock.unlock();
-  if (!gate || gate->is_open) return;
-  gst_pad_add_probe(
-      pad, static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
-      [](GstPad*, GstPadProbeInfo* info, gpointer held) {
-        KeyGate& at = **static_cast<Gate*>(held);
-        if (at.is_open) return GST_PAD_PROBE_REMOVE;
-        const bool is_list = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0;
-        at.dropped += is_list ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info)) : 1;
-        return GST_PAD_PROBE_DROP;
-      },
-      new Gate(gate), [](gpointer held) { delete static_cast<Gate*>(held); });
+  if (srtp) KeyGate::Guard(srtp->gate(), pad);
 }
 
 /// Opens the socket for both ways and hands it to the children.
@@ -334,7 +323,7 @@ static bool Open(GstLidarScreamSink* self) {
   state.peer = std::move(peer);
   state.foreign = 0;
   lock.unlock();
-  for (const PadPtr& pad : SinkPadsOf(self)) DropUntilKeyed(self, pad.get());
+  for (const PadPtr& pad : SinkPadsOf(self)) AwaitKey(self, pad.get());
   return true;
 }
 
@@ -383,12 +372,13 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   const std::shared_ptr<SinkLinks> links = LinksOf(self);
   GstPad* ghost = AddGhostSink(element, gst_lidar_scream_sink_pad_get_type(), templ, pad_name.get(),
                                links ? links->Add(target.get()) : target.get());
-  DropUntilKeyed(self, ghost);
+  AwaitKey(self, ghost);
   return ghost;
 }
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
   auto* self = GST_LIDAR_SCREAM_SINK(element);
+  gst_pad_set_active(pad, FALSE);  // wakes a source that waits for the key
   PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad)));
   gst_ghost_pad_set_target(GST_GHOST_PAD(pad), nullptr);
   const std::shared_ptr<SinkLinks> links = LinksOf(self);

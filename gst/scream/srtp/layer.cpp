@@ -82,8 +82,8 @@ bool SrtpLayer::AddKey(const SrtpKey& key) {
   if (!std::all_of(inputs_.begin(), inputs_.end(),
                    [&key](const auto& input) { return input->AddKey(key); }))
     return false;
-  if (places_.sends_media || !gate_->is_open) encoder_->SetKey(key);
-  gate_->is_open = true;
+  if (places_.sends_media || !gate_->is_open()) encoder_->SetKey(key);
+  gate_->Open();
   const std::lock_guard lock(mutex_);
   digests_.push_back(DigestOf(key));
   if (digests_.size() > kRememberedKeys) digests_.pop_front();
@@ -123,7 +123,7 @@ SrtpCounts SrtpLayer::counts() const {
 
 DtlsCounts SrtpLayer::dtls_counts() const {
   DtlsCounts counts = dtls_ ? dtls_->counts() : DtlsCounts{};
-  counts.unkeyed = gate_->dropped;
+  counts.unkeyed = gate_->dropped();
   return counts;
 }
 
@@ -198,7 +198,7 @@ GstPadProbeReturn SrtpLayer::OnOut(GstPad*, GstPadProbeInfo* info, gpointer data
 
 SrtpLayer::~SrtpLayer() {
   dtls_.reset();
-  gate_->is_open = true;
+  gate_->Open();
   for (std::size_t i = 0; i < probes_.size(); ++i)
     gst_pad_remove_probe(PadOf(places_.links[i].sender, places_.links[i].out).get(), probes_[i]);
   inputs_.clear();

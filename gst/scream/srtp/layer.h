@@ -17,6 +17,7 @@
 #include "gst/scream/srtp/encoder.h"
 #include "gst/scream/srtp/input.h"
 #include "gst/scream/srtp/key.h"
+#include "gst/scream/srtp/key_gate.h"
 
 namespace lidar::gst {
 
@@ -34,12 +35,6 @@ struct SrtpPlaces {
   std::vector<SrtpPlace> links;
   /// As DtlsKeys::Calls says; any thread calls it.
   std::function<void(GstBuffer*, const DtlsKeys::Addresses&)> send_dtls;
-};
-
-/// What stands at the pads of media until there is a key.
-struct KeyGate {
-  std::atomic<bool> is_open{false};
-  std::atomic<std::uint64_t> dropped{0};  // packets
 };
 
 /// Lives from READY to NULL of its bin. All SSRCs use the same key. The layer protects packets that

@@ -2,7 +2,9 @@
 // screamsink and screamsrc agree on a key by DTLS, over two links and over one.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numeric>
+#include <thread>
 
 #include "gst/net/udp_socket.h"
 #include "tests/elements/scream/bonded_ends.h"
@@ -135,6 +137,83 @@ TEST(Dtls, ShakesHandsWhileItPlaysOnly) {
   while (heard()) continue;
   g_usleep(1'500'000);
   EXPECT_FALSE(heard()) << "a hello that is repeated after 1 s";
+}
+
+TEST(Dtls, WhatIsNotLiveWaitsForTheKeyAndLosesNothing) {
+  BondReceiver receiver(OfEdge());
+  receiver.pipeline.Set(GST_STATE_PAUSED);
+  Pipeline sender(
+      "audiotestsrc num-buffers=20 samplesperbuffer=441 ! "
+      "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! screamsink name=out port=" +
+      receiver.port + OfRobot());
+  sender.Play();
+  g_usleep(300'000);
+  EXPECT_EQ(Stats(sender.Get("out").get())["packets-unkeyed"], 0U);
+  receiver.pipeline.Play();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+  EXPECT_EQ(receiver.passed, 20U);
+}
+
+/// A pad that pushes packets, as one of a source that is not live.
+class WaitingSource {
+ public:
+  explicit WaitingSource(GstElement* sink) : sink_(sink) {
+    gst_element_set_state(sink, GST_STATE_PLAYING);
+    entry_.reset(gst_element_request_pad_simple(sink, "sink_0"));
+    gst_pad_set_query_function(src_.get(), [](GstPad*, GstObject*, GstQuery* query) -> gboolean {
+      if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return FALSE;
+      gst_query_set_latency(query, FALSE, 0, GST_CLOCK_TIME_NONE);
+      return TRUE;
+    });
+    gst_pad_set_active(src_.get(), TRUE);
+    gst_pad_link(src_.get(), entry_.get());
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    const gst::CapsPtr caps(gst_caps_from_string(
+        "application/x-rtp,media=audio,clock-rate=44100,encoding-name=L16,payload=96"));
+    gst_pad_push_event(src_.get(), gst_event_new_stream_start("source"));
+    gst_pad_push_event(src_.get(), gst_event_new_caps(caps.get()));
+    gst_pad_push_event(src_.get(), gst_event_new_segment(&segment));
+  }
+  /// What a push returns that `wake` ends.
+  GstFlowReturn PushUntil(const std::function<void()>& wake) {
+    std::atomic<bool> is_done{false};
+    GstFlowReturn flow = GST_FLOW_OK;
+    std::thread pusher([&] {
+      flow = gst_pad_push(src_.get(), NewRtp({}));
+      is_done = true;
+    });
+    g_usleep(100'000);
+    EXPECT_FALSE(is_done);
+    wake();
+    pusher.join();
+    return flow;
+  }
+  GstPad* src() { return src_.get(); }
+  void Release() { gst_element_release_request_pad(sink_, entry_.get()); }
+
+ private:
+  GstElement* sink_;
+  gst::PadPtr src_{GST_PAD(gst_object_ref_sink(gst_pad_new("src", GST_PAD_SRC)))};
+  gst::PadPtr entry_;
+};
+
+TEST(Dtls, AFlushAndAStopAndAReleasedPadEndTheWaitForTheKey) {
+  const ElementPtr out(GST_ELEMENT(
+      gst_object_ref_sink(gst_parse_launch(("screamsink port=9" + OfRobot()).c_str(), nullptr))));
+  WaitingSource source(out.get());
+  EXPECT_EQ(
+      source.PushUntil([&] { gst_pad_push_event(source.src(), gst_event_new_flush_start()); }),
+      GST_FLOW_FLUSHING);
+  gst_pad_push_event(source.src(), gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_push_event(source.src(), gst_event_new_segment(&segment));
+  EXPECT_EQ(source.PushUntil([&] { source.Release(); }), GST_FLOW_FLUSHING);
+  WaitingSource next(out.get());
+  EXPECT_EQ(next.PushUntil([&] { gst_element_set_state(out.get(), GST_STATE_NULL); }),
+            GST_FLOW_FLUSHING);
 }
 
 TEST(Dtls, FailsWithAWordWhereItCannotStart) {

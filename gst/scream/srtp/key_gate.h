@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What stands at the pads of media until there is a key.
+#pragma once
+#include <gst/gst.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "gst/common/refs.h"
+
+namespace lidar::gst {
+
+/// While it is shut, packets of live sources are dropped and counted, and other sources wait: for
+/// the key, a flush or a stop.
+class KeyGate {
+ public:
+  /// Shuts `pad` until Open(). Does nothing after it.
+  static void Guard(const std::shared_ptr<KeyGate>& gate, GstPad* pad);
+  void Open();
+  bool is_open() const { return is_open_; }
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  GstPadProbeReturn OnPackets(GstPad* pad, GstPadProbeInfo* info);
+
+  std::atomic<bool> is_open_{false};
+  std::atomic<std::uint64_t> dropped_{0};  // packets
+  std::mutex mutex_;                       // guards guarded_
+  std::vector<std::pair<PadPtr, gulong>> guarded_;
+};
+
+}  // namespace lidar::gst
