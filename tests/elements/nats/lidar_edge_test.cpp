@@ -12,6 +12,7 @@
 #include "tests/elements/nats/free_ports.h"
 #include "tests/elements/nats/http_get.h"
 #include "tests/elements/nats/nats_pipeline.h"
+#include "tests/support/test_certificates.h"
 
 namespace lidar::test {
 namespace {
@@ -377,6 +378,42 @@ TEST_F(LidarEdge, ARobotOfTwoAddressesOnTheSharedPortIsOneRobot) {
       Play("mcapsrc location=" + server_.folder() + "/r1-00000.mcap ! fakesink name=see")
           .buffers["see"],
       robot->buffers());
+}
+
+TEST_F(LidarEdge, ARobotWithACertificateAgreesOnAKeyOverTwoLinks) {
+  server_.Start();
+  const TestCertificates papers({"robot", "edge", "stranger"});
+  const int port = FreePort();
+  StartEdge({{"nats", {{"url", server_.url()}}},
+             {"robots",
+              {{{"name", "r1"},
+                {"port", port},
+                {"dtls-certificate", papers.WithKey("edge")},
+                {"dtls-peer-certificate", papers.Public("robot")}}}}});
+  const auto consumer = Consumer("fleet.r1.lidar.lidar");
+  const auto metric = [&](const char* name) { return Metric(name, "r1").value_or(0); };
+  auto robot = Robot(port, papers.Trusting("stranger", "edge"));
+  EXPECT_TRUE(Eventually([&] { return metric("lidar_screamsrc_dtls_refused") > 0; }));
+  robot.reset();
+  EXPECT_EQ(consumer->count(), 0U);
+  const std::string to = "127.0.0.1:" + std::to_string(port);
+  const auto come = [&] {
+    robot = Robot(port, "bonding-addresses=\"" + to + "@127.0.0.1," + to + "@127.0.0.2\"" +
+                            papers.Trusting("robot", "edge"));
+  };
+  come();
+  ASSERT_TRUE(consumer->WaitForBuffers(8));
+  EXPECT_TRUE(Has(*consumer, *robot));
+  EXPECT_TRUE(Eventually([&] { return metric("lidar_screamsrc_packets_copies") > 0; }));
+  EXPECT_EQ(metric("lidar_screamsrc_dtls_handshakes"), 1);
+  // It says goodbye, and comes again.
+  robot->SendEos();
+  EXPECT_EQ(robot->WaitForEnd(), "");
+  EXPECT_TRUE(Eventually([&] { return metric("lidar_edge_sessions") >= 2; }));
+  const std::size_t before = consumer->count();
+  come();
+  EXPECT_TRUE(consumer->WaitForBuffers(before + 8));
+  EXPECT_EQ(metric("lidar_edge_failures"), 0);
 }
 
 }  // namespace

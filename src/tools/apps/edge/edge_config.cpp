@@ -132,14 +132,25 @@ void ReadPlace(Section* s, RobotConfig* robot) {
   }
 }
 
+void ReadSecurity(Section* s, RobotConfig* robot) {
+  s->Read("srtp-key", &robot->srtp_key);
+  s->Read("srtp-cipher", &robot->srtp_cipher);
+  s->Read("dtls-certificate", &robot->dtls_certificate);
+  s->Read("dtls-peer-certificate", &robot->dtls_peer_certificate);
+  if (robot->dtls_certificate.empty() != robot->dtls_peer_certificate.empty())
+    s->Fail("dtls-certificate", "and dtls-peer-certificate need each other");
+  if (robot->dtls_certificate.empty()) return;
+  if (!robot->srtp_key.empty()) s->Fail("srtp-key", "is of no use beside dtls-certificate");
+  if (robot->ssrc) s->Fail("dtls-certificate", "needs a port of its own: DTLS names no ssrc");
+}
+
 RobotConfig ReadRobot(const json& object, std::size_t index) {
   RobotConfig robot;
   Section s(object, "robots[" + std::to_string(index) + "]");
   s.Read("name", &robot.name);
   s.Read("sensor", &robot.sensor);
   ReadPlace(&s, &robot);
-  s.Read("srtp-key", &robot.srtp_key);
-  s.Read("srtp-cipher", &robot.srtp_cipher);
+  ReadSecurity(&s, &robot);
   s.Read("record", &robot.record);
   s.ReadCount("record-max-file-size", &robot.record_max_file_size, 0, kMaxBytes);
   s.ReadCount("record-max-files", &robot.record_max_files, 0, 1'000'000);

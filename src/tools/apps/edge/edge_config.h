@@ -32,6 +32,8 @@ struct RobotConfig {
   std::optional<SsrcRange> ssrc;  // SSRCs on the common port
   std::string srtp_key;           // file:PATH or env:NAME; empty: no SRTP
   std::string srtp_cipher = "aes-128-icm";
+  std::string dtls_certificate;            // ours with its key, a file; empty: no DTLS
+  std::string dtls_peer_certificate;       // the robot's
   std::string record;                      // pattern of file names; empty: no recording
   std::uint64_t record_max_file_size = 0;  // bytes
   std::uint64_t record_max_files = 0;

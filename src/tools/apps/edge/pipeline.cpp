@@ -69,10 +69,10 @@ ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSoc
   g_object_set(source, "eos-on-bye", TRUE, "socket", socket, "close-socket", FALSE, nullptr);
   if (robot.port != 0) g_object_set(source, "port", static_cast<guint>(robot.port), nullptr);
   SetText(source, "address", config.address);
-  if (!robot.srtp_key.empty()) {
-    g_object_set(source, "srtp-cipher", robot.srtp_cipher.c_str(), "srtp-key",
-                 robot.srtp_key.c_str(), nullptr);
-  }
+  SetText(source, "srtp-key", robot.srtp_key);
+  SetText(source, "srtp-cipher", robot.srtp_cipher);
+  SetText(source, "dtls-certificate", robot.dtls_certificate);
+  SetText(source, "dtls-peer-certificate", robot.dtls_peer_certificate);
   GstElement* depayloader = Add(pipeline.get(), "rtplidardepay");
   GstElement* tee = Add(pipeline.get(), "tee");
   g_object_set(tee, "allow-not-linked", TRUE, nullptr);
