@@ -119,6 +119,7 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
 /// Encodes by kMixing, with a choice between bins if that saves bits.
 bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& settings) {
   MixingSettings mixing{settings.grid, settings.intensity, settings.effort};
+  mixing.refined = settings.refined;
   if (MayChoose(settings) && ChoiceSaves(image, settings.grid)) {
     mixing.grid = grid_ = FinerGrid(settings.grid);
     mixing.error_mm = ErrorMm(settings.grid);

@@ -24,6 +24,7 @@ struct RangeSettings {
   IntensityScale intensity;      // 0 bits: geometry only
   std::uint32_t kept_beams = 0;  // number of beams if others were left out on purpose; 0: all
   unsigned effort = 1;           // of kMixing, 1 to 3
+  bool refined = false;          // as in MixingSettings
 };
 
 /// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.

@@ -82,6 +82,7 @@ RangeSettings SettingsOf(const PixelErrors& errors, const PointLevels& levels, u
   RangeSettings settings;
   settings.coder = effort > 0 ? RangeCoder::kMixing : RangeCoder::kAdaptive;
   settings.effort = effort;
+  settings.refined = true;
   settings.grid = RangeGrid::ForError(errors.range_m, CommonUnit(image.ranges, 1));
   if (levels.levels != nullptr) settings.intensity = levels.scale;
   return settings;

@@ -27,6 +27,44 @@ inline std::int32_t StepOf(bool bit, std::int32_t chance) {
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
+/// The same of refined models, for inputs that are doubled.
+inline std::int32_t FastStepOf(bool bit, std::int32_t chance) {
+  constexpr std::int32_t kSpeed = 6;
+  return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
+}
+
+/// What a chance has turned out to be, by its logit.
+class ChanceMap {
+ public:
+  ChanceMap() {
+    for (std::int32_t i = 0; i < kEntries; ++i)
+      chances_[static_cast<std::size_t>(i)] =
+          static_cast<std::uint16_t>(Chance((i << kShift) - kMiddle));
+  }
+  /// Returns the mean of `logit`'s chance and of what it has been.
+  std::int32_t Refined(std::int32_t logit) const {
+    const std::int32_t place = ClampLogit(logit) + kMiddle;
+    const auto i = static_cast<std::size_t>(place >> kShift);
+    const std::int32_t part = place & kPart;
+    const std::int32_t been = (chances_[i] * (kPart + 1 - part) + chances_[i + 1] * part) >> kShift;
+    return std::clamp((Chance(logit) + been) >> 1, kLeastChance, kMostChance);
+  }
+  /// Learns a bit that had this logit.
+  void Learn(std::int32_t logit, bool bit) {
+    const std::int32_t place = ClampLogit(logit) + kMiddle + kPart / 2 + 1;
+    std::uint16_t& chance = chances_[static_cast<std::size_t>(place >> kShift)];
+    chance = static_cast<std::uint16_t>(chance + (((bit ? kOne - 1 : 0) - chance) >> kRateShift));
+  }
+
+ private:
+  static constexpr unsigned kShift = 7;
+  static constexpr unsigned kRateShift = 6;
+  static constexpr std::int32_t kPart = (1 << kShift) - 1;
+  static constexpr std::int32_t kMiddle = 2'048;
+  static constexpr std::int32_t kEntries = 33;
+  std::array<std::uint16_t, kEntries> chances_{};
+};
+
 /// Codes decisions by kCounters counters and kExtra other logits. The last input is a constant.
 ///
 /// A mixer lives for one decision and is inlined, so that counters, votes and sums stay in
@@ -75,9 +113,43 @@ class BitMixer {
     return Chance((LogitBy(*first) + LogitBy(*second)) >> 1);
   }
 
+  /// Mixes by the mean of some sets of weights, which learn fast, and refines the chance by `map`
+  /// unless it is null.
+  template <std::size_t kSets, class Coder>
+  [[gnu::always_inline]] bool CodeFast(bool bit, const std::array<Weights*, kSets>& sets,
+                                       ChanceMap* map, Coder* coder) {
+    std::array<std::int32_t, kSets> logits;
+    for (std::size_t i = 0; i < kSets; ++i) logits[i] = LogitBy(*sets[i]);
+    const std::int32_t mean = MeanOf(logits);
+    bit = coder->Code(bit, map != nullptr ? map->Refined(mean) : Chance(mean));
+    if constexpr (!kTeaches<Coder>) return bit;
+    if (map != nullptr) map->Learn(mean, bit);
+    for (std::size_t i = 0; i < kSets; ++i) {
+      const std::int32_t step = FastStepOf(bit, Chance(logits[i]));
+      for (unsigned k = 0; k < kEights; ++k)
+        Lanes::Teach(Lanes::Twice(inputs_[k]), step, sets[i]->values.data() + k * kLanes);
+    }
+    Learn(bit);
+    return bit;
+  }
+  /// Returns the chance of a 1 that CodeFast() would use.
+  template <std::size_t kSets>
+  [[gnu::always_inline]] std::int32_t FastChanceBy(const std::array<Weights*, kSets>& sets,
+                                                   const ChanceMap& map) const {
+    std::array<std::int32_t, kSets> logits;
+    for (std::size_t i = 0; i < kSets; ++i) logits[i] = LogitBy(*sets[i]);
+    return map.Refined(MeanOf(logits));
+  }
+
  private:
   using Numbers = std::array<std::int16_t, kLanes>;
   static std::int32_t NoLogit(unsigned /*place*/) { return 0; }
+  template <std::size_t kSets>
+  static std::int32_t MeanOf(const std::array<std::int32_t, kSets>& logits) {
+    std::int32_t sum = 0;
+    for (const std::int32_t logit : logits) sum += logit;
+    return sum / static_cast<std::int32_t>(kSets);
+  }
   static constexpr unsigned kEights = kCounters + kExtra < kLanes ? 1 : 2;
   static constexpr std::int16_t kAlways = 256;
 

@@ -19,9 +19,10 @@ struct JumpContext {
   std::uint32_t gap_class = 0;    // of gap and step between neighbours: 16 values
   /// Distances of neighbours in the direction of the jump.
   std::array<std::int32_t, kCandidates> candidates{};
+  std::array<std::int32_t, Refinement::kFurther> further{};  // of refined models
 };
 
-template <unsigned kUsed, class Coder>
+template <unsigned kUsed, class Coder, bool kRefined = false>
 class JumpPart {
  public:
   JumpPart(Model* model, Coder* coder) : model_(*model), coder_(*coder) {}
@@ -56,17 +57,17 @@ class JumpPart {
     std::uint32_t middle;
     std::uint32_t half;  // of the interval that is split
   };
-  using Places = std::array<std::int32_t, kUsed>;
-
-  /// Places of the candidates relative to the interval, 1 to 10; 0: in the other direction.
-  Places PlacesOf(const Split& split) const {
+  /// Places of candidates relative to the interval, 1 to 10; 0: in the other direction.
+  template <unsigned kCount, class Candidates>
+  static std::array<std::int32_t, kCount> PlacesOf(const Split& split,
+                                                   const Candidates& candidates) {
     const auto middle = static_cast<std::int32_t>(split.middle);
     const auto half = static_cast<std::int32_t>(split.half);
     const std::int32_t eighth = (half + 7) / 8;
     const std::int32_t quarter = (half + 1) / 2;
-    Places places;
-    for (unsigned i = 0; i < kUsed; ++i) {
-      const std::int32_t candidate = context_->candidates[i];
+    std::array<std::int32_t, kCount> places;
+    for (unsigned i = 0; i < kCount; ++i) {
+      const std::int32_t candidate = candidates[i];
       const std::int32_t d = candidate - middle;
       const std::int32_t side = d >> 31;  // -1 below the middle
       const std::int32_t size = d ^ side;
@@ -85,14 +86,31 @@ class JumpPart {
     const std::array<std::uint32_t, 3> values = {node * kJumpContexts[0] + c.uneven,
                                                  kSecond + node * kJumpContexts[1] + c.range_class,
                                                  kThird + node * kJumpContexts[2] + gap_class};
-    const Places places = PlacesOf(split);
-    BitMixer<3 + kUsed, 0> mixer;
-    mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
+    const auto places = PlacesOf<kUsed>(split, c.candidates);
+    const auto counter_at = [&](unsigned k) __attribute__((always_inline)) {
       if (k < 3) return &model_.counters.jump[values[k]];
       const auto place = static_cast<std::uint32_t>(places[k - 3]);
       return &model_.counters.candidates[((k - 3) * kJumpNodes + node) * kPlaces + place];
-    });
-    return mixer.Code(bit, &model_.weights.jump[node], &coder_);
+    };
+    if constexpr (kRefined) {
+      Refinement& r = model_.refinement;
+      const auto further = PlacesOf<Refinement::kFurther>(split, c.further);
+      BitMixer<3 + kUsed + Refinement::kFurther, 0> mixer;
+      mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
+        if (k < 3 + kUsed) return counter_at(k);
+        const unsigned i = k - 3 - kUsed;
+        const auto place = static_cast<std::uint32_t>(further[i]);
+        return &r.candidates[(i * kJumpNodes + node) * kPlaces + place];
+      });
+      return mixer.CodeFast(bit,
+                            std::array{&model_.weights.jump[node],
+                                       &r.gaps[node * Refinement::kGapSets + c.gap_class]},
+                            nullptr, &coder_);
+    } else {
+      BitMixer<3 + kUsed, 0> mixer;
+      mixer.Ask(counter_at);
+      return mixer.Code(bit, &model_.weights.jump[node], &coder_);
+    }
   }
 
   Model& model_;

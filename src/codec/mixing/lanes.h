@@ -24,7 +24,7 @@ constexpr unsigned kLanes = 8;
 /// Serves any processor. The variants for some processors have the same functions:
 /// - Of() packs eight numbers. Load() and Store() move `kCount` counters; other lanes have no vote.
 /// - Votes() takes counters and their logits. Learnt() returns counters after a bit.
-/// - Join() merges two groups; in each lane one of them is zero.
+/// - Join() merges two groups; in each lane one of them is zero. Twice() doubles numbers.
 /// - Dot(), Plus() and Total() make a sum of products, in parts. Teach(): weight += (input step +
 ///   2^16) / 2^17, rounded down, in the bounds of an int16.
 struct PlainLanes {
@@ -58,6 +58,11 @@ struct PlainLanes {
     Eight joined;
     for (unsigned i = 0; i < kLanes; ++i) joined[i] = static_cast<std::int16_t>(a[i] | b[i]);
     return joined;
+  }
+  static Eight Twice(const Eight& a) {
+    Eight doubled;
+    for (unsigned i = 0; i < kLanes; ++i) doubled[i] = static_cast<std::int16_t>(2 * a[i]);
+    return doubled;
   }
   static Sum Dot(const Eight& inputs, const std::int16_t* weights) {
     Sum sum = 0;
@@ -117,6 +122,7 @@ struct Sse2Lanes {
     return {_mm_sub_epi16(rates, less), _mm_xor_si128(left, mirror)};
   }
   [[gnu::always_inline]] static Eight Join(Eight a, Eight b) { return _mm_or_si128(a, b); }
+  [[gnu::always_inline]] static Eight Twice(Eight a) { return _mm_add_epi16(a, a); }
   [[gnu::always_inline]] static Sum Dot(Eight inputs, const std::int16_t* weights) {
     return _mm_madd_epi16(inputs, _mm_load_si128(reinterpret_cast<const __m128i*>(weights)));
   }
@@ -199,6 +205,7 @@ struct NeonLanes {
     return {vsubq_u16(rates, less), veorq_u16(left, mirror)};
   }
   [[gnu::always_inline]] static Eight Join(Eight a, Eight b) { return vorrq_s16(a, b); }
+  [[gnu::always_inline]] static Eight Twice(Eight a) { return vaddq_s16(a, a); }
   [[gnu::always_inline]] static Sum Dot(Eight inputs, const std::int16_t* weights) {
     const int16x8_t w = vld1q_s16(weights);
     return vmlal_high_s16(vmull_s16(vget_low_s16(inputs), vget_low_s16(w)), inputs, w);
@@ -284,6 +291,7 @@ struct WasmLanes {
     return {wasm_i16x8_sub(rates, less), wasm_v128_xor(left, mirror)};
   }
   [[gnu::always_inline]] static Eight Join(Eight a, Eight b) { return wasm_v128_or(a, b); }
+  [[gnu::always_inline]] static Eight Twice(Eight a) { return wasm_i16x8_add(a, a); }
   [[gnu::always_inline]] static Sum Dot(Eight inputs, const std::int16_t* weights) {
     return wasm_i32x4_dot_i16x8(inputs, wasm_v128_load(weights));
   }

@@ -11,7 +11,8 @@
 
 namespace lidar::codec::mixing {
 
-template <unsigned kContexts, class Coder>
+/// Refined models have a context more, which looks further along the row.
+template <unsigned kContexts, class Coder, bool kRefined = false>
 class MaskPart {
  public:
   MaskPart(Model* model, Coder* coder) : model_(*model), coder_(*coder) {}
@@ -30,10 +31,14 @@ class MaskPart {
   [[gnu::always_inline]] bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
     SetContexts(i, near_class);
-    BitMixer<kContexts, 0> mixer;
-    mixer.Ask([&](unsigned k) __attribute__((always_inline)) { return CounterAt(k); });
     const std::uint32_t set = (west_ & 1) << 3 | (nearby_ >> 1 & 7);
-    bit = mixer.Code(bit, &model_.weights.mask[set], &coder_);
+    if constexpr (kRefined) {
+      bit = CodeRefined(bit, i, set);
+    } else {
+      BitMixer<kContexts, 0> mixer;
+      mixer.Ask([&](unsigned k) __attribute__((always_inline)) { return CounterAt(k); });
+      bit = mixer.Code(bit, &model_.weights.mask[set], &coder_);
+    }
     Keep(bit, i);
     return bit;
   }
@@ -49,6 +54,22 @@ class MaskPart {
 
  private:
   Counter* CounterAt(unsigned k) { return &model_.counters.mask[contexts_[k]]; }
+
+  [[gnu::always_inline]] bool CodeRefined(bool bit, std::uint32_t i, std::uint32_t set) {
+    Refinement& r = model_.refinement;
+    Counter* const further = &r.mask[(west_ & 0xFF) * 16 + (nearby_ >> 2 & 15)];
+    const std::uint32_t columns = (above_[i].returns & 15U) * 4 + (west_ >> 1 & 3);
+    const std::uint32_t run = std::min(run_, Refinement::kRunSets - 1);
+    BitMixer<kContexts + 1, 0> mixer;
+    mixer.Ask([&](unsigned k) __attribute__((always_inline)) {
+      return k < kContexts ? CounterAt(k) : further;
+    });
+    return mixer.CodeFast(bit,
+                          std::array{&model_.weights.mask[set],
+                                     &r.mask_columns[set * Refinement::kColumnSets + columns],
+                                     &r.mask_runs[set * Refinement::kRunSets + run]},
+                          nullptr, &coder_);
+  }
 
   void Keep(bool bit, std::uint32_t i) {
     run_ = ((west_ & 1) != 0) == bit ? std::min(run_ + 1, 255U) : 1;

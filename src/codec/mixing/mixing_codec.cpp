@@ -43,6 +43,7 @@ struct MixingCoderState {
   template <class Coder>
   bool Code(unsigned effort, const mixing::Recollection& recollection, Coder* bits) {
     mixing::Trained().CopyTo(effort, slice.step_mm, slice.level_bits, model.get());
+    if (slice.refined) model->Refine();
     return coder.Code(effort, model.get(), &slice, bits,
                       recollection.memory.pixels != nullptr ? &recollection : nullptr);
   }
@@ -63,6 +64,7 @@ struct MixingEncoder::State : MixingCoderState {
     slice.step_mm = StepMm(settings.grid);
     slice.level_bits = settings.intensity.bits();
     slice.has_gaps = false;
+    slice.refined = settings.refined && settings.effort > 1 && settings.memory.pixels == nullptr;
     slice.bins.resize(image.size());
     const std::uint32_t most = static_cast<std::uint32_t>(mixing::kMaxBins);
     const RangeGrid::BinFinder bins(settings.grid);
@@ -124,9 +126,9 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
   const unsigned effort = std::clamp(settings.effort, 1U, mixing::kEfforts);
   const std::size_t before = out->size();
   ByteWriter writer(out);
-  writer.U8(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsBit : 0) |
-                                      (settings.error_mm > 0 ? kSearchedBit : 0) |
-                                      mixing::kTableVersion << kVersionShift));
+  writer.U8(static_cast<std::uint8_t>(
+      effort | (s.slice.has_gaps ? kGapsBit : 0) | (settings.error_mm > 0 ? kSearchedBit : 0) |
+      (s.slice.refined ? mixing::kRefinedVersion : mixing::kTableVersion) << kVersionShift));
   if (settings.error_mm > 0) WriteVarint(settings.error_mm, &writer);
   mixing::BinaryEncoder encoder(out);
   const bool coded = s.Code(effort, {settings.memory, settings.grid}, &encoder);
@@ -143,8 +145,10 @@ struct MixingDecoder::State : MixingCoderState {
   std::optional<unsigned> ReadHead(ByteReader* reader) {
     const unsigned first = reader->U8();
     const unsigned effort = first & kEffortMask;
-    if (first >> kVersionShift != mixing::kTableVersion || effort == 0 ||
-        effort > mixing::kEfforts) {
+    const unsigned version = first >> kVersionShift;
+    slice.refined = version == mixing::kRefinedVersion;
+    if ((version != mixing::kTableVersion && !slice.refined) || effort == 0 ||
+        effort > mixing::kEfforts || (slice.refined && effort == 1)) {
       return std::nullopt;
     }
     slice.has_gaps = (first & kGapsBit) != 0;

@@ -21,6 +21,9 @@ struct MixingSettings {
   /// If above 0, at kSearchingEffort, each return takes the cheapest bin within this error, which
   /// may exceed the grid's. With a memory, the caller has chosen the bins.
   std::uint32_t error_mm = 0;
+  /// Refined models serve sensors that the start states have not seen. Effort 1 and images with a
+  /// memory do without.
+  bool refined = false;
 };
 
 /// Most pixels that a payload of `payload_bytes` may have. A pixel costs a decoder 0.3 us, but its

@@ -27,6 +27,7 @@ constexpr unsigned kLengthNodes = 24;
 
 constexpr unsigned kUnevenClasses = 24;
 constexpr unsigned kSurfaces = 27;
+constexpr unsigned kMeanPhases = 15;
 constexpr unsigned kCandidates = 9;
 constexpr unsigned kPlaces = 12;
 constexpr unsigned kCentres = 2;
@@ -63,11 +64,34 @@ struct LevelWeights {
   std::array<Weights, kSmallNodes * kSurfaces> surfaces;
 };
 
+/// What refined models have besides, for sensors that the start states have not seen.
+struct Refinement {
+  static constexpr unsigned kMaskSets = 16;
+  static constexpr unsigned kColumnSets = 64;
+  static constexpr unsigned kRunSets = 16;
+  static constexpr unsigned kRangeSets = 64;
+  static constexpr unsigned kGapSets = 16;
+  static constexpr unsigned kFurther = 3;  // candidates
+  static constexpr std::uint32_t kMaskContext = 4'096;
+
+  std::array<Weights, kMaskSets * kColumnSets> mask_columns;
+  std::array<Weights, kMaskSets * kRunSets> mask_runs;
+  std::array<Weights, kSmallNodes * kRangeSets> ranges;
+  std::array<Weights, kJumpNodes * kGapSets> gaps;
+  std::array<Counter, kMaskContext> mask;
+  std::array<Counter, kJumpNodes * kFurther * kPlaces> candidates;
+  std::array<ChanceMap, kSmallNodes * kMeanPhases> maps;
+};
+
 struct Model {
   BinCounters counters;
   BinWeights weights;
   LevelCounters level_counters;
   LevelWeights level_weights;
+  Refinement refinement;
+
+  /// Makes the models of mask and bins, as they begin, refined ones: they learn faster.
+  void Refine();
 };
 
 }  // namespace lidar::codec::mixing

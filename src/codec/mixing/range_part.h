@@ -26,8 +26,8 @@ struct Surroundings {
   std::uint32_t range_class = 0;
 };
 
-/// `Effort` has the numbers of contexts, centres and candidates, and a flag for weights by events
-/// in addition to those by unevenness.
+/// `Effort` has the numbers of contexts, centres and candidates, and flags for weights by events
+/// in addition to those by unevenness, and for refined models.
 template <class Effort, class Coder>
 class RangePart {
  public:
@@ -40,6 +40,7 @@ class RangePart {
     std::int32_t gap = 0;  // pixels since the last return
     std::int32_t zero_run = 0;
     std::int32_t other = kUnknown;      // surface that the last jump left
+    std::int32_t other2 = kUnknown;     // surface that the jump before it left
     std::int32_t latest = CentreOf(0);  // latest return of the slice
   };
 
@@ -195,6 +196,8 @@ class RangePart {
       rows_[k] = &model_.counters.range[kSmallNodes * (base + values[k])];
       base += mixing::kRangeContexts[k];
     }
+    index_ = i;
+    phase_ = PhaseClass(phase);
     event_set_ = event_ * 16 + static_cast<std::uint32_t>(std::min(row_.zero_run, 15));
     const std::size_t spread = uneven_ * 2 + (row_.gap > 0 ? 1 : 0);
     if constexpr (kUsedCentres > 0) {
@@ -214,6 +217,13 @@ class RangePart {
     return &model_.weights.range[node * kUnevenClasses + uneven_];
   }
   Weights* EventWeightsOf(unsigned node) { return &model_.weights.event[node * 64 + event_set_]; }
+  /// Sets of weights and map of chances of refined models.
+  std::array<Weights*, 3> SetsOf(unsigned node) {
+    const std::uint32_t set = range_class_ * 4 + gap_class_;
+    return {WeightsOf(node), EventWeightsOf(node),
+            &model_.refinement.ranges[node * Refinement::kRangeSets + set]};
+  }
+  ChanceMap* MapOf(unsigned node) { return &model_.refinement.maps[node * kMeanPhases + phase_]; }
 
   [[gnu::always_inline]] bool CodeNode(bool bit, unsigned node) {
     if constexpr (!kTeaches<Coder>) {
@@ -221,6 +231,8 @@ class RangePart {
     } else {
       Mixer mixer;
       Ask(node, &mixer);
+      if constexpr (Effort::kRefined)
+        return mixer.CodeFast(bit, SetsOf(node), MapOf(node), &coder_);
       if constexpr (!Effort::kEvents) return mixer.Code(bit, WeightsOf(node), &coder_);
       return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
@@ -231,6 +243,8 @@ class RangePart {
     asked_ |= 1U << node;
     Mixer mixer;
     Ask(node, &mixer);
+    if constexpr (Effort::kRefined)
+      return chances_[node] = mixer.FastChanceBy(SetsOf(node), *MapOf(node));
     return chances_[node] = mixer.ChanceBy(WeightsOf(node), EventWeightsOf(node));
   }
 
@@ -264,11 +278,21 @@ class RangePart {
                                                           ww_, www_, nee_, other_};
     for (unsigned k = 0; k < kCandidates; ++k)
       c.candidates[k] = ((values[k] >> 4) - base) * sense - 3;
+    if constexpr (Effort::kRefined) {
+      const std::array<std::int32_t, Refinement::kFurther> further = {
+          row_.other2 != kUnknown ? row_.other2 : w_, blind_ ? n_ : north_[index_ + 3],
+          blind_ ? n_ : north_[index_ + 5]};
+      for (unsigned k = 0; k < Refinement::kFurther; ++k)
+        c.further[k] = ((further[k] >> 4) - base) * sense - 3;
+    }
     return c;
   }
 
   void Keep(std::int32_t value, std::int32_t difference, Azimuth* azimuth) {
-    if (std::abs(difference) > 3) row_.other = w_;
+    if (std::abs(difference) > 3) {
+      row_.other2 = row_.other;
+      row_.other = w_;
+    }
     const std::int32_t residual = std::clamp(difference, -3, 3) * mirror_;
     row_.residual_west2 = row_.residual_west;
     row_.residual_west = residual;
@@ -281,7 +305,7 @@ class RangePart {
     row_.gap = 0;
   }
 
-  JumpPart<Effort::kCandidates, Coder> jump_;
+  JumpPart<Effort::kCandidates, Coder, Effort::kRefined> jump_;
   Model& model_;
   Coder& coder_;
   std::int64_t step_mm_;
@@ -293,6 +317,8 @@ class RangePart {
   Row row_;
 
   // Set for each return.
+  std::uint32_t index_ = 0;
+  std::uint32_t phase_ = 0;  // class
   std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0, www_ = 0;
   std::int32_t other_ = kUnknown;
   std::int32_t gradient_ = 0;

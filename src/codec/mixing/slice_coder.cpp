@@ -23,6 +23,7 @@ struct Effort1 {
   static constexpr unsigned kCandidates = 5;
   static constexpr bool kEvents = false;
   static constexpr bool kSearches = false;
+  static constexpr bool kRefined = false;
 };
 struct Effort2 {
   static constexpr unsigned kLevelContexts = mixing::kLevelContexts.size();
@@ -32,10 +33,15 @@ struct Effort2 {
   static constexpr unsigned kCandidates = mixing::kCandidates;
   static constexpr bool kEvents = true;
   static constexpr bool kSearches = false;
+  static constexpr bool kRefined = false;
 };
 struct Effort3 : Effort2 {
   static constexpr unsigned kRangeContexts = 13;
   static constexpr bool kSearches = true;
+};
+template <class Effort>
+struct Refined : Effort {
+  static constexpr bool kRefined = true;
 };
 
 /// A decoder gives bits without end, so decoding stops where its stream ends.
@@ -65,7 +71,7 @@ void SliceCoder::FillNorth(const Azimuth* above, std::uint32_t columns) {
 
 template <class Effort, class Coder>
 bool SliceCoder::CodeBins(Model* model, SliceBins* slice, Coder* coder) {
-  MaskPart<Effort::kMaskContexts, Coder> mask(model, coder);
+  MaskPart<Effort::kMaskContexts, Coder, Effort::kRefined> mask(model, coder);
   RangePart<Effort, Coder> range(model, coder, slice->step_mm);
   constexpr bool kSearches = Effort::kSearches && !Coder::kDecodes;
   [[maybe_unused]] std::conditional_t<kSearches, BinSearch<Effort>, NoSearch> search(
@@ -195,10 +201,14 @@ bool SliceCoder::CodeLevels(Model* model, SliceBins* slice, Coder* coder) {
 template <class Effort, class Coder>
 bool SliceCoder::CodeAll(Model* model, SliceBins* slice, Coder* coder,
                          const Recollection* recollection) {
-  const bool coded = recollection != nullptr
-                         ? CodeRecalledBins<Effort>(model, slice, coder, *recollection)
-                         : CodeBins<Effort>(model, slice, coder);
-  if (!coded) return false;
+  if constexpr (Effort::kRefined) {
+    if (recollection != nullptr || !CodeBins<Effort>(model, slice, coder)) return false;
+  } else {
+    const bool coded = recollection != nullptr
+                           ? CodeRecalledBins<Effort>(model, slice, coder, *recollection)
+                           : CodeBins<Effort>(model, slice, coder);
+    if (!coded) return false;
+  }
   return slice->level_bits == 0 || CodeLevels<Effort>(model, slice, coder);
 }
 
@@ -208,6 +218,10 @@ bool SliceCoder::Code(unsigned effort, Model* model, SliceBins* slice, Coder* co
   north_.resize(slice->columns + 2 * AlignedRow<Azimuth>::kMargin);
   above_.Reset(alignment_, slice->columns, {});
   if (effort == 1) return CodeAll<Effort1>(model, slice, coder, recollection);
+  if (slice->refined) {
+    return effort == 2 ? CodeAll<Refined<Effort2>>(model, slice, coder, recollection)
+                       : CodeAll<Refined<Effort3>>(model, slice, coder, recollection);
+  }
   if (effort == 2) return CodeAll<Effort2>(model, slice, coder, recollection);
   return CodeAll<Effort3>(model, slice, coder, recollection);
 }

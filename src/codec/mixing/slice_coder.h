@@ -33,6 +33,7 @@ struct SliceBins {
   std::int64_t step_mm = 1;          // width of a bin, roughly
   unsigned level_bits = 0;           // 0: no levels
   bool has_gaps = true;              // false: every pixel has a return
+  bool refined = false;              // by refined models, from effort 2 on
   std::vector<std::int32_t> bins;    // kNoReturn, or below kMaxBins
   std::vector<std::uint8_t> levels;  // empty without level_bits
   /// Number of bins after that in `bins` that each return may take; the encoder takes the cheapest.

@@ -12,6 +12,8 @@
 namespace lidar::codec::mixing {
 
 constexpr std::uint8_t kTableVersion = 2;
+/// Payloads of refined models, which begin with the same states.
+constexpr std::uint8_t kRefinedVersion = 3;
 constexpr unsigned kEfforts = 3;
 
 /// Largest bin width [mm] of each class but the last. Each class has counters of its own.

@@ -85,6 +85,7 @@ struct GoldenBlock {
   std::uint32_t kept_beams = 0;
   std::uint32_t columns_per_scan = 1024;
   unsigned effort = 1;
+  bool refined = false;
 };
 inline void PrintTo(const GoldenBlock& block, std::ostream* out) { *out << block.name; }
 
@@ -93,9 +94,12 @@ inline void ExpectGoldenBlock(const GoldenBlock& c, const std::string& folder,
                               const codec::IntegerCoder* integers) {
   const SensorModel model = GoldenSensor(c.scan.beams, c.columns_per_scan);
   const codec::RangeImage image = GoldenImage(c.scan);
-  const codec::RangeSettings settings{c.coder, RangeGrid::OfParts(c.scan.unit_mm, c.parts),
-                                      codec::IntensityScale(c.full, c.intensity_bits), c.kept_beams,
-                                      c.effort};
+  const codec::RangeSettings settings{c.coder,
+                                      RangeGrid::OfParts(c.scan.unit_mm, c.parts),
+                                      codec::IntensityScale(c.full, c.intensity_bits),
+                                      c.kept_beams,
+                                      c.effort,
+                                      c.refined};
   std::vector<std::uint8_t> bytes;
   codec::RangeEncoder encoder(model, integers);
   ASSERT_TRUE(encoder.Encode(image, settings, &bytes));

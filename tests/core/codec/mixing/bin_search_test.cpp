@@ -50,6 +50,7 @@ struct AllOpinions {
   static constexpr unsigned kCentres = mixing::kCentres;
   static constexpr unsigned kCandidates = mixing::kCandidates;
   static constexpr bool kEvents = true;
+  static constexpr bool kRefined = false;
 };
 
 TEST(BinSearch, CostsAreTheSameInAnyOrderOfBins) {

@@ -26,6 +26,7 @@ template <unsigned kCounters>
 struct Learnt {
   std::array<Counter, 4 * kCounters> counters{};
   std::array<Weights, 4> weights{};
+  ChanceMap map;
   Script script;
 
   bool operator==(const Learnt& other) const {
@@ -58,8 +59,11 @@ Learnt<kCounters> Learn(unsigned seed) {
       return &l.counters[4 * k + static_cast<unsigned>(between(0, 3))];
     };
     mixer.Ask(counter_at, [&](unsigned) { return between(-3'000, 3'000); });
-    if (i % 2 == 0) {
+    if (i % 3 == 0) {
       mixer.Code(bit, &l.weights[0], &l.script);
+    } else if (i % 3 == 1) {
+      mixer.CodeFast(bit, std::array{&l.weights[0], &l.weights[1], &l.weights[2]},
+                     i % 2 == 0 ? &l.map : nullptr, &l.script);
     } else {
       mixer.Code(bit, &l.weights[1], &l.weights[2 + i % 4 / 2], &l.script);
     }
@@ -95,6 +99,17 @@ TEST(Lanes, AddUpTheLargestNumbers) {
       EXPECT_EQ(LargestTotal<PlainLanes>(input, weight), 16 * input * weight);
     }
   }
+}
+
+TEST(AChanceMap, LearnsWhatChancesTurnOutToBe) {
+  ChanceMap map;
+  for (const std::int32_t logit : {-3'000, -700, 0, 5, 2'047})
+    EXPECT_NEAR(map.Refined(logit), Chance(logit), 400) << logit;
+  for (int i = 0; i < 4'000; ++i) map.Learn(300, i % 4 == 0);
+  EXPECT_NEAR(map.Refined(256), (Chance(256) + 16'384) / 2, 1'500);
+  EXPECT_NEAR(map.Refined(600), Chance(600), 400);  // others stay
+  for (int i = 0; i < 4'000; ++i) map.Learn(-2'047, false);
+  EXPECT_GE(map.Refined(-2'047), kLeastChance);
 }
 
 TEST(ACounter, LearnsAboutAsTheMeanOfItsBits) {

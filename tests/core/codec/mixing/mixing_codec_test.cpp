@@ -8,6 +8,7 @@
 #include <random>
 
 #include "src/base/crc.h"
+#include "src/codec/block_memory.h"
 #include "src/codec/mixing/range_part.h"
 #include "src/codec/mixing/start_states.h"
 
@@ -49,14 +50,17 @@ struct Case {
   double error_m;
   unsigned bits;
   std::uint32_t unit_mm;
+  bool refined = false;
 };
 
 class MixingCodec : public testing::TestWithParam<Case> {
  protected:
   MixingSettings Settings() const {
     const Case& c = GetParam();
-    return {RangeGrid::ForError(c.error_m, c.unit_mm), IntensityScale(FullScale::kByte, c.bits),
-            c.effort};
+    MixingSettings settings{RangeGrid::ForError(c.error_m, c.unit_mm),
+                            IntensityScale(FullScale::kByte, c.bits), c.effort};
+    settings.refined = c.refined;
+    return settings;
   }
 };
 
@@ -98,7 +102,34 @@ INSTANTIATE_TEST_SUITE_P(Settings, MixingCodec,
                                          Case{3, 0.02, 0, 1}, Case{1, 0.02, 5, 8},
                                          Case{2, 0.05, 5, 8}, Case{3, 0.05, 5, 8},
                                          Case{2, 0.0001, 8, 1}, Case{3, 0.0001, 1, 1},
-                                         Case{2, 0.5, 0, 1}, Case{3, 0.5, 3, 8}));
+                                         Case{2, 0.5, 0, 1}, Case{3, 0.5, 3, 8},
+                                         Case{2, 0.0001, 0, 1, true}, Case{3, 0.02, 5, 1, true},
+                                         Case{2, 0.05, 8, 8, true}, Case{3, 0.5, 0, 1, true}));
+
+TEST(MixingCodecOf, RefinedModelsAreAnotherVersion) {
+  const SensorModel sensor = Sensor(16, 64);
+  const RangeImage image = Room(16, 64, 1, 1);
+  MixingEncoder encoder(sensor);
+  const auto payload_of = [&](unsigned effort) {
+    MixingSettings settings{RangeGrid(1, 41), {}, effort};
+    settings.refined = true;
+    std::vector<std::uint8_t> payload;
+    EXPECT_TRUE(encoder.Encode(image, settings, &payload));
+    return payload;
+  };
+  EXPECT_EQ(payload_of(1)[0] >> 4, mixing::kTableVersion);  // effort 1 has none
+  auto payload = payload_of(2);
+  EXPECT_EQ(payload[0] >> 4, mixing::kRefinedVersion);
+  // A decoder refuses them at effort 1, and with a memory.
+  MixingDecoder decoder(sensor);
+  RangeImage back = image;
+  const auto memory = Remember(image, RangeGrid(1, 41), nullptr);
+  EXPECT_FALSE(decoder.Decode({payload.data(), payload.size()}, RangeGrid(1, 41), 0, &back,
+                              {memory->pixels.data(), &memory->model}));
+  EXPECT_TRUE(decoder.Decode({payload.data(), payload.size()}, RangeGrid(1, 41), 0, &back));
+  payload[0] ^= 3;  // to effort 1
+  EXPECT_FALSE(decoder.Decode({payload.data(), payload.size()}, RangeGrid(1, 41), 0, &back));
+}
 
 TEST(MixingCodecOf, ImagesWithoutGapsAndWithoutReturns) {
   const SensorModel sensor = Sensor(8, 64);
