@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "gst/common/element_class.h"
+#include "gst/common/packet_probe.h"
 #include "gst/common/refs.h"
 #include "gst/common/sink_pads.h"
 #include "gst/scream/bin/common.h"
@@ -183,25 +184,13 @@ static bool FromPeer(GstLidarScreamSink* self, GstBuffer* buffer) {
                                         : SameHost(from, state.peer.get());
 }
 
-static gboolean DropForeign(GstBuffer** buffer, guint, gpointer data) {
-  auto* self = GST_LIDAR_SCREAM_SINK(data);
-  if (FromPeer(self, *buffer)) return TRUE;
-  ++self->state->foreign;
-  gst_clear_buffer(buffer);
-  return TRUE;
-}
-
 static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer data) {
   auto* self = GST_LIDAR_SCREAM_SINK(data);
-  if ((info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0) {
-    GstBufferList* list = gst_buffer_list_make_writable(GST_PAD_PROBE_INFO_BUFFER_LIST(info));
-    gst_buffer_list_foreach(list, DropForeign, self);
-    info->data = list;
-    return gst_buffer_list_length(list) > 0 ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
-  }
-  if (FromPeer(self, GST_PAD_PROBE_INFO_BUFFER(info))) return GST_PAD_PROBE_OK;
-  ++self->state->foreign;
-  return GST_PAD_PROBE_DROP;
+  return MapPackets(info, [self](BufferPtr packet) {
+    if (FromPeer(self, packet.get())) return packet;
+    ++self->state->foreign;
+    return BufferPtr();
+  });
 }
 
 static std::vector<PadPtr> SinkPadsOf(GstLidarScreamSink* self) {
@@ -269,7 +258,7 @@ static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenL
   std::vector<SrtpPlace> places;
   const std::shared_ptr<SinkLinks> links = LinksOf(self);
   const auto add = [&](const SinkLinks::Chain& c) {
-    places.push_back({c.tx, "src", "rtcp_sink", c.sink, c.src});
+    places.push_back({c.tx, "src", "rtcp_sink", c.src});
   };
   if (!links) add({self->tx, self->sink, self->src});
   for (std::size_t i = 0; links && i < links->chains().size(); ++i) add(links->chains()[i]);
@@ -428,10 +417,7 @@ static void gst_lidar_scream_sink_init(GstLidarScreamSink* self) {
   gst_element_link_pads(self->tx, "src", self->sink, "sink");
   gst_element_link_pads(self->src, "src", self->tx, "rtcp_sink");
   const PadPtr feedback(gst_element_get_static_pad(self->src, "src"));
-  gst_pad_add_probe(
-      feedback.get(),
-      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
-      FilterFeedback, self, nullptr);
+  gst_pad_add_probe(feedback.get(), kPacketProbe, FilterFeedback, self, nullptr);
   g_signal_connect_swapped(
       self->tx, "notify::estimated-bitrate",
       G_CALLBACK(+[](GObject* bin) { g_object_notify(bin, "estimated-bitrate"); }), self);

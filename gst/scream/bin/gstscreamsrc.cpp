@@ -111,8 +111,7 @@ static bool Open(GstLidarScreamSrc* self) {
   GiveSocket(self->src, used.socket.get());
   GiveSocket(self->sink, used.socket.get());
   std::shared_ptr<SrtpLayer> srtp;
-  SrtpPlaces places{
-      GST_ELEMENT(self), false, {{self->rx, "rtcp_src", "sink", self->sink, self->src}}, nullptr};
+  SrtpPlaces places{GST_ELEMENT(self), false, {{self->rx, "rtcp_src", "sink", self->src}}, nullptr};
   places.send_dtls = [socket = used.socket](GstBuffer* datagram, const DtlsKeys::Addresses& to) {
     for (const SocketAddressPtr& address : to)
       SendDatagram(socket.get(), address.get(), "", datagram);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gst/common/enum_type.h"
+#include "gst/common/packet_probe.h"
 #include "gst/scream/bin/common.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/gstscreamtxpad.h"
@@ -59,17 +60,10 @@ GSocketFamily FamilyOf(const OpenLink& link) {
 
 /// Drops feedback that is not from the link's peer.
 GstPadProbeReturn DropStrangers(GstPad*, GstPadProbeInfo* info, gpointer peer) {
-  const auto is_peer = [peer](GstBuffer* buffer) {
-    GSocketAddress* from = SourceOf(buffer);
-    return from != nullptr && SameAddress(from, G_SOCKET_ADDRESS(peer));
-  };
-  if ((GST_PAD_PROBE_INFO_TYPE(info) & GST_PAD_PROBE_TYPE_BUFFER) != 0)
-    return is_peer(GST_PAD_PROBE_INFO_BUFFER(info)) ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
-  GstBufferList* list = gst_buffer_list_make_writable(GST_PAD_PROBE_INFO_BUFFER_LIST(info));
-  for (guint i = gst_buffer_list_length(list); i-- > 0;)
-    if (!is_peer(gst_buffer_list_get(list, i))) gst_buffer_list_remove(list, i, 1);
-  info->data = list;
-  return gst_buffer_list_length(list) > 0 ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
+  return MapPackets(info, [peer](BufferPtr packet) {
+    const bool is_peers = SameAddress(SourceOf(packet.get()), G_SOCKET_ADDRESS(peer));
+    return is_peers ? std::move(packet) : nullptr;
+  });
 }
 
 /// Copies the properties that were set on `from` to `to`, an object of the same class.
@@ -209,10 +203,8 @@ void SinkLinks::AddLink(const OpenLink& link) {
   gst_element_link_pads(chain.tx, "src", chain.sink, "sink");
   gst_element_link_pads(chain.src, "src", chain.tx, "rtcp_sink");
   const PadPtr feedback(gst_element_get_static_pad(chain.src, "src"));
-  gst_pad_add_probe(
-      feedback.get(),
-      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
-      DropStrangers, g_object_ref(link.peer.get()), g_object_unref);
+  gst_pad_add_probe(feedback.get(), kPacketProbe, DropStrangers, g_object_ref(link.peer.get()),
+                    g_object_unref);
   chains_.push_back(chain);
 }
 

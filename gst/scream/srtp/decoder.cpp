@@ -22,53 +22,28 @@ std::unique_ptr<SrtpDecoder> SrtpDecoder::Create(GstElement* bin, const SrtpPoli
 
 SrtpDecoder::SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy,
                          SrtpKey key)
-    : bin_(bin), element_(element), policy_(policy), key_(std::move(key)) {
+    : bin_(bin),
+      element_(element),
+      policy_(policy),
+      key_(std::move(key)),
+      sink_(gst_element_get_static_pad(element, "rtp_sink")),
+      rtp_(element, "rtp_src", [this](BufferPtr packet) { out_ = std::move(packet); }),
+      rtcp_(element, "rtcp_src", [this](BufferPtr packet) { out_ = std::move(packet); }) {
   g_signal_connect(element_, "request-key",
                    G_CALLBACK(+[](GstElement*, guint ssrc, gpointer self) -> GstCaps* {
                      return static_cast<SrtpDecoder*>(self)->CapsFor(ssrc);
                    }),
                    this);
-  sink_.reset(gst_element_get_static_pad(element_, "rtp_sink"));
-  rtp_ = NewRelay("rtp_src");
-  rtcp_ = NewRelay("rtcp_src");
   gst_element_set_state(element_, GST_STATE_PLAYING);
 }
 
 SrtpDecoder::~SrtpDecoder() {
   gst_element_set_state(element_, GST_STATE_NULL);
   gst_bin_remove(GST_BIN(bin_), element_);  // also unlinks its pads
-  for (GstPad* pad : {rtp_.get(), rtcp_.get()}) gst_pad_set_active(pad, FALSE);
-}
-
-/// Takes the packets of the pad `source`. Events end here, as the stream has its own.
-PadPtr SrtpDecoder::NewRelay(const char* source) {
-  PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK))));
-  gst_pad_set_element_private(pad.get(), this);
-  gst_pad_set_chain_function(pad.get(), [](GstPad* p, GstObject*, GstBuffer* buffer) {
-    static_cast<SrtpDecoder*>(gst_pad_get_element_private(p))->out_.reset(buffer);
-    return GST_FLOW_OK;
-  });
-  gst_pad_set_event_function(pad.get(), [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
-    gst_event_unref(event);
-    return TRUE;
-  });
-  gst_pad_set_active(pad.get(), TRUE);
-  const PadPtr from(gst_element_get_static_pad(element_, source));
-  gst_pad_link(from.get(), pad.get());
-  return pad;
-}
-
-void SrtpDecoder::Start() {
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  const CapsPtr caps(gst_caps_new_empty_simple("application/x-srtp"));
-  gst_pad_send_event(sink_.get(), gst_event_new_stream_start("srtp"));
-  gst_pad_send_event(sink_.get(), gst_event_new_caps(caps.get()));
-  gst_pad_send_event(sink_.get(), gst_event_new_segment(&segment));
 }
 
 BufferPtr SrtpDecoder::Decode(GstBuffer* datagram) {
-  if (!gst_pad_has_current_caps(sink_.get())) Start();
+  BeginStream(sink_.get(), "application/x-srtp");
   // The decoder works in place, and frees a buffer that others also hold.
   gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   return std::move(out_);

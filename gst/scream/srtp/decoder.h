@@ -9,6 +9,7 @@
 
 #include "gst/common/refs.h"
 #include "gst/scream/srtp/key.h"
+#include "gst/scream/srtp/relay.h"
 
 namespace lidar::gst {
 
@@ -35,8 +36,6 @@ class SrtpDecoder {
 
  private:
   SrtpDecoder(GstElement* bin, GstElement* element, const SrtpPolicy& policy, SrtpKey key);
-  PadPtr NewRelay(const char* source);
-  void Start();
   GstCaps* CapsFor(std::uint32_t ssrc) const;
 
   GstElement* bin_;
@@ -44,8 +43,8 @@ class SrtpDecoder {
   SrtpPolicy policy_;
   SrtpKey key_;
   PadPtr sink_;
-  PadPtr rtp_;  // take the decoded packets
-  PadPtr rtcp_;
+  Relay rtp_;  // take the decoded packets
+  Relay rtcp_;
   std::map<std::uint32_t, std::uint32_t> rollovers_;  // counters above 0 that were tried
   BufferPtr out_;                                     // of the present datagram
 };

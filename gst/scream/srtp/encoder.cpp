@@ -35,27 +35,13 @@ SrtpEncoder::SrtpEncoder(GstElement* bin, GstElement* element) : bin_(bin), elem
 SrtpEncoder::~SrtpEncoder() {
   gst_element_set_state(element_, GST_STATE_NULL);
   gst_bin_remove(GST_BIN(bin_), element_);  // also unlinks its pads
-  for (const Way* way : {&rtp_, &rtcp_}) gst_pad_set_active(way->relay.get(), FALSE);
 }
 
 SrtpEncoder::Way SrtpEncoder::NewWay(const std::string& kind) {
   Way way;
   way.sink.reset(gst_element_request_pad_simple(element_, (kind + "_sink_0").c_str()));
-  way.relay.reset(GST_PAD(gst_object_ref_sink(gst_pad_new(kind.c_str(), GST_PAD_SINK))));
-  GstPad* relay = way.relay.get();
-  gst_pad_set_element_private(relay, this);
-  gst_pad_set_chain_function(relay, [](GstPad* pad, GstObject*, GstBuffer* buffer) {
-    static_cast<SrtpEncoder*>(gst_pad_get_element_private(pad))->out_.reset(buffer);
-    return GST_FLOW_OK;
-  });
-  gst_pad_set_event_function(relay, [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
-    gst_event_unref(event);
-    return TRUE;
-  });
-  GST_PAD_SET_ACCEPT_TEMPLATE(relay);  // the caps change with the key
-  gst_pad_set_active(relay, TRUE);
-  const PadPtr source(gst_element_get_static_pad(element_, (kind + "_src_0").c_str()));
-  gst_pad_link(source.get(), relay);
+  way.relay = std::make_unique<Relay>(element_, (kind + "_src_0").c_str(),
+                                      [this](BufferPtr packet) { out_ = std::move(packet); });
   return way;
 }
 
@@ -73,15 +59,7 @@ BufferPtr SrtpEncoder::Protect(GstBuffer* packet) {
   GstPad* sink = (rtcp ? rtcp_ : rtp_).sink.get();
   const std::lock_guard lock(mutex_);
   if (!has_key_) return nullptr;  // srtpenc would make one up
-  if (!gst_pad_has_current_caps(sink)) {
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    const CapsPtr caps(
-        gst_caps_new_empty_simple(rtcp ? "application/x-rtcp" : "application/x-rtp"));
-    gst_pad_send_event(sink, gst_event_new_stream_start("srtp"));
-    gst_pad_send_event(sink, gst_event_new_caps(caps.get()));
-    gst_pad_send_event(sink, gst_event_new_segment(&segment));
-  }
+  BeginStream(sink, rtcp ? "application/x-rtcp" : "application/x-rtp");
   gst_pad_chain(sink, owner.release());
   return std::move(out_);
 }

@@ -8,6 +8,7 @@
 
 #include "gst/common/refs.h"
 #include "gst/scream/srtp/key.h"
+#include "gst/scream/srtp/relay.h"
 
 namespace lidar::gst {
 
@@ -31,7 +32,7 @@ class SrtpEncoder {
   /// A direction through the element: "rtp" or "rtcp".
   struct Way {
     PadPtr sink;
-    PadPtr relay;  // takes the protected packets
+    std::unique_ptr<Relay> relay;  // takes the protected packets
   };
   Way NewWay(const std::string& kind);
 

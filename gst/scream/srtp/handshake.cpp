@@ -31,21 +31,8 @@ std::unique_ptr<DtlsHandshake> DtlsHandshake::Start(const Certificates& certific
 }
 
 bool DtlsHandshake::Start() {
-  relay_.reset(GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK))));
-  gst_pad_set_element_private(relay_.get(), this);
-  gst_pad_set_chain_function(relay_.get(), [](GstPad* pad, GstObject*, GstBuffer* datagram) {
-    const BufferPtr owner(datagram);
-    static_cast<DtlsHandshake*>(gst_pad_get_element_private(pad))->send_(datagram);
-    return GST_FLOW_OK;
-  });
-  gst_pad_set_event_function(relay_.get(), [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
-    gst_event_unref(event);
-    return TRUE;
-  });
-  gst_pad_set_active(relay_.get(), TRUE);
   sink_.reset(gst_element_get_static_pad(decoder_.get(), "sink"));
-  const PadPtr out(gst_element_get_static_pad(encoder_.get(), "src"));
-  gst_pad_link(out.get(), relay_.get());
+  sender_.emplace(encoder_.get(), "src", [this](BufferPtr datagram) { send_(datagram.get()); });
   // Both ends use the client's key, which the server decodes with.
   GstElement* has_key = is_client_ ? encoder_.get() : decoder_.get();
   g_signal_connect(
@@ -65,7 +52,6 @@ bool DtlsHandshake::Start() {
 DtlsHandshake::~DtlsHandshake() {
   for (GstElement* element : {encoder_.get(), decoder_.get()})
     if (element != nullptr) gst_element_set_state(element, GST_STATE_NULL);
-  if (relay_) gst_pad_set_active(relay_.get(), FALSE);
 }
 
 /// The peer's certificate came before the key.
@@ -83,14 +69,7 @@ void DtlsHandshake::OnKey(GstBuffer* key) {
 }
 
 void DtlsHandshake::Take(GstBuffer* datagram) {
-  if (!gst_pad_has_current_caps(sink_.get())) {
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    const CapsPtr caps(gst_caps_new_empty_simple("application/x-dtls"));
-    gst_pad_send_event(sink_.get(), gst_event_new_stream_start("dtls"));
-    gst_pad_send_event(sink_.get(), gst_event_new_caps(caps.get()));
-    gst_pad_send_event(sink_.get(), gst_event_new_segment(&segment));
-  }
+  BeginStream(sink_.get(), "application/x-dtls");
   // The decoder works in place.
   const GstFlowReturn flow = gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   if (flow != GST_FLOW_OK && state_ == State::kOpen) state_ = State::kFailed;

@@ -7,10 +7,13 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "gst/common/certificates.h"
 #include "gst/common/refs.h"
 #include "gst/scream/srtp/key.h"
+#include "gst/scream/srtp/relay.h"
 
 namespace lidar::gst {
 
@@ -43,8 +46,8 @@ class DtlsHandshake {
   Send send_;
   ElementPtr decoder_;
   ElementPtr encoder_;
-  PadPtr sink_;   // of the decoder
-  PadPtr relay_;  // takes what the encoder sends
+  PadPtr sink_;                  // of the decoder
+  std::optional<Relay> sender_;  // takes what the encoder sends
   std::atomic<State> state_{State::kOpen};
   SrtpKey key_;  // written before state_
 };

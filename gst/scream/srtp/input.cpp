@@ -35,49 +35,32 @@ SrtpInput::SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_
       policy_(policy),
       on_new_key_(std::move(on_new_key)),
       trials_(kMaxTrials, Duration(kTrialsPeriod) / kMaxTrials) {
-  InstallEntry();
-  InstallExit();
-}
-
-void SrtpInput::InstallEntry() {
-  entry_.reset(GST_PAD(gst_object_ref_sink(gst_pad_new("entry", GST_PAD_SINK))));
-  GstPad* pad = entry_.get();
-  gst_pad_set_element_private(pad, this);
-  gst_pad_set_chain_function(pad, [](GstPad* p, GstObject*, GstBuffer* datagram) {
+  gst_pad_set_chain_function(entry_.get(), [](GstPad* p, GstObject*, GstBuffer* datagram) {
     const BufferPtr owner(datagram);
     return InputOf(p)->OnDatagram(datagram);
   });
-  gst_pad_set_event_function(pad, [](GstPad* p, GstObject*, GstEvent* event) -> gboolean {
-    SrtpInput* self = InputOf(p);
-    if (GST_EVENT_TYPE(event) == GST_EVENT_STREAM_START) self->Reset();
-    return gst_pad_push_event(self->exit_.get(), event);
-  });
-  gst_pad_set_query_function(pad, [](GstPad* p, GstObject*, GstQuery* query) {
-    return gst_pad_peer_query(InputOf(p)->exit_.get(), query);
-  });
-  gst_pad_set_active(pad, TRUE);
+  for (GstPad* pad : {entry_.get(), exit_.get()}) gst_pad_set_active(pad, TRUE);
 }
 
-void SrtpInput::InstallExit() {
-  exit_.reset(GST_PAD(gst_object_ref_sink(gst_pad_new("exit", GST_PAD_SRC))));
-  GstPad* pad = exit_.get();
-  gst_pad_set_element_private(pad, this);
-  gst_pad_set_event_function(pad, [](GstPad* p, GstObject*, GstEvent* event) -> gboolean {
-    return gst_pad_push_event(InputOf(p)->entry_.get(), event);
+/// Passes events and queries to the other side.
+PadPtr SrtpInput::NewPad(const char* name, GstPadDirection direction) {
+  PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new(name, direction))));
+  gst_pad_set_element_private(pad.get(), this);
+  gst_pad_set_event_function(pad.get(), [](GstPad* p, GstObject*, GstEvent* event) -> gboolean {
+    SrtpInput* self = InputOf(p);
+    if (GST_EVENT_TYPE(event) == GST_EVENT_STREAM_START) self->Reset();
+    return gst_pad_push_event(self->Other(p), event);
   });
-  gst_pad_set_query_function(pad, [](GstPad* p, GstObject*, GstQuery* query) {
-    return gst_pad_peer_query(InputOf(p)->entry_.get(), query);
+  gst_pad_set_query_function(pad.get(), [](GstPad* p, GstObject*, GstQuery* query) {
+    return gst_pad_peer_query(InputOf(p)->Other(p), query);
   });
-  gst_pad_set_active(pad, TRUE);
+  return pad;
 }
 
 SrtpInput::~SrtpInput() {
-  for (GstPad* pad : {entry_.get(), exit_.get()}) {
-    const PadPtr peer(gst_pad_get_peer(pad));
-    if (peer && pad == entry_.get()) gst_pad_unlink(peer.get(), pad);
-    if (peer && pad == exit_.get()) gst_pad_unlink(pad, peer.get());
-    gst_pad_set_active(pad, FALSE);
-  }
+  if (const PadPtr peer{gst_pad_get_peer(entry_.get())}) gst_pad_unlink(peer.get(), entry_.get());
+  if (const PadPtr peer{gst_pad_get_peer(exit_.get())}) gst_pad_unlink(exit_.get(), peer.get());
+  for (GstPad* pad : {entry_.get(), exit_.get()}) gst_pad_set_active(pad, FALSE);
 }
 
 bool SrtpInput::Link(GstPad* socket, GstPad* target) {

@@ -95,8 +95,8 @@ class SrtpInput {
     std::unique_ptr<SrtpDecoder> trial;
     SrtpDecoder& DecoderOf(const Head& head) const { return head.rtcp ? *rtcp : *media; }
   };
-  void InstallEntry();
-  void InstallExit();
+  PadPtr NewPad(const char* name, GstPadDirection direction);
+  GstPad* Other(GstPad* pad) const { return pad == entry_.get() ? exit_.get() : entry_.get(); }
   GstFlowReturn OnDatagram(GstBuffer* datagram);
   static Head HeadOf(GstBuffer* datagram);
   BufferPtr Decode(GstBuffer* datagram, const Head& head);
@@ -116,8 +116,8 @@ class SrtpInput {
   SrtpPolicy policy_;
   OnNewKey on_new_key_;
   OnDtls on_dtls_;
-  PadPtr entry_;
-  PadPtr exit_;
+  PadPtr entry_ = NewPad("entry", GST_PAD_SINK);
+  PadPtr exit_ = NewPad("exit", GST_PAD_SRC);
 
   std::mutex mutex_;  // guards added_ and serial_
   std::vector<Key> added_;

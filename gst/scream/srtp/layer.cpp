@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gst/common/packet_probe.h"
 #include "gst/scream/rtp_packet.h"
 
 namespace lidar::gst {
@@ -162,10 +163,7 @@ bool SrtpLayer::Link() {
     const PadPtr socket_source = PadOf(place.socket_source, "src");
     gst_pad_unlink(socket_source.get(), in.get());
     if (!inputs_[i]->Link(socket_source.get(), in.get())) return false;
-    probes_.push_back(gst_pad_add_probe(
-        out.get(),
-        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
-        OnOut, this, nullptr));
+    probes_.push_back(gst_pad_add_probe(out.get(), kPacketProbe, OnOut, this, nullptr));
   }
   return true;
 }
@@ -177,23 +175,9 @@ bool SrtpLayer::IsDone(GstBuffer* packet) const {
 /// A refused packet was sent before, or the key is used up: the packet must not leave.
 GstPadProbeReturn SrtpLayer::OnOut(GstPad*, GstPadProbeInfo* info, gpointer data) {
   auto* self = static_cast<SrtpLayer*>(data);
-  if ((GST_PAD_PROBE_INFO_TYPE(info) & GST_PAD_PROBE_TYPE_BUFFER) != 0) {
-    GstBuffer* packet = GST_PAD_PROBE_INFO_BUFFER(info);
-    if (self->IsDone(packet)) return GST_PAD_PROBE_OK;
-    info->data = self->Protect(packet).release();
-    return info->data != nullptr ? GST_PAD_PROBE_OK : GST_PAD_PROBE_HANDLED;
-  }
-  const BufferListPtr list(GST_PAD_PROBE_INFO_BUFFER_LIST(info));
-  const guint n = gst_buffer_list_length(list.get());
-  GstBufferList* out = gst_buffer_list_new_sized(n);
-  for (guint i = 0; i < n; ++i) {
-    BufferPtr packet(gst_buffer_ref(gst_buffer_list_get(list.get(), i)));
-    if (!self->IsDone(packet.get())) packet = self->Protect(packet.release());
-    if (packet) gst_buffer_list_add(out, packet.release());
-  }
-  info->data = out;
-  if (gst_buffer_list_length(out) > 0) return GST_PAD_PROBE_OK;
-  return GST_PAD_PROBE_DROP;
+  return MapPackets(info, [self](BufferPtr packet) {
+    return self->IsDone(packet.get()) ? std::move(packet) : self->Protect(packet.release());
+  });
 }
 
 SrtpLayer::~SrtpLayer() {

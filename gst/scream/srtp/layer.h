@@ -26,7 +26,6 @@ struct SrtpPlace {
   GstElement* sender;         // screamtx or screamrx
   const char* out;            // its pad towards the socket
   const char* in;             // its pad from the socket
-  GstElement* socket_sink;    // ecnudpsink
   GstElement* socket_source;  // ecnudpsrc
 };
 struct SrtpPlaces {
