@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "src/base/steady_time.h"
 #include "src/scream/feedback/ccfb.h"
 #include "src/scream/model/path_model.h"
 #include "src/scream/model/sent_history.h"
@@ -18,7 +19,6 @@
 #include "src/scream/response/send_window.h"
 #include "src/scream/response/source_limit.h"
 #include "src/scream/statistics.h"
-#include "src/scream/steady_time.h"
 #include "src/scream/stream_config.h"
 #include "src/scream/streams.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The constants of SCReAM v2 by the draft's names, and a switch for each extension of the draft.
 #pragma once
+#include "src/base/ecn.h"
 #include "src/base/time.h"
 #include "src/base/units.h"
-#include "src/scream/ecn.h"
 
 namespace lidar::scream {
 using namespace std::chrono_literals;

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "src/base/ecn.h"
 #include "src/base/time.h"
 #include "src/base/units.h"
-#include "src/scream/ecn.h"
 
 namespace lidar::scream {
 

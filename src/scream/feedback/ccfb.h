@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
+#include "src/base/ecn.h"
 #include "src/base/time.h"
-#include "src/scream/ecn.h"
 
 namespace lidar::scream {
 

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "src/base/sequence.h"
+#include "src/base/steady_time.h"
 #include "src/base/time.h"
 #include "src/base/units.h"
 #include "src/scream/feedback/ccfb.h"
-#include "src/scream/steady_time.h"
 
 namespace lidar::scream {
 using namespace std::chrono_literals;

@@ -2,12 +2,12 @@
 // What the estimators forget, and what they ignore.
 #include <gtest/gtest.h>
 
+#include "src/base/steady_time.h"
 #include "src/scream/model/ecn_monitor.h"
 #include "src/scream/model/flight.h"
 #include "src/scream/model/loss_context.h"
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rtt.h"
-#include "src/scream/steady_time.h"
 #include "tests/core/scream/measured_path.h"
 
 namespace lidar::scream {
