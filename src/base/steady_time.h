@@ -5,7 +5,7 @@
 
 #include "src/base/time.h"
 
-namespace lidar::scream {
+namespace lidar {
 
 /// Threads may pass their times slightly out of order. A time far before the latest one means that
 /// the clock was set: the steady time then continues from there.
@@ -31,4 +31,4 @@ class SteadyTime {
   Time latest_{};
 };
 
-}  // namespace lidar::scream
+}  // namespace lidar

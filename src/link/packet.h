@@ -3,13 +3,11 @@
 #pragma once
 #include <cstdint>
 
+#include "src/base/ecn.h"
 #include "src/base/time.h"
 #include "src/base/units.h"
 
 namespace lidar::link {
-
-/// The two ECN bits of the IP header (RFC 3168), with their values on the wire.
-enum class Ecn : std::uint8_t { kNotEct = 0, kEct1 = 1, kEct0 = 2, kCe = 3 };
 
 struct Packet {
   DataSize size;  // with IP header

@@ -33,7 +33,7 @@ class Network {
     for (const link::BottleneckConfig& link : config.more_links) links_.emplace_back(link);
   }
 
-  void Send(Time now, link::Ecn ecn, const Route& route, WirePacket packet) {
+  void Send(Time now, Ecn ecn, const Route& route, WirePacket packet) {
     packet.route = &route;
     packet.sent = now;
     links_[route.front()].Enqueue(now, {packet.size, ecn, wire_.size()});

@@ -130,7 +130,7 @@ void Flow::Report(Time now, const SimulationConfig& sim, link::Random* loss, Net
     packet.flow = index_;
     packet.size = DataSize::Bytes(static_cast<std::int64_t>(bytes.size()) + kIpUdp);
     packet.report = std::move(bytes);
-    network->Send(now, link::Ecn::kNotEct, config_.return_route, std::move(packet));
+    network->Send(now, Ecn::kNotEct, config_.return_route, std::move(packet));
   }
 }
 
@@ -144,9 +144,8 @@ void Flow::OnArrival(const WirePacket& packet, const link::Outcome& outcome) {
   if (!outcome.delivered() && outcome.fate != link::Fate::kLost) ++result_.packets_congestion_lost;
   if (!outcome.delivered()) return;
   result_.delivered_bytes += packet.size.bytes();
-  generator_.OnPacket(
-      ToReceiver(outcome.arrival),
-      {packet.ssrc, packet.seq, static_cast<Ecn>(outcome.packet.ecn), packet.marker, packet.size});
+  generator_.OnPacket(ToReceiver(outcome.arrival),
+                      {packet.ssrc, packet.seq, outcome.packet.ecn, packet.marker, packet.size});
   FrameLog& frame = result_.frames[packet.frame];
   if (!outcome.duplicate) ++frame.delivered;
   frame.arrival = std::max(frame.arrival, outcome.arrival);
@@ -288,7 +287,7 @@ void Flow::Send(Time now, Network* network) {
     source->queue.pop_front();
     source->queued.pop_front();
     controller_->OnSent(ToSender(now), d->stream, {packet.ssrc, packet.seq, packet.size, d->ecn});
-    network->Send(now, static_cast<link::Ecn>(d->ecn), config_.route, packet);
+    network->Send(now, d->ecn, config_.route, packet);
   }
 }
 

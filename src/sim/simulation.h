@@ -91,8 +91,8 @@ struct FileConfig {
 struct TcpConfig {
   TcpKind kind = TcpKind::kCubic;
   Duration start{0};
-  link::Ecn ecn = link::Ecn::kNotEct;  ///< of Reno and Cubic; Prague always uses ECT(1)
-  double slow_start_threshold = 1e9;   ///< [packets]
+  Ecn ecn = Ecn::kNotEct;             ///< of Reno and Cubic; Prague always uses ECT(1)
+  double slow_start_threshold = 1e9;  ///< [packets]
   Duration stop = kNever;
   Route route = {0};
   std::optional<FileConfig> files = std::nullopt;  ///< set: files instead of an endless transfer

@@ -75,7 +75,7 @@ void TcpFlow::SendOne(Time now, Network* network) {
   packet.frame = sender_.SendPacket(now);
   packet.size = kPacket;
   ++result_.packets_sent;
-  const auto ecn = config_.kind == TcpKind::kPrague ? link::Ecn::kEct1 : config_.ecn;
+  const auto ecn = config_.kind == TcpKind::kPrague ? Ecn::kEct1 : config_.ecn;
   network->Send(now, ecn, config_.route, packet);
 }
 
@@ -86,8 +86,8 @@ void TcpFlow::OnArrival(const WirePacket& packet, const link::Outcome& outcome,
     return;
   }
   result_.delivered_bytes += packet.size.bytes();
-  acks_.push_back({outcome.arrival + return_delay, packet.frame,
-                   outcome.packet.ecn == link::Ecn::kCe, packet.source});
+  acks_.push_back({outcome.arrival + return_delay, packet.frame, outcome.packet.ecn == Ecn::kCe,
+                   packet.source});
 }
 
 /// Adds the time since the last step to the mean of the window.

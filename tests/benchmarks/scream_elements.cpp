@@ -60,7 +60,7 @@ struct Receiver {
     if (unreported.size() < kPacketsPerReport) return;
     scream::CongestionFeedback report;
     scream::SsrcReport block{kSsrc, unreported.front(), {}};
-    block.metrics.assign(unreported.size(), {true, scream::Ecn::kEct1, Duration{0}});
+    block.metrics.assign(unreported.size(), {true, Ecn::kEct1, Duration{0}});
     report.blocks.push_back(std::move(block));
     report.report_timestamp =
         static_cast<std::uint32_t>(g_get_monotonic_time() * 65536 / G_USEC_PER_SEC);

@@ -115,7 +115,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   scream::ReceivedPacket packet;
   packet.ssrc = header.ssrc;
   packet.seq = header.seq;
-  packet.ecn = static_cast<scream::Ecn>(ecn);
+  packet.ecn = static_cast<Ecn>(ecn);
   packet.marker = header.marker;
   packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) +
                 state.settings.packet_overhead;

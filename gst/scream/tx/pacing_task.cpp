@@ -154,7 +154,7 @@ void PacingTask::DropUnwanted(TxStream& stream, Time now) {
 }
 
 /// Takes the first packet of `stream`, which the controller chose, and accounts for it.
-BufferPtr PacingTask::TakePacket(TxStream& stream, scream::Ecn ecn, Time now) {
+BufferPtr PacingTask::TakePacket(TxStream& stream, Ecn ecn, Time now) {
   TxState& s = state();
   TxItem item = std::move(stream.queue.front());
   stream.queue.pop_front();

@@ -58,7 +58,7 @@ class PacingTask {
   Batch NextBatch(Time now);
   void DropLate(TxStream& stream, Time now);
   void DropUnwanted(TxStream& stream, Time now);
-  BufferPtr TakePacket(TxStream& stream, scream::Ecn ecn, Time now);
+  BufferPtr TakePacket(TxStream& stream, Ecn ecn, Time now);
   void CollectPackets(Time now, Batch* batch);
   bool Drained(Time now);
   Time NextWake(Time now) const;

@@ -14,14 +14,14 @@ constexpr gdouble kMaxBps = 4294967295.0;
 constexpr gdouble kMaxDelay = 60e9;
 constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
 
-scream::Ecn ToEcn(gint mode) {
+Ecn ToEcn(gint mode) {
   switch (mode) {
     case kEcnEct0:
-      return scream::Ecn::kEct0;
+      return Ecn::kEct0;
     case kEcnEct1:
-      return scream::Ecn::kEct1;
+      return Ecn::kEct1;
     default:
-      return scream::Ecn::kNotEct;
+      return Ecn::kNotEct;
   }
 }
 

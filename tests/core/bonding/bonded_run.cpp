@@ -62,9 +62,8 @@ class SimLink {
   }
 
   void OnArrival(const WirePacket& p, const link::Outcome& o) {
-    generator_.OnPacket(
-        o.arrival + config_.receiver_clock,
-        {kStreamSsrc, p.seq, static_cast<scream::Ecn>(o.packet.ecn), p.marker, p.size});
+    generator_.OnPacket(o.arrival + config_.receiver_clock,
+                        {kStreamSsrc, p.seq, o.packet.ecn, p.marker, p.size});
   }
 
   using Links = std::vector<std::unique_ptr<SimLink>>;
@@ -109,7 +108,7 @@ class SimLink {
       controller_.OnSent(now, stream_, {kStreamSsrc, number, p.size, d->ecn});
       bytes_ += p.size.bytes();
       p.flow = static_cast<int>(index_);
-      network->Send(now, static_cast<link::Ecn>(d->ecn), route_, p);
+      network->Send(now, d->ecn, route_, p);
     }
   }
 

@@ -18,7 +18,7 @@ CongestionFeedback ReportOf(std::uint16_t seq, const std::vector<bool>& arrived,
                             std::uint32_t ssrc = kSsrc) {
   CongestionFeedback feedback;
   scream::SsrcReport block{ssrc, seq, {}};
-  for (const bool a : arrived) block.metrics.push_back({a, scream::Ecn::kEct1, std::nullopt});
+  for (const bool a : arrived) block.metrics.push_back({a, Ecn::kEct1, std::nullopt});
   feedback.blocks.push_back(block);
   return feedback;
 }

@@ -22,7 +22,7 @@ LinkSet SetOf(std::initializer_list<std::size_t> links) {
 
 scream::CongestionFeedback Arrived(std::uint16_t seq) {
   scream::CongestionFeedback feedback;
-  feedback.blocks.push_back({kMedia, seq, {{true, scream::Ecn::kEct1, std::nullopt}}});
+  feedback.blocks.push_back({kMedia, seq, {{true, Ecn::kEct1, std::nullopt}}});
   return feedback;
 }
 
@@ -266,7 +266,7 @@ TEST_F(TwoLinks, RefusesReportsOfTheOtherLinkAndLosesNothing) {
   EXPECT_EQ(scheduler_.OwnerOf(Arrived(seq_)), std::size_t{0});
   EXPECT_FALSE(scheduler_.OwnerOf(Arrived(static_cast<std::uint16_t>(seq_ + 1)))) << "forged";
   scream::CongestionFeedback report = Arrived(seq_);
-  report.blocks.push_back({kMedia + 1, 1, {{true, scream::Ecn::kEct1, std::nullopt}}});
+  report.blocks.push_back({kMedia + 1, 1, {{true, Ecn::kEct1, std::nullopt}}});
   EXPECT_FALSE(scheduler_.OwnerOf(report)) << "with a block of another's packets";
   const auto copies = scheduler_.TakeCopies(now_ + 61ms);
   ASSERT_EQ(copies.size(), 1U);

@@ -2,7 +2,6 @@
 // What the estimators forget, and what they ignore.
 #include <gtest/gtest.h>
 
-#include "src/base/steady_time.h"
 #include "src/scream/model/ecn_monitor.h"
 #include "src/scream/model/flight.h"
 #include "src/scream/model/loss_context.h"
@@ -137,18 +136,6 @@ TEST(MaxBytesInFlight, IsThatOfTheLastTenRoundTripsAndOfThisOne) {
   EXPECT_EQ(flight.longest().bytes(), 9000);
   flight.Update(kStart + 400ms, 40ms);
   EXPECT_EQ(flight.longest().bytes(), 0);
-}
-
-TEST(SteadyTime, GoesOnWhereTheClockOfItsCallerIsSetBack) {
-  SteadyTime clock;
-  EXPECT_EQ(clock.From(kStart), kStart);
-  EXPECT_EQ(clock.From(kStart - 1s), kStart - 1s) << "another thread's";
-  EXPECT_EQ(clock.From(kStart - 2s), kStart - 2s);
-  EXPECT_EQ(clock.From(kStart - 2001ms), kStart);
-  EXPECT_EQ(clock.From(kStart - 2s), kStart + 1ms);
-  EXPECT_EQ(clock.Peek(kStart), kStart + 2001ms);
-  EXPECT_EQ(clock.ToCaller(kStart), kStart - 2001ms);
-  EXPECT_EQ(clock.ToCaller(Time::max()), Time::max());
 }
 
 TEST(EcnMonitor, CountsUnansweredPacketsFromTheLastAnswerOn) {

@@ -176,7 +176,7 @@ SimulationConfig BesideCubic() {
 SimulationConfig ClassicMarks() {
   SimulationConfig config = Named("cubic_pi2_20M");
   config.duration = 20s;
-  config.others[0].ecn = link::Ecn::kEct0;
+  config.others[0].ecn = Ecn::kEct0;
   return config;
 }
 

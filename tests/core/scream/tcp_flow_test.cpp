@@ -126,7 +126,7 @@ TEST(Prague, SharesADualQueueWithCubic) {
 
 TEST(Classic, AnEcnMarkCountsAsALoss) {
   SimulationConfig config = Path(TcpKind::kCubic, Mbps(20), 40ms);
-  config.others[0].ecn = link::Ecn::kEct0;
+  config.others[0].ecn = Ecn::kEct0;
   config.forward.aqm.kind = link::AqmConfig::Kind::kPi2;
   const SimulationResult r = Simulate(config);
   EXPECT_GE(Utilisation(r), 0.93);

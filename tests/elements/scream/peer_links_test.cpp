@@ -198,7 +198,7 @@ TEST(LinkReports, TellEachLinkWhatCameByIt) {
   Time now{1s};
   for (std::uint16_t seq = 0; seq < 40; ++seq, now += 1ms)
     reports.OnPacket(seq % 4 == 0 ? b.get() : a.get(), now,
-                     {7, seq, scream::Ecn::kEct1, true, DataSize::Bytes(1200)});
+                     {7, seq, Ecn::kEct1, true, DataSize::Bytes(1200)});
   int from_a = 0, from_b = 0;
   while (const auto report = reports.Take(now)) {
     const bool is_b = gst::SameAddress(report->to, b.get());
@@ -222,8 +222,7 @@ TEST(LinkReports, SumUpEachCountOfAllLinks) {
   Time now{1s};
   const auto send = [&](const LinkAddress& link, std::uint16_t seq) {
     reports.OnPacket(link.get(), now,
-                     {7, seq, seq % 3 == 0 ? scream::Ecn::kCe : scream::Ecn::kEct1, true,
-                      DataSize::Bytes(1200)});
+                     {7, seq, seq % 3 == 0 ? Ecn::kCe : Ecn::kEct1, true, DataSize::Bytes(1200)});
     now += 1ms;
     while (reports.Take(now)) continue;
   };
@@ -247,7 +246,7 @@ TEST(LinkReports, KeepFewLinksWhereAddressesChangeAllTheTime) {
   Time now{1s};
   for (int host = 1; host < 250; ++host, now += 1s) {
     const LinkAddress a(Address(("10.0.0." + std::to_string(host)).c_str(), 5000));
-    reports.OnPacket(a.get(), now, {7, 1, scream::Ecn::kEct1, true, DataSize::Bytes(1200)});
+    reports.OnPacket(a.get(), now, {7, 1, Ecn::kEct1, true, DataSize::Bytes(1200)});
   }
   EXPECT_EQ(reports.stats().size(), LinkReports::kMaxLinks);
 }
@@ -260,8 +259,7 @@ TEST(LinkReports, KeepTheLinkInUse) {
   for (int host = 1; host < 100; ++host) {
     const LinkAddress other(Address(("10.0.0." + std::to_string(host)).c_str(), 5000));
     for (const LinkAddress* from : {&in_use, &other})
-      reports.OnPacket(from->get(), now += 1s,
-                       {7, 1, scream::Ecn::kEct1, true, DataSize::Bytes(1200)});
+      reports.OnPacket(from->get(), now += 1s, {7, 1, Ecn::kEct1, true, DataSize::Bytes(1200)});
   }
   EXPECT_EQ(reports.stats().at(0).feedback.packets, 99U);
 }

@@ -34,7 +34,7 @@ TEST_F(ScreamTx, GoesOnWithFeedbackInOrderAndWithoutLoss) {
 TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
   g_object_set(element, "start-bitrate", 1'000'000, nullptr);
   Start();
-  const auto run = [&](int frames, scream::Ecn ecn) {
+  const auto run = [&](int frames, Ecn ecn) {
     for (int i = 0; i < frames; ++i) {
       PushFrame(static_cast<guint32>(sent.size()) * 900, 8);
       for (int k = 0; k < 5; ++k) {
@@ -43,11 +43,11 @@ TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
       }
     }
   };
-  run(40, scream::Ecn::kEct1);
+  run(40, Ecn::kEct1);
   const guint64 free = Stats(element)["target-bitrate"];
   EXPECT_GT(free, 1'200'000U);
   Targets(rtp.get());
-  run(40, scream::Ecn::kCe);
+  run(40, Ecn::kCe);
   EXPECT_LT(Stats(element)["target-bitrate"], free / 2);
   EXPECT_GT(Stats(element)["packets-ce"], 0U);
   GstLidarTargetBitrate told{};
@@ -89,8 +89,8 @@ class ScreamTxFates : public ScreamTx {
 };
 
 TEST_F(ScreamTxFates, AreCountedEachByItsName) {
-  const scream::PacketMetric arrived{true, scream::Ecn::kEct1, Duration{0}};
-  const scream::PacketMetric marked{true, scream::Ecn::kCe, Duration{0}};
+  const scream::PacketMetric arrived{true, Ecn::kEct1, Duration{0}};
+  const scream::PacketMetric marked{true, Ecn::kCe, Duration{0}};
   const auto arrives = [&](guint16 seq) {
     if (seq >= 3 && seq < 6) return scream::PacketMetric{};
     return seq == 20 || seq == 22 ? marked : arrived;
@@ -182,7 +182,7 @@ TEST_F(ScreamTx, TellsThePayloaderOfNoPacketThatHasNotArrived) {
   CongestionFeedback report;
   report.sender_ssrc = 9;
   report.report_timestamp = 65536 * 1001;
-  const scream::PacketMetric arrived{true, scream::Ecn::kEct1, Duration{0}};
+  const scream::PacketMetric arrived{true, Ecn::kEct1, Duration{0}};
   report.blocks.push_back({0x1234, 0, {arrived, {}, arrived, arrived}});
   Feed(report);
   const EventPtr event(WaitForUpstream(rtp.get(), "packets-received"));
@@ -281,7 +281,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   Collect();
   std::vector<std::uint8_t> receiver_report{0x80, 201, 0, 1, 0, 0, 0, 5};
   CongestionFeedback ours;
-  ours.blocks.push_back({0x1234, 0, {{true, scream::Ecn::kEct1, Duration{0}}}});
+  ours.blocks.push_back({0x1234, 0, {{true, Ecn::kEct1, Duration{0}}}});
   const auto ccfb = scream::BuildCcfb(ours);
   auto compound = receiver_report;
   compound.insert(compound.end(), ccfb.begin(), ccfb.end());
@@ -328,7 +328,7 @@ TEST_F(ScreamTx, IgnoresFeedbackOfPacketsThatItNeverSent) {
   const guint64 before = Stats(element)["target-bitrate"];
   CongestionFeedback lie;
   scream::SsrcReport block{0x1234, 30000, {}};
-  for (int i = 0; i < 50; ++i) block.metrics.push_back({true, scream::Ecn::kCe, Duration{0}});
+  for (int i = 0; i < 50; ++i) block.metrics.push_back({true, Ecn::kCe, Duration{0}});
   lie.blocks.push_back(block);
   for (int i = 0; i < 20; ++i) Feed(lie);
   const Stats after(element);
@@ -342,7 +342,7 @@ TEST_F(ScreamTx, TakesLiesForNoSignOfAReceiver) {
   gst_element_set_bus(element, bus);
   Start();
   CongestionFeedback lie;
-  lie.blocks.push_back({0x1234, 30000, {{true, scream::Ecn::kCe, Duration{0}}}});
+  lie.blocks.push_back({0x1234, 30000, {{true, Ecn::kCe, Duration{0}}}});
   for (guint32 i = 0; i < 50; ++i) {
     PushFrame(i * 900, 1);
     Feed(lie);
@@ -363,7 +363,7 @@ TEST_F(ScreamTx, IsNotMovedByAFloodOfTheSameReport) {
   }
   const Stats before(element);
   CongestionFeedback old;
-  old.blocks.push_back({0x1234, 0, {{true, scream::Ecn::kEct1, Duration{0}}}});
+  old.blocks.push_back({0x1234, 0, {{true, Ecn::kEct1, Duration{0}}}});
   for (int i = 0; i < 2000; ++i) Feed(old);
   const Stats after(element);
   EXPECT_EQ(after["packets-ce"], before["packets-ce"]);
@@ -378,7 +378,7 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
   for (guint32 i = 0; i < 100; ++i) {
     PushFrame(i * 900, 2);
     time.Advance(20 * GST_MSECOND);
-    Acknowledge(scream::Ecn::kNotEct);
+    Acknowledge(Ecn::kNotEct);
   }
   Collect();
   EXPECT_EQ(ecns.front(), GST_LIDAR_ECN_ECT1);
@@ -509,7 +509,7 @@ TEST_F(ScreamTxEnds, TooSoonForAnAnswerWithoutAWarning) {
 
 TEST_F(ScreamTx, TestsThePathAnewWhenTheReceiverHasMoved) {
   Start();
-  const auto run = [&](const char* host, scream::Ecn ecn) {
+  const auto run = [&](const char* host, Ecn ecn) {
     from.reset(g_inet_socket_address_new_from_string(host, 5004));
     for (guint32 i = 0; i < 60; ++i) {
       PushFrame(static_cast<guint32>(sent.size()) * 900, 2);
@@ -518,27 +518,27 @@ TEST_F(ScreamTx, TestsThePathAnewWhenTheReceiverHasMoved) {
     }
     Collect();
   };
-  run("192.0.2.1", scream::Ecn::kNotEct);
+  run("192.0.2.1", Ecn::kNotEct);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
   time.Advance(600 * GST_MSECOND);
-  run("192.0.2.2", scream::Ecn::kEct1);
+  run("192.0.2.2", Ecn::kEct1);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "capable");
   EXPECT_EQ(ecns.back(), GST_LIDAR_ECN_ECT1);
 }
 
 TEST_F(ScreamTx, TestsThePathAnewWhereTheApplicationSaysSo) {
   Start();
-  const auto run = [&](scream::Ecn ecn) {
+  const auto run = [&](Ecn ecn) {
     for (guint32 i = 0; i < 60; ++i) {
       PushFrame(static_cast<guint32>(sent.size()) * 900, 2);
       time.Advance(20 * GST_MSECOND);
       Acknowledge(ecn);
     }
   };
-  run(scream::Ecn::kNotEct);
+  run(Ecn::kNotEct);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
   g_signal_emit_by_name(element, "route-changed");
-  run(scream::Ecn::kEct1);
+  run(Ecn::kEct1);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "capable");
 }
 
@@ -550,7 +550,7 @@ TEST_F(ScreamTx, KeepsThePathWhileItsReceiverIsThere) {
   for (guint32 i = 0; i < 60; ++i) {
     PushFrame(i * 1800, 2);
     time.Advance(20 * GST_MSECOND);
-    Acknowledge(scream::Ecn::kNotEct);
+    Acknowledge(Ecn::kNotEct);
     if (i % 5 == 0) from.swap(other);
   }
   EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");

@@ -69,7 +69,7 @@ class ScreamTx : public ::testing::Test {
     }
   }
   /// Reports all packets that were sent and not yet reported.
-  void Acknowledge(scream::Ecn ecn = scream::Ecn::kEct1) {
+  void Acknowledge(Ecn ecn = Ecn::kEct1) {
     Collect();
     if (acknowledged_ == sent.size()) return;
     scream::CongestionFeedback report;

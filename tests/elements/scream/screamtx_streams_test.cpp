@@ -36,7 +36,7 @@ TEST_F(ScreamTx, SharesTheTargetByPriority) {
     PushSmallFrame(second.get(), i);
     for (int k = 0; k < 2; ++k) {
       time.Advance(5 * GST_MSECOND);
-      Acknowledge(i % 4 == 0 ? scream::Ecn::kCe : scream::Ecn::kEct1);
+      Acknowledge(i % 4 == 0 ? Ecn::kCe : Ecn::kEct1);
     }
   }
   const GstLidarTargetBitrate first = NextTarget(rtp.get());

@@ -187,8 +187,8 @@ void FaultLink::Forward(const Datagram& datagram) {
     std::lock_guard lock(mutex_);
     if (bottleneck_) {
       const auto size = static_cast<std::int64_t>(datagram.bytes.size() + kIpAndUdp);
-      bottleneck_->Enqueue(
-          Now(), {DataSize::Bytes(size), static_cast<link::Ecn>(datagram.tos & 3), next_id_});
+      bottleneck_->Enqueue(Now(),
+                           {DataSize::Bytes(size), static_cast<Ecn>(datagram.tos & 3), next_id_});
       queued_.emplace(next_id_++, datagram);
       return;
     }

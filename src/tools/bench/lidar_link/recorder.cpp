@@ -73,7 +73,7 @@ void Recorder::OnPacket(const PacketRecord& record) {
   if (flows_.size() <= record.flow) flows_.resize(record.flow + 1);
   Counts& flow = flows_[record.flow];
   const auto bytes = static_cast<std::uint64_t>(o.packet.size.bytes());
-  const bool marked = o.packet.ecn == link::Ecn::kCe && record.ecn_in != link::Ecn::kCe;
+  const bool marked = o.packet.ecn == Ecn::kCe && record.ecn_in != Ecn::kCe;
   for (Counts* c : {&flow, &live_}) {
     c->packets += o.delivered();
     c->bytes += o.delivered() ? bytes : 0;

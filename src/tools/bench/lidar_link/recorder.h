@@ -18,7 +18,7 @@ namespace lidar::tools {
 /// A packet as it left or was dropped.
 struct PacketRecord {
   link::Outcome outcome;
-  link::Ecn ecn_in = link::Ecn::kNotEct;
+  Ecn ecn_in = Ecn::kNotEct;
   std::size_t flow = 0;
   ByteView payload;
 };

@@ -9,9 +9,9 @@ namespace {
 constexpr std::uint8_t kEcnMask = 3;
 constexpr std::size_t kMaxFlows = 64;
 
-link::Ecn EcnOf(std::uint8_t tos) { return static_cast<link::Ecn>(tos & kEcnMask); }
+Ecn EcnOf(std::uint8_t tos) { return static_cast<Ecn>(tos & kEcnMask); }
 
-std::uint8_t WithEcn(std::uint8_t tos, link::Ecn ecn) {
+std::uint8_t WithEcn(std::uint8_t tos, Ecn ecn) {
   return static_cast<std::uint8_t>((tos & 0xFCU) | static_cast<unsigned>(ecn));
 }
 
@@ -82,7 +82,7 @@ void Relay::Enqueue(link::Bottleneck* link, Time arrival, const Datagram& datagr
                     std::size_t flow) {
   const auto size =
       DataSize::Bytes(static_cast<std::int64_t>(datagram.payload.size) + options_.overhead_bytes);
-  const link::Ecn ecn = options_.bleach ? link::Ecn::kNotEct : EcnOf(datagram.tos);
+  const Ecn ecn = options_.bleach ? Ecn::kNotEct : EcnOf(datagram.tos);
   link->Enqueue(arrival, {size, ecn, TakeSlot(datagram, flow)});
 }
 
