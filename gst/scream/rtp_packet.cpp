@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "src/base/byte_writer.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 namespace lidar::gst {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "src/base/time.h"
 #include "src/bonding/packet_id.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 namespace lidar::bonding {
 

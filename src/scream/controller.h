@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "src/base/steady_time.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 #include "src/scream/model/path_model.h"
 #include "src/scream/model/sent_history.h"
 #include "src/scream/pacer.h"

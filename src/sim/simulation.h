@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "src/link/bottleneck.h"
+#include "src/rtcp/feedback_generator.h"
 #include "src/scream/controller.h"
-#include "src/scream/feedback/feedback_generator.h"
 #include "src/sim/tcp_window.h"
 
 namespace lidar::scream::test {

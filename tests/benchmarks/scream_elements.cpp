@@ -10,7 +10,7 @@
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/base/byte_writer.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 namespace lidar {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // RTCP of both ends: RFC 8888 feedback, alone and in compounds, and the sender's reports.
-#include "src/scream/feedback/ccfb.h"
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/ccfb.h"
+#include "src/rtcp/sender_report.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Transport-wide feedback, to packets that were sent.
 #include "src/base/byte_reader.h"
-#include "src/scream/feedback/twcc_mapper.h"
+#include "src/rtcp/twcc_mapper.h"
 #include "tests/fuzz/fuzz.h"
 
 // The input is a base number, and then for each packet an arrival in ticks of 250 us; 0 means that

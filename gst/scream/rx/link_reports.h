@@ -12,7 +12,7 @@
 
 #include "gst/net/udp_socket.h"
 #include "src/base/time.h"
-#include "src/scream/feedback/feedback_generator.h"
+#include "src/rtcp/feedback_generator.h"
 
 namespace lidar::gst {
 

@@ -23,7 +23,7 @@
 #include "gst/scream/rx/gstscreamrx.h"
 #include "gst/scream/rx/link_reports.h"
 #include "gst/scream/rx/sender_view.h"
-#include "src/scream/feedback/feedback_generator.h"
+#include "src/rtcp/feedback_generator.h"
 
 GST_DEBUG_CATEGORY_EXTERN(gst_lidar_scream_rx_debug);
 

@@ -5,7 +5,7 @@
 
 #include "gst/common/refs.h"
 #include "src/base/time.h"
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/sender_report.h"
 
 namespace lidar::gst {
 

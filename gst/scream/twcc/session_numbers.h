@@ -7,7 +7,7 @@
 #include <deque>
 #include <optional>
 
-#include "src/scream/feedback/twcc_mapper.h"
+#include "src/rtcp/twcc_mapper.h"
 
 namespace lidar::gst {
 

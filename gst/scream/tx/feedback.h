@@ -2,7 +2,7 @@
 // Reports that reach screamtx in another form than RTCP.
 #pragma once
 #include "gst/scream/tx/gstscreamtx.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 namespace lidar::gst {
 

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "gst/scream/tx/gstscreamtx.h"
+#include "src/rtcp/ccfb.h"
 #include "src/scream/controller.h"
-#include "src/scream/feedback/ccfb.h"
 
 namespace lidar::gst {
 

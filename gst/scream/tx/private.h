@@ -28,8 +28,8 @@
 #include "gst/scream/tx/stream.h"
 #include "gst/scream/tx/stream_merger.h"
 #include "gst/scream/tx/upstream_reporter.h"
+#include "src/rtcp/ccfb.h"
 #include "src/scream/controller.h"
-#include "src/scream/feedback/ccfb.h"
 
 GST_DEBUG_CATEGORY_EXTERN(gst_lidar_scream_tx_debug);
 

@@ -5,7 +5,7 @@
 
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 namespace lidar::gst {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/sender_report.h"
 
 namespace lidar::gst {
 namespace {

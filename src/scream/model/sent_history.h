@@ -11,8 +11,8 @@
 #include "src/base/sequence.h"
 #include "src/base/time.h"
 #include "src/base/units.h"
-#include "src/scream/feedback/ccfb.h"
-#include "src/scream/feedback/report_clock.h"
+#include "src/rtcp/ccfb.h"
+#include "src/rtcp/report_clock.h"
 
 namespace lidar::scream {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <memory>
 
+#include "src/rtcp/feedback_generator.h"
 #include "src/scream/controller.h"
-#include "src/scream/feedback/feedback_generator.h"
 #include "src/scream/target_notifier.h"
 #include "src/sim/network.h"
 #include "src/sim/simulated_time.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "src/scream/feedback/report_clock.h"
+#include "src/rtcp/report_clock.h"
 #include "src/sim/simulated_time.h"
 
 namespace lidar::scream {

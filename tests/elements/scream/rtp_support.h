@@ -13,8 +13,8 @@
 
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
+#include "src/rtcp/ccfb.h"
 #include "src/rtp/payload_header.h"
-#include "src/scream/feedback/ccfb.h"
 #include "tests/support/harness.h"
 
 namespace lidar::test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "src/scream/feedback/twcc_mapper.h"
+#include "src/rtcp/twcc_mapper.h"
 #include "tests/elements/scream/pipeline.h"
 #include "tests/elements/scream/rtp_support.h"
 #include "tests/support/patience.h"

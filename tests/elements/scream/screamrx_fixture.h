@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gst/scream/rtp_packet.h"
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/sender_report.h"
 #include "tests/elements/scream/rtp_support.h"
 
 namespace lidar::test {

@@ -2,7 +2,7 @@
 // screamtx under a test clock: its events upstream, its packets, its statistics.
 #include <gtest/gtest.h>
 
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/sender_report.h"
 #include "tests/elements/scream/screamtx_fixture.h"
 #include "tests/support/patience.h"
 

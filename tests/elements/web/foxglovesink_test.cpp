@@ -4,7 +4,7 @@
 #include <array>
 
 #include "gst/common/latency.h"
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/sender_report.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/proto_reader.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Transport-wide feedback, back to packets.
-#include "src/scream/feedback/twcc_mapper.h"
+#include "src/rtcp/twcc_mapper.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // When the receiver reports, and what.
-#include "src/scream/feedback/feedback_generator.h"
+#include "src/rtcp/feedback_generator.h"
 
 #include <gtest/gtest.h>
 

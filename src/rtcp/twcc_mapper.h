@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "src/base/sequence.h"
-#include "src/scream/feedback/ccfb.h"
-#include "src/scream/feedback/report_clock.h"
+#include "src/rtcp/ccfb.h"
+#include "src/rtcp/report_clock.h"
 
 namespace lidar::scream {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/scream/feedback/twcc_mapper.h"
+#include "src/rtcp/twcc_mapper.h"
 
 #include <algorithm>
 #include <map>

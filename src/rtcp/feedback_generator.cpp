@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/scream/feedback/feedback_generator.h"
+#include "src/rtcp/feedback_generator.h"
 
 #include <algorithm>
 
-#include "src/scream/feedback/report_clock.h"
+#include "src/rtcp/report_clock.h"
 
 namespace lidar::scream {
 namespace {

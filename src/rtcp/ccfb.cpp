@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 #include <algorithm>
 

@@ -10,7 +10,7 @@
 #include "src/base/steady_time.h"
 #include "src/base/time.h"
 #include "src/base/units.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 namespace lidar::scream {
 using namespace std::chrono_literals;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/sender_report.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "src/base/byte_writer.h"
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 namespace lidar::scream {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // RFC 8888 on the wire.
-#include "src/scream/feedback/ccfb.h"
+#include "src/rtcp/ccfb.h"
 
 #include <gtest/gtest.h>
 
-#include "src/scream/feedback/report_clock.h"
-#include "tests/core/scream/bytes.h"
+#include "src/rtcp/report_clock.h"
+#include "tests/core/rtcp/bytes.h"
 
 namespace lidar::scream {
 namespace {

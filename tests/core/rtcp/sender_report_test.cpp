@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The sender's report on the wire.
-#include "src/scream/feedback/sender_report.h"
+#include "src/rtcp/sender_report.h"
 
 #include <gtest/gtest.h>
 
-#include "src/scream/feedback/ccfb.h"
-#include "tests/core/scream/bytes.h"
+#include "src/rtcp/ccfb.h"
+#include "tests/core/rtcp/bytes.h"
 
 namespace lidar::scream {
 namespace {
