@@ -84,7 +84,7 @@ std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs) {
 
 std::vector<guint32> ParseBye(ByteView datagram) {
   std::vector<guint32> ssrcs;
-  for (const ByteView packet : scream::SplitRtcp(datagram)) {
+  for (const ByteView packet : rtcp::SplitRtcp(datagram)) {
     ByteReader in(packet);
     const std::uint8_t first = in.U8();
     if (in.U8() != kBye) continue;

@@ -32,9 +32,9 @@ void LinkLedger::Trim(Source* source) {
 }
 
 /// Returns false if the report names packets that this link never sent.
-bool LinkLedger::Translate(const Source& source, const scream::SsrcReport& block,
-                           scream::SsrcReport* own) {
-  std::vector<std::pair<std::int64_t, const scream::PacketMetric*>> arrived;
+bool LinkLedger::Translate(const Source& source, const rtcp::SsrcReport& block,
+                           rtcp::SsrcReport* own) {
+  std::vector<std::pair<std::int64_t, const rtcp::PacketMetric*>> arrived;
   for (std::size_t i = 0; i < block.metrics.size(); ++i) {
     if (!block.metrics[i].received) continue;
     const auto found = source.numbers.find(static_cast<std::uint16_t>(block.begin_seq + i));
@@ -51,7 +51,7 @@ bool LinkLedger::Translate(const Source& source, const scream::SsrcReport& block
   return true;
 }
 
-void LinkLedger::Settle(const scream::SsrcReport& own, Source* source, Report* report) {
+void LinkLedger::Settle(const rtcp::SsrcReport& own, Source* source, Report* report) {
   if (own.metrics.empty()) return;
   // The block's numbers lie within one turn of 16 bit, because kMaxPackets is less than a turn.
   const std::int64_t begin =
@@ -69,14 +69,13 @@ void LinkLedger::Settle(const scream::SsrcReport& own, Source* source, Report* r
   }
 }
 
-std::optional<LinkLedger::Report> LinkLedger::OnFeedback(
-    const scream::CongestionFeedback& feedback) {
+std::optional<LinkLedger::Report> LinkLedger::OnFeedback(const rtcp::CongestionFeedback& feedback) {
   Report report;
   report.feedback = feedback;
   report.feedback.blocks.clear();
-  for (const scream::SsrcReport& block : feedback.blocks) {
+  for (const rtcp::SsrcReport& block : feedback.blocks) {
     const auto source = sources_.find(block.ssrc);
-    scream::SsrcReport own;
+    rtcp::SsrcReport own;
     if (source == sources_.end()) {
       report.feedback.blocks.push_back(block);  // the controller counts unknown blocks
       continue;
@@ -84,17 +83,17 @@ std::optional<LinkLedger::Report> LinkLedger::OnFeedback(
     if (!Translate(source->second, block, &own)) return std::nullopt;
     if (!own.metrics.empty()) report.feedback.blocks.push_back(std::move(own));
   }
-  for (const scream::SsrcReport& own : report.feedback.blocks) {
+  for (const rtcp::SsrcReport& own : report.feedback.blocks) {
     const auto source = sources_.find(own.ssrc);
     if (source != sources_.end()) Settle(own, &source->second, &report);
   }
   return report;
 }
 
-bool LinkLedger::HasSent(const scream::CongestionFeedback& feedback) const {
+bool LinkLedger::HasSent(const rtcp::CongestionFeedback& feedback) const {
   return std::all_of(feedback.blocks.begin(), feedback.blocks.end(), [this](const auto& block) {
     const auto source = sources_.find(block.ssrc);
-    scream::SsrcReport own;
+    rtcp::SsrcReport own;
     return source != sources_.end() && Translate(source->second, block, &own);
   });
 }

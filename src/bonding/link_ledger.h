@@ -30,18 +30,18 @@ class LinkLedger {
     std::optional<Duration> age;  // at the report's timestamp
   };
   struct Report {
-    scream::CongestionFeedback feedback;  // with the numbers of this link
-    std::vector<Arrival> arrived;         // reported for the first time
-    std::vector<PacketId> missing;        // overtaken by packets that arrived; each is listed once
+    rtcp::CongestionFeedback feedback;  // with the numbers of this link
+    std::vector<Arrival> arrived;       // reported for the first time
+    std::vector<PacketId> missing;      // overtaken by packets that arrived; each is listed once
   };
 
   /// Returns the packet's number on this link. The receiver reports at once after a packet with
   /// `ends_slice`.
   std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
   /// Returns nothing if the report has packets that never left over this link.
-  std::optional<Report> OnFeedback(const scream::CongestionFeedback& feedback);
+  std::optional<Report> OnFeedback(const rtcp::CongestionFeedback& feedback);
   /// Returns true if each packet of the report left over this link.
-  bool HasSent(const scream::CongestionFeedback& feedback) const;
+  bool HasSent(const rtcp::CongestionFeedback& feedback) const;
   /// Returns when the oldest due report should have left the receiver. Packets count if neither
   /// they nor later ones were reported. The receiver reports at a slice's end, at the latest after
   /// kReportEvery.
@@ -68,9 +68,8 @@ class LinkLedger {
 
   void ForgetSilentSource();
   static void Trim(Source* source);
-  static bool Translate(const Source& source, const scream::SsrcReport& block,
-                        scream::SsrcReport* own);
-  static void Settle(const scream::SsrcReport& own, Source* source, Report* report);
+  static bool Translate(const Source& source, const rtcp::SsrcReport& block, rtcp::SsrcReport* own);
+  static void Settle(const rtcp::SsrcReport& own, Source* source, Report* report);
 
   std::map<std::uint32_t, Source> sources_;
 };

@@ -270,8 +270,8 @@ bool Scheduler::OnDropped(Time, std::size_t link, PacketId id) {
   return entry->arrived;
 }
 
-std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(
-    Time, std::size_t link, const scream::CongestionFeedback& feedback) {
+std::optional<rtcp::CongestionFeedback> Scheduler::OnFeedback(
+    Time, std::size_t link, const rtcp::CongestionFeedback& feedback) {
   auto report = links_[link].ledger.OnFeedback(feedback);
   if (!report) return std::nullopt;
   links_[link].has_reported = true;
@@ -288,7 +288,7 @@ std::optional<scream::CongestionFeedback> Scheduler::OnFeedback(
   return std::move(report->feedback);
 }
 
-std::optional<std::size_t> Scheduler::OwnerOf(const scream::CongestionFeedback& feedback) const {
+std::optional<std::size_t> Scheduler::OwnerOf(const rtcp::CongestionFeedback& feedback) const {
   for (std::size_t i = 0; i < links_.size(); ++i)
     if (links_[i].ledger.HasSent(feedback)) return i;
   return std::nullopt;

@@ -104,11 +104,11 @@ class Scheduler {
 
   /// Converts a report of the link's receiver to the link's numbers. Returns nothing if the report
   /// is impossible.
-  std::optional<scream::CongestionFeedback> OnFeedback(Time now, std::size_t link,
-                                                       const scream::CongestionFeedback& feedback);
+  std::optional<rtcp::CongestionFeedback> OnFeedback(Time now, std::size_t link,
+                                                     const rtcp::CongestionFeedback& feedback);
   /// Returns the link that sent the packets of a report. It may differ from the link that the
   /// report came by: something between the ends may swap feedback.
-  std::optional<std::size_t> OwnerOf(const scream::CongestionFeedback& feedback) const;
+  std::optional<std::size_t> OwnerOf(const rtcp::CongestionFeedback& feedback) const;
   void OnPath(std::size_t link, const PathView& path) { links_[link].path = path; }
   /// Sets whether packets can leave by the link at all.
   void SetUsable(Time now, std::size_t link, bool usable);

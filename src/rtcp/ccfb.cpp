@@ -5,7 +5,7 @@
 
 #include "src/base/byte_writer.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 constexpr std::uint8_t kVersion2 = 0x80;
@@ -143,4 +143,4 @@ std::vector<std::uint8_t> BuildCcfb(const CongestionFeedback& feedback, NumRepor
   return bytes;
 }
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

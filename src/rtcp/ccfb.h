@@ -9,7 +9,7 @@
 #include "src/base/ecn.h"
 #include "src/base/time.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 
 /// Meaning of the 16 bits after begin_seq.
 enum class NumReports {
@@ -64,4 +64,4 @@ class CcfbParser {
 std::vector<std::uint8_t> BuildCcfb(const CongestionFeedback& feedback,
                                     NumReports reading = NumReports::kCount);
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

@@ -5,7 +5,7 @@
 
 #include "src/rtcp/report_clock.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 constexpr std::size_t kMaxSources = 64;
@@ -212,4 +212,4 @@ void FeedbackGenerator::Trim(Source* source) const {
   }
 }
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

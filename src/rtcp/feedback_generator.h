@@ -12,7 +12,7 @@
 #include "src/base/units.h"
 #include "src/rtcp/ccfb.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 using namespace std::chrono_literals;
 
 struct ReceivedPacket {
@@ -126,4 +126,4 @@ class FeedbackGenerator {
   DataRate rate_;
 };
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

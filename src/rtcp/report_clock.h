@@ -6,7 +6,7 @@
 #include "src/base/sequence.h"
 #include "src/base/time.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 
 /// Conversions are exact, so that the wrap after 18 hours causes no error.
 class ReportClock {
@@ -28,4 +28,4 @@ class ReportClock {
   SequenceUnwrapper<std::uint32_t> unwrapper_;
 };
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

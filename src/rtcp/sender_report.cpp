@@ -7,7 +7,7 @@
 #include "src/base/byte_writer.h"
 #include "src/rtcp/ccfb.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 constexpr std::uint8_t kReceiverReport = 201;
@@ -105,4 +105,4 @@ std::optional<SenderReport> ParseSenderReport(ByteView datagram) {
   return std::nullopt;
 }
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

@@ -9,7 +9,7 @@
 #include "src/base/time.h"
 #include "src/base/units.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 
 /// All fields have 32 bits on the wire: amounts saturate, counts wrap.
 struct SenderReport {
@@ -38,4 +38,4 @@ bool HasSenderReport(ByteView datagram);
 /// behind the known ones are ignored.
 std::optional<SenderReport> ParseSenderReport(ByteView datagram);
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 using Metrics = std::map<std::int64_t, PacketMetric>;
@@ -82,4 +82,4 @@ std::optional<CongestionFeedback> TwccMapper::Map(const TwccFeedback& feedback) 
   return report;
 }
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

@@ -12,7 +12,7 @@
 #include "src/rtcp/ccfb.h"
 #include "src/rtcp/report_clock.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 
 /// URI of the RTP header extension with the packet numbers.
 constexpr const char* kTwccUri =
@@ -54,4 +54,4 @@ class TwccMapper {
   std::optional<Duration> newest_;  // newest arrival, without wrap-around
 };
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

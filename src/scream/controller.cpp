@@ -85,7 +85,7 @@ void Controller::OnUnneeded(Time now, StreamId id) {
   ++counters_.packets_dropped;
 }
 
-FeedbackResult Controller::OnFeedback(Time now, const CongestionFeedback& feedback) {
+FeedbackResult Controller::OnFeedback(Time now, const rtcp::CongestionFeedback& feedback) {
   now = Advance(now);
   if (outage_.active()) history_.Expire(now);
   AckSummary acks;

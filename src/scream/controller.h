@@ -77,7 +77,7 @@ class Controller {
   /// The packet at the head of the queue was not sent, as another path delivered it.
   void OnUnneeded(Time now, StreamId stream);
   /// Takes parsed feedback of the peer. The caller has checked its source address.
-  FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback);
+  FeedbackResult OnFeedback(Time now, const rtcp::CongestionFeedback& feedback);
   /// Call it at NextTimer() or later; more calls do no harm.
   void OnTimer(Time now);
   /// The peer's address changed. Forgets base delay and RTT, probes ECN anew, and restarts from the

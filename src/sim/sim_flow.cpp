@@ -117,9 +117,9 @@ void Flow::Report(Time now, const SimulationConfig& sim, link::Random* loss, Net
   while (auto report = generator_.Take(ToReceiver(now))) {
     report->report_timestamp += epoch_;
     if (!config_.arrival_times)
-      for (SsrcReport& block : report->blocks)
-        for (PacketMetric& metric : block.metrics) metric.arrival_offset.reset();
-    auto bytes = BuildCcfb(*report);
+      for (rtcp::SsrcReport& block : report->blocks)
+        for (rtcp::PacketMetric& metric : block.metrics) metric.arrival_offset.reset();
+    auto bytes = rtcp::BuildCcfb(*report);
     result_.feedback_bytes += static_cast<std::int64_t>(bytes.size()) + kIpUdp;
     if (loss->Chance(sim.return_loss) || outage) continue;
     if (config_.return_route.empty()) {

@@ -66,8 +66,8 @@ class Flow {
 
   FlowConfig config_;
   std::unique_ptr<Controller> controller_;
-  FeedbackGenerator generator_;
-  CcfbParser parser_;
+  rtcp::FeedbackGenerator generator_;
+  rtcp::CcfbParser parser_;
   link::Random random_;
   int index_;
   std::uint32_t generation_ = 0;  // counts restarts of the sender

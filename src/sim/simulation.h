@@ -54,7 +54,7 @@ struct FlowConfig {
   /// Delay each way, in addition to that of the links.
   Duration access_delay{0};
   std::vector<SourceConfig> sources{1};
-  FeedbackConfig feedback;
+  rtcp::FeedbackConfig feedback;
   Time start{};
   Duration stop_after = kNever;
   bool drop_late = true;

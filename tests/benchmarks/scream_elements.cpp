@@ -58,14 +58,14 @@ struct Receiver {
     unreported.push_back(static_cast<std::uint16_t>(seq[0] << 8 | seq[1]));
     ++packets;
     if (unreported.size() < kPacketsPerReport) return;
-    scream::CongestionFeedback report;
-    scream::SsrcReport block{kSsrc, unreported.front(), {}};
+    rtcp::CongestionFeedback report;
+    rtcp::SsrcReport block{kSsrc, unreported.front(), {}};
     block.metrics.assign(unreported.size(), {true, Ecn::kEct1, Duration{0}});
     report.blocks.push_back(std::move(block));
     report.report_timestamp =
         static_cast<std::uint32_t>(g_get_monotonic_time() * 65536 / G_USEC_PER_SEC);
     unreported.clear();
-    const auto bytes = scream::BuildCcfb(report);
+    const auto bytes = rtcp::BuildCcfb(report);
     GstBuffer* out = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
     gst_buffer_fill(out, 0, bytes.data(), bytes.size());
     gst_pad_push(rtcp, out);

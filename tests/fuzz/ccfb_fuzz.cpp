@@ -5,28 +5,28 @@
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  lidar::scream::CcfbParser parser;
+  lidar::rtcp::CcfbParser parser;
   std::size_t total = 0;
-  for (const auto& packet : lidar::scream::SplitRtcp({data, size})) {
+  for (const auto& packet : lidar::rtcp::SplitRtcp({data, size})) {
     total += packet.size;
-    const bool claims = lidar::scream::IsCcfb(packet);
+    const bool claims = lidar::rtcp::IsCcfb(packet);
     const auto feedback = parser.Parse(packet);
     FUZZ_CHECK(claims || !feedback);
     if (!feedback) continue;
     for (const auto reading :
-         {lidar::scream::NumReports::kCount, lidar::scream::NumReports::kCountMinusOne}) {
+         {lidar::rtcp::NumReports::kCount, lidar::rtcp::NumReports::kCountMinusOne}) {
       // Feedback that was read can be written again, in at most 4 bytes more.
-      const auto again = lidar::scream::BuildCcfb(*feedback, reading);
+      const auto again = lidar::rtcp::BuildCcfb(*feedback, reading);
       FUZZ_CHECK(again.size() <= packet.size + 4);
     }
   }
   FUZZ_CHECK(total == 0 || total == size);
   parser.Parse({data, size});
-  const auto report = lidar::scream::ParseSenderReport({data, size});
+  const auto report = lidar::rtcp::ParseSenderReport({data, size});
   if (!report) return 0;
-  FUZZ_CHECK(lidar::scream::HasSenderReport({data, size}));
-  const auto bytes = lidar::scream::BuildSenderReport(*report);
-  const auto again = lidar::scream::ParseSenderReport({bytes.data(), bytes.size()});
+  FUZZ_CHECK(lidar::rtcp::HasSenderReport({data, size}));
+  const auto bytes = lidar::rtcp::BuildSenderReport(*report);
+  const auto again = lidar::rtcp::ParseSenderReport({bytes.data(), bytes.size()});
   FUZZ_CHECK(again && again->ssrc == report->ssrc && again->rtt == report->rtt &&
              again->target_bitrate == report->target_bitrate && again->ref_wnd == report->ref_wnd &&
              again->packets_dropped == report->packets_dropped);

@@ -7,7 +7,7 @@
 // The input is a base number, and then for each packet an arrival in ticks of 250 us; 0 means that
 // it did not arrive.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace lidar::scream;
+  using namespace lidar::rtcp;
   TwccMapper mapper;
   for (unsigned i = 0; i < 300; ++i)
     mapper.OnSent(static_cast<std::uint16_t>(i), 1 + i % 2, static_cast<std::uint16_t>(i / 2));

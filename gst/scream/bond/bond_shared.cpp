@@ -40,8 +40,8 @@ class BondLink : public TxLink {
     const std::lock_guard lock(bond_->mutex);
     return bond_->scheduler.OnDropped(now, index_, {ssrc, seq});
   }
-  std::optional<scream::CongestionFeedback> OnFeedback(
-      Time now, const scream::CongestionFeedback& report) override {
+  std::optional<rtcp::CongestionFeedback> OnFeedback(
+      Time now, const rtcp::CongestionFeedback& report) override {
     const std::lock_guard lock(bond_->mutex);
     auto own = bond_->scheduler.OnFeedback(now, index_, report);
     if (own || bond_->misdirected.size() >= kMaxMisdirected) return own;

@@ -33,7 +33,7 @@ struct BondStream {
 /// A report about packets of link `owner` that came by another link.
 struct Misdirected {
   std::size_t owner;
-  scream::CongestionFeedback report;
+  rtcp::CongestionFeedback report;
 };
 
 /// Copies of packets, changed targets and reports, to be passed on without the lock.

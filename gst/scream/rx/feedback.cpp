@@ -62,9 +62,9 @@ GstBuffer* NextPacket(GstLidarScreamRx* self, Time now) {
   if (!report) return nullptr;
   GST_LOG_OBJECT(self, "reporting %" G_GSIZE_FORMAT " SSRCs", report->feedback.blocks.size());
   const auto reading = state.settings.num_reports == kNumReportsEricsson
-                           ? scream::NumReports::kCountMinusOne
-                           : scream::NumReports::kCount;
-  return ToBuffer(report->to, scream::BuildCcfb(report->feedback, reading));
+                           ? rtcp::NumReports::kCountMinusOne
+                           : rtcp::NumReports::kCount;
+  return ToBuffer(report->to, rtcp::BuildCcfb(report->feedback, reading));
 }
 
 void Run(gpointer data) {

@@ -39,7 +39,7 @@ GType NumReportsType() {
 
 /// Values shown in `stats`.
 struct Shown {
-  scream::FeedbackGenerator::Stats feedback;
+  rtcp::FeedbackGenerator::Stats feedback;
   RxCounters own;
 };
 template <auto field>
@@ -50,7 +50,7 @@ constexpr auto O = At<&Shown::own, field>;
 /// Adds the numbers of packets of each link of the peer.
 static void AddLinkStats(const LinkReports& reports, GstStructure* stats) {
   using S = LinkReports::LinkStats;
-  using G = scream::FeedbackGenerator::Stats;
+  using G = rtcp::FeedbackGenerator::Stats;
   static const std::array<Stat<S>, 4> kStats = {{
       {"address", &S::address},
       {"packets-received", At<&S::feedback, &G::packets>},
@@ -69,7 +69,7 @@ static void AddLinkStats(const LinkReports& reports, GstStructure* stats) {
 }
 
 static StructurePtr Stats(GObject* object) {
-  using S = scream::FeedbackGenerator::Stats;
+  using S = rtcp::FeedbackGenerator::Stats;
   using C = RxCounters;
   static const std::array<Stat<Shown>, 16> kStats = {{
       {"packets-received", F<&S::packets>},
@@ -101,7 +101,7 @@ static StructurePtr Stats(GObject* object) {
 
 const RxProperties& RxPropertyTable() {
   using S = RxSettings;
-  using C = scream::FeedbackConfig;
+  using C = rtcp::FeedbackConfig;
   constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
   static const RxProperties table = {{
       {"feedback-interval", "Longest wait of a packet for its report; less at high rate [ns]",
@@ -135,8 +135,8 @@ Time RxNow(const RxState& state) {
   return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(state.clock))}};
 }
 
-scream::FeedbackConfig ToConfig(const RxSettings& s, guint32 own_ssrc) {
-  scream::FeedbackConfig config = s.feedback;
+rtcp::FeedbackConfig ToConfig(const RxSettings& s, guint32 own_ssrc) {
+  rtcp::FeedbackConfig config = s.feedback;
   config.sender_ssrc = own_ssrc;
   config.packets_per_feedback = static_cast<int>(s.packets_per_feedback);
   return config;

@@ -112,7 +112,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   GstLidarEcn ecn = GST_LIDAR_ECN_NOT_ECT;
   GstClockTime arrival = GST_CLOCK_TIME_NONE;
   gst_lidar_buffer_get_ecn(buffer, &ecn, &arrival);
-  scream::ReceivedPacket packet;
+  rtcp::ReceivedPacket packet;
   packet.ssrc = header.ssrc;
   packet.seq = header.seq;
   packet.ecn = static_cast<Ecn>(ecn);
@@ -142,12 +142,12 @@ bool AnyAlive(const RxState& state, Time now) {
 /// other RTCP passes unread. The caller holds the lock.
 Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
-  if (goodbyes.empty() && !scream::HasSenderReport(map.view())) return Fate::kPass;
+  if (goodbyes.empty() && !rtcp::HasSenderReport(map.view())) return Fate::kPass;
   if (!state.latch.IsPeer(SourceOf(buffer))) {
     ++state.counters.foreign;
     return Fate::kDrop;
   }
-  const auto report = scream::ParseSenderReport(map.view());
+  const auto report = rtcp::ParseSenderReport(map.view());
   if (report && state.ssrcs.count(report->ssrc) > 0) state.sender.OnReport(now, *report);
   bool known = false;
   for (const guint32 ssrc : goodbyes) known = state.ssrcs.erase(ssrc) > 0 || known;

@@ -7,12 +7,12 @@
 
 namespace lidar::gst {
 
-void LinkReports::Reset(const scream::FeedbackConfig& config) {
+void LinkReports::Reset(const rtcp::FeedbackConfig& config) {
   config_ = config;
   links_.clear();
 }
 
-void LinkReports::set_config(const scream::FeedbackConfig& config) {
+void LinkReports::set_config(const rtcp::FeedbackConfig& config) {
   config_ = config;
   for (Link& link : links_) link.generator.set_config(config);
 }
@@ -30,13 +30,12 @@ LinkReports::Link& LinkReports::LinkOf(GSocketAddress* from) {
                                   [](const Link& a, const Link& b) { return a.last < b.last; }));
   Link link;
   if (from != nullptr) link.address.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
-  link.generator = scream::FeedbackGenerator(config_);
+  link.generator = rtcp::FeedbackGenerator(config_);
   links_.push_back(std::move(link));
   return links_.back();
 }
 
-void LinkReports::OnPacket(GSocketAddress* from, Time arrival,
-                           const scream::ReceivedPacket& packet) {
+void LinkReports::OnPacket(GSocketAddress* from, Time arrival, const rtcp::ReceivedPacket& packet) {
   Link& link = LinkOf(from);
   link.last = arrival;
   link.generator.OnPacket(arrival, packet);
@@ -62,10 +61,10 @@ std::vector<LinkReports::LinkStats> LinkReports::stats() const {
   return stats;
 }
 
-scream::FeedbackGenerator::Stats LinkReports::Sum() const {
-  scream::FeedbackGenerator::Stats sum;
+rtcp::FeedbackGenerator::Stats LinkReports::Sum() const {
+  rtcp::FeedbackGenerator::Stats sum;
   for (const Link& link : links_) {
-    const scream::FeedbackGenerator::Stats& s = link.generator.stats();
+    const rtcp::FeedbackGenerator::Stats& s = link.generator.stats();
     sum.packets += s.packets;
     sum.ce_packets += s.ce_packets;
     sum.duplicates += s.duplicates;

@@ -23,34 +23,34 @@ class LinkReports {
   static constexpr std::size_t kMaxLinks = 4;
 
   struct Report {
-    scream::CongestionFeedback feedback;
+    rtcp::CongestionFeedback feedback;
     GSocketAddress* to;  // not owned; NULL if unknown
   };
 
   /// Forgets everything.
-  void Reset(const scream::FeedbackConfig& config);
-  void set_config(const scream::FeedbackConfig& config);
-  void OnPacket(GSocketAddress* from, Time arrival, const scream::ReceivedPacket& packet);
+  void Reset(const rtcp::FeedbackConfig& config);
+  void set_config(const rtcp::FeedbackConfig& config);
+  void OnPacket(GSocketAddress* from, Time arrival, const rtcp::ReceivedPacket& packet);
   Time NextDue() const;
   std::optional<Report> Take(Time now);
 
   struct LinkStats {
     std::string address;
-    scream::FeedbackGenerator::Stats feedback;
+    rtcp::FeedbackGenerator::Stats feedback;
   };
   std::vector<LinkStats> stats() const;
   /// Sums over all links.
-  scream::FeedbackGenerator::Stats Sum() const;
+  rtcp::FeedbackGenerator::Stats Sum() const;
 
  private:
   struct Link {
     SocketAddressPtr address;
-    scream::FeedbackGenerator generator;
+    rtcp::FeedbackGenerator generator;
     Time last{};
   };
   Link& LinkOf(GSocketAddress* from);
 
-  scream::FeedbackConfig config_;
+  rtcp::FeedbackConfig config_;
   std::vector<Link> links_;
 };
 

@@ -33,8 +33,8 @@ enum NumReportsMode { kNumReportsCount, kNumReportsEricsson };
 GType NumReportsType();
 
 struct RxSettings {
-  scream::FeedbackConfig feedback;  // without the settings below
-  guint packets_per_feedback = static_cast<guint>(scream::FeedbackConfig{}.packets_per_feedback);
+  rtcp::FeedbackConfig feedback;  // without the settings below
+  guint packets_per_feedback = static_cast<guint>(rtcp::FeedbackConfig{}.packets_per_feedback);
   guint ssrc = 0;
   gint num_reports = kNumReportsCount;
   bool eos_on_bye = true;
@@ -103,7 +103,7 @@ namespace lidar::gst {
 using RxLock = std::unique_lock<std::mutex>;
 
 Time RxNow(const RxState& state);
-scream::FeedbackConfig ToConfig(const RxSettings& settings, guint32 own_ssrc);
+rtcp::FeedbackConfig ToConfig(const RxSettings& settings, guint32 own_ssrc);
 
 // input.cpp: the sink pad
 GstFlowReturn RxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);

@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kClockKept = std::chrono::seconds(10);
 
 struct Shown {
-  scream::SenderReport newest;
+  rtcp::SenderReport newest;
   guint64 reports = 0;
   Duration age{};
 };
@@ -21,7 +21,7 @@ constexpr auto N = At<&Shown::newest, field>;
 
 }  // namespace
 
-void SenderView::OnReport(Time now, const scream::SenderReport& report) {
+void SenderView::OnReport(Time now, const rtcp::SenderReport& report) {
   const auto ahead = static_cast<std::int32_t>(report.time_ms - newest_.time_ms);
   const bool same_clock = report.ssrc == newest_.ssrc && now - arrived_ < kClockKept;
   if (reports_ > 0 && same_clock && ahead <= 0) return;
@@ -31,7 +31,7 @@ void SenderView::OnReport(Time now, const scream::SenderReport& report) {
 }
 
 void SenderView::AddStats(Time now, GstStructure* stats) const {
-  using R = scream::SenderReport;
+  using R = rtcp::SenderReport;
   static const std::array<Stat<Shown>, 14> kStats = {{
       {"sender-reports", &Shown::reports},
       {"sender-report-age", &Shown::age},

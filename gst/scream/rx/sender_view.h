@@ -12,13 +12,13 @@ namespace lidar::gst {
 class SenderView {
  public:
   /// Takes reports that are newer than the last one.
-  void OnReport(Time now, const scream::SenderReport& report);
+  void OnReport(Time now, const rtcp::SenderReport& report);
   /// Adds the fields sender-... to `stats`; all are 0 before the first report.
   void AddStats(Time now, GstStructure* stats) const;
   void Reset() { *this = {}; }
 
  private:
-  scream::SenderReport newest_;
+  rtcp::SenderReport newest_;
   Time arrived_{};
   guint64 reports_ = 0;
 };

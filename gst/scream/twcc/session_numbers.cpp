@@ -35,7 +35,7 @@ std::optional<Reported> Read(const GstStructure* s) {
   if (!lost && gst_structure_get_uint64(s, "remote-ts", &remote) &&
       GST_CLOCK_TIME_IS_VALID(remote)) {
     // A report's reference time is below one period, and its deltas sum to less than another.
-    if (remote > static_cast<guint64>((2 * scream::kTwccPeriod).count())) return std::nullopt;
+    if (remote > static_cast<guint64>((2 * rtcp::kTwccPeriod).count())) return std::nullopt;
     r.arrival = Duration{static_cast<std::int64_t>(remote)};
   }
   return r;
@@ -52,7 +52,7 @@ std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   if (list == nullptr || !G_VALUE_HOLDS(list, g_type_from_name("GValueArray"))) return packets;
   const auto* array = static_cast<const GValueArray*>(g_value_get_boxed(list));
   for (guint i = 0; array != nullptr && i < array->n_values; ++i)
-    if (packets.size() <= scream::kMaxTwccPackets && GST_VALUE_HOLDS_STRUCTURE(&array->values[i]))
+    if (packets.size() <= rtcp::kMaxTwccPackets && GST_VALUE_HOLDS_STRUCTURE(&array->values[i]))
       packets.push_back(gst_value_get_structure(&array->values[i]));
   return packets;
 }
@@ -65,7 +65,7 @@ void SessionNumbers::OnCaps(const GstCaps* caps) {
   for (guint id = 1; id <= kMaxId; ++id) {
     char name[16];
     std::snprintf(name, sizeof name, "extmap-%u", id);
-    if (g_strcmp0(UriOf(gst_structure_get_value(s, name)), scream::kTwccUri) == 0)
+    if (g_strcmp0(UriOf(gst_structure_get_value(s, name)), rtcp::kTwccUri) == 0)
       id_ = static_cast<guint8>(id);
   }
 }
@@ -78,7 +78,7 @@ void SessionNumbers::OnPacket(GstBuffer* buffer) {
   if (gst_rtp_buffer_get_extension_onebyte_header(&rtp, id_, 0, &data, &size)) {
     mapper_.OnSent(next_++, gst_rtp_buffer_get_ssrc(&rtp), gst_rtp_buffer_get_seq(&rtp));
     sizes_.push_back(gst_rtp_buffer_get_payload_len(&rtp));
-    if (sizes_.size() > scream::kMaxTwccPackets) sizes_.pop_front();
+    if (sizes_.size() > rtcp::kMaxTwccPackets) sizes_.pop_front();
   }
   gst_rtp_buffer_unmap(&rtp);
 }
@@ -93,20 +93,20 @@ bool SessionNumbers::IsOurs(const GstStructure* packet) const {
   return back == 0 || back > sizes_.size() || sizes_[sizes_.size() - back] == size;
 }
 
-std::optional<scream::CongestionFeedback> SessionNumbers::OnEvent(GstEvent* event) {
+std::optional<rtcp::CongestionFeedback> SessionNumbers::OnEvent(GstEvent* event) {
   const auto packets = PacketsOf(event);
   if (packets.empty()) return std::nullopt;
   ++stats_.reports;
   std::size_t ours = 0;
   std::optional<std::uint16_t> first;
-  scream::TwccFeedback feedback;
+  rtcp::TwccFeedback feedback;
   for (const GstStructure* packet : packets) {
     const auto reported = Read(packet);
     if (!reported) continue;
     const auto number = static_cast<std::uint16_t>(reported->number);
     if (!first) first = number;
     const auto index = static_cast<std::uint16_t>(number - *first);
-    if (index >= scream::kMaxTwccPackets) continue;
+    if (index >= rtcp::kMaxTwccPackets) continue;
     if (feedback.arrivals.size() <= index) feedback.arrivals.resize(std::size_t{index} + 1);
     feedback.arrivals[index] = reported->arrival;
     ours += IsOurs(packet);

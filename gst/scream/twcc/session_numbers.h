@@ -27,7 +27,7 @@ class SessionNumbers {
   void OnPacket(GstBuffer* buffer);
   /// Returns the report in an event of rtpsession. Returns nothing for other events, or if no
   /// packet is ours.
-  std::optional<scream::CongestionFeedback> OnEvent(GstEvent* event);
+  std::optional<rtcp::CongestionFeedback> OnEvent(GstEvent* event);
   const Stats& stats() const { return stats_; }
 
  private:
@@ -36,7 +36,7 @@ class SessionNumbers {
   guint8 id_ = 0;  // 0: the caps have no id
   std::uint16_t next_ = 0;
   std::deque<guint> sizes_;  // payload bytes of the packets up to next_
-  scream::TwccMapper mapper_;
+  rtcp::TwccMapper mapper_;
   Stats stats_;
 };
 

@@ -26,8 +26,8 @@ const char* ToString(scream::FeedbackResult result) {
 }
 
 /// Keeps receipts of the arrived packets for payloaders. The caller holds the lock.
-void KeepReceipts(TxState& state, const scream::CongestionFeedback& report) {
-  for (const scream::SsrcReport& block : report.blocks) {
+void KeepReceipts(TxState& state, const rtcp::CongestionFeedback& report) {
+  for (const rtcp::SsrcReport& block : report.blocks) {
     const auto id = state.controller->FindStream(block.ssrc);
     TxStream* stream = id ? FindStream(state, *id) : nullptr;
     if (stream != nullptr && stream->wants_receipts)
@@ -53,7 +53,7 @@ void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
 
 /// Converts the report of a link to the controller's numbers, and gives it to the controller.
 scream::FeedbackResult GiveToController(TxState& state, Time now,
-                                        const scream::CongestionFeedback& report) {
+                                        const rtcp::CongestionFeedback& report) {
   if (!state.link) return state.controller->OnFeedback(now, report);
   const auto own = state.link->OnFeedback(now, report);
   if (!own) {
@@ -66,7 +66,7 @@ scream::FeedbackResult GiveToController(TxState& state, Time now,
 }
 
 /// Returns false if the report is not about our packets. The caller holds the lock.
-bool Take(GstLidarScreamTx* self, const scream::CongestionFeedback& report, GSocketAddress* from) {
+bool Take(GstLidarScreamTx* self, const rtcp::CongestionFeedback& report, GSocketAddress* from) {
   TxState& state = *self->state;
   const Time now = TxNow(state);
   const auto result = GiveToController(state, now, report);
@@ -100,7 +100,7 @@ bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
 
 }  // namespace
 
-void TxTakeReport(GstLidarScreamTx* tx, const scream::CongestionFeedback& report) {
+void TxTakeReport(GstLidarScreamTx* tx, const rtcp::CongestionFeedback& report) {
   const TxLock lock(tx->state->mutex);
   if (tx->state->controller && tx->state->gate.open()) Take(tx, report, nullptr);
 }
@@ -112,11 +112,11 @@ GstFlowReturn TxRtcpChain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   {
     const BufferMap map(buffer, GST_MAP_READ);
     if (!map) return GST_FLOW_OK;
-    const auto packets = scream::SplitRtcp(map.view());
+    const auto packets = rtcp::SplitRtcp(map.view());
     if (packets.empty()) rest.assign(map.view().begin(), map.view().end());
     for (const ByteView packet : packets) TakeKeyRequest(self, packet);
     for (const ByteView packet : packets)
-      if (!scream::IsCcfb(packet) || !Feed(self, packet, SourceOf(buffer)))
+      if (!rtcp::IsCcfb(packet) || !Feed(self, packet, SourceOf(buffer)))
         rest.insert(rest.end(), packet.begin(), packet.end());
   }
   if (rest.empty() || !gst_pad_is_linked(self->rtcp_src)) return GST_FLOW_OK;

@@ -8,6 +8,6 @@ namespace lidar::gst {
 
 /// Handles a report as if it had come in RTCP, but with the full resolution of its times. Any
 /// thread may call it.
-void TxTakeReport(GstLidarScreamTx* tx, const scream::CongestionFeedback& report);
+void TxTakeReport(GstLidarScreamTx* tx, const rtcp::CongestionFeedback& report);
 
 }  // namespace lidar::gst

@@ -24,8 +24,8 @@ class TxLink {
   virtual bool OnDropped(Time now, guint32 ssrc, guint16 seq) = 0;
   /// Converts a report to the numbers of OnSent(). Returns nothing if it names packets that this
   /// link never sent.
-  virtual std::optional<scream::CongestionFeedback> OnFeedback(
-      Time now, const scream::CongestionFeedback& report) = 0;
+  virtual std::optional<rtcp::CongestionFeedback> OnFeedback(
+      Time now, const rtcp::CongestionFeedback& report) = 0;
   /// Bytes at the end of each packet that are not media.
   virtual gsize trailer() const = 0;
   /// Takes the controller's statistics after each report.

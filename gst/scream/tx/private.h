@@ -45,7 +45,7 @@ struct TxState {
   std::optional<scream::Controller> controller;  // set from the first change to PAUSED on
   TxStreams streams;
   guint next_pad = 0;
-  scream::CcfbParser parser;
+  rtcp::CcfbParser parser;
   FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
   guint64 reports_of_others = 0;  // of packets that this link never sent

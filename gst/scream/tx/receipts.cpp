@@ -3,7 +3,7 @@
 
 namespace lidar::gst {
 
-void PacketReceipts::Add(guint receiver, const scream::SsrcReport& report) {
+void PacketReceipts::Add(guint receiver, const rtcp::SsrcReport& report) {
   if (receipts_.size() >= kMostReceipts) return;
   GstLidarPacketsReceived receipt{report.ssrc, receiver, 0, {}};
   bool in_range = false;

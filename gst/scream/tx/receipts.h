@@ -12,7 +12,7 @@ namespace lidar::gst {
 /// Call with the element's lock held.
 class PacketReceipts {
  public:
-  void Add(guint receiver, const scream::SsrcReport& report);
+  void Add(guint receiver, const rtcp::SsrcReport& report);
   bool empty() const { return receipts_.empty(); }
   /// Returns upstream events with all receipts.
   std::vector<EventPtr> Take();

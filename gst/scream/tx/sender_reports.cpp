@@ -12,8 +12,8 @@ namespace {
 // is.
 constexpr Duration kMinInterval = std::chrono::milliseconds(100);
 
-scream::SenderReport ReportOf(const scream::Statistics& s) {
-  scream::SenderReport r;
+rtcp::SenderReport ReportOf(const scream::Statistics& s) {
+  rtcp::SenderReport r;
   r.target_bitrate = s.target_bitrate;
   r.estimated_capacity = s.estimated_capacity;
   r.sent_bitrate = s.sent_bitrate;
@@ -44,10 +44,10 @@ std::vector<std::uint8_t> SenderReports::Take(Duration interval, const TxStreams
                                   [](const auto& stream) { return stream->ssrc.has_value(); });
   if (known == streams.end()) return {};
   last_ = now;
-  scream::SenderReport report = ReportOf(controller.statistics(now));
+  rtcp::SenderReport report = ReportOf(controller.statistics(now));
   report.ssrc = *(*known)->ssrc;
   report.time_ms = Milliseconds(now);
-  return scream::BuildSenderReport(report);
+  return rtcp::BuildSenderReport(report);
 }
 
 }  // namespace lidar::gst

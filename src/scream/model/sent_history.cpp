@@ -84,7 +84,7 @@ void SentHistory::StartAgain(Time now, std::uint16_t seq, Source* source) {
   source->restarted = now;
 }
 
-bool SentHistory::OfBefore(Time now, const Source& source, const SsrcReport& block) {
+bool SentHistory::OfBefore(Time now, const Source& source, const rtcp::SsrcReport& block) {
   return source.restarted && now - *source.restarted < kReportsOfBefore &&
          source.unwrapper.Peek(block.begin_seq) > source.packets.back().seq;
 }
@@ -134,12 +134,12 @@ SentHistory::Packet* SentHistory::Find(Source* source, std::int64_t seq) {
 }
 
 /// Returns false if the report has packets that were never sent, or that arrived before they left.
-bool SentHistory::Plausible(Time now, Source* source, const SsrcReport& block) const {
+bool SentHistory::Plausible(Time now, Source* source, const rtcp::SsrcReport& block) const {
   const std::int64_t newest = source->packets.back().seq;
   const std::int64_t oldest = source->packets.front().seq;
   const std::int64_t begin = source->unwrapper.Peek(block.begin_seq);
   for (std::size_t i = 0; i < block.metrics.size(); ++i) {
-    const PacketMetric& metric = block.metrics[i];
+    const rtcp::PacketMetric& metric = block.metrics[i];
     const std::int64_t seq = begin + static_cast<std::int64_t>(i);
     if (!metric.received || seq < oldest) continue;
     const Packet* packet = seq > newest ? nullptr : Find(source, seq);
@@ -150,10 +150,10 @@ bool SentHistory::Plausible(Time now, Source* source, const SsrcReport& block) c
   return true;
 }
 
-FeedbackResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedback,
+FeedbackResult SentHistory::OnFeedback(Time now, const rtcp::CongestionFeedback& feedback,
                                        AckSummary* summary) {
   bool any_ours = false;
-  for (const SsrcReport& block : feedback.blocks) {
+  for (const rtcp::SsrcReport& block : feedback.blocks) {
     const auto it = sources_.find(block.ssrc);
     if (it == sources_.end() || it->second.packets.empty()) {
       ++foreign_blocks_;
@@ -167,7 +167,7 @@ FeedbackResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedb
   const Time report = summary->report = clock_.Unwrap(feedback.report_timestamp);
   held_.reset();
   newest_timed_.reset();
-  for (const SsrcReport& block : feedback.blocks) {
+  for (const rtcp::SsrcReport& block : feedback.blocks) {
     const auto it = sources_.find(block.ssrc);
     if (it == sources_.end() || it->second.packets.empty()) continue;
     if (!OfBefore(now, it->second, block)) Apply(now, block, &it->second, report, summary);
@@ -182,7 +182,7 @@ FeedbackResult SentHistory::OnFeedback(Time now, const CongestionFeedback& feedb
   return nothing ? FeedbackResult::kStale : FeedbackResult::kAccepted;
 }
 
-void SentHistory::Apply(Time now, const SsrcReport& block, Source* source, Time report,
+void SentHistory::Apply(Time now, const rtcp::SsrcReport& block, Source* source, Time report,
                         AckSummary* summary) {
   const std::int64_t begin = source->unwrapper.Peek(block.begin_seq);
   std::int64_t highest = source->highest_acked;
@@ -201,8 +201,8 @@ void SentHistory::Apply(Time now, const SsrcReport& block, Source* source, Time 
   summary->bytes_newly_acked += Settle(source, highest);
 }
 
-void SentHistory::Acknowledge(Time now, const PacketMetric& metric, Time report, Packet* packet,
-                              AckSummary* summary) {
+void SentHistory::Acknowledge(Time now, const rtcp::PacketMetric& metric, Time report,
+                              Packet* packet, AckSummary* summary) {
   const bool ce = metric.ecn == Ecn::kCe;
   if (packet->state == State::kAcked) {
     if (ce && !packet->ce) {

@@ -58,7 +58,8 @@ enum class FeedbackResult {
 class SentHistory {
  public:
   void OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record);
-  FeedbackResult OnFeedback(Time now, const CongestionFeedback& feedback, AckSummary* summary);
+  FeedbackResult OnFeedback(Time now, const rtcp::CongestionFeedback& feedback,
+                            AckSummary* summary);
   /// Packets sent before `before` no longer count as in flight or as lost; they may still be
   /// acknowledged.
   void Expire(Time before);
@@ -94,13 +95,14 @@ class SentHistory {
   static bool StartsAgain(Source* source, std::int64_t seq);
   void StartAgain(Time now, std::uint16_t seq, Source* source);
   void Insert(Source* source, const Packet& packet);
-  static bool OfBefore(Time now, const Source& source, const SsrcReport& block);
+  static bool OfBefore(Time now, const Source& source, const rtcp::SsrcReport& block);
   void ExpireTails();
   static std::ptrdiff_t FirstFrom(const std::deque<Packet>& packets, std::int64_t seq);
   static Packet* Find(Source* source, std::int64_t seq);
-  bool Plausible(Time now, Source* source, const SsrcReport& block) const;
-  void Apply(Time now, const SsrcReport& block, Source* source, Time report, AckSummary* summary);
-  void Acknowledge(Time now, const PacketMetric& metric, Time report, Packet* packet,
+  bool Plausible(Time now, Source* source, const rtcp::SsrcReport& block) const;
+  void Apply(Time now, const rtcp::SsrcReport& block, Source* source, Time report,
+             AckSummary* summary);
+  void Acknowledge(Time now, const rtcp::PacketMetric& metric, Time report, Packet* packet,
                    AckSummary* summary);
   DataSize Settle(Source* source, std::int64_t seq);
   static void MarkMissing(Time now, Source* source, Packet* packet);
@@ -109,7 +111,7 @@ class SentHistory {
   void Trim(Source* source);
 
   std::map<std::uint32_t, Source> sources_;
-  ReportClock clock_;
+  rtcp::ReportClock clock_;
   DataSize in_flight_;
   Time newest_acked_{};               // its sending time
   bool arrivals_known_ = false;       // the peer reports arrival times

@@ -72,7 +72,7 @@ class SimLink {
     while (auto report = reported->generator_.Take(now + reported->config_.receiver_clock))
       reports_.emplace(now + config_.rtt / 2, *report);
     for (; !reports_.empty() && reports_.begin()->first <= now; reports_.erase(reports_.begin())) {
-      const auto bytes = scream::BuildCcfb(reports_.begin()->second);
+      const auto bytes = rtcp::BuildCcfb(reports_.begin()->second);
       const auto report = parser_.Parse({bytes.data(), bytes.size()});
       if (Take(now, scheduler, *report)) continue;
       if (const auto owner = scheduler->OwnerOf(*report))
@@ -84,7 +84,7 @@ class SimLink {
     scheduler->OnPath(index_, {rate, s.s_rtt, s.min_rtt});
   }
 
-  bool Take(Time now, Scheduler* scheduler, const scream::CongestionFeedback& report) {
+  bool Take(Time now, Scheduler* scheduler, const rtcp::CongestionFeedback& report) {
     const auto own = scheduler->OnFeedback(now, index_, report);
     if (own) controller_.OnFeedback(now, *own);
     return own.has_value();
@@ -131,10 +131,10 @@ class SimLink {
   scream::Controller controller_{scream::Parameters{}};
   scream::StreamConfig config_of_stream_;
   scream::StreamId stream_ = 0;
-  scream::FeedbackGenerator generator_;
-  scream::CcfbParser parser_;
+  rtcp::FeedbackGenerator generator_;
+  rtcp::CcfbParser parser_;
   std::deque<WirePacket> fifo_;
-  std::multimap<Time, scream::CongestionFeedback> reports_;
+  std::multimap<Time, rtcp::CongestionFeedback> reports_;
   std::int64_t bytes_ = 0;
 };
 

@@ -9,7 +9,7 @@ namespace lidar::bonding {
 namespace {
 
 using namespace std::chrono_literals;
-using scream::CongestionFeedback;
+using rtcp::CongestionFeedback;
 
 constexpr std::uint32_t kSsrc = 9;
 
@@ -17,7 +17,7 @@ constexpr std::uint32_t kSsrc = 9;
 CongestionFeedback ReportOf(std::uint16_t seq, const std::vector<bool>& arrived,
                             std::uint32_t ssrc = kSsrc) {
   CongestionFeedback feedback;
-  scream::SsrcReport block{ssrc, seq, {}};
+  rtcp::SsrcReport block{ssrc, seq, {}};
   for (const bool a : arrived) block.metrics.push_back({a, Ecn::kEct1, std::nullopt});
   feedback.blocks.push_back(block);
   return feedback;
@@ -54,7 +54,7 @@ TEST(LinkLedger, GivesReportsInItsNumbers) {
   const auto report = ledger.OnFeedback(ReportOf(100, {true, true, false, false}));
   ASSERT_TRUE(report);
   ASSERT_EQ(report->feedback.blocks.size(), 1U);
-  const scream::SsrcReport& block = report->feedback.blocks.front();
+  const rtcp::SsrcReport& block = report->feedback.blocks.front();
   EXPECT_EQ(block.begin_seq, 0);
   ASSERT_EQ(block.metrics.size(), 3U);
   EXPECT_TRUE(block.metrics[0].received);

@@ -20,8 +20,8 @@ LinkSet SetOf(std::initializer_list<std::size_t> links) {
   return set;
 }
 
-scream::CongestionFeedback Arrived(std::uint16_t seq) {
-  scream::CongestionFeedback feedback;
+rtcp::CongestionFeedback Arrived(std::uint16_t seq) {
+  rtcp::CongestionFeedback feedback;
   feedback.blocks.push_back({kMedia, seq, {{true, Ecn::kEct1, std::nullopt}}});
   return feedback;
 }
@@ -265,7 +265,7 @@ TEST_F(TwoLinks, RefusesReportsOfTheOtherLinkAndLosesNothing) {
   EXPECT_FALSE(scheduler_.OnFeedback(now_, 1, Arrived(seq_))) << "swapped";
   EXPECT_EQ(scheduler_.OwnerOf(Arrived(seq_)), std::size_t{0});
   EXPECT_FALSE(scheduler_.OwnerOf(Arrived(static_cast<std::uint16_t>(seq_ + 1)))) << "forged";
-  scream::CongestionFeedback report = Arrived(seq_);
+  rtcp::CongestionFeedback report = Arrived(seq_);
   report.blocks.push_back({kMedia + 1, 1, {{true, Ecn::kEct1, std::nullopt}}});
   EXPECT_FALSE(scheduler_.OwnerOf(report)) << "with a block of another's packets";
   const auto copies = scheduler_.TakeCopies(now_ + 61ms);
@@ -363,7 +363,7 @@ class LinksOfFifos {
     scheduler_.OnSent(now_, link, id);
     Time& leaves = free_[fifo_of_link_[link]];
     leaves = std::max(leaves, now_) + size / Mbps(8);
-    scream::CongestionFeedback report = Arrived(id.seq);
+    rtcp::CongestionFeedback report = Arrived(id.seq);
     report.report_timestamp = static_cast<std::uint32_t>(Seconds(leaves - kStart) * 65536);
     report.blocks[0].metrics[0].arrival_offset = 0ms;
     scheduler_.OnFeedback(now_, link, report);

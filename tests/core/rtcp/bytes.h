@@ -6,10 +6,10 @@
 
 #include "src/base/byte_reader.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 
 using Bytes = std::vector<std::uint8_t>;
 
 inline ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

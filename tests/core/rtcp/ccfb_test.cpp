@@ -7,7 +7,7 @@
 #include "src/rtcp/report_clock.h"
 #include "tests/core/rtcp/bytes.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 using namespace std::chrono_literals;
@@ -167,4 +167,4 @@ TEST(ReportClock, GoesOnWhereTimestampsWrapAfterEighteenHours) {
 }
 
 }  // namespace
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

@@ -8,7 +8,7 @@
 
 #include "src/sim/simulated_time.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 class FeedbackGeneratorTest : public ::testing::Test {
@@ -281,4 +281,4 @@ TEST_F(FeedbackGeneratorTest, SeveralSourcesShareAReport) {
 }
 
 }  // namespace
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

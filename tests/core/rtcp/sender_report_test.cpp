@@ -7,7 +7,7 @@
 #include "src/rtcp/ccfb.h"
 #include "tests/core/rtcp/bytes.h"
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 using std::chrono::microseconds;
@@ -105,4 +105,4 @@ TEST(SenderReport, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

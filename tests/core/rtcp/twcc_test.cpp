@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lidar::scream {
+namespace lidar::rtcp {
 namespace {
 
 using namespace std::chrono_literals;
@@ -107,4 +107,4 @@ TEST_F(Mapper, AReportThatWasOvertakenAcrossTheWrapIsTheEarlierOne) {
 }
 
 }  // namespace
-}  // namespace lidar::scream
+}  // namespace lidar::rtcp

@@ -111,8 +111,8 @@ class FullLink : public ::testing::Test {
   void ReportTrain(int count, Ecn ecn) { ReportNext(count, ecn, now_ - 20ms, 1ms); }
   /// Reports the next `count` packets as arrived `apart` from each other, the last one at `last`.
   void ReportNext(int count, Ecn ecn, Time last, Duration apart) {
-    CongestionFeedback f;
-    f.report_timestamp = ReportClock::ToTimestamp(last);
+    rtcp::CongestionFeedback f;
+    f.report_timestamp = rtcp::ReportClock::ToTimestamp(last);
     f.blocks.push_back({1, reported_, {}});
     for (int i = 1; i <= count; ++i)
       f.blocks[0].metrics.push_back({true, ecn, (count - i) * apart});
@@ -188,8 +188,8 @@ TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
   for (std::uint16_t seq = 0; seq < 9; ++seq)
     c.OnSent(kStart, id, {1, seq, DataSize::Bytes(1000), Ecn::kEct1});
   const auto report = [&](Time now, const std::string& metrics) {
-    CongestionFeedback f;
-    f.report_timestamp = ReportClock::ToTimestamp(now);
+    rtcp::CongestionFeedback f;
+    f.report_timestamp = rtcp::ReportClock::ToTimestamp(now);
     f.blocks.push_back({1, 0, {}});
     // All packets that arrived did so at kStart + 10 ms.
     for (const char m : metrics)
@@ -211,7 +211,7 @@ TEST(Controller, ImplausibleFeedbackChangesNothingAndIsCounted) {
   const StreamId id = c.AddStream({});
   c.OnQueued(kStart, id, {1, DataSize::Bytes(1000), true, 0});
   c.OnSent(kStart, id, {1, 5, DataSize::Bytes(1000), Ecn::kEct1});
-  CongestionFeedback f;
+  rtcp::CongestionFeedback f;
   f.blocks.push_back({1, 6, {{true, Ecn::kCe, 0ms}}});
   EXPECT_EQ(c.OnFeedback(kStart + 10ms, f), FeedbackResult::kImplausible);
   f.blocks[0].ssrc = 2;
@@ -305,7 +305,7 @@ TEST(Controller, BleachedPacketsAreSentAsNotEct) {
   Controller c{Parameters()};
   const StreamId id = c.AddStream({});
   Time now = kStart;
-  CongestionFeedback f;
+  rtcp::CongestionFeedback f;
   f.blocks.push_back({1, 0, {}});
   for (std::uint16_t seq = 0; seq < 25; ++seq, now += 5ms) {
     c.OnQueued(now, id, {1, DataSize::Bytes(1000), true, seq});

@@ -21,15 +21,16 @@ class SentHistoryTest : public ::testing::Test {
       history_.OnSent(1, static_cast<std::uint16_t>(seq),
                       {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
   }
-  CongestionFeedback Report(int begin, const std::string& metrics, std::uint32_t ssrc = 1) const {
-    CongestionFeedback f;
-    f.report_timestamp = ReportClock::ToTimestamp(now_);
+  rtcp::CongestionFeedback Report(int begin, const std::string& metrics,
+                                  std::uint32_t ssrc = 1) const {
+    rtcp::CongestionFeedback f;
+    f.report_timestamp = rtcp::ReportClock::ToTimestamp(now_);
     f.blocks.push_back({ssrc, static_cast<std::uint16_t>(begin), {}});
     for (const char c : metrics)
       f.blocks[0].metrics.push_back({c != '-', c == 'C' ? Ecn::kCe : Ecn::kEct1, 0ms});
     return f;
   }
-  FeedbackResult Apply(const CongestionFeedback& f) {
+  FeedbackResult Apply(const rtcp::CongestionFeedback& f) {
     summary_ = {};
     return history_.OnFeedback(now_, f, &summary_);
   }
@@ -67,7 +68,7 @@ TEST_F(SentHistoryTest, TheRoundTripIsOfThePacketSentLast) {
     for (std::uint16_t seq = 0; seq < 2; ++seq, now_ += 5ms)
       history_.OnSent(ssrc, seq, {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
   }
-  CongestionFeedback f = Report(0, "rr", 1);
+  rtcp::CongestionFeedback f = Report(0, "rr", 1);
   f.blocks.push_back(Report(0, "rr", 2).blocks[0]);
   ASSERT_EQ(Apply(f), FeedbackResult::kAccepted);
   EXPECT_EQ(summary_.rtt, 5ms);
@@ -78,7 +79,7 @@ TEST_F(SentHistoryTest, PacketsOfSeveralStreamsComeAsTheyWereSent) {
   for (std::uint16_t seq = 0; seq < 3; ++seq)
     for (std::uint32_t ssrc = 1; ssrc <= 2; ++ssrc, now_ += 1ms)
       history_.OnSent(ssrc, seq, {0, DataSize::Bytes(1000), now_, Ecn::kEct1});
-  CongestionFeedback f = Report(0, "rrr", 1);
+  rtcp::CongestionFeedback f = Report(0, "rrr", 1);
   f.blocks.push_back(Report(0, "rrr", 2).blocks[0]);
   ASSERT_EQ(Apply(f), FeedbackResult::kAccepted);
   ASSERT_EQ(summary_.acked.size(), 6U);
@@ -106,7 +107,7 @@ TEST_F(SentHistoryTest, CeOfALaterReportIsNotLost) {
 TEST_F(SentHistoryTest, RoundTripsLeaveOutTheReceiversHoldingTime) {
   Send(0, 1);
   now_ = kStart + 50ms;
-  CongestionFeedback f = Report(0, "r");
+  rtcp::CongestionFeedback f = Report(0, "r");
   f.blocks[0].metrics[0].arrival_offset = 20ms;
   Apply(f);
   ASSERT_TRUE(summary_.rtt);
@@ -148,7 +149,7 @@ TEST_F(SentHistoryTest, AReportOfAPacketNeverSentIsIgnoredWhole) {
 TEST_F(SentHistoryTest, AnArrivalBeforeTheSendingIsIgnoredWhole) {
   Send(0, 2);
   now_ = kStart + kRoundTrip;
-  CongestionFeedback f = Report(0, "rr");
+  rtcp::CongestionFeedback f = Report(0, "rr");
   f.blocks[0].metrics[1].arrival_offset = 60ms;
   EXPECT_EQ(Apply(f), FeedbackResult::kImplausible);
 }
@@ -156,7 +157,7 @@ TEST_F(SentHistoryTest, AnArrivalBeforeTheSendingIsIgnoredWhole) {
 TEST_F(SentHistoryTest, ForeignSourcesAreCountedAndOursStillTaken) {
   Send(0, 2);
   EXPECT_EQ(Apply(Report(0, "r", 99)), FeedbackResult::kNotOurs);
-  CongestionFeedback f = Report(0, "r", 99);
+  rtcp::CongestionFeedback f = Report(0, "r", 99);
   f.blocks.push_back(Report(0, "r").blocks[0]);
   EXPECT_EQ(Apply(f), FeedbackResult::kAccepted);
   EXPECT_EQ(history_.foreign_blocks(), 2U);
@@ -252,7 +253,7 @@ TEST_F(SentHistoryTest, TheOldestInFlightMayBeOfAnySource) {
 TEST_F(SentHistoryTest, AnArrivalMayBeAsMuchTooEarlyAsReportsAreCoarse) {
   Send(0, 2);
   now_ = kStart + 10ms;
-  CongestionFeedback f = Report(0, "r");
+  rtcp::CongestionFeedback f = Report(0, "r");
   f.blocks[0].metrics[0].arrival_offset = 13ms;
   EXPECT_EQ(Apply(f), FeedbackResult::kImplausible);
   f.blocks[0].metrics[0].arrival_offset = 12ms;
@@ -353,8 +354,8 @@ TEST_F(SentHistoryTest, ManyPacketsInFlightAreCounted) {
 TEST_F(SentHistoryTest, RoundTripsIncludeTheHoldingTimeOfReceiversThatDoNotTellIt) {
   Send(0, 4);
   now_ = kStart + 43ms;
-  CongestionFeedback f = Report(0, "rrrr");
-  for (PacketMetric& m : f.blocks[0].metrics) m.arrival_offset.reset();
+  rtcp::CongestionFeedback f = Report(0, "rrrr");
+  for (rtcp::PacketMetric& m : f.blocks[0].metrics) m.arrival_offset.reset();
   Apply(f);
   ASSERT_TRUE(summary_.rtt);
   EXPECT_EQ(*summary_.rtt, Duration(40ms));

@@ -202,7 +202,7 @@ TEST(LinkReports, TellEachLinkWhatCameByIt) {
   int from_a = 0, from_b = 0;
   while (const auto report = reports.Take(now)) {
     const bool is_b = gst::SameAddress(report->to, b.get());
-    const scream::SsrcReport& block = report->feedback.blocks.at(0);
+    const rtcp::SsrcReport& block = report->feedback.blocks.at(0);
     for (std::size_t i = 0; i < block.metrics.size(); ++i) {
       const auto seq = static_cast<std::uint16_t>(block.begin_seq + i);
       EXPECT_EQ(block.metrics[i].received, (seq % 4 == 0) == is_b) << seq;
@@ -231,7 +231,7 @@ TEST(LinkReports, SumUpEachCountOfAllLinks) {
       send(*link, seq);
     for (const int late : {5'998, 5'997, 3'001}) send(*link, static_cast<std::uint16_t>(late));
   }
-  using Stats = scream::FeedbackGenerator::Stats;
+  using Stats = rtcp::FeedbackGenerator::Stats;
   const auto all = reports.stats();
   for (const auto count : {&Stats::packets, &Stats::ce_packets, &Stats::duplicates,
                            &Stats::reordered, &Stats::stale, &Stats::lost, &Stats::reports}) {

@@ -58,7 +58,7 @@ class ScreamAux : public ::testing::Test {
     g_type_class_ref(G_TYPE_OBJECT);
     ASSERT_NE(g_type_from_name("GValueArray"), G_TYPE_INVALID);
     gst_harness_set_src_caps_str(
-        harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + scream::kTwccUri).c_str());
+        harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + rtcp::kTwccUri).c_str());
   }
   void TearDown() override {
     harness.reset();
@@ -144,7 +144,7 @@ TEST_F(ScreamAux, TheSizeOfAPacketIsKnownAsLongAsAReportMayTellOfIt) {
 TEST_F(ScreamAux, TheTimesOfAReportMayReachIntoASecondPeriodOfItsClock) {
   for (int i = 0; i < 3; ++i) Push();
   ASSERT_EQ(Leave(), 3);
-  constexpr auto kPeriod = static_cast<guint64>(scream::kTwccPeriod.count());
+  constexpr auto kPeriod = static_cast<guint64>(rtcp::kTwccPeriod.count());
   Tell({{0, 100, false, kPeriod + GST_SECOND}, {1, 100, false, kPeriod + GST_SECOND}});
   EXPECT_EQ(Stat("packets-acked"), 2U);
   Tell({{2, 100, false, 2 * kPeriod + 1}});  // beyond what a report can express
@@ -154,7 +154,7 @@ TEST_F(ScreamAux, TheTimesOfAReportMayReachIntoASecondPeriodOfItsClock) {
 TEST_F(ScreamAux, NoReportReachesFurtherThanItsFormat) {
   Push();
   ASSERT_EQ(Leave(), 1);
-  constexpr guint kMost = scream::kMaxTwccPackets;
+  constexpr guint kMost = rtcp::kMaxTwccPackets;
   Tell({{0}, {kMost - 1}});  // may have been sent meanwhile
   EXPECT_EQ(Stat("twcc-mismatched"), 0U);
   Tell({{0}, {kMost}});
@@ -164,10 +164,10 @@ TEST_F(ScreamAux, NoReportReachesFurtherThanItsFormat) {
 TEST_F(ScreamAux, FindsTheExtensionByItsUriHoweverCapsHaveIt) {
   guint next = 0;
   for (const std::string& extmap :
-       {std::string("extmap-14=(string)") + scream::kTwccUri,
-        std::string("extmap-1=(string)urn:other,extmap-14=(string)<\"\",\"") + scream::kTwccUri +
+       {std::string("extmap-14=(string)") + rtcp::kTwccUri,
+        std::string("extmap-1=(string)urn:other,extmap-14=(string)<\"\",\"") + rtcp::kTwccUri +
             "\",\"\">",
-        std::string("extmap-14=(string)<\"sendrecv\",\"") + scream::kTwccUri + "\">"}) {
+        std::string("extmap-14=(string)<\"sendrecv\",\"") + rtcp::kTwccUri + "\">"}) {
     const guint64 before = Stat("packets-acked");
     gst_harness_set_src_caps_str(harness.get(), (kRtpCaps + ("," + extmap)).c_str());
     Push(false);
@@ -258,7 +258,7 @@ TEST_F(ScreamAux, ForgetsTheExtensionWhereNewCapsHaveNone) {
   Push();  // the extension's id now means something else
   ASSERT_EQ(Leave(), 1);
   gst_harness_set_src_caps_str(
-      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + scream::kTwccUri).c_str());
+      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + rtcp::kTwccUri).c_str());
   Push();
   ASSERT_EQ(Leave(), 1);
   Tell({{0}, {1}, {2}});  // there is no number 2
@@ -309,7 +309,7 @@ TEST_F(ScreamAux, GoesOnWithTheSessionsNumbersAfterAPauseInReady) {
   gst_harness_play(harness.get());
   gst_harness_push_event(harness.get(), gst_event_new_stream_start("again"));
   gst_harness_set_src_caps_str(
-      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + scream::kTwccUri).c_str());
+      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + rtcp::kTwccUri).c_str());
   Push();
   ASSERT_EQ(Leave(), 1);
   Tell({{1}});
@@ -339,7 +339,7 @@ TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
   const std::string caps = std::string(
                                "application/x-rtp,media=video,clock-rate=90000,"
                                "encoding-name=JPEG,payload=26,extmap-1=(string)") +
-                           scream::kTwccUri;
+                           rtcp::kTwccUri;
   const int first = 40000 + 3 * (getpid() % 8000);
   const auto at = [&](const char* element, int offset) {
     const std::string port = " port=" + std::to_string(first + offset) + " ";

@@ -14,7 +14,7 @@
 namespace lidar::test {
 
 using gst::CapsPtr;
-using scream::CongestionFeedback;
+using rtcp::CongestionFeedback;
 
 class ScreamRx : public ::testing::Test {
  protected:
@@ -51,8 +51,8 @@ class ScreamRx : public ::testing::Test {
     if (host != nullptr) SetSource(buffer, host, 5000);
     return gst_harness_push(rtp.get(), buffer);
   }
-  GstFlowReturn PushReport(const scream::SenderReport& report, const char* host = "10.0.0.1") {
-    GstBuffer* buffer = FromBytes(scream::BuildSenderReport(report));
+  GstFlowReturn PushReport(const rtcp::SenderReport& report, const char* host = "10.0.0.1") {
+    GstBuffer* buffer = FromBytes(rtcp::BuildSenderReport(report));
     SetSource(buffer, host, 5000);
     return gst_harness_push(rtp.get(), buffer);
   }
@@ -60,7 +60,7 @@ class ScreamRx : public ::testing::Test {
     BufferPtr buffer(gst_harness_pull(rtcp.get()));
     if (!buffer) return {};
     const auto bytes = ToBytes(buffer.get());
-    const auto report = scream::CcfbParser().Parse({bytes.data(), bytes.size()});
+    const auto report = rtcp::CcfbParser().Parse({bytes.data(), bytes.size()});
     if (raw != nullptr) *raw = std::move(buffer);
     EXPECT_TRUE(report);
     return report.value_or(CongestionFeedback{});

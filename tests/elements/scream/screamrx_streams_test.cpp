@@ -67,7 +67,7 @@ TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
   EXPECT_EQ(Stats(element)["sender-reports"], 0U);
   EXPECT_EQ(Stats(element)["sender-report-age"], 0U);
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
-  scream::SenderReport report;
+  rtcp::SenderReport report;
   report.ssrc = 0x1234;
   report.time_ms = 0xffffff00;
   report.target_bitrate = DataRate::BitsPerSecond(7e6);
@@ -97,7 +97,7 @@ TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
 TEST_F(ScreamRx, BelievesNoReportThatIsOldOrOfSomebodyElse) {
   Start();
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
-  scream::SenderReport report;
+  rtcp::SenderReport report;
   report.ssrc = 0x1234;
   report.time_ms = 5000;
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
@@ -116,9 +116,9 @@ TEST_F(ScreamRx, BelievesNoReportThatIsOldOrOfSomebodyElse) {
 TEST_F(ScreamRx, DropsAReportOfAVersionToCome) {
   Start();
   ASSERT_EQ(Push({}), GST_FLOW_OK);
-  scream::SenderReport report;
+  rtcp::SenderReport report;
   report.ssrc = 0x1234;
-  auto bytes = scream::BuildSenderReport(report);
+  auto bytes = rtcp::BuildSenderReport(report);
   bytes[8] = 0x82;
   ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes(bytes)), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["sender-reports"], 0U);

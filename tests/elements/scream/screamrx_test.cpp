@@ -184,7 +184,7 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
   r.seq = 11;
   r.marker = true;
   ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
-  scream::SsrcReport last;
+  rtcp::SsrcReport last;
   do {
     const CongestionFeedback report = Report();
     ASSERT_EQ(report.blocks.size(), 1U);
@@ -331,7 +331,7 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
   Start();
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
-  scream::SenderReport report;
+  rtcp::SenderReport report;
   report.ssrc = 0x1234;
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
   ASSERT_EQ(PushBye({0x1234}, "10.0.0.1"), GST_FLOW_EOS);

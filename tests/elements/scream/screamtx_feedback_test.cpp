@@ -13,7 +13,7 @@ namespace lidar::test {
 namespace {
 
 using gst::PadPtr;
-using scream::CongestionFeedback;
+using rtcp::CongestionFeedback;
 
 TEST_F(ScreamTx, GoesOnWithFeedbackInOrderAndWithoutLoss) {
   Start();
@@ -89,10 +89,10 @@ class ScreamTxFates : public ScreamTx {
 };
 
 TEST_F(ScreamTxFates, AreCountedEachByItsName) {
-  const scream::PacketMetric arrived{true, Ecn::kEct1, Duration{0}};
-  const scream::PacketMetric marked{true, Ecn::kCe, Duration{0}};
+  const rtcp::PacketMetric arrived{true, Ecn::kEct1, Duration{0}};
+  const rtcp::PacketMetric marked{true, Ecn::kCe, Duration{0}};
   const auto arrives = [&](guint16 seq) {
-    if (seq >= 3 && seq < 6) return scream::PacketMetric{};
+    if (seq >= 3 && seq < 6) return rtcp::PacketMetric{};
     return seq == 20 || seq == 22 ? marked : arrived;
   };
   Start();
@@ -182,7 +182,7 @@ TEST_F(ScreamTx, TellsThePayloaderOfNoPacketThatHasNotArrived) {
   CongestionFeedback report;
   report.sender_ssrc = 9;
   report.report_timestamp = 65536 * 1001;
-  const scream::PacketMetric arrived{true, Ecn::kEct1, Duration{0}};
+  const rtcp::PacketMetric arrived{true, Ecn::kEct1, Duration{0}};
   report.blocks.push_back({0x1234, 0, {arrived, {}, arrived, arrived}});
   Feed(report);
   const EventPtr event(WaitForUpstream(rtp.get(), "packets-received"));
@@ -282,7 +282,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   std::vector<std::uint8_t> receiver_report{0x80, 201, 0, 1, 0, 0, 0, 5};
   CongestionFeedback ours;
   ours.blocks.push_back({0x1234, 0, {{true, Ecn::kEct1, Duration{0}}}});
-  const auto ccfb = scream::BuildCcfb(ours);
+  const auto ccfb = rtcp::BuildCcfb(ours);
   auto compound = receiver_report;
   compound.insert(compound.end(), ccfb.begin(), ccfb.end());
   // An rtpbin downstream computes round trips from the time, and finds the sender by the address.
@@ -300,7 +300,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   EXPECT_EQ(meta->addr, peer.get());
 
   ours.blocks[0].ssrc = 0x9999;  // of another sender after us
-  const auto theirs = scream::BuildCcfb(ours);
+  const auto theirs = rtcp::BuildCcfb(ours);
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(theirs)), GST_FLOW_OK);
   const BufferPtr passed(gst_harness_pull(rtcp.get()));
   EXPECT_EQ(ToBytes(passed.get()), theirs);
@@ -327,7 +327,7 @@ TEST_F(ScreamTx, IgnoresFeedbackOfPacketsThatItNeverSent) {
   }
   const guint64 before = Stats(element)["target-bitrate"];
   CongestionFeedback lie;
-  scream::SsrcReport block{0x1234, 30000, {}};
+  rtcp::SsrcReport block{0x1234, 30000, {}};
   for (int i = 0; i < 50; ++i) block.metrics.push_back({true, Ecn::kCe, Duration{0}});
   lie.blocks.push_back(block);
   for (int i = 0; i < 20; ++i) Feed(lie);

@@ -72,11 +72,11 @@ class ScreamTx : public ::testing::Test {
   void Acknowledge(Ecn ecn = Ecn::kEct1) {
     Collect();
     if (acknowledged_ == sent.size()) return;
-    scream::CongestionFeedback report;
+    rtcp::CongestionFeedback report;
     report.sender_ssrc = receiver;
     report.report_timestamp = static_cast<std::uint32_t>(
         gst_util_uint64_scale(time.now(), 65536, GST_SECOND) & 0xffffffff);
-    std::map<guint32, scream::SsrcReport> blocks;
+    std::map<guint32, rtcp::SsrcReport> blocks;
     for (; acknowledged_ < sent.size(); ++acknowledged_) {
       const Rtp& r = sent[acknowledged_];
       auto& block = blocks[r.ssrc];
@@ -87,8 +87,8 @@ class ScreamTx : public ::testing::Test {
     for (auto& [ssrc, block] : blocks) report.blocks.push_back(block);
     Feed(report);
   }
-  void Feed(const scream::CongestionFeedback& report) {
-    GstBuffer* buffer = FromBytes(scream::BuildCcfb(report));
+  void Feed(const rtcp::CongestionFeedback& report) {
+    GstBuffer* buffer = FromBytes(rtcp::BuildCcfb(report));
     if (from) gst_buffer_add_net_address_meta(buffer, from.get());
     ASSERT_EQ(gst_harness_push(rtcp.get(), buffer), GST_FLOW_OK);
   }

@@ -146,10 +146,10 @@ class ScreamTxReports : public ScreamTx {
     }
     Collect();
   }
-  std::vector<scream::SenderReport> Reports() {
-    std::vector<scream::SenderReport> reports;
+  std::vector<rtcp::SenderReport> Reports() {
+    std::vector<rtcp::SenderReport> reports;
     for (const auto& bytes : byes)
-      if (const auto r = scream::ParseSenderReport({bytes.data(), bytes.size()}))
+      if (const auto r = rtcp::ParseSenderReport({bytes.data(), bytes.size()}))
         reports.push_back(*r);
     return reports;
   }
@@ -163,7 +163,7 @@ TEST_F(ScreamTxReports, TellTheReceiverHowItSeesThePath) {
   ASSERT_EQ(reports.size(), 4U);
   for (std::size_t i = 1; i < reports.size(); ++i)
     EXPECT_NEAR(reports[i].time_ms - reports[i - 1].time_ms, 1000, 120);
-  const scream::SenderReport& last = reports.back();
+  const rtcp::SenderReport& last = reports.back();
   EXPECT_EQ(last.ssrc, 0x1234U);
   EXPECT_EQ(last.target_bitrate,
             DataRate::BitsPerSecond(static_cast<double>(Stats(element)["target-bitrate"])));

@@ -35,9 +35,9 @@ class Protector {
   }
   /// Returns a sender's report of the stream, protected.
   BufferPtr ProtectReport(guint32 ssrc = kSsrc) {
-    scream::SenderReport report;
+    rtcp::SenderReport report;
     report.ssrc = ssrc;
-    GstBuffer* rtcp = test::FromBytes(scream::BuildSenderReport(report));
+    GstBuffer* rtcp = test::FromBytes(rtcp::BuildSenderReport(report));
     return BufferPtr(gst_harness_push_and_pull(reports_.get(), rtcp));
   }
   /// Protects packets until the sequence number has wrapped once more.

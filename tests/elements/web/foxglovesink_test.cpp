@@ -249,12 +249,12 @@ TEST(FoxgloveSink, TellsAtTheReceiverWhatTheSenderReports) {
   const gst::ElementPtr web(gst_bin_get_by_name(GST_BIN(pipeline.get()), "web"));
   const gst::ElementPtr in(gst_bin_get_by_name(GST_BIN(pipeline.get()), "in"));
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  scream::SenderReport report;
+  rtcp::SenderReport report;
   report.ssrc = 7;
   report.target_bitrate = DataRate::BitsPerSecond(9e6);
   report.rtt = std::chrono::milliseconds(30);
   PushTo(in.get(), {0x80, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 1, 2, 3, 4});
-  PushTo(in.get(), scream::BuildSenderReport(report));
+  PushTo(in.get(), rtcp::BuildSenderReport(report));
   {
     Peer peer(UrlOf(web.get()), {"foxglove.sdk.v1"});
     peer.Subscribe("/statistics", 3);
