@@ -201,7 +201,7 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.s_rtt = path_.rtt().smoothed();
   s.max_bytes_in_flight = path_.max_in_flight().current();
   s.max_bytes_in_flight_prev = path_.max_in_flight().previous();
-  s.capacity_window = path_.train_capacity() * (path_.rtt().min() + path_.marking_onset()) *
+  s.capacity_window = path_.measured_capacity() * (path_.rtt().min() + path_.marking_onset()) *
                       (p_.target_rate_divisor + streams_.queue_compensation());
   s.bytes_newly_acked = acks.bytes_newly_acked;
   s.bytes_newly_acked_ce = std::min(acks.bytes_newly_acked_ce, acks.bytes_newly_acked);
@@ -296,7 +296,8 @@ bool Controller::CongestedLately() const {
 /// link's capacity without a queue in the network, or in a gap.
 DataRate Controller::QueueRate(const Stream& stream) const {
   if (gap_recovery_.in_gap() || outage_.active() || !CongestedLately()) return DataRate::Infinite();
-  const DataRate known = std::max({window_target_, path_.acked_rate(now_), path_.train_capacity()});
+  const DataRate known =
+      std::max({window_target_, path_.acked_rate(now_), path_.measured_capacity()});
   const DataRate all = known * p_.link_may_be_faster;
   return all * (stream.target_bitrate() / std::max(streams_.target_bitrate(), p_.rate_pace_min));
 }

@@ -63,7 +63,7 @@ void PathModel::Reset(Time now) {
   cross_traffic_ = CrossTraffic();
   loss_context_ = LossContext();
   loss_rate_.Reset();
-  train_capacity_ = acked_peak_ = DataRate();
+  measured_capacity_ = acked_peak_ = DataRate();
   report_gap_ = Duration{0};
   half_rate_until_ = Time{};
   ecn_.Reset();
@@ -145,8 +145,8 @@ void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = std::max(acked_peak_, acked_rate_.Rate(now));
   const auto rate = busy_run_.latest_capacity();
   if (!rate) return;
-  const double gain = train_capacity_ > DataRate() ? kCapacityGain : 1;
-  train_capacity_ = train_capacity_ * (1 - gain) + *rate * gain;
+  const double gain = measured_capacity_ > DataRate() ? kCapacityGain : 1;
+  measured_capacity_ = measured_capacity_ * (1 - gain) + *rate * gain;
   acked_peak_ = DataRate();
 }
 

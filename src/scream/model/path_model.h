@@ -61,10 +61,10 @@ class PathModel {
   const BusyRun& busy_run() const { return busy_run_; }
   /// Queue delay at which marking starts.
   Duration marking_onset() const { return marking_onset_.value(); }
-  /// The link's capacity at any rate of the source; 0 while unknown.
-  DataRate estimated_capacity() const { return std::max(train_capacity_, acked_peak_); }
-  /// The capacity from the spacing of packets alone.
-  DataRate train_capacity() const { return train_capacity_; }
+  /// The link's capacity, measured by the spacing of packets that it held back; 0 while unknown.
+  DataRate measured_capacity() const { return measured_capacity_; }
+  /// The same, or the acknowledged rate if that is higher.
+  DataRate estimated_capacity() const { return std::max(measured_capacity_, acked_peak_); }
   /// The link stood nearly still before a packet of the last report.
   bool hole_in_report() const { return hole_in_report_; }
   /// Returns true after a mark within the last round trip.
@@ -120,7 +120,7 @@ class PathModel {
   BusyRun busy_run_;
   MarkingOnset marking_onset_{p_.pacing_reserve};
   bool hole_in_report_ = false;
-  DataRate train_capacity_;
+  DataRate measured_capacity_;
   DataRate acked_peak_;  // highest average since the last measurement
   Evidence evidence_;
   MaxBytesInFlight max_in_flight_;

@@ -28,7 +28,7 @@ inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duratio
 /// start of each frame would be marked.
 inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
   constexpr double kUnmarked = 0.9;
-  const DataRate known = path.train_capacity();
+  const DataRate known = path.measured_capacity();
   if (!p.extensions.capacity || known <= DataRate()) return DataRate::Infinite();
   return known * kUnmarked;
 }

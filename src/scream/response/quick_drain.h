@@ -14,7 +14,7 @@ namespace lidar::scream {
 inline DataRate DrainRate(const Parameters& p, Time now, DataSize ref_wnd, DataSize in_flight,
                           const PathModel& path) {
   constexpr double kMargin = 1.25;
-  const DataRate link = path.train_capacity();
+  const DataRate link = path.measured_capacity();
   Duration rtt = path.rtt().last();
   if (link > DataRate()) rtt = std::max(path.rtt().min(), std::min(rtt, in_flight / link));
   return std::min(ref_wnd / rtt / p.target_rate_divisor,

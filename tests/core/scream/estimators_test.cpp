@@ -38,7 +38,7 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_FALSE(path.model.newest_marked());
   EXPECT_EQ(path.model.ecn().state(), EcnState::kTesting);
   EXPECT_EQ(path.model.estimated_capacity(), DataRate());
-  EXPECT_EQ(path.model.train_capacity(), DataRate());
+  EXPECT_EQ(path.model.measured_capacity(), DataRate());
   EXPECT_EQ(path.model.busy_run().packets(), 0);
   EXPECT_FALSE(path.model.busy_run().latest_capacity());
   EXPECT_FALSE(path.model.rtt().known());
