@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "src/scream/model/rate_meter.h"
+#include "src/base/rate_meter.h"
 #include "src/scream/parameters.h"
 #include "src/scream/statistics.h"
 #include "src/scream/stream_config.h"

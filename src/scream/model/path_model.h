@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "src/base/rate_meter.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/cross_traffic.h"
@@ -16,7 +17,6 @@
 #include "src/scream/model/loss_rate.h"
 #include "src/scream/model/marking_onset.h"
 #include "src/scream/model/queue_delay.h"
-#include "src/scream/model/rate_meter.h"
 #include "src/scream/model/rtt.h"
 #include "src/scream/model/sent_history.h"
 #include "src/scream/parameters.h"

@@ -7,7 +7,7 @@
 #include "src/base/time.h"
 #include "src/base/units.h"
 
-namespace lidar::scream {
+namespace lidar {
 
 class RateMeter {
  public:
@@ -44,4 +44,4 @@ class RateMeter {
   DataSize sum_;
 };
 
-}  // namespace lidar::scream
+}  // namespace lidar
