@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 namespace lidar::scream {
 namespace {
@@ -11,51 +10,24 @@ namespace {
 constexpr double kMinute = 60e9;
 constexpr double kGbps = 4e9;
 
-template <class T>
-void Assign(double value, T* field) {
-  if constexpr (std::is_same_v<T, Duration>)
-    *field = Duration{std::llround(value)};
-  else if constexpr (std::is_same_v<T, DataSize>)
-    *field = DataSize::Bytes(std::llround(value));
-  else if constexpr (std::is_same_v<T, DataRate>)
-    *field = DataRate::BitsPerSecond(value);
-  else if constexpr (std::is_same_v<T, bool>)
-    *field = value != 0;
-  else
-    *field = static_cast<T>(value);
-}
+void Assign(double value, bool* field) { *field = value != 0; }
+void Assign(double value, double* field) { *field = value; }
+void Assign(double value, Duration* field) { *field = Duration{std::llround(value)}; }
+void Assign(double value, DataSize* field) { *field = DataSize::Bytes(std::llround(value)); }
+void Assign(double value, DataRate* field) { *field = DataRate::BitsPerSecond(value); }
 
+Extensions& OwnerOf(bool Extensions::*, Parameters* p) { return p->extensions; }
 template <class T>
-double Number(T field) {
-  if constexpr (std::is_same_v<T, Duration>)
-    return static_cast<double>(field.count());
-  else if constexpr (std::is_same_v<T, DataSize>)
-    return static_cast<double>(field.bytes());
-  else if constexpr (std::is_same_v<T, DataRate>)
-    return field.bits_per_second();
-  else
-    return static_cast<double>(field);
-}
-
-/// Returns the field of `p`, a Parameters or a const one, to which `member` points.
-template <class P, class Owner, class T>
-auto& FieldOf(P& p, T Owner::*member) {
-  if constexpr (std::is_same_v<Owner, Extensions>)
-    return p.extensions.*member;
-  else
-    return p.*member;
+Parameters& OwnerOf(T Parameters::*, Parameters* p) {
+  return *p;
 }
 
 }  // namespace
 
 bool Tunable::Set(double value, Parameters* parameters) const {
   if (!(value >= min && value <= max)) return false;
-  std::visit([&](auto m) { Assign(value, &FieldOf(*parameters, m)); }, member);
+  std::visit([&](auto m) { Assign(value, &(OwnerOf(m, parameters).*m)); }, member);
   return true;
-}
-
-double Tunable::Get(const Parameters& parameters) const {
-  return std::visit([&](auto m) { return Number(FieldOf(parameters, m)); }, member);
 }
 
 const std::vector<Tunable>& Tunables() {

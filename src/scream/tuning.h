@@ -22,11 +22,8 @@ struct Tunable {
   double max = 1;
 
   bool is_switch() const { return member.index() <= 1; }
-  /// Returns true for an extension, as opposed to a part or constant of the draft.
-  bool is_extension() const { return member.index() == 0; }
   /// Returns false, without a change, for a value outside of min..max.
   bool Set(double value, Parameters* parameters) const;
-  double Get(const Parameters& parameters) const;
 };
 
 /// All tunables, in the order of the draft's sections.

@@ -2,6 +2,8 @@
 // The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
 #include <gtest/gtest.h>
 
+#include <variant>
+
 #include "gst/scream/feedback_peer.h"
 #include "gst/scream/key_request.h"
 #include "gst/scream/peer_latch.h"
@@ -315,14 +317,32 @@ TxSettings Tuned(const char* tuning) {
   return settings;
 }
 
+/// Values of tunables, as numbers.
+struct TunableValue {
+  const scream::Parameters& p;
+  double operator()(bool scream::Extensions::*m) const { return p.extensions.*m; }
+  double operator()(bool scream::Parameters::*m) const { return p.*m; }
+  double operator()(double scream::Parameters::*m) const { return p.*m; }
+  double operator()(Duration scream::Parameters::*m) const {
+    return static_cast<double>((p.*m).count());
+  }
+  double operator()(DataSize scream::Parameters::*m) const {
+    return static_cast<double>((p.*m).bytes());
+  }
+  double operator()(DataRate scream::Parameters::*m) const { return (p.*m).bits_per_second(); }
+};
+
 TEST(Tuning, SetsWhatItNamesAndNothingElse) {
-  const scream::Parameters usual;
+  const scream::Parameters defaults;
+  const TunableValue usual{defaults};
   for (const scream::Tunable& t : scream::Tunables()) {
-    const double other = t.Get(usual) == t.max ? t.min : t.max;
+    const double other = std::visit(usual, t.member) == t.max ? t.min : t.max;
     const std::string text = "tuning," + std::string(t.name) + "=" + std::to_string(other);
     const scream::Parameters p = ToParameters(Tuned(text.c_str()));
     for (const scream::Tunable& u : scream::Tunables())
-      EXPECT_EQ(u.Get(p), &u == &t ? other : u.Get(usual)) << text << " " << u.name;
+      EXPECT_EQ(std::visit(TunableValue{p}, u.member),
+                &u == &t ? other : std::visit(usual, u.member))
+          << text << " " << u.name;
   }
 }
 
