@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "src/scream/media_rate.h"
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/quick_drain.h"
@@ -105,8 +104,7 @@ FeedbackResult Controller::OnFeedback(Time now, const rtcp::CongestionFeedback& 
 void Controller::TakeOutageRestart(Time now) {
   const auto restart = outage_.OnFeedback(now);
   if (!restart) return;
-  window_.Set(std::max(window_.ref_wnd(), *restart));
-  window_.ForgetSigns();
+  window_.Restart(std::max(window_.ref_wnd(), *restart));
   // Delayed packets arrive first. Their marks are already answered by the restart.
   path_.evidence().BeginAt(now + path_.rtt().smoothed());
   fast_increase_.Restart();
@@ -140,8 +138,7 @@ void Controller::Respond(Time now, const AckSummary& acks) {
 void Controller::TakeGapRestart(Time now) {
   const auto restart = gap_recovery_.Update(now, path_, window_.ref_wnd());
   if (!restart) return;
-  window_.Set(restart->window);
-  window_.ForgetSigns();
+  window_.Restart(restart->window);
   path_.OnGapEnd(now, restart->s_rtt, restart->l4s_alpha);
   streams_.OnSuddenBacklog();
   pacer_.OnGapEnd(now);
@@ -155,9 +152,7 @@ bool Controller::RespondToDrop(Time now) {
                             {window_target_, window_.ref_wnd(), streams_.frame_period(),
                              window_.last_reaction_to_congestion_time()});
   if (!window) return false;
-  window_.SetInflection(*window);
-  window_.Set(*window);
-  window_.NoteReaction(now);
+  window_.Drop(now, *window);
   if (p_.extensions.evidence) path_.evidence().OnDropReaction(now);
   streams_.OnSuddenBacklog();
   fast_increase_.OnCongestion(now);
@@ -219,10 +214,6 @@ void Controller::Count(RateReason reason) {
   if (reason == RateReason::kDelay) ++counters_.delay_events;
 }
 
-void Controller::StartWindow() {
-  window_.Set(WindowFor(p_, streams_.start_bitrate(), path_.rtt().smoothed()));
-}
-
 void Controller::UpdateTarget(Time now) {
   const DataRate allowed = WindowTarget(now);
   streams_.Allocate(now, AskedTarget(now, allowed));
@@ -250,7 +241,7 @@ void Controller::UpdatePacer(Time now) {
 DataRate Controller::WindowRate(Time now, double queue_compensation) const {
   // The round trip during an outage is at least the time without feedback.
   const Duration s_rtt = std::max(path_.rtt().smoothed(), outage_.Silence(now));
-  return TargetBitrate(p_, {window_.ref_wnd(), window_.ref_wnd_ratio(), s_rtt, queue_compensation});
+  return window_.TargetBitrate(s_rtt, queue_compensation);
 }
 
 DataRate Controller::WindowTarget(Time now) const {

@@ -116,7 +116,7 @@ class Controller {
   void RespondToSignals(Time now, const AckSummary& acks);
   CongestionSignals Signals(Time now, const AckSummary& acks) const;
   void Count(RateReason reason);
-  void StartWindow();
+  void StartWindow() { window_.Start(streams_.start_bitrate(), path_.rtt().smoothed()); }
   SourceLimit source_limit() const {
     return {p_, path_, streams_.max_bitrate(), streams_.queue_compensation()};
   }

@@ -26,6 +26,28 @@ void ReferenceWindow::Set(DataSize window) {
   ref_wnd_ = static_cast<double>(std::max(window, p_.min_ref_wnd).bytes());
 }
 
+void ReferenceWindow::Start(DataRate rate, Duration s_rtt) {
+  Set(rate * s_rtt * p_.target_rate_divisor * ((p_.mss + p_.packet_overhead) / p_.mss));
+}
+
+void ReferenceWindow::Drop(Time now, DataSize window) {
+  Restart(window);
+  ref_wnd_i_ = static_cast<double>(window.bytes());
+  last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
+}
+
+void ReferenceWindow::Restart(DataSize window) {
+  Set(window);
+  ForgetSigns();
+}
+
+DataRate ReferenceWindow::TargetBitrate(Duration s_rtt, double queue_compensation) const {
+  double scale = 1 - std::clamp(ref_wnd_ratio() - 0.1, 0.0, 0.2);
+  scale *= p_.mss / (p_.mss + p_.packet_overhead);
+  scale /= p_.target_rate_divisor + queue_compensation;
+  return ref_wnd() / s_rtt * scale;
+}
+
 double ReferenceWindow::ref_wnd_ratio() const {
   return std::min(1.0, static_cast<double>(p_.mss.bytes()) / ref_wnd_);
 }
@@ -60,11 +82,6 @@ RateReason ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
 bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
   return !p_.link_layer_loss || s.loss_rate > s.loss_rate_threshold || s.queue_at_loss ||
          s.qdelay_avg > p_.qdelay_target_lo / 4;
-}
-
-void ReferenceWindow::NoteReaction(Time now) {
-  last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
-  ForgetSigns();
 }
 
 void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignals& s, double scl) {

@@ -55,23 +55,28 @@ class ReferenceWindow {
   /// Takes a report. Reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases. Returns
   /// the reason of the reduction, or kIncrease.
   RateReason Update(Time now, const CongestionSignals& signals);
-  /// Notes a reaction that was made elsewhere; the draft's own then waits.
-  void NoteReaction(Time now);
-  /// Drops marks and losses that still wait for a reaction.
-  void ForgetSigns() { loss_detected_ = data_units_marked_ = false; }
   /// Sets the window outside of the draft's rules; never below MIN_REF_WND.
   void Set(DataSize window);
-  /// Sets the window at which congestion is expected.
-  void SetInflection(DataSize window) { ref_wnd_i_ = static_cast<double>(window.bytes()); }
+  /// Sets the window whose target is `rate`, for the start that the draft leaves open.
+  void Start(DataRate rate, Duration s_rtt);
+  /// The link's capacity fell to what `window` fills. The draft's own reaction then waits.
+  void Drop(Time now, DataSize window);
+  /// Sets the window after a gap or an outage. Marks and losses that wait for a reaction met it.
+  void Restart(DataSize window);
   void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
 
   DataSize ref_wnd() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_)); }
   DataSize ref_wnd_i() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_i_)); }
-  double ref_wnd_ratio() const;
+  /// Target bitrate by the draft's section "Media Rate Control", without its limits.
+  /// `queue_compensation` is rate_adjust_factor + frame_size_dev.
+  DataRate TargetBitrate(Duration s_rtt, double queue_compensation) const;
   Time last_reaction_to_congestion_time() const { return last_reaction_to_congestion_time_; }
   Time last_congestion_detected_time() const { return last_congestion_detected_time_; }
 
  private:
+  /// Drops marks and losses that still wait for a reaction.
+  void ForgetSigns() { loss_detected_ = data_units_marked_ = false; }
+  double ref_wnd_ratio() const;
   double InflectionScale(double slope) const;
   double FastIncrement(const CongestionSignals& s, double scl) const;
   RateReason Detect(Time now, const CongestionSignals& s);

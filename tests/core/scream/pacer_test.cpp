@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How fast packets leave, and what encoders are asked for.
+// How fast packets leave.
 #include <gtest/gtest.h>
 
-#include "src/scream/media_rate.h"
 #include "src/scream/pacer.h"
 #include "src/sim/simulated_time.h"
 
@@ -110,14 +109,6 @@ TEST(Pacer, GapsAreUnevenByTheRippleAndEvenOnAverage) {
     EXPECT_GT(changes, 32);
     EXPECT_LT(changes, 63);
   }
-}
-
-TEST(MediaRate, IsTheWindowOverTheRoundTripWithTheDraftsReserves) {
-  const Parameters p = Parameters::Draft();
-  const DataRate rate = TargetBitrate(p, {DataSize::Bytes(50000), 0.02, 40ms, 0});
-  EXPECT_NEAR(rate.bits_per_second(), 1e7 * (1000.0 / 1020) / 1.2, 1);
-  const DataRate small = TargetBitrate(p, {DataSize::Bytes(3000), 1.0 / 3, 40ms, 0.3});
-  EXPECT_NEAR(small.bits_per_second(), 6e5 * 0.8 * (1000.0 / 1020) / 1.5, 1);
 }
 
 }  // namespace

@@ -41,6 +41,14 @@ TEST_F(ReferenceWindowTest, IsNeverSetBelowItsMinimum) {
   EXPECT_EQ(window_.ref_wnd(), parameters_.min_ref_wnd);
 }
 
+TEST_F(ReferenceWindowTest, GivesATargetOverTheRoundTripWithTheDraftsReserves) {
+  window_.Set(DataSize::Bytes(50000));
+  EXPECT_NEAR(window_.TargetBitrate(40ms, 0).bits_per_second(), 1e7 * (1000.0 / 1020) / 1.2, 1);
+  window_.Set(DataSize::Bytes(3000));
+  EXPECT_NEAR(window_.TargetBitrate(40ms, 0.3).bits_per_second(),
+              6e5 * 0.8 * (1000.0 / 1020) / 1.5, 1);
+}
+
 TEST_F(ReferenceWindowTest, LossScalesByBetaLoss) {
   signals_.loss_detected = true;
   EXPECT_NEAR(Factor(), 0.7, 1e-4);
