@@ -178,7 +178,7 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   CongestionSignals s;
   s.loss_detected = path_.evidence().NewLoss(acks);
   s.data_units_marked = path_.evidence().NewMark(acks);
-  s.loss_rate = path_.loss_rate().value();
+  s.loss_rate = path_.loss_rate();
   s.loss_rate_threshold = tolerance.loss_rate_threshold;
   s.queue_at_loss = tolerance.queue_at_loss;
   if (p_.extensions.capacity)

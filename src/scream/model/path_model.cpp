@@ -16,6 +16,8 @@ constexpr int kCloseReports = 5;
 /// Longest gap between reports that counts.
 constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
+constexpr double kOnsetFall = 1.0 / 32;
+constexpr double kOnsetRise = 1.0 / 128;
 /// Number of packets in a row behind a queue that are no accident.
 constexpr int kQueueingPackets = 3;
 /// Least time of the clock-drift remedy, which lasts five round trips.
@@ -62,7 +64,7 @@ void PathModel::Reset(Time now) {
   classic_ecn_ = ClassicEcn();
   cross_traffic_ = CrossTraffic();
   loss_context_ = LossContext();
-  loss_rate_.Reset();
+  loss_rate_ = 0;
   measured_capacity_ = acked_peak_ = DataRate();
   report_gap_ = Duration{0};
   half_rate_until_ = Time{};
@@ -70,7 +72,7 @@ void PathModel::Reset(Time now) {
   last_mark_.reset();
   newest_marked_ = false;
   l4s_alpha_.Reset();
-  marking_onset_ = MarkingOnset(p_.pacing_reserve);
+  marking_onset_ = p_.pacing_reserve;
 }
 
 void PathModel::MeasureDelays(Time now, const AckSummary& acks) {
@@ -103,15 +105,25 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
     newest_marked_ = packet.arrived_ecn == Ecn::kCe;
     if (newest_marked_) count_mark(packet.sent);
     if (evidence_.Counts(packet.sent)) ecn_.OnAcked(packet.ecn, packet.arrived_ecn);
-    loss_rate_.Add(false, sender.ref_wnd);
+    AverageLoss(false, sender.ref_wnd);
     acked_rate_.Add(now, packet.size);
     long_acked_rate_.Add(now, packet.size);
   }
-  for (std::size_t i = 0; i < acks.lost.size(); ++i) loss_rate_.Add(true, sender.ref_wnd);
+  for (std::size_t i = 0; i < acks.lost.size(); ++i) AverageLoss(true, sender.ref_wnd);
   packets_ce_ += static_cast<std::uint64_t>(marked + answered);
   if (!acks.lost.empty()) last_loss_ = now;
   l4s_alpha_.Update(now, static_cast<int>(acks.acked.size()), marked, rtt_.smoothed(),
                     Round(sender.frame_period));
+}
+
+void PathModel::AverageLoss(bool lost, DataSize ref_wnd) {
+  const double alpha = std::min(p_.loss_rate_threshold / 4, p_.mss / ref_wnd / 2);
+  loss_rate_ = (1 - alpha) * loss_rate_ + (lost ? alpha : 0);
+}
+
+void PathModel::ObserveMark(Duration qdelay) {
+  const double gain = qdelay < marking_onset_ ? kOnsetFall : kOnsetRise;
+  marking_onset_ += FromSeconds(Seconds(qdelay - marking_onset_) * gain);
 }
 
 void PathModel::ObserveCapacity(Time now, const AckSummary& acks) {
@@ -130,7 +142,7 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks) {
     loss_context_.OnAcked(packet.sent, qdelay);
     if (evidence_.Counts(packet.sent)) {
       classic_ecn_.OnPacket(now, qdelay, marked);
-      if (marked) marking_onset_.OnMark(qdelay);
+      if (marked) ObserveMark(qdelay);
       cross_traffic_.Add({packet.sent, *packet.arrival, packet.size}, qdelay, congested);
     }
     if (busy_run_.Add({packet.sent, *packet.arrival, packet.size, qdelay, busy, marked}))
@@ -182,7 +194,7 @@ void PathModel::Describe(Time now, Statistics* s) const {
   s->qdelay_avg = queue_delay_.qdelay_avg();
   s->l4s_alpha = l4s_alpha_.value();
   s->ref_wnd_delay_scale = queue_delay_.ref_wnd_delay_scale();
-  s->loss_rate = loss_rate_.value();
+  s->loss_rate = loss_rate_;
   if (cross_traffic_.found())
     s->cross_traffic = std::clamp(cross_traffic_.share().value_or(0), 0.0, 1.0);
   s->sent_bitrate = sent_rate_.Rate(now);

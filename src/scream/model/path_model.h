@@ -14,8 +14,6 @@
 #include "src/scream/model/flight.h"
 #include "src/scream/model/l4s_alpha.h"
 #include "src/scream/model/loss_context.h"
-#include "src/scream/model/loss_rate.h"
-#include "src/scream/model/marking_onset.h"
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rtt.h"
 #include "src/scream/model/sent_history.h"
@@ -53,14 +51,17 @@ class PathModel {
   const RoundTripTime& rtt() const { return rtt_; }
   const QueueDelay& queue_delay() const { return queue_delay_; }
   const L4sAlpha& l4s_alpha() const { return l4s_alpha_; }
-  const LossRate& loss_rate() const { return loss_rate_; }
+  /// Averaged by the draft's section "Link layer losses and rate policers".
+  double loss_rate() const { return loss_rate_; }
   const LossContext& loss_context() const { return loss_context_; }
   const ClassicEcn& classic_ecn() const { return classic_ecn_; }
   const CrossTraffic& cross_traffic() const { return cross_traffic_; }
   const EcnMonitor& ecn() const { return ecn_; }
   const BusyRun& busy_run() const { return busy_run_; }
-  /// Queue delay at which marking starts.
-  Duration marking_onset() const { return marking_onset_.value(); }
+  /// Queue delay at which the bottleneck starts to mark: a low quantile of those of marked packets.
+  /// Arrival times of reports are coarse and the base delay is their minimum, so its resolution is
+  /// about a millisecond.
+  Duration marking_onset() const { return marking_onset_; }
   /// The link's capacity, measured by the spacing of packets that it held back; 0 while unknown.
   DataRate measured_capacity() const { return measured_capacity_; }
   /// The same, or the acknowledged rate if that is higher.
@@ -104,7 +105,9 @@ class PathModel {
  private:
   void MeasureDelays(Time now, const AckSummary& acks);
   void CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender);
+  void AverageLoss(bool lost, DataSize ref_wnd);
   void ObserveCapacity(Time now, const AckSummary& acks);
+  void ObserveMark(Duration qdelay);
   void EstimateCapacity(Time now);
   void MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd);
 
@@ -112,13 +115,13 @@ class PathModel {
   RoundTripTime rtt_;
   QueueDelay queue_delay_{p_};
   L4sAlpha l4s_alpha_{p_};
-  LossRate loss_rate_{p_};
+  double loss_rate_ = 0;
   LossContext loss_context_;
   ClassicEcn classic_ecn_;
   CrossTraffic cross_traffic_;
   EcnMonitor ecn_{p_.ecn};
   BusyRun busy_run_;
-  MarkingOnset marking_onset_{p_.pacing_reserve};
+  Duration marking_onset_ = p_.pacing_reserve;
   bool hole_in_report_ = false;
   DataRate measured_capacity_;
   DataRate acked_peak_;  // highest average since the last measurement

@@ -5,7 +5,6 @@
 #include "src/link/random.h"
 #include "src/scream/model/busy_run.h"
 #include "src/scream/model/loss_context.h"
-#include "src/scream/model/loss_rate.h"
 #include "src/scream/model/queue_delay.h"
 #include "src/scream/model/rtt.h"
 #include "src/sim/simulated_time.h"
@@ -160,15 +159,6 @@ TEST_F(QueueDelayTest, ADriftingClockIsGivenANewBase) {
   }
   EXPECT_TRUE(reset);
   EXPECT_EQ(delay_.qdelay(), Duration(0));
-}
-
-TEST(LossRate, FollowsTheDraftsFilter) {
-  const Parameters p = Parameters::Draft();
-  LossRate rate(p);
-  rate.Add(true, DataSize::Bytes(10000));
-  EXPECT_DOUBLE_EQ(rate.value(), 0.0025);
-  rate.Add(false, DataSize::Bytes(1000000));
-  EXPECT_DOUBLE_EQ(rate.value(), 0.0025 * (1 - 0.0005));
 }
 
 TEST(RoundTripTime, SmoothsByAnEighth) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What marks tell: alpha, whether the path carries ECN, and where its queue marks.
+// What marks tell: alpha, and whether the path carries ECN.
 #include <gtest/gtest.h>
 
 #include "src/scream/model/classic_ecn.h"
 #include "src/scream/model/ecn_monitor.h"
 #include "src/scream/model/l4s_alpha.h"
-#include "src/scream/model/marking_onset.h"
 #include "src/sim/simulated_time.h"
 
 namespace lidar::scream {
@@ -106,14 +105,6 @@ TEST(EcnMonitor, FallsBackWhenNothingMarkedComesThrough) {
   ecn.OnTimer(kStart + 2s);
   EXPECT_EQ(ecn.state(), EcnState::kSilent);
   EXPECT_EQ(ecn.codepoint(), Ecn::kNotEct);
-}
-
-TEST(MarkingOnset, FindsTheShortestQueuesThatAreMarked) {
-  MarkingOnset onset(4ms);
-  for (int i = 0; i < 1000; ++i) onset.OnMark(1ms + i % 10 * 1ms);
-  EXPECT_NEAR(Milliseconds(onset.value()), 4, 0.5);
-  for (int i = 0; i < 1000; ++i) onset.OnMark(1ms);
-  EXPECT_NEAR(Milliseconds(onset.value()), 1, 0.1);
 }
 
 class ClassicEcnTest : public ::testing::Test {

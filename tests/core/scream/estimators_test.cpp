@@ -27,7 +27,7 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   ASSERT_TRUE(path.model.classic_ecn().found());
   ASSERT_TRUE(path.model.L4sWorks(path.now));
   ASSERT_GT(path.model.estimated_capacity(), DataRate());
-  ASSERT_GT(path.model.loss_rate().value(), 0);
+  ASSERT_GT(path.model.loss_rate(), 0);
   ASSERT_GT(path.model.l4s_alpha().value(), 0);
   ASSERT_NE(path.model.marking_onset(), p.pacing_reserve);
 
@@ -42,10 +42,32 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_EQ(path.model.busy_run().packets(), 0);
   EXPECT_FALSE(path.model.busy_run().latest_capacity());
   EXPECT_FALSE(path.model.rtt().known());
-  EXPECT_EQ(path.model.loss_rate().value(), 0);
+  EXPECT_EQ(path.model.loss_rate(), 0);
   EXPECT_EQ(path.model.l4s_alpha().value(), 0);
   EXPECT_EQ(path.model.marking_onset(), p.pacing_reserve);
   EXPECT_EQ(path.model.report_gap(), Duration{0});
+}
+
+TEST(PathModel, AveragesLossesByTheDraftsFilter) {
+  const Parameters p = Parameters::Draft();
+  PathModel model(p);
+  AckSummary acks;
+  acks.lost.emplace_back();
+  model.OnReport(kStart, acks, kSender);
+  EXPECT_DOUBLE_EQ(model.loss_rate(), 0.0025);
+  acks.lost.clear();
+  acks.acked.emplace_back();
+  model.OnReport(kStart, acks, {DataSize::Bytes(1000000), 20ms});
+  EXPECT_DOUBLE_EQ(model.loss_rate(), 0.0025 * (1 - 0.0005));
+}
+
+TEST(PathModel, FindsTheShortestQueuesThatAreMarked) {
+  const Parameters p;
+  Path path(p);
+  for (int i = 0; i < 1000; ++i) path.Arrive(1, 1ms, 1ms + i % 10 * 1ms, Ecn::kCe);
+  EXPECT_NEAR(Milliseconds(path.model.marking_onset()), 4, 0.5);
+  path.Arrive(1000, 1ms, 1ms, Ecn::kCe);
+  EXPECT_NEAR(Milliseconds(path.model.marking_onset()), 1, 0.1);
 }
 
 TEST(PathModel, SeesTheNewestMarkWithoutAnArrivalTime) {
