@@ -46,8 +46,6 @@ class Stream {
   bool Owns(std::uint32_t ssrc) const { return ssrcs_.count(ssrc) > 0; }
 
   const StreamConfig& config() const { return config_; }
-  double rate_adjust_factor() const { return rate_adjust_factor_; }
-  double frame_size_dev() const { return frame_size_dev_; }
   double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
   /// The present queue came from a gap or a drop of the capacity. Once it has left, it no longer

@@ -11,11 +11,6 @@ StreamId Streams::Add(const StreamConfig& config) {
   return id;
 }
 
-Stream* Streams::Find(StreamId id) {
-  const auto it = streams_.find(id);
-  return it == streams_.end() ? nullptr : &it->second;
-}
-
 const Stream* Streams::Find(StreamId id) const {
   const auto it = streams_.find(id);
   return it == streams_.end() ? nullptr : &it->second;
@@ -54,16 +49,10 @@ void Streams::OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size) {
   stream->virtual_time += size.bits() / weight;
 }
 
-bool Streams::AnyActive(Time now) const {
-  return std::any_of(streams_.begin(), streams_.end(),
-                     [now](const auto& s) { return s.second.active(now); });
-}
-
-double Streams::NeedShare(Time now, DataRate total) const {
+double Streams::NeedShare(DataRate total) const {
   DataRate extra;  // needed bitrate above the minima
-  const bool any_active = AnyActive(now);
   for (const auto& [id, stream] : streams_) {
-    if (any_active && !stream.active(now)) continue;
+    if (!stream.counts()) continue;
     const StreamConfig& c = stream.config();
     total = total - c.min_bitrate;
     if (c.needed_bitrate > c.min_bitrate) extra = extra + (c.needed_bitrate - c.min_bitrate);
@@ -83,11 +72,12 @@ void Streams::Allocate(Time now, DataRate total) {
   DataRate left = total;
   if (now != Time{})  // zero before the first event
     for (auto& [id, stream] : streams_) stream.NoteTime(now);
-  const bool any_active = AnyActive(now);
-  const double need_share = NeedShare(now, total);
+  const bool any_active = std::any_of(streams_.begin(), streams_.end(),
+                                      [now](const auto& s) { return s.second.active(now); });
+  for (auto& [id, stream] : streams_) stream.set_counts(!any_active || stream.active(now));
+  const double need_share = NeedShare(total);
   for (auto& [id, stream] : streams_) {
     const StreamConfig& c = stream.config();
-    stream.set_counts(!any_active || stream.active(now));
     if (!stream.counts()) {
       stream.set_target_bitrate(std::max(c.min_bitrate, c.needed_bitrate));
       continue;

@@ -3,6 +3,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "src/scream/model/sent_history.h"
@@ -16,8 +17,8 @@ class Streams {
 
   StreamId Add(const StreamConfig& config);
   void Remove(StreamId id) { streams_.erase(id); }
-  Stream* Find(StreamId id);
   const Stream* Find(StreamId id) const;
+  Stream* Find(StreamId id) { return const_cast<Stream*>(std::as_const(*this).Find(id)); }
   std::optional<StreamId> Owner(std::uint32_t ssrc) const;
 
   /// Returns the next stream: strict ones first, then weighted fair queueing by target bitrates.
@@ -53,7 +54,7 @@ class Streams {
 
  private:
   /// Share of the needed bitrates above the minima that the path can carry, 0 to 1.
-  double NeedShare(Time now, DataRate total) const;
+  double NeedShare(DataRate total) const;
   /// A stream's part of the rate so far.
   struct Share {
     Stream* stream;
@@ -62,7 +63,6 @@ class Streams {
     DataRate max;
   };
   static DataRate Fill(std::vector<Share> open, DataRate left);
-  bool AnyActive(Time now) const;
   template <class Rate>
   DataRate Sum(Rate rate) const;
   const Parameters& p_;

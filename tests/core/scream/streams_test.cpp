@@ -280,7 +280,7 @@ TEST_F(StreamTest, TheFramePeriodIsMeasured) {
 
 TEST_F(StreamTest, AQueueThatOutlastsTheFramePeriodLowersTheRate) {
   for (int i = 0; i < 20; ++i) Frame(kStart + i * 20ms, 1, static_cast<std::uint32_t>(i));
-  EXPECT_DOUBLE_EQ(stream_.rate_adjust_factor(), 0.5);
+  EXPECT_DOUBLE_EQ(stream_.queue_compensation(), 0.5);
 }
 
 /// Sends frames of one packet: twenty wait at once, they leave, and four more come.
@@ -300,7 +300,7 @@ double RateAdjustFactorAfterBacklog(Duration period) {
     frame();
     stream.OnDropped(now, 1);
   }
-  return stream.rate_adjust_factor();
+  return stream.queue_compensation();
 }
 
 /// The draft takes half a second for that, in which the window grows beyond the link.
@@ -314,7 +314,7 @@ TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
     Frame(kStart + i * 20ms, 11, static_cast<std::uint32_t>(i));  // nominal: 10
     stream_.OnDropped(kStart, 11);
   }
-  EXPECT_NEAR(stream_.frame_size_dev(), 0.1, 1e-3);
+  EXPECT_NEAR(stream_.queue_compensation(), 0.1, 1e-3);
 }
 
 TEST_F(StreamTest, APauseIsNoFramePeriod) {
@@ -360,7 +360,7 @@ TEST_F(StreamTest, ARepairPacketWithinAFrameIsNoPartOfIt) {
     for (int i = 0; i < 5; ++i) stream_.OnSent(now, 1, DataSize::Bytes(20'000));
     for (int i = 0; i < 2; ++i) without.OnSent(now, 1, DataSize::Bytes(20'000));
   }
-  EXPECT_DOUBLE_EQ(stream_.frame_size_dev(), without.frame_size_dev());
+  EXPECT_DOUBLE_EQ(stream_.queue_compensation(), without.queue_compensation());
   EXPECT_EQ(stream_.frame_period(), without.frame_period());
 }
 
