@@ -85,8 +85,7 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks) {
     ++clock_resets_;
     busy_run_.EndRun();
   }
-  if (evidence_.Counts(acks)) queue_delay_.Update(now, rtt_.smoothed());
-  if (queue_delay_.TakeDriftReset()) {
+  if (evidence_.Counts(acks) && queue_delay_.Update(now, rtt_.smoothed())) {
     ++clock_resets_;
     half_rate_until_ = now + std::max(5 * rtt_.smoothed(), kShortestHalfRate);
   }

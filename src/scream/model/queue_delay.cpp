@@ -81,18 +81,19 @@ bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   return !jumped;
 }
 
-void QueueDelay::Update(Time now, Duration s_rtt) {
+bool QueueDelay::Update(Time now, Duration s_rtt) {
   if (p_.reduce_jitter) {
     qdelay_max_avg_ = std::min(p_.qdelay_target_lo, std::max(qdelay_, qdelay_max_avg_));
     qdelay_min_avg_ = std::min(qdelay_, qdelay_min_avg_);
   }
-  if (p_.clock_drift) UpdateDrift(now, s_rtt);
-  if (now - last_update_qdelay_avg_time_ < std::min(p_.virtual_rtt, s_rtt)) return;
+  const bool new_base = p_.clock_drift && UpdateDrift(now, s_rtt);
+  if (now - last_update_qdelay_avg_time_ < std::min(p_.virtual_rtt, s_rtt)) return new_base;
   last_update_qdelay_avg_time_ = now;
   qdelay_avg_ = qdelay_ < qdelay_avg_
                     ? qdelay_
                     : Scale(qdelay_, p_.qdelay_avg_g) + Scale(qdelay_avg_, 1 - p_.qdelay_avg_g);
   if (p_.reduce_jitter) CalculateRefWndDelayScale();
+  return new_base;
 }
 
 void QueueDelay::CalculateRefWndDelayScale() {
@@ -105,17 +106,15 @@ void QueueDelay::CalculateRefWndDelayScale() {
   ref_wnd_delay_scale_ = std::clamp(1 - relative, 0.0, 1.0);
 }
 
-void QueueDelay::UpdateDrift(Time now, Duration s_rtt) {
-  if (now - rtt_start_ < s_rtt || min_this_rtt_ == Duration::max()) return;
+bool QueueDelay::UpdateDrift(Time now, Duration s_rtt) {
+  if (now - rtt_start_ < s_rtt || min_this_rtt_ == Duration::max()) return false;
   const double g = p_.qdelay_min_avg_alpha;
   slow_min_avg_ = Scale(slow_min_avg_, 1 - g) + Scale(min_this_rtt_, g);
   min_this_rtt_ = Duration::max();
   rtt_start_ = now;
-  if (slow_min_avg_ <= p_.qdelay_target_lo / 4) return;
+  if (slow_min_avg_ <= p_.qdelay_target_lo / 4) return false;
   ForgetBase();
-  drift_reset_ = true;
+  return true;
 }
-
-bool QueueDelay::TakeDriftReset() { return std::exchange(drift_reset_, false); }
 
 }  // namespace lidar::scream

@@ -27,8 +27,8 @@ class QueueDelay {
   /// `short_history` the base is the minimum of the last half minute.
   bool Add(Time now, const DelaySample& sample, bool short_history = false);
   /// Updates the averages after the packets of a report, at most once every min(VIRTUAL_RTT,
-  /// s_rtt).
-  void Update(Time now, Duration s_rtt);
+  /// s_rtt). Returns true if the clock-drift remedy takes a new base.
+  bool Update(Time now, Duration s_rtt);
   /// Forgets the present queue.
   void ForgetQueue() { qdelay_avg_ = Duration{0}; }
   /// Returns to the initial state.
@@ -39,8 +39,6 @@ class QueueDelay {
   Duration qdelay_avg() const { return qdelay_avg_; }
   /// 1: no jitter, 0: much jitter. Always 1 without REDUCE_JITTER.
   double ref_wnd_delay_scale() const { return ref_wnd_delay_scale_; }
-  /// Returns true once after each new base by the clock-drift remedy.
-  bool TakeDriftReset();
 
  private:
   struct Base {
@@ -51,7 +49,7 @@ class QueueDelay {
   bool Jumped(Time now, Duration owd, Duration way_back);
   void AddToBase(Time now, Duration owd, bool short_history);
   void CalculateRefWndDelayScale();
-  void UpdateDrift(Time now, Duration s_rtt);
+  bool UpdateDrift(Time now, Duration s_rtt);
 
   const Parameters& p_;
   std::deque<Base> history_;
@@ -69,7 +67,6 @@ class QueueDelay {
   Duration slow_min_avg_{0};
   Duration min_this_rtt_ = Duration::max();
   Time rtt_start_{};
-  bool drift_reset_ = false;
 };
 
 }  // namespace lidar::scream

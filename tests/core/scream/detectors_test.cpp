@@ -60,13 +60,14 @@ class QueueDelayTest : public ::testing::Test {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
       const Duration way_back = 40ms + rtt_excess - owd - 1h;
       ok_ = delay_.Add(now_, {now_ - 20ms, now_ - 20ms + owd + 1h, rtt_excess, way_back}) && ok_;
-      delay_.Update(now_, 40ms);
+      new_base_ = delay_.Update(now_, 40ms) || new_base_;
     }
   }
   Parameters parameters_;
   QueueDelay delay_{parameters_};
   Time now_ = kStart;
   bool ok_ = true;
+  bool new_base_ = false;
 };
 
 TEST_F(QueueDelayTest, IsTheDelayAboveTheLowestSeen) {
@@ -152,12 +153,8 @@ TEST_F(QueueDelayTest, JitterLowersTheScale) {
 }
 
 TEST_F(QueueDelayTest, ADriftingClockIsGivenANewBase) {
-  bool reset = false;
-  for (int i = 0; i < 1000 && !reset; ++i) {
-    Run(41, 20ms + i * 100us, 100ms);
-    reset = delay_.TakeDriftReset();
-  }
-  EXPECT_TRUE(reset);
+  for (int i = 0; i < 1000 && !new_base_; ++i) Run(41, 20ms + i * 100us, 100ms);
+  EXPECT_TRUE(new_base_);
   EXPECT_EQ(delay_.qdelay(), Duration(0));
 }
 
