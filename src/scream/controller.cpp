@@ -5,7 +5,6 @@
 
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/isolated_loss.h"
-#include "src/scream/response/quick_drain.h"
 #include "src/scream/response/shared_link.h"
 
 namespace lidar::scream {
@@ -61,7 +60,7 @@ void Controller::OnQueued(Time now, StreamId id, const QueuedPacket& packet) {
 
 void Controller::OnSent(Time now, StreamId id, const SentPacket& packet) {
   now = Advance(now);
-  if (!started_ && send_window_.unused()) StartWindow();
+  if (!started_ && counters_.packets_sent == 0) StartWindow();
   if (history_.bytes_in_flight().bytes() == 0) outage_.Restart(now);
   history_.OnSent(packet.ssrc, packet.seq, {id, packet.size, now, packet.ecn});
   path_.OnSent(now, packet.size, packet.ecn, history_.bytes_in_flight());
@@ -341,7 +340,6 @@ Statistics Controller::statistics(Time now) const {
   const Time latest = std::max(clock_.Peek(now), now_);
   Statistics s = counters_;
   path_.Describe(latest, &s);
-  s.estimated_capacity = path_.estimated_capacity();
   s.ref_wnd = window_.ref_wnd();
   s.ref_wnd_i = window_.ref_wnd_i();
   s.bytes_in_flight = history_.bytes_in_flight();

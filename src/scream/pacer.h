@@ -35,7 +35,6 @@ class Pacer {
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
   /// The next packet is timed from when this one was due, not from a late wake-up, within a bound.
   void OnSent(Time now, DataSize size);
-  /// Earliest time for the next packet.
   Time next() const { return next_; }
   DataRate pace_bitrate() const { return pace_bitrate_; }
 

@@ -31,7 +31,6 @@ class EcnMonitor {
     }
     sent_ = 0;  // an acknowledgement ends the silence
   }
-  /// Checks for silence.
   void OnTimer(Time now) {
     if (state_ == EcnState::kTesting && sent_ >= kSilentPackets && now - first_sent_ >= kSilence)
       state_ = EcnState::kSilent;

@@ -13,14 +13,12 @@ namespace lidar::scream {
 class MaxBytesInFlight {
  public:
   void Add(DataSize bytes_in_flight) { current_ = std::max(current_, bytes_in_flight); }
-  /// Returns true at the end of a round trip.
-  bool Update(Time now, Duration round_trip) {
-    if (now - start_ < round_trip) return false;
+  void Update(Time now, Duration round_trip) {
+    if (now - start_ < round_trip) return;
     start_ = now;
     history_.push_front(current_);
     if (history_.size() > kHistory) history_.pop_back();
     current_ = DataSize();
-    return true;
   }
   DataSize current() const { return current_; }
   DataSize previous() const { return history_.empty() ? DataSize() : history_.front(); }

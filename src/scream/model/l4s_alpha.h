@@ -39,13 +39,11 @@ class L4sAlpha {
     delivered_ = marked_ = 0;
   }
 
-  /// Returns to the state before the first packet.
   void Reset() {
     alpha_ = 0;
     delivered_ = marked_ = marked_rounds_ = 0;
     last_update_ = {};
   }
-  /// Continues from an earlier value.
   void Restore(double alpha) {
     alpha_ = alpha;
     marked_rounds_ = 0;

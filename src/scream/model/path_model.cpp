@@ -198,6 +198,7 @@ void PathModel::Describe(Time now, Statistics* s) const {
     s->cross_traffic = std::clamp(cross_traffic_.share().value_or(0), 0.0, 1.0);
   s->sent_bitrate = sent_rate_.Rate(now);
   s->acked_bitrate = acked_rate_.Rate(now);
+  s->estimated_capacity = std::max(measured_capacity_, acked_peak_);
   s->packets_ce = packets_ce_;
   s->clock_resets = clock_resets_;
   s->ecn_state = ecn_.state();

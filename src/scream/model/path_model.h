@@ -45,7 +45,6 @@ class PathModel {
   /// The route changed: makes base delay, round trip, ECN, marks, losses and capacity unknown.
   void Reset(Time now);
 
-  /// The times from which packets count.
   Evidence& evidence() { return evidence_; }
   const Evidence& evidence() const { return evidence_; }
   const RoundTripTime& rtt() const { return rtt_; }
@@ -64,8 +63,6 @@ class PathModel {
   Duration marking_onset() const { return marking_onset_; }
   /// The link's capacity, measured by the spacing of packets that it held back; 0 while unknown.
   DataRate measured_capacity() const { return measured_capacity_; }
-  /// The same, or the acknowledged rate if that is higher.
-  DataRate estimated_capacity() const { return std::max(measured_capacity_, acked_peak_); }
   /// The link stood nearly still before a packet of the last report.
   bool hole_in_report() const { return hole_in_report_; }
   /// Returns true after a mark within the last round trip.
@@ -92,7 +89,6 @@ class PathModel {
   Duration Round(Duration frame_period) const {
     return std::max({rtt_.smoothed(), p_.virtual_rtt, frame_period});
   }
-  /// Mean time between reports.
   Duration report_gap() const { return report_gap_; }
   /// Time for which arrived packets are unreported and still count as in flight. It is 0 unless
   /// reports are far apart relative to the round trip.

@@ -29,9 +29,7 @@ class QueueDelay {
   /// Updates the averages after the packets of a report, at most once every min(VIRTUAL_RTT,
   /// s_rtt). Returns true if the clock-drift remedy takes a new base.
   bool Update(Time now, Duration s_rtt);
-  /// Forgets the present queue.
   void ForgetQueue() { qdelay_avg_ = Duration{0}; }
-  /// Returns to the initial state.
   void Reset();
 
   Duration base() const { return base_.value_or(Duration{0}); }

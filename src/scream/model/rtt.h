@@ -19,7 +19,6 @@ class RoundTripTime {
     else
       smoothed_ = bounded;
   }
-  /// Continues from an earlier value.
   void Restore(Duration smoothed) { smoothed_ = smoothed; }
   void Reset() { *this = RoundTripTime(); }
 

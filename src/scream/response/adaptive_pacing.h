@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension capacity: pacing headroom that follows the frame period.
+// Extension capacity: how fast frames leave, and how fast a backlog of the sender's queue.
 #pragma once
 #include <algorithm>
 
@@ -31,6 +31,19 @@ inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
   const DataRate known = path.measured_capacity();
   if (!p.extensions.capacity || known <= DataRate()) return DataRate::Infinite();
   return known * kUnmarked;
+}
+
+/// Returns the pace of a backlog: the window's own rate, which exceeds the lowered target, limited
+/// by the acknowledged rate. After a drop of the capacity the last round trips measured a queue
+/// that is gone, so the link's time for the bytes in flight is used.
+inline DataRate DrainRate(const Parameters& p, Time now, DataSize ref_wnd, DataSize in_flight,
+                          const PathModel& path) {
+  constexpr double kMargin = 1.25;
+  const DataRate link = path.measured_capacity();
+  Duration rtt = path.rtt().last();
+  if (link > DataRate()) rtt = std::max(path.rtt().min(), std::min(rtt, in_flight / link));
+  return std::min(ref_wnd / rtt / p.target_rate_divisor,
+                  std::max(path.acked_rate(now) * kMargin, link));
 }
 
 }  // namespace lidar::scream

@@ -13,8 +13,6 @@ class SendWindow {
   explicit SendWindow(const Parameters& parameters) : p_(parameters) {}
 
   void OnSent(Time now) { last_sent_ = now; }
-  /// Returns true before the first packet.
-  bool unused() const { return last_sent_ == Time{}; }
   /// Returns the most bytes in flight. With the extension they exceed the window slightly if marks
   /// work, and not at all while packets keep coming out of a queue. Unreported bytes are added.
   DataSize Max(Time now, DataSize ref_wnd, const PathModel& path) const {
