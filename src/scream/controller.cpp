@@ -147,9 +147,7 @@ void Controller::TakeGapRestart(Time now) {
 
 bool Controller::RespondToDrop(Time now) {
   const auto window =
-      capacity_drop_.Update(now, path_,
-                            {window_target_, window_.ref_wnd(), streams_.frame_period(),
-                             window_.last_reaction_to_congestion_time()});
+      capacity_drop_.Update(now, path_, window_, window_target_, streams_.frame_period());
   if (!window) return false;
   window_.Drop(now, *window);
   if (p_.extensions.evidence) path_.evidence().OnDropReaction(now);
@@ -173,13 +171,11 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
 }
 
 CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
-  const LossTolerance tolerance = TolerateLoss(p_, path_);
   CongestionSignals s;
   s.loss_detected = path_.evidence().NewLoss(acks);
   s.data_units_marked = path_.evidence().NewMark(acks);
   s.loss_rate = path_.loss_rate();
-  s.loss_rate_threshold = tolerance.loss_rate_threshold;
-  s.queue_at_loss = tolerance.queue_at_loss;
+  s.tolerance = TolerateLoss(p_, path_);
   if (p_.extensions.capacity)
     s.fast_growth =
         fast_increase_.growth(path_.queue_delay().qdelay(), path_.Round(streams_.frame_period()),

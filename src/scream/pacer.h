@@ -16,7 +16,13 @@ class Pacer {
   /// `headroom` is PACKET_PACING_HEADROOM or its extension. Pacing is relaxed near the maximum
   /// bitrate, up to `relaxed_max`.
   void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom,
-              DataRate relaxed_max = DataRate::Infinite());
+              DataRate relaxed_max = DataRate::Infinite()) {
+    const DataRate strict = std::max(p_.rate_pace_min, target_bitrate) * headroom;
+    const double low = p_.relaxed_pacing_limit_low;
+    const double relaxed = std::min(1.0, (target_bitrate / target_bitrate_max - low) / (1 - low));
+    pace_bitrate_ = strict / std::clamp(1 - relaxed, 1 / p_.max_relaxed_pacing_factor, 1.0);
+    pace_bitrate_ = std::min(pace_bitrate_, std::max(strict, relaxed_max));
+  }
   /// Makes gaps between packets longer and shorter by this, to show other flows' packets.
   void set_ripple(Duration ripple) { ripple_ = ripple; }
   /// Packets leave so that a link of rate `link` would queue them for at most `longest`. A large
@@ -34,7 +40,16 @@ class Pacer {
   /// A gap is over: the next packet does not wait at the gap's rate.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
   /// The next packet is timed from when this one was due, not from a late wake-up, within a bound.
-  void OnSent(Time now, DataSize size);
+  void OnSent(Time now, DataSize size) {
+    const Duration gap = size / pace_bitrate_;
+    next_ = std::max(next_, now - p_.pacing_catch_up) + gap;
+    if (link_ < DataRate::Infinite()) {
+      queue_ = std::max(DataSize(), queue_ - link_ * (now - std::exchange(last_sent_, now))) + size;
+      next_ = std::max(next_, now + queue_ / link_ - longest_queue_);
+    }
+    const Duration ripple = std::min(ripple_, gap / 2);
+    next_ += LongerGap() ? ripple : -ripple;
+  }
   Time next() const { return next_; }
   DataRate pace_bitrate() const { return pace_bitrate_; }
 
@@ -56,24 +71,5 @@ class Pacer {
   Time last_sent_{};
   Time next_{};
 };
-
-inline void Pacer::Update(DataRate target, DataRate max, double headroom, DataRate relaxed_max) {
-  const DataRate strict = std::max(p_.rate_pace_min, target) * headroom;
-  const double low = p_.relaxed_pacing_limit_low;
-  const double relaxed = std::min(1.0, (target / max - low) / (1 - low));
-  pace_bitrate_ = strict / std::clamp(1 - relaxed, 1 / p_.max_relaxed_pacing_factor, 1.0);
-  pace_bitrate_ = std::min(pace_bitrate_, std::max(strict, relaxed_max));
-}
-
-inline void Pacer::OnSent(Time now, DataSize size) {
-  const Duration gap = size / pace_bitrate_;
-  next_ = std::max(next_, now - p_.pacing_catch_up) + gap;
-  if (link_ < DataRate::Infinite()) {
-    queue_ = std::max(DataSize(), queue_ - link_ * (now - std::exchange(last_sent_, now))) + size;
-    next_ = std::max(next_, now + queue_ / link_ - longest_queue_);
-  }
-  const Duration ripple = std::min(ripple_, gap / 2);
-  next_ += LongerGap() ? ripple : -ripple;
-}
 
 }  // namespace lidar::scream

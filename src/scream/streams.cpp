@@ -137,37 +137,6 @@ void Streams::LeaveRoomForBacklogs(Time now) {
   }
 }
 
-template <class Rate>
-DataRate Streams::Sum(Rate rate) const {
-  DataRate sum;
-  for (const auto& [id, s] : streams_)
-    if (s.counts()) sum = sum + rate(s);
-  return sum;
-}
-
-DataRate Streams::min_bitrate() const {
-  return Sum([](const Stream& s) { return s.config().min_bitrate; });
-}
-
-DataRate Streams::needed_bitrate() const {
-  return Sum(
-      [](const Stream& s) { return std::max(s.config().min_bitrate, s.config().needed_bitrate); });
-}
-
-DataRate Streams::max_bitrate() const {
-  const DataRate sum =
-      Sum([](const Stream& s) { return std::max(s.config().min_bitrate, s.config().max_bitrate); });
-  return std::min(sum, std::max(p_.max_total_bitrate, min_bitrate()));
-}
-
-DataRate Streams::start_bitrate() const {
-  return Sum([](const Stream& s) { return s.config().start_bitrate; });
-}
-
-DataRate Streams::target_bitrate() const {
-  return Sum([](const Stream& s) { return s.target_bitrate(); });
-}
-
 Duration Streams::frame_period() const {
   Duration period = 20ms;
   DataRate highest;
@@ -185,12 +154,6 @@ double Streams::queue_compensation() const {
   for (const auto& [id, s] : streams_)
     if (s.counts()) weighted += s.queue_compensation() * s.target_bitrate().bits_per_second();
   return sum > 0 ? weighted / sum : 0;
-}
-
-DataSize Streams::queued() const {
-  DataSize sum;
-  for (const auto& [id, s] : streams_) sum += s.queued();
-  return sum;
 }
 
 Duration Streams::media_qdelay(Time now) const {

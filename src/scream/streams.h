@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // All streams of a controller: decides which one sends next, and shares the rate among them.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -38,17 +39,35 @@ class Streams {
     for (auto& [id, stream] : streams_) stream.OnSuddenBacklog();
   }
   // Sums over the streams that are not silent, or over all if all are silent.
-  DataRate min_bitrate() const;
+  DataRate min_bitrate() const {
+    return Sum([](const Stream& s) { return s.config().min_bitrate; });
+  }
   /// For each stream the larger of its need and its minimum.
-  DataRate needed_bitrate() const;
-  DataRate max_bitrate() const;
-  DataRate start_bitrate() const;
-  DataRate target_bitrate() const;
+  DataRate needed_bitrate() const {
+    return Sum([](const Stream& s) {
+      return std::max(s.config().min_bitrate, s.config().needed_bitrate);
+    });
+  }
+  DataRate max_bitrate() const {
+    const DataRate sum = Sum(
+        [](const Stream& s) { return std::max(s.config().min_bitrate, s.config().max_bitrate); });
+    return std::min(sum, std::max(p_.max_total_bitrate, min_bitrate()));
+  }
+  DataRate start_bitrate() const {
+    return Sum([](const Stream& s) { return s.config().start_bitrate; });
+  }
+  DataRate target_bitrate() const {
+    return Sum([](const Stream& s) { return s.target_bitrate(); });
+  }
   /// Frame period of the stream with the highest target.
   Duration frame_period() const;
   /// rate_adjust_factor + frame_size_dev, weighted by target.
   double queue_compensation() const;
-  DataSize queued() const;
+  DataSize queued() const {
+    DataSize sum;
+    for (const auto& [id, s] : streams_) sum += s.queued();
+    return sum;
+  }
   Duration media_qdelay(Time now) const;
   bool empty() const;
 
@@ -64,7 +83,12 @@ class Streams {
   };
   static DataRate Fill(std::vector<Share> open, DataRate left);
   template <class Rate>
-  DataRate Sum(Rate rate) const;
+  DataRate Sum(Rate rate) const {
+    DataRate sum;
+    for (const auto& [id, s] : streams_)
+      if (s.counts()) sum = sum + rate(s);
+    return sum;
+  }
   const Parameters& p_;
   std::map<StreamId, Stream> streams_;
   StreamId next_id_ = 0;

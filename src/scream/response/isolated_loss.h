@@ -5,13 +5,9 @@
 
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
+#include "src/scream/response/reference_window.h"
 
 namespace lidar::scream {
-
-struct LossTolerance {
-  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD of the draft, or more
-  bool queue_at_loss = false;      ///< packets around the loss had waited: congestion
-};
 
 inline LossTolerance TolerateLoss(const Parameters& p, const PathModel& path) {
   LossTolerance tolerance{p.loss_rate_threshold, false};

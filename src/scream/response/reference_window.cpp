@@ -80,8 +80,8 @@ RateReason ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
 
 /// See the draft's section "Link layer losses and rate policers".
 bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
-  return !p_.link_layer_loss || s.loss_rate > s.loss_rate_threshold || s.queue_at_loss ||
-         s.qdelay_avg > p_.qdelay_target_lo / 4;
+  return !p_.link_layer_loss || s.loss_rate > s.tolerance.loss_rate_threshold ||
+         s.tolerance.queue_at_loss || s.qdelay_avg > p_.qdelay_target_lo / 4;
 }
 
 void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignals& s, double scl) {

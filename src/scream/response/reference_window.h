@@ -20,13 +20,17 @@ struct Boldness {
   double pace = 1.005;
 };
 
+struct LossTolerance {
+  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD of the draft, or more
+  bool queue_at_loss = false;      ///< packets around the loss had waited: congestion
+};
+
 /// The signs of congestion in a report.
 struct CongestionSignals {
   bool loss_detected = false;
   bool data_units_marked = false;
   double loss_rate = 0;
-  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD of the draft, or more
-  bool queue_at_loss = false;      ///< packets around the loss had waited
+  LossTolerance tolerance;
   double l4s_alpha = 0;
   bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
   Duration qdelay{0};

@@ -12,8 +12,9 @@ namespace {
 
 class CapacityDropTest : public ::testing::Test {
  protected:
-  CapacityDrop::Load Load(double target_mbps) {
-    return {Mbps(target_mbps), DataSize::Bytes(100000), 20ms, kStart};
+  CapacityDropTest() { window_.Set(DataSize::Bytes(100000)); }
+  std::optional<DataSize> Update(double target_mbps) {
+    return drop_.Update(path_.now, path_.model, window_, Mbps(target_mbps), 20ms);
   }
   /// Packets of 4 Mbit/s that left twice as fast, so the queue grows.
   void HoldBack(int packets, Ecn ecn, Duration by = 1ms) {
@@ -22,20 +23,21 @@ class CapacityDropTest : public ::testing::Test {
   Duration queue_ = 10ms;
   Parameters parameters_;
   Path path_{parameters_};
+  ReferenceWindow window_{parameters_};
   CapacityDrop drop_{parameters_};
 };
 
 TEST_F(CapacityDropTest, GivesTheWindowThatFillsTheLink) {
   HoldBack(40, Ecn::kCe);
-  const auto window = drop_.Update(path_.now, path_.model, Load(10));
+  const auto window = Update(10);
   ASSERT_TRUE(window);
   EXPECT_NEAR(static_cast<double>(window->bytes()), 4e6 / 8 * 0.04 * 1.2, 300);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10))) << "once a round trip";
+  EXPECT_FALSE(Update(10)) << "once a round trip";
 }
 
 TEST_F(CapacityDropTest, LeavesATargetAloneThatTheLinkCarries) {
   HoldBack(40, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(3.5)));
+  EXPECT_FALSE(Update(3.5));
 }
 
 TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFarAboveIt) {
@@ -44,46 +46,45 @@ TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFar
     HoldBack(2, Ecn::kEct1);
   }
   HoldBack(1, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(5)));
-  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(7)));
+  EXPECT_FALSE(Update(5));
+  EXPECT_TRUE(Update(7));
 }
 
 TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
   Duration queue{0};
   for (int i = 0; i < 40; ++i) path_.Arrive(1, 1ms, queue += 100us, Ecn::kCe);  // up to 4 ms
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(20)));
+  EXPECT_FALSE(Update(20));
 }
 
 /// Packets that arrive as they left show our own rate if others use the link, too, and not its
 /// capacity.
 TEST_F(CapacityDropTest, TakesItsOwnRateForNoDropWhereMarksWork) {
   path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+  EXPECT_FALSE(Update(10));
 }
 
 TEST_F(CapacityDropTest, NeedsAQueueThatGrewByThreePackets) {
   HoldBack(40, Ecn::kCe, 100us);  // 4 ms: two gaps of 1.9 ms
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+  EXPECT_FALSE(Update(10));
   HoldBack(30, Ecn::kCe, 100us);  // 7 ms: more than three gaps
-  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(10)));
+  EXPECT_TRUE(Update(10));
 }
 
 /// This response alone keeps a standing queue short if the link does not mark.
 TEST_F(CapacityDropTest, ShortensAStandingQueueThatNobodyMarks) {
   path_.Arrive(40, 2ms, 50ms, Ecn::kEct1);
-  EXPECT_TRUE(drop_.Update(path_.now, path_.model, Load(10)));
+  EXPECT_TRUE(Update(10));
 }
 
 TEST_F(CapacityDropTest, NeverWidensTheWindow) {
   HoldBack(40, Ecn::kCe);
-  CapacityDrop::Load load = Load(10);
-  load.ref_wnd = DataSize::Bytes(20000);  // the link's is 24,000
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, load));
+  window_.Set(DataSize::Bytes(20000));  // the link's is 24,000
+  EXPECT_FALSE(Update(10));
 }
 
 TEST_F(CapacityDropTest, SeesNothingWhereNoPacketWaited) {
   path_.Arrive(40, 2ms, 0ms, Ecn::kEct1);
-  EXPECT_FALSE(drop_.Update(path_.now, path_.model, Load(10)));
+  EXPECT_FALSE(Update(10));
 }
 
 }  // namespace

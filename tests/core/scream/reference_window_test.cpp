@@ -15,7 +15,7 @@ class ReferenceWindowTest : public ::testing::Test {
  protected:
   ReferenceWindowTest() {
     signals_.s_rtt = 25ms;
-    signals_.loss_rate_threshold = parameters_.loss_rate_threshold;
+    signals_.tolerance.loss_rate_threshold = parameters_.loss_rate_threshold;
     signals_.target_bitrate = Mbps(5);
     signals_.target_bitrate_max = Mbps(100);
     signals_.max_bytes_in_flight_prev = DataSize::Bytes(1000000);
@@ -45,8 +45,8 @@ TEST_F(ReferenceWindowTest, GivesATargetOverTheRoundTripWithTheDraftsReserves) {
   window_.Set(DataSize::Bytes(50000));
   EXPECT_NEAR(window_.TargetBitrate(40ms, 0).bits_per_second(), 1e7 * (1000.0 / 1020) / 1.2, 1);
   window_.Set(DataSize::Bytes(3000));
-  EXPECT_NEAR(window_.TargetBitrate(40ms, 0.3).bits_per_second(),
-              6e5 * 0.8 * (1000.0 / 1020) / 1.5, 1);
+  EXPECT_NEAR(window_.TargetBitrate(40ms, 0.3).bits_per_second(), 6e5 * 0.8 * (1000.0 / 1020) / 1.5,
+              1);
 }
 
 TEST_F(ReferenceWindowTest, LossScalesByBetaLoss) {
