@@ -16,6 +16,10 @@ constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
 /// Time after a sign of congestion in which the window is about what the link carries.
 constexpr Duration kCongestedLately = 300ms;
+/// Longest silence that may be a gap of the link.
+constexpr Duration kLongestSilence = 2s;
+/// A report this late shows a link that stands still.
+constexpr Duration kOverdue = 5ms;
 
 }  // namespace
 
@@ -249,8 +253,8 @@ DataRate Controller::WindowTarget(Time now) const {
 /// but not below their need while the path lives.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
-  if (p_.extensions.gaps && started_ && liveness_.Stalled(now)) asked = asked * p_.stall_share;
-  if (p_.extensions.gaps && liveness_.Alive(now))
+  if (p_.extensions.gaps && started_ && Stalled(now)) asked = asked * p_.stall_share;
+  if (p_.extensions.gaps && outage_.Silence(now) < kLongestSilence)
     asked = std::max(asked, streams_.needed_bitrate() * p_.needed_margin);
   return std::min(asked, streams_.max_bitrate());
 }
@@ -267,10 +271,31 @@ std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
                       path_.ecn().codepoint()};
 }
 
+/// Allows for one lost report.
+Duration Controller::Lateness() const { return 2 * path_.report_gap() + kOverdue; }
+
+/// Returns true if packets in flight take longer than before: they wait for the link.
+bool Controller::Overdue(Time now) const {
+  const auto oldest = history_.oldest_in_flight();
+  return oldest && now - *oldest > path_.rtt().smoothed() + Lateness();
+}
+
+/// Returns true if acknowledgements are slower than packets were sent: a gap, or its start.
+bool Controller::Stalled(Time now) const {
+  return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
+}
+
+/// Returns the further delay of the packets that met a gap, at the rate from before it. Some of
+/// them may have arrived by now; they still count.
+Duration Controller::WaitBehindGap(Time now) const {
+  const auto rate = gap_recovery_.rate_before();
+  if (!rate || !Overdue(now)) return Duration{0};
+  return path_.max_in_flight().lately() / *rate;
+}
+
 /// Starts no frame on a link that stands still: its packets could not be dropped there.
 bool Controller::Holds(const Stream& stream, Time now) const {
-  const bool stalled =
-      p_.extensions.gaps && started_ && liveness_.Overdue(now) && liveness_.Stalled(now);
+  const bool stalled = p_.extensions.gaps && started_ && Overdue(now) && Stalled(now);
   return history_.full() || (stalled && stream.at_start());
 }
 
@@ -292,7 +317,7 @@ std::size_t Controller::LatePackets(Time caller_now, StreamId id) const {
   const Stream* stream = streams_.Find(id);
   if (stream == nullptr) return 0;
   const Time now = clock_.Peek(caller_now);
-  const Duration behind_gap = std::min(liveness_.WaitBehindGap(now), p_.max_queue_delay / 2);
+  const Duration behind_gap = std::min(WaitBehindGap(now), p_.max_queue_delay / 2);
   return stream->LatePackets(now - behind_gap, QueueRate(*stream));
 }
 

@@ -13,7 +13,6 @@
 #include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/fast_increase.h"
 #include "src/scream/response/gap_recovery.h"
-#include "src/scream/response/liveness.h"
 #include "src/scream/response/outage.h"
 #include "src/scream/response/reference_window.h"
 #include "src/scream/response/send_window.h"
@@ -128,6 +127,10 @@ class Controller {
   bool CongestedLately() const;
   DataRate QueueRate(const Stream& stream) const;
   DataRate AskedTarget(Time now, DataRate allowed) const;
+  Duration Lateness() const;
+  bool Overdue(Time now) const;
+  bool Stalled(Time now) const;
+  Duration WaitBehindGap(Time now) const;
   bool Holds(const Stream& stream, Time now) const;
 
   const Parameters p_;
@@ -141,7 +144,6 @@ class Controller {
   CapacityDrop capacity_drop_{p_};
   Outage outage_{p_};
   GapRecovery gap_recovery_{p_};
-  const Liveness liveness_{history_, path_, outage_, gap_recovery_};
   SendWindow send_window_{p_};
   Pacer pacer_{p_};
   bool started_ = false;    // a round trip was measured
