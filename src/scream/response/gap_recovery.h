@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Extension gaps: restores the state from before a gap after it.
 #pragma once
+#include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
@@ -21,7 +23,28 @@ class GapRecovery {
   explicit GapRecovery(const Parameters& parameters) : p_(parameters) {}
 
   /// Call it after each report. Returns where to continue once the gap is over.
-  std::optional<Restart> Update(Time now, const PathModel& path, DataSize ref_wnd);
+  std::optional<Restart> Update(Time now, const PathModel& path, DataSize ref_wnd) {
+    if (!p_.extensions.gaps) return std::nullopt;
+    const auto rate = path.busy_run().latest_capacity();
+    if (Slow(rate)) BelieveLess();
+    if (path.hole_in_report() || Slow(rate)) NoteSign(now);
+    if (!last_sign_) {
+      const bool calm = path.queue_delay().qdelay() < path.BusyQdelay(now);
+      if (calm) Remember(path, ref_wnd);
+      return std::nullopt;
+    }
+    if (now - *last_sign_ > kLongestMemory || now - first_sign_ > kLongestGap) before_.reset();
+    if (!before_) last_sign_.reset();
+    if (!last_sign_ || path.hole_in_report()) return std::nullopt;
+    const auto window = rate ? Measured(*rate, path) : Unproven(now, path, ref_wnd);
+    if (!window) return std::nullopt;
+    Restart restart = before_->state;
+    restart.window = std::max(ref_wnd, std::min(*window, before_->state.window));
+    unproven_ = rate ? std::nullopt : std::optional(restart.window);
+    if (rate || restart.window >= before_->state.window * kRestoredPart) last_sign_.reset();
+    last_restart_ = now;
+    return restart;
+  }
   /// No acknowledgement comes back.
   void OnSilence(Time now) { NoteSign(now); }
   /// Forgets the state before the gap, after another route or an unknown time.
@@ -42,15 +65,48 @@ class GapRecovery {
     DataRate rate;
   };
   /// Returns true if `rate`, of the latest arrivals, is almost nothing of the earlier capacity.
-  bool Slow(std::optional<DataRate> rate) const;
-  void BelieveLess();
-  void NoteSign(Time now);
-  void Remember(const PathModel& path, DataSize ref_wnd);
+  bool Slow(std::optional<DataRate> rate) const {
+    return before_ && rate && *rate < before_->rate * kGapPart;
+  }
+  /// A restored window ended behind a slow link: lowers the remembered rate.
+  void BelieveLess() {
+    const auto tried = std::exchange(unproven_, std::nullopt);
+    if (!tried || *tried >= before_->state.window) return;
+    before_->rate = before_->rate * (*tried / before_->state.window);
+    before_->state.window = *tried;
+  }
+  void NoteSign(Time now) {
+    if (!last_sign_) first_sign_ = now;
+    last_sign_ = now;
+  }
+  void Remember(const PathModel& path, DataSize ref_wnd) {
+    unproven_.reset();
+    before_ = Before{{ref_wnd, path.rtt().smoothed(), path.l4s_alpha().value()},
+                     ref_wnd / path.rtt().smoothed() / p_.target_rate_divisor};
+  }
   /// Returns the window that fits the packets behind the gap.
-  std::optional<DataSize> Measured(DataRate rate, const PathModel& path) const;
+  std::optional<DataSize> Measured(DataRate rate, const PathModel& path) const {
+    if (rate < before_->rate * kGapPart) return std::nullopt;
+    return rate * path.rtt().min() * p_.target_rate_divisor;
+  }
   /// Returns the next step back if no queue measures the link.
-  std::optional<DataSize> Unproven(Time now, const PathModel& path, DataSize ref_wnd) const;
+  std::optional<DataSize> Unproven(Time now, const PathModel& path, DataSize ref_wnd) const {
+    // Packets before the newest may have marks from the gap.
+    const bool calm = path.queue_delay().qdelay() < kNoQueue && !path.newest_marked();
+    if (!calm || now - last_restart_ < path.rtt().min()) return std::nullopt;
+    return ref_wnd + (before_->state.window - ref_wnd) * kUnprovenPart;
+  }
 
+  /// A link that carries less than this part of its earlier capacity is in a gap.
+  static constexpr double kGapPart = 0.25;
+  /// A longer gap is the link's new capacity.
+  static constexpr Duration kLongestMemory = 3s;
+  static constexpr Duration kLongestGap = 10s;
+  /// Delay without a queue, apart from a few packets that came together.
+  static constexpr Duration kNoQueue = 5ms;
+  /// Part of the missing window that is restored each round trip while nothing measures the link.
+  static constexpr double kUnprovenPart = 0.5;
+  static constexpr double kRestoredPart = 0.9;
   const Parameters& p_;
   std::optional<Before> before_;
   std::optional<Time> last_sign_;  // of a gap
