@@ -6,6 +6,7 @@
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/shared_link.h"
+#include "src/scream/response/source_limit.h"
 
 namespace lidar::scream {
 namespace {
@@ -171,7 +172,8 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   if (reason == RateReason::kLoss && p_.extensions.evidence) path_.evidence().OnLossReaction(now);
   if (reason != RateReason::kIncrease) fast_increase_.OnCongestion(now);
   Count(reason);
-  if (window_target_ >= streams_.max_bitrate()) window_.Limit(source_limit().LargestWindow());
+  if (window_target_ >= streams_.max_bitrate())
+    window_.Limit(std::max(path_.max_in_flight().longest(), BurstWindow(p_, path_, streams_)));
 }
 
 CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
@@ -200,8 +202,9 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.bytes_newly_acked = acks.bytes_newly_acked;
   s.bytes_newly_acked_ce = std::min(acks.bytes_newly_acked_ce, acks.bytes_newly_acked);
   s.target_bitrate = window_target_;
-  s.target_bitrate_max = source_limit().HoldsBurstsBack(window_.ref_wnd()) ? DataRate::Infinite()
-                                                                           : streams_.max_bitrate();
+  s.target_bitrate_max = HoldsBurstsBack(p_, path_, streams_, window_.ref_wnd())
+                             ? DataRate::Infinite()
+                             : streams_.max_bitrate();
   s.acked_bitrate = path_.acked_rate(now);
   return s;
 }

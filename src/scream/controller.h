@@ -16,7 +16,6 @@
 #include "src/scream/response/outage.h"
 #include "src/scream/response/reference_window.h"
 #include "src/scream/response/send_window.h"
-#include "src/scream/response/source_limit.h"
 #include "src/scream/statistics.h"
 #include "src/scream/stream_config.h"
 #include "src/scream/streams.h"
@@ -116,9 +115,6 @@ class Controller {
   CongestionSignals Signals(Time now, const AckSummary& acks) const;
   void Count(RateReason reason);
   void StartWindow() { window_.Start(streams_.start_bitrate(), path_.rtt().smoothed()); }
-  SourceLimit source_limit() const {
-    return {p_, path_, streams_.max_bitrate(), streams_.queue_compensation()};
-  }
   void UpdateTarget(Time now);
   void TakeGapRestart(Time now);
   void UpdatePacer(Time now);

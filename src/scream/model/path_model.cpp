@@ -25,16 +25,10 @@ constexpr Duration kShortestHalfRate = 200ms;
 
 }  // namespace
 
-PathModel::PathModel(const Parameters& parameters) : p_(parameters) {}
-
 void PathModel::OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight) {
   max_in_flight_.Add(in_flight);
   sent_rate_.Add(now, size);
   ecn_.OnSent(now, ecn);
-}
-
-void PathModel::OnRoundTrip(Time now, const AckSummary& acks) {
-  if (acks.rtt && evidence_.Counts(acks)) rtt_.Add(now, *acks.rtt);
 }
 
 void PathModel::OnGapEnd(Time now, Duration s_rtt, double l4s_alpha) {
@@ -50,10 +44,6 @@ void PathModel::OnReport(Time now, const AckSummary& acks, const SenderState& se
   CountMarksAndLosses(now, acks, sender);
   ObserveCapacity(now, acks);
   MeasureReports(now, acks, sender.ref_wnd);
-}
-
-void PathModel::EndRoundTrip(Time now) {
-  max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
 }
 
 void PathModel::Reset(Time now) {

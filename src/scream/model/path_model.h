@@ -31,16 +31,20 @@ struct SenderState {
 /// The estimators of one path. They measure; the responses decide.
 class PathModel {
  public:
-  explicit PathModel(const Parameters& parameters);
+  explicit PathModel(const Parameters& parameters) : p_(parameters) {}
 
   /// `in_flight` includes the packet.
   void OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight);
   /// Call it before OnReport().
-  void OnRoundTrip(Time now, const AckSummary& acks);
+  void OnRoundTrip(Time now, const AckSummary& acks) {
+    if (acks.rtt && evidence_.Counts(acks)) rtt_.Add(now, *acks.rtt);
+  }
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
   /// A gap is over. Packets sent before `now` met it and do not count.
   void OnGapEnd(Time now, Duration s_rtt, double l4s_alpha);
-  void EndRoundTrip(Time now);
+  void EndRoundTrip(Time now) {
+    max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
+  }
   void OnTimer(Time now) { ecn_.OnTimer(now); }
   /// The route changed: makes base delay, round trip, ECN, marks, losses and capacity unknown.
   void Reset(Time now);

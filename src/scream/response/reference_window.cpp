@@ -15,16 +15,15 @@ constexpr double kJitterIncreaseMin = 0.1;
 /// Round trips without congestion after which the window may exceed the bytes in flight by far.
 constexpr double kLongUncongestedRtts = 100;
 
+double Bytes(DataSize size) { return static_cast<double>(size.bytes()); }
 double Ratio(Duration a, Duration b) { return Seconds(a) / Seconds(b); }
 
 }  // namespace
 
 ReferenceWindow::ReferenceWindow(const Parameters& parameters)
-    : p_(parameters), ref_wnd_(static_cast<double>(parameters.min_ref_wnd.bytes())) {}
+    : p_(parameters), ref_wnd_(Bytes(parameters.min_ref_wnd)) {}
 
-void ReferenceWindow::Set(DataSize window) {
-  ref_wnd_ = static_cast<double>(std::max(window, p_.min_ref_wnd).bytes());
-}
+void ReferenceWindow::Set(DataSize window) { ref_wnd_ = Bytes(std::max(window, p_.min_ref_wnd)); }
 
 void ReferenceWindow::Start(DataRate rate, Duration s_rtt) {
   Set(rate * s_rtt * p_.target_rate_divisor * ((p_.mss + p_.packet_overhead) / p_.mss));
@@ -32,7 +31,7 @@ void ReferenceWindow::Start(DataRate rate, Duration s_rtt) {
 
 void ReferenceWindow::Drop(Time now, DataSize window) {
   Restart(window);
-  ref_wnd_i_ = static_cast<double>(window.bytes());
+  ref_wnd_i_ = Bytes(window);
   last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
 }
 
@@ -48,9 +47,7 @@ DataRate ReferenceWindow::TargetBitrate(Duration s_rtt, double queue_compensatio
   return ref_wnd() / s_rtt * scale;
 }
 
-double ReferenceWindow::ref_wnd_ratio() const {
-  return std::min(1.0, static_cast<double>(p_.mss.bytes()) / ref_wnd_);
-}
+double ReferenceWindow::ref_wnd_ratio() const { return std::min(1.0, Bytes(p_.mss) / ref_wnd_); }
 
 double ReferenceWindow::InflectionScale(double slope) const {
   const double scl = (ref_wnd_ - ref_wnd_i_) / ref_wnd_i_ * slope;
@@ -97,7 +94,7 @@ void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignal
     ref_wnd_ *= 1 - L4sBackoff(now, s, scl);
   else
     ref_wnd_ *= p_.beta_ecn;
-  ref_wnd_ = std::max(ref_wnd_, static_cast<double>(p_.min_ref_wnd.bytes()));
+  ref_wnd_ = std::max(ref_wnd_, Bytes(p_.min_ref_wnd));
   last_reaction_to_congestion_time_ = now;
   ForgetSigns();
 }
@@ -112,8 +109,7 @@ double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double 
   }
   const double rtts =
       Ratio(now - last_reaction_to_congestion_time_, std::max(p_.virtual_rtt, s.s_rtt));
-  if (rtts > kLongUncongestedRtts)
-    ref_wnd_ = std::min(ref_wnd_, static_cast<double>(s.max_bytes_in_flight_prev.bytes()));
+  if (rtts > kLongUncongestedRtts) ref_wnd_ = std::min(ref_wnd_, Bytes(s.max_bytes_in_flight_prev));
   return backoff;
 }
 
@@ -132,26 +128,24 @@ double ReferenceWindow::UndershootScale(const CongestionSignals& s) const {
 
 /// Extension: the capacity above the last known maximum is unknown.
 double ReferenceWindow::FastIncrement(const CongestionSignals& s, double scl) const {
-  const auto capacity = static_cast<double>(s.capacity_window.bytes());
+  const auto capacity = Bytes(s.capacity_window);
   double scale = ref_wnd_ > ref_wnd_i_ ? InflectionScale(p_.fast_increase_slope) : scl;
   if (capacity > 0) {
     const double distance = (ref_wnd_ - capacity) / capacity * p_.fast_increase_slope;
     scale = std::clamp(distance * distance, kInflectionMin, 1.0);
   }
-  return s.fast_growth * scale * static_cast<double>(s.bytes_newly_acked.bytes());
+  return s.fast_growth * scale * Bytes(s.bytes_newly_acked);
 }
 
 void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl) {
   const Duration rtt = std::max(p_.virtual_rtt, s.s_rtt);
   const double post_congestion_scale = std::clamp(
       Ratio(now - last_congestion_detected_time_, rtt) / p_.post_congestion_delay_rtt, 0.0, 1.0);
-  double increment =
-      static_cast<double>((s.bytes_newly_acked - s.bytes_newly_acked_ce).bytes()) * ref_wnd_ratio();
+  double increment = Bytes(s.bytes_newly_acked - s.bytes_newly_acked_ce) * ref_wnd_ratio();
   increment *= std::min(1.0, Ratio(s.s_rtt, p_.virtual_rtt));
   increment *= std::max(s.boldness.growth, scl);
   increment *= std::max(kJitterIncreaseMin, s.ref_wnd_delay_scale);
-  const double multiplicative =
-      p_.mul_increase_factor * ref_wnd_ / static_cast<double>(p_.mss.bytes());
+  const double multiplicative = p_.mul_increase_factor * ref_wnd_ / Bytes(p_.mss);
   increment *= 1 + multiplicative * post_congestion_scale * scl;
   increment = std::max(increment, FastIncrement(s, scl));
 
@@ -159,12 +153,11 @@ void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl)
       p_.mss +
       std::max(s.max_bytes_in_flight, s.max_bytes_in_flight_prev) * p_.bytes_in_flight_head_room;
   const double next = ref_wnd_ + increment;
-  if (increment > 0 && next <= static_cast<double>(max_allowed.bytes()) &&
-      s.target_bitrate < s.target_bitrate_max) {
+  if (increment > 0 && next <= Bytes(max_allowed) && s.target_bitrate < s.target_bitrate_max) {
     ref_wnd_ = next;
     ref_wnd_i_update_allowed_ = true;
   }
-  ref_wnd_ = std::max(ref_wnd_, static_cast<double>(p_.min_ref_wnd.bytes()));
+  ref_wnd_ = std::max(ref_wnd_, Bytes(p_.min_ref_wnd));
 }
 
 }  // namespace lidar::scream
