@@ -143,6 +143,40 @@ TEST_F(Ros2Src, GivesTheFieldsAndTheRateThatAFilterNames) {
   EXPECT_EQ(gst_buffer_get_size(Pull().get()), 4u);
 }
 
+void Want(gpointer filter, const char* field) {
+  const std::string caps = std::string("application/x-pointcloud2,fields=(string)") + field;
+  gst_util_set_object_arg(G_OBJECT(filter), "caps", caps.c_str());
+}
+
+/// What is wanted changes while the source waits for a message, and while it gives one.
+TEST_F(Ros2Src, GivesWhatIsWantedFromTheNextMessageOn) {
+  StartWithPeer("qos=reliable", " ! capsfilter name=filter");
+  const std::unique_ptr<GstElement, gst::Unref> filter(
+      gst_bin_get_by_name(GST_BIN(h_->element), "filter"));
+  const auto next = [this] {
+    EXPECT_TRUE(peer_->Publish(TestCloud(1, 1)));
+    return gst_buffer_get_size(Pull().get());
+  };
+  Want(filter.get(), "x:F32:0");
+  for (guint64 empty = 1; empty <= 2; ++empty) {
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(next(), empty == 1 ? 4U : 8U);
+    ASSERT_TRUE(peer_->Publish(TestCloud(0, 1)));
+    ASSERT_TRUE(WaitForStat("messages-empty", empty));
+    Want(filter.get(), empty == 1 ? "x:F64:0" : "x:F32:0");
+    EXPECT_EQ(next(), empty == 1 ? 8U : 4U);
+  }
+  const gst::PadPtr pad(gst_element_get_static_pad(filter.get(), "src"));
+  gst_pad_add_probe(
+      pad.get(), GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo*, gpointer element) -> GstPadProbeReturn {
+        Want(element, "x:F64:0");
+        return GST_PAD_PROBE_REMOVE;
+      },
+      filter.get(), nullptr);
+  EXPECT_EQ(next(), 4U);
+  EXPECT_EQ(next(), 8U);
+}
+
 TEST_F(Ros2Src, DropsAndCountsWhatIsDamagedAndGoesOn) {
   StartWithRawPeer();
   ASSERT_TRUE(peer_->WaitForMatch(kPatience));
