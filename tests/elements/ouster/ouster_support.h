@@ -5,6 +5,7 @@
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -49,6 +50,17 @@ inline std::vector<std::vector<std::uint8_t>> LoadPackets(const std::string& nam
     if (captured->datagram.payload.size() == metadata.format.packet_size())
       packets.push_back(std::move(captured->datagram.payload));
   return packets;
+}
+
+/// When the datagrams of a capture were captured, from the first on.
+inline std::vector<Time> TimesOf(const std::string& name) {
+  std::string error;
+  auto reader = ouster::PcapReader::Open(DataPath(name), &error);
+  EXPECT_TRUE(reader) << error;
+  std::vector<Time> times;
+  while (auto captured = reader->Next()) times.push_back(captured->time);
+  std::sort(times.begin(), times.end());
+  return times;
 }
 
 /// Sends to a port of this machine.

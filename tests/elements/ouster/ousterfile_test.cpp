@@ -139,6 +139,35 @@ TEST(OusterFile, LivePlaybackWaitsForTheTimeOfEachPacket) {
   EXPECT_EQ(gst_harness_query_latency(h.get()), 12500 * GST_USECOND);
 }
 
+/// A round begins one packet after the last one of the round before.
+TEST(OusterFile, LoopsAtThePaceOfTheCapture) {
+  const std::vector<Time> times = TimesOf(kThreeScans);
+  const Duration round =
+      times.back() - times.front() + LoadMetadata(kThreeScansMetadata).packet_interval();
+  std::vector<GstClockTime> due;
+  for (int n = 0; n < 3; ++n)
+    for (const Time time : times) {
+      const auto at = static_cast<GstClockTime>((n * round + time - times.front()).count());
+      if (at > 0 && (due.empty() || due.back() < at)) due.push_back(at);
+    }
+  Harness h(
+      gst_harness_new_parse(("ouster_src is-live=true loop=true location=" + DataPath(kThreeScans) +
+                             " metadata=" + DataPath(kThreeScansMetadata))
+                                .c_str()));
+  gst_harness_use_testclock(h.get());
+  gst_harness_play(h.get());
+  GstClock* clock = GST_CLOCK(gst_harness_get_testclock(h.get()));
+  std::vector<GstClockTime> waited;
+  while (waited.size() < due.size()) {
+    ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+    const GstClockTime now = gst_clock_get_time(clock);
+    if (now > 0 && (waited.empty() || waited.back() < now)) waited.push_back(now);
+    while (GstBuffer* buffer = gst_harness_try_pull(h.get())) gst_buffer_unref(buffer);
+  }
+  EXPECT_EQ(waited, due);
+  gst_object_unref(clock);
+}
+
 TEST(OusterFile, StopsWhileItWaits) {
   Harness h(gst_harness_new_parse(("ouster_src is-live=true location=" + DataPath(kThreeScans) +
                                    " metadata=" + DataPath(kThreeScansMetadata))

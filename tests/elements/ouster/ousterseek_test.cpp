@@ -111,6 +111,9 @@ TEST(OusterSeek, TellsTheDurationOfACapture) {
   gint64 duration = 0;
   ASSERT_TRUE(gst_element_query_duration(h->element, GST_FORMAT_TIME, &duration));
   EXPECT_NEAR(static_cast<double>(duration), static_cast<double>(all.back().pts + kSlice), 2e6);
+  const auto times = TimesOf(kThreeScans);
+  const Duration last_packet = LoadMetadata(kThreeScansMetadata).packet_interval();
+  EXPECT_EQ(duration, (times.back() - times.front() + last_packet).count());
   GstQuery* query = gst_query_new_seeking(GST_FORMAT_TIME);
   ASSERT_TRUE(gst_element_query(h->element, query));
   gboolean seekable = FALSE;
