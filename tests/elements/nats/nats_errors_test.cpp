@@ -2,35 +2,14 @@
 // Garbage from the network, wrong settings, and servers that want credentials.
 #include <cstdlib>
 
-#include "ext/nats/nats_ptr.h"
 #include "ext/nats/stream_format.h"
 #include "tests/elements/nats/nats_pipeline.h"
+#include "tests/elements/nats/nats_stranger.h"
 
 namespace lidar::test {
 namespace {
 
 class NatsErrors : public NatsTest {};
-
-/// Another program at the same server.
-class Stranger {
- public:
-  explicit Stranger(const std::string& url) {
-    EXPECT_EQ(natsConnection_ConnectTo(&nc_, url.c_str()), NATS_OK);
-  }
-  ~Stranger() { natsConnection_Destroy(nc_); }
-  void Publish(const char* subject, const std::string& bytes,
-               const std::vector<std::pair<const char*, std::string>>& headers = {}) {
-    natsMsg* raw = nullptr;
-    natsMsg_Create(&raw, subject, nullptr, bytes.data(), static_cast<int>(bytes.size()));
-    const nats::MessagePtr message(raw);
-    for (const auto& [name, value] : headers) natsMsgHeader_Set(raw, name, value.c_str());
-    EXPECT_EQ(natsConnection_PublishMsg(nc_, raw), NATS_OK);
-  }
-  void Flush() { natsConnection_FlushTimeout(nc_, 30'000); }
-
- private:
-  natsConnection* nc_ = nullptr;
-};
 
 TEST_F(NatsErrors, GarbageIsCountedAndTheStreamGoesOn) {
   server_.Start();

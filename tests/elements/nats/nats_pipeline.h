@@ -59,6 +59,13 @@ class NatsPipeline {
     return message ? Text(message.get(), gst_message_parse_warning) : "";
   }
 
+  /// How many warnings have come since they were last looked for.
+  std::size_t Warnings() {
+    std::size_t count = 0;
+    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) ++count;
+    return count;
+  }
+
   std::vector<Kept> buffers() const {
     const std::lock_guard lock(mutex_);
     return buffers_;

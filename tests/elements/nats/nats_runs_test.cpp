@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What both ends count and tell: exactly, once until it is over, and in each run alike.
+#include <gst/check/gstharness.h>
+
+#include <set>
+#include <thread>
+
+#include "ext/nats/jetstream.h"
+#include "ext/nats/stream_format.h"
+#include "gst/common/history_query.h"
+#include "tests/elements/nats/nats_pipeline.h"
+#include "tests/elements/nats/nats_stranger.h"
+#include "tests/support/harness.h"
+
+namespace lidar::test {
+namespace {
+
+constexpr const char* kImuCaps = "application/x-imu, sample-size=(int)32";
+const std::string kImuBox = "subject=r1.imu jetstream=box";
+
+std::string StatsText(GstElement* element) {
+  GstStructure* raw = nullptr;
+  g_object_get(element, "stats", &raw, nullptr);
+  const gst::StructurePtr stats(raw);
+  const gst::StringPtr text(gst_structure_to_string(raw));
+  return text.get();
+}
+
+guint64 StatOf(GstElement* element, const char* name) {
+  GstStructure* raw = nullptr;
+  g_object_get(element, "stats", &raw, nullptr);
+  const gst::StructurePtr stats(raw);
+  guint64 value = 0;
+  EXPECT_TRUE(gst_structure_get_uint64(raw, name, &value)) << name;
+  return value;
+}
+
+/// A natssink that the test gives samples of an IMU.
+class Feeder {
+ public:
+  explicit Feeder(const std::string& properties)
+      : sink_(gst_parse_launch(("natssink sync=false " + properties).c_str(), nullptr)) {
+    gst_element_set_bus(sink_.get(), bus_.get());
+    h_.reset(gst_harness_new_with_element(sink_.get(), "sink", nullptr));
+    gst_harness_set_src_caps_str(h_.get(), kImuCaps);
+  }
+  ~Feeder() {
+    h_.reset();
+    gst_element_set_bus(sink_.get(), nullptr);
+  }
+  void Push(gsize bytes) {
+    EXPECT_EQ(gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, bytes, nullptr)),
+              GST_FLOW_OK);
+  }
+  /// Returns once the server has everything, or the wait for that is over.
+  void End() { gst_harness_push_event(h_.get(), gst_event_new_eos()); }
+  void Stop() { gst_element_set_state(sink_.get(), GST_STATE_NULL); }
+  void PlayAgain() {
+    gst_pad_set_active(h_->srcpad, FALSE);
+    gst_pad_set_active(h_->srcpad, TRUE);
+    gst_element_set_state(sink_.get(), GST_STATE_PLAYING);
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("again"));
+    gst_harness_set_src_caps_str(h_.get(), kImuCaps);
+  }
+  guint64 stat(const char* name) const { return StatOf(sink_.get(), name); }
+  std::string stats() const { return StatsText(sink_.get()); }
+  /// The texts of all warnings since the last call.
+  std::vector<std::string> Warnings() {
+    std::vector<std::string> texts;
+    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_WARNING)}) {
+      GError* raw = nullptr;
+      gst_message_parse_warning(message.get(), &raw, nullptr);
+      const gst::ErrorPtr error(raw);
+      texts.emplace_back(error->message);
+    }
+    return texts;
+  }
+
+ private:
+  std::unique_ptr<GstBus, gst::Unref> bus_{gst_bus_new()};
+  gst::ElementPtr sink_;
+  Harness h_;
+};
+
+class NatsRuns : public NatsTest {
+ protected:
+  void SetUp() override {
+    NatsTest::SetUp();
+    if (IsSkipped()) return;
+    server_.Start();
+    std::string why;
+    const gst::CapsPtr caps(gst_caps_from_string(kImuCaps));
+    imu_ = nats::StreamFormat::FromCaps(caps.get(), &why);
+    ASSERT_TRUE(imu_) << why;
+  }
+  /// A message of a natssink, by somebody else.
+  void Publish(Stranger* stranger, const char* subject, const std::string& place,
+               std::size_t bytes = 32) const {
+    stranger->Publish(subject, std::string(bytes, 'x'),
+                      {{"Lidar-Caps", imu_->id()}, {"Lidar-Place", place}});
+  }
+  void PublishCaps(Stranger* stranger, const std::string& subject) const {
+    stranger->Publish((subject + ".config." + imu_->id()).c_str(), imu_->text());
+  }
+
+  nats::StreamFormat::Ptr imu_;
+};
+
+TEST_F(NatsRuns, OfASinkCountAlikeAndItsCountsStayAfterTheStop) {
+  for (const std::string& where : {At("subject=r1.imu"), At(kImuBox)}) {
+    Feeder sink(where);
+    std::set<std::string> seen;
+    for (int run = 0; run < 2; ++run) {
+      for (const gsize bytes : {64U, 33U, 96U, 0U, 32U}) sink.Push(bytes);
+      sink.End();
+      EXPECT_EQ(sink.stat("messages"), 3U);
+      EXPECT_EQ(sink.stat("bytes"), 192U);
+      EXPECT_EQ(sink.stat("buffers-refused"), 2U);
+      EXPECT_EQ(sink.stat("messages-acknowledged"), where == At(kImuBox) ? 3U : 0U);
+      EXPECT_EQ(sink.Warnings().size(), 1U) << "of buffers that are not as their caps say";
+      seen.insert(sink.stats());
+      sink.Stop();
+      EXPECT_EQ(sink.stat("messages"), 3U);
+      EXPECT_EQ(sink.stat("bytes"), 192U);
+      sink.PlayAgain();
+      EXPECT_EQ(sink.stat("messages") + sink.stat("bytes") + sink.stat("buffers-refused"), 0U);
+    }
+    EXPECT_EQ(seen.size(), 1U) << *seen.begin() << "\n" << *seen.rbegin();
+  }
+}
+
+TEST_F(NatsRuns, WhatJetStreamHasNotAcknowledgedWaits) {
+  Feeder sink(At(kImuBox));
+  sink.Push(32);
+  ASSERT_TRUE(Eventually([&] { return sink.stat("messages-acknowledged") == 1; }));
+  EXPECT_EQ(sink.stat("messages-waiting"), 0U);
+  EXPECT_EQ(sink.stat("bytes-waiting"), 0U);
+  server_.Freeze();
+  for (int i = 0; i < 3; ++i) sink.Push(32);
+  ASSERT_TRUE(Eventually([&] { return sink.stat("messages") == 4; }));
+  EXPECT_EQ(sink.stat("messages-waiting"), 3U);
+  EXPECT_GE(sink.stat("bytes-waiting"), 96U);
+  EXPECT_EQ(sink.stat("messages-acknowledged"), 1U);
+  server_.Thaw();
+  EXPECT_TRUE(Eventually([&] { return sink.stat("messages-acknowledged") == 4; }));
+  EXPECT_EQ(sink.stat("messages-waiting"), 0U);
+}
+
+TEST_F(NatsRuns, AStopDoesNotWaitForTheEnd) {
+  server_.Kill();
+  Feeder sink(At("drain-timeout=60000000000"));
+  sink.Push(32);
+  const gint64 begin = g_get_monotonic_time();
+  std::thread end([&] { sink.End(); });
+  g_usleep(50'000);
+  sink.Stop();
+  end.join();
+  EXPECT_LT(g_get_monotonic_time() - begin, 30 * G_USEC_PER_SEC);
+  EXPECT_EQ(sink.stat("messages-dropped"), 1U);
+}
+
+TEST_F(NatsRuns, TheBoxIsAsThePropertiesSayAlsoWhereItWasMadeBefore) {
+  constexpr std::int64_t kSecond = 1'000'000'000, kUsual = 120 * kSecond;
+  struct Box {
+    const char* properties;
+    std::int64_t age, bytes, duplicates;
+  };
+  natsConnection* raw = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&raw, server_.url().c_str()), NATS_OK);
+  nats::JetStreamPtr js = nats::OpenJetStream(raw);
+  for (const Box& want :
+       {Box{"", 3600 * kSecond, std::int64_t{4} << 30, kUsual},
+        Box{" max-age=1000000000", kSecond, std::int64_t{4} << 30, kSecond},
+        Box{" max-age=0 max-bytes=0", 0, -1, kUsual},
+        Box{" max-age=500000000000 max-bytes=70000", 500 * kSecond, 70'000, kUsual}}) {
+    Feeder sink(At(kImuBox + want.properties));
+    sink.Push(32);
+    sink.End();
+    EXPECT_TRUE(sink.Warnings().empty()) << want.properties;
+    jsStreamInfo* found = nullptr;
+    ASSERT_EQ(js_GetStreamInfo(&found, js.get(), "box", nullptr, nullptr), NATS_OK);
+    const nats::StreamInfoPtr info(found);
+    EXPECT_EQ(info->Config->MaxAge, want.age) << want.properties;
+    EXPECT_EQ(info->Config->MaxBytes, want.bytes) << want.properties;
+    EXPECT_EQ(info->Config->Duplicates, want.duplicates) << want.properties;
+    EXPECT_EQ(info->Config->Replicas, 1);
+    EXPECT_EQ(info->Config->Storage, js_FileStorage);
+  }
+  // A server alone keeps no copies.
+  Feeder copied(At("subject=r2.imu jetstream=copied replicas=3 drain-timeout=0"));
+  copied.Push(32);
+  std::vector<std::string> warnings;
+  EXPECT_TRUE(Eventually([&] { return !(warnings = copied.Warnings()).empty(); }));
+  EXPECT_NE(warnings[0].find("The stream copied cannot be made"), std::string::npos);
+  js.reset();
+  natsConnection_Destroy(raw);
+}
+
+TEST_F(NatsRuns, ASinkTellsOnceOfBuffersThatAreTooLargeUntilOneIsTaken) {
+  std::ofstream(server_.folder() + "/conf") << "max_payload: 1024\n";
+  server_.Start({"-c", server_.folder() + "/conf"});
+  Feeder sink(At("subject=r1.imu"));
+  for (std::size_t round = 1; round <= 2; ++round) {
+    for (int i = 0; i < 2; ++i) sink.Push(2'048);
+    ASSERT_TRUE(Eventually([&] { return sink.stat("messages-too-large") == 2 * round; }));
+    sink.Push(32);
+    ASSERT_TRUE(Eventually([&] { return sink.stat("messages") == round; }));
+    EXPECT_EQ(sink.Warnings().size(), 1U) << round;
+  }
+}
+
+TEST_F(NatsRuns, OfAReplayAreAlike) {
+  const std::string box = "subject=r1.front jetstream=box";
+  const auto sent = PublishSlices(8, At(box));
+  Stranger stranger(server_.url());
+  stranger.Publish("r1.front", "no natssink's");
+  stranger.Flush();
+  PublishSlices(8, At(box));
+  NatsPipeline player("natssrc name=n eos-at-end=true start-time=0" + At(box) +
+                      "! fakesink name=see sync=false");
+  std::vector<std::string> stats;
+  for (int run = 0; run < 2; ++run) {
+    player.Play();
+    EXPECT_EQ(player.WaitForWarning().rfind("A message is none of natssink's", 0), 0U) << run;
+    EXPECT_EQ(player.WaitForEnd(), "");
+    stats.push_back(StatsText(player.nats()));
+    player.Stop();
+  }
+  EXPECT_EQ(stats[0], stats[1]);
+  EXPECT_EQ(player.stat("messages"), 16U);
+  EXPECT_EQ(player.stat("messages-damaged"), 1U);
+  EXPECT_EQ(player.stat("connected"), 0U);
+  const auto played = player.buffers();
+  ASSERT_EQ(played.size(), 32U);
+  EXPECT_EQ(played[0].pts, 0U);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_TRUE(played[i].SameAs(played[16 + i])) << i;
+    EXPECT_EQ(played[i].pts, played[16 + i].pts) << i;
+  }
+}
+
+TEST_F(NatsRuns, WhatTheStreamNumbersHasItsNumberAndAGapIsMarked) {
+  const gst::ElementPtr source(
+      gst_parse_launch(("natssrc eos-at-end=true start-time=0" + At(kImuBox)).c_str(), nullptr));
+  {
+    Feeder sink(At(kImuBox));
+    sink.Push(32);
+    sink.End();
+  }
+  Stranger stranger(server_.url());
+  for (const char* place : {"7 0", "7 1", "7 5", "7 4", "7 4", "7 6"})
+    Publish(&stranger, "r1.imu", place);
+  stranger.Flush();
+  const Harness h(gst_harness_new_with_element(source.get(), nullptr, "src"));
+  gst_harness_play(h.get());
+  // The first message of the stream is the caps, and its second the sink's.
+  const struct {
+    guint64 offset;
+    bool discont;
+  } wanted[] = {{2, false}, {3, false}, {4, false}, {5, true}, {6, false}, {8, false}};
+  for (const auto& want : wanted) {
+    const gst::BufferPtr buffer(gst_harness_pull(h.get()));
+    ASSERT_TRUE(buffer);
+    EXPECT_EQ(GST_BUFFER_OFFSET(buffer.get()), want.offset);
+    if (want.offset == 2) continue;  // the first of all
+    EXPECT_EQ(GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT), want.discont)
+        << want.offset;
+  }
+  EXPECT_EQ(StatOf(source.get(), "messages-lost"), 2U) << "numbers 2 and 3";
+  EXPECT_EQ(StatOf(source.get(), "messages-late"), 1U);
+  EXPECT_EQ(StatOf(source.get(), "messages-again"), 1U);
+  EXPECT_EQ(StatOf(source.get(), "bytes"), 6 * 32U);
+}
+
+TEST_F(NatsRuns, DamageIsToldOfAgainAfterAGoodMessageAndAcknowledged) {
+  const std::string box = "subject=r1.front jetstream=box";
+  PublishSlices(1, At(box));
+  NatsPipeline receiver("natssrc name=n durable=slam start-time=0" + At(box) +
+                        "! fakesink name=see sync=false");
+  receiver.Play();
+  Stranger stranger(server_.url());
+  for (std::size_t round = 1; round <= 2; ++round) {
+    for (int i = 0; i < 3; ++i) stranger.Publish("r1.front", "no natssink's");
+    stranger.Flush();
+    PublishSlices(1, At(box));
+    ASSERT_TRUE(receiver.WaitForBuffers(1 + round));
+    EXPECT_EQ(receiver.stat("messages-damaged"), 3 * round);
+    EXPECT_EQ(receiver.Warnings(), 1U) << round;
+  }
+  natsConnection* raw = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&raw, server_.url().c_str()), NATS_OK);
+  nats::JetStreamPtr js = nats::OpenJetStream(raw);
+  EXPECT_TRUE(Eventually([&] {
+    jsConsumerInfo* found = nullptr;
+    if (js_GetConsumerInfo(&found, js.get(), "box", "slam", nullptr, nullptr) != NATS_OK)
+      return false;
+    const nats::ConsumerInfoPtr info(found);
+    return info->NumPending == 0 && info->NumAckPending <= 1;  // the last one is downstream
+  }));
+  js.reset();
+  natsConnection_Destroy(raw);
+}
+
+TEST_F(NatsRuns, WhatWaitsForASourceIsBoundedByItsBufferSize) {
+  constexpr int kMessages = 200;
+  for (const bool is_small : {true, false}) {
+    NatsPipeline receiver(
+        "natssrc name=n buffer-size=" + std::string(is_small ? "65536" : "1000000") +
+        At("subject=r1.imu") + "! fakesink name=see sync=false");
+    receiver.Hold(true);
+    receiver.Play();
+    Stranger stranger(server_.url());
+    ASSERT_TRUE(Eventually([&] {
+      PublishCaps(&stranger, "r1.imu");
+      Publish(&stranger, "r1.imu", "1 0");
+      stranger.Flush();
+      return receiver.count() > 0;
+    }));
+    for (int i = 1; i <= kMessages; ++i)
+      Publish(&stranger, "r1.imu", "2 " + std::to_string(i), 1'024);
+    stranger.Flush();
+    receiver.Hold(false);
+    const auto of_flood = [&] { return receiver.count() + receiver.stat("messages-again"); };
+    if (is_small) {
+      EXPECT_TRUE(Eventually([&] { return receiver.stat("messages-overrun") > 0; }));
+    } else {
+      EXPECT_TRUE(Eventually([&] { return of_flood() >= kMessages; }));
+      EXPECT_EQ(receiver.stat("messages-overrun"), 0U);
+    }
+  }
+}
+
+TEST_F(NatsRuns, AServerThatGoesIsToldOfEachTime) {
+  NatsPipeline receiver("natssrc name=n" + At("subject=r1.imu") + "! fakesink name=see sync=false");
+  receiver.Play();
+  for (unsigned round = 0; round < 2; ++round) {
+    ASSERT_TRUE(Eventually([&] { return receiver.stat("connected") == 1; }));
+    EXPECT_EQ(receiver.stat("reconnects"), round);
+    server_.Kill();
+    EXPECT_EQ(receiver.WaitForWarning().rfind("No NATS server answers at ", 0), 0U) << round;
+    EXPECT_EQ(receiver.stat("connected"), 0U);
+    server_.Restart();
+  }
+}
+
+TEST_F(NatsRuns, ThePastCountsWhatIsDamaged) {
+  const std::string box = "subject=r1.front jetstream=box";
+  PublishSlices(4, At(box));
+  Stranger stranger(server_.url());
+  stranger.Publish("r1.front", "no natssink's");
+  Publish(&stranger, "r1.front", "7 0");  // of caps that nobody has
+  stranger.Flush();
+  NatsPipeline receiver("natssrc name=n" + At("subject=r1.front") + "! fakesink name=see");
+  receiver.Play();
+  const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
+  gst::HistoryAnswer answer;
+  ASSERT_TRUE(Eventually([&] {
+    const gst::QueryPtr query = gst::NewHistoryQuery({0, 0, 1'000'000});
+    if (!gst_pad_query(pad.get(), query.get())) return false;
+    answer = gst::ParseHistoryAnswer(query.get());
+    return answer.ended;
+  }));
+  EXPECT_EQ(answer.samples.size(), 4U);
+  EXPECT_EQ(answer.damaged, 2U);
+}
+
+}  // namespace
+}  // namespace lidar::test

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What others publish on the subjects of a stream.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ext/nats/nats_ptr.h"
+
+namespace lidar::test {
+
+/// Another program at the same server.
+class Stranger {
+ public:
+  explicit Stranger(const std::string& url) {
+    EXPECT_EQ(natsConnection_ConnectTo(&nc_, url.c_str()), NATS_OK);
+  }
+  ~Stranger() { natsConnection_Destroy(nc_); }
+  void Publish(const char* subject, const std::string& bytes,
+               const std::vector<std::pair<const char*, std::string>>& headers = {}) {
+    natsMsg* raw = nullptr;
+    natsMsg_Create(&raw, subject, nullptr, bytes.data(), static_cast<int>(bytes.size()));
+    const nats::MessagePtr message(raw);
+    for (const auto& [name, value] : headers) natsMsgHeader_Set(raw, name, value.c_str());
+    EXPECT_EQ(natsConnection_PublishMsg(nc_, raw), NATS_OK);
+  }
+  void Flush() { natsConnection_FlushTimeout(nc_, 30'000); }
+
+ private:
+  natsConnection* nc_ = nullptr;
+};
+
+}  // namespace lidar::test
