@@ -9,8 +9,8 @@ namespace lidar::tools {
 /// Throws std::runtime_error, with the path and the reason, if the file cannot be written.
 class OutputFile {
  public:
-  /// What remains of a file that was not written or closed completely. Only regular files are
-  /// removed, and empty ones always.
+  /// What becomes of a file that was not written or closed completely: it is removed, or keeps its
+  /// rows if it has any. Files that are not regular are never removed.
   enum class Rest { kRemove, kKeepRows };
 
   /// An empty path writes nothing.

@@ -49,11 +49,11 @@ struct Session {
 };
 
 constexpr GstClockTime kPoll = 100 * GST_MSECOND;
-// Pause between handshakes. It limits the restarts that other packets can cause.
+// Pause between handshakes: limits the restarts that packets of strangers can cause.
 constexpr gulong kPauseUs = 200'000;
 
-/// Refuses an untrusted certificate. It comes before the keys, and no packet passes after
-/// `refused`.
+/// Refuses an untrusted certificate. A certificate arrives before the keys do, and no packet passes
+/// after `refused`.
 void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   gchar* pem = nullptr;
   g_object_get(dtls, "peer-pem", &pem, nullptr);

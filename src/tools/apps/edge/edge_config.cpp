@@ -75,7 +75,7 @@ bool IsWord(const std::string& text) {
 }
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 50;
-constexpr std::size_t kMaxSharing = 1'000;  // the kernel's programs have 4,096 steps, 3 a robot
+constexpr std::size_t kMaxSharing = 1'000;  // a kernel filter has 4,096 steps, 3 for each robot
 
 NatsConfig ReadNats(const json& object) {
   NatsConfig nats;

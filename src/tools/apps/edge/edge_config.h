@@ -17,7 +17,7 @@ struct NatsConfig {
   int replicas = 1;                                    // of the stream, if the sink creates it
   std::uint64_t max_age_s = 3600;
   std::uint64_t max_bytes = 0;          // 0: no limit
-  std::uint64_t buffer_size = 8 << 20;  // bytes that wait, for each robot
+  std::uint64_t buffer_size = 8 << 20;  // most waiting bytes of a robot
 };
 
 struct SsrcRange {
@@ -41,7 +41,7 @@ struct RobotConfig {
 };
 
 struct EdgeConfig {
-  std::string address;     // that robots send to; empty: any
+  std::string address;     // to which robots send; empty: any
   std::uint16_t port = 0;  // for robots without a port of their own
   NatsConfig nats;
   std::string http_address = "127.0.0.1";

@@ -37,7 +37,7 @@ Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* 
       robot_watch_(robot.max_mbps),
       failures_(kFirstPause, kLongestPause),
       record_failures_(kFirstPause, kLongestPause) {
-  if (!robot.record.empty()) {  // throws if that is impossible
+  if (!robot.record.empty()) {  // throws now if it cannot record
     AddRecorder(pipeline_.get(), robot);
     RemoveRecorder(pipeline_.get());
   }

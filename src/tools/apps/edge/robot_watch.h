@@ -17,12 +17,12 @@ class RobotWatch {
   /// 0: no limit.
   explicit RobotWatch(double max_mbps) : limit_(max_mbps * 125'000) {}
 
-  /// Begins a session with a new byte count. The excess stays.
+  /// Begins a session, which counts bytes from 0. Keeps the excess of earlier sessions.
   void Begin() {
     bytes_ = 0;
     is_there_ = false;
   }
-  /// `bytes` came since the session began.
+  /// Notes that the session has received `bytes` so far.
   void Note(Time now, std::uint64_t bytes) {
     const auto more = bytes - std::min(std::exchange(bytes_, bytes), bytes);
     if (more > 0) {
@@ -35,8 +35,8 @@ class RobotWatch {
 
   bool is_there() const { return is_there_; }
   bool IsGone() const { return is_there_ && noted_at_ - heard_at_ > kTimeout; }
-  /// Returns how long to shut out a robot that is too far ahead, so that in the long run it stays
-  /// below the limit; 0 for others.
+  /// Returns how long to shut out a robot that exceeds its limit by more than kCredit, so that its
+  /// mean stays below the limit; 0 for others.
   Duration ToShutOut() const {
     const bool is_ahead = limit_ > 0 && ahead_ > kCredit * limit_;
     return is_ahead ? FromSeconds(ahead_ / limit_) : Duration{};

@@ -8,7 +8,7 @@
 namespace lidar::fleet {
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{100};  // interval of looks at the connection
+constexpr std::chrono::milliseconds kPoll{100};  // interval of checks of the connection
 
 }  // namespace
 

@@ -26,7 +26,7 @@ class Reporter {
   Reporter(const Reporter&) = delete;
   Reporter& operator=(const Reporter&) = delete;
 
-  /// Queues reports for the connection; they replace older ones that wait. Never waits.
+  /// Queues reports for the connection, in place of older ones still in the queue. Never waits.
   void Publish(Reports reports);
 
  private:

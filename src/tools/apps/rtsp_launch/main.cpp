@@ -34,7 +34,7 @@ struct UnrefLoop {
 template <class Type>
 using ObjectPtr = std::unique_ptr<Type, Unref>;
 
-/// Joins the words of a command line: blanks in a word are part of it.
+/// Joins the words of a command line. Escapes blanks within a word, which then stays one word.
 std::string Join(const std::vector<std::string>& words) {
   std::string text = "(";
   for (const std::string& word : words) {

@@ -182,7 +182,8 @@ bool Handle(GstMessage* message, int* result) {
   return false;
 }
 
-/// The enumeration's header belongs to gst-plugins-bad, which the build does without.
+/// Reads the state as text: its enumeration is in a header of gst-plugins-bad, which the build does
+/// not need.
 bool IsConnected(GstElement* webrtc) {
   GValue state = G_VALUE_INIT;
   g_object_get_property(G_OBJECT(webrtc), "connection-state", &state);

@@ -21,7 +21,7 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kRenewInterval{200};
 constexpr milliseconds kListInterval{1'000};
-constexpr int kListPause = 5;  // in times of a list
+constexpr int kListPause = 5;  // times the duration of a list
 constexpr std::int64_t kHeartbeatNs = 500'000'000;
 constexpr int kMaxValueSize = 4'096;
 constexpr const char* kSeparator = ".lidar.";
@@ -149,7 +149,8 @@ void FleetWatch::Step() {
   }
   if (now >= list_at_) {
     ListRobots();
-    // A stop waits for a list, which takes long with many robots; so pauses grow with it.
+    // A stop waits for a list that is under way. With many robots a list takes long, so the pause
+    // between lists is longer, too.
     const auto took = steady_clock::now() - now;
     list_at_ = now + std::max<steady_clock::duration>(kListInterval, kListPause * took);
   }

@@ -10,7 +10,7 @@ namespace lidar::worker {
 namespace {
 
 constexpr int kRenewals = 4;  // writes in the time of a lease
-/// Others wait a lease and one part in kMargin of it: steady clocks differ by far less.
+/// Other workers wait for a lease and 1 / kMargin of it: steady clocks differ by far less.
 constexpr int kMargin = 20;
 /// A full worker waits for this part of a lease, so that others go first.
 constexpr double kHesitation = 0.3;
@@ -61,7 +61,7 @@ void LeaseTable::OnEntry(const std::string& name, std::uint64_t revision,
   robot.revision = revision;
   const auto progress = robot.record.progress;
   robot.record = record.value_or(LeaseRecord());
-  // For a write of this worker whose answer is missing: our progress is newer.
+  // The entry may be a write of this worker whose answer is missing. Then our progress is newer.
   const bool ours = record && record->worker == settings_.worker;
   if (ours && robot.held) robot.record.progress = progress;
   if (!ours) robot.held = false;
@@ -89,7 +89,7 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The stored entry follows. It may come from an earlier write of ours.
+  // The store sends the stored entry later. An earlier write of ours may have made it.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;

@@ -145,7 +145,8 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Odometry misses the scan of the record's pose, so its poses lack the motion after that.
+/// Called if the scan of the record's pose is missing. Odometry then lacks the motion from that
+/// scan to the first one that it gets.
 void RobotPipeline::NoteLateBegin(GstClockTime captured) {
   begun_late_ = true;
   const GstClockTime since = begin_->time;

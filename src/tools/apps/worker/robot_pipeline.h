@@ -48,13 +48,13 @@ class RobotPipeline {
 
   /// Starts in a thread of its own, as elements wait for servers.
   void Play();
-  /// Poses go out only before this time, even if the thread that stops them hangs.
+  /// Poses go out only before this time, even if the thread that ends the pipeline hangs.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
   /// Returns the progress from which it began.
   const std::optional<Progress>& begin() const { return begin_; }
-  /// Returns true if its scan is behind `last`, the newest message of the stream at `asked_at`:
-  /// then the record is wrong.
+  /// Returns true if it begins behind `last`, the newest message of the stream at `asked_at`: then
+  /// the record is wrong.
   bool IsAheadOf(std::uint64_t last, Time asked_at) const {
     return begin_scan_ > last && asked_at > made_at_;
   }

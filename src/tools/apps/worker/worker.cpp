@@ -143,7 +143,7 @@ void Worker::FollowLeases() {
   const auto held = table_.HeldAt(Now());
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const auto lease = held.find(at->first);
-    // A renewal that was late makes it begin again at the scan whose pose was dropped.
+    // The pipeline begins again after a late renewal, at the scan whose pose was dropped.
     if (lease != held.end() && !at->second->has_dropped()) {
       at->second->SetEnd(lease->second.until);
       ++at;

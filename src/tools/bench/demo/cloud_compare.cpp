@@ -53,7 +53,7 @@ class Grid {
       if (!IsMissing(&cloud.xyz[i])) cells_[Key(CellOf(&cloud.xyz[i]))].push_back(&cloud.xyz[i]);
   }
 
-  /// Returns infinity if no point is within an edge.
+  /// Returns infinity if no point is within the length of an edge.
   double DistanceToNearest(const float* p) const {
     const Cell centre = CellOf(p);
     double best = std::numeric_limits<double>::infinity();

@@ -264,8 +264,8 @@ void Coordinator::Enter(Phase phase) {
     case Phase::kSender:
       sender_ = Start({folder + "/lidar-demo", "send", SenderPipeline(o, ports_)}, "sender", true);
       Watch(sender_.get(), [this](const nlohmann::json& r) { OnSender(r); });
-      // The reach exceeds the bound, so that larger errors are measured and not taken for missing
-      // points.
+      // The reach exceeds the error bound, so that a larger error is measured, and its point does
+      // not count as missing.
       comparer_ = std::make_unique<StreamComparer>(sender_->clouds_fd(), receiver_->clouds_fd(),
                                                    2 * ErrorBoundOf(o) + 0.01);
       break;
@@ -309,7 +309,7 @@ void Coordinator::Tick() {
   struct Child {
     ChildProcess* child;
     const char* name;
-    Phase may_end;  // from this phase on
+    Phase may_end;  // the first phase in which it may
   };
   std::vector<Child> children = {{receiver_.get(), "receiver", Phase::kDraining},
                                  {sender_.get(), "sender", Phase::kDraining}};

@@ -32,7 +32,7 @@ nlohmann::json Record(const char* type, GstBuffer* buffer) {
           {"unix_ns", UnixNow()}};
 }
 
-/// When a buffer entered an element. The next buffer that leaves it is in the same thread.
+/// The time at which a buffer entered an element. The element's next output is in the same thread.
 struct Stopwatch {
   std::int64_t entered = 0;
 };

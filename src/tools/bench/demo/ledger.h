@@ -41,7 +41,7 @@ struct ScanCounts {
   std::uint64_t complete = 0;  // every slice decoded
   std::uint64_t in_time = 0;   // complete, with each slice within kMaxAge of its last column
   std::uint64_t slices_sent = 0;
-  std::uint64_t slices_lost = 0;  // encoded, and not decoded
+  std::uint64_t slices_lost = 0;  // encoded but not decoded
 };
 
 class Ledger {

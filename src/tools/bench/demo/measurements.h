@@ -58,7 +58,7 @@ struct Measurements {
   struct {
     std::int64_t since_unix_ns = 0;
     double min_bps = 0, max_bps = 0;
-    double known_s = 0;  // duration of the bounds in the means
+    double known_s = 0;  // how long bounds were known, for the means
   } bounds;
   nlohmann::json sender_stats;  // the last of each
   nlohmann::json receiver_stats;

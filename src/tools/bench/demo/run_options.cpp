@@ -233,7 +233,7 @@ double FixedStepOf(const RunOptions& o) {
 
 double ErrorBoundOf(const RunOptions& o) {
   const double step = FixedStepOf(o);
-  // Half a step along the beam for ranges, half the diagonal of a cube otherwise.
+  // Half a step along the beam for ranges, otherwise half the diagonal of a cube of one step.
   if (step > 0) return HasRanges(o) ? step / 2 : step * std::sqrt(3) / 2;
   return o.max_error_m;
 }

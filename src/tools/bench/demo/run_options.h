@@ -61,7 +61,7 @@ void CheckRunOptions(const RunOptions& options);
 std::string EncoderOf(const RunOptions& options);
 /// Zero if the encoder adapts.
 double FixedStepOf(const RunOptions& options);
-/// The largest distance between a point that was sent and the one that arrived.
+/// The largest distance allowed between a sent point and the received one.
 double ErrorBoundOf(const RunOptions& options);
 /// The capacity of each link.
 std::vector<link::Capacity> CapacitiesOf(const RunOptions& options);

@@ -15,7 +15,7 @@ namespace {
 using tools::Distribution;
 
 constexpr double kShortQueue_ms = 10;
-/// A queue has settled once it is short for this time.
+/// A queue has settled once it was short for this time.
 constexpr double kSettled_s = 0.5;
 /// Coordinates are floats: half a unit in the last place at 200 m, in three dimensions.
 constexpr double kRounding_m = 5e-5;
@@ -160,8 +160,8 @@ void AddGaps(const Measurements& m, nlohmann::ordered_json* s) {
   (*s)["gaps"] = {{"count", back.count()}, {"back_after_s", Percentiles(back)}};
 }
 
-/// Adds the results of a sender that knew the link: scans at the lowest bitrate within the bound,
-/// and delays at the measured bitrate.
+/// Adds what a sender that knew the link would reach: complete scans at `encoder_min_bps`, and
+/// delays at the bitrate of this run.
 void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
   double bits = 0;
   for (const auto& [id, scan] : m.ledger.scans())

@@ -33,7 +33,7 @@ class Recorder {
   void Start(Time origin, Duration unix_offset);
   void OnPacket(const PacketRecord& record);
   void OnFeedback(bool delivered, std::size_t bytes);
-  /// Delay of a packet's departure relative to its computed time.
+  /// `late`: from the computed time of a packet's departure to the real one.
   void OnLateness(Duration late) { lateness_.Add(Milliseconds(late)); }
   void OnRefusedSend() { ++refused_sends_; }
 

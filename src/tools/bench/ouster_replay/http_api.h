@@ -14,7 +14,8 @@ namespace lidar::tools {
 ///   GET  /api/v1/sensor/config?staging=       POST /replay/faults  (faults.h; merged)
 ///   POST /api/v1/sensor/config?staging=&reinit=&persist=
 ///   POST /replay/restart
-/// and the paths of firmware before 2.4 instead of .../config; with `old_firmware` only those.
+/// and the paths that firmware before 2.4 has in place of .../config; with `old_firmware` not
+/// .../config.
 class HttpApi {
  public:
   struct Options {

@@ -33,7 +33,7 @@ struct ReplayOptions {
   nlohmann::json faults = nlohmann::json::object();
   struct Event {
     double at_s = 0;
-    nlohmann::json faults;  // "restart": true besides those of faults.h
+    nlohmann::json faults;  // as in faults.h, and "restart": true
   };
   std::vector<Event> events;  // in order of time
   std::string write_pcap;     // write a file instead of sending

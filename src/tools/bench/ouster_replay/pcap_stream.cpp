@@ -20,7 +20,7 @@ struct PacketPatch {
   std::uint32_t add_frames = 0;
   std::uint64_t first_time_ns = 0;  // time of the recording's first column
   std::uint64_t new_time_ns = 0;    // its new time
-  double speed = 1;                 // divides the distance of other times from it
+  double speed = 1;                 // divides the time from the first column
 };
 
 constexpr std::size_t kCrcSize = 8;

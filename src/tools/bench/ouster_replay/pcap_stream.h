@@ -24,7 +24,7 @@ class PcapStream : public PacketStream {
   std::vector<OutPacket> packets_;
   ouster::PacketFormat format_;
   Options options_;
-  Duration round_{};  // how long the capture is
+  Duration round_{};  // duration of the capture's scans
   std::uint32_t scans_ = 0;
   std::uint64_t first_time_ns_ = 0;
   Start start_;

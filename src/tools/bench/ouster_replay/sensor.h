@@ -23,7 +23,7 @@ class Sensor {
   std::string MetadataJson() const;
   std::string ConfigJson(bool staged) const;
   struct Change {
-    bool staging = false;  // until the next restart activates it
+    bool staging = false;  // takes effect at the next restart
     bool restart = false;
   };
   /// Returns the error, or "". `@auto` becomes `peer`.

@@ -8,7 +8,7 @@
 namespace lidar::tools {
 
 struct Measurement {
-  double step_m = 0;  // mean, as it may depend on the slice
+  double step_m = 0;  // mean: each slice may have its own
   double quantization_bits = 0;
   double bits_per_return = 0;
   double bitrate = 0;  // bit/s

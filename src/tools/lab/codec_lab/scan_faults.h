@@ -11,7 +11,7 @@ struct ScanFaults {
   double lost_share = 0;    // of the scans, three at a time
   double gap_s = 0;         // once, ten seconds after the first scan
   unsigned every_beam = 1;  // 2: half of the beams
-  unsigned every_scan = 1;  // 5: two of ten a second
+  unsigned every_scan = 1;  // 5: every fifth scan, 2 of 10 a second
   bool any() const { return lost_share > 0 || gap_s > 0 || every_beam > 1 || every_scan > 1; }
 };
 

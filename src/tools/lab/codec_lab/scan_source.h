@@ -15,7 +15,7 @@ namespace lidar::tools {
 struct SourceOptions {
   std::size_t max_scans = 20;  // of each source; 0: all there are
   double speed_mps = 10;       // of synthetic drives
-  double roughness = 1;        // of synthetic drives, relative to what the scene's road does
+  double roughness = 1;        // of synthetic drives, relative to the scene's own
   std::uint64_t seed = 0;      // of synthetic drives
   double noise_m = 0.01;       // of synthetic ranges on a bright target nearby
   bool mixed_pixels = false;   // of synthetic drives

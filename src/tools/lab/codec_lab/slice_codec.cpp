@@ -13,7 +13,8 @@
 namespace lidar::tools {
 namespace {
 
-// Margin of the error bound [m] for the rounding of distant floats. The step decides.
+// The error bound exceeds the step by this [m], as distant floats are rounded. So the step, not the
+// bound, decides.
 constexpr double kRoomForRounding = 1e-3;
 
 double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }
@@ -195,7 +196,7 @@ std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
     return std::nullopt;
   constexpr std::uint32_t kMaxPoints = 1U << 26;
-  // The codec uses the kd-tree anyway past a number of bits.
+  // Draco uses the kd-tree anyway past a number of bits.
   const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
   if (xyz && draco::CheckDraco(bytes, {kMaxPoints}).value().is_kd_tree) return std::nullopt;
   draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);

@@ -40,7 +40,7 @@ struct TrackedScan {
   double target_bps = 0;
   double sent_bps = 0;
   double coarsest_step_m = 0;
-  double largest_bound_m = 0;  // of the error bound
+  double largest_bound_m = 0;  // error bound of its worst slice
   double min_bps = 0;          // the controller's r_min after this scan
   unsigned intensity_bits = 0;
   double keep_fraction = 1;

@@ -17,7 +17,7 @@ const T& OneOf(const std::vector<T>& all, Random* random) {
   return all[(*random)() % all.size()];
 }
 
-/// Draws until a slice with at least 100 returns is loaded; returns false after 20 tries.
+/// Loads random slices until one has at least 100 returns; returns false after 20 tries.
 bool LoadRandomSlice(const ScanSet& set, std::uint32_t slices, Random* random, SliceCodec* codec) {
   constexpr int kTries = 20;
   for (int i = 0; i < kTries; ++i) {

@@ -11,7 +11,7 @@
 namespace lidar::tools {
 
 struct SamplingOptions {
-  std::size_t samples = 200;  // of each source, and for the adaptive model of each mode
+  std::size_t samples = 200;  // of each source; the adaptive model takes each in all modes
   std::vector<std::string> modes;
   double min_step_m = 0.001;
   double max_step_m = 0.5;

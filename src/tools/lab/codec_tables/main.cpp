@@ -55,7 +55,7 @@ void CountSlice(const Scan& scan, SliceOf slice, const RangeGrid& grid, unsigned
                                &counts->levels);
 }
 
-/// Adds `counts` as if every context had been seen equally often.
+/// Adds `counts` with equal weight for each context, however often it occurred.
 void AddEvenly(const SymbolCounts& counts, SymbolCounts* sum) {
   const auto add = [](const auto& from, auto* to) {
     constexpr std::uint64_t kShare = 1'000'000'000;

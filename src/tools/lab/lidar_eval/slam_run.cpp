@@ -55,7 +55,7 @@ odometry::TimedPoints OrganisedPoints(const Scan& scan, double range_step_m) {
   return timed;
 }
 
-/// Sums of the distances between `coded` and the points of the scan.
+/// Sum and largest of the distances between points and their decoded positions.
 struct PointErrors {
   double sum_m = 0;
   double max_m = 0;

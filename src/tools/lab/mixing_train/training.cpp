@@ -60,7 +60,7 @@ void Hasten(std::uint16_t least_rate, std::array<mixing::Counter, kSize>* counte
   for (mixing::Counter& counter : *counters) counter.rate = std::max(counter.rate, least_rate);
 }
 
-/// Mean of each number over the slices that changed it. All slices weigh the same.
+/// Mean of each number over the slices that visited or changed it. All slices weigh the same.
 class Means {
  public:
   void Add(std::size_t place, std::int64_t number) {
@@ -130,7 +130,7 @@ void ForEach(States& a, const States& b, Do&& act) {
   std::apply([&](auto... part) { (walk.Of(a.*part, b.*part, act), ...); }, kParts<States>);
 }
 
-/// Adds the numbers that a slice changed to `means`, and replaces `states` by `learnt`.
+/// Adds to `means` the numbers that a slice visited or changed, and sets `states` to `learnt`.
 template <class States>
 void Keep(States& learnt, States* states, Means* means) {
   ForEach(learnt, *states, [&](std::size_t place, auto& now, auto before, bool visited) {
@@ -231,7 +231,7 @@ class Trainer {
   std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
-  std::vector<std::uint8_t> written_;  // never read: coding alone teaches the model
+  std::vector<std::uint8_t> written_;  // never read: only the learning counts
 };
 
 }  // namespace

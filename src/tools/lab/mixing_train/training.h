@@ -22,8 +22,8 @@ struct MixingCase {
 /// States trained on all scans of `sets`, rounded as the table has them.
 std::unique_ptr<codec::mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets);
 
-/// Bits a return of real payloads, with all parts of a block. Decodes each block again and throws
-/// std::runtime_error if they differ.
+/// Returns the bits per return of encoded blocks, headers included. Decodes each block, and throws
+/// std::runtime_error if the result differs.
 double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
                      const codec::mixing::StartStates& states);
 
