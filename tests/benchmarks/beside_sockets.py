@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs scream-bench beside another flow through lidar-link, over real sockets.
+"""Runs scream-bench and another flow through one lidar-link, over real sockets.
 
 Prints what each got of the link, and its loss. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M, reno_fifo_5ms_20M,
 prague_ramp_20M, prague_step_1ms_20M, cubic_dualpi2_20M, cubic_pi2_20M (a classic one). cubic, reno and prague are greedy flows

@@ -21,7 +21,7 @@ struct Capture {
   std::vector<CapturedSlice> slices;
 };
 
-/// Returns complete scans only, cut into `slices_per_scan`; none if a file cannot be read.
+/// Returns complete scans only, cut into `slices_per_scan`; nullopt if a file cannot be read.
 std::optional<Capture> ReadCapture(const std::string& pcap, const std::string& metadata,
                                    std::uint32_t slices_per_scan);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Searches slices that cost a decoder the most processor time for each byte that is sent: true
-// slices, and slices whose points are all equal, are damaged at random, and the dearest of them
-// again. Prints a line for each coder. usage: decode-cost [SECONDS]
+// Searches for slices that cost a decoder the most processor time per byte sent: damages real
+// slices, and slices of equal points, at random, then damages the dearest ones again. Prints a line
+// for each coder. usage: decode-cost [SECONDS]
 #include <time.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ struct Slice {
   double CostOfAByte() const { return cost_s / (kHeaders + static_cast<double>(bytes.size())); }
 };
 
-/// Takes the least of three times: other programs add to them.
+/// Takes the least of three times, because other programs only add to them.
 Slice Measure(const Decode& decode, Bytes bytes) {
   Slice slice{std::move(bytes), 1e9};
   for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs the demo several times over each link, over sockets, and prints the rows of docs/results/demo.md: the middle run.
+"""Runs the demo several times over each link, over sockets, and prints the rows of docs/results/demo.md: medians.
 
 Each figure is followed by that of a sender that knew the link (the demo's oracle). The links: the
 demo's own steps and drive, regular gaps that lidar-trace makes, and the traces given. Run it with
@@ -91,7 +91,7 @@ def run(args, options, duration, report):
 
 
 def middle(values, form):
-    """Returns the middle one of the values of the runs."""
+    """Returns the median of the runs' values."""
     known = sorted(v for v in values if v is not None)
     return format(known[len(known) // 2], form) if known else "–"
 

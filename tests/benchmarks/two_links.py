@@ -3,9 +3,9 @@
 """Streams a recorded drive over two links and over each alone, over sockets, and compares it with what a sender that
 knew them could deliver.
 
-Without --trace the links are two drives that lidar-trace makes. The second trace may begin within:
---trace A --trace B@37. A scan is in time if all its slices are decoded within 0.2 s of their
-capture. Run it with real-time priority (chrt -r 10) on a machine that does nothing else.
+Without --trace the links are two drives that lidar-trace makes. A trace may begin at one of
+its seconds: --trace A --trace B@37. A scan is in time if all its slices are decoded within 0.2 s of
+their capture. Run it with real-time priority (chrt -r 10) on a machine that does nothing else.
 """
 import argparse
 import collections
