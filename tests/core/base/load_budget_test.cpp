@@ -8,7 +8,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Returns the share of a processor that was allowed to work of `cost` each `period`, over 100 s.
+/// Returns the share of a processor that a budget allows for work of `cost` due each `period`, over
+/// 100 s.
 double Allowed(double load, milliseconds cost, milliseconds period) {
   LoadBudget budget;
   Duration spent{};

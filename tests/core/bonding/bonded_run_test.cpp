@@ -49,8 +49,8 @@ double Bytes(const RunResult& r) {
 
 double Sent(const RunResult& r) { return Bytes(r) / static_cast<double>(r.media_bytes); }
 
-/// The oracle knows when a gap ends, and sends packets into the gap that arrive whole then. A
-/// second bound is that of drives whose gaps carry nothing.
+/// The oracle knows when a gap ends, and within the gap sends packets that arrive whole at its end.
+/// A second bound is for drives whose gaps carry nothing.
 TEST(TwoLinkRun, ReachesTheBoundOverGeneratedDrives) {
   double sum = 0, sum_outside = 0;
   for (std::uint64_t seed = 1; seed <= 19; seed += 2) {
@@ -141,7 +141,8 @@ TEST(TwoLinkRun, SendsLittleTwiceOnLinksThatAreSettled) {
   EXPECT_LE(adaptive, 0.6 * broadcast);
 }
 
-/// Feedback on packets that both links carried does not show its link; by broadcast those are all.
+/// Feedback on a packet that both links carried does not show which link it is about. Broadcast
+/// sends all packets over both.
 TEST(TwoLinkRun, GoesOnWhereFeedbackIsSwapped) {
   for (const Method method : {Method::kAdaptive, Method::kBroadcast})
     for (const Duration from : {0s, 20s}) {

@@ -54,7 +54,8 @@ class TwoLinks : public testing::Test {
     }
   }
 
-  /// Works until links are settled and a copy was just sent, so that the next slice is not copied.
+  /// Works until the links are settled and a copy was just sent, so that the next slice is not
+  /// copied.
   void Settle() {
     Work(4s);
     LinkSet links;

@@ -21,7 +21,7 @@ class TwoFifos : public testing::Test {
     const auto ticks = static_cast<std::uint32_t>(Seconds(free - kStart) * 65536);
     queues_.OnArrival(link, {now_, ticks, 0ms});
   }
-  /// Bursts on both links; as `copies` they are sent at the same times.
+  /// Sends bursts on both links, at the same times if they are `copies`.
   void Run(std::size_t second_fifo, bool copies) {
     for (int i = 0; i < 4000; ++i) {
       now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());

@@ -59,7 +59,7 @@ TEST_F(Tree, WhatHoldsForGoodHoldsAtAnyTime) {
 TEST_F(Tree, BetweenTwoPosesItInterpolatesByTheShorterTurn) {
   ASSERT_TRUE(tree_.Set("map", "odom", kStart + milliseconds(100), At(102), false));
   FramePose turned = TurnedLeft(20);
-  turned.orientation = {0, 0, -1, 0};  // half a turn, as the other of its two quaternions
+  turned.orientation = {0, 0, -1, 0};  // half a turn, by the other of its two quaternions
   ASSERT_TRUE(tree_.Set("odom", "base", kStart + milliseconds(100), turned, false));
   const auto found = tree_.Find("map", "base", kStart + milliseconds(50));
   ExpectNear(Place(found, {0, 0, 0}), {116, 0, 0});

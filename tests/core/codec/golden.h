@@ -89,7 +89,8 @@ struct GoldenBlock {
 };
 inline void PrintTo(const GoldenBlock& block, std::ostream* out) { *out << block.name; }
 
-/// Expects the block to become the bytes of its file, and those to decode to the same returns.
+/// Expects that the block is coded to the bytes of its file, and that these decode to the same
+/// returns.
 inline void ExpectGoldenBlock(const GoldenBlock& c, const std::string& folder,
                               const codec::IntegerCoder* integers) {
   const SensorModel model = GoldenSensor(c.scan.beams, c.columns_per_scan);

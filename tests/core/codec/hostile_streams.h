@@ -47,7 +47,7 @@ int CountDecodedMutations(const std::vector<std::uint8_t>& stream, Decoder* deco
   return decoded;
 }
 
-/// `all`: a single missing byte at the end is noticed, too.
+/// If `all`, a missing last byte must be noticed, too.
 template <class Decoder>
 void ExpectNothingOfCutStreams(const std::vector<std::uint8_t>& stream, bool all,
                                Decoder* decoder) {

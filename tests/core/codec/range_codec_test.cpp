@@ -43,7 +43,7 @@ struct Piece {
   unsigned symbol;
   std::uint32_t bits;
   unsigned count;
-  std::uint32_t more;  // without a symbol
+  std::uint32_t more;  // written as plain bits after the symbol 3
 };
 
 std::vector<Piece> RandomPieces(std::size_t count) {

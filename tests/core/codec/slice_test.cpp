@@ -29,7 +29,8 @@ std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads
   settings.intensity_bits = 5;
   std::vector<std::uint32_t> ranges;
   SliceDecoder decoder(format, kMaxPoints);
-  // Twice: what a slice leaves behind in the encoder must not reach into the next.
+  // The slice is coded twice: what it leaves behind in the encoder must not reach into the next
+  // one.
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
     const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});

@@ -123,8 +123,8 @@ std::vector<RangeImage> NoisyScans(int count) {
   return scans;
 }
 
-/// Bytes of dependent blocks of such scans at an effort, the largest error [mm] that they come back
-/// with, and how many of them have chosen bins.
+/// Bytes of dependent blocks of such scans at an effort, the largest error [mm] of decoded ranges,
+/// and how many of the blocks have chosen bins.
 struct Repeated {
   std::size_t bytes = 0;
   int error_mm = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Range geometry by Draco's coders, and what hostile streams of all of them do.
+// Range geometry by Draco's coders, and what decoders do with damaged streams of all of them.
 #include <gtest/gtest.h>
 
 #include "ext/draco/draco_integers.h"

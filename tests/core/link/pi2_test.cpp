@@ -22,7 +22,7 @@ struct Share {
   double mean_ms() const { return sojourn_ms / packets; }
 };
 
-/// Sends flows of 1000-byte packets that never slow down, each `load` of 8 Mbit/s, for 20 s.
+/// Sends flows of 1000-byte packets that never slow down, each at `load` times 8 Mbit/s, for 20 s.
 /// Returns figures of the last 10 s.
 std::array<Share, 4> Overload(AqmConfig::Kind kind, std::vector<Ecn> flows, double load,
                               bool knows_l4s = true) {

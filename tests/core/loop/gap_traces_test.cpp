@@ -109,8 +109,8 @@ TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
   }
 }
 
-/// A fixed step has less data on its way when a gap begins, so that the scans after it come sooner.
-/// It may be ahead in scans, complete or in time, by this much and no more.
+/// A fixed step has less data on its way when a gap begins, so that scans after the gap come
+/// sooner. Its lead in complete scans and in scans in time may be this large and no larger.
 TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   constexpr int kStarts = 24;
   for (const char* trace : {"gap_1s_every_10s", "drive_1", "drive_2", "drive_3"}) {

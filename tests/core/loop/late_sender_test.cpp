@@ -36,7 +36,7 @@ TEST(LateSender, LosesTheScansOfAGap) {
       << "a second, less what is newest at its end";
 }
 
-/// A full link has more data on its way than a fixed step has, and these must leave first.
+/// A full link has more data on its way than a fixed step has, and that data must leave first.
 TEST(LateSender, LosesMoreTheMoreOfTheLinkItUses) {
   std::string trace = "0 10";
   for (int s = 1; s < 60; ++s) {

@@ -64,8 +64,8 @@ class Drive {
   RangeProjection projection_;
 };
 
-/// Adds the turns before `end`, as a gyroscope measures them that is turned about the vertical by
-/// `axes_rad`.
+/// Adds the turns before `end`, as measured by a gyroscope whose axes are turned by `axes_rad`
+/// about the vertical.
 inline void AddTurns(synth::Imu* imu, Time end, double axes_rad, Odometry* odometry) {
   const Eigen::AngleAxisd axes(axes_rad, Eigen::Vector3d::UnitZ());
   for (const ImuSample& s : imu->Until(end.time_since_epoch()))

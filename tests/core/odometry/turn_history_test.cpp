@@ -24,7 +24,7 @@ double YawOf(const Eigen::Quaterniond& turn) {
 void AddSteadyTurn(Time from, Time to, double rate, TurnHistory* turns) {
   for (Time t = from; t <= to; t += kStep) turns->Add(t, {0, 0, rate});
 }
-/// Teaches ten scans of a turn of one radian a second, twice as fast as their last velocity.
+/// Teaches ten scans of a turn at 1 rad/s, twice as fast as the last angular velocity.
 void TeachTurns(double measured, TurnHistory* turns) {
   AddSteadyTurn(Time{}, Time{} + seconds(1), measured, turns);
   for (int i = 0; i < 10; ++i)
@@ -128,7 +128,7 @@ struct BumpyRoad {
     at.velocity.head<3>() << 10, 0, kHeight * kTurns * std::cos(kTurns * t);
     return at;
   }
-  /// The third axis of the accelerometer is multiplied by `axis`.
+  /// Drives with an accelerometer whose third axis is multiplied by `axis`.
   static void Drive(double axis, TurnHistory* turns) {
     for (int i = 0; i <= 1000; ++i) {
       const double t = 0.002 * i;

@@ -21,7 +21,8 @@ constexpr int kDatagrams = 5000;
 
 bool Always() { return true; }
 
-/// A datagram a millisecond, which holds its number; `swapped` follows the one after it.
+/// A capture of a datagram each millisecond, which holds its number; datagram `swapped` comes after
+/// the next one.
 class CaptureIndexTest : public ::testing::Test {
  protected:
   void Write(int swapped = kDatagrams) {

@@ -32,7 +32,7 @@ TEST(ClockMapper, OfAFileHoldsTheOffsetOfTheFirstPacketUntilAClockJumps) {
   ClockMapper mapper(ClockMapper::Mode::kHold);
   const std::uint64_t second = 1'000'000'000;
   mapper.Observe(5 * second, Time{std::chrono::seconds(100)});
-  // The next packets took less and less time.
+  // Each further packet takes 1 ms less than the one before it.
   for (std::uint64_t i = 1; i < 9; ++i) {
     const Time arrival = Time{std::chrono::seconds(100 + i)} - Duration{1'000'000} * i;
     EXPECT_FALSE(mapper.WouldJump((5 + i) * second, arrival));
@@ -61,8 +61,8 @@ TEST(ClockMapper, FollowsAClockThatDrifts) {
   }
 }
 
-/// Maps packets each millisecond from `from` to `until`, all `delay` under way. Returns the error
-/// of the last one.
+/// Maps a packet each millisecond from `from` to `until`; each arrives `delay` late. Returns the
+/// last error.
 Duration ErrorAfter(ClockMapper* mapper, Duration from, Duration until, Duration delay) {
   Duration error{};
   for (Duration t = from; t < until; t += 1ms) {

@@ -25,8 +25,8 @@ struct RangeErrors {
   double mean = 0;
 };
 
-/// Puts `units` neighbouring ranges on a grid of steps of `parts` / 256 units. Ranges in one bin
-/// come back as the middle of the first and the last of them, rounded up to a millimetre.
+/// Returns the errors of the ranges 0 to `units` - 1 units on a grid with bins of `parts` / 256
+/// units. A bin decodes to the middle of its first and last range, rounded up to a millimetre.
 RangeErrors ErrorsOfRanges(std::int64_t parts, unsigned unit_mm, std::int64_t units) {
   RangeErrors errors;
   for (std::int64_t first = 0; first < units;) {
@@ -96,7 +96,8 @@ TEST(ErrorBound, MeanErrorIsThatOfPointsSpreadEvenly) {
     sum += std::sqrt(x * x + y * y + z * z);
   }
   EXPECT_NEAR(ErrorBound::Xyz().MeanError(1), sum / kPoints, 1e-3);
-  // Bins of five units are off by 2, 1, 0, 1, 2; two of 2 mm by 1 mm.
+  // A bin of five units of 1 mm has errors of 2, 1, 0, 1 and 2 mm; a bin of two units of 2 mm has
+  // errors of 1 mm.
   EXPECT_NEAR(ErrorBound::Range(1).MeanError(0.005), 0.0012, 1e-12);
   EXPECT_NEAR(ErrorBound::Range(2).MeanError(0.004), 0.001, 1e-12);
 }

@@ -68,7 +68,7 @@ TEST(Stream, GivesBackAllThatWasSaidOfASlice) {
   EXPECT_FALSE(got[1].discont);
 }
 
-// Every single packet of three scans is dropped in turn; a drop of a packet of slice S may cost S.
+// Each packet of three scans is dropped in turn, and only its own slice may be lost.
 TEST(Loss, OfAnyOnePacketCostsItsSliceOnly) {
   const auto packets = Sender().Scans(0, 3);
   for (std::size_t drop = 0; drop < packets.size(); ++drop) {
@@ -137,8 +137,8 @@ TEST(Loss, AgreesWithTheLinkAtEveryRate) {
     std::vector<std::vector<unsigned>> dropped(300, std::vector<unsigned>(4));
     for (const Wire& w : packets) {
       random = random * 1664525U + 1013904223U;
-      // The first slice arrives, so that the receiver joins where the link's count begins; so does
-      // the last, so that what was lost before it can be known.
+      // The first slice arrives, so that the receiver joins where the link's count begins. The last
+      // one arrives, so that the losses before it are noticed.
       const bool edge =
           w.config || (w.scan == 0 && w.index == 0) || (w.scan == 299 && w.index == 3);
       if ((random >> 8) % 100 < percent && !edge) {
@@ -225,7 +225,8 @@ TEST(Damage, OfAnyByteOfASliceIsNeverShown) {
       std::find_if(packets.begin(), packets.end(),
                    [](const Wire& w) { return w.scan == 1 && w.index == 1; }) -
       packets.begin());
-  // The first packet's header as well: a slice at another time is as wrong as another slice.
+  // The damage also hits the first packet's header: a slice with a wrong time is as bad as a wrong
+  // slice.
   for (std::size_t byte = 0; byte < packets[victim].payload.size(); ++byte) {
     auto damaged = packets;
     damaged[victim].payload[byte] ^= 0x10;

@@ -57,8 +57,8 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesLate) {
   Sender sender;
   auto packets = sender.ScansWithout(
       6, [](std::uint32_t s, std::uint16_t i) { return (s == 2 && i == 3) || (s == 3 && i < 2); });
-  // A sender short of capacity pauses within the slice that names them: its last packet comes when
-  // they are overdue.
+  // A sender short of capacity pauses within the slice that names the skipped ones: its last packet
+  // comes when they are overdue.
   const auto told = [](const Wire& w) { return w.scan == 3 && w.index == 2; };
   const auto begun = std::find_if(packets.begin(), packets.end(), told);
   ASSERT_TRUE(told(*(begun + 1)));
@@ -91,7 +91,8 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesAfterAnOutage) {
   Sender sender;
   auto packets = sender.ScansWithout(
       20, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
-  // Only one packet arrives of slice 4.3, which names them. Then scans 5 to 9 are lost.
+  // Only one packet arrives of slice 4.3, which names the skipped slices. Then scans 5 to 9 are
+  // lost.
   bool first = true;
   Lose(&packets, [&](const Wire& w) {
     if (w.config) return false;

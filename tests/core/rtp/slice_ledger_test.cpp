@@ -28,7 +28,7 @@ TEST_F(Ledger, AScanHasOneCountOfSlices) {
   EXPECT_EQ(Admit(1, 5, 8), Admission::kContradiction);
   EXPECT_EQ(Admit(1, 1, 3), Admission::kContradiction);
   EXPECT_EQ(Admit(1, 3, 4), Admission::kOpen);
-  EXPECT_EQ(Admit(2, 5, 8), Admission::kOpen);  // the next one may have another
+  EXPECT_EQ(Admit(2, 5, 8), Admission::kOpen);  // the next scan may have another count
 }
 
 TEST_F(Ledger, AScanHasOneCountAlsoBeforeASliceOfItIsWhole) {

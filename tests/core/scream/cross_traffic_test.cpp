@@ -13,7 +13,8 @@ namespace {
 /// Frames of ten packets every 20 ms, about 1 ms apart, and a pause: arrivals in ticks of a report.
 class CrossTrafficTest : public ::testing::Test {
  protected:
-  /// What others sent since the last packet precedes each packet, of `own` ms.
+  /// Sends packets that take `own` ms each on the link. Packets that others sent since our last one
+  /// pass before each of ours.
   void Send(int frames, double others_share, Duration queue = 20ms, double own = 0.5) {
     for (int i = 0; i < 10 * frames; ++i) {
       if (i % 10 == 0) traffic_.BeginReport();
@@ -151,7 +152,7 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
   EXPECT_TRUE(traffic_.unseen());
 }
 
-/// A flow that has become slow has few packets that count, so that a share counts as found late.
+/// Few packets of a slow flow count, so that its share of others is found late.
 TEST_F(CrossTrafficTest, IsUnseenWhileFewPacketsTellOfAShareThatIsKnown) {
   Send(50, 0.5);
   ASSERT_GT(traffic_.share().value_or(0), 0.4);
@@ -172,7 +173,7 @@ TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
 }
 
 TEST(SharedLink, ABolderWindowIsForEarlyMarksOfAnL4sQueueOnly) {
-  EXPECT_EQ(EarlyMarking(600us), 0);  // of a classic flow beside: no queue, and marks
+  EXPECT_EQ(EarlyMarking(600us), 0);  // marks without a queue are a classic flow's
   EXPECT_NEAR(EarlyMarking(800us), 0.5, 1e-9);
   EXPECT_EQ(EarlyMarking(1ms), 1);
   EXPECT_GT(EarlyMarking(1500us), 0);

@@ -17,8 +17,8 @@ TEST_P(ScenarioGoals, AreReached) {
 }
 INSTANTIATE_TEST_SUITE_P(Matrix, ScenarioGoals, ::testing::ValuesIn(ScenariosWithGoals()));
 
-/// Whole scans: p99 of 560 is the seventh slowest, and three falls of the capacity each delay two.
-/// (If a scan begins 40 to 60 ms after a fall, before it is known, three are late.)
+/// Three falls of the capacity delay two whole scans each, and p99 of 560 scans is the seventh
+/// slowest. (If a scan begins 40 to 60 ms after a fall, before the fall is known, three are late.)
 TEST(Goals, AScanBehindThoseOfACapacityDropIsInTime) {
   for (const Duration phase : {0ms, 10ms, 20ms, 30ms, 70ms, 80ms, 90ms}) {
     Scenario s = *FindScenario("frames10_steps_rtt40", Parameters());

@@ -58,7 +58,7 @@ class GapRecoveryTest : public ::testing::Test {
   std::optional<GapRecovery::Restart> Update(DataSize window) {
     return gaps_.Update(path_.now, path_.model, window);
   }
-  /// 8 Mbit/s, then for a second next to nothing.
+  /// Delivers packets at 8 Mbit/s, then next to nothing for a second.
   void FallIntoAGap() {
     path_.Arrive(20, 1ms, 1ms, Ecn::kEct1);
     EXPECT_FALSE(Update(kWindow));

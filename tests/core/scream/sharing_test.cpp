@@ -212,7 +212,7 @@ TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
   EXPECT_GE(Measure(s, Simulate(s.config)).jain, 0.99);
 }
 
-/// A slow link shows flows less of each other.
+/// A slow link has few packets that show a flow the share of the other.
 TEST(TwoFlows, ShareASlowLinkEvenlyAtAnyPhase) {
   const auto phases = {0ms, 1ms, 3ms, 4ms, 6ms, 7ms, 9ms, 10ms, 12ms, 13ms, 15ms, 17ms, 19ms};
   double sum = 0;

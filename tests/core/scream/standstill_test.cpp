@@ -19,7 +19,7 @@ Scenario Standing(Duration length, std::size_t sources = 1) {
   return s;
 }
 
-/// What left the sender [bytes], by times of the run.
+/// Returns the bytes that left the sender between two times of the run.
 std::int64_t Sent(const SimulationResult& run, Duration from, Duration until) {
   const Time origin = run.config.forward.origin;
   std::int64_t bytes = 0;

@@ -117,7 +117,7 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 100ms), DataSize());
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 150ms), DataSize::Bytes(50'000));
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 300ms), DataSize::Bytes(100'000));
-  // The next scan is to be so much smaller.
+  // The next scan is to be smaller by the backlog: 50,000 bytes in 100 ms are 4 Mbit/s.
   EXPECT_NEAR(InMbps(streams_.Find(a)->backlog_rate(kStart + 150ms)), 4, 1e-3);
   streams_.LeaveRoomForBacklogs(kStart + 100ms);
   EXPECT_NEAR(Target(a), 8, 1e-3);
@@ -125,7 +125,7 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_NEAR(Target(a), 4, 1e-3);
 }
 
-/// The scan's queue is the longest, but most of it leaves in time.
+/// The scan's queue is the longest, but most of it leaves before the next scan.
 TEST_F(Limits, AScanThatIsLeavingIsNotTheLongestBacklog) {
   const StreamId scans = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   const StreamId frames = Add({1, Mbps(0), Mbps(1), Mbps(100)});

@@ -87,7 +87,7 @@ TEST(Response, OfRenoFallsWithTheSquareRootOfTheLoss) {
   }
 }
 
-/// RFC 9438, section 5.1: 1.054 RTT^0.75 / p^0.75 where that is more than Reno's.
+/// RFC 9438, section 5.1: 1.054 RTT^0.75 / p^0.75, if that is more than Reno's.
 TEST(Response, OfCubicFallsWithItsThreeQuarterPower) {
   for (const double p : {0.00003, 0.0001}) {
     const double published = 1.054 * std::pow(0.1, 0.75) / std::pow(p, 0.75);

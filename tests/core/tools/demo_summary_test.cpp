@@ -185,7 +185,7 @@ TEST(DemoSummary, APointThatAppearedFromNowhereBreaksAGuarantee) {
   EXPECT_FALSE(AllHold(m));
 }
 
-/// Four scans of 2 kB a second for 10 s, of which `arrives` in a hundred arrive.
+/// Returns a stream of four scans a second, 2 kB each, for 10 s; `arrives` % of them arrive.
 Measurements Stream(int arrives) {
   auto m = TwoSteps();
   m.AddBounds(kOrigin, 64e3, 8e6);

@@ -50,7 +50,7 @@ for program in "$@"; do
         expect_clean_failure "$limit" "$program" to-pcap "$folder/source.pcap" --scans 2 -o "$folder/drive.pcap"
       done
       expect_clean_failure 0 "$program" rd "$folder/source.pcap" --scans 1 --errors 0.02,0.05 --csv "$folder/rd.csv"
-      # A command that fails before its first row leaves none either.
+      # A command that fails before its first row leaves no file, either.
       "$program" bounds "$folder/nothing.pcap" --csv "$folder/bounds.csv" >"$folder/source.json" 2>&1 && failed=1
       [ ! -e "$folder/bounds.csv" ] || { echo "bounds.csv is left"; failed=1; }
       ;;

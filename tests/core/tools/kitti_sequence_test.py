@@ -70,7 +70,7 @@ def poses_of_a_camera_become_those_of_the_sensor(folder):
 
 
 def straight_scans_of_listed_beams_are_read(folder):
-    """As KITTI has them: no phases, beams from straight ahead once around."""
+    """Scans as KITTI has them: without phases, beam by beam, each from straight ahead once around."""
     (folder / "velodyne").mkdir(parents=True)
     for scan in range(4):
         data = b""

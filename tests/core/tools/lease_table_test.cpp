@@ -31,7 +31,7 @@ class Lease : public ::testing::Test {
     }
   }
   bool Has(const std::string& robot, Time now) const { return table_.HeldAt(now).count(robot) > 0; }
-  /// Lets time pass in steps of a millisecond. Returns the last.
+  /// Lets `ms` milliseconds pass one by one. Returns the time after them.
   Time Pass(Time now, int ms) {
     for (; ms > 0; --ms) {
       now += milliseconds(1);

@@ -54,7 +54,7 @@ TEST(RobotWatch, ShutsOutARobotThatIsThreeSecondsAheadUntilItIsNot) {
   Robot robot(2);
   robot.Send(2, 100);
   EXPECT_EQ(robot.watch.ToShutOut(), Duration{});
-  // Each second brings it half a second ahead; the last one counts whole.
+  // Each count adds 1.5 s of data, and a second passes before the next count.
   robot.Send(3, 4);
   EXPECT_EQ(robot.watch.ToShutOut(), Duration{});
   robot.Send(3, 1);

@@ -224,7 +224,7 @@ TEST(Pace, TakesADelayOfAFrameMoreForTheSame) {
     ASSERT_TRUE(pace.MayBegin(now)) << scan;
     pace.OnSent(now, {scan, 0}, DataSize::Bytes(1000));
     pace.OnDrawn(now + milliseconds(scan == 1 ? 10 : 25), {scan, 0});
-    // Another slice is on the way when it begins, so that none is alone.
+    // This slice is still on the way when the next one is sent, so that no later slice is alone.
     pace.OnSent(now + milliseconds(26), {scan, 1}, DataSize::Bytes(10));
   }
   EXPECT_EQ(pace.shortest_delay(), milliseconds(10));

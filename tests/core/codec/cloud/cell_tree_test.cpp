@@ -43,7 +43,7 @@ TEST(CellTree, GivesBackCellsAndCounts) {
     EXPECT_TRUE(decoder.AtEnd());
     EXPECT_EQ(cells.codes, before.codes);
     EXPECT_EQ(cells.counts, before.counts);
-    // Limits of a node or a point less refuse the tree.
+    // A limit of one node or one point less than the tree has refuses it.
     for (const CellLimits& limits :
          {CellLimits{points.size(), nodes - 1}, CellLimits{points.size() - 1, nodes}}) {
       mixing::BinaryDecoder again({bytes.data(), bytes.size()});

@@ -104,7 +104,8 @@ struct SensorCase {
 };
 class SensorClouds : public ::testing::TestWithParam<SensorCase> {};
 
-// The limits at effort 3 are those of refined models, others 5 % above the first version.
+// The limits at effort 3 are those of refined models; the other limits are 5 % above what the first
+// version of the coder took.
 TEST_P(SensorClouds, ComeBackWithinTheErrorInFewBits) {
   const SensorCase& c = GetParam();
   const PlainPoints points = ScanOf(c.name);
@@ -356,7 +357,7 @@ TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
   const auto bits = BitsOfStream({points, Turned(points, 0.4), Turned(points, 7)});
   EXPECT_LE(bits[0], 2.3);
   EXPECT_LE(bits[1], 1.05 * bits[0]);
-  // The gap of 9 degrees without firings has moved by 7.
+  // The gap of 9 degrees without firings has moved by 7 degrees.
   EXPECT_LE(bits[2], 1.15 * bits[0]);
 }
 
@@ -551,7 +552,7 @@ TEST(BeamTable, FindsThePathOfBeamsAndWritesIt) {
 }
 
 TEST(BeamTable, RefusesAPathThatDoesNotTurnOrHasTooManyBeams) {
-  // Columns, beams, flags, rate.
+  // The bytes are columns, beams, flags and rate.
   const auto read = [](std::uint8_t beams, std::uint8_t rate) {
     const std::vector<std::uint8_t> bytes = {0x80, 0x80, 1, beams, 64, rate};
     ByteReader reader(bytes.data(), bytes.size());

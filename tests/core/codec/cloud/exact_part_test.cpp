@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Fields and orders of clouds that come back exactly.
+// Fields and orders of clouds that decode exactly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kMostDecoded = 1U << 20;
 
-/// Fields that come back exactly, and whether the order does.
+/// Fields that must decode exactly, and whether the order must.
 struct Wish {
   std::vector<std::string> fields;
   bool keeps_order = true;
@@ -108,7 +108,7 @@ double Distance(const Point& a, const Point& b) {
   return std::sqrt(square);
 }
 
-/// Every point comes back at its place, with its fields.
+/// Expects that every point decodes at its place, with its fields.
 void ExpectSame(const Cloud& cloud, const Wish& wish, const Cloud& decoded) {
   ASSERT_EQ(decoded.size(), cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -120,7 +120,7 @@ TEST(BinSearch, KeepsRangesNextToTheSensorAndFarAway) {
   EXPECT_EQ(Wrong(image, back, kErrorMm), 0U);
 }
 
-/// A bin past the last one would come back within the error, and decoders refuse it.
+/// A bin past the last one would decode within the error, but decoders refuse it.
 TEST(BinSearch, KeepsToTheBinsThatDecodersTake) {
   const SensorModel model = test::RoomSensor();
   RangeImage image = test::RoomScan(model, 0, 128);

@@ -120,7 +120,7 @@ TEST(MixingCodecOf, RefinedModelsAreAnotherVersion) {
   EXPECT_EQ(payload_of(1)[0] >> 4, mixing::kTableVersion);  // effort 1 has none
   auto payload = payload_of(2);
   EXPECT_EQ(payload[0] >> 4, mixing::kRefinedVersion);
-  // A decoder refuses them at effort 1, and with a memory.
+  // A decoder refuses refined models at effort 1, and with a memory.
   MixingDecoder decoder(sensor);
   RangeImage back = image;
   const auto memory = Remember(image, RangeGrid(1, 41), nullptr);
