@@ -66,9 +66,9 @@ bool IsEncoder(GstElement* element) {
 PadPtr RealPeer(GstPad* pad) {
   PadPtr peer(gst_pad_get_peer(pad));
   while (peer && GST_IS_PROXY_PAD(peer.get())) {
-    if (GST_IS_GHOST_PAD(peer.get())) {  // leads out of a bin, to the pad behind the ghost
+    if (GST_IS_GHOST_PAD(peer.get())) {  // a bin's output: continue with the pad inside
       peer.reset(gst_ghost_pad_get_target(GST_GHOST_PAD(peer.get())));
-    } else {  // the inner side of a bin's sink: what feeds the bin
+    } else {  // a bin's input, seen from inside: continue outside
       const PadPtr ghost(GST_PAD(gst_proxy_pad_get_internal(GST_PROXY_PAD(peer.get()))));
       peer.reset(ghost ? gst_pad_get_peer(ghost.get()) : nullptr);
     }

@@ -92,7 +92,7 @@ static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) 
       gst_bin_get_by_name_recurse_up(GST_BIN(parent.get()), settings.encoder.c_str()));
 }
 
-/// Returns the user's settings, with the encoder's defaults.
+/// Returns the encoder's usual control, changed by the settings `property` and `scale`.
 static std::optional<BitrateControl> ControlOf(GstElement* encoder, const Settings& settings) {
   GstElementFactory* factory = gst_element_get_factory(encoder);
   auto control = factory == nullptr ? std::nullopt : FindBitrateControl(GST_OBJECT_NAME(factory));
