@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// Events leave after the caps, in order of arrival; a later one replaces one of its type.
+/// Events leave after the caps, in order of arrival. A new event replaces an older one of its type.
 class HeldEvents {
  public:
   /// Holds a sticky event that belongs behind the caps; drops a gap, which has no meaning before
@@ -32,7 +32,7 @@ class HeldEvents {
   }
 
   /// Pushes the caps, then the held events. If downstream refuses the caps, GStreamer sends them
-  /// again before the next buffer, whose flow has the reason.
+  /// again before the next buffer, and the push of that buffer returns the error.
   void PushCapsTo(GstPad* pad, GstCaps* caps) {
     gst_pad_push_event(pad, gst_event_new_caps(caps));
     PushTo(pad);

@@ -19,7 +19,7 @@ using SamplePtr = std::unique_ptr<GstSample, UnrefSample>;
 
 struct HistoryQuestion {
   GstClockTime time = GST_CLOCK_TIME_NONE;  // earlier buffers may be left out [ns since 1970]
-  guint64 position = 0;                     // behind the last answer; unused if there is a time
+  guint64 position = 0;                     // where the answer begins; unused if there is a time
   guint64 most_bytes = 0;  // approximate size of the buffers; 0: asks for the times only
 };
 
@@ -27,7 +27,7 @@ struct HistoryAnswer {
   guint64 from = 0;  // capture times of all that is kept [ns since 1970]; 0: nothing
   guint64 to = 0;
   std::vector<SamplePtr> samples;  // caps and buffers with metas; their offset is the position
-  guint64 position = 0;            // behind the samples
+  guint64 position = 0;            // where the next answer begins
   bool ended = true;               // nothing newer is kept yet
   guint64 damaged = 0;             // buffers that were left out
 };

@@ -12,7 +12,7 @@
 
 namespace lidar::gst {
 
-/// Caps of samples as kImuFields has them.
+/// Returns the caps of samples with the fields kImuFields.
 inline CapsPtr ImuCaps() {
   return CapsPtr(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT,
                                      static_cast<gint>(kImuSampleSize), "fields", G_TYPE_STRING,

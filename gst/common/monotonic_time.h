@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The clock of what no pipeline's clock times.
+// The system clock for times that no pipeline clock gives.
 #pragma once
 #include <glib.h>
 

@@ -10,7 +10,7 @@ namespace lidar::gst {
 constexpr auto kPacketProbe =
     static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST);
 
-/// Puts in the place of each packet what `map` makes of it; a packet that becomes NULL is dropped.
+/// Replaces each packet by the result of `map`, or drops the packet if the result is NULL.
 template <class Map>
 GstPadProbeReturn MapPackets(GstPadProbeInfo* info, Map map) {
   if ((info->type & GST_PAD_PROBE_TYPE_BUFFER) != 0) {
