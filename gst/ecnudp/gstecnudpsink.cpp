@@ -211,7 +211,8 @@ static gboolean Stop(GstBaseSink* base) {
   return TRUE;
 }
 
-/// The destination follows the buffers of the element that validated the peer (screamrx).
+/// Makes the address on `buffer` the destination: the element that set it (screamrx) validated the
+/// peer.
 static void FollowPeer(State& state, GstBuffer* buffer) {
   const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
   if (meta == nullptr || meta->addr == state.peer.get()) return;
