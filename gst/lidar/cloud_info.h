@@ -35,7 +35,7 @@ struct CloudInfo {
   /// nothing if the caps contradict themselves or lack x, y and z as adjacent F32; without
   /// `fields`, as in a file with the media type alone, these three are the fields.
   GST_LIDAR_API static std::optional<CloudInfo> FromCodedCaps(const GstCaps* caps);
-  /// Converts the format that a base class gave its coder, and has checked.
+  /// Converts a format that the base class has checked and given to its coder.
   GST_LIDAR_API static CloudInfo FromFormat(const GstLidarCloudFormat& format);
   /// transfer full
   GST_LIDAR_API GstCaps* ToCaps() const;

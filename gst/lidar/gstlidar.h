@@ -115,7 +115,7 @@ GST_LIDAR_API GstEvent* gst_lidar_event_new_packets_received(
 GST_LIDAR_API gboolean gst_lidar_event_parse_packets_received(GstEvent* event,
                                                               GstLidarPacketsReceived* received);
 
-/** A slice by its GstLidarSlice. */
+/** Identifies a slice, as GstLidarSlice does. */
 typedef struct {
   guint scan_id;
   guint slice_index;

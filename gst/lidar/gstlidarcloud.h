@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Raw clouds as coders meet them: GstLidarEncoder encodes them, GstLidarDecoder gives them. */
+/* Raw clouds for coders: GstLidarEncoder takes them, GstLidarDecoder gives them. */
 #pragma once
 #include <gst/lidar/gstlidar.h>
 

@@ -61,7 +61,7 @@ gboolean gst_lidar_cloud_info_from_caps(GstLidarCloudInfo* info, const GstCaps* 
   for (const lidar::PointField& field : parsed->fields.all()) {
     GstLidarField& out = info->fields[info->n_fields++];
     g_strlcpy(out.name, field.name.c_str(), sizeof out.name);
-    out.type = static_cast<GstLidarFieldType>(field.type);  // in the same order
+    out.type = static_cast<GstLidarFieldType>(field.type);  // both enums have one order
     out.offset = field.offset;
   }
   return TRUE;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /*
- * Raw clouds as applications meet them, what GstVideoInfo and GstVideoFrame are to video: the caps
- * parsed once, and the points of a buffer by the names of their fields.
+ * Raw clouds for applications, as GstVideoInfo and GstVideoFrame are for video: the caps, parsed
+ * once, and the points of a buffer by the names of their fields.
  */
 #pragma once
 #include <gst/lidar/gstlidar.h>

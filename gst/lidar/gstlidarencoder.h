@@ -95,8 +95,8 @@ typedef enum {
 typedef enum {
   GST_LIDAR_ORDER_PIXELS = 0, /* as many points as the raw slice has, at their places */
   GST_LIDAR_ORDER_KEPT = 1,   /* the raw points that are finite and not all zero, in their order */
-  GST_LIDAR_ORDER_ANY = 2     /* those in any order, maybe one for several: errors are distances to
-                                 the nearest point */
+  GST_LIDAR_ORDER_ANY = 2     /* the same in any order, maybe one for several: errors are distances
+                                 to the nearest point */
 } GstLidarPointOrder;
 
 struct _GstLidarEncoder {
@@ -119,7 +119,7 @@ struct _GstLidarEncoderClass {
   void (*load)(GstLidarEncoder* encoder, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded);
   /** Gives the steps that keep to @max_error. Optional; by default a cubic grid of coordinates. */
   void (*get_steps)(GstLidarEncoder* encoder, gdouble max_error, GstLidarStepRange* steps);
-  /** Forgets all rows but those whose element of @kept is not 0. Optional if rows are 0. */
+  /** Forgets the rows whose element of @kept is 0. Optional if rows are 0. */
   void (*thin)(GstLidarEncoder* encoder, const guint8* kept, guint rows);
   /** Appends the coded slice to @bytes, which is empty. May be called again for the same slice. */
   GstLidarEncodeResult (*encode)(GstLidarEncoder* encoder, const GstLidarEncodeSettings* settings,

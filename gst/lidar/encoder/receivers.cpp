@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// Index of no slice: the event is about the receiver alone.
+// Stands for no slice: the event is about the receiver alone.
 constexpr guint kNoSlice = G_MAXUINT;
 
 /// Returns the linked pads by which data of `sink` may leave, at most two.
