@@ -122,8 +122,8 @@ GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, gst_lidar_enc_g
 
 static LidarEncCoder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
 
-/// Returns what receivers get exactly of points with `fields`. `missing` gets the names of the
-/// settings that `fields` lack.
+/// Returns what receivers get exactly: the points' order, and fields named in the settings.
+/// `missing` gets the names that `fields` lack.
 static lidar::codec::cloud::ExactChoice ExactChoiceOf(const LidarEncSettings& settings,
                                                       const lidar::PointFields& fields,
                                                       std::string* missing) {

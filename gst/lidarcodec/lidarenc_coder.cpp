@@ -46,8 +46,8 @@ void LidarEncCoder::Load(const GstLidarRawSlice& raw, std::optional<unsigned> ef
            : cloud_->Load(points, with_intensity_);
 }
 
-/// Keeps the blocks of a slice's last encoding, which is the one that was sent, when no other
-/// encoding of the slice can follow.
+/// Called once no other encoding of the slice can follow: keeps the blocks of the last one, which
+/// was sent.
 void LidarEncCoder::KeepBlocks() {
   keeper_.OnEncoded(std::move(slice_.blocks));
   slice_.blocks.clear();
