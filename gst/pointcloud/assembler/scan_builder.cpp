@@ -11,7 +11,7 @@ namespace {
 constexpr guint kMaxSlices = 4096;
 constexpr gsize kMaxScanSize = gsize{1} << 29;
 
-/// Columns of a full turn. If there is no sensor model, all slices together are one.
+/// Columns of a full turn. If there is no sensor model, all slices together are one turn.
 guint ColumnsPerTurn(const CloudInfo& info, guint slices) {
   return info.sensor_model ? info.sensor_model->columns_per_scan : info.width * slices;
 }
@@ -32,7 +32,7 @@ bool ScanBuilder::IsSane(const SliceView& slice) {
   }
   if (!IsOrganised(*slice.info)) return slice.info->FrameSize() * meta.slice_count <= kMaxScanSize;
   const guint64 columns = guint64{slice.info->width} * meta.slice_count;
-  // A window is padded to whole slices, so it may exceed the turn by less than a slice.
+  // An azimuth window is padded to whole slices, so it may exceed the turn by less than a slice.
   const guint64 most = slice.info->sensor_model
                            ? guint64{slice.info->sensor_model->columns_per_scan} + slice.info->width
                            : SensorModel::kMaxColumns;

@@ -54,7 +54,7 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
 
 void CloudTimeline::NotePosition(GstClockTime end) {
   const std::lock_guard lock(mutex_);
-  segment_.position = std::min(end, segment_.stop);  // no stop is the largest number
+  segment_.position = std::min(end, segment_.stop);  // without a stop, `stop` is the largest number
 }
 
 void CloudTimeline::RestartTime() {
