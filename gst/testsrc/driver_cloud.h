@@ -14,7 +14,7 @@ class DriverCloud {
  public:
   explicit DriverCloud(const synth::Firing& firing);
 
-  /// Caps of such clouds, which do not fix the width: each has its own.
+  /// Caps of such clouds. They do not fix the width, because each cloud has its own.
   static CloudInfo InfoFor(const synth::Firing& firing);
 
   struct Sweep {

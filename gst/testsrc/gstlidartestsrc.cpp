@@ -361,7 +361,7 @@ static GstFlowReturn CreateSlice(GstLidarTestSrc* self, GstBuffer** out) {
   return GST_FLOW_OK;
 }
 
-/// Rows that differ in width have caps of their own.
+/// Sets the caps of each buffer if the buffers differ in width.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_TEST_SRC(push);
   const CloudInfo* info = self->state->maker->OwnInfo();

@@ -30,13 +30,13 @@ class SliceMaker {
  public:
   SliceMaker(const synth::ScannerConfig& config, const SliceOptions& options);
 
-  /// Caps of the slices of such a source. A firing table leaves the width open: each slice has its
-  /// own.
+  /// Caps of the slices of a source with these options. With a firing table they do not fix the
+  /// width, because each slice has its own.
   static CloudInfo InfoFor(const synth::ScannerConfig& config, const SliceOptions& options);
 
   /// When the first column of the next slice is sampled.
   Duration NextTime() const { return scanner_.ColumnTime(scan_, FirstColumn()); }
-  /// When the slice after it begins.
+  /// When the next slice ends.
   Duration NextEnd() const { return scanner_.ColumnTime(scan_, FirstColumn() + width_); }
   const synth::Trajectory& trajectory() const { return scanner_.trajectory(); }
   Duration LongestSlice() const;
