@@ -272,7 +272,7 @@ static TrailMap* UpdateMap(State* state) {
   return state->map ? &*state->map : nullptr;
 }
 
-/// Applies settings that changed while a picture was drawn to the next one.
+/// Settings that change while a picture is drawn apply to the next picture.
 static void ApplySettings(State* state) {
   std::lock_guard lock(state->mutex);
   if (state->changed || !state->renderer)

@@ -12,12 +12,12 @@ namespace {
 constexpr Color kBackground{20, 23, 32};
 constexpr Color kWay{255, 176, 46};
 constexpr Color kSensor{255, 255, 255};
-constexpr float kMapShare = 0.7F;  // of its colour that a point of the map keeps
+constexpr float kMapShare = 0.7F;  // share of its colour that a point of the map keeps
 constexpr float kReach = 300;      // up to which the map is drawn in perspective [m]
-// Scans that must have met a place before it is drawn, which leaves out much of what moves.
+// A place is drawn once so many scans have seen it, which leaves out much of what moves.
 constexpr int kMetOften = 3;
 constexpr float kMargin = 25;  // around the way [m]
-/// Number of steps in which the columns of a scan are placed.
+/// Number of poses by which the columns of a scan are placed.
 constexpr std::size_t kPhases = 64;
 
 }  // namespace
@@ -102,7 +102,7 @@ void Renderer::DrawMap() {
 void Renderer::DrawWay() {
   const bool top = settings_.view == ViewKind::kTop;
   const int width = std::max(2, canvas_.width() / 320);
-  // The way lies over everything from above, and on the road in perspective.
+  // Seen from above, the way of the sensor covers everything; in perspective it lies on the road.
   const auto end = [&](const std::array<float, 3>& place) -> std::optional<Canvas::End> {
     Vec p = ToPicture(place);
     p.z += kGround + 0.3F;

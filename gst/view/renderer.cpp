@@ -216,8 +216,7 @@ void Renderer::DrawRings() {
 const Canvas& Renderer::Finish() {
   if (settings_.view == ViewKind::kRange) return canvas_;
   if (map_ != nullptr) DrawMap();
-  // A step of a metre changes the depth by 1 % only when seen from above, so it is shaded more
-  // there.
+  // Seen from above, a step of a metre changes the depth by only 1 %, so edges are shaded more.
   canvas_.ShadeEdges(settings_.view == ViewKind::kTop ? 6.0F : 2.0F);
   if (map_ != nullptr) {
     DrawWay();

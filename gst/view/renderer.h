@@ -74,7 +74,7 @@ class Renderer {
   void DrawWay();
   Vec ToPicture(const std::array<float, 3>& at) const;
   std::optional<std::array<float, 3>> Project(Vec p) const;  // x, y in pixels; depth
-  /// The same in the view that was chosen.
+  /// As Project(), in the view of the settings.
   std::optional<std::array<float, 3>> Place(Vec p) const;
 
   ViewSettings settings_;

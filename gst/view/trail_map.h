@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// Takes points of the sensor to the frame of the poses.
+/// Transforms points from the sensor's frame to the frame of the poses.
 struct Rigid {
   std::array<float, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
   std::array<float, 3> position{};
@@ -36,7 +36,7 @@ class TrailMap {
 
   explicit TrailMap(std::size_t most_points = kMostPoints);
 
-  /// The pose of the sensor at `seconds`; the velocity is the one since the pose before.
+  /// Sets the pose of the sensor at `seconds`, and the velocity since the pose before.
   void MoveTo(const GstLidarPose& pose, double seconds);
   /// Place of the sensor, `later_s` after the last pose.
   Rigid PoseAfter(double later_s) const;
