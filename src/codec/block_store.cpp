@@ -42,7 +42,7 @@ BlockMemoryPtr BlockStore::Recall(std::uint32_t crc, const RangeImage& place) {
       continue;
     }
     const BlockMemoryPtr found = block;
-    // Slices may overtake each other a little.
+    // Keeps a few older blocks, because slices may overtake each other.
     DropFirst(older - std::min(older, kOvertaking), *found);
     return found;
   }

@@ -12,7 +12,7 @@ constexpr unsigned kFewestSlices = 8;
 constexpr double kLatePart = 0.1;
 // A window ends early after this many slices in a row that take more than twice their time.
 constexpr unsigned kMuchTooLate = 3;
-// A higher effort is tried if it is likely to need no more than this part of its time.
+// A higher effort is tried if it probably needs no more than this part of the allowed time.
 constexpr double kRoom = 0.75;
 constexpr Duration kFirstHold{4'000'000'000};
 constexpr Duration kLongestHold{120'000'000'000};

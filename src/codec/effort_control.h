@@ -8,8 +8,8 @@
 
 namespace lidar::codec {
 
-/// Takes the highest effort that codes slices in a part of the time in which they were swept. Its
-/// clock is the sum of the sweeps.
+/// Chooses the highest effort that codes slices in kAllowedPart of their sweep time. Sweep times,
+/// added up, are its clock.
 class EffortControl {
  public:
   static constexpr unsigned kHighest = 3;

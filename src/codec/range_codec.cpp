@@ -26,7 +26,7 @@ RangeGrid FinerGrid(const RangeGrid& grid) {
   return {grid.unit_mm(), std::max((2 * grid.parts() + kThirds / 2) / kThirds, 1U)};
 }
 
-/// A finer grid at the highest effort leaves a choice of bins within the same error.
+/// Returns true if a finer grid may give a choice of bins within the same error.
 bool MayChoose(const RangeSettings& settings) {
   return settings.effort >= mixing::kSearchingEffort && settings.grid.error_m() > 0;
 }

@@ -56,7 +56,7 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
   if (now < alone_since_) return false;
   Slot& slot = slots_[slice.index];
   if (key_interval_ > Duration{0}) {
-    // Slices take turns: all at once would make a scan much larger than the others.
+    // Slices stand alone in turn: all of one scan together would make it much larger than others.
     const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
     if (!slot.last_key) slot.last_key = now - head_start;
     if (now - *slot.last_key >= key_interval_) {

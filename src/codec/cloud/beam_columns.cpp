@@ -29,7 +29,7 @@ std::vector<BeamAzimuths> AzimuthsOf(const std::vector<Sighting>& points, const 
   return all;
 }
 
-/// Subtracts what the beam adds to its azimuths.
+/// Subtracts the angle that the beam's side adds to its azimuths.
 void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   for (BeamAzimuth& a : *azimuths) {
     const double angle = SideAngle(beam, static_cast<double>(a.rho_m));
@@ -43,10 +43,10 @@ std::int32_t InLengthUnits(double um) {
   return kUnit * static_cast<std::int32_t>(std::lround(um / kUnit));
 }
 
-/// Finds the reaches: sensors measure in steps of one or several millimetres, from a zero of their
-/// own.
+/// Finds each beam's reach, the position of range 0: sensors measure in steps of one or several
+/// millimetres, from a zero of their own.
 void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
-  constexpr double kClear = 0.8;  // of 1
+  constexpr double kClear = 0.8;  // best: 1
   const BeamLocator locator(*table);
   for (const double unit_mm : {8.0, 5.0, 4.0, 2.0, 1.0}) {
     std::vector<std::complex<double>> phases(table->rows());

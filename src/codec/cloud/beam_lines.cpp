@@ -30,7 +30,7 @@ constexpr double kNearest = 1;  // [m]
 
 using Histogram = std::vector<std::uint32_t>;
 
-/// Bin of the line at this height that passes the point; SIZE_MAX: there is none.
+/// Bin of the tangent from this height to the point; SIZE_MAX: it is too steep.
 std::size_t ClassOf(const Sighting& s, double height_m, double classes_per_tangent) {
   const double tangent = (s.z_m - height_m) / s.rho_m;
   if (std::abs(tangent) >= kMostTangent) return SIZE_MAX;

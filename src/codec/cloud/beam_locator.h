@@ -27,7 +27,7 @@ class BeamLocator {
         std::min(guess + around_ + 2, static_cast<std::uint32_t>(lines_.size()));
     std::uint32_t best = first;
     double least = std::abs(AboveOf(first, s));
-    // The compiler makes no branches of this, which processors would guess badly.
+    // This form compiles without branches, which would often be mispredicted.
     for (std::uint32_t i = first + 1; i < end; ++i) {
       const double above = std::abs(AboveOf(i, s));
       best = above < least ? i : best;
@@ -54,7 +54,7 @@ class BeamLocator {
     const Line& line = lines_[beam];
     return (s.z_m - line.height_m) * line.cosine - s.rho_m * line.sine;
   }
-  /// Maps all directions to 1 to -1, as the tangent rises.
+  /// Maps a direction to its bucket: the quotient rises with the tangent, from -1 to 1.
   static std::uint32_t BucketOf(double z, double rho) {
     return static_cast<std::uint32_t>((1 - z / (rho + std::abs(z))) * (0.4999 * kBuckets));
   }

@@ -5,8 +5,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes as many beams as the table has, top to bottom, of a table without a path. Returns false
-/// for a damaged stream.
+/// Codes all beams of a table without a path, top to bottom. Returns false for a damaged stream.
 template <class Coder>
 bool CodeBeams(BeamTable* table, Coder* coder);
 

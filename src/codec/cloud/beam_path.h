@@ -7,8 +7,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Degrees of the polynomials that are factors of 1, of the cosine and sine of the turn, and of
-/// those of twice the turn.
+/// Degrees of the polynomials that multiply 1, the cosine and sine of the turn, and those of twice
+/// the turn.
 constexpr std::array<unsigned, 3> kPathDegrees = {15, 7, 3};
 constexpr unsigned kPathTerms = 40;
 constexpr std::uint32_t kMostPathBeams = 16;

@@ -33,7 +33,8 @@ std::vector<std::int32_t> BinsOf(const RangeImage& image, const RangeGrid& grid)
   return bins;
 }
 
-/// A sum of logarithms, which are taken of products: one for some thirty factors.
+/// A sum of logarithms of factors. Takes a logarithm only of the product of many factors, which is
+/// faster.
 class LogSum {
  public:
   /// `factor` is from 1 to 2^23.
@@ -116,7 +117,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
     }
     return true;
   }
-  // The encoder may have chosen other bins.
+  // The encoder may have chosen bins other than the nearest.
   RangeDecoder decoder(model);
   IntensityScale scale;
   ByteReader reader(block.data(), block.size());
@@ -125,7 +126,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
   return true;
 }
 
-/// Codes residuals within the tangent that the settings ask for, if any.
+/// Codes residuals to within `settings->tangent_um`, unless that is 0.
 void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
                      std::vector<std::int32_t>* residuals, mixing::BinaryEncoder* bits) {
   if (settings->tangent_um == 0) return;
@@ -157,7 +158,7 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   RangeEncoder encoder(model);
   const RangeSettings settings = SettingsOf(errors, levels, effort, image);
   if (!encoder.Encode(image, settings, &block)) return false;
-  // The next parts are coded by the decoded ranges.
+  // The codes of the next parts depend on the decoded ranges.
   RangeImage decoded;
   RangeGrid grid;
   const bool has_extras = !list->extras.empty();

@@ -30,8 +30,8 @@ struct Sighting {
 };
 
 /// The points of a beam lie on a line in the plane of `rho` and z, one for each column of a turn,
-/// at the azimuth of the column. A beam that passes the origin adds to the azimuth. Points of
-/// bending beams are only near the line.
+/// at the azimuth of the column. A beam that passes the origin at a distance adds to the azimuth.
+/// Points of bending beams are only near the line.
 struct BeamTable {
   static constexpr std::uint32_t kMostPeriod = 4;
   struct Beam {
@@ -41,7 +41,7 @@ struct BeamTable {
     std::int32_t side_um = 0;    // distance at which it passes the origin, to the left
     std::array<std::int32_t, kMostPeriod>
         swings{};               // of the next `period` columns, again and again
-    std::int32_t reach_um = 0;  // of range 0 along the beam
+    std::int32_t reach_um = 0;  // position of range 0 along the beam
     std::uint32_t delay = 0;    // delay of the beam in columns; below columns()
 
     bool Swings() const { return swings != decltype(swings){}; }

@@ -11,7 +11,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Margin for the rounding of floats: grids are finer, and errors count as larger.
+/// Margin for the rounding of floats, by which grids are finer and errors count as larger.
 constexpr double kRoom = 1e-4;
 
 /// Does what std::floor() does, without a call.
@@ -176,7 +176,7 @@ bool CellGrid::Reaches(double farthest_m) const {
 }
 
 double CellGrid::SurelyHolds() const {
-  // A middle is rounded by half of this part along each axis.
+  // Floats round each coordinate of a middle by up to half of this share of it.
   constexpr double kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
   return static_cast<double>(step_m) * kRoom / kRounding - static_cast<double>(step_m);
 }

@@ -63,7 +63,7 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
       if (bends || has_path) errors.bend_um = errors.tangent_um;
     }
     const double fitting_bits = (part < 0 ? kResidualBits : 0) - std::log2(grid.step_m());
-    // Counting takes long, and is needless if even all points in pixels would take more bits.
+    // Skips the slow count if this choice would lose even with all points in pixels.
     if (best.error_m > 0 && all * std::min(fitting_bits, kRestBits) >= least) continue;
     const auto fitting = static_cast<double>(CountFitting(cloud, errors));
     const double bits = kRestBits * (all - fitting) + fitting * fitting_bits;
@@ -214,7 +214,7 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
 }
 
 /// Codes the points of near_ with these indices. Few cells have more varied counts, so the highest
-/// effort tries both ways and keeps the smaller one.
+/// effort also tries each point's own cell, and keeps the smaller stream.
 void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate) {
   candidate->header.points = static_cast<std::uint32_t>(ids.size());
   if (ids.empty()) return;
@@ -251,8 +251,7 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
 /// Exact fields of points in cells cost more than what cells save.
 double CloudEncoder::LargestReach() const { return choice_.empty() ? kReaches.back() : 0; }
 
-/// Codes the exact fields of all points: those in `table`, which are those of pixels_, and the
-/// others.
+/// Codes the exact fields of all points: of those in pixels_, by `table`, and of the others.
 void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) const {
   if (choice_.empty()) return;
   PointPlaces places;

@@ -17,7 +17,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Fields that are coded exactly, and whether the order of points is.
+/// Fields that are coded exactly, and whether the order of points is coded, too.
 struct ExactChoice {
   std::vector<PointField> fields;  // of the layout
   bool keeps_order = false;

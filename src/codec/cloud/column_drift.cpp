@@ -47,8 +47,8 @@ class Drift {
     const std::size_t sector = SectorOf(azimuth);
     return counts_[sector] == 0 ? 0 : sums_[sector] / static_cast<double>(counts_[sector]);
   }
-  /// Returns the drift of all sectors. Unknown sectors have that of the known one before, or of the
-  /// first.
+  /// Returns the drift of all sectors. An unknown sector has the drift of the last known one, or of
+  /// the first.
   std::vector<double> Curve() const {
     std::vector<double> curve(kSectors);
     double last = 0;
@@ -137,7 +137,7 @@ bool SetPlaces(const Drift& drift, double step, BeamTable* table) {
 
 bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table) {
   const std::int32_t first = WidestGap(beams);
-  // If a step is a whole number of grains, places at equal steps cost nothing.
+  // Rounds the step to whole grains: then places at equal steps cost nothing.
   step = std::max(std::round(step / kDriftGrain), 1.0) * kDriftGrain;
   std::vector<std::size_t> order(beams.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -52,7 +52,7 @@ double PeriodOf(const std::vector<Line>& lines) {
     if (b.time > a.time) steps.push_back(b.time - a.time);
   });
   double period = MedianOf(std::move(steps));
-  // A long step counts once the period is exact enough.
+  // Long steps count in the second pass only, when the period is more exact.
   for (const double longest : {8.0, 1e9}) {
     double time = 0;
     double columns = 0;

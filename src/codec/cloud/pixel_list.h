@@ -58,12 +58,12 @@ struct PlacedCloud {
   std::size_t stride = 1;  // one point in `stride` counts
 };
 
-/// Returns how many of the points are in a pixel.
+/// Returns how many points fit as pixels.
 std::size_t CountFitting(const PlacedCloud& cloud, const PixelErrors& errors);
 /// Returns the ranges of these points [mm].
 std::vector<std::uint32_t> FittingRanges(const PlacedCloud& cloud, const PixelErrors& errors);
-/// Fills `list`; points nearer than `nearest_m` go to its rest. Returns false if the image is too
-/// large.
+/// Fills `list`; points nearer than `nearest_m` go to `list->rest`. Returns false if the image is
+/// too large.
 bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double nearest_m,
                 PixelList* list);
 

@@ -27,13 +27,13 @@ inline std::int32_t StepOf(bool bit, std::int32_t chance) {
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
-/// The same of refined models, for inputs that are doubled.
+/// The step in refined models, whose inputs are doubled.
 inline std::int32_t FastStepOf(bool bit, std::int32_t chance) {
   constexpr std::int32_t kSpeed = 6;
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
-/// What a chance has turned out to be, by its logit.
+/// Maps a logit to the share of 1s among the bits that had it.
 class ChanceMap {
  public:
   ChanceMap() {
@@ -41,7 +41,7 @@ class ChanceMap {
       chances_[static_cast<std::size_t>(i)] =
           static_cast<std::uint16_t>(Chance((i << kShift) - kMiddle));
   }
-  /// Returns the mean of `logit`'s chance and of what it has been.
+  /// Returns the mean of the chance that `logit` stands for and of that share.
   std::int32_t Refined(std::int32_t logit) const {
     const std::int32_t place = ClampLogit(logit) + kMiddle;
     const auto i = static_cast<std::size_t>(place >> kShift);

@@ -94,7 +94,7 @@ struct Sse2Lanes {
   template <unsigned kCount>
   [[gnu::always_inline]] static Counters Load(const Counter* const* from) {
     const __m128i zero = _mm_setzero_si128();
-    // Four rates, then four chances.
+    // `low` has four rates, then four chances.
     const __m128i low = _mm_unpacklo_epi32(Pair<kCount, 0>(from), Pair<kCount, 2>(from));
     if constexpr (kCount <= 4)
       return {_mm_unpacklo_epi64(low, zero), _mm_unpackhi_epi64(low, zero)};
@@ -144,7 +144,7 @@ struct Sse2Lanes {
     std::memcpy(&word, from, sizeof word);
     return _mm_cvtsi32_si128(word);
   }
-  /// Two rates, then two chances.
+  /// Returns two rates, then two chances.
   template <unsigned kCount, unsigned kFirst>
   [[gnu::always_inline]] static __m128i Pair(const Counter* const* from) {
     __m128i first = _mm_setzero_si128();

@@ -11,7 +11,7 @@
 
 namespace lidar::codec::mixing {
 
-/// Refined models have a context more, which looks further along the row.
+/// Refined models have one more context, of pixels further along the row.
 template <unsigned kContexts, class Coder, bool kRefined = false>
 class MaskPart {
  public:

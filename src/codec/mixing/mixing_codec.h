@@ -21,8 +21,8 @@ struct MixingSettings {
   /// If above 0, at kSearchingEffort, each return takes the cheapest bin within this error, which
   /// may exceed the grid's. With a memory, the caller has chosen the bins.
   std::uint32_t error_mm = 0;
-  /// Refined models serve sensors that the start states have not seen. Effort 1 and images with a
-  /// memory do without.
+  /// Uses refined models, for sensors on which the start states were not trained. Ignored at effort
+  /// 1 and with a memory.
   bool refined = false;
 };
 

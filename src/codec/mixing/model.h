@@ -64,7 +64,7 @@ struct LevelWeights {
   std::array<Weights, kSmallNodes * kSurfaces> surfaces;
 };
 
-/// What refined models have besides, for sensors that the start states have not seen.
+/// The additional parts of refined models, for sensors on which the start states were not trained.
 struct Refinement {
   static constexpr unsigned kMaskSets = 16;
   static constexpr unsigned kColumnSets = 64;
@@ -90,7 +90,7 @@ struct Model {
   LevelWeights level_weights;
   Refinement refinement;
 
-  /// Makes the models of mask and bins, as they begin, refined ones: they learn faster.
+  /// Turns fresh models of mask and bins into refined ones, which learn faster.
   void Refine();
 };
 

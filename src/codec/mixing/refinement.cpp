@@ -8,7 +8,7 @@ namespace {
 
 /// Weight of an input without training.
 constexpr std::int16_t kNewWeight = 800;
-// Start states count as so many bits at most.
+// Start states count as at most 4 bits seen, or 8.
 constexpr std::uint16_t kLeastBinRate = RateAfter(4);
 constexpr std::uint16_t kLeastFurtherRate = RateAfter(8);
 

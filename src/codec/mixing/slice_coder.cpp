@@ -44,7 +44,7 @@ struct Refined : Effort {
   static constexpr bool kRefined = true;
 };
 
-/// A decoder gives bits without end, so decoding stops where its stream ends.
+/// A decoder also gives bits past the end of its stream, so decoding must stop there.
 bool Overran(const BinaryDecoder& coder) { return coder.overran(); }
 template <class Coder>
 bool Overran(const Coder& /*coder*/) {

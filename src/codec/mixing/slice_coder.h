@@ -36,8 +36,8 @@ struct SliceBins {
   bool refined = false;              // by refined models, from effort 2 on
   std::vector<std::int32_t> bins;    // kNoReturn, or below kMaxBins
   std::vector<std::uint8_t> levels;  // empty without level_bits
-  /// Number of bins after that in `bins` that each return may take; the encoder takes the cheapest.
-  /// Empty: none.
+  /// Number of bins above the one in `bins` that each return may take, too; the encoder takes the
+  /// cheapest. Empty: none.
   std::vector<std::uint8_t> spare;
 };
 constexpr std::int32_t kNoReturn = -1;
