@@ -122,7 +122,19 @@ std::optional<BeamTable> FindBentColumns(const FoundBeams& found,
 
 }  // namespace
 
-std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
+namespace {
+
+/// Elevations and offsets beyond what points show would cost bits.
+void RoundAngles(BeamTable* table) {
+  constexpr std::int32_t kUnit = 8;
+  const auto rounded = [](std::int32_t angle) { return (angle + kUnit / 2) & ~(kUnit - 1); };
+  for (BeamTable::Beam& beam : table->beams) {
+    beam.elevation = rounded(beam.elevation);
+    beam.offset = rounded(beam.offset) & (kTurn - 1);
+  }
+}
+
+std::optional<BeamTable> FindExactBeams(const std::vector<Sighting>& points) {
   const auto good = [&](const FoundBeams& found, double part) {
     return !found.beams.empty() && found.beams.size() <= BeamTable::kMostBeams &&
            static_cast<double>(found.points) >= part * static_cast<double>(points.size());
@@ -142,6 +154,14 @@ std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
   }
   if (!good(meeting, kCovered)) return std::nullopt;
   return FindColumns(meeting, false, AzimuthsOf(points, meeting));
+}
+
+}  // namespace
+
+std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points) {
+  auto table = FindExactBeams(points);
+  if (table && !table->bends) RoundAngles(&*table);
+  return table;
 }
 
 }  // namespace lidar::codec::cloud
