@@ -56,7 +56,8 @@ bool CheckAttributes(ByteReader* reader, std::uint32_t max_attributes) {
   return true;
 }
 
-/// The kd-tree repeats the count of points: a large one would cost seconds, though no memory.
+/// The kd-tree repeats the count of points. A large count would cost libdraco seconds, but no
+/// memory.
 bool CheckKdTree(ByteReader* reader, std::uint32_t points) {
   const std::uint8_t level = reader->U8();
   const std::uint32_t bit_length = reader->Le32();
