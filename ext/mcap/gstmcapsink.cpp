@@ -181,7 +181,7 @@ static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   return !fault;
 }
 
-/// Creates a recorder for the settings. Posts a message and returns false if there can be none.
+/// Creates a recorder for the settings. If that fails, posts a message and returns false.
 static bool Start(GstLidarMcapSink* self) {
   State& state = *self->state;
   std::string why = "there is no location";

@@ -217,7 +217,7 @@ static void Finish(GstLidarMcapSrc* self) {
 /// Pauses the task, and posts `flow` if it is an error.
 static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
-  // The task pauses before EOS is posted: a seek may answer it and starts the task again.
+  // The task pauses before EOS is posted, because a seek may follow EOS and start the task again.
   self->state->task.Pause();
   if (flow == GST_FLOW_EOS) return Finish(self);
   if (flow != GST_FLOW_NOT_LINKED && flow > GST_FLOW_EOS) return;

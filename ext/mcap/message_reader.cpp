@@ -19,7 +19,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kMaxSlices = 4'096;
-/// A point of one byte becomes one of twelve bytes or more, so the message's size alone is no
+/// A point of one byte becomes a point of twelve bytes or more, so the size of a message is no
 /// bound.
 constexpr gsize kMaxCloud = gsize{256} << 20;  // bytes
 

@@ -107,7 +107,7 @@ bool discontinuity                     # what came before it is missing
 uint8[] data
 )";
 
-/// A definition and those that it needs.
+/// Joins a definition and the definitions that it needs.
 template <class... Parts>
 std::string Definition(const char* first, Parts... needed) {
   std::string text = first;

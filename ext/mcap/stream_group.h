@@ -29,13 +29,13 @@ class StreamGroup {
   bool empty() const { return streams_.empty(); }
   bool has_pads() const;
 
-  /// Adds the pads whose caps the channels have before the first buffer: those of `topic`, or all
-  /// if it is empty.
+  /// Adds the pads whose caps are known before the first buffer: the pad of `topic`, or all if
+  /// `topic` is empty.
   void ShowKnown(const mcap::Playback& playback, const std::string& topic);
   /// Announces once that no more pads come.
   void EndPads();
-  /// A message for its pad. There is no buffer if it is damaged, if its caps are not known, or if
-  /// there are more topics than pads.
+  /// A message and the stream of its pad. There is no buffer if the message is damaged, if its caps
+  /// are not known, or if there are more topics than pads.
   struct Played {
     PlayedStream* stream = nullptr;
     BufferPtr buffer;
