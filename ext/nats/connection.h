@@ -31,7 +31,7 @@ struct ConnectionState {
   unsigned disconnections = 0;
   std::uint64_t errors = 0;  // reports of the server
   std::string last_error;    // the latest report, or empty
-  // Number of silences of JetStream's consumers, which the server may have lost.
+  // Number of missed heartbeats of JetStream's consumers, which the server may have lost.
   unsigned missed_heartbeats = 0;
 };
 

@@ -246,8 +246,8 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Warns of messages that the server does not have at the end. If it has none, that is an error:
-/// the whole stream was lost.
+/// Warns of messages that the server lacks at the end. Posts an error if it lacks all of them: the
+/// whole stream was lost.
 static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool keeps_trying) {
   const PublisherCounters counters = publisher.counters();
   const auto lost = guint64{counters.waiting + counters.dropped};

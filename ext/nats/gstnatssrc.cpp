@@ -238,7 +238,8 @@ static void NoteDamaged(GstLidarNatsSrc* self) {
                         (nullptr));
 }
 
-/// Returns the format with that id, or null for a message to drop, which it counts.
+/// Returns the format with that id. Returns null if there is none, and counts the message, which
+/// the caller drops.
 static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
   State& state = StateOf(self);
   if (state.format && state.format->id() == id) return state.format;
@@ -325,7 +326,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   const bool eos_at_end = state.now.eos_at_end;
   switch (event) {
     case Subscriber::Event::kClosed:
-      // The base class would post a less clear error than the watch, which may come later.
+      // The watch may post its error later; the base class would post a less clear one first.
       state.watch->PostRefused(state.subscriber->connection());
       return GST_FLOW_ERROR;
     case Subscriber::Event::kEmpty:

@@ -16,7 +16,7 @@ namespace lidar::nats {
 /// All threads may call Answer(), one at a time. An answer takes a few requests to the server.
 class History {
  public:
-  /// `stream` is that of JetStream; empty: the one that keeps the subject.
+  /// `stream` names a stream of JetStream; empty: the stream that keeps the subject.
   History(ConnectionSettings connection, std::string subject, std::string stream);
 
   /// Returns nothing if no stream of the server keeps the subject, or the server is away.
@@ -25,7 +25,7 @@ class History {
  private:
   struct Stored {
     guint64 stored = 0;    // time [ns since 1970]
-    guint64 captured = 0;  // the same if it is not known
+    guint64 captured = 0;  // the same as `stored` if it is not known
   };
   bool Find();
   std::optional<Stored> Last();

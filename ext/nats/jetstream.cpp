@@ -84,7 +84,7 @@ natsStatus AddOrUpdate(jsCtx* js, const StreamSettings& settings,
   jsStreamInfo* raw = nullptr;
   const natsStatus status = js_GetStreamInfo(&raw, js, settings.name.c_str(), nullptr, code);
   const StreamInfoPtr info(raw);
-  // A stream of all subjects keeps requests, too, and its acknowledgement comes as their answer.
+  // A stream of all subjects also stores the request, and answers it with an acknowledgement.
   if (status == NATS_OK && info->Config == nullptr) return NATS_PROTOCOL_ERROR;
   if (status == NATS_OK) return Update(js, settings, subjects, *info->Config, code);
   return status == NATS_NOT_FOUND ? Add(js, settings, subjects, code) : status;

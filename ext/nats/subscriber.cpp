@@ -93,7 +93,7 @@ void Subscriber::SetStart(jsConsumerConfig* config) const {
   }
 }
 
-/// Makes a consumer that ends with this subscriber, from where the last one ended.
+/// Makes a consumer that begins where the last one ended, and ends with this subscriber.
 natsStatus Subscriber::SubscribeOwn(jsErrCode* code) {
   jsSubOptions options;
   jsSubOptions_Init(&options);
