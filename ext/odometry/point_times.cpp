@@ -10,7 +10,8 @@
 namespace lidar::gst {
 namespace {
 
-// The samples last between these parts of a sweep. Units differ by 1000, so only one unit can fit.
+// Shortest and longest time from the first to the last sample, in sweeps. Units differ by a factor
+// of 1000, so only one unit can fit.
 constexpr double kShortestPart = 0.01;
 constexpr double kLongestPart = 4;
 
