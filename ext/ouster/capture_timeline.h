@@ -27,8 +27,8 @@ class CaptureTimeline {
     Time first{};                        // capture time of the file's first packet
     std::optional<std::int64_t> offset;  // empty: the front of the file
   };
-  /// Returns the place from which a reader finds all data captured at `time` and later; nothing as
-  /// above.
+  /// Returns the place from which a reader finds all data captured at `time` and later. Returns
+  /// nothing if duration() would.
   std::optional<Place> Find(Duration time);
 
   /// Ends a running call, and each later one, until Allow().

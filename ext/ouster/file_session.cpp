@@ -48,7 +48,7 @@ void FileSession::Seek(const GstSegment& segment) {
 
 /// Moves to the beginning of the target's slice.
 GstFlowReturn FileSession::GoToTarget() {
-  // Greatest drift of the sensor's clock relative to that of the capture.
+  // Greatest drift of the sensor's clock relative to the capture's clock.
   constexpr Duration kLead = std::chrono::seconds(1);
   // Packets of the two scans before are taken, too, because they may be out of order.
   skip_to_ = *target_ - 2 * stream()->metadata().scan_period();

@@ -51,8 +51,7 @@ ouster::Sender SenderOf(const NativeAddress& from) {
   return sender;
 }
 
-/// Returns true if the process may open so many more files. GLib aborts if it finds none for
-/// itself.
+/// Returns true if the process may open `count` more files. GLib aborts if it cannot open its own.
 bool CanOpenFiles(std::size_t count) {
   std::vector<int> files;
   while (files.size() < count) {
@@ -220,8 +219,8 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// Returns false, after an error, if no packet ever came, because then a setting is wrong, or
-/// without `reconnect`.
+/// Returns false after an error, without `reconnect` or if no packet ever came, which shows a wrong
+/// setting.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {
@@ -257,12 +256,12 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
   return true;
 }
 
-/// The sensor restarted or was reconfigured. Its packets wait for new metadata if these can be
-/// fetched; otherwise they are used with the old ones.
+/// The sensor restarted or was reconfigured. Its packets are dropped while new metadata may come,
+/// for kWaitForMetadataUs at most; then they are used with the old metadata.
 void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
   const gint64 now = g_get_monotonic_time();
   if (new_init_id_us_ == 0) new_init_id_us_ = now;
-  // A sensor without a serial number may be another one on this port, while ours continues.
+  // If our sensor has no serial number, the packet may be from another, while ours continues.
   const bool may_be_another = stream()->metadata().serial == 0;
   if ((link_ || may_be_another) && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
   new_init_id_us_ = 0;

@@ -78,7 +78,7 @@ std::optional<ouster::Metadata> SensorApi::FetchMetadata(ApiError* error) {
   }
   std::string why;
   auto metadata = ouster::ParseMetadata(response.body, &why);
-  // A sensor that starts up answers with parts missing.
+  // The error is not permanent: a sensor that starts up answers with parts missing.
   if (!metadata) *error = {"the sensor's metadata cannot be used: " + why, false};
   return metadata;
 }

@@ -23,8 +23,8 @@ namespace {
 // 8 bits per pixel and a header: more than the largest scan needs.
 constexpr std::size_t kMaxMaskSize = 32U << 20;
 
-/// Returns nothing for a file that cannot be read. A text above `max_size` bytes is only the
-/// beginning of the file.
+/// Returns nothing for a file that cannot be read. Stops reading once the text has more than
+/// `max_size` bytes.
 std::optional<std::string> ReadFile(const std::string& path, std::size_t max_size) {
   constexpr std::size_t kPiece = 1U << 16;
   std::ifstream file(path, std::ios::binary);
