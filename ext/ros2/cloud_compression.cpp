@@ -24,7 +24,7 @@ constexpr int kAnyWindow = 15 + 32;   // reads zlib and gzip
 constexpr std::size_t kZlibMost = 1032;
 constexpr std::size_t kZstdMost = std::size_t{1} << 16;
 
-/// Bytes of the points alone, and at most with the gaps between rows.
+/// Bytes of the points: `least` without gaps between rows, `most` with them.
 struct Bounds {
   std::size_t least, most;
 };
@@ -111,7 +111,7 @@ std::optional<draco::FieldLayout> DracoLayoutOf(const cdr::RosLayout& layout) {
   return fields;
 }
 
-/// The publisher leaves doubled points out, and some versions do not correct the width.
+/// The publisher leaves out duplicate points, and some versions of it do not correct the width.
 bool UnpackDraco(const cdr::RosLayout& layout, ByteView data, cdr::MadeCloud* made) {
   const auto fields = DracoLayoutOf(layout);
   const std::size_t points = std::size_t{layout.width} * std::max(layout.height, 1U);

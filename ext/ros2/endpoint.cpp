@@ -54,9 +54,9 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-/// Returns the limit of a message, because a domain that another part of the process created may
-/// pass larger ones. A hundred messages without clouds may wait, and kMaxSmall holds thousands of
-/// transforms.
+/// Returns the size of the largest message to take: a domain that other code of the process created
+/// may pass larger ones. A hundred messages other than clouds may wait, so their limit is lower; it
+/// holds thousands of transforms.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
   return cdr::IsCloud(type) ? Domain::kMaxMessage : kMaxSmall;

@@ -61,7 +61,7 @@ class Reader : public Node {
   /// Callable from any thread: Wait() returns at once until Wake(false).
   void Wake(bool on);
 
-  /// Takes the message after kMessage; null for that of a node that left.
+  /// Takes the message after kMessage. Returns null for a notice that a publisher left.
   MessagePtr Take();
   const std::string& other_type() const { return other_type_; }
   /// Counts of messages that DDS missed, and of present publishers.

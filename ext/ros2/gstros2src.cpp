@@ -55,7 +55,7 @@ struct Ros2SrcSettings {
   RosType type = RosType::kPointCloud2;
 };
 
-/// Each publisher of static transforms sends them once; tf2 keeps as many.
+/// Static transforms come once from each publisher; tf2 keeps a hundred of them, too.
 constexpr guint kStaticDepth = 100;
 
 /// Returns true if the topic's content never changes: by its name, as in ROS.
