@@ -20,7 +20,7 @@ class Archive {
   };
   struct Item {
     std::uint64_t time_ns = 0;
-    std::uint64_t position = 0;           // behind it
+    std::uint64_t position = 0;           // where reading continues after it
     std::size_t read = 0;                 // bytes that were read for it
     std::shared_ptr<SliceMessage> slice;  // null: of another stream, or damaged
     bool is_damaged = false;

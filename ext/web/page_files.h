@@ -5,7 +5,7 @@
 
 namespace lidar::web {
 
-/// Answers with the file at `path`, which the peer chose. False where there is none.
+/// Answers with the file at `path`, which the peer chose. Returns false if there is no such file.
 bool ServePageFile(SoupServerMessage* request, const char* path);
 
 }  // namespace lidar::web

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint64_t kSecond_ns = 1'000'000'000;
 /// lidarenc codes each sector anew within 10 s, its key-interval.
 constexpr std::uint64_t kRewind_ns = 11 * kSecond_ns;
-/// Two scans of a sensor at 10 Hz, and a half.
+/// Two and a half scans of a sensor at 10 Hz.
 constexpr std::uint64_t kPicture_ns = 250'000'000;
 /// 11 s of a recording that has clouds, too.
 constexpr std::size_t kMostRead = std::size_t{512} << 20;
@@ -51,8 +51,7 @@ bool Recording::Open(Piece* piece) {
   return times.has_value();
 }
 
-/// Slices before `from_ns` stay only if later ones refer to them. The archive is open only
-/// meanwhile.
+/// Slices before `from_ns` stay only if later ones refer to them. Closes the archive at the end.
 void Recording::Read(std::uint64_t from_ns, Piece* piece) {
   std::vector<viewer::SharedSlice> slices;
   viewer::SliceId last;

@@ -36,7 +36,7 @@ class Recording {
   /// Ends reading soon. Any thread may call it.
   void Cancel() { archive_->Cancel(); }
 
-  /// Size of a piece, without referred slices.
+  /// Size of a piece [bytes], without the earlier slices that it refers to.
   static constexpr std::size_t kPiece = std::size_t{512} << 10;
 
  private:

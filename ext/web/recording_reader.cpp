@@ -57,7 +57,8 @@ void RecordingReader::Forget(std::uint64_t asker) {
   jobs_.erase(gone, jobs_.end());
 }
 
-/// The thread pauses as long as it reads: viewers that jump without end take half a core.
+/// The thread pauses after each job as long as the job took: viewers that jump without end use half
+/// a core at most.
 void RecordingReader::Run() {
   using Clock = std::chrono::steady_clock;
   pthread_setname_np(pthread_self(), "foxglove-replay");

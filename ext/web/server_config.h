@@ -15,13 +15,12 @@ inline constexpr const char* kStatisticsTopic = "/statistics";
 
 struct ServerConfig {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;    // 0: any free port
-  std::string token;         // empty, with `token_secret` also empty: admits all clients
-  std::string token_secret;  // for signed tokens; empty: none
-  std::string
-      allowed_origins;      // of pages that need no token, beside the own: "https://a,https://b"
-  std::string certificate;  // PEM file of it and its chain; empty: no TLS
-  std::string private_key;  // PEM file
+  std::uint16_t port = 0;       // 0: any free port
+  std::string token;            // empty, with `token_secret` also empty: admits all clients
+  std::string token_secret;     // for signed tokens; empty: none
+  std::string allowed_origins;  // of other pages that need no token: "https://a,https://b"
+  std::string certificate;      // PEM file of it and its chain; empty: no TLS
+  std::string private_key;      // PEM file
   std::function<void(std::string)> warn;  // warnings for a user; called in the server's thread
   unsigned max_clients = 8;
   DataRate max_bitrate;                     // for a viewer's slices; 0: no limit

@@ -18,7 +18,7 @@ namespace lidar::web {
 class SliceStream {
  public:
   struct Settings {
-    std::string topic;           // of the decoded clouds; slices have it with kSlicesEnding
+    std::string topic;           // of the decoded clouds; the slices' topic adds kSlicesEnding
     std::string frame_id;        // of both channels
     std::string recording = {};  // location of mcapsink's files of the stream; empty: none
     UpstreamArchive::Ask ask_upstream = {};  // queries a history without a recording; null: none

@@ -23,7 +23,7 @@ struct Message {
 };
 using SharedMessage = std::shared_ptr<const Message>;
 
-/// A coded slice, as it goes to viewers; of a recording also a pose between two slices.
+/// A coded slice for viewers; in a replay also a pose between two slices.
 struct SliceMessage final : viewer::Slice {
   std::uint64_t unix_ns = 0;
   std::uint32_t first_column = 0;

@@ -96,7 +96,7 @@ void UpstreamArchive::Take(GstSample* sample) {
     items_.push_back(std::move(item));
     return;
   }
-  // A piece that ends with the pose goes on with its slice.
+  // If a piece ends with the pose, the next piece begins with the same buffer.
   Item pose = item;
   pose.position = GST_BUFFER_OFFSET(buffer);
   pose.slice = ReadPose(buffer, item.time_ns, frame_id_);

@@ -11,7 +11,7 @@ mkdir -p "$objects/src/codec"
 template=$(<src/codec/mixing/start_table.h.in)
 echo "${template/@TABLE@/$(<src/codec/mixing/start_table.txt)}" > "$objects/src/codec/start_table.h"
 
-# Files with loops over bits and points; the others are compiled for size. The linker drops encoders.
+# Files with loops over bits and points; the others are compiled for size. *_encoder.cpp files are left out.
 fast=(src/cloud/range_projection src/codec/mixing/{binary_coder,mixing_codec,slice_coder}
   src/codec/rans/{adaptive_coder,mask_coder,predictor,rans} src/codec/cloud/{beam_part,beam_section,cell_tree,level_tree,pixel_part})
 small=(src/cloud/{point_fields,sensor_model} ext/web/decoder/{crc,decoder})
