@@ -57,8 +57,8 @@ caps+=",extmap-1=(string)$twcc,rtcp-fb-transport-cc=(boolean)true"
   caller. ! rtplidardepay name=back ! lidardec ! fakesink sync=false async=false >"$work/stats" ||
   { echo "FAILED: the call ended early." >&2; exit 1; }
 
-# The link's time starts with its first packet, when there is a screamaux, too. The second part is judged by its second
-# half, and the third by its highest target.
+# The steps of the link start with its first packet, about when the screamaux appears. The second part is judged by its
+# second half, and the third by its highest target.
 awk -v high="$high" -v low="$low" -v part="$part" '
   function value(field) {
     if (!match($0, "[ ,]" field "=\\([a-z0-9]*\\)[0-9]+")) return 0
