@@ -73,7 +73,7 @@ struct Measurements {
   bool IsSteady(double time_s) const;
 };
 
-/// The sender's statistics of each of several links; empty with one.
+/// The sender's statistics of each link; empty for a single link.
 nlohmann::json LinkStats(const Measurements& m);
 
 }  // namespace lidar::demo

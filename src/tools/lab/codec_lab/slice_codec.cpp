@@ -191,8 +191,8 @@ std::optional<rate::EncodedSize> SliceCodec::Encode(const CodingMode& mode,
 std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
                                              const rate::Settings& settings) {
   const bool xyz = mode.geometry == Geometry::kXyz;
-  // The kd-tree reorders points. So they are compared through the sequential coder, which has the
-  // same grid and keeps the order.
+  // The kd-tree reorders points. So errors are measured by the sequential coder, which has the same
+  // grid and keeps the order.
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
     return std::nullopt;
   constexpr std::uint32_t kMaxPoints = 1U << 26;

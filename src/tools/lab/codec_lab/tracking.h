@@ -19,8 +19,8 @@ struct ProfileOptions {
   std::uint64_t seed = 1;
 };
 
-/// Targets for each scan [bit/s]: a constant rate; a random walk of 8 % a scan; jumps to anywhere
-/// in the range, even in the logarithm, every 10 scans.
+/// Targets for each scan [bit/s]: a constant rate; a random walk of 8 % a scan; jumps every 10
+/// scans to anywhere in the range, uniformly in the logarithm.
 std::vector<double> MakeTargets(TargetProfile profile, std::size_t scans,
                                 const ProfileOptions& options);
 /// Reads lines of `time_s rate_mbps`; a scan takes the rate that holds at its start. Throws.

@@ -23,13 +23,13 @@ struct SamplingOptions {
 /// Gets the share of the work that is done, 0 to 1.
 using Progress = std::function<void(double)>;
 
-/// Random slices at random steps (even in the logarithm), slice counts and intensity bits. Range
+/// Random slices at random steps (uniform in the logarithm), slice counts and intensity bits. Range
 /// modes skip clouds without order.
 std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
                                       const SamplingOptions& options, const Progress& progress);
-/// The paper's way: random quantisation bits 8..24 and compression levels 0..9 of xyz geometry, and
-/// as many bits of the longest range for range geometry, if `modes` has it. Slices vary the number
-/// of points, which the terms of the model need.
+/// Samples as in the paper: random quantisation bits 8..24 and compression levels 0..9 for xyz
+/// geometry; for range geometry, if `modes` has it, 8..24 bits of the longest range. Slices differ
+/// in the number of points, because the model has terms for it.
 std::vector<rate::Sample> TakePaperSamples(const std::vector<ScanSet>& sets,
                                            const SamplingOptions& options,
                                            const Progress& progress);

@@ -12,7 +12,7 @@ namespace lidar::tools {
 /// Changes of the points before they are aligned; by default none.
 struct CodingLoss {
   double range_step_m = 0;  // lidarenc: ranges on a grid of this step
-  unsigned xyz_bits = 0;    // Draco as in the paper: so many bits over the cube of the scan
+  unsigned xyz_bits = 0;    // Draco as in the paper: bits over the cube of the scan
 };
 
 struct SlamOptions {
