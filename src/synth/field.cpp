@@ -158,7 +158,7 @@ bool Field::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit
   const float toward = ray.direction.y >= 0 ? 1.0F : -1.0F;
   const float rate = std::max(std::abs(ray.direction.y), 1e-6F);
   for (int half = 0; half < 2; ++half) {
-    const float sign = half == 0 ? -toward : toward;  // first where it comes from
+    const float sign = half == 0 ? -toward : toward;  // first the side that it comes from
     for (std::size_t k = 1; k < kProfile.size(); ++k) {
       const std::size_t i = half == 0 ? kProfile.size() - k : k;
       const Knot& a = kProfile[i - 1];

@@ -89,7 +89,7 @@ class Scanner {
   View view_;
   std::size_t static_shapes_ = 0;
   std::vector<Shape> shapes_;
-  // A chunk is a part of the sweep in which the world's order by distance holds.
+  // A chunk is a part of the sweep for which the shapes' order by distance is computed once.
   std::uint32_t chunk_columns_;
   Duration chunk_time_{};
   SectorIndex index_;

@@ -20,7 +20,7 @@ struct View {
   double anchor_y = 0;  // 0 in the worlds along x
   float radius = 100;   // distance from the anchor that matters
 };
-/// Textures of the ground repeat by divisors of this.
+/// Textures of the ground repeat at divisors of this distance [m].
 constexpr double kAnchorStep = 18;
 
 class Scene {

@@ -126,7 +126,7 @@ void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>
 }
 
 void Street::AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // A column does not move in its own frame, so neither do its cells.
+  // Oncoming cars drive as one column. In a view that moves with it, its cells stand still.
   View column = view;
   const double shift = kOncomingSpeed * now.time_s;
   column.anchor_x = view.anchor_x + shift;

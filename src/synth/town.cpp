@@ -12,7 +12,7 @@ namespace {
 
 /// Only houses are drawn in streets whose middle is farther from the sensor: they hide the rest.
 constexpr double kInSight = 75;
-constexpr float kCornerFree = 10.5F;  // around the middle of a crossing nothing stands [m]
+constexpr float kCornerFree = 10.5F;  // no shape stands nearer to the middle of a crossing [m]
 constexpr float kCornerHouse = 27;    // reach of the other street's houses [m]
 constexpr float kCellar = 1;          // depth of houses below the ground at a hillside [m]
 constexpr float kTrafficReach = 90;   // no people and cars beyond [m]
@@ -127,7 +127,8 @@ void ClearCrossings(const Line& line, double straight_anchor, std::size_t first,
                 shapes->end());
 }
 
-/// Calls add(line, view of it as if it ran along x, how far it is) for each street in view.
+/// Calls add(line, view, distance) for each street in view. Its view is as if it ran along x; the
+/// distance is from the anchor.
 template <class Add>
 void Town::ForEachLine(const View& view, const Add& add) const {
   const Terrain::Point here = Terrain::ToPlan({view.anchor_x, view.anchor_y});
@@ -217,7 +218,7 @@ float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float r
     if (clearance < kClose) return std::max(t, 0.0F);
     const float fall =
         ground.slope_x * ray.direction.x + ground.slope_y * ray.direction.y - ray.direction.z;
-    // For any curvature of the ground, the ray does not meet it sooner.
+    // The ray meets ground of the greatest curvature here, and no other ground sooner.
     t += 2 * clearance / (fall + std::sqrt(fall * fall + 2 * curvature * clearance));
   }
   return reach;
