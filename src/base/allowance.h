@@ -7,11 +7,11 @@ namespace lidar {
 
 class Allowance {
  public:
-  /// Holds `most` tokens; a token that was taken comes back after `period`.
+  /// Holds `most` tokens; taken tokens are restored, one in each `period`.
   Allowance(int most, Duration period) : most_(most), period_(period) {}
 
-  /// Returns false if no token is left at `now` beside `reserve` others. If times go back, no token
-  /// comes back.
+  /// Takes a token, and returns true, if more than `reserve` are left at `now`. If times go back,
+  /// no token is restored.
   bool Take(Time now, int reserve = 0) {
     if (taken_ == 0) since_ = now;
     if (now > since_) {
@@ -28,7 +28,7 @@ class Allowance {
   int most_;
   Duration period_;
   int taken_ = 0;
-  Time since_{};  // time at which the last token came back
+  Time since_{};  // time at which the last token was restored
 };
 
 }  // namespace lidar

@@ -18,7 +18,7 @@ using Bytes = ScalarCaps::Bytes;
 using Doubles = ScalarCaps::Doubles;
 
 constexpr std::string_view kPrefix = "application/x-";
-// Types, ordered as Value.
+// Names of types, in the order of Value.
 constexpr std::array<std::string_view, std::variant_size_v<Value>> kTypeNames = {
     "string", "boolean", "int",      "uint",   "gint64", "guint64",
     "float",  "double",  "fraction", "buffer", "double"};
