@@ -16,7 +16,7 @@ constexpr Duration kReportMargin = 20ms;
 constexpr Duration kWorthLeaving = 5ms;
 /// A link has room for copies if its FIFO empties within this time.
 constexpr Duration kRoomForCopies = 25ms;
-/// The encoder's target ignores a link after such a gap.
+/// The encoder's target ignores a link whose reports are overdue by more than this.
 constexpr Duration kLongestGap = 100ms;
 /// Round trips count as alike up to this difference.
 constexpr Duration kSimilarRtts = 50ms;
@@ -44,7 +44,8 @@ Duration Scheduler::Rtt(const Link& link) {
   return link.path.rtt > Duration{0} ? link.path.rtt : kUnknownRtt;
 }
 
-/// A far link is tried with packets that are half as old as they may be.
+/// Returns the least time on the link, at most half of kMaxAge: so even a far link gets packets
+/// that are up to half of kMaxAge old.
 Duration Scheduler::LeastTravel(const Link& link) {
   return std::min(link.path.min_rtt / 2, kMaxAge / 2);
 }

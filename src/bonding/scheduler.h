@@ -25,7 +25,7 @@ enum class Method {
 };
 /// How the targets of the links make the encoder's target.
 enum class TargetRule {
-  /// The rate of the better working link. Links do not count if their packets take much longer than
+  /// The highest rate of a working link. A link does not count if its packets take much longer than
   /// those of the nearest link.
   kBetter,
   kSum,
@@ -52,7 +52,7 @@ struct LinkCounters {
 /// no lock.
 ///
 ///  - A slice goes to the link that will deliver it first: its delay is the size of queue and slice
-///    over the rate, and half a round trip.
+///    over the rate, plus half a round trip.
 ///  - A link is in a gap if reports of its packets are overdue. Its packets that have not arrived
 ///    are copied at once to the best other link, or to all others if each is in a gap. Lost
 ///    packets are copied, too, and packets that take longer than expected.
@@ -62,9 +62,9 @@ struct LinkCounters {
 ///  - A link is unproven from its first use, or from its return, to its first report: only copies
 ///    show the receiver that it belongs to the sender. For kProving it gets a copy of each packet,
 ///    and no packet of its own if another link has reported.
-///  - Links that pass one queue count as one: the nearest of them carries all until its reports are
-///    overdue by kLongestGap, and the others a packet in each kProbeSpareEvery slices. Only
-///    broadcast copies go to all.
+///  - Links that pass one queue count as one: the nearest of them carries all packets until its
+///    reports are overdue by kLongestGap, and each of the others carries one packet in
+///    kProbeSpareEvery slices. Only broadcast copies go to all.
 ///  - A packet that arrived on one link is not sent on another. Copies that would arrive older than
 ///    kMaxAge are not sent: after a gap the newest slices come first.
 class Scheduler {

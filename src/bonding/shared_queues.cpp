@@ -13,9 +13,9 @@ using namespace std::chrono_literals;
 /// Packets that a regression remembers, and the fewest that it needs.
 constexpr double kMemory = 512;
 constexpr double kFewest = 20;
-/// A regression gives nothing if the other terms explain all of a term but this part.
+/// A regression has no result if the other terms explain all of a term except for this part.
 constexpr double kNothing = 1e-6;
-/// Arrival times are rounded to 1/1024 s [ms^2].
+/// Least variance of the residuals [ms^2]: arrival times are rounded to 1/1024 s.
 constexpr double kLeastVariance = 0.01;
 /// Two links count as sharing a queue if the significance of both directions together exceeds
 /// kFound, and until it falls below kStillFound.
@@ -30,7 +30,7 @@ constexpr double kAlike = 0.35;
 constexpr double kQueues = 16;
 /// A longer spacing is a gap of the link.
 constexpr double kPauseMs = 60;
-/// A delay that changes by more is that of another clock or path.
+/// A larger change of a delay is due to another clock or path.
 constexpr double kJumpMs = 1000;
 /// The shortest delay of the last one to two windows is that of an empty queue.
 constexpr Duration kBaseWindow = 10s;

@@ -16,8 +16,9 @@ namespace lidar::bonding {
 /// entered between them take to leave. Packets of another link take time there only in the same
 /// FIFO. So the spacing of arrivals is regressed on what the other link sent in between, what the
 /// link itself sent, and the spacing of departures, which stands for the flows of others. RFC 8382
-/// compares delays, and takes two queues that copies fill alike for one; but copies do not space
-/// the packets of the other queue. Queues of one FIFO are also equally long at a time.
+/// compares delays, and mistakes two queues that copies fill alike for one; but copies do not space
+/// the packets of the other queue. In addition, links that share a FIFO must see equally long
+/// queues at the same time.
 class SharedQueues {
  public:
   /// A packet of a report.
@@ -52,7 +53,7 @@ class SharedQueues {
     double yy_ = 0;
   };
   struct Pair {
-    Regression spacing;  // of the first one's packets, by what the second one sent
+    Regression spacing;  // of the first link's packets, by what the second sent
     // Means over packets that left together, in the pair whose first index is lower.
     double apart_ms = 0, longer_ms = 0;
     bool shared = false;
