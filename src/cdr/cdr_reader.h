@@ -64,7 +64,7 @@ class CdrReader {
   /// sequence<octet>, not copied.
   ByteView Octets() { return Bytes(U32()); }
   /// The length of a sequence of elements with at least `least_size` bytes each: 0 and not ok if
-  /// the rest of the message cannot hold as many.
+  /// the rest of the message cannot hold so many elements.
   std::uint32_t Count(std::size_t least_size) {
     const std::uint32_t count = U32();
     if (ok_ && count <= remaining() / least_size) return count;

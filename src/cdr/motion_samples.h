@@ -15,8 +15,8 @@ std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
 /// the last sample is cut.
 std::vector<Imu> ReadImuSamples(ByteView bytes);
 
-/// Writes position [m], orientation x, y, z, w, the tracking, which messages lack, and the
-/// covariance of the pose unless it is zero.
+/// Writes position [m], orientation x, y, z, w, `tracking` (Odometry has none), and the pose's
+/// covariance unless it is zero.
 std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t tracking);
 /// Returns the pose without time and frames, with its covariance (zeros if unknown). Returns
 /// nothing if `bytes` have another size.
