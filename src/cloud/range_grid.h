@@ -34,8 +34,8 @@ class RangeGrid {
   /// Returns the coarsest grid whose error stays within `error_m`, or the lossless grid if there is
   /// none.
   static RangeGrid ForError(double error_m, std::uint32_t unit_mm) {
-    // The small term makes a bound such as 0.02 m, which is no exact double, 20 mm. Fractions of a
-    // millimetre do not matter: errors are whole millimetres.
+    // The small term turns a bound such as 0.02 m, which is no exact double, into 20 mm. Fractions
+    // of a millimetre do not matter: errors are whole millimetres.
     const double whole_mm = std::floor(1e3 * error_m + 1e-9);
     const double cells = std::floor(2 * whole_mm / unit_mm) + 1;
     return {unit_mm, static_cast<std::uint32_t>(std::clamp(cells, 1.0, double{kMaxCells}))};
