@@ -19,7 +19,7 @@ class IntegerCoder {
   virtual ~IntegerCoder() = default;
 
   /// Appends the stream of `lists`, which are not empty, to `out`. With `delta`, each integer is
-  /// predicted as the one before. Returns false if the coder fails.
+  /// predicted by the one before. Returns false if the coder fails.
   virtual bool Encode(const IntegerLists& lists, bool delta,
                       std::vector<std::uint8_t>* out) const = 0;
 

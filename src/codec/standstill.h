@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds out whether a sensor stands still, so that slices should refer to earlier ones.
+// Detects whether a sensor stands still. Then slices should refer to earlier ones.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -12,9 +12,9 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Guesses a field of the next beam in the way that was best for the beams so far: as that of one
-/// of the last eight beams, because sensors repeat their patterns, as the last plus its last
-/// change, or as the mean.
+/// Guesses a field of the next beam in the way that was best for the beams so far: the value of one
+/// of the last eight beams, because sensors repeat their patterns; the last value plus its last
+/// change; or the mean.
 class FieldGuess {
  public:
   static constexpr unsigned kWays = 10;

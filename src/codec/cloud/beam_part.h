@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes the beams of a table, each field by those of the beams before.
+// Codes the beams of a table. Each field is predicted by the same field of earlier beams.
 #pragma once
 #include "src/codec/cloud/beam_table.h"
 

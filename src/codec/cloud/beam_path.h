@@ -17,7 +17,7 @@ constexpr std::uint32_t kMostPathBeams = 16;
 using PathCurve = std::array<std::int32_t, kPathTerms>;
 constexpr std::int32_t kPathUnit = 4;
 
-/// The curve that a beam adds to the azimuth of the turn, and that of its elevation.
+/// Curves of a beam: of what it adds to the azimuth of the turn, and of its elevation.
 struct PathBeam {
   PathCurve azimuth{};
   PathCurve elevation{};

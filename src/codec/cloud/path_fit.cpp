@@ -16,7 +16,7 @@ struct Sample {
   std::uint32_t point = 0;
   std::uint32_t column = 0;
   double time = 0;
-  double azimuth = 0;  // less that of the turn, without wrapping
+  double azimuth = 0;  // less the azimuth of the turn, without wrapping
 };
 using Line = std::vector<Sample>;  // in the order of firing
 

@@ -26,8 +26,8 @@ struct Surroundings {
   std::uint32_t range_class = 0;
 };
 
-/// `Effort` has the numbers of contexts, centres and candidates, and flags for weights by events
-/// in addition to those by unevenness, and for refined models.
+/// `Effort` has the numbers of contexts, centres and candidates, and two flags: for weights by
+/// events in addition to those by unevenness, and for refined models.
 template <class Effort, class Coder>
 class RangePart {
  public:
