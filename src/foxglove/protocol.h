@@ -80,7 +80,7 @@ struct Request {
   Kind kind = Kind::kMalformed;
   std::vector<Subscription> subscriptions;
   std::vector<std::uint32_t> unsubscribed;  // subscription ids
-  std::uint32_t subscription = 0;           // the one by which `slice` came
+  std::uint32_t subscription = 0;           // the subscription of `slice`
   SliceName slice;
   std::uint16_t number = 0;  // of a replay; never 0
   std::uint64_t time_ns = 0;
