@@ -60,8 +60,8 @@ class Sender {
     bool dropped = false;
   };
 
-  /// Returns false for slices of dropped scans. A scan is dropped, or else finished, when its first
-  /// bit would leave.
+  /// Returns false for slices of dropped scans. A scan can be dropped only when its first bit would
+  /// leave; otherwise it is finished.
   bool IsWanted(const Slice& slice, double now) {
     Scan& scan = scans_[slice.scan];
     const bool begins = slice.first && slice.bits_left >= bits_;
