@@ -9,7 +9,7 @@ namespace lidar::mcap {
 
 enum class Compression { kNone, kLz4, kZstd };
 
-/// Returns the name that a chunk has for it.
+/// Returns the name of `compression` in a chunk's header.
 std::string_view NameOf(Compression compression);
 
 /// Replaces `out` by the compressed `bytes`. Returns false if this saves less than a twentieth:

@@ -11,7 +11,7 @@ namespace lidar::mcap {
 namespace {
 
 constexpr std::uint64_t kMaxRun = std::uint64_t{1} << 20;  // bytes
-constexpr int kChunksToLearn = 4;  // other channels become known when their messages are read
+constexpr int kChunksToLearn = 4;  // later channels become known with their messages
 
 class Scanner {
  public:

@@ -35,7 +35,7 @@ class Playback {
   static std::unique_ptr<Playback> Open(const std::string& location,
                                         const std::atomic<bool>* cancelled, std::string* why);
 
-  /// Looks at the files anew: a recording that is still written grows, and its oldest files are
+  /// Lists the files again: a recording that is still written grows, and its oldest files are
   /// removed. Returns false if there is no file to read; `why` then has the reason. Seek() comes
   /// next.
   bool Refresh(std::string* why);

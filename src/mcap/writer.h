@@ -46,7 +46,7 @@ class Writer {
   bool Add(const MessageHeader& header, ByteView data);
   /// Writes the open chunk.
   bool Flush();
-  /// Writes the rest, index and footer; an empty recording writes no byte.
+  /// Writes the open chunk, the index and the footer; an empty recording writes no byte.
   bool Finish();
 
   /// Bytes of the file so far, with the open chunk.
