@@ -162,7 +162,7 @@ RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& 
   return settings;
 }
 
-/// Returns the points to align: one of each cube, and of these kMostAligned, evenly.
+/// Returns the points to align: one of each cube, at most kMostAligned, evenly chosen.
 Surface Odometry::ThinOut(const Surface& fine) const {
   const auto kept = FirstOfEachCube(fine.points, kAlignedGrid * settings_.voxel_size_m);
   const std::size_t count = std::min(kept.size(), kMostAligned);
@@ -240,7 +240,8 @@ void Odometry::StartMap(const Surface& fine) {
   lost_for_ = Duration{0};
 }
 
-/// The motion is unknown, so a car may have left the reach of the fine map's cubes.
+/// Aligns to a coarse map: the motion is unknown, so a car may have left the reach of the fine
+/// map's cubes.
 Pose Odometry::GuessFirstMotion(const Points& points) const {
   const double size = kFirstGrid * settings_.voxel_size_m;
   LocalMap coarse({size, settings_.max_range_m});

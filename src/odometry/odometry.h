@@ -103,7 +103,7 @@ class Odometry {
   Pose GuessFirstMotion(const Points& points) const;
   void StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle);
   /// Begin() takes the first scan of a map, and Match() aligns each later scan. Follow() takes a
-  /// scan that fits, and Lose() one that does not. Both move the pose; OnScan() does the rest.
+  /// scan that fits, and Lose() takes a scan that does not. Follow() and Lose() move the pose.
   Estimate Begin(const TimedPoints& scan, const Surface& fine);
   Estimate Match(Time middle, const Moving& predicted, const TimedPoints& scan,
                  const Surface& fine);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSmallAngle = 1e-6;  // [rad]: below it the series of sine and cosine are exact
 
-/// Left Jacobian of SO(3). It turns a constant body velocity into the covered way.
+/// Left Jacobian of SO(3). It turns a constant body velocity into the displacement.
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& rotation) {
   const double angle = rotation.norm();
   const Eigen::Matrix3d skew = Skew(rotation);

@@ -117,8 +117,8 @@ bool AreEnough(const NormalEquations& surfaces, const RegistrationSettings& sett
   return solver.eigenvalues()(0) >= settings.held_by_surfaces;
 }
 
-/// Returns the fitting share of the `count` points outside of the surfaces that face the best held
-/// direction.
+/// Returns the share of the `count` points that fit, without surfaces that face the best held
+/// direction, such as the ground.
 double StandingShare(const Neighbours& found, std::size_t count) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(found.facing);
   const Eigen::Vector3d best = solver.eigenvectors().col(2);

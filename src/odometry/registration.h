@@ -11,7 +11,7 @@ struct RegistrationSettings {
   int max_iterations = 100;
   double converged = 5e-4;  // length of the last step [m and rad]
   /// Weight of a neighbour without a surface if surfaces hold every direction. Neighbours with a
-  /// surface have weight 1. One without is seldom the same spot.
+  /// surface have weight 1. A neighbour without a surface is seldom the same spot.
   double spare_point_weight = 1;
   /// The same weight if surfaces leave a direction open.
   double point_weight = 1;

@@ -21,8 +21,8 @@ struct Row {
   std::size_t count = 0;
 };
 
-/// Reads the numbers of a line. Returns false for a word that is no finite number, and for too
-/// many.
+/// Reads the numbers of a line. Returns false for a word that is no finite number, and for too many
+/// words.
 bool ParseRow(const std::string& line, Row* row) {
   const char* at = line.data();
   const char* const end = at + line.size();

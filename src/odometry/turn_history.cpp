@@ -24,8 +24,9 @@ constexpr int kLeastTaught = 5;  // scans
 /// Least part of a scan's error that enters the force at rest. Its first estimate is the mean.
 constexpr double kRestShare = 0.02;
 constexpr int kLeastForcesTaught = 10;  // scans
-/// Greatest squared error of trusted forces, relative to that of the mean velocity. A scan that
-/// forces did not straighten is off itself; forces of reversed axes have four times the error.
+/// Greatest squared error of trusted forces, relative to that of the mean velocity. A scan that was
+/// straightened without forces has an error of its own; forces of reversed axes have four times the
+/// error.
 constexpr double kMostForceError = 2;
 /// Half of gravity [m/s^2]: a unit without an accelerometer, or in other units, feels less at rest.
 constexpr double kLeastRest = 5;

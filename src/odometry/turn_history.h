@@ -9,10 +9,10 @@
 
 namespace lidar::odometry {
 
-/// Samples of the last seconds, without their bias, which the odometry teaches. Angular velocities
-/// are used while they predict turns at least as well as a steady turn does, and accelerations
-/// while they predict the way about as well as its mean velocity does. So turned axes, wrong units
-/// and a stuck sensor do harm for a few scans at most.
+/// Samples of the last seconds, without their bias, which Teach() estimates. Angular velocities are
+/// used while they predict turns at least as well as a steady turn does, and accelerations while
+/// they predict the path about as well as its mean velocity does. So rotated axes, wrong units or a
+/// stuck sensor do harm for a few scans at most.
 class TurnHistory {
  public:
   /// Takes an angular velocity [rad/s] and the force that a mass feels [m/s^2], in the sensor's
@@ -30,8 +30,8 @@ class TurnHistory {
   /// Moves the sensor from its state at `from` to `to`, which may be earlier. Returns nothing if
   /// samples are missing between them or accelerations are not trusted.
   std::optional<Moving> Move(const Moving& at, Time from, Time to) const;
-  /// Compares the samples with the way from `before` to `found`, the states at `from` and `to`, and
-  /// with the way at the mean velocity of the call before.
+  /// Compares the samples with the path from `before` to `found`, the states at `from` and `to`,
+  /// and with the path at the mean velocity of the call before.
   void TeachForce(Time from, Time to, const Moving& before, const Moving& found);
   bool force_trusted() const;
   const Eigen::Vector3d& bias() const { return bias_; }
@@ -71,7 +71,7 @@ class TurnHistory {
     Eigen::Vector3d velocity;
   };
   std::optional<Reached> reached_;
-  // Decaying sums of squared errors of the way [m^2].
+  // Decaying sums of squared errors of the path [m^2].
   double force_squares_ = 0;
   double mean_squares_ = 0;
   int forces_taught_ = 0;
