@@ -230,8 +230,8 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
   }
 }
 
-/// Adds the lost packets whose first column is in the slice; `columns` is null if no column of it
-/// came.
+/// Adds the lost packets whose first column is in the slice; `columns` is null if no column of the
+/// slice came.
 void ScanBatcher::CountLost(Key key, const std::vector<bool>* columns) {
   const std::int64_t scan = key / slices_;
   const auto first = static_cast<std::uint32_t>(key % slices_) * width_;
