@@ -108,7 +108,8 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
     }
     settings.step_m = kUnitStep * std::exp2((low + high) / 2);
   }
-  // Takes the allowed step that is nearest in bytes, and not too many bytes above.
+  // Takes the finer allowed step, unless it needs more than kMostOver times `bytes`, or the coarser
+  // step needs bytes nearer to `bytes`.
   constexpr double kMostOver = 1.06;
   const AllowedSteps steps = StepsAround(settings.step_m, limits);
   settings.step_m = steps.coarser_m;

@@ -28,7 +28,7 @@ struct ModeCoefficients {
 
 struct AdaptiveCoefficients {
   std::map<std::string, ModeCoefficients> modes;
-  /// For modes missing in the file; corrections adapt it.
+  /// For modes not in the file; sizes are then learned.
   ModeCoefficients fallback;
 };
 
@@ -54,7 +54,7 @@ class AdaptiveModel : public SizeModel {
   };
   const ModeCoefficients& Mode(const std::string& mode) const;
   /// Returns what was learned of a mode, or null. After a change of mode within a geometry it
-  /// returns that of the last mode, because the scene is the same.
+  /// returns what was learned of the last mode, because the scene is the same.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
   /// Intensity's part of the bytes of a slice if the codec does not report it.

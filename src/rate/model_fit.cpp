@@ -54,7 +54,7 @@ void FitIntensity(const Samples& all, ModeCoefficients* mode) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(samples), [](const Sample* s) {
     return s->settings.intensity_bits > 0 && s->intensity_bytes > 1;
   });
-  // Model without samples: half a bit per return and bit. The first slice corrects it.
+  // Model without samples: half a bit per return and intensity bit. The first slice corrects it.
   mode->intensity = {std::log2(1000 / 16.0), 1};
   mode->intensity_returns = 1;
   if (samples.size() < kMinSamples) return;

@@ -15,7 +15,7 @@ constexpr double kMaxSaved = 0.05;
 // part of the scan's budget, because later slices even out small errors.
 constexpr double kOver = 0.015;
 constexpr double kOverOfScan = 0.01;
-constexpr double kUnder = 3;         // a size may fall short by this multiple of the excess
+constexpr double kUnder = 3;         // a size may be this many times as far below the budget
 constexpr double kSameStep = 0.004;  // steps closer than this are the same
 // A second try aims lower by this many doublings for each doubling between the first size and the
 // budget, because the model's slope may be wrong.
@@ -105,7 +105,7 @@ double RateController::SliceBudget() const {
   const std::uint32_t left = slice_.slice_count - slice_.slice_index;
   const double rest = repay_ + ledger_ + share * (left - 1);
   // Each slice gets what its error bound needs, and an equal share of the rest. So the quality is
-  // even near the minimum, and transmission times are even far from it. Slices with few or no
+  // uniform near the minimum, and transmission times are uniform far from it. Slices with few or no
   // returns, outside of the sensor's window, leave their unused share to others.
   const Demand needed = demand_.Sum(slice_.slice_index);
   const unsigned bits = plan_.intensity_bits;

@@ -16,7 +16,8 @@ enum class DegradationPreference {
 /// Holds for all slices of one scan.
 struct ScanPlan {
   bool skip = false;
-  /// True below the bound's minimum: the step stays the coarsest, even with savings.
+  /// True if the budget is below what the error bound needs: the step stays the coarsest, even with
+  /// savings.
   bool degraded = false;
   double keep_fraction = 1;  // of the returns
   unsigned intensity_bits = 0;

@@ -48,7 +48,7 @@ class SliceCoder {
   /// Returns the steps for the loaded slice. The coarsest step may be below the finest for a small
   /// error.
   virtual StepRange Steps(double max_error_m) const = 0;
-  /// Forgets the rows whose element of `kept`, which has loaded().rows, is false.
+  /// Forgets the rows whose element of `kept` is false; `kept` has loaded().rows elements.
   virtual void Thin(const std::vector<bool>& kept) = 0;
   /// Encodes the loaded slice in place of an earlier encoding. The step is a wish; the bound
   /// `max_error_m` always holds.
