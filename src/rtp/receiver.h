@@ -19,9 +19,9 @@ struct ReceiverAccounts {
   std::uint64_t outages = 0;   // the same stream went on after a gap of several scans
 };
 
-/// Moves to other scan numbers after several packets in sequence from there, and to another SSRC if
-/// the old one is silent as well. No packet is lost thereby. During silence one whole slice of the
-/// same stream further on is enough: a throttled sender may send only such slices, far apart.
+/// Moves to other scan numbers after several packets in sequence with them, and to another SSRC if
+/// the old one is silent, too. A move loses no packet. During silence one whole later slice of the
+/// same stream is enough: a throttled sender may send only such slices, far apart.
 class Receiver {
  public:
   explicit Receiver(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
