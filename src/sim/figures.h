@@ -13,7 +13,7 @@ namespace lidar::scream::test {
 struct FigureKind {
   const char* name;
   bool more_is_better = false;
-  /// Differences up to `absolute` plus `relative` of the value are ignored.
+  /// Differences up to `absolute` plus `relative` times the value are ignored.
   double absolute = 0, relative = 0;
 };
 

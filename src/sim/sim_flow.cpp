@@ -21,7 +21,7 @@ StreamConfig WithBounds(StreamConfig stream, const EncoderBounds& bounds) {
   return stream;
 }
 
-/// Returns true once, from `at` on.
+/// Returns true once, in the first call after `at`.
 bool Due(Duration since_start, Duration* at) {
   if (since_start <= *at) return false;
   *at = kNever;
