@@ -184,8 +184,8 @@ void LoopCloser::Solve() {
   ++solved_;
 }
 
-/// Returns the later map of the nearest pair. The first map stays, because it holds the way's
-/// beginning; so does the last, because the way continues from it.
+/// Returns the later map of the nearest pair. The first map stays, because the path begins there,
+/// and the last, because the path continues from it.
 std::size_t LoopCloser::FindNearestToAnother() const {
   double least = std::numeric_limits<double>::max();
   std::size_t found = 1;

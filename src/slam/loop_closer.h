@@ -13,12 +13,12 @@
 namespace lidar::slam {
 
 struct LoopSettings {
-  double local_map_m = 40;    // length of the way in a local map
+  double local_map_m = 40;    // length of the path in a local map
   double voxel_size_m = 0.5;  // distance between a map's points
   std::size_t most_maps = 100;
-  /// Loops are searched within this drift of the odometry, and drift_share on top of it.
+  /// Loops are searched within this drift of the odometry, plus drift_share of the path.
   double drift_m = 10;
-  double drift_share = 0.04;  // part of the way between the maps
+  double drift_share = 0.04;  // share of the path between the maps
   double heading_range_rad = 0.25;
   double least_score = 0.3;
   double least_distinct = 1.3;
@@ -28,7 +28,7 @@ struct LoopSettings {
 
 /// Two local maps of the same place.
 struct Closure {
-  std::size_t from = 0;  // indices of local maps, in the order of the way
+  std::size_t from = 0;  // indices of local maps, in the order of driving
   std::size_t to = 0;
   odometry::Pose pose;  // of the frame of `to` in the frame of `from`
 };
@@ -39,7 +39,7 @@ std::size_t FindWorst(const std::vector<Closure>& closures,
                       const std::vector<odometry::Pose>& poses);
 
 /// Keeps local maps of two megabytes each. Beyond LoopSettings::most_maps it forgets the map that
-/// lies nearest to another one: memory grows with the area, not with the way. Deterministic.
+/// lies nearest to another one: memory grows with the area, not with the path. Deterministic.
 class LoopCloser {
  public:
   explicit LoopCloser(const LoopSettings& settings) : settings_(settings) {}
@@ -52,7 +52,7 @@ class LoopCloser {
   /// Returns the pose of the odometry's frame in the map. It has no drift, and jumps when a loop is
   /// closed.
   odometry::Pose MapFromOdometry() const;
-  /// Returns the odometry's way without its drift.
+  /// Returns the odometry's trajectory without its drift.
   odometry::Trajectory Correct(const odometry::Trajectory& way) const;
 
   const std::vector<Closure>& closures() const { return closures_; }
@@ -67,7 +67,7 @@ class LoopCloser {
   struct LocalMap {
     odometry::StampedPose key;  // pose from the odometry; the points are in its frame
     odometry::Pose solved;      // pose in the map
-    double driven_m = 0;        // length of the way before it
+    double driven_m = 0;        // length of the path before it
     std::size_t scans = 0;      // number of scans between its key and the key before
     odometry::Points points;
     std::unique_ptr<Place> place;
@@ -85,7 +85,7 @@ class LoopCloser {
   std::optional<Step> last_;
   std::vector<Step> open_;        // steps of the open map
   odometry::Points open_points_;  // in the odometry's frame
-  std::vector<LocalMap> maps_;    // the first map has the way's beginning
+  std::vector<LocalMap> maps_;    // the path begins in the first
   std::vector<Closure> closures_;
   std::size_t solved_ = 0;
   std::size_t scans_after_key_ = 0;  // number of scans after the key of the last map
