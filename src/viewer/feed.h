@@ -55,8 +55,8 @@ class Feed {
   /// Returns the slices to send now, in this order, and counts them as sent. Call it after each new
   /// slice, after each drawn one, and at intervals.
   std::vector<SharedSlice> Take(Time now, const RecentScans& recent);
-  /// Takes slices of a recording off the front as the pace allows, all of them in order. Call it as
-  /// Take().
+  /// Takes slices of a recording from the front of `waiting`, as the pace allows, and skips no
+  /// slice. Call it as Take().
   std::vector<SharedSlice> TakeRecorded(Time now, std::deque<SharedSlice>* waiting);
   void OnDrawn(Time now, SliceId slice) { pace_.OnDrawn(now, slice); }
   /// The viewer's decoder lacks a reference: from now on it gets slices that stand alone.

@@ -8,7 +8,7 @@ namespace {
 
 /// A delay this close to the shortest one confirms it, because a page draws once a frame.
 constexpr Duration kSameDelay = std::chrono::milliseconds(20);
-/// Time by whose data a scan may exceed max-bitrate, because it is sent at once.
+/// A scan is sent at once, so it may exceed max-bitrate by the data of this time.
 constexpr Duration kCredit = std::chrono::milliseconds(100);
 
 }  // namespace

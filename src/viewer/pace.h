@@ -52,7 +52,7 @@ class Pace {
     DataSize size;
     Time at;
     DataSize acknowledged_before;  // all that was acknowledged when the slice was sent
-    Time acknowledged_at;          // when the last of that was
+    Time acknowledged_at;          // when the last of that was acknowledged
     bool alone = false;            // no other traffic was under way
   };
   struct Rate {
