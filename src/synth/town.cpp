@@ -218,7 +218,7 @@ float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float r
     if (clearance < kClose) return std::max(t, 0.0F);
     const float fall =
         ground.slope_x * ray.direction.x + ground.slope_y * ray.direction.y - ray.direction.z;
-    // The ray meets ground of the greatest curvature here, and no other ground sooner.
+    // The ray would meet ground of the greatest curvature at the new t, and meets none sooner.
     t += 2 * clearance / (fall + std::sqrt(fall * fall + 2 * curvature * clearance));
   }
   return reach;
