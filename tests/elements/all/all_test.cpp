@@ -94,8 +94,8 @@ TEST_P(EveryElement, HasMetadataThatSaysWhatItIs) {
   }
 }
 
-// An element alone has no peer, and some lack a setting: it may refuse to play, but it must do so
-// in order, and come back.
+// An element alone has no peer, and some lack a setting. It may refuse to play, but it must go down
+// in order and up again.
 TEST_P(EveryElement, GoesUpAndDownAgainAndAgain) {
   const ElementPtr pipeline(gst_pipeline_new(nullptr));
   GstElement* element = gst_element_factory_make(GetParam().c_str(), nullptr);

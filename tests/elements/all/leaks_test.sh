@@ -12,7 +12,7 @@ alive() { grep -o 'object-alive, type-name=.*' <<<"$1" | grep -v '%s'; }
 run() {
   local name=$1
   shift
-  # An element that is not built has no pipeline to leak.
+  # A pipeline is skipped if one of its elements is not built.
   for word in "$@"; do
     case $word in
       dracoenc | dracodec | pointcloudview | ros2src | ros2sink)

@@ -80,7 +80,7 @@ TEST_P(BadClouds, GiveFinitePointsWithinTheErrorAndNeverStopTheStream) {
     const StructurePtr check = codec.PopCheck();
     ASSERT_TRUE(check);
     const bool moved =
-        std::string(bad.name) == "Duplicates" && !xyz;  // points away from their ranges
+        std::string(bad.name) == "Duplicates" && !xyz;  // points contradict their ranges
     EXPECT_EQ(Holds(check.get()), !moved);
     for (const float v : PointsOf(output.get(), kStep - (xyz ? 4 : 0)))
       ASSERT_TRUE(std::isfinite(v));

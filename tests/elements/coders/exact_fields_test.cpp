@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidarenc fields=… keep-order=true: the drivers' fields of each point come back exactly.
+// lidarenc fields=… keep-order=true: the drivers' fields of each point decode exactly.
 #include <gtest/gtest.h>
 
 #include "tests/elements/coders/checked_codec.h"
@@ -52,7 +52,7 @@ std::string FieldOf(const std::uint8_t* point, const PointFields& fields, const 
   return {point + field->offset, point + field->offset + SizeOf(field->type)};
 }
 
-/// Expects each point of `after` to be that of `before` at its place, with the same `names`.
+/// Expects that `after` has the points of `before` in the same order, with equal fields `names`.
 void ExpectSame(const std::vector<std::uint8_t>& before, GstBuffer* after, const CloudInfo& info,
                 const std::vector<const char*>& names) {
   const PointFields driver = *PointFields::Parse(kDriverFields);
@@ -82,7 +82,7 @@ TEST_P(ExactFieldsByEffort, ComeBackInTheirOrder) {
     const BufferPtr output = codec.Push(BufferOf(raw));
     ASSERT_TRUE(output);
     ExpectSame(raw, output.get(), InfoOf(codec.harness()), {"ring", "timestamp", "tag"});
-    // The check compares each point with itself.
+    // The error check compares each decoded point with its own original.
     const StructurePtr check = codec.PopCheck();
     ASSERT_TRUE(check);
     EXPECT_TRUE(Holds(check.get()));

@@ -146,7 +146,7 @@ TEST(LidarEnc, KnowsASensorWhoseCloudsChangeInSize) {
 
 class StoppedSink : public ::testing::TestWithParam<CoderCase> {};
 
-// Pads of a pipeline that stops flush one after the other, from the last element on.
+// When a pipeline stops, its pads flush one after the other, from the last element on.
 TEST_P(StoppedSink, IsNoError) {
   const Harness h = Codec(GetParam(), "max-error=0.02");
   SetCaps(h.get(), XyzInfo(500));

@@ -167,7 +167,7 @@ TEST_P(EitherCoder, ThinsScansInsteadWhereTheFrameRateMattersMore) {
     late += static_cast<double>(sizes[i]) / 10;
   }
   EXPECT_NEAR(late, static_cast<double>(needed) / 2, 0.1 * static_cast<double>(needed));
-  // Returns are those of the room without the beams that were left out.
+  // The encoder counts the room's returns without the beams that were left out.
   const ElementPtr enc(gst_bin_get_by_name(GST_BIN(tight->element), "enc"));
   EXPECT_LT(Counter(enc.get(), "returns"), 20 * 32 * 512 * 3 / 4);
 }

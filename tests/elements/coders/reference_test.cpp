@@ -15,8 +15,8 @@ constexpr guint kSlices = 8;
 
 class StaticSensor : public ::testing::Test {
  protected:
-  /// Starts without slices that stand alone by the clock: on a slow machine they would come at any
-  /// scan.
+  /// Starts with key-interval=0, because the clock of a slow machine could let slices stand alone
+  /// at any scan.
   void Start(const std::string& properties = "", const std::string& between = "") {
     sender_ = Launch("lidarenc name=enc effort=1 error-check=1 key-interval=0 " + properties +
                      " ! " + between + " rtplidarpay name=pay config-interval=1");

@@ -10,7 +10,7 @@
 #include "gst/common/stats.h"
 
 namespace lidar::gst {
-// Named: types at file scope have fields of these.
+// The namespace has a name because types at file scope have fields of its types.
 inline namespace properties_test {
 
 enum class Colour { kRed, kGreen = 7 };

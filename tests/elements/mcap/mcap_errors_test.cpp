@@ -24,7 +24,7 @@ class McapErrors : public Recording {
   }
 };
 
-/// Limits files to `size` during its lifetime, as a disk that is full there.
+/// Limits files to `size` during its lifetime, as if the disk were full then.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t size) {
@@ -101,7 +101,7 @@ TEST_F(McapErrors, TheLocationIsCheckedBeforeTheFirstBuffer) {
   EXPECT_TRUE(Files().empty());
 }
 
-/// A user learns of it at the start, not with the first slice.
+/// A user learns of a wrong location at the start, not with the first slice.
 TEST_F(McapErrors, AWrongLocationFailsTheStart) {
   for (const std::string& location :
        {std::string(), std::string("/nowhere/a.mcap"), folder_, Path("a-%s.mcap"),
@@ -120,7 +120,7 @@ TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
             "Cannot be recorded: clouds, coded slices, IMU samples and odometry can be recorded, "
             "and no video/x-raw.");
   EXPECT_TRUE(Files().empty());
-  // The error comes with each try.
+  // The error comes with each attempt to start.
   Pipeline p("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap"));
   for (int round = 0; round < 2; ++round) {
     p.Forget();

@@ -88,7 +88,7 @@ TEST_F(McapSeek, ASegmentSeekEndsWithItsMessage) {
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_SEGMENT_DONE));
   EXPECT_EQ(p.outcome().segment_done, 300 * GST_MSECOND);
-  // The next segment follows without a flush, as loops do it.
+  // The next segment follows without a flush, as in a loop.
   ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_NONE, GST_SEEK_TYPE_SET,
                                0, GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
@@ -154,8 +154,8 @@ TEST_F(McapSeek, IsDoneOnceHoweverManySinksSendIt) {
   }
 }
 
-/// Keeps the times of the buffers that came to a sink after the last flush, and holds the sink from
-/// a time on until it is opened.
+/// Keeps the times of the buffers that came to a sink after the last flush, and holds the sink at a
+/// buffer of `closed_from` or later until Open().
 class Gate {
  public:
   explicit Gate(GstClockTime closed_from) : closed_from_(closed_from) {}
@@ -226,7 +226,7 @@ TEST_F(McapSeek, ASeekHoldsWhereItsEndIsPlayedMeanwhile) {
   Pipeline p("mcapsrc name=m" + At("a.mcap") +
              " m.src_0 ! fakesink name=a async=false m.src_1 ! fakesink name=b async=false");
   gate.Guard(p.Find("b").get());
-  // The first stream gets the flush first: until it is through, the second one plays on.
+  // The first stream gets the flush first: until that flush is through, the second stream plays on.
   const gst::PadPtr first(gst_element_get_static_pad(p.Find("a").get(), "sink"));
   gst_pad_add_probe(
       first.get(), GST_PAD_PROBE_TYPE_EVENT_FLUSH,
@@ -256,7 +256,7 @@ gst::EventPtr NewSeek(GstSeekFlags flags, std::pair<GstSeekType, gint64> start,
                                           stop.first, stop.second));
 }
 
-/// A segment of ten seconds, played up to its second one.
+/// A segment of ten seconds, played up to 1 s.
 GstSegment PlayedSegment() {
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);

@@ -219,7 +219,7 @@ TEST_F(Mcap, PlaysAgainAfterReady) {
   for (int round = 0; round < 3; ++round) {
     p.Forget();
     gst_element_set_state(p.get(), GST_STATE_PLAYING);
-    // The pad is another one each time, so a link by its signal must be made again.
+    // Each start makes a new pad, so a link that waits for its signal must be made again.
     ASSERT_TRUE(p.Wait(round == 0 ? GST_MESSAGE_EOS : GST_MESSAGE_ANY));
     if (round == 0) ExpectSame(p.outcome().buffers.at("see"), written);
     gst_element_set_state(p.get(), GST_STATE_READY);

@@ -66,7 +66,7 @@ class Bookkeeper {
     }
   }
 
-  /// Checks that the stream has what was acknowledged to a life of the edge.
+  /// Counts, for each life of the edge, the acknowledged slices that the stream does not have.
   void CheckAcknowledged(const std::vector<SessionReport>& sessions) {
     std::vector<std::uint64_t> gone(lives_.size());
     for (const SessionReport& session : sessions) gone[session.life] += session.acknowledged;
@@ -163,7 +163,7 @@ class Bookkeeper {
     *missing += head;
   }
 
-  /// Returns the time of sending after which slices may be lost without a report of it.
+  /// Slices sent after the returned time may be lost without a report.
   double ToldUntil(const Run& run) const {
     if (!lives_[run.life].killed) return std::numeric_limits<double>::infinity();
     return run.report ? run.report->at - report_age_ : 0;

@@ -59,8 +59,8 @@ class Robot {
   NatsPipeline poses_;
 };
 
-/// Returns how many of `sent` are not in `stored`, in any order: a stream without a leader changes
-/// it.
+/// Returns how many of `sent` are not in `stored`. The order does not count, because a stream
+/// without a leader changes it.
 std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stored) {
   std::set<std::string> there;
   for (const Kept& kept : stored) there.insert(kept.bytes);
@@ -127,7 +127,7 @@ class FleetCluster : public NatsTest {
   /// Returns the time until each of the robots has a pose of its new worker [s].
   std::map<std::string, double> TimesToPoses(const std::set<std::string>& names) {
     const auto begin = SteadyClock::now();
-    // Poses on their way are not those of a new worker.
+    // Poses that are on their way now are not of a new worker.
     std::this_thread::sleep_for(milliseconds(100));
     std::map<std::string, std::size_t> before;
     for (const auto& robot : robots_) before[robot->name()] = robot->poses();

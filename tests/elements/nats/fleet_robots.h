@@ -17,7 +17,8 @@ namespace lidar::test {
 /// The clock by which sent slices are timed [s].
 inline double WallTime() { return static_cast<double>(g_get_real_time()) * 1e-6; }
 
-/// Robots share one sensor. Each codes it for itself and sends on a path of its own.
+/// All robots share one sensor. Each codes its slices by itself and sends them on a path of its
+/// own.
 class Robots {
  public:
   Robots(const std::vector<std::string>& names, const std::vector<int>& ports) : names_(names) {

@@ -9,7 +9,7 @@
 
 namespace lidar::test {
 
-/// Returns the body of a 200 answer of `host`, as "127.0.0.1:9464".
+/// Returns the body of a 200 answer of `host`, such as "127.0.0.1:9464".
 inline std::optional<std::string> HttpGet(const std::string& host, const std::string& path) {
   GSocketClient* client = g_socket_client_new();
   g_socket_client_set_enable_proxy(client, FALSE);

@@ -163,8 +163,8 @@ TEST_F(LidarEdge, AServerThatSaysNothingDelaysNoRobotAndNotTheEnd) {
   nlohmann::json robots = nlohmann::json::array();
   for (const int port : FreePorts(60))
     robots.push_back({{"name", "r" + std::to_string(robots.size())}, {"port", port}});
-  // Waits for the server, one robot after the other, would take a minute at the start and at the
-  // end.
+  // If robots waited for the server one after the other, the start and the end would take a minute
+  // each.
   robots.back()["record"] = server_.folder() + "/last-%05d.mcap";
   StartEdge({{"nats", {{"url", silent.url()}}}, {"robots", robots}});
   const auto robot = Robot(robots.back()["port"]);
@@ -406,7 +406,7 @@ TEST_F(LidarEdge, ARobotWithACertificateAgreesOnAKeyOverTwoLinks) {
   EXPECT_TRUE(Has(*consumer, *robot));
   EXPECT_TRUE(Eventually([&] { return metric("lidar_screamsrc_packets_copies") > 0; }));
   EXPECT_EQ(metric("lidar_screamsrc_dtls_handshakes"), 1);
-  // It says goodbye, and comes again.
+  // The robot says goodbye, and comes again.
   robot->SendEos();
   EXPECT_EQ(robot->WaitForEnd(), "");
   EXPECT_TRUE(Eventually([&] { return metric("lidar_edge_sessions") >= 2; }));

@@ -193,7 +193,7 @@ TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
   server_.Freeze();
   const Time begin = tools::Now();
   EXPECT_EQ(worker->Stop(), 0);
-  // A busy machine may take another second to let it run.
+  // A busy machine may take another second to let the worker run.
   EXPECT_LT(Seconds(tools::Now() - begin), 2);
   server_.Thaw();
 }

@@ -159,8 +159,8 @@ TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
   ExpectSameStream(Replay(0), sent);
 }
 
-/// The sink waits five seconds for an answer, and sends caps until it waits for 256 messages, so
-/// for three.
+/// The sink waits five seconds for an answer. It sends caps until 256 messages are unanswered, here
+/// for three seconds.
 TEST_F(NatsJetStream, GoesOnWhereCapsWereNeverAnswered) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At(kBox));
   sender.Play();
@@ -245,7 +245,7 @@ TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
   ASSERT_TRUE(a.WaitForBuffers(8));
   b.Play();
   ASSERT_TRUE(Eventually([&] { return b.stat("connected") == 1; }));
-  // The second gets its share once the server has its subscription.
+  // The second natssrc gets its share once the server has its subscription.
   ASSERT_TRUE(Eventually([&] {
     PublishSlices(8, At(kBox));
     return b.count() > 0;

@@ -196,8 +196,8 @@ TEST_F(Odometry, PredictsThePoseOfEachSlice) {
 
 TEST_F(Odometry, AlignsAScanOfWhichSlicesAreMissing) {
   Start(8, 10, "! identity drop-probability=0.2");
-  // Odometry stands before identity, so that it aligns all clouds; those that identity drops do not
-  // count.
+  // The element lidarodometry comes before identity, so it aligns all clouds; identity passes the
+  // 50 that are pulled.
   for (int i = 0; i < 50; ++i) BufferPtr(gst_harness_pull(h_.get()));
   EXPECT_GT(Count("scans"), 5U);
   EXPECT_EQ(Count("scans-lost"), 0U);

@@ -116,7 +116,8 @@ TEST(OusterLive, CountsWhatIsLostOnTheWay) {
   }));
   const auto stat = [&](const char* name) { return Stat(receiver.source(), name); };
   // Losses are seen when later packets have come, and a slow receiver lags. If the machine stops
-  // the sensor for a second, its clock jumps, and the slices before end at their newest packet.
+  // the sensor for a second, its clock jumps, and slices from before the jump end at their newest
+  // packet.
   const auto lost = [&] { return stat("packets-lost") - before; };
   const auto known = [&] { return lost() >= sensor.counts().lost || stat("clock-jumps") > 0; };
   EXPECT_TRUE(receiver.PullUntil([&](GstBuffer*) { return known(); }));

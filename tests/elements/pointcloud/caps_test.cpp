@@ -17,7 +17,7 @@ INSTANTIATE_TEST_SUITE_P(All, RefusedCapsOf,
                          ::testing::Values("pointcloudparse", "scanassembler", "pcdenc", "plyenc",
                                            "pointcloudview"));
 
-/// Returns the errors that the element posts, pushed three buffers.
+/// Pushes three buffers. Returns the errors that the element posts.
 std::vector<std::string> ErrorsOf(const char* element, const std::string& caps) {
   const test::Harness h(gst_harness_new(element));
   GstBus* bus = gst_bus_new();

@@ -119,7 +119,7 @@ TEST_F(Filter, SendsCapsOnceWhileTheyStayTheSame) {
   EXPECT_EQ(caps, 1);
 }
 
-// Pads of a pipeline that stops flush one after the other, from the last element on.
+// When a pipeline stops, its pads flush one after the other, from the last element on.
 TEST_F(Filter, ASinkThatStopsIsNoError) {
   Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1));
   gst_pad_set_active(h_->sinkpad, FALSE);

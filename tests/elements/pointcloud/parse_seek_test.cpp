@@ -11,7 +11,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A source of bytes that can seek and is playing: two clouds come while it gets the seek.
+/// A source of bytes that can seek and is playing: it pushes two clouds before it obeys a seek.
 class ParseUnderWay : public Parse {
  protected:
   static constexpr gsize kCloud = 160;

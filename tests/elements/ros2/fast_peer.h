@@ -73,7 +73,7 @@ struct PeerBytes {
   std::vector<std::uint8_t> bytes;
 };
 
-/// The description of another's endpoint by discovery.
+/// An endpoint of another participant, as discovery describes it.
 struct PeerEndpoint {
   std::string topic;
   std::string type;

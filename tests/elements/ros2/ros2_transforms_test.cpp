@@ -28,7 +28,7 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   peer_->Advertise<PeerTransforms>("rt/tf", kTransformsType, Qos::kReliable);
   ASSERT_TRUE(peer_->WaitForMatch(kPatience));
   ASSERT_TRUE(WaitForStat("publishers", 1));
-  // Messages sent before the two are matched are lost.
+  // Messages sent before the two endpoints match are lost.
   for (int i = 0; i < 600 && Stat("messages-empty") == 0; ++i) {
     ASSERT_TRUE(peer_->Publish(PeerTransforms{}));
     g_usleep(50'000);
@@ -60,7 +60,7 @@ TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
   const auto publish = [&](std::size_t count) {
     return peer_->Publish(PeerBytes{cdr::WriteTransforms(cdr::Transforms(count, one))});
   };
-  // Messages sent before the two are matched are lost.
+  // Messages sent before the two endpoints match are lost.
   for (int i = 0; i < 600 && Stat("messages-damaged") == 0; ++i) {
     ASSERT_TRUE(publish(15'000));
     g_usleep(50'000);
@@ -115,7 +115,7 @@ TEST_F(Ros2Transforms, TellsOfStaticTransformsThatNobodyKeeps) {
   EXPECT_NE(text.find("transient local"), std::string::npos) << text;
 }
 
-/// Clouds of a lidar are in the frame map: one transform is static, another moves.
+/// A static and a moving transform lead from the lidar's frame to the frame "map".
 TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   const std::string domain = " domain-id=" + std::to_string(TestDomain());
   FastPeer fixed(TestDomain());
@@ -139,8 +139,8 @@ TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   const float x = 4;
   std::memcpy(cloud.data.data(), &x, sizeof x);
   ASSERT_TRUE(peer_->Publish(cloud));
-  // The cloud waits for a transform that is as new. Transforms sent before the two are matched are
-  // lost.
+  // The cloud waits for a transform that is as new. Transforms sent before the two endpoints match
+  // are lost.
   BufferPtr buffer;
   for (int i = 0; i < 600 && !buffer; ++i) {
     for (const int later : {0, 1})

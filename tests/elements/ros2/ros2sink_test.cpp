@@ -220,7 +220,7 @@ TEST_F(Ros2Sink, GivesTrackedPosesTheVarianceThatItIsTold) {
                               CapsPtr(gst_caps_from_string("application/x-odometry")));
   for (const auto tracking : {GST_LIDAR_TRACKING_OK, GST_LIDAR_TRACKING_LOST}) {
     const bool tracked = tracking == GST_LIDAR_TRACKING_OK;
-    // Messages sent before the two are matched are lost.
+    // Messages sent before the two endpoints match are lost.
     PeerOdometry odometry;
     for (int i = 0; i < 300 && odometry.pose_covariance[7] != (tracked ? 0.01 : 1e6); ++i) {
       ASSERT_EQ(gst_harness_push(h_.get(), PoseBuffer(tracking)), GST_FLOW_OK);
@@ -240,7 +240,7 @@ TEST_F(Ros2Sink, ItsTransformsAreThoseThatTheSourceTakes) {
   const Harness sink(gst_harness_new_parse(line.c_str()));
   gst_harness_set_src_caps_str(sink.get(), "application/x-odometry,child-frame-id=base");
   ASSERT_TRUE(WaitForStat("publishers", 1));
-  // Messages sent before the two are matched are lost.
+  // Messages sent before the two endpoints match are lost.
   for (int i = 0; i < 600 && Stat("messages") == 0; ++i) {
     ASSERT_EQ(gst_harness_push(sink.get(), PoseBuffer()), GST_FLOW_OK);
     g_usleep(50'000);

@@ -209,7 +209,7 @@ TEST_F(DepayLimits, APacketOfBeforeDoesNotTurnTheTimeBack) {
   const auto stream = Packets(3), another = Packets(3);
   for (std::size_t i = 0; i + 1 < stream.size(); ++i) Push(stream[i], 10 * GST_SECOND);
   Push(stream.back(), GST_SECOND);
-  // The stream is not silent: packets of a second one must come for longer.
+  // The stream is not silent, so another stream would need to send for longer to replace it.
   for (const auto& packet : another) Push(packet, 10 * GST_SECOND);
   EXPECT_EQ(Slices(), 12U);
   EXPECT_EQ(Stat(h_.get(), "sender-restarts"), 0U);

@@ -223,7 +223,8 @@ TEST(RtpLidarPay, AddsItsHeadersToTheBoundsOfTheEncoder) {
     GstLidarBitrateBounds bounds{};
     if (gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) seen.push_back(bounds);
   }
-  // The bounds are a guess at first, then measured, and sent no more often than that.
+  // The bounds are sent first with a guess of the headers' share, then again when the measured
+  // share has changed by more than 2 %.
   ASSERT_GE(seen.size(), 2U);
   EXPECT_LE(seen.size(), 8U);
   const double share = static_cast<double>(Stat(h.get(), "slice-bytes")) /

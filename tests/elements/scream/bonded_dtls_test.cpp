@@ -25,7 +25,7 @@ guint64 PacketsOf(GstElement* sink) {
   return std::accumulate(first.begin(), first.end(), guint64{0});
 }
 
-/// Plays until so many packets came through, then ends both.
+/// Plays until `packets` packets came through, then ends both pipelines.
 void Stream(Pipeline& sender, BondReceiver& receiver, guint packets) {
   g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
   sender.Play();
@@ -155,7 +155,7 @@ TEST(Dtls, WhatIsNotLiveWaitsForTheKeyAndLosesNothing) {
   EXPECT_EQ(receiver.passed, 20U);
 }
 
-/// A pad that pushes packets, as one of a source that is not live.
+/// A pad that pushes packets as a source that is not live does.
 class WaitingSource {
  public:
   explicit WaitingSource(GstElement* sink) : sink_(sink) {
@@ -176,7 +176,7 @@ class WaitingSource {
     gst_pad_push_event(src_.get(), gst_event_new_caps(caps.get()));
     gst_pad_push_event(src_.get(), gst_event_new_segment(&segment));
   }
-  /// What a push returns that `wake` ends.
+  /// Pushes a packet and calls `wake` while the push waits. Returns the result of the push.
   GstFlowReturn PushUntil(const std::function<void()>& wake) {
     std::atomic<bool> is_done{false};
     GstFlowReturn flow = GST_FLOW_OK;

@@ -58,7 +58,7 @@ TEST_F(PeerLinks, CopiesThatComeBeforeTheirOriginalsCountToo) {
   EXPECT_EQ(latch.links(), 2U);
 }
 
-// Digests are made only once a second address sends.
+// Digests are made only after packets came from a second address.
 TEST_F(PeerLinks, ALinkThatRunsAheadAtTheStartIsNoRival) {
   for (std::uint16_t n = 0; n < PeerLatch::kProbation; ++n)
     latch.OnPacket(now, {first.get(), 1, static_cast<std::uint16_t>(seq + n), {}});

@@ -60,7 +60,7 @@ GstPadProbeReturn Lose(GstPad*, GstPadProbeInfo* info, gpointer data) {
 
 void Count(GstElement*, GstBuffer*, GstPad*, int* arrived) { ++*arrived; }
 
-/// Carries reports back to the sender: a link would close a loop in the graph.
+/// Carries reports back to the sender by a call, because a link of pads would close a loop.
 GstPadProbeReturn Back(GstPad*, GstPadProbeInfo* info, gpointer rtcp_sink) {
   gst_pad_chain(GST_PAD(rtcp_sink), gst_buffer_ref(GST_PAD_PROBE_INFO_BUFFER(info)));
   return GST_PAD_PROBE_DROP;

@@ -66,7 +66,7 @@ TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
   EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28U + 10);  // the tag
 }
 
-/// The bin would begin again in the clear if it dropped the key.
+/// The bin would start again without encryption if it dropped the key.
 TEST_F(ScreamBin, AKeyThatIsRefusedWhileItRunsLeavesTheOneBefore) {
   const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
   if (!srtp) GTEST_SKIP() << "srtpenc is not installed";

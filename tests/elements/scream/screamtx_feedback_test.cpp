@@ -261,7 +261,7 @@ TEST_F(ScreamTx, SleepsWhileAKeyUnitHasToWait) {
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
   ASSERT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
-  // The clock of the test stands still, so the second request waits; the control thread looks at it
+  // The clock of the test stands still, so the second request waits; a thread checks the request
   // every 200 ms.
   const auto processor_time = [] {
     timespec spent{};

@@ -129,7 +129,7 @@ class ScreamTx : public ::testing::Test {
   }
   /// Returns the target of the next pulse, long after earlier events.
   GstLidarTargetBitrate NextTarget(GstHarness* h) {
-    g_usleep(20'000);  // the control thread runs on real time; its late events come now
+    g_usleep(20'000);  // upstream events come from a thread in real time; late ones come now
     Targets(h);
     time.Advance(250 * GST_MSECOND);
     GstLidarTargetBitrate target{};

@@ -120,7 +120,7 @@ TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
   const guint64 before = sink.Stat("points-sent");
   sink.PushCloud(8);
   EXPECT_EQ(sink.Stat("points-sent"), before);
-  // Messages of a client count although it is gone.
+  // The count of messages includes those to the client that is gone.
   Peer second(&sink);
   second.Subscribe("/points", 1);
   sink.PushCloud(9);

@@ -97,7 +97,7 @@ class TwoAddresses : public ::testing::Test {
 TEST_F(TwoAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
   for (int i = 0; i < 9; ++i) Begin("127.0.0.2");
   Begin("127.0.0.1");
-  // Handshakes that wait are seen before a round ends.
+  // Handshakes that wait are noticed before a round of running ones ends.
   for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
   EndThoseThatRun();
   EXPECT_TRUE(test::WaitUntil([this] { return HasEnded(peers_.back()); }))

@@ -39,7 +39,7 @@ std::string Sign(const std::string& claims, const std::string& header = R"({"alg
 }
 
 TEST(SignedToken, OfRfc7515IsRead) {
-  // Appendix A.1, which ran out in 2011.
+  // The token of appendix A.1, which expired in 2011.
   const std::string key =
       "AyM1SysPpbyDfgZld3umj1qzKObwVMkoqQ-EstJQLr_T-1qS0gZH75aKtMN3Yj0iPS4hcgUuTwjAzZr1Z9CAow";
   std::string usual = key;
@@ -121,7 +121,7 @@ TEST(SignedToken, ShowsAClientTheTopicsOfItsRobotOnly) {
   Peer peer(sink.Url("ws", "/?token=" + Sign(Claims(100, R"(["/r7/*"])"))), {"foxglove.sdk.v1"});
   const std::uint32_t id = peer.Channel("/r7/points");
   EXPECT_EQ(peer.channels.count("/statistics"), 0U);
-  // A known number does not help.
+  // The number of a hidden channel does not help a client to subscribe.
   const nlohmann::json item = {{"id", 1}, {"channelId", id}};
   stranger.SendText(nlohmann::json{{"op", "subscribe"}, {"subscriptions", {item}}}.dump());
   stranger.Sync();

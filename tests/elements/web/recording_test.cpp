@@ -302,7 +302,7 @@ class KeptStream {
     gst::HistoryAnswer answer;
     if (!buffers_.empty()) answer.from = TimeOf(buffers_.front());
     if (!buffers_.empty()) answer.to = TimeOf(buffers_.back());
-    // The answer begins before the time, as that of JetStream.
+    // The answer begins up to a second before the time asked for, as JetStream's does.
     const bool by_time = GST_CLOCK_TIME_IS_VALID(question.time);
     const auto first = std::find_if(buffers_.begin(), buffers_.end(), [&](const auto& sample) {
       return by_time ? TimeOf(sample) + GST_SECOND >= question.time
@@ -362,7 +362,7 @@ std::vector<std::uint64_t> RestOf(web::Archive* archive,
   return times;
 }
 
-/// Expects a piece that begins where another ended to have the other slices, and no slice twice.
+/// Expects that a piece which begins where another one ended has all later slices, each once.
 void ExpectPiecesToFit(web::Archive* archive, guint slices) {
   std::string why;
   const auto times = archive->Look(&why);

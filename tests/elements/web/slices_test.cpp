@@ -141,7 +141,7 @@ TEST(Slices, TakeNoMoreThanMaxBitrate) {
     edge.Push();
     viewer.Draw();
   }
-  // The first scan has used up the bits of hours.
+  // The first scan has used up the bit budget of hours.
   edge.PushScans(5);
   viewer.peer.Sync();
   EXPECT_TRUE(viewer.peer.received.empty());

@@ -141,7 +141,7 @@ TEST_F(Tls, SaysOnceThatACertificateRunsOutMeanwhile) {
   EXPECT_NE(certificate.NoticeOfEnd(now_s + 3 * 86'400), "");
 }
 
-/// Connects from any address of this machine, as 127.0.0.7.
+/// Connects from any address of this machine, such as 127.0.0.7.
 GSocketConnection* ConnectFrom(const std::string& address, guint port) {
   GSocketClient* client = g_socket_client_new();
   GSocketAddress* local = g_inet_socket_address_new_from_string(address.c_str(), 0);
