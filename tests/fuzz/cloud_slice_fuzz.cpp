@@ -15,7 +15,8 @@ using namespace lidar::codec;
 
 constexpr std::uint32_t kMaxPoints = 4'096;
 
-/// Names a field so that the encoder looks for paths if it may.
+/// Returns a name for a field: "line" or "timestamp", by which the encoder looks for paths, or
+/// another if that is taken.
 std::string NameOf(FieldType type, const PointFields& others) {
   const char* name = type == FieldType::kU8 ? "line" : "timestamp";
   return others.Find(name) == nullptr ? name : "f" + std::to_string(others.all().size());

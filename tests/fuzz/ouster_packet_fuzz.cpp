@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Packets of an Ouster sensor through parser, CRC check, clocks and batcher. The first byte chooses
-// the profile. Then follow, for each packet: a byte of time step in ms, and 2 bytes of offset, 1 of
-// length and the new bytes of a change to the packet before.
+// the profile. Each packet is then a byte of time step [ms] and a change to the packet before it: 2
+// bytes of offset, 1 of length, and the new bytes.
 #include <string>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // RTP payload headers and what the receiver does with them: fragments, accounting, joins and
-// restarts. The input has for each packet a byte of flags, sequence step, time step in ms, 2 bytes
-// of size, and the payload.
+// restarts. The input of each packet is a byte each of flags, sequence step and time step [ms], 2
+// bytes of size, and the payload.
 #include <vector>
 
 #include "src/rtp/receiver.h"
