@@ -103,7 +103,7 @@ ordered_json DescribePads(GstElementFactory* factory) {
   return pads;
 }
 
-/// Pads, action signals included, that applications connect to.
+/// Describes the signals of our types, action signals included.
 ordered_json DescribeSignals(GType type) {
   std::map<std::string, ordered_json> all;
   for (; g_str_has_prefix(g_type_name(type), "GstLidar"); type = g_type_parent(type)) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Compares the plugins with docs/plugins_cache.json: a change of a pad or property is intended, or a
-# mistake. Usage: inspect_test.sh PROGRAM [--update]
+# Compares the plugins with docs/plugins_cache.json, so that no pad or property changes by mistake.
+# Usage: inspect_test.sh PROGRAM [--update]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 snapshot=$root/docs/plugins_cache.json
@@ -20,7 +20,7 @@ if [ "${2:-}" = --update ]; then
 fi
 
 # A plugin that needs a missing library is not built here, and not compared. Newer versions of jq
-# keep 1.0 if it was not calculated.
+# print 1.0 as 1 only after a calculation, so 0 is added.
 numbers='def numbers_as_values: walk(if type == "number" then . + 0 else . end);'
 jq --slurpfile new "$now" "$numbers"' with_entries(select(.key as $k | $new[0] | has($k))) | numbers_as_values' \
   "$snapshot" >"$now.kept"
