@@ -5,8 +5,8 @@
 A command passes if it ends with exit code 0, or still runs without an error a moment after it plays. With -q it does
 not print when it plays: then it passes if it runs for some seconds without an error. A command that ends by itself
 and writes a file may take longer, because the next ones may read it.
-Windows become fakesinks, and each page has ports and a folder of its own: several pages run at a time. They leave
-the processor to other streams.
+Windows become fakesinks, and each page has ports and a folder of its own: several pages run at a time, with low
+priority.
 The examples bring elements of their own, and have a test of their own.
 Commands that name a sensor by `hostname=` are left out, and reported.
 """

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# run_demo.sh FOLDER FILTER [options of the demo]: runs it from the build tree. Its guarantees must hold
-# (exit code 0, or 3 if little arrived, as on a busy machine), and the jq FILTER must be true for its
-# summary.json, with its stats.json as $stats[0].
+# run_demo.sh FOLDER FILTER [options of the demo]: runs the demo from the build tree. Its guarantees
+# must hold (exit code 0, or 3 if little arrived, as on a busy machine), and the jq FILTER must be
+# true for its summary.json, with its stats.json as $stats[0].
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$1
