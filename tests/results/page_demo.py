@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables of docs/results/demo.md. Each row is a run in real time: an idle machine, as root."""
+"""Tables of docs/results/demo.md. Each row is a run in real time, which needs an idle machine and root."""
 import json
 import pathlib
 import tempfile

@@ -16,7 +16,7 @@ DRIVES = [
 ]
 
 
-# Sensor, scene, columns, speed [m/s], seed, scans, options that leave some of them out.
+# Sensor, scene, columns, speed [m/s], seed, scans, options that leave out scans or beams.
 CALIBRATED = [
     ("os0-32", "street", 512, 10, 50, 120, []),
     ("os0-32", "town", 512, 10, 50, 120, []),
@@ -89,7 +89,7 @@ def starts():
 
 
 def gyroscope():
-    """The smooth drive has all scans; the rough one lacks a second after 10 s."""
+    """The smooth drive has all scans; the rough one lacks 1 s of scans after 10 s."""
     body = []
     for scene, speed, seed, roughness in BUMPY:
         def ate(*options):

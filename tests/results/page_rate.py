@@ -92,7 +92,7 @@ def below():
 
 
 def r_min():
-    """The bitrate of geometry that a bound needs, whole scans, and that of the paper's setting."""
+    """The bitrate that the geometry of whole scans needs for a bound, and that of the paper's setting."""
     body = []
     for source in ("OS0-32", "OS1-128"):
         text = common.lidar_eval("bounds", common.SOURCES[source], "--errors", "0.02,0.05")

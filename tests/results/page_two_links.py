@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables of docs/results/two-links.md. A row of drives is three runs in real time: an idle machine, as root."""
+"""Tables of docs/results/two-links.md. A row of drives is three runs in real time, which need an idle machine and root."""
 import statistics
 
 import common
