@@ -13,7 +13,7 @@ FREE = ("index.md",)
 
 
 def headless_tables(text):
-    """Yields the numbers of the lines where a table begins whose section has no head before it."""
+    """Yields the line numbers of tables that have no head before them in their section."""
     head, fenced, before = False, False, ""
     for number, line in enumerate(text.splitlines(), 1):
         if line.startswith("```"):

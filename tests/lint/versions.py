@@ -78,7 +78,7 @@ class Guards:
 
     @staticmethod
     def read(condition):
-        """Returns what a condition says; an alternative says nothing of its parts."""
+        """Returns what the terms of a condition say; none if it has ||, because then no term must hold."""
         if "||" in condition:
             return []
         terms = [GUARD.search(term) for term in condition.split("&&")]

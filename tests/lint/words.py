@@ -3,7 +3,7 @@
 """Each comment of a file begins with its subject or verb, and names of constants have a meaning.
 
 Usage: words.py [FILE ...], as a hook of git runs it over the files of a commit. Without files it
-reads all code but the rooms of LATER.
+reads all code except the rooms of LATER.
 
 A comment that begins with a pronoun without a noun, or with a preposition, has to be read twice:
 "After so long a gap is no gap" for "A longer gap is the link's new capacity".
