@@ -16,8 +16,8 @@ import servers
 import srtp
 import strangers
 
-AT_ONCE = 4  # attacks mostly wait...
-AT_ONCE_SANITIZED = 2  # ...but for victims with sanitizers
+AT_ONCE = 4  # attacks mostly wait
+AT_ONCE_SANITIZED = 2  # victims with sanitizers are slow
 ATTACKS = media.ALL + strangers.ALL + feedback.ALL + srtp.ALL + servers.ALL
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What attacks on a receiver need: an honest sender, a receiver, and what must hold after it all."""
+"""What attacks on a receiver need: an honest sender, a receiver, and checks of what must hold after an attack."""
 import random
 import struct
 import time

@@ -208,7 +208,8 @@ class Victim {
 
   bool exists() const { return pipeline_ != nullptr; }
 
-  /// Returns the milliseconds that it took. A state that is not reached within 10 s may come later.
+  /// Sets the state and returns how long that took [ms]. A state that is not reached within 10 s
+  /// may come later.
   long SetState(GstState state) {
     const auto start = std::chrono::steady_clock::now();
     if (gst_element_set_state(pipeline_.get(), state) == GST_STATE_CHANGE_ASYNC)

@@ -210,7 +210,7 @@ TEST_F(Faults, AStarvedSenderRecovers) {
   ExpectBooksAgree(false);
 }
 
-/// A thousand times from NULL to PLAYING and back.
+/// Takes the pipeline from NULL to PLAYING and back a thousand times.
 void ExpectCyclesToLeaveNothing(Pipeline& pipeline) {
   std::uint64_t base = 0;
   for (int i = 0; i < 1'000; ++i) {

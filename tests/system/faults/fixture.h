@@ -46,10 +46,10 @@ class Faults : public ::testing::Test {
     EXPECT_LE(time, limit) << what;
     std::printf("recovery: %-44s %5lld ms\n", what, static_cast<long long>(time.count()));
   }
-  /// Lets the sender end well and compares the counts of both sides: what the payloader sent is
-  /// what the depayloader received or misses, each slice once; what it received is what the link
-  /// let through. A slice announces which of the 64 before it were left out. If a sender left out
-  /// older ones while nothing came through, they count as lost: then `sends_all` is false.
+  /// Lets the sender end well and compares the counts of both sides. Each slice that the payloader
+  /// sent is received or missing at the depayloader, once; the received ones are those that the
+  /// link let through. A slice announces which of the 64 before it were left out. If a sender left
+  /// out older ones while nothing came through, they count as lost: then `sends_all` is false.
   void ExpectBooksAgree(bool sends_all = true) {
     std::this_thread::sleep_for(milliseconds(500));
     EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));

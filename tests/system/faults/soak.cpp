@@ -176,7 +176,7 @@ class Soak {
     return fall.name;
   }
 
-  /// Returns whether the receiver counts as received what the link let through whole. Minutes in
+  /// Returns whether the receiver received as many slices as the link let through whole. Minutes in
   /// which slices may be lost otherwise are not compared.
   bool BooksAgree(const Accounts& a) {
     const std::uint64_t whole = link_.counts().slices_whole;

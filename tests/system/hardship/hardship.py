@@ -217,7 +217,7 @@ FEW_FILES = {
 
 
 def few_files(options):
-    """Limits of `ulimit -n` around what pipelines need: each gives an error that says so, or works."""
+    """Limits of `ulimit -n` near what pipelines need: each pipeline works, or gives an error that names the limit."""
     data = pathlib.Path(__file__).resolve().parents[2] / "data" / "ouster"
     told = worked = 0
     with tempfile.TemporaryDirectory() as folder:

@@ -57,8 +57,7 @@ class Edge:
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def delay_ms(self):
-        """Returns the delay of the pipeline since the last call: from capture to the other side of foxglovesink,
-        p95."""
+        """Returns p95 of the delays since the last call, from capture until the slice has passed foxglovesink."""
         self.edge.stdin.write("\n")
         self.edge.stdin.flush()
         return float(self.edge.stdout.readline())

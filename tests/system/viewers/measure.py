@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Measures viewers of foxglovesink's slices: over slow links, and many at a time. Prints two tables.
 
-With --check it ends with an error where a goal is missed. It needs the plugins of GST_PLUGIN_PATH_1_0.
+With --check it ends with an error if a goal is missed. It needs the plugins of GST_PLUGIN_PATH_1_0.
 """
 import sys
 import threading
@@ -12,7 +12,7 @@ from edge import Edge
 from viewer import Bottleneck, Viewer
 
 SETTLE, SECONDS, MANY = 5, 20, 20
-# Name, Mbit/s and delay of a way [s] of the link, scans a second at least, age at most [ms].
+# Name, Mbit/s and one-way delay [s] of a link, least scans a second, greatest age [ms].
 LINKS = [
     ("loopback", None, None, 9.5, 100),
     ("4 Mbit/s, 80 ms round trip", 4, 0.04, 9.5, 400),

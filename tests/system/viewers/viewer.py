@@ -158,7 +158,7 @@ class Viewer:
 
 
 class Bottleneck:
-    """Forwards connections to `port`: down at `mbit` a second, both ways `delay` seconds late."""
+    """Forwards connections to `port`: to the client at `mbit` Mbit/s, and both ways `delay` seconds late."""
 
     CHUNK, BUFFER = 1400, 16384
 
