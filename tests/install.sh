@@ -5,8 +5,7 @@
 set -euo pipefail
 list=${1:-$(cd "$(dirname "$0")" && pwd)/packages.txt}
 
-# Lists what is installed, by its own name or by what it provides: Node.js of its makers brings npm
-# along.
+# Lists installed packages and what they provide: the Node.js package of its makers provides npm.
 there=$(dpkg-query -W -f '${db:Status-Status}:${Package},${Provides}\n' | sed -n 's/^installed://p' | tr ',' '\n' |
   sed 's/(.*//; s/ //g')
 missing=()

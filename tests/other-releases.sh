@@ -61,7 +61,7 @@ trap 'leave_root "$root"' EXIT
 
 say() { echo "== $* ($SECONDS s)"; }
 
-# Installs those of the named packages that the root can have: releases differ.
+# Installs those of the named packages that the release has, and prints the missing ones.
 install_packages() {
   inside "$root" "
     there= missing=
@@ -73,7 +73,8 @@ install_packages() {
   grep '^not in' "$output/install.log" || true
 }
 
-# A cross build has tools of this machine, and libraries of the other. foxglovesink and ouster-replay are left out.
+# A cross build takes tools of this machine, and libraries of arm64. foxglovesink and ouster-replay
+# are left out.
 install_for_arm64() {
   local package foreign=()
   for package in "${packages[@]}"; do
@@ -86,7 +87,7 @@ install_for_arm64() {
   install_packages crossbuild-essential-arm64 qemu-user-static ccache git jq meson ninja-build pkg-config python3 "${foreign[@]}"
 }
 
-# Writes how meson builds across. Version 1.0 calls pkg-config pkgconfig.
+# Writes the cross file of meson, whose version 1.0 calls pkg-config pkgconfig.
 write_cross_file() {
   cat >"$root/src/arm64.ini" <<EOF
 [binaries]

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Plants the bug of a patch into a tree. Finds the place by the code, not by line numbers.
 
-The lines that a hunk takes away, with as much of the context as can be found, are looked for in all sources, without
-regard to white space. So a patch survives moves of lines, files and folders, and line breaks. It fits if exactly one
+Looks in all sources for the lines that a hunk takes away, with as much of the context as can be found, without regard
+to white space. So a patch survives moves of lines, files and folders, and line breaks. It fits if exactly one
 place is found.
 """
 import argparse

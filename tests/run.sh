@@ -135,7 +135,8 @@ sanitized_ready() {
 # Prints meson's output of a suite without the lines that are counted below.
 shorten() { grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'; }
 
-# results DIR NAME: prints meson's log of that name. A wrapper's name is part of it.
+# results DIR NAME: prints meson's logs of that name, with the name of a wrapper behind it or
+# without.
 results() { cat "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json 2>/dev/null; }
 forget() { rm -f "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json; }
 
@@ -176,8 +177,8 @@ run() {
 }
 
 # The pipelines stream in real time, so no more of them run at a time than there are cores. Tests of
-# the suite `beside` mostly wait or are not judged by time, so they run at the same time, with what
-# the others leave.
+# the suite `beside` mostly wait or are not judged by time, so they run at the same time, with lower
+# priority.
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
@@ -192,8 +193,8 @@ run_pipelines() {
   settle "$dir" beside beside
 }
 
-# Tests of elements stream in real time and mostly wait. Other tests calculate, with the time that
-# those leave.
+# Tests of elements stream in real time and mostly wait. Other tests run at the same time, with the
+# processor time that those leave.
 run_sanitized() {
   local dir=$1 rest
   forget "$dir" rest
