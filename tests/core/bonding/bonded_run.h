@@ -38,7 +38,7 @@ struct RunConfig {
 
 struct RunResult {
   std::uint64_t scans = 0;
-  std::uint64_t in_time = 0;        // whole within 0.2 s of the capture of each slice
+  std::uint64_t in_time = 0;        // scans of which each slice is whole 0.2 s after its capture
   std::vector<double> latency_ms;   // of slices that arrive whole, sorted
   std::vector<double> scan_age_ms;  // age of each scan when its last slice is whole; 1e9: never
   std::int64_t media_bytes = 0;     // that the encoder put out, headers included

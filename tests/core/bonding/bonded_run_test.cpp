@@ -28,7 +28,7 @@ link::Capacity Drive(std::uint64_t seed, DataRate in_gaps = link::DriveTraceConf
   return *link::Capacity::ParseTrace(link::MakeDriveTrace(config), true, &error);
 }
 
-/// A source at the coarsest step: r_min, whatever the links carry.
+/// A source that stays at the coarsest step, which needs r_min, whatever the links carry.
 RunConfig AtNeed(std::vector<LinkConfig> links) {
   RunConfig config;
   config.links = std::move(links);

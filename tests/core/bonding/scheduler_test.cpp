@@ -90,7 +90,7 @@ TEST_F(TwoLinks, SendsASliceWhereItIsWholeFirst) {
   Settle();
   SetPaths({Mbps(8), 40ms}, {Mbps(8), 20ms});
   EXPECT_EQ(Packet(), SetOf({1})) << "by 10 ms sooner";
-  // A backlog in the FIFO of the nearer link makes it the later one.
+  // A backlog in the FIFO of the nearer link makes that link deliver later.
   const std::uint32_t slice = ++seq_;
   for (int i = 0; i < 30; ++i) scheduler_.OnPacket(now_, {{kMedia, ++seq_}, kSize, slice});
   EXPECT_EQ(Packet(), SetOf({0}));

@@ -51,7 +51,7 @@ TEST_F(TwoFifos, KnowsTheEmptyQueueOfTheWindowBeforeWhileOneStands) {
     now_ += 50ms;
     for (const std::size_t link : {0U, 1U}) Send(link, 0, DataSize::Bytes(600));
   }
-  // A burst fills the queue, and then it stands while the next window of ten seconds begins.
+  // A burst fills the queue, which then stands while the next window of ten seconds begins.
   while (free_[0] - now_ < 200ms) Send(0, 0, DataSize::Bytes(1200));
   while (now_ < kStart + 14s) {
     now_ += FromSeconds(0.003 + 0.002 * random_.Uniform());

@@ -181,7 +181,7 @@ TEST(Measure, FindsErrorsBelowTheBoundAndCloseToIt) {
     const double step = codec.Bound(mode).CoarsestStep(0.02);
     const auto m = Measure(set, mode, {step, 0, 0, 4});
     ASSERT_TRUE(m) << name;
-    // Positions are floats: a hundredth of a millimetre at a hundred metres.
+    // Positions are floats, whose steps at 100 m are about 0.01 mm.
     EXPECT_LE(m->errors.max_m, 0.02 + 2e-5) << name;
     EXPECT_GT(m->errors.max_m, 0.018) << name;
     EXPECT_NEAR(m->errors.mean_m, codec.Bound(mode).MeanError(step), 0.0005) << name;

@@ -67,7 +67,7 @@ struct Stream {
     return scan;
   }
 
-  /// Bitrate at the coarsest step, once the controller has been there.
+  /// Lets the controller run at the minimum bitrate, and returns the minimum that it then reports.
   double Minimum() {
     Many(5, [](auto) { return 4e6; });
     for (std::uint32_t i = 5; i < 25; ++i) One(i, controller.bounds().min.bits_per_second());

@@ -173,7 +173,7 @@ TEST(Loss, AgreesWithTheLinkAtEveryRate) {
 TEST(Reordering, ByTwentyPacketsLosesNothing) {
   auto packets = Sender().Scans(0, 20);
   for (std::size_t i = 0; i + 20 < packets.size(); i += 21) {
-    // The packet comes twenty places later, at that time.
+    // The packet comes twenty places later, at the time of the packet there.
     Wire late = packets[i];
     late.sent = packets[i + 20].sent;
     packets.erase(packets.begin() + static_cast<std::ptrdiff_t>(i));

@@ -29,7 +29,7 @@ std::string SkipAccounts(const Receiver& r) {
 TEST(SkippedSlices, AreNotLost) {
   Receiver receiver(kReorder);
   Sender sender;
-  // Slice 2 of each scan, and those around the end of each second one.
+  // Each scan lacks slice 2, and slices around the end of each second scan are left out.
   DeliverAll(&receiver, sender.ScansWithout(20, [](std::uint32_t s, std::uint16_t i) {
     return i == 2 || (s % 2 == 0 && i == 3) || (s % 2 == 1 && i == 0);
   }));

@@ -41,7 +41,7 @@ TEST(Controller, TakesOnlyItsCallersSilenceForAStandstill) {
   const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
   c.OnQueued(kStart, id, {1, DataSize::Bytes(1000), true, 0});
   c.OnSent(kStart, id, {1, 0, DataSize::Bytes(1000), Ecn::kEct1});
-  // The thread that would call OnTimer() is stuck; others go on.
+  // The thread that would call OnTimer() is stuck, while the other threads continue.
   Time now = kStart;
   for (int i = 0; i < 100; ++i) c.OnQueued(now += 12ms, id, {1, DataSize::Bytes(1000), true, 0});
   EXPECT_EQ(c.statistics(now).bytes_in_flight.bytes(), 1000);

@@ -107,7 +107,7 @@ TEST_F(CrossTrafficTest, IsNotBelievedAtOnceAndGoesWithTheOthers) {
   EXPECT_FALSE(traffic_.found());
 }
 
-/// On an idle link arrivals follow departures, as they do beside others.
+/// An idle link delivers packets as far apart as they leave, as does a link that others fill.
 TEST_F(CrossTrafficTest, IsUnknownWithoutAQueue) {
   Send(500, 1, 0ms);
   EXPECT_FALSE(traffic_.share());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What marks tell: alpha, and whether the path carries ECN.
+// What marks show: alpha, and whether the path carries ECN.
 #include <gtest/gtest.h>
 
 #include "src/scream/model/classic_ecn.h"

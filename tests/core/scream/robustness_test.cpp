@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What breaks on the way of a running flow, and how soon it is forgotten.
+// Faults on the path of a running flow, and how soon the flow recovers.
 #include <gtest/gtest.h>
 
 #include "src/sim/scenarios.h"

@@ -228,8 +228,8 @@ TEST(TwoFlows, ShareASlowLinkEvenlyAtAnyPhase) {
   EXPECT_GE(sum / static_cast<double>(phases.size()), 0.99);
 }
 
-/// The frames of one flow always find the other's queue at other phases, and more marks: the draft
-/// alone comes to 0.87.
+/// The frames of one flow always meet the other's queue at other phases, and get more marks:
+/// the draft alone reaches an index of 0.87.
 TEST(TwoFlows, WhoseFramesNeverMeetKeepTheirBalanceAndTheQueue) {
   for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
     for (const Duration phase : {4ms, 10ms}) {

@@ -303,7 +303,8 @@ double RateAdjustFactorAfterBacklog(Duration period) {
   return stream.queue_compensation();
 }
 
-/// The draft takes half a second for that, in which the window grows beyond the link.
+/// With the draft, a queue that is gone lowers the rate for half a second, in which the window
+/// grows beyond the link.
 TEST(StreamAfterSuddenBacklog, AQueueThatIsGoneLowersTheRateNoMore) {
   EXPECT_LT(RateAdjustFactorAfterBacklog(20ms), 0.05);
   EXPECT_GT(RateAdjustFactorAfterBacklog(100ms), 0.4);  // whole scans

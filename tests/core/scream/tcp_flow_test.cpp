@@ -63,7 +63,7 @@ TEST_P(Greedy, SurvivesAnOutage) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Greedy,
                          ::testing::Values(TcpKind::kReno, TcpKind::kCubic, TcpKind::kPrague));
 
-/// A path that nothing but random loss limits.
+/// Returns the mean window over a path that only random loss limits.
 double MeanWindowUnderLoss(TcpKind kind, double loss, Duration rtt) {
   double sum = 0;
   constexpr int kRuns = 2;
