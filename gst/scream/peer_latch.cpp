@@ -33,8 +33,8 @@ void PeerLatch::Peer::Add(Time now, const Packet& packet) {
     last.back() = now;
     went_on = std::min(went_on + 1, kProbation);
   }
-  // The numbers of an SSRC may go back after kStreamTime only: otherwise repeated packets would be
-  // a stream.
+  // The numbers of an SSRC may go back after kStreamTime only: otherwise repeated packets would
+  // count as a stream.
   if (goes_on || found == sources.end() || now - found->second.at > kStreamTime) {
     if (found == sources.end() && sources.size() >= kMostSources) sources.erase(sources.begin());
     sources[packet.ssrc] = {static_cast<std::uint16_t>(packet.seq + 1), now};
@@ -178,7 +178,7 @@ PeerLatch::Verdict PeerLatch::OnPacket(Time now, const Packet& packet) {
       peer_.is_known = peer_.has_slices = true;
       known_.erase(packet.ssrc);
     }
-    // Keeps this object: SameAddress() is fast if the next packet has the same.
+    // Keeps the address object: SameAddress() is fast if the next packet has the same object.
     if (packet.from != nullptr && packet.from != peer_.address.get())
       peer_.address = RefAddress(packet.from);
     peer_.Add(now, packet);

@@ -44,9 +44,9 @@ class Digests {
 /// falls silent, the peer continues over the others.
 class PeerLatch {
  public:
-  /// A stream is a packet and this many more, with ascending numbers in their SSRC,
+  /// A stream is a packet and this many more with ascending numbers in their SSRC.
   static constexpr int kProbation = 4;
-  /// that arrive within this time.
+  /// Time within which the packets of a stream arrive.
   static constexpr Duration kStreamTime = 1s;
   /// A peer counts as a stream for this time after its first packet.
   static constexpr Duration kStart = 200ms;

@@ -48,7 +48,8 @@ struct State : BinState {
 
 }  // namespace
 
-/// A ghost pad for a sink pad of screamtx, or for one on each link. It has their properties.
+/// A ghost pad for a sink pad of screamtx or, with several links, for a pad of each link's
+/// screamtx. It has their properties.
 G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
                      GstGhostPad)
 struct _GstLidarScreamSinkPad {
@@ -118,7 +119,7 @@ static guint Estimate(GObject* object) {
   return bps;
 }
 
-/// A screamsink ends its receiver, and sends it reports, unless set otherwise.
+/// A screamsink sends a BYE at the end, and a report each second, unless set otherwise.
 static const TxSettings& TxDefaults() {
   static const TxSettings defaults = [] {
     TxSettings s;
@@ -231,7 +232,7 @@ static void Unbond(GstLidarScreamSink* self) {
   if (links) ForEachGhost(self, [&](GstPad* sink) { return links->Remove(sink); });
 }
 
-/// Opens the only link, or all of several into `links`, and returns the first. It has no socket
+/// Opens the only link, or all links into `links`. Returns the first link, which has no socket
 /// after an element error.
 static OpenLink OpenFirst(GstLidarScreamSink* self, const SinkSettings& s,
                           std::vector<OpenLink>* links) {
@@ -253,7 +254,7 @@ static std::shared_ptr<SinkLinks> LinksOf(GstLidarScreamSink* self) {
   return self->state->links;
 }
 
-/// `open` has all links.
+/// Returns the pads between which SRTP stands; `open` has all links.
 static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenLink>& open) {
   std::vector<SrtpPlace> places;
   const std::shared_ptr<SinkLinks> links = LinksOf(self);

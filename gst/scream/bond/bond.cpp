@@ -68,7 +68,8 @@ static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer
   return best;
 }
 
-/// Waits while another link may still deliver packets, because the first goodbye ends the receiver.
+/// Waits while another link may still deliver packets, because the first BYE ends the receiver's
+/// streams.
 static void AwaitArrivals(BondState& state) {
   BondShared& shared = *state.shared;
   std::unique_lock lock(shared.mutex);

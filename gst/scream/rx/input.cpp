@@ -25,8 +25,8 @@ struct Clocks {
   GstClockTime unix_now = 0;
 };
 
-/// Reads both clocks, again if the thread was stopped in between: all arrivals would then seem
-/// earlier.
+/// Reads both clocks. Reads them again if the thread was stopped in between, because all arrivals
+/// would then seem earlier.
 Clocks ReadClocks(const RxState& state) {
   Clocks clocks;
   for (int tries = 0; tries < 3; ++tries) {

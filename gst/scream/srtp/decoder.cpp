@@ -5,7 +5,7 @@ namespace lidar::gst {
 
 namespace {
 
-// The links of a sender alternate, and packets from behind a gap of one link come late.
+// The links of a sender alternate, and after a gap on a link its packets come late.
 constexpr guint kReplayWindow = 4'096;  // packets
 
 }  // namespace

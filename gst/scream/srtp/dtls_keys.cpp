@@ -13,8 +13,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::chrono::milliseconds kDtlsTick{100};
-// A client's handshake begins anew after it, as the pauses of DTLS double, and so does one after
-// packets that stay without an answer.
+// A client drops a handshake after this time, because the pauses of DTLS double, and begins one if
+// its packets stay unanswered for this time.
 constexpr std::chrono::seconds kDtlsPatience{5};
 constexpr std::chrono::seconds kDtlsPause{1};  // between handshakes that fail
 // A server may have to repeat its last datagram.
@@ -23,7 +23,7 @@ constexpr std::chrono::seconds kServerKeeps{10};
 constexpr gsize kRecordHeader = 13;
 constexpr gsize kHandshakeHeader = 12;
 
-/// Returns true for each part of a client's hello. A record that was cut off is none.
+/// Returns true for each part of a client's hello, unless its record was cut off.
 bool IsOfHello(ByteView d) {
   constexpr guint8 kHandshakeRecord = 22, kClientHello = 1;
   if (d.size < kRecordHeader + kHandshakeHeader) return false;
@@ -33,8 +33,8 @@ bool IsOfHello(ByteView d) {
          d.data[kRecordHeader] == kClientHello;
 }
 
-/// Returns what a hello that begins a handshake says, or an empty text. Record numbers differ where
-/// it is repeated.
+/// Returns the first part of a hello without the record header, which differs in a repeated hello.
+/// Returns an empty text for other datagrams.
 std::string HelloIn(ByteView d) {
   if (!IsOfHello(d)) return "";
   const guint8* offset = d.data + kRecordHeader + 6;
@@ -150,8 +150,8 @@ DtlsKeys::Session* DtlsKeys::Begin(Time now, std::string hello) {
   return &sessions_.back();
 }
 
-/// A server knows a link by the hello, which the link may have lost: a copy precedes each datagram
-/// that follows it.
+/// Sends a copy of the hello before each later datagram: a server identifies a link by the hello,
+/// which may have been lost on that link.
 void DtlsKeys::Send(Route* route, GstBuffer* datagram) {
   const BufferMap map(datagram, GST_MAP_READ);
   const std::lock_guard lock(route->mutex);

@@ -37,10 +37,10 @@ struct SrtpTraffic {
   std::uint64_t passed = 0;
 };
 
-/// The end that sends media is the client: it says hello over all its links, again until there is a
-/// key, and anew where its packets stay without an answer, as after a restart of the other end. The
-/// server answers to each address that brought the same hello. So one live link is enough. Repeated
-/// datagrams do no harm in DTLS. A thread of its own does all that takes time.
+/// The end that sends media is the client: it sends its hello over all links, repeats it until
+/// there is a key, and begins anew if its packets stay unanswered, as after a restart of the other
+/// end. The server answers each address that sent the same hello, so one live link is enough.
+/// Repeated datagrams do no harm in DTLS. All that takes time runs in a thread of its own.
 class DtlsKeys {
  public:
   static constexpr std::size_t kMaxHandshakes = 4;  // of a server at a time
@@ -72,7 +72,8 @@ class DtlsKeys {
   DtlsCounts counts() const { return {handshakes_, refused_, dropped_, 0}; }
 
  private:
-  /// The addresses of one peer, or the first part of a client's hello, for the encoder's thread.
+  /// Data for the encoder's thread: a server's addresses of one peer, or the first part of a
+  /// client's hello.
   struct Route {
     std::mutex mutex;
     Addresses addresses;

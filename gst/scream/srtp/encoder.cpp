@@ -58,7 +58,7 @@ BufferPtr SrtpEncoder::Protect(GstBuffer* packet) {
   const bool rtcp = IsRtcp(packet);
   GstPad* sink = (rtcp ? rtcp_ : rtp_).sink.get();
   const std::lock_guard lock(mutex_);
-  if (!has_key_) return nullptr;  // srtpenc would make one up
+  if (!has_key_) return nullptr;  // srtpenc would invent a key
   BeginStream(sink, rtcp ? "application/x-rtcp" : "application/x-rtp");
   gst_pad_chain(sink, owner.release());
   return std::move(out_);

@@ -12,7 +12,7 @@
 
 namespace lidar::gst {
 
-/// Is a child of the bin. Each key has one encoder, as two would use a packet index twice. All
+/// Is a child of the bin. Each key has one encoder, because two would use a packet index twice. All
 /// threads may call it.
 class SrtpEncoder {
  public:

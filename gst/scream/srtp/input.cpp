@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-// The key in use, and the last one and the next one, or two next ones.
+// The key in use with the previous and the next key, or with two next keys.
 constexpr std::size_t kMaxKeys = 3;
 constexpr std::chrono::seconds kStragglers{10};
 constexpr std::size_t kMaxStreams = 2'048;
@@ -141,7 +141,7 @@ BufferPtr SrtpInput::Decode(GstBuffer* datagram, const Head& head) {
 
 BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    // Tries the key of the last packet first, as the others fail once for each packet.
+    // Tries the key of the last packet first, because the others fail once for each packet.
     const std::size_t n = (in_use_ + i) % keys_.size();
     BufferPtr decoded = keys_[n].DecoderOf(head).Decode(datagram);
     if (!decoded) continue;
@@ -152,7 +152,8 @@ BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
 }
 
 /// RTP does not carry its rollover counter. If no other stranger asks, many values are tried for
-/// one packet, as a sender without feedback sends few. Half of the trials are for first ones.
+/// one packet, because a sender without feedback sends few. Half of the trials are kept for the
+/// first values of other packets.
 BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   const Time now = MonotonicTime();
   if (!trials_.Take(now)) return nullptr;
@@ -167,7 +168,8 @@ BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   return decoded;
 }
 
-/// A lost stream is ahead of its old place: earlier packets are recordings.
+/// The rollover counter of a lost stream is above its old value: packets with a lower one are
+/// recordings.
 BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead) {
   const Stream& stream = StreamOf(head.stream());
   for (std::size_t i = 0; i < keys_.size(); ++i) {

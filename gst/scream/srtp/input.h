@@ -31,9 +31,9 @@ struct SrtpCounts {
 
 /// Replaces the link between `socket` and `target`: events and queries pass, and datagrams pass
 /// decoded or not at all. A new key is valid beside the old one; the old one is kept for a while
-/// after a packet fits the new one. An unknown stream is first tried apart, at a bounded rate, so
-/// that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is a stream of its
-/// own: it carries its index, and says nothing about the media's rollover counter.
+/// after a packet fits the new one. An unknown stream is first tried in another decoder, at a
+/// bounded rate, so that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is
+/// a stream of its own: it carries its index, and says nothing about the media's rollover counter.
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
@@ -49,8 +49,8 @@ class SrtpInput {
   bool Link(GstPad* socket, GstPad* target);
   /// Gives datagrams of DTLS to `on_dtls`, which are refused without it. Call it before Link().
   void SetDtls(OnDtls on_dtls) { on_dtls_ = std::move(on_dtls); }
-  /// All threads may call it. Returns false without the srtp plugin. The key of the packets that
-  /// pass stays; of more than two newer ones the oldest goes.
+  /// All threads may call it. Returns false without the srtp plugin. Keeps the key of the packets
+  /// that pass; of more than two newer keys it drops the oldest.
   bool AddKey(const SrtpKey& key);
   /// Keys newer than the present one that no packet has fitted yet.
   std::size_t waiting_keys() const { return waiting_; }
@@ -88,8 +88,8 @@ class SrtpInput {
   };
   struct Key {
     std::uint64_t serial = 0;
-    // Decoder for trials of media, and of RTCP of known streams. A found media stream restarts its
-    // decoder, which would forget the RTCP that has passed.
+    // Decoders of media, of RTCP, and for trials. RTCP has its own, because a media stream that is
+    // found restarts its decoder, which would forget the RTCP that has passed.
     std::unique_ptr<SrtpDecoder> media;
     std::unique_ptr<SrtpDecoder> rtcp;
     std::unique_ptr<SrtpDecoder> trial;

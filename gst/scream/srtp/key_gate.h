@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What stands at the pads of media until there is a key.
+// Holds media back at their pads until there is an SRTP key.
 #pragma once
 #include <gst/gst.h>
 
@@ -18,7 +18,7 @@ namespace lidar::gst {
 /// the key, a flush or a stop.
 class KeyGate {
  public:
-  /// Shuts `pad` until Open(). Does nothing after it.
+  /// Shuts `pad` until Open(). Does nothing after Open().
   static void Guard(const std::shared_ptr<KeyGate>& gate, GstPad* pad);
   void Open();
   bool is_open() const { return is_open_; }

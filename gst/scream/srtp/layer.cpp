@@ -76,8 +76,8 @@ std::unique_ptr<SrtpLayer> SrtpLayer::Create(const SrtpSettings& settings, const
   return layer;
 }
 
-/// The end that sends media uses the key at once; the other end uses its first one at once, and
-/// others after the media do. An empty key is none.
+/// The end that sends media uses the key at once. The other end uses its first key at once, and a
+/// later key once the media use it. Does nothing for an empty key.
 bool SrtpLayer::AddKey(const SrtpKey& key) {
   if (key.empty()) return true;
   if (!std::all_of(inputs_.begin(), inputs_.end(),

@@ -53,15 +53,16 @@ class SrtpLayer {
   /// All zero without DTLS.
   DtlsCounts dtls_counts() const;
   bool by_dtls() const { return dtls_ != nullptr; }
-  /// The sockets are read while the bin plays, so DTLS runs then only.
+  /// DTLS runs only while the bin plays, because the sockets are read only then.
   void SetPlaying(bool playing);
-  /// Opens with the first key, and with the end of the layer, which it outlives.
+  /// The gate opens with the first key or at the end of the layer, and may outlive the layer.
   std::shared_ptr<KeyGate> gate() const { return gate_; }
   /// Bytes added to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
   BufferPtr Protect(GstBuffer* packet);
   /// Adds the key that `source` names. The end that sends media uses it at once; the other end uses
-  /// it after the media do. Returns false and sets `error` for no key, or one that was used before.
+  /// it once the media use it. Returns false and sets `error` if there is no key or it was used
+  /// before.
   bool ChangeKey(const std::string& source, std::string* error);
 
  private:

@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// A pad that takes what the element pushes. Events end here, as the stream has its own.
+/// A pad that takes what the element pushes. Events end here, because the stream has its own.
 class Relay {
  public:
   using Take = std::function<void(BufferPtr)>;
@@ -38,7 +38,7 @@ class Relay {
   PadPtr pad_{GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK)))};
 };
 
-/// Sends the events that come before buffers, where none came yet.
+/// Sends the events that precede buffers, unless they were sent before.
 inline void BeginStream(GstPad* sink, const char* caps) {
   if (gst_pad_has_current_caps(sink)) return;
   GstSegment segment;

@@ -32,7 +32,7 @@ using namespace lidar::gst;
 namespace {
 
 constexpr guint kIpUdpAndSrtpTag = 38;  // bytes
-/// The interval of a stock receiver's rtpsession at low rates.
+/// Interval at which a stock receiver's rtpsession reports at low rates.
 constexpr guint64 kFeedbackInterval = 500 * GST_MSECOND;
 
 struct AuxSettings {
@@ -64,7 +64,7 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
-// These pads are replaced if `session` is set.
+// These pads replace the others if `session` is set.
 static GstStaticPadTemplate session_sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink_%u", GST_PAD_SINK, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
 static GstStaticPadTemplate session_src_template = GST_STATIC_PAD_TEMPLATE(

@@ -41,8 +41,8 @@ std::optional<Reported> Read(const GstStructure* s) {
   return r;
 }
 
-/// Returns the packets of a report, nothing for another event. At most one more than
-/// kMaxTwccPackets, which shows that the report is too long.
+/// Returns the packets of a report, or none for another event: kMaxTwccPackets at most, and one
+/// more if the report is too long.
 std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   std::vector<const GstStructure*> packets;
   const GstStructure* s = gst_event_get_structure(event);

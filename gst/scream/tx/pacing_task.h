@@ -36,7 +36,8 @@ class PacingTask {
     settings_changed_ = true;
     Wake();
   }
-  /// A receiver took packets: an end that waits for input that is not live gets a later deadline.
+  /// Call it when a receiver took packets: delays the deadline of an end with input that is not
+  /// live.
   void OnAccepted(Time now);
   /// The stream begins anew: its end has not been sent.
   void ForgetEnd();
