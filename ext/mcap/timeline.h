@@ -28,11 +28,11 @@ class Timeline {
     last_ = std::max(last_, time);
     return time;
   }
-  /// Running times begin anew; the recording goes on.
+  /// The next buffer relates running times anew: they restarted, and the recording continues.
   void Restart() { origin_.reset(); }
 
  private:
-  std::optional<std::uint64_t> origin_;  // wraps if a recording begins late
+  std::optional<std::uint64_t> origin_;  // log time of running time 0; may wrap below 0
   std::uint64_t last_ = 0;
 };
 
