@@ -43,7 +43,7 @@ class SliceService {
     std::uint16_t number = 0;                 // number of the replay, chosen by the viewer
     std::deque<viewer::SharedSlice> waiting;  // read and not sent
     std::uint64_t next = 0;                   // position of the next piece
-    std::uint64_t last_ns = 0;                // of the last slice that was read
+    std::uint64_t last_ns = 0;                // time of the last slice that was read
     std::uint64_t damaged = 0;                // parts that were left out
     bool is_reading = true;
     bool ended = false;  // no more follow
@@ -52,14 +52,14 @@ class SliceService {
     std::uint32_t subscription = 0;
     viewer::Feed feed;
     std::optional<Replay> replay = {};
-    std::uint64_t asker = 0;  // of the replay, for the reader
+    std::uint64_t asker = 0;  // id under which `replay` asks the reader
   };
   struct Stream {
     SharedTopic topic;
     viewer::RecentScans recent;
     std::map<Client*, Viewer> viewers;
-    Time looked_at{};           // at the recording
-    std::uint64_t from_ns = 0;  // the recording's times then
+    Time looked_at{};           // last look at the recording
+    std::uint64_t from_ns = 0;  // times of the recording at that look
     std::uint64_t to_ns = 0;
     std::string why;  // of the last warning
   };

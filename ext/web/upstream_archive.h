@@ -39,12 +39,12 @@ class UpstreamArchive final : public Archive {
   const SliceCaps caps_;
   const std::string frame_id_;
   gst::HistoryQuestion question_;
-  std::uint64_t from_ns_ = 0;  // of Seek()
+  std::uint64_t from_ns_ = 0;  // time of Seek(); 0 after GoOn()
   bool ended_ = true;
   std::deque<Item> items_;
   std::uint64_t damaged_ = 0;
   gst::CapsPtr known_caps_;
-  bool are_ours_ = false;  // the known caps
+  bool are_ours_ = false;  // the stream's decoder takes slices of known_caps_
 };
 
 }  // namespace lidar::web
