@@ -21,8 +21,8 @@ namespace lidar::gst {
 class LidarEncCoder {
  public:
   /// Returns false if `info` has neither ranges of a sensor nor points. Keeps the measured speed of
-  /// the machine and, if only the size of the points' clouds changes, the state of their coder.
-  /// `exact` is for points only.
+  /// the machine. Keeps the coder of points if only the size of the clouds changes. `exact` is for
+  /// points only.
   bool SetFormat(const CloudInfo& info, bool with_intensity,
                  const codec::cloud::ExactChoice& exact);
   /// Takes the slice. Without `effort` it chooses the effort that time allows.
