@@ -102,7 +102,7 @@ void SetProperty(Settings& s, const Property<Settings>& p, const GValue* v) {
   p.field.Set(&s, nullptr, v);
 }
 
-/// Rows that are functions need `object`; they take the locks they need.
+/// Rows that are functions need `object`, and take locks themselves.
 template <class Settings>
 void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v,
                  GObject* object = nullptr) {
