@@ -35,8 +35,8 @@ class ScanBuilder {
   explicit ScanBuilder(const SliceView& slice);
 
   guint scan_id() const { return scan_id_; }
-  /// Returns true if the slice is of this scan, and of as many slices as the others. Its caps must
-  /// be ones that can mix with those of the first slice (see CannotMix()).
+  /// Returns true if the slice is of this scan and has its slice count. The caps of the slice must
+  /// mix with those of the first slice (see CannotMix()).
   bool Fits(const SliceView& slice) const;
   /// Returns false for a duplicate, or if memory cannot be mapped.
   bool Add(const SliceView& slice);

@@ -54,8 +54,8 @@ class CloudStamper {
   void Stamp(GstBuffer* cloud);
   /// A cloud that is left out keeps its place in time.
   void LeaveOut() { ++place_.next; }
-  /// Returns true if the next cloud was pushed already, before a seek that continues where playback
-  /// was.
+  /// Returns true if the next cloud was pushed before a seek that continues at the current
+  /// position.
   bool HasGone() const { return place_.next < place_.shown; }
   void Flush(bool restarts_time);
   void Reset();
