@@ -105,8 +105,8 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
   return true;
 }
 
-/// Finds or adds a candidate. If there are too many, a new one replaces the one of least standing,
-/// and among equals the longest silent.
+/// Finds or adds a candidate. If there are too many, a new candidate replaces the one with the
+/// lowest standing, and among equals the longest silent.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;

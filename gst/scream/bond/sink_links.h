@@ -30,7 +30,7 @@ struct OpenLink {
   bool usable = true;
 };
 /// Opens the links of `addresses`; a warning names each link that cannot carry packets now. Posts
-/// an element error and returns nothing if none can or the text is wrong.
+/// an element error and returns nothing if no link can, or if the text is wrong.
 std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses);
 
 /// The elements between the pads of a bin and the network: the bond, and each link's own elements.
