@@ -62,7 +62,7 @@ class SliceEncoder {
   /// Names the coder that Encode() will take, for statistics and predictors: "xyz-kd6".
   std::string Mode(unsigned level) const;
 
-  /// Forgets all but `kept` of the loaded beams (range) or points (xyz).
+  /// Keeps only the loaded beams (range) or points (xyz) that `kept` marks.
   void Thin(const std::vector<bool>& kept);
   /// The number of beams or points that Thin() chooses from.
   std::size_t rows() const { return range_ ? range_->rows() : xyz_.cloud().size(); }
