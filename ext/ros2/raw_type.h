@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages as Cyclone DDS carries them, as unchecked bytes. So this plugin can count damaged
-// messages and bound their memory.
+// DDS messages as unchecked bytes, so that this plugin can count damaged ones and bound their
+// memory.
 #pragma once
 #include <memory>
 #include <vector>
