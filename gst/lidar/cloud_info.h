@@ -25,7 +25,7 @@ struct CloudInfo {
 
   /// Returns nothing if the caps are of another type, big-endian, or contradict themselves: fields
   /// past point-step, a sensor model that does not parse or has another height, too large a frame.
-  /// `why` then says which, in words for a user.
+  /// `why` then has the reason in words for a user.
   GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps,
                                                          std::string* why = nullptr);
   /// FromCaps() for caps that fix the width as well.
