@@ -30,10 +30,10 @@ struct SrtpCounts {
 };
 
 /// Replaces the link between `socket` and `target`: events and queries pass, and datagrams pass
-/// decoded or not at all. A new key is valid beside the old one; the old one is kept for a while
-/// after a packet fits the new one. An unknown stream is first tried in another decoder, at a
-/// bounded rate, so that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is
-/// a stream of its own: it carries its index, and says nothing about the media's rollover counter.
+/// decoded or not at all. A new key and the old key are valid at the same time, until a while after
+/// a packet fits the new key. An unknown stream is first tried in another decoder, at a bounded
+/// rate, so that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is a
+/// stream of its own: it carries its index, and says nothing about the media's rollover counter.
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
