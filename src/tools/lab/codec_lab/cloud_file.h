@@ -7,7 +7,7 @@
 
 namespace lidar::tools {
 
-/// Judges by how the name ends.
+/// Decides by the end of the name.
 bool IsCloudFile(const std::string& path);
 /// Points that are all zero or not finite are left out. Throws std::runtime_error.
 Scan ReadCloud(const std::string& path);

@@ -20,8 +20,8 @@ std::unique_ptr<ScanStream> OpenKittiSequence(const std::string& folder);
 /// The times of times.txt, which have to ascend. Throws std::runtime_error.
 std::vector<Time> ReadKittiTimes(const std::string& folder);
 
-/// Returns the beam of each point of a cloud that lists beams in sequence, each from straight ahead
-/// once around. Returns an empty list for another order.
+/// Returns the beam of each point of a cloud that lists beams in sequence, each of which begins
+/// straight ahead and turns once. Returns an empty list for another order.
 std::vector<std::uint16_t> FindRings(const std::vector<float>& xyz);
 
 /// Points as a sequence keeps them.
