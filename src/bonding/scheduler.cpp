@@ -206,8 +206,8 @@ bool Scheduler::Overdue(Time now, const Entry& entry) const {
   return true;
 }
 
-/// Returns the further links for a waiting packet: the best link out of a gap, else each link that
-/// may leave its gap first.
+/// Returns the further links for a waiting packet: the best link that is in no gap, else all
+/// others, because any of them may leave its gap first.
 LinkSet Scheduler::OthersFor(Time now, const Entry& entry) const {
   const LinkSet spare = Spare(now);
   LinkSet others, alive;

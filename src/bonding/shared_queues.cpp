@@ -105,7 +105,7 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   for (std::size_t other = 0; other < kMaxLinks; ++other)
     if (other != link) Compare(link, other);
   if (!busy || arrived_ms > kPauseMs) return;
-  const double weight = 1 / std::sqrt(1 + sent_ms);  // others send more in longer spacings
+  const double weight = 1 / std::sqrt(1 + sent_ms);  // longer spacings hold more packets of others
   const double own_kb = l.SentUntil(arrival.sent) - l.SentUntil(last->sent);
   for (std::size_t other = 0; other < kMaxLinks; ++other) {
     if (other == link || links_[other].sent.empty()) continue;
