@@ -11,7 +11,7 @@ namespace lidar::cdr {
 
 class CdrWriter {
  public:
-  /// Appends a message to `out`, which must outlive this object, and begins with the header.
+  /// Begins a message at the end of `out`, which must outlive this object, and writes its header.
   explicit CdrWriter(std::vector<std::uint8_t>* out) : writer_(out) {
     writer_.Be32(0x0001'0000);  // CDR_LE, no options
     body_ = writer_.size();
