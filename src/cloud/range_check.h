@@ -11,7 +11,8 @@
 
 namespace lidar {
 
-/// Detects points that were moved after the sensor: coding ranges alone would undo the motion.
+/// Detects points that an element behind the sensor has moved: coding only ranges would undo the
+/// motion.
 class RangeCheck {
  public:
   /// Returns nothing if the fields lack the range, or x, y and z side by side.
