@@ -14,7 +14,7 @@
 
 namespace lidar::codec {
 
-/// Points without order. Each has an intensity, or none has.
+/// Points without order. Either all of them have an intensity, or none.
 struct XyzCloud {
   std::vector<float> xyz;  // metres, three a point
   std::vector<float> intensity;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Duration kWindow{1'000'000'000};
 constexpr unsigned kFewestSlices = 8;
-// Part of a window's slices that may be late, for busy moments of the machine.
+// Part of a window's slices that may be late, because a machine has busy moments.
 constexpr double kLatePart = 0.1;
 // A window ends early after this many slices in a row that take more than twice their time.
 constexpr unsigned kMuchTooLate = 3;

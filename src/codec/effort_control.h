@@ -44,7 +44,7 @@ class EffortControl {
   Duration now_{};
   unsigned much_too_late_ = 0;  // slices in a row
   Window window_;
-  double cost_below_ = 0;  // seconds a return before the last raise; 0: no raise
+  double cost_below_ = 0;  // cost before the last raise [s per return]; 0: no raise
   std::array<Level, kHighest + 1> levels_ = {{{1}, {5}, {1.7}, {2.7}}};
 };
 

@@ -158,7 +158,7 @@ class ColumnFinder {
   static constexpr unsigned kShift = kTurnBits - 14;  // to buckets
   const BeamTable& table_;
   ColumnAngles angles_;
-  std::vector<std::uint16_t> buckets_;  // the first place at or behind each; empty: even columns
+  std::vector<std::uint16_t> buckets_;  // first place from each bucket on; empty: even columns
   std::vector<bool> swings_;            // has the beam swings?
 };
 

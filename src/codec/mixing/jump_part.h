@@ -57,7 +57,8 @@ class JumpPart {
     std::uint32_t middle;
     std::uint32_t half;  // of the interval that is split
   };
-  /// Places of candidates relative to the interval, 1 to 10; 0: in the other direction.
+  /// Places of candidates relative to the interval, 1 to 10; 0: the candidate is in the other
+  /// direction.
   template <unsigned kCount, class Candidates>
   static std::array<std::int32_t, kCount> PlacesOf(const Split& split,
                                                    const Candidates& candidates) {
