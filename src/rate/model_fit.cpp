@@ -17,7 +17,7 @@ using Samples = std::vector<const Sample*>;
 double X(const Sample& s) { return std::log2(s.settings.step_m / kUnitStep); }
 double N(const Sample& s) { return std::log2(s.slice.returns / 1000.0); }
 
-/// Minimises |A c - b|; features that depend on others get no coefficient.
+/// Minimises |A c - b|; features that depend linearly on others get no coefficient.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   return a.colPivHouseholderQr().solve(b);
 }

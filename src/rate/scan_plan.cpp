@@ -11,7 +11,7 @@ namespace {
 constexpr double kTolerance = 0.1;
 // A cloud that is thinned further is useless: then scans are skipped as well.
 constexpr double kMinKeep = 1.0 / 16;
-// Intensity bits return only with a margin, so that they do not flicker.
+// Intensity bits rise again only with a margin, so that they do not flicker.
 constexpr double kRoomToRaise = 0.9;
 
 unsigned IntensityBits(const ScanPlanInputs& in) {
