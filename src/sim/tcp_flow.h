@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A greedy background flow on the links of ours, in simulated time.
+// A greedy background flow that shares links with our flows, in simulated time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
