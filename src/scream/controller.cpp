@@ -15,7 +15,7 @@ constexpr Duration kHousekeeping = 50ms;
 /// A caller that is this much late has stood still, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// Time after a sign of congestion in which the window is about what the link carries.
+/// For this long after a sign of congestion the window is about what the link carries.
 constexpr Duration kCongestedLately = 300ms;
 /// Longest silence that may be a gap of the link.
 constexpr Duration kLongestSilence = 2s;
@@ -24,8 +24,8 @@ constexpr Duration kOverdue = 5ms;
 
 }  // namespace
 
-/// Feedback on packets that were under way while the caller stood still says nothing about the
-/// path.
+/// Discards feedback on packets that were under way while the caller stood still: the path did not
+/// cause their delay.
 Time Controller::Advance(Time caller_now) {
   const Time now = clock_.From(caller_now);
   // The caller must call often while data are in flight.
@@ -109,7 +109,7 @@ void Controller::TakeOutageRestart(Time now) {
   const auto restart = outage_.OnFeedback(now);
   if (!restart) return;
   window_.Restart(std::max(window_.ref_wnd(), *restart));
-  // Delayed packets arrive first. Their marks are already answered by the restart.
+  // The packets that the gap delayed arrive first. The restart already answered their marks.
   path_.evidence().BeginAt(now + path_.rtt().smoothed());
   fast_increase_.Restart();
 }

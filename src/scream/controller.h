@@ -30,10 +30,9 @@ struct SendDecision {
 
 /// Congestion control of one 5-tuple with any number of streams, each with any number of SSRCs.
 ///
-/// **The RTP queue** lives at the caller, the controller knows its sizes: each stream has one FIFO,
-/// and the controller keeps a mirror of it. OnQueued() appends to the mirror, OnSent() and
-/// OnDropped() take from its head; the caller does the same with its packets, in the same order.
-/// Only in this way packets may leave.
+/// **The RTP queue** of each stream is a FIFO of the caller. The controller mirrors it by sizes:
+/// OnQueued() appends to the mirror, OnSent() and OnDropped() take from its head. The caller does
+/// the same with its packets, in the same order, and sends none in another way.
 ///
 ///     controller.OnQueued(now, stream, {ssrc, size, marker, rtp_timestamp});
 ///     for (;;) {

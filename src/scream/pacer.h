@@ -35,9 +35,9 @@ class Pacer {
     pace_bitrate_ = std::max(pace_bitrate_, rate);
     link_ = std::max(link_, rate);
   }
-  /// A packet comes into an empty queue: the time before it gives no credit.
+  /// Call it when a packet enters an empty queue. The idle time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
-  /// A gap is over: the next packet does not wait at the gap's rate.
+  /// Call it after a gap. The next packet does not wait at the gap's rate.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
   /// The next packet is timed from when this one was due, not from a late wake-up, within a bound.
   void OnSent(Time now, DataSize size) {

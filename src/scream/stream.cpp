@@ -8,14 +8,14 @@ namespace {
 
 constexpr double kMaxRateAdjustFactor = 0.5;
 constexpr double kMaxFrameSizeDev = 0.2;
-/// A rate_adjust_factor below this is no adjustment.
+/// A smaller rate_adjust_factor counts as none.
 constexpr double kNoAdjustment = 0.05;
 constexpr double kFramePeriodGain = 0.1;
 /// Longer gaps are pauses, not frame periods.
 constexpr Duration kMaxFramePeriod = 2s;
 constexpr Duration kMinFramePeriod = 1ms;
 constexpr Duration kLikelyFramePeriod = 200ms;
-/// Lies between the frames of film, 42 ms, and scans of 20 Hz.
+/// Separates video from scans: the value is between the period of film, 42 ms, and that of 20 Hz.
 constexpr Duration kScanPeriod = 45ms;
 /// The rest of a group that has begun to leave may wait this many times as long.
 constexpr int kBegunStay = 5;
@@ -142,7 +142,7 @@ Stream::Queue::const_iterator Stream::UnitEnd(Queue::const_iterator unit) const 
   });
 }
 
-/// Expects the missing units of a group to be like those of the group before.
+/// Assumes that the missing units of a group are as large as those of the group before.
 bool Stream::Late(Time now, DataRate rate, Queue::const_iterator unit,
                   Queue::const_iterator next) const {
   DataSize size;

@@ -119,7 +119,7 @@ DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   return left;
 }
 
-/// Lowers targets of streams with a backlog of their own, and of no stream that waits for
+/// Lowers the targets of streams with a backlog of their own only: a stream may also wait behind
 /// another's.
 void Streams::LeaveRoomForBacklogs(Time now) {
   const auto wait = [now](const Stream& s) {

@@ -85,7 +85,7 @@ class CrossTraffic {
     sent_.Add(sent_ms, weight);
     arrived_.Add(arrived_ms, weight);
     bytes_.Add(bytes, weight);
-    // Relative to recent averages, as our rate and the link's change the spacing.
+    // Spacings count relative to recent averages, because our rate and the link's change them.
     lately_sent_.Add(sent_ms, 1 / kLately);
     lately_arrived_.Add(arrived_ms, 1 / kLately);
     const double sent = sent_ms - lately_sent_.value;
@@ -93,8 +93,8 @@ class CrossTraffic {
     sent_arrived_ += sent * (arrived_ms - lately_arrived_.value);
     if (sent_sent_ > kMostEvidence) Scale(kMostEvidence / sent_sent_);
   }
-  /// Ages the evidence. A share without new evidence becomes unknown, and the evidence of a start
-  /// does not outweigh that of now.
+  /// Ages the evidence: a share without new evidence becomes unknown, and old evidence does not
+  /// outweigh new.
   void Scale(double factor) {
     sent_sent_ *= factor;
     sent_arrived_ *= factor;

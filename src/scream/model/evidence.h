@@ -7,8 +7,8 @@
 
 namespace lidar::scream {
 
-/// Packets that met a gap, an outage or another route do not count: neither marks, loss, delay nor
-/// round trip. Packets that were under way at a reaction cause no second one.
+/// The marks, losses, delays and round trips of packets that met a gap, an outage or another route
+/// do not count. Packets that were under way at a reaction cause no other reaction.
 class Evidence {
  public:
   void BeginAt(Time time) {

@@ -40,13 +40,14 @@ class PathModel {
     if (acks.rtt && evidence_.Counts(acks)) rtt_.Add(now, *acks.rtt);
   }
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
-  /// A gap is over. Packets sent before `now` met it and do not count.
+  /// Call it after a gap. Packets sent before `now` met the gap and do not count.
   void OnGapEnd(Time now, Duration s_rtt, double l4s_alpha);
   void EndRoundTrip(Time now) {
     max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
   }
   void OnTimer(Time now) { ecn_.OnTimer(now); }
-  /// The route changed: makes base delay, round trip, ECN, marks, losses and capacity unknown.
+  /// Call it after a change of route. Forgets base delay, round trip, ECN, marks, losses and
+  /// capacity.
   void Reset(Time now);
 
   Evidence& evidence() { return evidence_; }

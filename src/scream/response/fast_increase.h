@@ -30,7 +30,7 @@ class FastIncrease {
   double growth(Duration qdelay, Duration round, bool l4s_works) const {
     const int bold = std::max(0, rounds_ - p_.fast_increase_rounds);
     const double step = l4s_works ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
-    // Rounds of rare frames are long, and an excess stays in the queue as long.
+    // Rounds of rare frames are long, and an excess stays queued for a round: start slower.
     const double start =
         p_.fast_increase_max * std::clamp(Seconds(p_.long_frame_period) / Seconds(round), 0.5, 1.0);
     const double growth = starting_ ? start : std::min(p_.fast_increase_max, step * bold);

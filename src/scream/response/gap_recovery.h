@@ -64,7 +64,7 @@ class GapRecovery {
     Restart state;
     DataRate rate;
   };
-  /// Returns true if `rate`, of the latest arrivals, is almost nothing of the earlier capacity.
+  /// Returns true if `rate`, that of the latest arrivals, is far below the earlier capacity.
   bool Slow(std::optional<DataRate> rate) const {
     return before_ && rate && *rate < before_->rate * kGapPart;
   }
@@ -99,17 +99,18 @@ class GapRecovery {
 
   /// A link that carries less than this part of its earlier capacity is in a gap.
   static constexpr double kGapPart = 0.25;
-  /// A longer gap is the link's new capacity.
+  /// The state from before a gap is forgotten this long after the last sign of the gap,
   static constexpr Duration kLongestMemory = 3s;
+  /// and after a gap of this length: its rate then is the link's new capacity.
   static constexpr Duration kLongestGap = 10s;
-  /// Delay without a queue, apart from a few packets that came together.
+  /// A longer delay is a queue, not a few packets that came together.
   static constexpr Duration kNoQueue = 5ms;
   /// Part of the missing window that is restored each round trip while nothing measures the link.
   static constexpr double kUnprovenPart = 0.5;
   static constexpr double kRestoredPart = 0.9;
   const Parameters& p_;
   std::optional<Before> before_;
-  std::optional<Time> last_sign_;  // of a gap
+  std::optional<Time> last_sign_;  // last sign of a gap
   Time first_sign_{};
   Time last_restart_{};
   std::optional<DataSize> unproven_;  // window of a step back that is not measured yet

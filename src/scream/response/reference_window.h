@@ -63,7 +63,8 @@ class ReferenceWindow {
   void Set(DataSize window);
   /// Sets the window whose target is `rate`, for the start that the draft leaves open.
   void Start(DataRate rate, Duration s_rtt);
-  /// The link's capacity fell to what `window` fills. The draft's own reaction then waits.
+  /// Call it when the link's capacity has fallen to what `window` fills. The draft's own reaction
+  /// then waits.
   void Drop(Time now, DataSize window);
   /// Sets the window after a gap or an outage. Marks and losses that wait for a reaction met it.
   void Restart(DataSize window);

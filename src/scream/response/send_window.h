@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The draft's send window, and its limits by the extension capacity.
+// The draft's send window, and what the extension `capacity` takes off or adds.
 #pragma once
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension company: beside other flows the window grows and gives way as theirs do.
+// The extension `company`: while others share the link, the window grows and shrinks as theirs do.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,8 @@ inline double EarlyMarking(Duration onset) {
   return std::min(own, 1 - LateMarking(onset));
 }
 
-/// Uneven departures show other flows' packets, and add a queue of the same length.
+/// Returns by how much departures are made uneven. The unevenness shows other flows' packets, and
+/// adds a queue of the same length.
 inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
   if (!p.extensions.company) return Duration{0};
   return FromSeconds(Seconds(p.pacing_ripple) * LateMarking(path.marking_onset()));
@@ -33,8 +34,8 @@ inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
 
 /// Returns a value from -1, clearly less than half of the link, to 1, clearly more.
 inline double AboveHalf(DataRate own, DataRate link) {
-  // Less than one half: two of our flows with half each would both be gentle, and a flow that
-  // leaves in bursts makes the link look faster than it is.
+  // The value is below one half, so that two of our flows with half each both give way early. A
+  // flow that sends bursts also makes the link look faster than it is.
   constexpr double kHalf = 0.46;
   // A step in place of this ramp gives two of our flows a queue of 5.2 ms for 3.9 at p99, and
   // Prague at 4 Mbit/s a Jain's index of 0.946 for 0.955.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension capacity: the window while the streams' maximum, not the link, limits the rate.
+// The extension `capacity`: the window while the streams' maximum, not the link, limits the rate.
 #pragma once
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
