@@ -30,6 +30,12 @@ constexpr Duration kReceiptMemory = 2s;
 Scheduler::Scheduler(std::size_t links, Method method, TargetRule rule)
     : method_(method), rule_(rule), links_(std::clamp<std::size_t>(links, 1, kMaxLinks)) {}
 
+void Scheduler::Restart() {
+  Scheduler fresh(links_.size(), method_, rule_);
+  for (std::size_t i = 0; i < links_.size(); ++i) fresh.links_[i].usable = links_[i].usable;
+  *this = std::move(fresh);
+}
+
 Scheduler::Entry* Scheduler::Find(PacketId id) {
   const auto found = packets_.find(id.key());
   return found == packets_.end() ? nullptr : &found->second;

@@ -78,6 +78,9 @@ class Scheduler {
 
   Scheduler(std::size_t links, Method method, TargetRule rule = TargetRule::kBetter);
 
+  /// Forgets all but which links are usable.
+  void Restart();
+
   struct Packet {
     PacketId id;
     DataSize size;
@@ -165,8 +168,8 @@ class Scheduler {
   static Duration LeastTravel(const Link& link);
   static bool IsDead(Time now, const Link& link);
 
-  const Method method_;
-  const TargetRule rule_;
+  Method method_;
+  TargetRule rule_;
   std::vector<Link> links_;
   SharedQueues shared_;
   std::deque<PacketId> order_;

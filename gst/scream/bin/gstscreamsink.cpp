@@ -173,24 +173,30 @@ static const std::array<Property<SinkSettings>, 27> kProperties = {{
     Within<&SinkSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
-/// Returns true if `buffer` comes from the receiver. A multicast group has many receivers.
-static bool FromPeer(GstLidarScreamSink* self, GstBuffer* buffer) {
-  State& state = *self->state;
+/// Returns true if `buffer` comes from the receiver of a link, and counts it otherwise. A multicast
+/// group has many receivers.
+static bool IsFeedback(State& state, GstBuffer* buffer, GSocketAddress* peer) {
   GSocketAddress* from = SourceOf(buffer);
-  std::lock_guard lock(state.mutex);
-  if (from == nullptr || !state.peer) return false;
-  GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(state.peer.get()));
-  if (g_inet_address_get_is_multicast(host)) return true;
-  return state.settings.strict_feedback ? SameAddress(from, state.peer.get())
-                                        : SameHost(from, state.peer.get());
+  std::unique_lock lock(state.mutex);
+  const bool strict = state.settings.strict_feedback;
+  lock.unlock();
+  const auto is_group = [peer] {
+    return g_inet_address_get_is_multicast(
+               g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer))) != FALSE;
+  };
+  const bool known = from != nullptr && peer != nullptr &&
+                     (is_group() || (strict ? SameAddress(from, peer) : SameHost(from, peer)));
+  if (!known) ++state.foreign;
+  return known;
 }
 
 static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer data) {
-  auto* self = GST_LIDAR_SCREAM_SINK(data);
-  return MapPackets(info, [self](BufferPtr packet) {
-    if (FromPeer(self, packet.get())) return packet;
-    ++self->state->foreign;
-    return BufferPtr();
+  State& state = *GST_LIDAR_SCREAM_SINK(data)->state;
+  std::unique_lock lock(state.mutex);
+  const SharedSocketAddress peer = state.peer;
+  lock.unlock();
+  return MapPackets(info, [&](BufferPtr packet) {
+    return IsFeedback(state, packet.get(), peer.get()) ? std::move(packet) : nullptr;
   });
 }
 
@@ -217,8 +223,11 @@ static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(Gs
 /// Puts a bond between the pads and the screamtx of each link.
 static void Bond(GstLidarScreamSink* self, const std::vector<OpenLink>& open,
                  const BondSettings& settings) {
+  const auto takes = [self](GstBuffer* buffer, GSocketAddress* peer) {
+    return IsFeedback(*self->state, buffer, peer);
+  };
   auto links = std::make_shared<SinkLinks>(
-      GST_ELEMENT(self), SinkLinks::Chain{self->tx, self->sink, self->src}, open, settings);
+      GST_ELEMENT(self), SinkLinks::Chain{self->tx, self->sink, self->src}, open, settings, takes);
   ForEachGhost(self,
                [&](GstPad* tx_pad) { return PadPtr(GST_PAD(gst_object_ref(links->Add(tx_pad)))); });
   const std::lock_guard lock(self->state->mutex);

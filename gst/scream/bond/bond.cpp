@@ -161,7 +161,7 @@ static void StopThread(BondState& state) {
   }
   g_thread_join(state.thread);
   state.thread = nullptr;
-  state.shared->Clear();
+  state.shared->Clear(state.streams);
 }
 
 static GstStateChangeReturn BondChangeState(GstElement* element, GstStateChange change) {

@@ -151,11 +151,17 @@ void BondShared::ForgetPacketsLocked(const BondStream* stream) {
     it = it->second.stream == stream ? kept_.erase(it) : std::next(it);
 }
 
-void BondShared::Clear() {
+void BondShared::Clear(const std::vector<std::unique_ptr<BondStream>>& streams) {
   const std::lock_guard lock(mutex);
   kept_.clear();
   order_.clear();
   misdirected.clear();
+  scheduler.Restart();
+  for (const auto& stream : streams) {
+    stream->told = 0;
+    stream->key_unit_at.reset();
+    std::fill(stream->targets.begin(), stream->targets.end(), GstLidarTargetBitrate{});
+  }
 }
 
 }  // namespace lidar::gst

@@ -60,8 +60,8 @@ struct BondShared {
   bool IsRepeatedRequest(BondStream& stream, GstEvent* event);
   BondWork TakeWorkLocked(const std::vector<std::unique_ptr<BondStream>>& streams);
   void ForgetPacketsLocked(const BondStream* stream);
-  /// Forgets packets and reports.
-  void Clear();
+  /// Forgets packets, reports and what the streams were told.
+  void Clear(const std::vector<std::unique_ptr<BondStream>>& streams);
 
   std::mutex mutex;
   GstClock* clock = gst_system_clock_obtain();  // the links use the same one

@@ -6,7 +6,6 @@
 #include "gst/common/enum_type.h"
 #include "gst/common/packet_probe.h"
 #include "gst/scream/bin/common.h"
-#include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/gstscreamtxpad.h"
 
 namespace lidar::gst {
@@ -58,11 +57,16 @@ GSocketFamily FamilyOf(const OpenLink& link) {
   return g_socket_address_get_family(link.peer.get());
 }
 
-/// Drops feedback that is not from the link's peer.
-GstPadProbeReturn DropStrangers(GstPad*, GstPadProbeInfo* info, gpointer peer) {
-  return MapPackets(info, [peer](BufferPtr packet) {
-    const bool is_peers = SameAddress(SourceOf(packet.get()), G_SOCKET_ADDRESS(peer));
-    return is_peers ? std::move(packet) : nullptr;
+/// What the filter of a link's feedback needs.
+struct FeedbackOfLink {
+  SinkLinks::Takes takes;
+  SharedSocketAddress peer;
+};
+
+GstPadProbeReturn FilterLink(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  const auto& link = *static_cast<const FeedbackOfLink*>(data);
+  return MapPackets(info, [&link](BufferPtr packet) {
+    return link.takes(packet.get(), link.peer.get()) ? std::move(packet) : nullptr;
   });
 }
 
@@ -139,8 +143,8 @@ std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses) {
 }
 
 SinkLinks::SinkLinks(GstElement* bin, const Chain& first, const std::vector<OpenLink>& links,
-                     const BondSettings& settings)
-    : bin_(bin), chains_{first}, links_(links), health_(links.size()) {
+                     const BondSettings& settings, Takes takes)
+    : bin_(bin), takes_(std::move(takes)), chains_{first}, links_(links), health_(links.size()) {
   for (std::size_t i = 1; i < links.size(); ++i) AddLink(links[i]);
   std::vector<GstLidarScreamTx*> senders;
   for (const Chain& chain : chains_) senders.push_back(GST_LIDAR_SCREAM_TX(chain.tx));
@@ -203,8 +207,8 @@ void SinkLinks::AddLink(const OpenLink& link) {
   gst_element_link_pads(chain.tx, "src", chain.sink, "sink");
   gst_element_link_pads(chain.src, "src", chain.tx, "rtcp_sink");
   const PadPtr feedback(gst_element_get_static_pad(chain.src, "src"));
-  gst_pad_add_probe(feedback.get(), kPacketProbe, DropStrangers, g_object_ref(link.peer.get()),
-                    g_object_unref);
+  gst_pad_add_probe(feedback.get(), kPacketProbe, FilterLink, new FeedbackOfLink{takes_, link.peer},
+                    [](gpointer data) { delete static_cast<FeedbackOfLink*>(data); });
   chains_.push_back(chain);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <gst/gst.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,8 +43,11 @@ class SinkLinks {
     GstElement* src;
   };
 
+  /// Whether a link whose receiver is at `peer` takes the buffer as feedback.
+  using Takes = std::function<bool(GstBuffer*, GSocketAddress* peer)>;
+
   SinkLinks(GstElement* bin, const Chain& first, const std::vector<OpenLink>& links,
-            const BondSettings& settings);
+            const BondSettings& settings, Takes takes);
   ~SinkLinks();
   SinkLinks(const SinkLinks&) = delete;
   SinkLinks& operator=(const SinkLinks&) = delete;
@@ -78,6 +82,7 @@ class SinkLinks {
   void Change(std::size_t link, const std::string& trouble);
 
   GstElement* bin_;
+  const Takes takes_;
   GstLidarScreamBond* bond_ = nullptr;  // owned by the bin
   std::vector<Chain> chains_;
   std::vector<OpenLink> links_;

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// screamsink over two links whose feedback and time the test makes.
+#include <gst/video/video.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/elements/scream/bonded_ends.h"
+#include "tests/elements/scream/rtp_support.h"
+
+namespace lidar::test {
+namespace {
+
+using gst::MessagePtr;
+using gst::PadPtr;
+
+constexpr guint kPorts[] = {5'004, 5'006};
+constexpr const char* kSwapped = "Feedback of a link comes by another link";
+
+class BondedSink : public ::testing::Test {
+ protected:
+  BondedSink() {
+    g_object_set(sink_, "bonding-addresses", "127.0.0.1:5004@127.0.0.1,127.0.0.1:5006@127.0.0.2",
+                 "bonding-method", 2, nullptr);  // backup: few copies
+    gst_element_set_bus(sink_, bus_.get());
+  }
+  ~BondedSink() override {
+    h_.reset();
+    gst_element_set_bus(sink_, nullptr);
+    gst_object_unref(sink_);
+  }
+  void Start() {
+    h_.reset(gst_harness_new_with_element(sink_, "sink_0", nullptr));
+    gst_harness_set_src_caps_str(h_.get(), kRtpCaps);
+    Open();
+    Watch();
+  }
+  /// Stops and plays again.
+  void Restart() {
+    gst_element_set_state(sink_, GST_STATE_READY);
+    gst_pad_set_active(h_->srcpad, FALSE);
+    gst_pad_set_active(h_->srcpad, TRUE);
+    gst_element_set_state(sink_, GST_STATE_PLAYING);
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("again"));
+    gst_harness_set_src_caps_str(h_.get(), kRtpCaps);
+    Open();
+    for (auto& count : packets_) count = 0;
+  }
+  gst::ElementPtr Child(const std::string& name) {
+    return gst::ElementPtr(gst_bin_get_by_name(GST_BIN(sink_), name.c_str()));
+  }
+  PadPtr PadOf(const std::string& child, const std::string& pad) {
+    return PadPtr(gst_element_get_static_pad(Child(child).get(), pad.c_str()));
+  }
+  PadPtr BondPad(std::size_t link) { return PadOf("screambond", "src_0_" + std::to_string(link)); }
+  static std::string NameOf(const char* factory, std::size_t link) {
+    return link == 0 ? factory : factory + std::to_string(link);
+  }
+  void Advance(GstClockTime by) { gst_test_clock_set_time(time_.clock(), time_.now() + by); }
+
+  /// A datagram that the socket of a link brings.
+  static BufferPtr From(const std::vector<std::uint8_t>& bytes, const char* host, guint port) {
+    BufferPtr buffer(FromBytes(bytes));
+    SetSource(buffer.get(), host, port);
+    return buffer;
+  }
+  void Bring(std::size_t link, BufferPtr buffer) {
+    gst_pad_push(PadOf(NameOf("ecnudpsrc", link), "src").get(), buffer.release());
+  }
+  /// A report by `link` that the packet arrived.
+  void Report(std::size_t link, guint16 seq) {
+    rtcp::CongestionFeedback report;
+    report.sender_ssrc = 9;
+    report.report_timestamp = static_cast<std::uint32_t>(
+        gst_util_uint64_scale(time_.now(), 65536, GST_SECOND) & 0xffffffff);
+    report.blocks.push_back({0x1234, seq, {{true, Ecn::kEct1, Duration{0}}}});
+    Bring(link, From(rtcp::BuildCcfb(report), "127.0.0.1", kPorts[link]));
+  }
+  /// Sends a slice of one packet, and returns the links by which it left.
+  std::set<std::size_t> Send(guint16 seq) {
+    const std::array<int, 2> before{packets_[0], packets_[1]};
+    Rtp packet;
+    packet.seq = seq;
+    packet.timestamp = seq;
+    packet.marker = true;
+    packet.size = 100;
+    EXPECT_EQ(gst_harness_push(h_.get(), NewRtp(packet)), GST_FLOW_OK);
+    std::set<std::size_t> links;
+    for (std::size_t i = 0; i < 2; ++i)
+      if (packets_[i] > before[i]) links.insert(i);
+    return links;
+  }
+  /// What the bond gave the link has left, as time goes on.
+  bool HasLeft(std::size_t link) {
+    return Eventually([&] {
+      Advance(GST_MSECOND);
+      return OfLink("packets-sent", link) == static_cast<guint64>(packets_[link].load());
+    });
+  }
+  guint64 OfLink(const char* field, std::size_t link) { return OfLinks(sink_, field)[link]; }
+  int Warnings(const char* text) {
+    int count = 0;
+    while (const MessagePtr message{gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_WARNING)}) {
+      GError* raw = nullptr;
+      gst_message_parse_warning(message.get(), &raw, nullptr);
+      const gst::ErrorPtr error(raw);
+      count += std::string(error->message).find(text) != std::string::npos;
+    }
+    return count;
+  }
+
+  FakeTime time_;
+  std::unique_ptr<GstBus, gst::Unref> bus_{gst_bus_new()};
+  GstElement* sink_ =
+      GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamsink", nullptr)));
+  Harness h_;
+  std::array<std::atomic<int>, 2> packets_{};  // that the bond gave each link
+  std::atomic<GstClockTime> ended_at_{0};      // when the bond passed EOS on
+
+ private:
+  /// The sources of the links wait for their sockets meanwhile.
+  void Open() {
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const PadPtr pad = PadOf(NameOf("ecnudpsrc", i), "src");
+      const gst::CapsPtr caps(gst_caps_new_empty_simple("application/x-rtcp"));
+      gst_pad_push_event(pad.get(), gst_event_new_stream_start("feedback"));
+      gst_pad_push_event(pad.get(), gst_event_new_caps(caps.get()));
+      gst_pad_push_event(pad.get(), gst_event_new_segment(&segment));
+    }
+  }
+  void Watch() {
+    for (std::size_t i = 0; i < 2; ++i) {
+      gst_pad_add_probe(
+          BondPad(i).get(), GST_PAD_PROBE_TYPE_BUFFER,
+          [](GstPad*, GstPadProbeInfo*, gpointer count) -> GstPadProbeReturn {
+            ++*static_cast<std::atomic<int>*>(count);
+            return GST_PAD_PROBE_OK;
+          },
+          &packets_[i], nullptr);
+    }
+    gst_pad_add_probe(
+        BondPad(0).get(), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
+        [](GstPad*, GstPadProbeInfo* info, gpointer self) -> GstPadProbeReturn {
+          auto* test = static_cast<BondedSink*>(self);
+          if (GST_EVENT_TYPE(GST_PAD_PROBE_INFO_EVENT(info)) == GST_EVENT_EOS)
+            test->ended_at_ = test->time_.now();
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
+  }
+};
+
+/// The receiver asks on each link, and each screamtx passes it on.
+TEST_F(BondedSink, AsksForAKeyUnitOnceWhicheverLinksBringTheWish) {
+  Start();
+  const auto ask = [this](std::size_t link, GstEvent* event) {
+    gst_pad_send_event(BondPad(link).get(), event);
+    int passed = 0;
+    while (const EventPtr next{gst_harness_try_pull_upstream_event(h_.get())})
+      passed +=
+          gst_video_event_is_force_key_unit(next.get()) || gst_event_has_name(next.get(), "other");
+    return passed;
+  };
+  const auto key = [&](std::size_t link) {
+    return ask(link, gst_video_event_new_upstream_force_key_unit(GST_CLOCK_TIME_NONE, TRUE, 0));
+  };
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_EQ(key(0), 1) << run;
+    EXPECT_EQ(key(1) + key(0), 0) << run;
+    Advance(399 * GST_MSECOND);
+    EXPECT_EQ(key(1), 0) << run;
+    Advance(GST_MSECOND);
+    EXPECT_EQ(key(1), 1) << "0.4 s after the one before";
+    EXPECT_EQ(key(0), 0) << run;
+    for (const std::size_t link : {0U, 1U, 1U})
+      EXPECT_EQ(ask(link, gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
+                                               gst_structure_new_empty("other"))),
+                1)
+          << "others are no wishes for a key unit";
+    Restart();
+  }
+}
+
+TEST_F(BondedSink, CountsWhatStrangersSendToAnyLink) {
+  Start();
+  const std::vector<std::uint8_t> no_report(12, 0);
+  std::array<int, 2> taken{};
+  for (std::size_t i = 0; i < 2; ++i)
+    gst_pad_add_probe(
+        PadOf(NameOf("screamtx", i), "rtcp_sink").get(), GST_PAD_PROBE_TYPE_BUFFER,
+        [](GstPad*, GstPadProbeInfo*, gpointer count) -> GstPadProbeReturn {
+          ++*static_cast<int*>(count);
+          return GST_PAD_PROBE_OK;
+        },
+        &taken[i], nullptr);
+  guint64 foreign = 0;
+  for (std::size_t link = 0; link < 2; ++link) {
+    const guint own = kPorts[link], other = kPorts[1 - link];
+    Bring(link, From(no_report, "127.0.0.1", own));
+    EXPECT_EQ(taken[link], 1) << link;
+    EXPECT_EQ(Stats(sink_)["feedback-foreign-address"], foreign) << link;
+    Bring(link, From(no_report, "127.0.0.1", other));
+    Bring(link, From(no_report, "127.0.0.3", own));
+    Bring(link, BufferPtr(FromBytes(no_report)));  // from nobody
+    GstBufferList* list = gst_buffer_list_new();
+    for (const guint port : {own, other, own, other})
+      gst_buffer_list_add(list, From(no_report, "127.0.0.1", port).release());
+    gst_pad_push_list(PadOf(NameOf("ecnudpsrc", link), "src").get(), list);
+    EXPECT_EQ(taken[link], 3) << link;
+    EXPECT_EQ(Stats(sink_)["feedback-foreign-address"], foreign += 5) << link;
+  }
+  Restart();
+}
+
+TEST_F(BondedSink, WaitsAtTheEndForWhatMayStillArrive) {
+  Start();
+  Advance(2 * GST_SECOND);
+  Send(1);
+  const GstClockTime made = time_.now();
+  std::thread end([this] { gst_harness_push_event(h_.get(), gst_event_new_eos()); });
+  g_usleep(50'000);  // longer than it takes to end at once
+  Advance(150 * GST_MSECOND);
+  g_usleep(50'000);
+  Advance(51 * GST_MSECOND);
+  end.join();
+  EXPECT_EQ(ended_at_, made + 201 * GST_MSECOND);
+}
+
+TEST_F(BondedSink, EndsAtOnceWhereAllHasArrived) {
+  Start();
+  for (const bool with_packets : {false, true}) {
+    if (with_packets) {
+      Restart();
+      const auto links = Send(1);
+      ASSERT_FALSE(links.empty());
+      for (const std::size_t link : links) ASSERT_TRUE(HasLeft(link));
+      for (const std::size_t link : links) Report(link, 1);
+    }
+    ended_at_ = 0;
+    gst_harness_push_event(h_.get(), gst_event_new_eos());  // the clock stands
+    EXPECT_EQ(ended_at_, time_.now()) << with_packets;
+  }
+}
+
+TEST_F(BondedSink, BeginsAnewInEachRun) {
+  Start();
+  std::set<guint> first_targets;
+  for (int run = 0; run < 2; ++run) {
+    const auto links = Send(1);
+    for (const std::size_t link : links) ASSERT_TRUE(HasLeft(link));
+    GstLidarTargetBitrate target{};
+    EXPECT_TRUE(Eventually([&] {
+      Advance(10 * GST_MSECOND);
+      const EventPtr event(gst_harness_try_pull_upstream_event(h_.get()));
+      return event && gst_lidar_event_parse_target_bitrate(event.get(), &target);
+    })) << "the encoder is told in run "
+        << run;
+    first_targets.insert(target.bitrate);
+    for (const char* field : {"packets-first", "packets-copies", "packets-sent"})
+      EXPECT_LE(OfLink(field, 0) + OfLink(field, 1), links.size()) << field;
+    EXPECT_EQ(OfLink("packets-first", 0) + OfLink("packets-first", 1), 1U);
+    Advance(500 * GST_MSECOND);
+    while (const EventPtr late{gst_harness_try_pull_upstream_event(h_.get())}) continue;
+    Restart();
+  }
+  EXPECT_EQ(first_targets.size(), 1U);
+}
+
+TEST_F(BondedSink, TellsOnceOfSwappedFeedbackAndInTheNextRunAgain) {
+  Start();
+  guint16 seq = 1;
+  for (int run = 0; run < 2; ++run) {
+    for (const std::size_t link : Send(seq++)) ASSERT_TRUE(HasLeft(link));
+    Advance(2 * GST_SECOND);  // both links are tried no more
+    for (int swapped = 0; swapped < 4; ++seq) {
+      const auto links = Send(seq);
+      if (links.size() != 1) continue;
+      const std::size_t own = *links.begin(), other = 1 - own;
+      const guint64 accepted = OfLink("feedback-accepted", own);
+      const guint64 ignored = OfLink("feedback-ignored", other);
+      ASSERT_TRUE(HasLeft(own));
+      Advance(20 * GST_MSECOND);
+      Report(other, seq);
+      if (OfLink("feedback-ignored", other) == ignored) continue;  // it has a copy by now
+      ++swapped;
+      EXPECT_EQ(OfLink("feedback-ignored", other), ignored + 1);
+      ASSERT_TRUE(Eventually([&] { return OfLink("feedback-accepted", own) == accepted + 1; }))
+          << "it is used for its own";
+    }
+    EXPECT_EQ(Warnings(kSwapped), 1) << run;
+    Restart();
+  }
+}
+
+}  // namespace
+}  // namespace lidar::test
