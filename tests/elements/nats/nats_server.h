@@ -60,7 +60,11 @@ class NatsServer {
     waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
-  void Freeze() { kill(pid_, SIGSTOP); }
+  /// Returns once it stands still.
+  void Freeze() {
+    kill(pid_, SIGSTOP);
+    waitpid(pid_, nullptr, WUNTRACED);
+  }
   void Thaw() { kill(pid_, SIGCONT); }
 
   std::string url(const std::string& scheme = "nats", const std::string& user = "") const {
