@@ -98,36 +98,74 @@ std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
   return lines;
 }
 
+/// Finds the line that is nearest to a point. Sorts the beams.
+class NearestLine {
+ public:
+  explicit NearestLine(std::vector<FoundBeam>* beams) : beams_(*beams) {
+    std::sort(beams_.begin(), beams_.end(), [](const FoundBeam& a, const FoundBeam& b) {
+      return a.line.tangent > b.line.tangent;
+    });
+    for (const FoundBeam& beam : beams_) {
+      low_ = std::min(low_, beam.line.height_m);
+      high_ = std::max(high_, beam.line.height_m);
+    }
+  }
+  /// Returns the beam whose line is nearest within `reach_m`, except `other_than`; null: none.
+  FoundBeam* Find(const Sighting& s, double reach_m, const FoundBeam* other_than = nullptr) const {
+    constexpr double kSteepest = 1.81;  // length of a line of kMostTangent by its rho
+    const double rho = std::max(s.rho_m, 1e-3);
+    // Lines of other tangents pass the point further off, at any of the heights.
+    const double most = (s.z_m - low_ + kSteepest * reach_m) / rho;
+    const double least = (s.z_m - high_ - kSteepest * reach_m) / rho;
+    FoundBeam* nearest = nullptr;
+    auto beam = std::lower_bound(beams_.begin(), beams_.end(), most,
+                                 [](const FoundBeam& b, double t) { return b.line.tangent > t; });
+    for (; beam != beams_.end() && beam->line.tangent >= least; ++beam) {
+      const double off = std::abs(beam->line.Above(s));
+      if (off >= reach_m || &*beam == other_than) continue;
+      reach_m = off;
+      nearest = &*beam;
+    }
+    return nearest;
+  }
+
+ private:
+  std::vector<FoundBeam>& beams_;
+  double low_ = 0;
+  double high_ = 0;
+};
+
 /// Gives each point to the nearest line within `reach_m`.
 void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
-  auto& beams = found->beams;
-  for (FoundBeam& beam : beams) beam.points.clear();
+  for (FoundBeam& beam : found->beams) beam.points.clear();
   found->points = 0;
-  if (beams.empty()) return;
-  const double height = beams[beams.size() / 2].line.height_m;
+  const NearestLine lines(&found->beams);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const Sighting& s = points[i];
-    const double tangent = (s.z_m - height) / std::max(s.rho_m, 1e-3);
-    const auto below =
-        std::lower_bound(beams.begin(), beams.end(), tangent,
-                         [](const FoundBeam& b, double t) { return b.line.tangent > t; });
-    // Heights differ, so a line may be nearer than one with a closer tangent.
-    constexpr std::ptrdiff_t kAround = 4;
-    const std::ptrdiff_t at = below - beams.begin();
-    const auto size = static_cast<std::ptrdiff_t>(beams.size());
-    FoundBeam* nearest = nullptr;
-    double least = reach_m;
-    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(at - kAround, 0);
-         k < std::min(at + kAround, size); ++k) {
-      FoundBeam& beam = beams[static_cast<std::size_t>(k)];
-      const double off = std::abs(beam.line.Above(s));
-      if (off >= least) continue;
-      least = off;
-      nearest = &beam;
-    }
+    FoundBeam* nearest = lines.Find(points[i], reach_m);
     if (nearest == nullptr) continue;
     nearest->points.push_back(i);
     ++found->points;
+  }
+}
+
+/// Drops beams whose points other lines hold as well, the smallest first.
+void DropNeedless(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
+  constexpr double kMost = 0.8;
+  const NearestLine lines(&found->beams);
+  std::vector<FoundBeam*> rising;
+  for (FoundBeam& beam : found->beams) rising.push_back(&beam);
+  std::sort(rising.begin(), rising.end(), [](const FoundBeam* a, const FoundBeam* b) {
+    return a->points.size() < b->points.size();
+  });
+  for (FoundBeam* beam : rising) {
+    std::vector<FoundBeam*> others;
+    for (const std::uint32_t p : beam->points) {
+      FoundBeam* other = lines.Find(points[p], reach_m, beam);
+      // A beam that was dropped holds no points.
+      if (other != nullptr && !other->points.empty()) others.push_back(other);
+    }
+    if (static_cast<double>(others.size()) >= kMost * static_cast<double>(beam->points.size()))
+      beam->points.clear();
   }
 }
 
@@ -176,28 +214,6 @@ void DropWeakBeams(std::size_t fewest, FoundBeams* found) {
               beams.end());
   std::sort(beams.begin(), beams.end(),
             [](const FoundBeam& a, const FoundBeam& b) { return a.line.tangent > b.line.tangent; });
-}
-
-/// Merges beams that were found twice.
-void MergeTwins(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
-  auto& beams = found->beams;
-  for (std::size_t i = 1; i < beams.size();) {
-    constexpr double kMostApart = 0.005;  // of tangents
-    FoundBeam both = beams[i - 1].points.size() > beams[i].points.size() ? beams[i - 1] : beams[i];
-    both.points = beams[i - 1].points;
-    both.points.insert(both.points.end(), beams[i].points.begin(), beams[i].points.end());
-    Refit(points, &both);
-    const auto near = std::count_if(both.points.begin(), both.points.end(), [&](std::uint32_t p) {
-      return std::abs(both.line.Above(points[p])) < reach_m;
-    });
-    if (beams[i - 1].line.tangent - beams[i].line.tangent > kMostApart ||
-        static_cast<double>(near) < 0.95 * static_cast<double>(both.points.size())) {
-      ++i;
-      continue;
-    }
-    beams[i - 1] = std::move(both);
-    beams.erase(beams.begin() + static_cast<std::ptrdiff_t>(i));
-  }
 }
 
 /// Finds bending beams as peaks of the elevations.
@@ -314,7 +330,9 @@ FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
     DropWeakBeams(kFewest, &found);
     for (FoundBeam& beam : found.beams) Refit(points, &beam);
   }
-  MergeTwins(points, 0.003, &found);
+  Assign(points, 0.003, &found);
+  DropNeedless(points, 0.01, &found);
+  DropWeakBeams(kFewest, &found);
   Assign(points, 0.003, &found);
   DropWeakBeams(kFewest, &found);
   return found;

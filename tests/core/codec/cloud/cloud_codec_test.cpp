@@ -595,6 +595,32 @@ TEST(CloudCodec, FindsTheBeamsOfSensorsThatTakeTurns) {
   for (const double bits : BitsOfStream(clouds)) EXPECT_LE(bits, 4);
 }
 
+/// The beams start at two heights, as an HDL-64's. On the floor each beam is a ring, through which
+/// lines of any height pass.
+TEST(BeamTable, FindsTheBeamsOverAFlatFloor) {
+  std::vector<Sighting> sightings;
+  std::mt19937 random(20);
+  for (int firing = 0; firing < 600; ++firing)
+    for (int beam = 0; beam < 64; ++beam) {
+      const bool upper = beam < 32;
+      const double azimuth = 0.6 * firing * M_PI / 180;
+      const double tangent = upper ? 0.034 - 0.0061 * beam : 0.155 - 0.0098 * beam;
+      const double height = upper ? 0.2 : 0.12;
+      const double wall =
+          std::min(12 / std::abs(std::cos(azimuth)), 13 / std::abs(std::sin(azimuth)));
+      double rho = wall + 0.3 * (firing / 40 % 3);
+      if (tangent < 0) rho = std::min(rho, (1.73 + height) / -tangent);
+      rho += 1e-3 * (static_cast<double>(random() % 21) - 10);
+      sightings.emplace_back(Point{static_cast<float>(rho * std::cos(azimuth)),
+                                   static_cast<float>(rho * std::sin(azimuth)),
+                                   static_cast<float>(height + rho * tangent)});
+    }
+  const auto table = FindBeams(sightings);
+  ASSERT_TRUE(table);
+  EXPECT_GE(table->rows(), 64U);
+  EXPECT_LE(table->rows(), 68U);
+}
+
 TEST(BeamTable, FindsNoneInACloudWithoutBeams) {
   std::mt19937 random(4);
   std::vector<Sighting> sightings;
