@@ -44,7 +44,7 @@ inline void ServeSinkPads(gpointer iface, gpointer) {
   };
 }
 
-/// Adds a ghost pad of the given type for `target`, and makes it a child.
+/// Adds a ghost pad of `type` for `target`, and emits "child-added".
 inline GstPad* AddGhostSink(GstElement* element, GType type, GstPadTemplate* pad_template,
                             const gchar* name, GstPad* target) {
   auto* ghost = GST_PAD(g_object_new(type, "name", name, "direction", GST_PAD_SINK, "template",

@@ -11,7 +11,7 @@ namespace {
 
 // Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
-// A slice may announce this many skipped slices, which may be scans of one slice each.
+// A slice may announce 64 skipped slices, at worst of as many scans.
 constexpr std::int64_t kKeptScans = 64;
 constexpr int kToldSlices = 64;
 

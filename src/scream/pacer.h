@@ -25,8 +25,8 @@ class Pacer {
   }
   /// Makes gaps between packets longer and shorter by this, to show other flows' packets.
   void set_ripple(Duration ripple) { ripple_ = ripple; }
-  /// Packets leave so that a link of rate `link` would queue them for at most `longest`. A large
-  /// frame waits here until a small one has left room for it.
+  /// Packets leave so that a link of rate `link` would queue them for at most `longest`. The rest
+  /// of a larger frame leaves at `link`.
   void LimitQueue(DataRate link, Duration longest) {
     link_ = link;
     longest_queue_ = longest;

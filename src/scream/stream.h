@@ -24,10 +24,9 @@ class Stream {
   void OnDropped(Time now, std::size_t packets);
   /// Another path delivered the packet at the head. The rest of its group is still of use.
   void OnUnneeded(Time now);
-  /// Returns the number of useless packets at the head; the queue leaves at `rate`. An access unit,
-  /// or a whole group of them, is late if its last packet would leave later than max_queue_delay
-  /// after the middle of its capture. The rest of a unit that has begun to leave may take
-  /// kBegunStay times as long.
+  /// Returns how many packets at the head are of no use if the queue drains at `rate`. An access
+  /// unit, or its whole group, is late if its last packet would leave more than max_queue_delay, or
+  /// kBegunStay times that once it has begun to leave, after the middle of its capture.
   std::size_t LatePackets(Time now, DataRate rate) const;
 
   bool empty() const { return queue_.empty(); }

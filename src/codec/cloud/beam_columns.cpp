@@ -43,7 +43,7 @@ std::int32_t InLengthUnits(double um) {
   return kUnit * static_cast<std::int32_t>(std::lround(um / kUnit));
 }
 
-/// Finds each beam's reach, the position of range 0: sensors measure in steps of one or several
+/// Finds where each beam's range 0 lies, up to a multiple of the unit: sensors measure in
 /// millimetres, from a zero of their own.
 void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
   constexpr double kClear = 0.8;  // best: 1

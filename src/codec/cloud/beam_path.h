@@ -38,7 +38,7 @@ class BeamPath {
 
   using Terms = std::array<double, kPathTerms>;
   Terms TermsAt(std::uint32_t column) const;
-  /// Returns the azimuth of the turn without wrapping.
+  /// Returns the azimuth without curves and wrapping.
   std::int64_t TurnAt(std::uint32_t column) const {
     return std::int64_t{rate_} * column >> kRateBits;
   }

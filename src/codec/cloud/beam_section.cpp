@@ -101,7 +101,7 @@ std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::in
   return extras;
 }
 
-/// Sets `decoded` and `grid` to the ranges of `image` and their grid as a decoder gets them.
+/// Sets `decoded` and `grid` to what a decoder gets: the ranges of `image`, their grid.
 bool ComeBack(const RangeImage& image, const RangeSettings& settings,
               const std::vector<std::uint8_t>& block, const SensorModel& model, RangeImage* decoded,
               RangeGrid* grid) {

@@ -17,7 +17,7 @@ struct ExactField {
   std::vector<std::uint64_t> numbers;  // bits as in memory
 };
 
-/// Fields and order of points, in the order of decoding.
+/// Values and places of the points, in decoding order.
 struct ExactPart {
   std::vector<ExactField> fields;
   bool keeps_order = false;

@@ -18,8 +18,8 @@ struct MixingSettings {
   IntensityScale intensity;  // 0 bits: geometry only
   unsigned effort = 2;       // 1 to 3
   mixing::Memory memory{};   // of the image's pixels; empty: the image stands alone
-  /// If this is above 0 and the effort is kSearchingEffort, each return takes the cheapest bin
-  /// within this error, which may exceed the grid's. With a memory, the caller has chosen the bins.
+  /// If above 0, at effort kSearchingEffort, each return takes the cheapest bin within this error,
+  /// which may exceed that of `grid`. With `memory`, the caller has chosen the bins.
   std::uint32_t error_mm = 0;
   /// Uses refined models, for sensors on which the start states were not trained. Ignored at effort
   /// 1 and with a memory.

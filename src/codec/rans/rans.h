@@ -21,7 +21,7 @@ constexpr unsigned kRansWordBits = 32;
 constexpr unsigned kRansStateBytes = (kRansLowBits + kRansWordBits) / 8;
 /// Fewest bytes of a written state, up to kRansStateBytes. An unused lane has none.
 constexpr unsigned kRansShortestState = kRansStateBytes - 2;
-/// Most bits behind a symbol, and most bits on their own, that a state of kRansLow can give.
+/// Most bits that a state of kRansLow can give: with a symbol, and without one.
 constexpr unsigned kMaxJointBits = kRansLowBits - kProbabilityBits;
 constexpr unsigned kMaxPlainBits = kRansLowBits;
 

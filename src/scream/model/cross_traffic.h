@@ -50,7 +50,7 @@ class CrossTraffic {
   }
   /// Arrival times have the same rounding only within a report.
   void BeginReport() { last_.reset(); }
-  /// Keeps its value while departures are too even to show others.
+  /// Stays while departures are too even to show other flows.
   bool found() const { return found_; }
   /// Share of the link that others use while we send; unset while too little is known.
   std::optional<double> share() const {

@@ -34,8 +34,8 @@ inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
 
 /// Returns a value from -1, clearly less than half of the link, to 1, clearly more.
 inline double AboveHalf(DataRate own, DataRate link) {
-  // The value is below one half, so that two of our flows with half each both give way early. A
-  // flow that sends bursts also makes the link look faster than it is.
+  // It is below one half, so that two of our flows with half each both give way early, and because
+  // a flow's bursts make the link look faster than it is.
   constexpr double kHalf = 0.46;
   // A step in place of this ramp gives two of our flows a queue of 5.2 ms for 3.9 at p99, and
   // Prague at 4 Mbit/s a Jain's index of 0.946 for 0.955.

@@ -209,7 +209,7 @@ TEST(TrajectoryErrors, TheEndIsSeenFromTheFirstSecond) {
   EXPECT_NEAR(error->end_error_m, 19.45, 1e-6);
 }
 
-/// A drift that grows with the way shows in the longest stretches only.
+/// The mean drift differs with the length of the stretches.
 TEST(TrajectoryErrors, DriftIsMeasuredOverUpTo800Metres) {
   const Trajectory truth = Straight(802);
   Trajectory bent = truth;

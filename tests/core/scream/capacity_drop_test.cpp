@@ -56,8 +56,7 @@ TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
   EXPECT_FALSE(Update(20));
 }
 
-/// Packets that arrive as they left show our own rate if others use the link, too, and not its
-/// capacity.
+/// Beside other flows, packets that arrive as they left show our own rate, not the capacity.
 TEST_F(CapacityDropTest, TakesItsOwnRateForNoDropWhereMarksWork) {
   path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
   EXPECT_FALSE(Update(10));

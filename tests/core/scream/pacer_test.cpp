@@ -82,8 +82,7 @@ TEST(Pacer, ASmallFrameLeavesRoomForALargerOne) {
   EXPECT_EQ(pacer.next(), kStart + 20ms + 640us);
 }
 
-/// Gaps come in pairs of a longer and a shorter one, in an order that no other flow's packets can
-/// have.
+/// Gaps come in pairs of a longer and a shorter one, in an order without a period.
 TEST(Pacer, GapsAreUnevenByTheRippleAndEvenOnAverage) {
   const Parameters p;
   for (const Duration ripple : {Duration(200us), Duration(10ms)}) {

@@ -49,7 +49,7 @@ class Trial {
 
 Scenario Named(const char* name) { return *FindScenario(name, Parameters()); }
 
-/// The path is dead from 10 s to 40 s. All that it held is lost except for a buffer.
+/// The path is dead from 10 s to 40 s. It keeps 100 kB and drops what comes after.
 Scenario WithOutage(Scenario s) {
   s.config.forward.capacity.AddOutage(10s, 40s);
   s.config.forward.limit.bytes = DataSize::Bytes(100000);

@@ -192,7 +192,7 @@ TEST(Alone, AFlowOfOneMegabitUsesItsLink) {
   EXPECT_GE(Measure(s, Simulate(s.config)).utilisation, 0.93);
 }
 
-/// The index is 0.80 and 0.87 if each round that is mostly marked counts as a drop of the capacity.
+/// Jain's index falls to 0.80 and 0.87 if each mostly marked round counts as a capacity drop.
 TEST(BesidePrague, BothGetAboutTheSameBehindAStepAsWell) {
   for (const char* name : {"prague_step_1ms_20M", "prague_step_3ms_20M"})
     for (const double frames_per_second : {50.0, 80.0})

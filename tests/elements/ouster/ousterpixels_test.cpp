@@ -19,7 +19,7 @@ using gst::CloudInfo;
 
 const char* const kPcap = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 
-/// The capture's sensor, as if it did not turn: 120 degrees wide, 50 degrees high.
+/// The sensor of kPcap, its pixels fixed to a view of 120 by 50 degrees.
 class OusterPixels : public ::testing::Test {
  protected:
   OusterPixels() {

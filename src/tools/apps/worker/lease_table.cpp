@@ -10,7 +10,7 @@ namespace lidar::worker {
 namespace {
 
 constexpr int kRenewals = 4;  // writes in the time of a lease
-/// Other workers wait for a lease and 1 / kMargin of it: steady clocks differ by far less.
+/// Other workers wait 1 / kMargin longer than the lease: steady clocks differ by far less.
 constexpr int kMargin = 20;
 /// A full worker waits for this part of a lease, so that others go first.
 constexpr double kHesitation = 0.3;

@@ -53,8 +53,8 @@ class RobotPipeline {
   std::uint64_t stream() const { return stream_; }
   /// Returns the progress from which it began.
   const std::optional<Progress>& begin() const { return begin_; }
-  /// Returns true if it begins behind `last`, the newest message of the stream at `asked_at`: then
-  /// the record is wrong.
+  /// Returns true if its first message is after `last`, the stream's newest at `asked_at`: the
+  /// record is wrong.
   bool IsAheadOf(std::uint64_t last, Time asked_at) const {
     return begin_scan_ > last && asked_at > made_at_;
   }

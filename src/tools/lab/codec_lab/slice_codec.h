@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices of scans through the codec, as dracoenc codes them, with sizes and real errors.
+// Codes slices of scans as dracoenc does, and measures sizes and real errors.
 #pragma once
 #include <cstdint>
 #include <map>

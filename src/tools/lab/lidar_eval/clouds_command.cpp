@@ -48,7 +48,7 @@ double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
   return largest;
 }
 
-/// Returns points as a driver publishes them: column by column, without missing returns and ranges.
+/// Returns points as a driver publishes them: column by column, no ranges, only returns.
 std::vector<float> PointsOf(const Scan& scan) {
   const RangeProjection& projection = scan.geometry->projection;
   std::vector<float> xyz;
