@@ -28,8 +28,8 @@ bool IsOfHello(ByteView d) {
   constexpr guint8 kHandshakeRecord = 22, kClientHello = 1;
   if (d.size < kRecordHeader + kHandshakeHeader) return false;
   const gsize length = gsize{d.data[11]} << 8 | d.data[12];
-  return d.size >= kRecordHeader + length && d.data[0] == kHandshakeRecord && d.data[3] == 0 &&
-         d.data[4] == 0 &&  // the first epoch
+  return length >= kHandshakeHeader && d.size >= kRecordHeader + length &&
+         d.data[0] == kHandshakeRecord && d.data[3] == 0 && d.data[4] == 0 &&  // the first epoch
          d.data[kRecordHeader] == kClientHello;
 }
 

@@ -21,6 +21,7 @@ using test::frozen_at;
 using test::ToBytes;
 using Bytes = std::vector<std::uint8_t>;
 
+constexpr std::size_t kLengthOfRecord = 11;          // two bytes
 constexpr std::size_t kRandomOfHello = 13 + 12 + 2;  // behind the headers and the version
 
 /// A datagram, and the port at the server's side from which it comes or to which it goes.
@@ -268,6 +269,20 @@ TEST_F(DtlsEnds, AServerAnswersToNothingButAHello) {
     if (type != 22) Give(*server_, {5'001, other});
   }
   EXPECT_EQ(Answered(0), std::set<guint16>{});
+}
+
+TEST_F(DtlsEnds, ARecordWithoutAMessageBeginsNoHandshake) {
+  const auto hello = HelloOfClient();
+  frozen_at = g_get_monotonic_time();
+  StartServer();
+  Bytes empty = hello.front();
+  empty[kLengthOfRecord] = empty[kLengthOfRecord + 1] = 0;
+  for (int i = 0; i < 20; ++i) {
+    ++empty[kRandomOfHello];
+    Give(*server_, {5'001, empty});
+  }
+  for (const Bytes& part : hello) Give(*server_, {5'001, part});
+  EXPECT_EQ(Answered(1), std::set<guint16>{5'001});
 }
 
 }  // namespace
