@@ -120,10 +120,6 @@ std::optional<BeamTable> FindBentColumns(const FoundBeams& found,
   return table;
 }
 
-}  // namespace
-
-namespace {
-
 /// Elevations and offsets beyond what points show would cost bits.
 void RoundAngles(BeamTable* table) {
   constexpr std::int32_t kUnit = 8;

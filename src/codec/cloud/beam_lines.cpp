@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "src/codec/cloud/median.h"
+
 namespace lidar::codec::cloud {
 namespace {
 
@@ -105,34 +107,43 @@ class NearestLine {
     std::sort(beams_.begin(), beams_.end(), [](const FoundBeam& a, const FoundBeam& b) {
       return a.line.tangent > b.line.tangent;
     });
-    for (const FoundBeam& beam : beams_) {
-      low_ = std::min(low_, beam.line.height_m);
-      high_ = std::max(high_, beam.line.height_m);
-    }
+    std::vector<double> heights;
+    for (const FoundBeam& beam : beams_) heights.push_back(beam.line.height_m);
+    middle_ = MedianOf(heights);
+    low_ = heights.empty() ? 0 : *std::min_element(heights.begin(), heights.end());
+    high_ = heights.empty() ? 0 : *std::max_element(heights.begin(), heights.end());
   }
   /// Returns the beam whose line is nearest within `reach_m`, except `other_than`; null: none.
   FoundBeam* Find(const Sighting& s, double reach_m, const FoundBeam* other_than = nullptr) const {
-    constexpr double kSteepest = 1.81;  // length of a line of kMostTangent by its rho
+    constexpr double kSteepest = 1.81;      // length of a line of kMostTangent by its rho
+    constexpr std::ptrdiff_t kAround = 32;  // bounds the time if many lines are near a point
     const double rho = std::max(s.rho_m, 1e-3);
     // Lines of other tangents pass the point further off, at any of the heights.
-    const double most = (s.z_m - low_ + kSteepest * reach_m) / rho;
-    const double least = (s.z_m - high_ - kSteepest * reach_m) / rho;
+    const std::ptrdiff_t first = Below((s.z_m - low_ + kSteepest * reach_m) / rho);
+    const std::ptrdiff_t end = Below((s.z_m - high_ - kSteepest * reach_m) / rho);
+    const std::ptrdiff_t middle = Below((s.z_m - middle_) / rho);
     FoundBeam* nearest = nullptr;
-    auto beam = std::lower_bound(beams_.begin(), beams_.end(), most,
-                                 [](const FoundBeam& b, double t) { return b.line.tangent > t; });
-    for (; beam != beams_.end() && beam->line.tangent >= least; ++beam) {
+    for (auto i = std::max(first, middle - kAround); i < std::min(end, middle + kAround); ++i) {
+      FoundBeam* beam = &beams_[static_cast<std::size_t>(i)];
       const double off = std::abs(beam->line.Above(s));
-      if (off >= reach_m || &*beam == other_than) continue;
+      if (off >= reach_m || beam == other_than) continue;
       reach_m = off;
-      nearest = &*beam;
+      nearest = beam;
     }
     return nearest;
   }
 
  private:
+  /// Returns the number of lines that are steeper than `tangent`.
+  std::ptrdiff_t Below(double tangent) const {
+    const auto steeper = [](const FoundBeam& b, double t) { return b.line.tangent > t; };
+    return std::lower_bound(beams_.begin(), beams_.end(), tangent, steeper) - beams_.begin();
+  }
+
   std::vector<FoundBeam>& beams_;
-  double low_ = 0;
-  double high_ = 0;
+  double low_;
+  double middle_;
+  double high_;
 };
 
 /// Gives each point to the nearest line within `reach_m`.
@@ -158,13 +169,12 @@ void DropNeedless(const std::vector<Sighting>& points, double reach_m, FoundBeam
     return a->points.size() < b->points.size();
   });
   for (FoundBeam* beam : rising) {
-    std::vector<FoundBeam*> others;
-    for (const std::uint32_t p : beam->points) {
-      FoundBeam* other = lines.Find(points[p], reach_m, beam);
-      // A beam that was dropped holds no points.
-      if (other != nullptr && !other->points.empty()) others.push_back(other);
-    }
-    if (static_cast<double>(others.size()) >= kMost * static_cast<double>(beam->points.size()))
+    const auto elsewhere =
+        std::count_if(beam->points.begin(), beam->points.end(), [&](std::uint32_t p) {
+          const FoundBeam* other = lines.Find(points[p], reach_m, beam);
+          return other != nullptr && !other->points.empty();  // a dropped beam holds no points
+        });
+    if (static_cast<double>(elsewhere) >= kMost * static_cast<double>(beam->points.size()))
       beam->points.clear();
   }
 }
