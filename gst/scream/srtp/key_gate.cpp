@@ -2,6 +2,7 @@
 #include "gst/scream/srtp/key_gate.h"
 
 #include "gst/common/latency.h"
+#include "gst/common/packet_probe.h"
 
 namespace lidar::gst {
 namespace {
@@ -17,9 +18,7 @@ void KeyGate::Guard(const std::shared_ptr<KeyGate>& gate, GstPad* pad) {
   const std::lock_guard lock(gate->mutex_);
   if (gate->is_open_) return;
   const gulong probe = gst_pad_add_probe(
-      pad,
-      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_BUFFER |
-                                   GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      pad, static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BLOCK | kPacketProbe),
       [](GstPad* p, GstPadProbeInfo* info, gpointer held) {
         return (*static_cast<std::shared_ptr<KeyGate>*>(held))->OnPackets(p, info);
       },
