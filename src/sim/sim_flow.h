@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "src/scream/target_notifier.h"
+#include "src/base/target_notifier.h"
 #include "src/sim/network.h"
 #include "src/sim/simulation.h"
 

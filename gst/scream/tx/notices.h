@@ -8,8 +8,8 @@
 
 #include "gst/common/refs.h"
 #include "gst/scream/tx/feedback_watch.h"
+#include "src/base/target_notifier.h"
 #include "src/scream/controller.h"
-#include "src/scream/target_notifier.h"
 
 namespace lidar::gst {
 
@@ -58,7 +58,7 @@ class Notices {
   MessagePtr EcnMessage(GstObject* element);
   MessagePtr FeedbackMessage(GstObject* element);
 
-  scream::TargetNotifier notifier_;
+  TargetNotifier notifier_;
   guint estimated_bps_ = 0;
   bool estimate_due_ = false;
   Time next_stats_{};

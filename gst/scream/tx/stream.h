@@ -13,8 +13,8 @@
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/tx/gstscreamtxpad.h"
 #include "gst/scream/tx/receipts.h"
+#include "src/base/target_notifier.h"
 #include "src/scream/controller.h"
-#include "src/scream/target_notifier.h"
 
 namespace lidar::gst {
 
@@ -63,7 +63,7 @@ struct TxStream {
   scream::StreamId id = -1;
   std::deque<TxItem> queue;
   OverheadMeter overhead;
-  scream::TargetNotifier notifier;
+  TargetNotifier notifier;
   std::optional<GstLidarBitrateBounds> bounds;
   std::optional<guint32> ssrc;         // from the caps, or of the first media packet
   std::optional<guint8> payload_type;  // from the caps, or of the first media packet

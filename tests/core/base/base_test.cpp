@@ -13,6 +13,7 @@
 #include "src/base/crc.h"
 #include "src/base/row_file.h"
 #include "src/base/sequence.h"
+#include "src/base/target_notifier.h"
 #include "src/base/units.h"
 
 namespace lidar {
@@ -156,6 +157,17 @@ TEST(Units, SizeOverTimeIsARate) {
   EXPECT_EQ((DataRate::BitsPerSecond(1e6) * 10ms).bytes(), 1250);
   EXPECT_EQ(DataSize::Bytes(1250) / DataRate::BitsPerSecond(1e6), 10ms);
   EXPECT_EQ(DataSize::Bytes(1) / DataRate{}, Duration::max());
+}
+
+TEST(TargetNotifier, TellsMovesOfTwoPercentAtOnceAndAllElseEvery200Milliseconds) {
+  const auto mbps = [](double rate) { return DataRate::BitsPerSecond(rate * 1e6); };
+  const Time start{1h};
+  TargetNotifier notifier;
+  EXPECT_TRUE(notifier.ShouldNotify(start, mbps(10)));
+  EXPECT_FALSE(notifier.ShouldNotify(start + 1ms, mbps(10.19)));
+  EXPECT_TRUE(notifier.ShouldNotify(start + 1ms, mbps(10.21)));
+  EXPECT_FALSE(notifier.ShouldNotify(start + 200ms, mbps(10.21)));
+  EXPECT_TRUE(notifier.ShouldNotify(start + 201ms, mbps(10.21)));
 }
 
 TEST(RowFile, KeepsItsRowsAndNothingThatIsEmpty) {

@@ -6,9 +6,9 @@
 #include <map>
 #include <memory>
 
+#include "src/base/target_notifier.h"
 #include "src/rtcp/feedback_generator.h"
 #include "src/scream/controller.h"
-#include "src/scream/target_notifier.h"
 #include "src/sim/network.h"
 #include "src/sim/simulated_time.h"
 #include "src/sim/tcp_flow.h"
@@ -304,7 +304,7 @@ class BondedRun {
   std::map<std::uint16_t, WirePacket> packets_;
   std::map<std::size_t, bool> seen_;
   std::uint16_t seq_ = 65000;
-  scream::TargetNotifier notifier_;
+  TargetNotifier notifier_;
   DataRate told_;
   RunResult result_;
 };

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "src/scream/target_notifier.h"
 #include "src/sim/simulated_time.h"
 
 namespace lidar::scream {
@@ -382,15 +381,6 @@ TEST_F(StreamTest, RepairPacketsOfAnotherSourceAreNoFrames) {
   EXPECT_TRUE(stream_.Owns(2));
   Frame(kStart + 100ms, 2, 2);
   EXPECT_EQ(stream_.LatePackets(kStart + 201ms, DataRate::Infinite()), 4U);
-}
-
-TEST(TargetNotifier, TellsMovesOfTwoPercentAtOnceAndAllElseEvery200Milliseconds) {
-  TargetNotifier notifier;
-  EXPECT_TRUE(notifier.ShouldNotify(kStart, Mbps(10)));
-  EXPECT_FALSE(notifier.ShouldNotify(kStart + 1ms, Mbps(10.19)));
-  EXPECT_TRUE(notifier.ShouldNotify(kStart + 1ms, Mbps(10.21)));
-  EXPECT_FALSE(notifier.ShouldNotify(kStart + 200ms, Mbps(10.21)));
-  EXPECT_TRUE(notifier.ShouldNotify(kStart + 201ms, Mbps(10.21)));
 }
 
 }  // namespace
