@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Detects a bottleneck that marks ECT(1) like ECT(0), as RFC 3168 says (RFC 9331, section 4.3).
 #pragma once
-#include <algorithm>
-
-#include "src/base/time.h"
+#include "src/scream/model/recent_min.h"
 
 namespace lidar::scream {
 
@@ -13,15 +11,10 @@ namespace lidar::scream {
 class ClassicEcn {
  public:
   void OnPacket(Time now, Duration qdelay, bool marked) {
-    if (now - lowest_since_ >= kLowestWindow) {
-      previous_lowest_ = lowest_;
-      lowest_ = qdelay;
-      lowest_since_ = now;
-    }
-    lowest_ = std::min(lowest_, qdelay);
+    shortest_.Add(now, qdelay);
     if (marked) last_mark_ = now;
     if (marked || now - last_mark_ > kMarksLately) return;
-    const Duration queue = qdelay - std::min(lowest_, previous_lowest_);
+    const Duration queue = qdelay - shortest_.value();
     unmarked_ += FromSeconds(Seconds(queue - unmarked_) * kGain);
     if (unmarked_ > kLongQueue) found_ = true;
     if (unmarked_ < kShort) found_ = false;
@@ -29,14 +22,11 @@ class ClassicEcn {
   bool found() const { return found_; }
 
  private:
-  static constexpr Duration kLowestWindow = std::chrono::seconds(1);
   static constexpr Duration kMarksLately = std::chrono::milliseconds(200);
   static constexpr Duration kLongQueue = std::chrono::milliseconds(5);
   static constexpr Duration kShort = std::chrono::microseconds(3500);
   static constexpr double kGain = 1.0 / 8192;
-  Duration lowest_ = Duration::max();
-  Duration previous_lowest_ = Duration::max();
-  Time lowest_since_{};
+  RecentMin shortest_{std::chrono::seconds(1)};
   Time last_mark_{};
   Duration unmarked_{0};
   bool found_ = false;

@@ -2,7 +2,6 @@
 #include "src/scream/model/queue_delay.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace lidar::scream {
 namespace {
@@ -14,15 +13,10 @@ constexpr std::size_t kBaseHistory = 60;
 constexpr std::size_t kBaseHistoryMarked = 3;
 /// A clock jumped if a delay is shorter than its minimum by this.
 constexpr Duration kJump = 100ms;
-/// Clocks drift, so the minimum of the way back is over one to two of these times.
-constexpr Duration kBackWindow = 5min;
 
 Duration Scale(Duration d, double f) { return FromSeconds(Seconds(d) * f); }
 
 }  // namespace
-
-QueueDelay::QueueDelay(const Parameters& parameters)
-    : p_(parameters), qdelay_max_avg_(parameters.qdelay_target_lo) {}
 
 void QueueDelay::Reset() {
   ForgetBase();
@@ -35,8 +29,7 @@ void QueueDelay::Reset() {
 void QueueDelay::ForgetBase() {
   history_.clear();
   base_.reset();
-  shortest_back_.reset();
-  previous_shortest_back_.reset();
+  shortest_back_.Forget();
   qdelay_ = qdelay_avg_ = Duration{0};
   slow_min_avg_ = Duration{0};
   min_this_rtt_ = Duration::max();
@@ -45,14 +38,8 @@ void QueueDelay::ForgetBase() {
 /// A queue lengthens only one way. A clock that is set makes one way shorter than its minimum.
 bool QueueDelay::Jumped(Time now, Duration owd, Duration way_back) {
   if (!p_.extensions.evidence) return false;
-  if (now - shortest_back_since_ >= kBackWindow) {
-    previous_shortest_back_ = std::exchange(shortest_back_, std::nullopt);
-    shortest_back_since_ = now;
-  }
-  const Duration latest = shortest_back_.value_or(way_back);
-  const Duration shortest = std::min(latest, previous_shortest_back_.value_or(latest));
-  shortest_back_ = std::min(latest, way_back);
-  return owd < *base_ - kJump || way_back < shortest - kJump;
+  const bool way_back_jumped = shortest_back_.Add(now, way_back) > kJump;
+  return owd < *base_ - kJump || way_back_jumped;
 }
 
 void QueueDelay::AddToBase(Time now, Duration owd, bool short_history) {

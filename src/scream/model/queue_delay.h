@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 
+#include "src/scream/model/recent_min.h"
 #include "src/scream/parameters.h"
 
 namespace lidar::scream {
@@ -21,7 +22,7 @@ struct DelaySample {
 /// One-way delay above its base (RFC 6817). The clocks share no epoch, so only differences count.
 class QueueDelay {
  public:
-  explicit QueueDelay(const Parameters& parameters);
+  explicit QueueDelay(const Parameters& parameters) : p_(parameters) {}
 
   /// Returns false if the clocks jumped relative to each other; the base is then taken anew. With
   /// `short_history` the base is the minimum of the last half minute.
@@ -53,10 +54,9 @@ class QueueDelay {
   std::deque<Base> history_;
   std::optional<Duration> base_;
   Duration qdelay_{0};
-  std::optional<Duration> shortest_back_, previous_shortest_back_;
-  Time shortest_back_since_{};
+  RecentMin shortest_back_{5min};  // clocks drift, so an old minimum says nothing
   Duration qdelay_avg_{0};
-  Duration qdelay_max_avg_;
+  Duration qdelay_max_avg_ = p_.qdelay_target_lo;
   Duration qdelay_min_avg_{0};
   Duration qdelay_dev_avg_{0};
   double ref_wnd_delay_scale_ = 1;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "src/base/time.h"
+#include "src/scream/model/recent_min.h"
 
 namespace lidar::scream {
 
@@ -13,7 +13,7 @@ class RoundTripTime {
   void Add(Time now, Duration sample) {
     const Duration bounded = std::max(sample, kMin);
     last_ = bounded;
-    AddToMin(now, bounded);
+    min_.Add(now, bounded);
     if (smoothed_)
       *smoothed_ += FromSeconds(kGain * Seconds(bounded - *smoothed_));
     else
@@ -24,28 +24,16 @@ class RoundTripTime {
 
   bool known() const { return smoothed_.has_value(); }
   Duration smoothed() const { return smoothed_.value_or(kInitial); }
-  /// Minimum over one to two kMinWindow, as a path may become longer permanently.
-  Duration min() const { return smoothed_ ? std::min(min_, previous_min_) : kInitial; }
+  /// Minimum of the last half minute or minute, as a path may become longer permanently.
+  Duration min() const { return smoothed_ ? min_.value() : kInitial; }
   Duration last() const { return last_; }
 
  private:
-  void AddToMin(Time now, Duration sample) {
-    if (now - min_since_ >= kMinWindow) {
-      previous_min_ = min_;
-      min_ = sample;
-      min_since_ = now;
-    }
-    min_ = std::min(min_, sample);
-  }
-
-  static constexpr Duration kMinWindow = std::chrono::seconds(30);
   static constexpr Duration kMin = std::chrono::milliseconds(1);
   static constexpr Duration kInitial = std::chrono::milliseconds(100);
   static constexpr double kGain = 1.0 / 8;
   std::optional<Duration> smoothed_;
-  Duration min_ = Duration::max();
-  Duration previous_min_ = Duration::max();
-  Time min_since_{};
+  RecentMin min_{std::chrono::seconds(30)};
   Duration last_ = kInitial;
 };
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Minimum of durations over the last one to two windows, so that an old minimum is forgotten.
+#pragma once
+#include <algorithm>
+#include <utility>
+
+#include "src/base/time.h"
+
+namespace lidar::scream {
+
+class RecentMin {
+ public:
+  explicit RecentMin(Duration window) : window_(window) {}
+
+  /// Returns by how much `d` is below the earlier minimum; 0 if there is none.
+  Duration Add(Time now, Duration d) {
+    if (now - since_ >= window_) {
+      previous_ = std::exchange(latest_, Duration::max());
+      since_ = now;
+    }
+    const Duration before = value();
+    latest_ = std::min(latest_, d);
+    return before == Duration::max() ? Duration{0} : before - value();
+  }
+  void Forget() { latest_ = previous_ = Duration::max(); }
+  /// Duration::max() before the first.
+  Duration value() const { return std::min(latest_, previous_); }
+
+ private:
+  Duration window_;
+  Time since_{};
+  Duration latest_ = Duration::max();
+  Duration previous_ = Duration::max();
+};
+
+}  // namespace lidar::scream
