@@ -2,6 +2,7 @@
 #include "src/scream/model/sent_history.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lidar::scream {
 namespace {
@@ -153,6 +154,7 @@ bool SentHistory::Plausible(Time now, Source* source, const rtcp::SsrcReport& bl
 FeedbackResult SentHistory::OnFeedback(Time now, const rtcp::CongestionFeedback& feedback,
                                        AckSummary* summary) {
   bool any_ours = false;
+  std::vector<std::pair<Source*, const rtcp::SsrcReport*>> news;
   for (const rtcp::SsrcReport& block : feedback.blocks) {
     const auto it = sources_.find(block.ssrc);
     if (it == sources_.end() || it->second.packets.empty()) {
@@ -160,29 +162,36 @@ FeedbackResult SentHistory::OnFeedback(Time now, const rtcp::CongestionFeedback&
       continue;
     }
     any_ours = true;
-    if (!OfBefore(now, it->second, block) && !Plausible(now, &it->second, block))
-      return FeedbackResult::kImplausible;
+    if (OfBefore(now, it->second, block)) continue;
+    if (!Plausible(now, &it->second, block)) return FeedbackResult::kImplausible;
+    news.emplace_back(&it->second, &block);
   }
   if (!any_ours) return FeedbackResult::kNotOurs;
-  const Time report = summary->report = clock_.Unwrap(feedback.report_timestamp);
-  held_.reset();
-  newest_timed_.reset();
-  for (const rtcp::SsrcReport& block : feedback.blocks) {
-    const auto it = sources_.find(block.ssrc);
-    if (it == sources_.end() || it->second.packets.empty()) continue;
-    if (!OfBefore(now, it->second, block)) Apply(now, block, &it->second, report, summary);
-  }
+  summary->report = clock_.Unwrap(feedback.report_timestamp);
+  for (const auto& [source, block] : news) Apply(now, *block, source, summary);
   // Reports list one stream after the other; the link carried packets in the order of sending.
   std::stable_sort(summary->acked.begin(), summary->acked.end(),
                    [](const AckedPacket& a, const AckedPacket& b) { return a.sent < b.sent; });
-  if (!arrivals_known_) summary->rtt = held_;
+  if (!summary->acked.empty()) newest_acked_ = std::max(newest_acked_, summary->acked.back().sent);
+  summary->rtt = RoundTrip(now, *summary);
   ExpireTails();
   DetectLoss(now, &summary->lost);
   const bool nothing = summary->acked.empty() && summary->lost.empty() && summary->late_ce.empty();
   return nothing ? FeedbackResult::kStale : FeedbackResult::kAccepted;
 }
 
-void SentHistory::Apply(Time now, const rtcp::SsrcReport& block, Source* source, Time report,
+/// Leaves out the receiver's holding time if the receiver reports it. The delay of packets from an
+/// outage says nothing about the present delay.
+std::optional<Duration> SentHistory::RoundTrip(Time now, const AckSummary& summary) const {
+  for (auto packet = summary.acked.rbegin(); packet != summary.acked.rend(); ++packet) {
+    if (packet->arrival)
+      return std::max(Duration{0}, now - packet->sent - (summary.report - *packet->arrival));
+    if (!packet->expired && !arrivals_known_) return now - packet->sent;
+  }
+  return std::nullopt;
+}
+
+void SentHistory::Apply(Time now, const rtcp::SsrcReport& block, Source* source,
                         AckSummary* summary) {
   const std::int64_t begin = source->unwrapper.Peek(block.begin_seq);
   std::int64_t highest = source->highest_acked;
@@ -194,15 +203,15 @@ void SentHistory::Apply(Time now, const rtcp::SsrcReport& block, Source* source,
     Packet* packet = Find(source, seq);
     if (packet == nullptr) continue;
     if (block.metrics[i].received)
-      Acknowledge(now, block.metrics[i], report, packet, summary);
+      Acknowledge(now, block.metrics[i], packet, summary);
     else if (seq < highest)
       MarkMissing(now, source, packet);
   }
   summary->bytes_newly_acked += Settle(source, highest);
 }
 
-void SentHistory::Acknowledge(Time now, const rtcp::PacketMetric& metric, Time report,
-                              Packet* packet, AckSummary* summary) {
+void SentHistory::Acknowledge(Time now, const rtcp::PacketMetric& metric, Packet* packet,
+                              AckSummary* summary) {
   const bool ce = metric.ecn == Ecn::kCe;
   if (packet->state == State::kAcked) {
     if (ce && !packet->ce) {
@@ -214,30 +223,19 @@ void SentHistory::Acknowledge(Time now, const rtcp::PacketMetric& metric, Time r
   AckedPacket acked;
   static_cast<SentRecord&>(acked) = packet->record;
   acked.arrived_ecn = metric.ecn;
-  // The delay of packets from an outage says nothing about the present delay.
-  const bool timed = metric.arrival_offset && packet->state != State::kExpired;
-  if (timed) acked.arrival = report - *metric.arrival_offset;
+  acked.expired = packet->state == State::kExpired;
+  if (metric.arrival_offset && !acked.expired)
+    acked.arrival = summary->report - *metric.arrival_offset;
   acked.was_lost = packet->state == State::kLost;
   if (packet->state == State::kMissing || acked.was_lost) {
     reordering_window_ =
         std::min(max_reordering_window_, std::max(reordering_window_, now - packet->missing_since));
     last_reordering_ = now;
   }
-  if (packet->state != State::kExpired) {
-    const Duration held = now - packet->record.sent;
-    held_ = std::min(held_.value_or(held), held);
-  }
-  newest_acked_ = std::max(newest_acked_, packet->record.sent);
   arrivals_known_ = arrivals_known_ || metric.arrival_offset;
   packet->state = State::kAcked;
   packet->ce = ce;
   if (ce) summary->bytes_newly_acked_ce += packet->record.size;
-  if (timed) {
-    if (packet->record.sent >= newest_timed_.value_or(packet->record.sent)) {
-      newest_timed_ = packet->record.sent;
-      summary->rtt = std::max(Duration{0}, now - packet->record.sent - *metric.arrival_offset);
-    }
-  }
   summary->acked.push_back(acked);
 }
 

@@ -29,6 +29,7 @@ struct AckedPacket : SentRecord {
   std::optional<Time> arrival;
   Ecn arrived_ecn = Ecn::kNotEct;
   bool was_lost = false;
+  bool expired = false;  ///< acknowledged after Expire()
 };
 
 /// The news of a report.
@@ -95,15 +96,14 @@ class SentHistory {
   static bool StartsAgain(Source* source, std::int64_t seq);
   void StartAgain(Time now, std::uint16_t seq, Source* source);
   void Insert(Source* source, const Packet& packet);
+  std::optional<Duration> RoundTrip(Time now, const AckSummary& summary) const;
   static bool OfBefore(Time now, const Source& source, const rtcp::SsrcReport& block);
   void ExpireTails();
   static std::ptrdiff_t FirstFrom(const std::deque<Packet>& packets, std::int64_t seq);
   static Packet* Find(Source* source, std::int64_t seq);
   bool Plausible(Time now, Source* source, const rtcp::SsrcReport& block) const;
-  void Apply(Time now, const rtcp::SsrcReport& block, Source* source, Time report,
-             AckSummary* summary);
-  void Acknowledge(Time now, const rtcp::PacketMetric& metric, Time report, Packet* packet,
-                   AckSummary* summary);
+  void Apply(Time now, const rtcp::SsrcReport& block, Source* source, AckSummary* summary);
+  void Acknowledge(Time now, const rtcp::PacketMetric& metric, Packet* packet, AckSummary* summary);
   DataSize Settle(Source* source, std::int64_t seq);
   static void MarkMissing(Time now, Source* source, Packet* packet);
   void DecayReorderingWindow(Time now);
@@ -113,10 +113,8 @@ class SentHistory {
   std::map<std::uint32_t, Source> sources_;
   rtcp::ReportClock clock_;
   DataSize in_flight_;
-  Time newest_acked_{};               // its sending time
-  bool arrivals_known_ = false;       // the peer reports arrival times
-  std::optional<Time> newest_timed_;  // in this report: sending time of the newest such packet
-  std::optional<Duration> held_;      // in this report: shortest round trip with holding time
+  Time newest_acked_{};          // its sending time
+  bool arrivals_known_ = false;  // the peer reports arrival times
   Duration reordering_window_{0};
   Time last_reordering_{};
   Duration max_reordering_window_ = std::chrono::milliseconds(100);
