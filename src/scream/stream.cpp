@@ -148,7 +148,7 @@ bool Stream::Late(Time now, DataRate rate, Queue::const_iterator unit,
   DataSize size;
   for (auto packet = unit; packet != next; ++packet) size += packet->size;
   Time last = std::prev(next)->queued;
-  if (unit->group && unit->group == queued_group_) {
+  if (unit->group && unit->group == this_group_.id) {
     size += std::max(DataSize(), last_group_.size - this_group_.size);
     last = std::max(last, this_group_.first + last_group_.span());
   }
@@ -157,10 +157,9 @@ bool Stream::Late(Time now, DataRate rate, Queue::const_iterator unit,
 }
 
 void Stream::NoteGroup(Time now, const QueuedPacket& packet) {
-  if (packet.group != queued_group_) {
+  if (packet.group != this_group_.id) {
     last_group_ = this_group_;
-    this_group_ = {DataSize(), now, now};
-    queued_group_ = packet.group;
+    this_group_ = {packet.group, DataSize(), now, now};
   }
   this_group_.size += packet.size;
   this_group_.last = now;

@@ -76,6 +76,7 @@ class Stream {
   };
   /// The last complete group in the queue, and the incomplete one.
   struct Group {
+    std::optional<std::uint32_t> id;
     DataSize size;
     Time first{}, last{};
     Duration span() const { return last - first; }
@@ -102,7 +103,7 @@ class Stream {
   std::optional<std::uint32_t> media_ssrc_;
   std::optional<std::uint32_t> frame_timestamp_;
   DataSize frame_size_;
-  std::optional<std::uint32_t> queued_group_, begun_group_, dropped_group_;
+  std::optional<std::uint32_t> begun_group_, dropped_group_;
   Group this_group_, last_group_;
   Time frame_begin_{};  // time of the newest frame's first packet
   std::optional<Time> last_frame_;

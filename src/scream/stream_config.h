@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Streams and their packets, as the caller describes them.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -23,6 +24,9 @@ struct StreamConfig {
   DataRate needed_bitrate{};
   /// Precedes all other streams, and gets its maximum before they get more than they need.
   bool strict = false;
+
+  DataRate need() const { return std::max(min_bitrate, needed_bitrate); }
+  DataRate most() const { return std::max(min_bitrate, max_bitrate); }
 };
 
 /// A packet that enters the sender's queue. `size` is that on the wire, with RTP, UDP and IP

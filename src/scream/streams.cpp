@@ -49,17 +49,6 @@ void Streams::OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size) {
   stream->virtual_time += size.bits() / weight;
 }
 
-double Streams::NeedShare(DataRate total) const {
-  DataRate extra;  // needed bitrate above the minima
-  for (const auto& [id, stream] : streams_) {
-    if (!stream.counts()) continue;
-    const StreamConfig& c = stream.config();
-    total = total - c.min_bitrate;
-    if (c.needed_bitrate > c.min_bitrate) extra = extra + (c.needed_bitrate - c.min_bitrate);
-  }
-  return extra > DataRate{} ? std::clamp(total / extra, 0.0, 1.0) : 0;
-}
-
 void Streams::OnReport(const AckSummary& acks) {
   for (const AckedPacket& packet : acks.acked)
     if (Stream* stream = Find(packet.stream)) stream->OnAcked(packet.arrived_ecn == Ecn::kCe);
@@ -75,21 +64,23 @@ void Streams::Allocate(Time now, DataRate total) {
   const bool any_active = std::any_of(streams_.begin(), streams_.end(),
                                       [now](const auto& s) { return s.second.active(now); });
   for (auto& [id, stream] : streams_) stream.set_counts(!any_active || stream.active(now));
-  const double need_share = NeedShare(total);
+  // Needs above the minima are met by the part of them that the path can carry.
+  const DataRate extra = needed_bitrate() - min_bitrate();
+  const double need_share =
+      extra > DataRate() ? std::clamp((total - min_bitrate()) / extra, 0.0, 1.0) : 0;
   for (auto& [id, stream] : streams_) {
     const StreamConfig& c = stream.config();
     if (!stream.counts()) {
-      stream.set_target_bitrate(std::max(c.min_bitrate, c.needed_bitrate));
+      stream.set_target_bitrate(c.need());
       continue;
     }
-    DataRate floor = c.min_bitrate;
-    if (c.needed_bitrate > floor) floor = floor + (c.needed_bitrate - floor) * need_share;
+    const DataRate floor = c.min_bitrate + (c.need() - c.min_bitrate) * need_share;
     stream.set_target_bitrate(floor);
     left = left - floor;
     // The target allows for all queues, so each stream bears its own.
     const double weight =
         std::max(1e-6, c.priority) / (p_.target_rate_divisor + stream.queue_compensation());
-    open.push_back({&stream, weight, floor, std::max(c.min_bitrate, c.max_bitrate)});
+    open.push_back({&stream, weight, floor, c.most()});
   }
   const auto others = std::stable_partition(
       open.begin(), open.end(), [](const Share& s) { return s.stream->config().strict; });
@@ -160,11 +151,6 @@ Duration Streams::media_qdelay(Time now) const {
   Duration longest{0};
   for (const auto& [id, s] : streams_) longest = std::max(longest, s.media_qdelay(now));
   return longest;
-}
-
-bool Streams::empty() const {
-  return std::all_of(streams_.begin(), streams_.end(),
-                     [](const auto& s) { return s.second.empty(); });
 }
 
 }  // namespace lidar::scream

@@ -42,16 +42,12 @@ class Streams {
   DataRate min_bitrate() const {
     return Sum([](const Stream& s) { return s.config().min_bitrate; });
   }
-  /// For each stream the larger of its need and its minimum.
   DataRate needed_bitrate() const {
-    return Sum([](const Stream& s) {
-      return std::max(s.config().min_bitrate, s.config().needed_bitrate);
-    });
+    return Sum([](const Stream& s) { return s.config().need(); });
   }
   DataRate max_bitrate() const {
-    const DataRate sum = Sum(
-        [](const Stream& s) { return std::max(s.config().min_bitrate, s.config().max_bitrate); });
-    return std::min(sum, std::max(p_.max_total_bitrate, min_bitrate()));
+    return std::min(Sum([](const Stream& s) { return s.config().most(); }),
+                    std::max(p_.max_total_bitrate, min_bitrate()));
   }
   DataRate start_bitrate() const {
     return Sum([](const Stream& s) { return s.config().start_bitrate; });
@@ -69,11 +65,9 @@ class Streams {
     return sum;
   }
   Duration media_qdelay(Time now) const;
-  bool empty() const;
+  bool empty() const { return !Next(); }
 
  private:
-  /// Share of the needed bitrates above the minima that the path can carry, 0 to 1.
-  double NeedShare(DataRate total) const;
   /// A stream's part of the rate so far.
   struct Share {
     Stream* stream;
