@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "src/scream/response/adaptive_pacing.h"
+#include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/shared_link.h"
 #include "src/scream/response/source_limit.h"
@@ -152,7 +153,7 @@ void Controller::TakeGapRestart(Time now) {
 
 bool Controller::RespondToDrop(Time now) {
   const auto window =
-      capacity_drop_.Update(now, path_, window_, window_target_, streams_.frame_period());
+      WindowAfterDrop(now, p_, path_, window_, window_target_, streams_.frame_period());
   if (!window) return false;
   window_.Drop(now, *window);
   if (p_.extensions.evidence) path_.evidence().OnDropReaction(now);

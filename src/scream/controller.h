@@ -10,7 +10,6 @@
 #include "src/scream/model/sent_history.h"
 #include "src/scream/pacer.h"
 #include "src/scream/parameters.h"
-#include "src/scream/response/capacity_drop.h"
 #include "src/scream/response/fast_increase.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/outage.h"
@@ -136,7 +135,6 @@ class Controller {
   PathModel path_{p_};
   ReferenceWindow window_{p_};
   FastIncrease fast_increase_{p_};
-  CapacityDrop capacity_drop_{p_};
   Outage outage_{p_};
   GapRecovery gap_recovery_{p_};
   SendWindow send_window_{p_};

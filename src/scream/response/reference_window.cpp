@@ -32,7 +32,7 @@ void ReferenceWindow::Start(DataRate rate, Duration s_rtt) {
 void ReferenceWindow::Drop(Time now, DataSize window) {
   Restart(window);
   ref_wnd_i_ = Bytes(window);
-  last_reaction_to_congestion_time_ = last_congestion_detected_time_ = now;
+  last_reaction_to_congestion_time_ = last_congestion_detected_time_ = last_drop_time_ = now;
 }
 
 void ReferenceWindow::Restart(DataSize window) {

@@ -77,6 +77,7 @@ class ReferenceWindow {
   DataRate TargetBitrate(Duration s_rtt, double queue_compensation) const;
   Time last_reaction_to_congestion_time() const { return last_reaction_to_congestion_time_; }
   Time last_congestion_detected_time() const { return last_congestion_detected_time_; }
+  Time last_drop_time() const { return last_drop_time_; }
 
  private:
   /// Drops marks and losses that still wait for a reaction.
@@ -100,6 +101,7 @@ class ReferenceWindow {
   bool data_units_marked_ = false;  // since the last reaction
   Time last_congestion_detected_time_{};
   Time last_reaction_to_congestion_time_{};
+  Time last_drop_time_{};
 };
 
 }  // namespace lidar::scream

@@ -14,7 +14,7 @@ class CapacityDropTest : public ::testing::Test {
  protected:
   CapacityDropTest() { window_.Set(DataSize::Bytes(100000)); }
   std::optional<DataSize> Update(double target_mbps) {
-    return drop_.Update(path_.now, path_.model, window_, Mbps(target_mbps), 20ms);
+    return WindowAfterDrop(path_.now, parameters_, path_.model, window_, Mbps(target_mbps), 20ms);
   }
   /// Packets of 4 Mbit/s that left twice as fast, so the queue grows.
   void HoldBack(int packets, Ecn ecn, Duration by = 1ms) {
@@ -24,7 +24,6 @@ class CapacityDropTest : public ::testing::Test {
   Parameters parameters_;
   Path path_{parameters_};
   ReferenceWindow window_{parameters_};
-  CapacityDrop drop_{parameters_};
 };
 
 TEST_F(CapacityDropTest, GivesTheWindowThatFillsTheLink) {
@@ -32,6 +31,8 @@ TEST_F(CapacityDropTest, GivesTheWindowThatFillsTheLink) {
   const auto window = Update(10);
   ASSERT_TRUE(window);
   EXPECT_NEAR(static_cast<double>(window->bytes()), 4e6 / 8 * 0.04 * 1.2, 300);
+  window_.Drop(path_.now, *window);
+  window_.Set(DataSize::Bytes(100000));
   EXPECT_FALSE(Update(10)) << "once a round trip";
 }
 
