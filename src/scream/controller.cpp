@@ -181,8 +181,7 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   CongestionSignals s;
   s.loss_detected = path_.evidence().NewLoss(acks);
   s.data_units_marked = path_.evidence().NewMark(acks);
-  s.loss_rate = path_.loss_rate();
-  s.tolerance = TolerateLoss(p_, path_);
+  s.loss_is_congestion = LossIsCongestion(p_, path_);
   if (p_.extensions.capacity)
     s.fast_growth =
         fast_increase_.growth(path_.queue_delay().qdelay(), path_.Round(streams_.frame_period()),

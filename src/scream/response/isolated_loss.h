@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension evidence: separates losses of a radio from congestion.
+// Draft section "Link layer losses and rate policers", and extension evidence: separates losses of
+// a radio from congestion.
 #pragma once
 #include <algorithm>
 
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
-#include "src/scream/response/reference_window.h"
 
 namespace lidar::scream {
 
-inline LossTolerance TolerateLoss(const Parameters& p, const PathModel& path) {
-  LossTolerance tolerance{p.loss_rate_threshold, false};
-  if (!p.extensions.evidence) return tolerance;
-  tolerance.queue_at_loss =
-      path.queue_delay().qdelay() > p.isolated_loss_qdelay || path.loss_context().AtFullQueue();
-  if (p.ecn == Ecn::kEct1 && path.ecn().state() == EcnState::kCapable)
-    tolerance.loss_rate_threshold = std::max(p.loss_rate_threshold, p.isolated_loss_threshold);
-  return tolerance;
+/// Returns true if losses show congestion. The extension also counts losses at a short queue, and
+/// tolerates more of the others on a path that carries ECT(1).
+inline bool LossIsCongestion(const Parameters& p, const PathModel& path) {
+  const QueueDelay& queue = path.queue_delay();
+  if (!p.link_layer_loss || queue.qdelay_avg() > p.qdelay_target_lo / 4) return true;
+  double tolerated = p.loss_rate_threshold;
+  if (p.extensions.evidence) {
+    if (queue.qdelay() > p.isolated_loss_qdelay || path.loss_context().AtFullQueue()) return true;
+    if (p.ecn == Ecn::kEct1 && path.ecn().state() == EcnState::kCapable)
+      tolerated = std::max(tolerated, p.isolated_loss_threshold);
+  }
+  return path.loss_rate() > tolerated;
 }
 
 }  // namespace lidar::scream

@@ -65,20 +65,14 @@ RateReason ReferenceWindow::Update(Time now, const CongestionSignals& signals) {
 }
 
 RateReason ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
-  const bool isolated = p_.extensions.evidence && !LossCounts(s);
+  const bool isolated = p_.extensions.evidence && !s.loss_is_congestion;
   if (data_units_marked_ || (loss_detected_ && !isolated)) last_congestion_detected_time_ = now;
   if (now - last_reaction_to_congestion_time_ + s.earliness < std::min(p_.virtual_rtt, s.s_rtt))
     return RateReason::kIncrease;
-  if (std::exchange(loss_detected_, false) && LossCounts(s)) return RateReason::kLoss;
+  if (std::exchange(loss_detected_, false) && s.loss_is_congestion) return RateReason::kLoss;
   if (data_units_marked_) return RateReason::kCe;
   if (s.qdelay_avg > p_.qdelay_target_lo / 2) return RateReason::kDelay;
   return RateReason::kIncrease;
-}
-
-/// See the draft's section "Link layer losses and rate policers".
-bool ReferenceWindow::LossCounts(const CongestionSignals& s) const {
-  return !p_.link_layer_loss || s.loss_rate > s.tolerance.loss_rate_threshold ||
-         s.tolerance.queue_at_loss || s.qdelay_avg > p_.qdelay_target_lo / 4;
 }
 
 void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignals& s, double scl) {

@@ -20,17 +20,11 @@ struct Boldness {
   double pace = 1.005;
 };
 
-struct LossTolerance {
-  double loss_rate_threshold = 0;  ///< LOSS_RATE_THRESHOLD of the draft, or more
-  bool queue_at_loss = false;      ///< packets around the loss had waited: congestion
-};
-
 /// The signs of congestion in a report.
 struct CongestionSignals {
   bool loss_detected = false;
+  bool loss_is_congestion = true;
   bool data_units_marked = false;
-  double loss_rate = 0;
-  LossTolerance tolerance;
   double l4s_alpha = 0;
   bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
   Duration qdelay{0};
@@ -86,7 +80,6 @@ class ReferenceWindow {
   double InflectionScale(double slope) const;
   double FastIncrement(const CongestionSignals& s, double scl) const;
   RateReason Detect(Time now, const CongestionSignals& s);
-  bool LossCounts(const CongestionSignals& s) const;
   void Reduce(Time now, RateReason reason, const CongestionSignals& s, double scl);
   double L4sBackoff(Time now, const CongestionSignals& s, double scl);
   double VirtualBackoff(const CongestionSignals& s) const;

@@ -15,7 +15,6 @@ class ReferenceWindowTest : public ::testing::Test {
  protected:
   ReferenceWindowTest() {
     signals_.s_rtt = 25ms;
-    signals_.tolerance.loss_rate_threshold = parameters_.loss_rate_threshold;
     signals_.target_bitrate = Mbps(5);
     signals_.target_bitrate_max = Mbps(100);
     signals_.max_bytes_in_flight_prev = DataSize::Bytes(1000000);
@@ -142,16 +141,13 @@ TEST_F(ReferenceWindowTest, MarkedBytesDoNotMakeItGrow) {
   EXPECT_DOUBLE_EQ(Factor(), 1);
 }
 
-TEST_F(ReferenceWindowTest, LinkLayerLossIsSparedUntilTheRateOrTheQueueGrows) {
-  parameters_.link_layer_loss = true;
+TEST_F(ReferenceWindowTest, ALossThatIsNoCongestionIsForgotten) {
   signals_.loss_detected = true;
-  signals_.loss_rate = 0.009;
+  signals_.loss_is_congestion = false;
   EXPECT_DOUBLE_EQ(Factor(), 1);
-  signals_.qdelay_avg = 16ms;
-  EXPECT_NEAR(Factor(), 0.7, 1e-4);
-  signals_.qdelay_avg = 0ms;
-  signals_.loss_rate = 0.011;
-  EXPECT_NEAR(Factor(), 0.7, 1e-4);
+  signals_.loss_detected = false;
+  signals_.loss_is_congestion = true;
+  EXPECT_DOUBLE_EQ(Factor(), 1);
 }
 
 TEST_F(ReferenceWindowTest, ReactsLessWhereTheTargetHasFallenAlready) {

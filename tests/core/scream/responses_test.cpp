@@ -209,20 +209,51 @@ TEST(PacingReserve, IsWhatGoesUnmarkedWithinLimits) {
   EXPECT_NEAR(Milliseconds(PacingReserve(p, path.model, path.now)), 1.6, 0.1);
 }
 
-TEST(TolerateLoss, IsTheDraftsUntilEcnIsSeenToWork) {
-  const Parameters p;
-  EXPECT_DOUBLE_EQ(TolerateLoss(p, PathModel(p)).loss_rate_threshold, 0.01);
+class LossIsCongestionTest : public ::testing::Test {
+ protected:
+  /// Loses packets until the draft's averaged rate is `rate`.
+  void LoseUpTo(double rate) {
+    while (path_.model.loss_rate() < rate) {
+      AckSummary acks;
+      acks.lost.emplace_back();
+      path_.model.OnReport(path_.now, acks, {DataSize::Bytes(10000), 20ms});
+    }
+  }
+  bool IsCongestion(const Parameters& p) const { return LossIsCongestion(p, path_.model); }
+  Parameters draft_ = Parameters::Draft();
+  Parameters parameters_;
+  Path path_{parameters_};
+};
+
+TEST_F(LossIsCongestionTest, IsAnyLossWithoutTheDraftsOptionalPart) {
+  EXPECT_TRUE(IsCongestion(draft_));
 }
 
-TEST(TolerateLoss, CountsAnyLossBehindAQueueAndLittleElsewhere) {
-  const Parameters p;
-  Path path(p);
-  path.Arrive(30, 1ms, 0ms, Ecn::kEct1);
-  EXPECT_FALSE(TolerateLoss(p, path.model).queue_at_loss);
-  EXPECT_DOUBLE_EQ(TolerateLoss(p, path.model).loss_rate_threshold, p.isolated_loss_threshold);
-  path.Arrive(1, 1ms, 7ms, Ecn::kEct1);
-  EXPECT_TRUE(TolerateLoss(p, path.model).queue_at_loss);
-  EXPECT_DOUBLE_EQ(TolerateLoss(Parameters::Draft(), path.model).loss_rate_threshold, 0.01);
+TEST_F(LossIsCongestionTest, IsTheDraftsFromItsRateOrAQuarterOfTheTargetOn) {
+  draft_.link_layer_loss = true;
+  LoseUpTo(0.005);
+  EXPECT_FALSE(IsCongestion(draft_));
+  LoseUpTo(0.01);
+  EXPECT_TRUE(IsCongestion(draft_));
+  path_.Arrive(200, 1ms, 0ms, Ecn::kEct1);
+  EXPECT_FALSE(IsCongestion(draft_));
+  path_.Arrive(200, 1ms, 25ms, Ecn::kEct1);
+  EXPECT_TRUE(IsCongestion(draft_));
+}
+
+TEST_F(LossIsCongestionTest, IsFiveTimesTheDraftsRateOnceEcnIsSeenToWork) {
+  LoseUpTo(0.04);
+  EXPECT_FALSE(IsCongestion(parameters_));
+  path_.model.Reset(path_.now);
+  LoseUpTo(0.01);
+  EXPECT_TRUE(IsCongestion(parameters_)) << "another route";
+}
+
+TEST_F(LossIsCongestionTest, IsAnyLossBehindAQueue) {
+  path_.Arrive(30, 1ms, 0ms, Ecn::kEct1);
+  EXPECT_FALSE(IsCongestion(parameters_));
+  path_.Arrive(1, 1ms, 7ms, Ecn::kEct1);
+  EXPECT_TRUE(IsCongestion(parameters_));
 }
 
 TEST(Evidence, IsOfPacketsSentSinceTheReaction) {
