@@ -128,8 +128,10 @@ void Controller::MeasurePath(Time now, const AckSummary& acks) {
 void Controller::CountAcks(const AckSummary& acks) {
   for (const AckedPacket& packet : acks.acked) {
     if (packet.was_lost) ++counters_.packets_late;
+    if (packet.arrived_ecn == Ecn::kCe) ++counters_.packets_ce;
     counters_.bytes_acked += packet.size;
   }
+  counters_.packets_ce += acks.late_ce.size();
   counters_.packets_acked += acks.acked.size();
   counters_.packets_lost += acks.lost.size();
 }
@@ -159,8 +161,7 @@ bool Controller::RespondToDrop(Time now) {
   if (p_.extensions.evidence) path_.evidence().OnDropReaction(now);
   streams_.OnSuddenBacklog();
   fast_increase_.OnCongestion(now);
-  ++counters_.capacity_drops;
-  counters_.reason = RateReason::kDrop;
+  Count(RateReason::kDrop);
   return true;
 }
 
@@ -179,8 +180,8 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
 
 CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   CongestionSignals s;
-  s.loss_detected = path_.evidence().NewLoss(acks);
-  s.data_units_marked = path_.evidence().NewMark(acks);
+  s.loss_detected = path_.new_loss();
+  s.data_units_marked = path_.new_mark();
   s.loss_is_congestion = LossIsCongestion(p_, path_);
   if (p_.extensions.capacity)
     s.fast_growth =
@@ -214,6 +215,8 @@ void Controller::Count(RateReason reason) {
   if (reason == RateReason::kLoss) ++counters_.loss_events;
   if (reason == RateReason::kCe) ++counters_.ce_events;
   if (reason == RateReason::kDelay) ++counters_.delay_events;
+  if (reason == RateReason::kDrop) ++counters_.capacity_drops;
+  if (reason == RateReason::kTimeout) ++counters_.feedback_timeouts;
 }
 
 void Controller::UpdateTarget(Time now) {
@@ -334,8 +337,7 @@ void Controller::OnTimer(Time now) {
                                             streams_.frame_period())) {
       window_.Set(*window);
       gap_recovery_.OnSilence(now);
-      ++counters_.feedback_timeouts;
-      counters_.reason = RateReason::kTimeout;
+      Count(RateReason::kTimeout);
     }
   }
   UpdateTarget(now);

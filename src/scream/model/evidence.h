@@ -24,21 +24,10 @@ class Evidence {
 
   bool Counts(Time sent) const { return sent >= begin_; }
   bool MarkCounts(Time sent) const { return sent >= marks_; }
-  /// Returns true if the newest packet of the report counts, or if it has no time.
+  bool LossCounts(Time sent) const { return sent >= losses_; }
+  /// Returns true if the newest packet of the report counts, or if no packet is acknowledged.
   bool Counts(const AckSummary& acks) const {
     return acks.acked.empty() || Counts(acks.acked.back().sent);
-  }
-  bool NewLoss(const AckSummary& acks) const {
-    return std::any_of(acks.lost.begin(), acks.lost.end(),
-                       [this](const SentRecord& lost) { return lost.sent >= losses_; });
-  }
-  bool NewMark(const AckSummary& acks) const {
-    const auto is_new = [this](const AckedPacket& acked) {
-      return acked.arrived_ecn == Ecn::kCe && MarkCounts(acked.sent);
-    };
-    return std::any_of(acks.late_ce.begin(), acks.late_ce.end(),
-                       [this](Time sent) { return MarkCounts(sent); }) ||
-           std::any_of(acks.acked.begin(), acks.acked.end(), is_new);
   }
 
  private:

@@ -83,9 +83,8 @@ void PathModel::MeasureDelays(Time now, const AckSummary& acks) {
 
 void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const SenderState& sender) {
   int marked = 0;
-  int answered = 0;
   const auto count_mark = [&](Time sent) {
-    ++(evidence_.MarkCounts(sent) ? marked : answered);
+    if (evidence_.MarkCounts(sent)) ++marked;
     if (evidence_.Counts(sent)) last_mark_ = now;
   };
   for (const Time sent : acks.late_ce) count_mark(sent);
@@ -98,8 +97,12 @@ void PathModel::CountMarksAndLosses(Time now, const AckSummary& acks, const Send
     acked_rate_.Add(now, packet.size);
     long_acked_rate_.Add(now, packet.size);
   }
-  for (std::size_t i = 0; i < acks.lost.size(); ++i) AverageLoss(true, sender.ref_wnd);
-  packets_ce_ += static_cast<std::uint64_t>(marked + answered);
+  new_mark_ = marked > 0;
+  new_loss_ = false;
+  for (const SentRecord& packet : acks.lost) {
+    new_loss_ = new_loss_ || evidence_.LossCounts(packet.sent);
+    AverageLoss(true, sender.ref_wnd);
+  }
   if (!acks.lost.empty()) last_loss_ = now;
   l4s_alpha_.Update(now, static_cast<int>(acks.acked.size()), marked, rtt_.smoothed(),
                     Round(sender.frame_period));
@@ -189,7 +192,6 @@ void PathModel::Describe(Time now, Statistics* s) const {
   s->sent_bitrate = sent_rate_.Rate(now);
   s->acked_bitrate = acked_rate_.Rate(now);
   s->estimated_capacity = std::max(measured_capacity_, acked_peak_);
-  s->packets_ce = packets_ce_;
   s->clock_resets = clock_resets_;
   s->ecn_state = ecn_.state();
 }

@@ -68,7 +68,10 @@ class PathModel {
   Duration marking_onset() const { return marking_onset_; }
   /// The link's capacity, measured by the spacing of packets that it held back; 0 while unknown.
   DataRate measured_capacity() const { return measured_capacity_; }
-  /// The link stood nearly still before a packet of the last report.
+  // What the last report showed. A new mark or loss is one that no reaction has answered.
+  bool new_mark() const { return new_mark_; }
+  bool new_loss() const { return new_loss_; }
+  /// The link stood nearly still before a packet.
   bool hole_in_report() const { return hole_in_report_; }
   /// Returns true after a mark within the last round trip.
   bool MarkedLately(Time now) const { return last_mark_ && now - *last_mark_ < rtt_.min(); }
@@ -123,6 +126,7 @@ class PathModel {
   EcnMonitor ecn_{p_.ecn};
   BusyRun busy_run_;
   Duration marking_onset_ = p_.pacing_reserve;
+  bool new_mark_ = false, new_loss_ = false;
   bool hole_in_report_ = false;
   DataRate measured_capacity_;
   DataRate acked_peak_;  // highest average since the last measurement
@@ -137,7 +141,6 @@ class PathModel {
   Time last_report_{};
   Duration report_gap_{0};
   Time half_rate_until_{};
-  std::uint64_t packets_ce_ = 0;
   std::uint64_t clock_resets_ = 0;
 };
 

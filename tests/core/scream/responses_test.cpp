@@ -2,6 +2,8 @@
 // The responses beyond the draft, each by itself: outage, send window, pacing.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "src/scream/model/evidence.h"
 #include "src/scream/response/adaptive_pacing.h"
 #include "src/scream/response/gap_recovery.h"
@@ -258,40 +260,50 @@ TEST_F(LossIsCongestionTest, IsAnyLossBehindAQueue) {
 
 TEST(Evidence, IsOfPacketsSentSinceTheReaction) {
   Evidence evidence;
-  AckSummary acks;
-  acks.lost.emplace_back();
-  acks.lost.back().sent = kStart;
-  acks.acked.emplace_back();
-  acks.acked.back().sent = kStart;
-  acks.acked.back().arrived_ecn = Ecn::kCe;
-  EXPECT_TRUE(evidence.NewLoss(acks) && evidence.NewMark(acks));
+  EXPECT_TRUE(evidence.LossCounts(kStart) && evidence.MarkCounts(kStart));
   evidence.OnLossReaction(kStart + 1ms);
-  EXPECT_FALSE(evidence.NewLoss(acks));
-  EXPECT_TRUE(evidence.NewMark(acks));
+  EXPECT_FALSE(evidence.LossCounts(kStart));
+  EXPECT_TRUE(evidence.MarkCounts(kStart));
   evidence.OnDropReaction(kStart + 1ms);
-  EXPECT_FALSE(evidence.NewMark(acks));
-  acks.late_ce = {kStart};
-  EXPECT_FALSE(evidence.NewMark(acks));
-  acks.late_ce = {kStart + 1ms};
-  EXPECT_TRUE(evidence.NewMark(acks));
-  EXPECT_TRUE(evidence.Counts(acks)) << "its delay is that of the link still";
+  EXPECT_FALSE(evidence.MarkCounts(kStart));
+  EXPECT_TRUE(evidence.MarkCounts(kStart + 1ms));
+  EXPECT_TRUE(evidence.Counts(kStart)) << "its delay is that of the link still";
 }
 
 TEST(Evidence, BeginsAnewBehindAnOutageAndNoSoonerForAGapInIt) {
   Evidence evidence;
-  AckSummary acks;
-  acks.lost.emplace_back();
-  acks.acked.emplace_back();
-  acks.acked.back().arrived_ecn = Ecn::kCe;
-  acks.lost.back().sent = acks.acked.back().sent = kStart + 20ms;
-  EXPECT_TRUE(evidence.NewLoss(acks) && evidence.NewMark(acks) && evidence.Counts(acks));
   evidence.BeginAt(kStart + kRtt);
   evidence.BeginAt(kStart + 10ms);
-  EXPECT_FALSE(evidence.NewLoss(acks) || evidence.NewMark(acks) || evidence.Counts(acks));
-  acks.late_ce = {kStart + 20ms};
-  EXPECT_FALSE(evidence.NewMark(acks)) << "reported late";
-  acks.lost.back().sent = acks.acked.back().sent = kStart + kRtt;
-  EXPECT_TRUE(evidence.NewLoss(acks) && evidence.NewMark(acks) && evidence.Counts(acks));
+  for (const Duration at : {20ms, 40ms}) {
+    const bool counts = at == kRtt;
+    EXPECT_EQ(evidence.Counts(kStart + at), counts);
+    EXPECT_EQ(evidence.MarkCounts(kStart + at), counts);
+    EXPECT_EQ(evidence.LossCounts(kStart + at), counts);
+  }
+}
+
+TEST(PathModel, SaysWhetherTheLastReportHasAMarkOrALossThatNoReactionAnswered) {
+  const Parameters p;
+  Path path(p);
+  const auto report = [&path](Time sent, bool late_ce) {
+    AckSummary acks;
+    acks.lost.emplace_back();
+    acks.acked.emplace_back();
+    acks.lost.back().sent = acks.acked.back().sent = sent;
+    acks.acked.back().arrived_ecn = late_ce ? Ecn::kEct1 : Ecn::kCe;
+    if (late_ce) acks.late_ce = {sent};
+    path.model.OnReport(path.now, acks, {DataSize::Bytes(10000), 20ms});
+    return std::pair(path.model.new_mark(), path.model.new_loss());
+  };
+  path.model.evidence().OnLossReaction(kStart + 1ms);
+  EXPECT_EQ(report(kStart, false), std::pair(true, false));
+  path.model.evidence().OnDropReaction(kStart + 1ms);
+  for (const bool late_ce : {false, true}) {
+    EXPECT_EQ(report(kStart, late_ce), std::pair(false, false)) << late_ce;
+    EXPECT_EQ(report(kStart + 1ms, late_ce), std::pair(true, true)) << late_ce;
+  }
+  path.model.OnReport(path.now, AckSummary(), {DataSize::Bytes(10000), 20ms});
+  EXPECT_FALSE(path.model.new_mark() || path.model.new_loss());
 }
 
 }  // namespace
