@@ -181,13 +181,9 @@ void Controller::RespondToSignals(Time now, const AckSummary& acks) {
 CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   CongestionSignals s;
   s.loss_detected = path_.new_loss();
-  s.data_units_marked = path_.new_mark();
   s.loss_is_congestion = LossIsCongestion(p_, path_);
-  if (p_.extensions.capacity)
-    s.fast_growth =
-        fast_increase_.growth(path_.queue_delay().qdelay(), path_.Round(streams_.frame_period()),
-                              path_.L4sWorks(now)) *
-        (path_.loss_context().AtFullQueue() ? p_.fast_increase_beside : 1);
+  s.data_units_marked = path_.new_mark();
+  s.fast_growth = fast_increase_.growth(now, path_, streams_.frame_period());
   if (p_.extensions.capacity) s.earliness = path_.UnreportedTime() / 2;
   s.l4s_alpha = path_.l4s_alpha().value();
   s.is_l4s = p_.ecn == Ecn::kEct1 && !(p_.extensions.company && path_.classic_ecn().found());

@@ -89,9 +89,8 @@ struct Parameters {
   double fast_increase_step = 0.03;
   /// or by this if no marks give an early warning,
   double fast_increase_step_unmarked = 0.02;
-  /// after so many rounds. A queue of this length stops it.
+  /// after so many rounds. A queue of busy_qdelay stops it.
   int fast_increase_rounds = 3;
-  Duration fast_increase_qdelay = 5ms;
   /// Slope of the growth above the inflection point (8 in the draft).
   double fast_increase_slope = 3;
   /// The capacity has fallen if the target is above this part of its measured value,

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 
+#include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
 
 namespace lidar::scream {
@@ -27,14 +28,18 @@ class FastIncrease {
   void Restart() { starting_ = true; }
   /// Returns the fraction of the acknowledged bytes by which the window may grow. It falls with the
   /// queue's length.
-  double growth(Duration qdelay, Duration round, bool l4s_works) const {
+  double growth(Time now, const PathModel& path, Duration frame_period) const {
+    if (!p_.extensions.capacity) return 0;
     const int bold = std::max(0, rounds_ - p_.fast_increase_rounds);
-    const double step = l4s_works ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
+    const double step = path.L4sWorks(now) ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
     // Rounds of rare frames are long, and an excess stays queued for a round: start slower.
+    const double round = Seconds(path.Round(frame_period));
     const double start =
-        p_.fast_increase_max * std::clamp(Seconds(p_.long_frame_period) / Seconds(round), 0.5, 1.0);
+        p_.fast_increase_max * std::clamp(Seconds(p_.long_frame_period) / round, 0.5, 1.0);
     const double growth = starting_ ? start : std::min(p_.fast_increase_max, step * bold);
-    return growth * std::clamp(1 - Seconds(qdelay) / Seconds(p_.fast_increase_qdelay), 0.0, 1.0);
+    const double queue = Seconds(path.queue_delay().qdelay()) / Seconds(p_.busy_qdelay);
+    const double beside = path.loss_context().AtFullQueue() ? p_.fast_increase_beside : 1;
+    return growth * std::clamp(1 - queue, 0.0, 1.0) * beside;
   }
 
  private:

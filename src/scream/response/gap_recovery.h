@@ -92,7 +92,7 @@ class GapRecovery {
   /// Returns the next step back if no queue measures the link.
   std::optional<DataSize> Unproven(Time now, const PathModel& path, DataSize ref_wnd) const {
     // Packets before the newest may have marks from the gap.
-    const bool calm = path.queue_delay().qdelay() < kNoQueue && !path.newest_marked();
+    const bool calm = path.queue_delay().qdelay() < p_.busy_qdelay && !path.newest_marked();
     if (!calm || now - last_restart_ < path.rtt().min()) return std::nullopt;
     return ref_wnd + (before_->state.window - ref_wnd) * kUnprovenPart;
   }
@@ -103,8 +103,6 @@ class GapRecovery {
   static constexpr Duration kLongestMemory = 3s;
   /// and after a gap of this length: its rate then is the link's new capacity.
   static constexpr Duration kLongestGap = 10s;
-  /// A longer delay is a queue, not a few packets that came together.
-  static constexpr Duration kNoQueue = 5ms;
   /// Part of the missing window that is restored each round trip while nothing measures the link.
   static constexpr double kUnprovenPart = 0.5;
   static constexpr double kRestoredPart = 0.9;
