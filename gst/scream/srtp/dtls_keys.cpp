@@ -8,6 +8,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/monotonic_time.h"
 #include "gst/scream/rtp_packet.h"
+#include "gst/scream/srtp/dtls_hello.h"
 
 namespace lidar::gst {
 namespace {
@@ -19,28 +20,6 @@ constexpr std::chrono::seconds kDtlsPatience{5};
 constexpr std::chrono::seconds kDtlsPause{1};  // between handshakes that fail
 // A server may have to repeat its last datagram.
 constexpr std::chrono::seconds kServerKeeps{10};
-
-constexpr gsize kRecordHeader = 13;
-constexpr gsize kHandshakeHeader = 12;
-
-/// Returns true for each part of a client's hello, unless its record was cut off.
-bool IsOfHello(ByteView d) {
-  constexpr guint8 kHandshakeRecord = 22, kClientHello = 1;
-  if (d.size < kRecordHeader + kHandshakeHeader) return false;
-  const gsize length = gsize{d.data[11]} << 8 | d.data[12];
-  return length >= kHandshakeHeader && d.size >= kRecordHeader + length &&
-         d.data[0] == kHandshakeRecord && d.data[3] == 0 && d.data[4] == 0 &&  // the first epoch
-         d.data[kRecordHeader] == kClientHello;
-}
-
-/// Returns the first part of a hello without the record header, which differs in a repeated hello.
-/// Returns an empty text for other datagrams.
-std::string HelloIn(ByteView d) {
-  if (!IsOfHello(d)) return "";
-  const guint8* offset = d.data + kRecordHeader + 6;
-  if (offset[0] != 0 || offset[1] != 0 || offset[2] != 0) return "";
-  return std::string(reinterpret_cast<const char*>(d.data) + kRecordHeader, d.size - kRecordHeader);
-}
 
 }  // namespace
 

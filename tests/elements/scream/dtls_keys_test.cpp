@@ -194,6 +194,19 @@ TEST_F(DtlsEnds, AServerAnswersToFourAddressesOfOneHello) {
   EXPECT_EQ(Answered(4), (std::set<guint16>{5'001, 5'002, 5'003, 5'004}));
 }
 
+TEST_F(DtlsEnds, WhatFollowsAHelloInItsDatagramMakesItNoOtherHello) {
+  auto hello = HelloOfClient();
+  frozen_at = g_get_monotonic_time();
+  StartServer();
+  for (guint16 port = 5'001; port <= 5'006; ++port) {
+    Bytes first = hello.front();
+    first.push_back(static_cast<std::uint8_t>(port));  // as the number of a second record
+    Give(*server_, {port, first});
+  }
+  for (std::size_t n = 1; n < hello.size(); ++n) Give(*server_, {5'001, hello[n]});
+  EXPECT_EQ(Answered(4), (std::set<guint16>{5'001, 5'002, 5'003, 5'004}));
+}
+
 TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
   auto hello = HelloOfClient();
   frozen_at = g_get_monotonic_time();
