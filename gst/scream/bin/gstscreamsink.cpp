@@ -173,13 +173,21 @@ static const std::array<Property<SinkSettings>, 27> kProperties = {{
     Within<&SinkSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
+/// What is taken for feedback of a link's receiver.
+struct FeedbackRule {
+  SharedSocketAddress peer;
+  bool strict;
+};
+
+static FeedbackRule FeedbackRuleOf(State& state) {
+  const std::lock_guard lock(state.mutex);
+  return {state.peer, state.settings.strict_feedback};
+}
+
 /// Returns true if `buffer` comes from the receiver of a link, and counts it otherwise. A multicast
 /// group has many receivers.
-static bool IsFeedback(State& state, GstBuffer* buffer, GSocketAddress* peer) {
+static bool IsFeedback(State& state, GstBuffer* buffer, GSocketAddress* peer, bool strict) {
   GSocketAddress* from = SourceOf(buffer);
-  std::unique_lock lock(state.mutex);
-  const bool strict = state.settings.strict_feedback;
-  lock.unlock();
   const auto is_group = [peer] {
     return g_inet_address_get_is_multicast(
                g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer))) != FALSE;
@@ -192,11 +200,10 @@ static bool IsFeedback(State& state, GstBuffer* buffer, GSocketAddress* peer) {
 
 static GstPadProbeReturn FilterFeedback(GstPad*, GstPadProbeInfo* info, gpointer data) {
   State& state = *GST_LIDAR_SCREAM_SINK(data)->state;
-  std::unique_lock lock(state.mutex);
-  const SharedSocketAddress peer = state.peer;
-  lock.unlock();
+  const FeedbackRule rule = FeedbackRuleOf(state);
   return MapPackets(info, [&](BufferPtr packet) {
-    return IsFeedback(state, packet.get(), peer.get()) ? std::move(packet) : nullptr;
+    return IsFeedback(state, packet.get(), rule.peer.get(), rule.strict) ? std::move(packet)
+                                                                         : nullptr;
   });
 }
 
@@ -224,7 +231,7 @@ static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(Gs
 static void Bond(GstLidarScreamSink* self, const std::vector<OpenLink>& open,
                  const BondSettings& settings) {
   const auto takes = [self](GstBuffer* buffer, GSocketAddress* peer) {
-    return IsFeedback(*self->state, buffer, peer);
+    return IsFeedback(*self->state, buffer, peer, FeedbackRuleOf(*self->state).strict);
   };
   auto links = std::make_shared<SinkLinks>(
       GST_ELEMENT(self), SinkLinks::Chain{self->tx, self->sink, self->src}, open, settings, takes);
