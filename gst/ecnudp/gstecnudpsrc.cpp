@@ -128,6 +128,7 @@ static gboolean Start(GstBaseSrc* base) {
   lidar::net::AskForInfo(fd);
   ConfigureBuffer(self, fd, s.options.buffer_size);
   state.wake.Clear();
+  state.batch.ForgetDrops();
   state.timeout_ns = s.options.timeout.count() > 0 ? s.options.timeout.count() : -1;
   state.last_from = {};
   state.last_address.reset();

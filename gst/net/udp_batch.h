@@ -77,6 +77,8 @@ class UdpBatchReceiver {
   int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Datagrams the kernel dropped because the socket's buffer was full, since it was opened.
   guint kernel_drops() const { return kernel_drops_; }
+  /// Begins with another socket: the kernel says nothing before that drops something.
+  void ForgetDrops() { kernel_drops_ = 0; }
 
  private:
   struct Slot {

@@ -80,6 +80,52 @@ TEST(EcnUdp, BatchesLargerThanOneSystemCallArriveWholeAndInOrder) {
   }
 }
 
+/// A batch is under way at the stop, and the kernel has dropped datagrams.
+TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
+  const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "buffer-size", 4'096, nullptr);
+  const auto drops = [&] {
+    GstStructure* stats = nullptr;
+    g_object_get(src->element, "stats", &stats, nullptr);
+    const StructurePtr owner(stats);
+    guint n = 0;
+    EXPECT_TRUE(gst_structure_get_uint(stats, "dropped-by-kernel", &n));
+    return n;
+  };
+  gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read
+  Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  for (int i = 0; i < 50; ++i) gst_harness_push(sink.get(), Payload(std::string(1'000, 'x')));
+  gst_harness_play(src.get());
+  EXPECT_TRUE(test::Eventually([&] {
+    gst_harness_push(sink.get(), Payload("behind the loss"));
+    return drops() > 0;
+  }));
+  gst_element_set_state(src->element, GST_STATE_PAUSED);
+  for (int i = 0; i < 3; ++i) gst_harness_push(sink.get(), Payload("old"));
+  std::atomic<bool> blocked{false};
+  const PadPtr pad(gst_element_get_static_pad(src->element, "src"));
+  const gulong probe = gst_pad_add_probe(
+      pad.get(), static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_BUFFER),
+      [](GstPad*, GstPadProbeInfo*, gpointer flag) -> GstPadProbeReturn {
+        *static_cast<std::atomic<bool>*>(flag) = true;
+        return GST_PAD_PROBE_OK;
+      },
+      &blocked, nullptr);
+  gst_element_set_state(src->element, GST_STATE_PLAYING);
+  EXPECT_TRUE(test::Eventually([&] { return blocked.load(); }));
+  gst_element_set_state(src->element, GST_STATE_NULL);
+  gst_pad_remove_probe(pad.get(), probe);
+  while (GstBuffer* old = gst_harness_try_pull(src.get())) gst_buffer_unref(old);
+  gst_harness_play(src.get());
+  sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  gst_harness_push(sink.get(), Payload("new"));
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(Text(got.get()), "new");
+  EXPECT_EQ(Stat(src.get(), "packets-received"), 1U);
+  EXPECT_EQ(drops(), 0U);
+}
+
 TEST(EcnUdp, BuffersOfManyMemoriesAreOneDatagram) {
   const Harness src = NewSource();
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
