@@ -181,6 +181,7 @@ static void Prepare(TxState& state) {
     stream->id = state.controller->AddStream(stream->config);
   }
   state.merger = {};
+  state.reports = {};
   state.pacing.ForgetEnd();
   state.reporter.notices().Reset(*state.controller, TxNow(state));
   state.malformed_rtcp = state.reports_of_others = 0;

@@ -172,6 +172,23 @@ TEST_F(ScreamTxReports, TellTheReceiverHowItSeesThePath) {
   EXPECT_GT(last.ref_wnd, DataSize());
 }
 
+TEST_F(ScreamTxReports, BeginAfterTheirIntervalInEachRun) {
+  g_object_set(element, "sender-report-interval", guint64{GST_SECOND}, nullptr);
+  Start();
+  for (int run = 0; run < 2; ++run) {
+    byes.clear();
+    Run(8);
+    EXPECT_TRUE(Reports().empty()) << run;
+    Run(5);
+    EXPECT_EQ(Reports().size(), 1U) << run;
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_harness_play(rtp.get());
+    gst_harness_play(rtcp.get());
+    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  }
+}
+
 TEST_F(ScreamTxReports, AreNotSentUnlessAskedForNorMoreOftenThanTenASecond) {
   Start();
   Run(15);
