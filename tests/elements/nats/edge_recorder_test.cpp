@@ -1,11 +1,74 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: a recorder that fails harms no other branch.
+// lidar-edge: each setting reaches its element, and a recorder that fails harms no other branch.
 #include "src/tools/apps/edge/pipeline.h"
 #include "tests/elements/nats/nats_server.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
+
+using Settings = std::vector<std::pair<const char*, const char*>>;
+
+void ExpectSettings(GstElement* pipeline, const char* name, const Settings& expected) {
+  const gst::ElementPtr element(gst_bin_get_by_name(GST_BIN(pipeline), name));
+  ASSERT_TRUE(element) << name;
+  for (const auto& [property, text] : expected) {
+    GValue value = G_VALUE_INIT;
+    g_object_get_property(G_OBJECT(element.get()), property, &value);
+    const gst::StringPtr shown(G_VALUE_HOLDS_STRING(&value) ? g_value_dup_string(&value)
+                                                            : gst_value_serialize(&value));
+    EXPECT_STREQ(shown.get(), text) << name << " " << property;
+    g_value_unset(&value);
+  }
+}
+
+TEST(EdgePipeline, GivesEachSettingToItsElement) {
+  edge::EdgeConfig config;
+  config.address = "127.0.0.9";
+  config.nats = {nats::ConnectionSettings{}, "fleet2", "KEPT", 3, 7, 12'345, 70'000};
+  nats::ConnectionSettings& connection = *config.nats.connection;
+  connection.url = "nats.invalid";
+  connection.credentials_file = "a.creds";
+  connection.tls_ca_file = "ca.pem";
+  connection.tls_cert_file = "cert.pem";
+  connection.tls_key_file = "key.pem";
+  edge::RobotConfig robot;
+  robot.name = "r1";
+  robot.sensor = "top";
+  robot.port = 5'017;
+  robot.srtp_cipher = "aes-256-gcm";
+  robot.dtls_certificate = "edge.pem";
+  robot.dtls_peer_certificate = "robot.crt";
+  robot.record = "r1-%05d.mcap";
+  robot.record_max_file_size = 654'321;
+  robot.record_max_files = 12;
+  const gst::ElementPtr pipeline = edge::MakePipeline(config, robot, nullptr);
+  edge::AddRecorder(pipeline.get(), robot);
+  EXPECT_STREQ(GST_OBJECT_NAME(pipeline.get()), "r1-top");
+  ExpectSettings(pipeline.get(), "screamsrc",
+                 {{"address", "127.0.0.9"},
+                  {"port", "5017"},
+                  {"srtp-cipher", "aes-256-gcm"},
+                  {"dtls-certificate", "edge.pem"},
+                  {"dtls-peer-certificate", "robot.crt"},
+                  {"eos-on-bye", "true"}});
+  ExpectSettings(pipeline.get(), "natssink",
+                 {{"url", "nats.invalid"},
+                  {"credentials-file", "a.creds"},
+                  {"tls-ca-file", "ca.pem"},
+                  {"tls-cert-file", "cert.pem"},
+                  {"tls-key-file", "key.pem"},
+                  {"subject", "fleet2.r1.lidar.top"},
+                  {"jetstream", "KEPT"},
+                  {"jetstream-subjects", "fleet2.*.lidar.>"},
+                  {"replicas", "3"},
+                  {"max-age", "7000000000"},
+                  {"max-bytes", "12345"},
+                  {"buffer-size", "70000"},
+                  {"keep-trying", "true"}});
+  ExpectSettings(pipeline.get(), "mcapsink",
+                 {{"location", "r1-%05d.mcap"}, {"max-file-size", "654321"}, {"max-files", "12"}});
+}
 
 class EdgeRecorder : public ::testing::Test {
  protected:
