@@ -300,6 +300,21 @@ TEST_F(TwoLinks, GivesALinkThatCameBackCopiesOnlyUntilItsFirstReport) {
   EXPECT_GT(scheduler_.counters(0).packets, own) << "it is the better one";
 }
 
+TEST_F(TwoLinks, ForgetsAllAtARestartButWhichLinksCanBeUsed) {
+  Work(4s);
+  scheduler_.SetUsable(now_, 1, false);
+  Packet();
+  scheduler_.Restart();
+  EXPECT_FALSE(scheduler_.AwaitsArrivals(now_));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(scheduler_.usable(i), i == 0);
+    EXPECT_FALSE(scheduler_.has_reported(i));
+    const LinkCounters& c = scheduler_.counters(i);
+    EXPECT_EQ(c.packets + c.copies + c.cancelled + c.saved + c.gaps, 0U) << i;
+  }
+  EXPECT_EQ(Packet(), SetOf({0}));
+}
+
 TEST(Scheduler, SumsUpTargetsOfLinksThatWork) {
   Scheduler scheduler(2, Method::kAdaptive, TargetRule::kSum);
   EXPECT_EQ(scheduler.Target(kStart, {Mbps(10), Mbps(3)}), Mbps(13));

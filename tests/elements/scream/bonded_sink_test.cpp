@@ -219,6 +219,41 @@ TEST_F(BondedSink, CountsWhatStrangersSendToAnyLink) {
   Restart();
 }
 
+/// Returns the element's own properties as text, without what is of one link or changes by itself.
+std::string SettingsOf(GstElement* element) {
+  const std::set<std::string> of_link = {"name",   "parent",      "host",         "port",
+                                         "socket", "used-socket", "peer-address", "stats"};
+  guint count = 0;
+  GParamSpec** raw = g_object_class_list_properties(G_OBJECT_GET_CLASS(element), &count);
+  const std::unique_ptr<GParamSpec*, void (*)(gpointer)> specs(raw, g_free);
+  std::string text;
+  for (guint i = 0; i < count; ++i) {
+    if ((raw[i]->flags & G_PARAM_READABLE) == 0 || of_link.count(raw[i]->name) > 0) continue;
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, raw[i]->value_type);
+    g_object_get_property(G_OBJECT(element), raw[i]->name, &value);
+    const bool is_null = G_VALUE_HOLDS_BOXED(&value) && g_value_get_boxed(&value) == nullptr;
+    const gst::StringPtr shown(is_null ? g_strdup("NULL") : g_strdup_value_contents(&value));
+    text += std::string(raw[i]->name) + "=" + shown.get() + "\n";
+    g_value_unset(&value);
+  }
+  return text;
+}
+
+TEST_F(BondedSink, GivesEachLinkTheSettingsOfTheSink) {
+  g_object_set(sink_, "qos-dscp", 46, "min-bitrate", 111'111, "start-bitrate", 222'222,
+               "max-bitrate", 333'333, "max-total-bitrate", 444'444, "ecn-mode", 1,
+               "max-queue-delay", guint64{77'000'000}, "stats-interval", guint64{5'000'000'000},
+               "send-bye", FALSE, "sender-report-interval", guint64{3'000'000'000},
+               "key-unit-on-loss", TRUE, nullptr);
+  gst_util_set_object_arg(G_OBJECT(sink_), "tuning", "tuning,beta-loss=0.6");
+  Start();
+  for (const char* factory : {"screamtx", "ecnudpsink", "ecnudpsrc"})
+    EXPECT_EQ(SettingsOf(Child(NameOf(factory, 1)).get()), SettingsOf(Child(factory).get()));
+  EXPECT_NE(SettingsOf(Child("ecnudpsink1").get()).find("qos-dscp=46\n"), std::string::npos);
+  EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=333333\n"), std::string::npos);
+}
+
 TEST_F(BondedSink, WaitsAtTheEndForWhatMayStillArrive) {
   Start();
   Advance(2 * GST_SECOND);

@@ -295,6 +295,7 @@ INSTANTIATE_TEST_SUITE_P(Ciphers, BondedSrtp,
                                            "srtp-cipher=aes-128-gcm srtp-key=555555555555555555555"
                                            "55555555555555555555555555555555555"));
 
+/// The receiver has the new key first, and uses it once the media do.
 TEST(Bonding, TakesANewKeyWithoutAGap) {
   const std::string old_key = std::string(60, '5'), new_key = std::string(60, '6');
   BondReceiver receiver("srtp-key=" + old_key);
@@ -304,6 +305,9 @@ TEST(Bonding, TakesANewKeyWithoutAGap) {
   const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
   ASSERT_TRUE(Eventually([&] { return receiver.passed >= 40; }));
   g_object_set(in.get(), "srtp-key", new_key.c_str(), nullptr);
+  const guint64 accepted = Stats(out.get())["feedback-accepted"];
+  ASSERT_TRUE(Eventually([&] { return Stats(out.get())["feedback-accepted"] >= accepted + 5; }));
+  EXPECT_EQ(Stats(out.get())["srtp-key-changes"], 0U) << "feedback has the key of the media";
   g_object_set(out.get(), "srtp-key", new_key.c_str(), nullptr);
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.pipeline.Ends());

@@ -255,6 +255,32 @@ TEST_F(DtlsEnds, AKeyedClientTakesThePauseBetweenStopAndStartForNoSilence) {
   EXPECT_TRUE(test::Eventually([&] { return !up_.Take().empty(); }));
 }
 
+TEST_F(DtlsEnds, ASilenceIsToldOfOnceAndBehindAKeyAgain) {
+  frozen_at = g_get_monotonic_time();
+  StartClient();
+  const auto tries = [this] { return test::Eventually([&] { return !up_.Take().empty(); }); };
+  for (unsigned silence = 1; silence <= 2; ++silence) {
+    for (int handshake = 0; handshake < 3; ++handshake) {
+      ASSERT_TRUE(tries());
+      frozen_at += 6 * G_USEC_PER_SEC;  // the handshake is given up
+    }
+    std::vector<Carried> hello;
+    ASSERT_TRUE(test::Eventually([&] { return !(hello = up_.Take()).empty(); }));
+    EXPECT_EQ(warnings_, silence);
+    StartServer();
+    for (const Carried& d : hello) Give(*server_, {5'001, d.bytes});
+    ASSERT_TRUE(test::Eventually([&] {
+      for (const Carried& d : up_.Take()) Give(*server_, {5'001, d.bytes});
+      for (const Carried& d : down_.Take()) Give(*client_, d);
+      return client_keys_ == silence && server_keys_ == silence;
+    }));
+    server_.reset();
+    up_.Take();
+    ++sent_;  // stays unanswered
+    frozen_at += 6 * G_USEC_PER_SEC;
+  }
+}
+
 TEST_F(DtlsEnds, AServerLooksAtNoClockBeforeSomethingComes) {
   StartServer();
   EXPECT_TRUE(test::Eventually([] {

@@ -8,6 +8,7 @@
 #include "gst/scream/key_request.h"
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rtp_packet.h"
+#include "gst/scream/srtp/key_gate.h"
 #include "gst/scream/tx/settings.h"
 #include "src/scream/tuning.h"
 #include "tests/elements/scream/rtp_support.h"
@@ -56,6 +57,38 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7},
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0xff,
                                                 0xff}));  // extensions past the end
+
+/// The pad has no peer that answers for its latency, so it counts as live.
+TEST(KeyGate, CountsEachPacketThatItDropsAndPassesAllOnceItIsOpen) {
+  const auto gate = std::make_shared<KeyGate>();
+  const PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("sink", GST_PAD_SINK))));
+  static guint passed;
+  passed = 0;
+  gst_pad_set_chain_function(pad.get(), [](GstPad*, GstObject*, GstBuffer* buffer) {
+    gst_buffer_unref(buffer);
+    ++passed;
+    return GST_FLOW_OK;
+  });
+  gst_pad_set_active(pad.get(), TRUE);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_send_event(pad.get(), gst_event_new_stream_start("media"));
+  gst_pad_send_event(pad.get(), gst_event_new_segment(&segment));
+  const auto send = [&] {
+    GstBufferList* list = gst_buffer_list_new();
+    for (int i = 0; i < 3; ++i) gst_buffer_list_add(list, test::NewRtp({}));
+    gst_pad_chain_list(pad.get(), list);
+    gst_pad_chain(pad.get(), test::NewRtp({}));
+  };
+  KeyGate::Guard(gate, pad.get());
+  send();
+  EXPECT_EQ(gate->dropped(), 4U);
+  EXPECT_EQ(passed, 0U);
+  gate->Open();
+  send();
+  EXPECT_EQ(gate->dropped(), 4U);
+  EXPECT_EQ(passed, 4U);
+}
 
 TEST(KeyRequest, RoundTripsAndNothingElseIsOne) {
   const auto request = BuildKeyRequest(1, 0xfedcba98);
@@ -331,6 +364,31 @@ struct TunableValue {
   }
   double operator()(DataRate scream::Parameters::*m) const { return (p.*m).bits_per_second(); }
 };
+
+TEST(TxSettings, ReachTheController) {
+  const scream::Parameters usual = ToParameters({}), defaults;
+  EXPECT_EQ(usual.ecn, Ecn::kEct1);
+  EXPECT_EQ(usual.max_total_bitrate, defaults.max_total_bitrate);
+  EXPECT_EQ(usual.max_queue_delay, defaults.max_queue_delay);
+  EXPECT_EQ(usual.feedback_interval, Duration{});
+  TxSettings settings;
+  settings.max_total_bps = 123'456;
+  settings.max_queue_delay = 77ms;
+  settings.feedback_interval = 55ms;
+  for (const bool pure : {false, true}) {
+    settings.pure_draft = pure;
+    for (const auto& [mode, ecn] : {std::pair(int{kEcnOff}, Ecn::kNotEct),
+                                    {int{kEcnEct0}, Ecn::kEct0},
+                                    {int{kEcnEct1}, Ecn::kEct1}}) {
+      settings.ecn_mode = mode;
+      const scream::Parameters p = ToParameters(settings);
+      EXPECT_EQ(p.ecn, ecn);
+      EXPECT_EQ(p.max_total_bitrate, DataRate::BitsPerSecond(123'456));
+      EXPECT_EQ(p.max_queue_delay, Duration{77ms});
+      EXPECT_EQ(p.feedback_interval, Duration{55ms});
+    }
+  }
+}
 
 TEST(Tuning, SetsWhatItNamesAndNothingElse) {
   const scream::Parameters defaults;

@@ -193,6 +193,8 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
   SetPtMap(
       "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
       "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"");
+  const std::unique_ptr<GstBus, gst::Unref> bus(gst_bus_new());
+  gst_element_set_bus(element, bus.get());
   Start();
   for (int round = 0; round < 2; ++round) {
     Rtp camera;
@@ -205,10 +207,18 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     EXPECT_EQ(Passed(), 2 * static_cast<guint>(round) + 2);  // `src` takes the first stream, too
     EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 1'024);      // rtcp_src and `src` among them
     EXPECT_EQ(Stats(element)["packets-foreign"], 77U);
+    int told = 0;
+    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING)}) {
+      GError* error = nullptr;
+      gst_message_parse_warning(message.get(), &error, nullptr);
+      told += gst::ErrorPtr(error)->message == std::string("More than 1024 streams.");
+    }
+    EXPECT_EQ(told, 1) << "once a run";
     gst_element_set_state(element, GST_STATE_NULL);
     EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 2);
     gst_harness_play(rtp.get());
   }
+  gst_element_set_bus(element, nullptr);
 }
 
 TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {

@@ -193,6 +193,38 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
   EXPECT_EQ(last.begin_seq, 5);  // the report has no packets of the old address
 }
 
+TEST_F(ScreamRx, ShowsNothingOfTheOldPeerAfterAMove) {
+  Start();
+  Rtp r;
+  for (const guint16 seq : std::initializer_list<guint16>{
+           0, 1, 1, 9, 8}) {  // one twice, a gap, and one that is overtaken
+    r.seq = seq;
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_CE, "10.0.0.1"), GST_FLOW_OK);
+  }
+  rtcp::SenderReport report;
+  report.ssrc = r.ssrc;
+  report.packets_sent = 5;
+  ASSERT_EQ(PushReport(report, "10.0.0.1"), GST_FLOW_OK);
+  constexpr const char* kOfPeer[] = {
+      "packets-received",  "bytes-received",    "packets-ce", "packets-lost",
+      "packets-reordered", "packets-duplicate", "ssrcs",      "sender-packets-sent",
+      "sender-reports"};
+  for (const char* field : kOfPeer) EXPECT_GT(Stats(element)[field], 0U) << field;
+  time.Settle();
+  time.Advance(600 * GST_MSECOND);
+  r.ssrc = 0x5678;
+  for (r.seq = 0; Stats(element)["peer-moves"] == 0 && r.seq < 9; ++r.seq)
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
+  const Stats stats(element);
+  EXPECT_EQ(stats["peer-moves"], 1U);
+  for (const char* field : kOfPeer) {
+    const std::string name = field;
+    const guint64 one =
+        name == "bytes-received" ? 1'228 : name == "packets-received" || name == "ssrcs";
+    EXPECT_EQ(stats[field], one) << field;
+  }
+}
+
 TEST_F(ScreamRx, BelievesTheSenderWhoseSlicesAreWholeOverOneWhoSendsOften) {
   Start();
   gst_harness_set_src_caps_str(rtp.get(),
@@ -233,6 +265,28 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
     EXPECT_EQ(Stats(element)["packets-old"], asked ? 3U : 0U);
     rtcp.reset();
     rtp.reset();
+  }
+}
+
+/// What has no capture time is judged as the slice before it, but not by that of another run.
+TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
+  g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
+  Start();
+  Rtp without, recorded;
+  without.payload = WholeSlice();
+  recorded.seq = 1;
+  recorded.payload = WholeSlice(lidar::rtp::ToNtp(GST_SECOND));
+  for (int run = 0; run < 2; ++run) {
+    gst_harness_set_src_caps_str(rtp.get(),
+                                 "application/x-rtp, media=(string)application, payload=(int)96, "
+                                 "clock-rate=(int)90000, encoding-name=(string)X-LIDAR-DRACO");
+    EXPECT_EQ(Push(without), GST_FLOW_OK);
+    EXPECT_EQ(Push(recorded), GST_FLOW_OK);
+    EXPECT_EQ(Stats(element)["packets-old"], 1U) << run;
+    EXPECT_EQ(Stats(element)["packets-received"], 1U) << run;
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_harness_play(rtp.get());
+    gst_harness_play(rtcp.get());
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What screamtx makes of RTCP: reports, forgeries, and packets for others.
+#include <gst/video/video.h>
 #include <gtest/gtest.h>
 #include <time.h>
 
@@ -231,6 +232,27 @@ TEST_F(ScreamTx, AsksTheEncoderOfLidarForAKeyUnitWhereAReceiverDoes) {
   const auto request = gst::BuildKeyRequest(9, 0x1234);
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
   EXPECT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
+}
+
+TEST_F(ScreamTx, NumbersItsRequestsForKeyUnits) {
+  StartAsLast(kLidarCaps);
+  PushFrame(0, 1);
+  Collect();
+  for (guint expected = 1; expected <= 3; ++expected) {
+    const auto request = gst::BuildKeyRequest(9, 0x1234);
+    ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
+    const EventPtr event(WaitForUpstream(rtp.get(), "GstForceKeyUnit"));
+    ASSERT_TRUE(event);
+    guint count = 0;
+    gboolean all_headers = FALSE;
+    GstClockTime running_time = 0;
+    ASSERT_TRUE(gst_video_event_parse_upstream_force_key_unit(event.get(), &running_time,
+                                                              &all_headers, &count));
+    EXPECT_EQ(count, expected);
+    EXPECT_TRUE(all_headers);
+    EXPECT_EQ(running_time, GST_CLOCK_TIME_NONE) << "at once";
+    time.Advance(600 * GST_MSECOND);
+  }
 }
 
 TEST_F(ScreamTx, LeavesKeyUnitsOfVideoToWhoManagesItsSession) {
