@@ -126,6 +126,22 @@ TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
   EXPECT_EQ(drops(), 0U);
 }
 
+TEST(EcnUdp, TellsOnceOfAnErrorUntilDatagramsLeaveAgain) {
+  const Harness src = NewSource();
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  const std::unique_ptr<GstBus, Unref> bus(gst_bus_new());
+  gst_element_set_bus(sink->element, bus.get());
+  for (guint outage = 1; outage <= 2; ++outage) {
+    for (int i = 0; i < 3; ++i) gst_harness_push(sink.get(), Payload(std::string(70'000, 'x')));
+    EXPECT_TRUE(MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING))) << outage;
+    EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING))) << outage;
+    EXPECT_EQ(Stat(sink.get(), "send-errors"), 3 * outage);
+    gst_harness_push(sink.get(), Payload("fits"));
+    EXPECT_EQ(Stat(sink.get(), "packets-sent"), outage);
+  }
+  gst_element_set_bus(sink->element, nullptr);
+}
+
 TEST(EcnUdp, BuffersOfManyMemoriesAreOneDatagram) {
   const Harness src = NewSource();
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
