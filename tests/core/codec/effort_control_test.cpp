@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -83,6 +84,15 @@ TEST(EffortControl, YieldsAtOnceToABusyMachineAndComesBack) {
   EXPECT_EQ(control.effort(), 0U);
   machine.factor = 1;
   EXPECT_EQ(Play(machine, {}, 120, &control).back(), 3U);
+}
+
+TEST(EffortControl, FallsByOneLevelForEachThreeSlicesThatAreMuchTooLate) {
+  EffortControl control;
+  ASSERT_EQ(Play({}, {}, 10, &control).back(), 3U);
+  for (unsigned slice = 1; slice <= 12; ++slice) {
+    control.OnSlice(Duration{12'500'000}, 2'700, Duration{9'000'000});
+    EXPECT_EQ(control.effort(), 3 - std::min(3U, slice / 3)) << slice;
+  }
 }
 
 TEST(EffortControl, WaitsLongerEachTimeThatAnEffortFailed) {

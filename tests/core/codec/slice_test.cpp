@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "src/codec/effort_control.h"
@@ -110,6 +111,63 @@ TEST_P(Efforts, KeepBinsThatOnlyTheFastCoderCanCount) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Efforts, ::testing::Range(0U, EffortControl::kHighest + 1));
+
+/// How a slice is coded; its figures must be the truth for each.
+struct Coding {
+  unsigned threads;
+  unsigned effort;
+  std::uint32_t thinned_to;  // beams out of 64
+  double step_m;
+  unsigned intensity_bits;
+};
+class SliceFigures : public ::testing::TestWithParam<Coding> {};
+
+TEST_P(SliceFigures, AreThoseOfTheDecodedCloud) {
+  const Coding& coding = GetParam();
+  const SensorModel model = test::RoomSensor(64);
+  const RangeImage image = test::RoomScan(model);
+  const CloudFormat format{test::OrganisedLayout(), image.beams, model};
+  const auto raw = test::RawCloud(model, image);
+  auto encoder = *SliceEncoder::Create(format);
+  encoder.set_threads(coding.threads);
+  encoder.set_effort(coding.effort);
+  encoder.Load({raw.data(), raw.size()}, 0, coding.intensity_bits > 0);
+  std::vector<bool> kept(image.beams);
+  for (std::uint32_t beam = 0; beam < image.beams; ++beam)
+    kept[beam] = beam % (image.beams / coding.thinned_to) == 0;
+  encoder.Thin(kept);
+  EncodedSlice slice;
+  ASSERT_EQ(encoder.Encode({0.2, coding.step_m, coding.intensity_bits}, &slice),
+            SliceResult::kEncoded);
+  SliceDecoder decoder(format, kMaxPoints);
+  ASSERT_TRUE(decoder.Decode({slice.bytes.data(), slice.bytes.size()}));
+  std::vector<std::uint8_t> back(raw.size());
+  decoder.Write(back.data());
+  std::size_t returns = 0;
+  double error_mm = 0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    std::uint32_t range = 0;
+    std::memcpy(&range, &back[20 * i + 16], sizeof range);
+    if (range == 0) continue;
+    ++returns;
+    error_mm = std::max(
+        error_mm, std::abs(static_cast<double>(range) - static_cast<double>(image.ranges[i])));
+  }
+  EXPECT_EQ(encoder.returns(), returns);
+  EXPECT_EQ(slice.returns, returns);
+  EXPECT_LE(slice.error_m, 0.2);
+  EXPECT_LE(error_mm, 1e3 * slice.error_m + 1e-6);
+  EXPECT_GE(error_mm, 900 * slice.error_m);
+  const SliceDecoder::Quality& quality = decoder.quality();
+  EXPECT_EQ(quality.step_m, slice.step_m);
+  EXPECT_EQ(quality.error_m, slice.error_m);
+  EXPECT_EQ(quality.intensity_bits, coding.intensity_bits);
+  EXPECT_EQ(quality.keep_fraction, coding.thinned_to / 64.0);
+}
+INSTANTIATE_TEST_SUITE_P(Of, SliceFigures,
+                         ::testing::Values(Coding{1, 0, 64, 0.1, 0}, Coding{4, 0, 64, 0.1, 5},
+                                           Coding{1, 1, 16, 0.05, 5}, Coding{3, 1, 32, 0.3, 0},
+                                           Coding{2, 2, 8, 0, 3}));
 
 TEST(RangeSlices, ShrinkWithEveryEffort) {
   const RangeImage image = test::RoomScan(test::RoomSensor(), 0, 256);

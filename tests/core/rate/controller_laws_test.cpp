@@ -119,6 +119,29 @@ TEST_F(Accounts, BoundsAreToldAfterAScanWhoseLastSliceWasNotCoded) {
     }
 }
 
+// Bits that change with each scan would make the intensities of a still scene flicker.
+TEST_F(Accounts, IntensityBitsRiseAgainOnlyWithAMargin) {
+  ControllerParameters p = WithoutIntensity();
+  p.limits.intensity_bits = 8;
+  controller_.SetParameters(p);
+  // A scan takes 1,000 bytes, and 250 bytes for each bit.
+  struct Step {
+    double bytes;
+    unsigned bits;
+  };
+  std::uint32_t scan = 0;
+  for (const Step& step : {Step{1'990, 3}, Step{2'010, 3}, Step{2'210, 3}, Step{2'240, 4},
+                           Step{2'010, 4}, Step{1'990, 3}, Step{9'000, 8}}) {
+    controller_.SetTarget(DataRate::BitsPerSecond(step.bytes * 8 * 10));
+    for (std::uint32_t i = 0; i < kSlicesOfScan; ++i) {
+      const Decision d = controller_.NextSlice(Features(scan, i));
+      EXPECT_EQ(d.settings.intensity_bits, step.bits) << step.bytes;
+      Encoded(d.budget ? static_cast<double>(d.budget->bytes()) : 1, d.settings.step_m);
+    }
+    ++scan;
+  }
+}
+
 TEST_F(Accounts, WithoutTheLoopEachSliceGetsItsShareWhateverWasSent) {
   ControllerParameters open = WithoutIntensity();
   open.closed_loop = false;
