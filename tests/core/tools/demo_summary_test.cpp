@@ -87,6 +87,30 @@ TEST(DemoLedger, IgnoresRecordsThatMakeNoSense) {
   EXPECT_TRUE(ledger.scans().empty());
 }
 
+TEST(DemoSamples, HaveTheUnitsOfTheirNames) {
+  const nlohmann::json encoder = {{"step", 0.03}, {"target-bitrate", 9'000'000}};
+  const nlohmann::json sender = {{"target-bitrate", 1'000'000}, {"estimated-capacity", 2'000'000},
+                                 {"rtt", 40'000'000},           {"queue-delay", 3'000'000},
+                                 {"ref-wnd", 12'000},           {"bytes-in-flight", 8'000},
+                                 {"packets-dropped", 4},        {"sender-queue-delay", 7'000'000}};
+  const SenderSample s = ReadSample({{"unix_ns", 5}, {"sender", sender}, {"encoder", encoder}});
+  EXPECT_EQ(s.unix_ns, 5);
+  EXPECT_EQ(s.target_bps, 1e6);
+  EXPECT_EQ(s.estimated_capacity_bps, 2e6);
+  EXPECT_EQ(s.rtt_ms, 40);
+  EXPECT_EQ(s.queue_delay_ms, 3);
+  EXPECT_EQ(s.ref_wnd_bytes, 12'000);
+  EXPECT_EQ(s.bytes_in_flight, 8'000);
+  EXPECT_EQ(s.sender_queue_ms, 7);
+  EXPECT_EQ(s.step_m, 0.03);
+  EXPECT_EQ(s.packets_dropped, 4U);
+  // The links of a bonded sender share the target of the encoder.
+  const nlohmann::json bonded = {{"links", {{{"packets-dropped", 2}}, {{"packets-dropped", 3}}}}};
+  const SenderSample b = ReadSample({{"sender", bonded}, {"encoder", encoder}});
+  EXPECT_EQ(b.target_bps, 9e6);
+  EXPECT_EQ(b.packets_dropped, 5U);
+}
+
 TEST(DemoSummary, SteadyLeavesOutTheStartAndTheSecondAfterAStep) {
   const auto m = TwoSteps();
   EXPECT_FALSE(m.IsSteady(2.9));
