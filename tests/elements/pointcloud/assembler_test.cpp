@@ -6,6 +6,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"
+#include "tests/support/clock_wait.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -396,6 +397,16 @@ TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
   EXPECT_TRUE(IsCorrupted(scan));
   Push(Slice(0, 3));
   EXPECT_EQ(Stat("late-slices"), 1U);
+}
+
+TEST_F(LiveAssembler, AScanOfASenderThatStartedAgainHasItsOwnDeadline) {
+  Push(Slice(40, 0));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  Push(Slice(0, 0));
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 40U);
+  EXPECT_TRUE(test::AwaitClockWait(h_.get(), (100 + 25 + 20) * GST_MSECOND));
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
 }
 
 TEST_F(LiveAssembler, ALateSliceStillFindsItsScanWhileTheNextBegins) {

@@ -234,6 +234,32 @@ TEST_F(FilterByTransforms, CloudsWaitAgainBehindAFlush) {
   EXPECT_EQ(PulledX(), 11);
 }
 
+TEST_F(FilterByTransforms, CloudsWaitForAStreamOfTransformsThatBeginsAgain) {
+  Start("target-frame=map tf-timeout=60000000000");
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  for (const bool flushed : {false, true}) {
+    const int second = flushed ? 110 : 100;
+    Tell(moving_.get(), "map", "os", second, 1);
+    for (const test::Harness* h : {&fixed_, &moving_})
+      gst_harness_push_event(h->get(), gst_event_new_eos());
+    if (flushed) {
+      gst_harness_push_event(moving_.get(), gst_event_new_flush_start());
+      gst_harness_push_event(moving_.get(), gst_event_new_flush_stop(TRUE));
+    } else {
+      gst_harness_push_event(moving_.get(), gst_event_new_stream_start("again"));
+    }
+    gst_harness_push_event(moving_.get(), gst_event_new_segment(&segment));
+    {
+      const Waiter cloud([&] { EXPECT_EQ(PushAt(second + 1), GST_FLOW_OK); });
+      EXPECT_TRUE(cloud.AwaitSleep()) << flushed;
+      Tell(moving_.get(), "map", "os", second + 2, 3);
+    }
+    ASSERT_EQ(gst_harness_buffers_in_queue(h_.get()), 1U) << flushed;
+    EXPECT_EQ(PulledX(), 3);
+  }
+}
+
 TEST_F(FilterByTransforms, NobodyWaitsForTransformsOfAPadThatIsGone) {
   Start("target-frame=map tf-timeout=60000000000");
   for (const test::Harness* h : {&fixed_, &moving_})

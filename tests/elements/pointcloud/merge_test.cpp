@@ -6,6 +6,7 @@
 
 #include "gst/lidar/gstlidar.h"
 #include "tests/elements/mcap/recording.h"
+#include "tests/support/clock_wait.h"
 #include "tests/support/harness.h"
 
 namespace lidar::test {
@@ -179,6 +180,19 @@ TEST_F(MergedByHand, SoDoesAScanWhoseDurationIsZero) {
   Push(first_, 1, 100, 0);
   Push(second_, 2, 150, 0);
   ExpectCloud({1, 2}, 100);
+}
+
+/// A live sensor is waited for until the end of the last cloud and the latency have passed.
+TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
+  constexpr GstClockTime kLatency = 20 * GST_MSECOND;
+  for (GstHarness* h : {first_.get(), second_.get()}) gst_harness_set_upstream_latency(h, kLatency);
+  for (GstClockTime turn = 0; turn < 3; ++turn) {
+    Push(first_, 1, 100 * turn);
+    EXPECT_TRUE(AwaitClockWait(first_.get(), 100 * turn * GST_MSECOND + kLatency)) << turn;
+    EXPECT_EQ(gst_harness_buffers_in_queue(first_.get()), 0U) << turn;
+    Push(second_, 2, 100 * turn);
+    ExpectCloud({1, 2}, 100 * turn);
+  }
 }
 
 TEST_F(MergedByHand, EachPadHasItsOwnTransform) {
