@@ -103,12 +103,12 @@ std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t
 
 void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud,
              std::vector<std::uint32_t>* rows) {
-  cloud->Clear();
+  cloud->intensity.clear();
   if (rows != nullptr) rows->clear();
   const std::size_t count = raw.size / layout.point_step;
   const std::uint32_t xyz_offset = layout.fields.Find("x")->offset;
   const PointField* intensity = with_intensity ? layout.fields.Find("intensity") : nullptr;
-  cloud->xyz.resize(3 * count);
+  cloud->xyz.resize(3 * count);  // a large cloud before this one leaves no zeros to write
   float* next = cloud->xyz.data();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* point = raw.data + i * layout.point_step;
@@ -116,7 +116,7 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
     std::memcpy(p, point + xyz_offset, sizeof p);
     const bool missing = p[0] == 0 && p[1] == 0 && p[2] == 0;
     if (missing || !std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
-    next = std::copy(p, p + 3, next);
+    for (const float v : p) *next++ = v;
     if (rows != nullptr) rows->push_back(static_cast<std::uint32_t>(i));
     if (intensity == nullptr) continue;
     const auto value = Load<float>(point + intensity->offset);

@@ -15,53 +15,87 @@ namespace {
 
 constexpr unsigned kLongestPause = 64;
 
-void PlaceOnBeams(const std::vector<Sighting>& points, const BeamTable& table,
-                  std::vector<PlacedPoint>* placed) {
-  const BeamLocator locator(table);
-  const bool has_sides = table.has_offsets();
-  placed->resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Sighting& s = points[i];
-    const BeamLocator::Found found = locator.Find(s);
-    const BeamTable::Beam& beam = table.beams[found.beam];
-    std::int32_t azimuth = s.azimuth;
-    if (has_sides) azimuth -= ToNearest(SideAngle(beam, s.rho_m));
-    PlacedPoint& p = (*placed)[i];
-    p.along_m = found.along_m;
-    p.above_m = found.above_m;
-    if (table.bends) {
-      const double angle = std::atan2(found.above_m, found.along_m);
-      p.bend = ToNearest(angle / kRadians);
-      p.along_m = std::hypot(found.along_m, found.above_m);
-      p.above_m = 0;
+bool IsNear(const Sighting& s, const PlacedPoint& p) {
+  constexpr double kNear = 0.01;  // [m]
+  const double side = p.residual * kRadians * s.rho_m;
+  return p.above_m * p.above_m + side * side < kNear * kNear;
+}
+
+/// Places points on beams, and then in columns.
+class Placer {
+ public:
+  Placer(const std::vector<Sighting>& points, const BeamTable& table,
+         std::vector<PlacedPoint>* placed)
+      : points_(points), table_(table), has_sides_(table.has_offsets()), placed_(*placed) {}
+
+  void PlaceOnBeams() {
+    const BeamLocator locator(table_);
+    placed_.resize(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) PlaceOnBeam(locator, points_[i], &placed_[i]);
+  }
+  /// Places points that are on beams. Returns the part of them near their pixels.
+  double PlaceInColumns() {
+    const ColumnFinder finder(table_);
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      near += PlaceInColumn(finder, points_[i], &placed_[i]);
+    return PartOf(near);
+  }
+  /// Does both in one pass.
+  double Place() {
+    const BeamLocator locator(table_);
+    const ColumnFinder finder(table_);
+    placed_.resize(points_.size());
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      PlaceOnBeam(locator, points_[i], &placed_[i]);
+      near += PlaceInColumn(finder, points_[i], &placed_[i]);
     }
-    p.azimuth = azimuth & (kTurn - 1);
-    p.beam = found.beam;
+    return PartOf(near);
   }
-}
-
-/// Returns the azimuth less the offset of the beam.
-std::int32_t StraightOf(const PlacedPoint& p, const BeamTable& table) {
-  return (p.azimuth - table.beams[p.beam].offset) & (kTurn - 1);
-}
-
-void PlaceInColumns(const BeamTable& table, std::vector<PlacedPoint>* placed) {
-  const ColumnFinder finder(table);
-  for (PlacedPoint& p : *placed) {
-    const ColumnFinder::Found found = finder.Find(p.beam, StraightOf(p, table));
-    p.column = found.column;
-    p.residual = found.residual;
+  /// Returns the azimuth less the offset of the beam.
+  std::int32_t StraightOf(const PlacedPoint& p) const {
+    return (p.azimuth - table_.beams[p.beam].offset) & (kTurn - 1);
   }
-}
+
+ private:
+  void PlaceOnBeam(const BeamLocator& locator, const Sighting& s, PlacedPoint* p) const {
+    const BeamLocator::Found found = locator.Find(s);
+    std::int32_t azimuth = s.azimuth;
+    if (has_sides_) azimuth -= ToNearest(SideAngle(table_.beams[found.beam], s.rho_m));
+    p->along_m = found.along_m;
+    p->above_m = found.above_m;
+    if (table_.bends) {
+      const double angle = AngleOf(found.above_m, found.along_m);
+      p->bend = ToNearest(angle / kRadians);
+      p->along_m = std::sqrt(found.along_m * found.along_m + found.above_m * found.above_m);
+      p->above_m = 0;
+    }
+    p->azimuth = azimuth & (kTurn - 1);
+    p->beam = found.beam;
+  }
+  /// Returns 1 if the point is near its pixel, otherwise 0.
+  unsigned PlaceInColumn(const ColumnFinder& finder, const Sighting& s, PlacedPoint* p) const {
+    const ColumnFinder::Found found = finder.Find(p->beam, StraightOf(*p));
+    p->column = found.column;
+    p->residual = found.residual;
+    return IsNear(s, *p) ? 1 : 0;
+  }
+  double PartOf(std::size_t near) const {
+    return points_.empty() ? 0 : static_cast<double>(near) / static_cast<double>(points_.size());
+  }
+
+  const std::vector<Sighting>& points_;
+  const BeamTable& table_;
+  bool has_sides_;
+  std::vector<PlacedPoint>& placed_;
+};
 
 /// Returns the part of the points near their pixels.
 double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>& placed) {
-  constexpr double kNear = 0.01;  // [m]
   std::size_t near = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double side = placed[i].residual * kRadians * points[i].rho_m;
-    if (placed[i].above_m * placed[i].above_m + side * side < kNear * kNear) ++near;
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (IsNear(points[i], placed[i])) ++near;
   return points.empty() ? 0 : static_cast<double>(near) / static_cast<double>(points.size());
 }
 
@@ -95,22 +129,22 @@ bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, const std::vect
                             std::vector<PlacedPoint>* placed) {
   constexpr double kAlike = 0.97;
   if (table_->has_path()) return PlaceOnNewPath(points, pulses, placed);
-  PlaceOnBeams(points, *table_, placed);
-  const auto fit_in_columns = [&] {
-    PlaceInColumns(*table_, placed);
-    return FitOf(points, *placed) >= kAlike * fit_;
-  };
+  Placer placer(points, *table_, placed);
   const bool may_stay = table_->grains == 0 || table_->bends;
-  if (may_stay && fit_in_columns()) return true;
+  if (may_stay) {
+    if (placer.Place() >= kAlike * fit_) return true;
+  } else {
+    placer.PlaceOnBeams();
+  }
   if (table_->bends) {
     ShiftColumns(*placed, &*table_);
-    return fit_in_columns();
+    return placer.PlaceInColumns() >= kAlike * fit_;
   }
   std::vector<StraightAzimuth> straight;
   straight.reserve(placed->size());
-  for (const PlacedPoint& p : *placed) straight.push_back({StraightOf(p, *table_), p.beam});
+  for (const PlacedPoint& p : *placed) straight.push_back({placer.StraightOf(p), p.beam});
   const bool updated = UpdateColumns(straight, &*table_);
-  return fit_in_columns() && updated;
+  return placer.PlaceInColumns() >= kAlike * fit_ && updated;
 }
 
 const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
@@ -129,9 +163,7 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   if (PlaceOnNewPath(points, pulses, placed)) return &*table_;
   table_ = FindBeams(points);
   if (!table_) return nullptr;
-  PlaceOnBeams(points, *table_, placed);
-  PlaceInColumns(*table_, placed);
-  fit_ = FitOf(points, *placed);
+  fit_ = Placer(points, *table_, placed).Place();
   return &*table_;
 }
 

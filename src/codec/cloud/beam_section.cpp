@@ -225,11 +225,12 @@ bool ReadSettings(ByteReader* reader, ResidualSettings* settings, unsigned flag,
   return ok && reader->ok() && guess < kResidualGuesses;
 }
 
-/// Residuals are 0 if the settings ask for none.
+/// `residuals` stays empty if the settings ask for none.
 bool DecodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                      std::vector<std::int32_t>* residuals, mixing::BinaryDecoder* bits) {
+  if (settings.tangent_um == 0) return true;
   residuals->assign(image.size(), 0);
-  return settings.tangent_um == 0 || CodeResiduals(image, settings, residuals, bits);
+  return CodeResiduals(image, settings, residuals, bits);
 }
 
 bool DecodeImage(ByteReader* reader, DecodedSection* section) {
@@ -276,28 +277,45 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
   return section->extras.size() == extras && bits.AtEnd();
 }
 
-/// Returns false for an invalid range.
-bool AppendPixel(const DecodedSection& section, const ColumnAngles& angles, std::size_t pixel,
-                 std::uint32_t range_mm, std::uint8_t level, XyzCloud* cloud, PointPlaces* places) {
-  if (range_mm == 0 || range_mm > RangeGrid::kMaxRangeMm) return false;
-  const auto beam = static_cast<std::uint32_t>(pixel / section.image.columns);
-  const std::uint32_t column =
-      section.image.first_column + static_cast<std::uint32_t>(pixel % section.image.columns);
-  const bool has_path = section.table.has_path();
-  const PathDirection direction =
-      has_path ? section.directions[pixel]
-               : PathDirection{section.table.beams[beam].offset + angles.Of(beam, column),
-                               section.table.beams[beam].elevation};
-  const BeamTable::Slope slope = section.table.bends || has_path
-                                     ? BeamTable::Slope(direction.elevation + section.bends[pixel])
-                                     : section.slopes[beam];
-  const std::int32_t azimuth = direction.azimuth + section.residuals[pixel];
-  const Point point = section.table.At(beam, azimuth, slope, range_mm);
-  cloud->xyz.insert(cloud->xyz.end(), point.begin(), point.end());
-  if (places != nullptr) places->points.push_back({beam, column});
-  if (section.scale.bits() > 0) cloud->intensity.push_back(section.scale.ValueOf(level));
-  return true;
-}
+/// Writes the points of pixels.
+class PixelWriter {
+ public:
+  /// Makes room for all points of the section behind those of `cloud`.
+  PixelWriter(const DecodedSection& section, XyzCloud* cloud, PointPlaces* places)
+      : section_(section), angles_(section.table), cloud_(*cloud), places_(places) {
+    const std::size_t before = cloud->xyz.size();
+    cloud->xyz.resize(before + 3 * (section.returns + section.extras.size()));
+    next_ = cloud->xyz.data() + before;
+  }
+  void Write(std::uint32_t beam, std::uint32_t column, std::size_t pixel, std::uint32_t range_mm,
+             std::uint8_t level) {
+    const BeamTable& table = section_.table;
+    const bool has_path = table.has_path();
+    const PathDirection direction =
+        has_path ? section_.directions[pixel]
+                 : PathDirection{table.beams[beam].offset + angles_.Of(beam, column),
+                                 table.beams[beam].elevation};
+    const BeamTable::Slope slope = table.bends || has_path
+                                       ? BeamTable::Slope(direction.elevation + BendOf(pixel))
+                                       : section_.slopes[beam];
+    const std::int32_t residual = section_.residuals.empty() ? 0 : section_.residuals[pixel];
+    for (const float v : table.At(beam, direction.azimuth + residual, slope, range_mm))
+      *next_++ = v;
+    if (places_ != nullptr) places_->points.push_back({beam, column});
+    if (section_.scale.bits() > 0) cloud_.intensity.push_back(section_.scale.ValueOf(level));
+  }
+
+ private:
+  std::int32_t BendOf(std::size_t pixel) const {
+    return section_.bends.empty() ? 0 : section_.bends[pixel];
+  }
+
+  const DecodedSection& section_;
+  ColumnAngles angles_;
+  XyzCloud& cloud_;
+  PointPlaces* places_;
+  float* next_;
+};
 
 }  // namespace
 
@@ -315,22 +333,29 @@ bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const Intensi
         BeamPath(section.table.rate, section.table.columns())
             .Trace(section.table.path, section.image.first_column, section.image.columns);
   if (places != nullptr) *places = {section.table.rows(), section.table.columns(), {}};
-  const ColumnAngles angles(section.table);
+  PixelWriter writer(section, cloud, places);
   const RangeImage& image = section.image;
-  cloud->xyz.reserve(cloud->xyz.size() + 3 * (section.returns + section.extras.size()));
   auto extra = section.extras.begin();
+  const auto is_valid = [](std::uint32_t range_mm) {
+    return range_mm > 0 && range_mm <= RangeGrid::kMaxRangeMm;
+  };
   const auto last_bin = static_cast<std::int64_t>(section.grid.BinOf(RangeGrid::kMaxRangeMm));
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    if (image.ranges[i] == 0) continue;
-    const std::uint8_t level = image.intensity.empty() ? std::uint8_t{0} : image.intensity[i];
-    if (!AppendPixel(section, angles, i, image.ranges[i], level, cloud, places)) return false;
-    for (; extra != section.extras.end() && extra->pixel == i; ++extra) {
-      const std::int64_t bin = std::int64_t{section.grid.BinOf(image.ranges[i])} + extra->bin;
-      if (bin < 0 || bin > last_bin) return false;
-      const std::uint32_t range = section.grid.RangeOf(static_cast<std::uint32_t>(bin));
-      if (!AppendPixel(section, angles, i, range, extra->level, cloud, places)) return false;
+  std::size_t pixel = 0;
+  for (std::uint32_t beam = 0; beam < image.beams; ++beam)
+    for (std::uint32_t i = 0; i < image.columns; ++i, ++pixel) {
+      if (image.ranges[pixel] == 0) continue;
+      const std::uint32_t column = image.first_column + i;
+      const std::uint8_t level = image.intensity.empty() ? std::uint8_t{0} : image.intensity[pixel];
+      if (!is_valid(image.ranges[pixel])) return false;
+      writer.Write(beam, column, pixel, image.ranges[pixel], level);
+      for (; extra != section.extras.end() && extra->pixel == pixel; ++extra) {
+        const std::int64_t bin = std::int64_t{section.grid.BinOf(image.ranges[pixel])} + extra->bin;
+        if (bin < 0 || bin > last_bin) return false;
+        const std::uint32_t range = section.grid.RangeOf(static_cast<std::uint32_t>(bin));
+        if (!is_valid(range)) return false;
+        writer.Write(beam, column, pixel, range, extra->level);
+      }
     }
-  }
   return true;
 }
 

@@ -52,19 +52,6 @@ class ArcTable {
 };
 constexpr ArcTable kArcs;
 
-/// Returns std::atan2(y, x), which takes four times as long. Both are floats.
-double AngleOf(double y, double x) {
-  const double wide = std::max(std::abs(x), std::abs(y));
-  const double narrow = std::min(std::abs(x), std::abs(y));
-  if (!(wide > 0)) return 0;
-  const int k = static_cast<int>(narrow / wide * ArcTable::kParts + 0.5);
-  const double part = k * (1.0 / ArcTable::kParts);
-  double angle = kArcs[k] + ArcTable::OfSmall((narrow - part * wide) / (wide + part * narrow));
-  if (std::abs(y) > std::abs(x)) angle = M_PI / 2 - angle;
-  if (x < 0) angle = M_PI - angle;
-  return y < 0 ? -angle : angle;
-}
-
 /// Sines of k / kParts turns.
 class SineTable {
  public:
@@ -98,6 +85,18 @@ constexpr SineTable kSines;
 
 }  // namespace
 
+double AngleOf(double y, double x) {
+  const double wide = std::max(std::abs(x), std::abs(y));
+  const double narrow = std::min(std::abs(x), std::abs(y));
+  if (!(wide > 0)) return 0;
+  const int k = static_cast<int>(narrow / wide * ArcTable::kParts + 0.5);
+  const double part = k * (1.0 / ArcTable::kParts);
+  double angle = kArcs[k] + ArcTable::OfSmall((narrow - part * wide) / (wide + part * narrow));
+  if (std::abs(y) > std::abs(x)) angle = M_PI / 2 - angle;
+  if (x < 0) angle = M_PI - angle;
+  return y < 0 ? -angle : angle;
+}
+
 /// Calls of std::sin() and std::cos() take four times as long.
 BeamTable::Slope::Slope(double angle) {
   constexpr std::int32_t kPart = kTurn / SineTable::kParts;
@@ -119,6 +118,11 @@ Sighting::Sighting(const Point& point) {
   rho_m = std::sqrt(x * x + y * y);
   range_m = std::sqrt(x * x + y * y + z_m * z_m);
   azimuth = ToNearest(AngleOf(y, x) / kRadians) & (kTurn - 1);
+}
+
+void SightAll(const std::vector<Point>& points, std::vector<Sighting>* sightings) {
+  sightings->resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) (*sightings)[i] = Sighting(points[i]);
 }
 
 bool BeamTable::has_offsets() const {

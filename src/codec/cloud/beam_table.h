@@ -22,12 +22,17 @@ constexpr double kRadians = 2 * M_PI / kTurn;
 
 /// A point as the sensor at the origin sees it.
 struct Sighting {
+  Sighting() = default;
   explicit Sighting(const Point& point);
-  double range_m;
-  double rho_m;  // range along the ground
-  double z_m;
-  std::int32_t azimuth;  // counter-clockwise, below kTurn
+  double range_m = 0;
+  double rho_m = 0;  // range along the ground
+  double z_m = 0;
+  std::int32_t azimuth = 0;  // counter-clockwise, below kTurn
 };
+void SightAll(const std::vector<Point>& points, std::vector<Sighting>* sightings);
+
+/// Returns std::atan2(y, x), which takes four times as long.
+double AngleOf(double y, double x);
 
 /// The points of a beam lie on a line in the plane of `rho` and z, one for each column of a turn,
 /// at the azimuth of the column. A beam that passes the origin at a distance adds to the azimuth.

@@ -44,6 +44,9 @@ class Choices {
       : square_bound_(grid.error_m() * grid.error_m()) {
     map_.Reset(points.size());
     first_of_point_.reserve(points.size() + 1);
+    cells_.reserve(kUsual * points.size());
+    positions_.reserve(kUsual * points.size());
+    left_.reserve(kUsual * points.size());
     for (const Point& point : points) {
       first_of_point_.push_back(static_cast<std::uint32_t>(cells_.size()));
       AddPoint(point, grid, depth);
@@ -58,7 +61,8 @@ class Choices {
     taken_.assign(points.size(), 0);
   }
 
-  const std::vector<std::uint64_t>& codes() const { return codes_; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(positions_.size()); }
+  std::uint64_t CodeOf(std::uint32_t cell) const { return MortonCode(positions_[cell]); }
   /// Returns how many of the remaining points may take this cell.
   std::uint32_t left(std::uint32_t cell) const { return left_[cell]; }
   /// Gives the cell all its remaining points, and appends them to `order`.
@@ -101,18 +105,20 @@ class Choices {
     const std::uint64_t key = NodeMap::KeyOf(cell);
     std::uint32_t index = map_.Find(key);
     if (index == NodeMap::kAbsent) {
-      index = static_cast<std::uint32_t>(codes_.size());
+      index = size();
       map_.Add(key, index);
-      codes_.push_back(MortonCode(cell));
+      positions_.push_back(cell);
       left_.push_back(0);
     }
     ++left_[index];
     cells_.push_back(index);
   }
 
+  static constexpr std::size_t kUsual = 4;  // cells a point, at most
+
   double square_bound_;  // of the distance from a cell's middle
   NodeMap map_;
-  std::vector<std::uint64_t> codes_;  // of cells
+  std::vector<CellPosition> positions_;  // of cells
   std::vector<std::uint32_t> left_;
   std::vector<std::uint32_t> first_of_point_;
   std::vector<std::uint32_t> cells_;  // point by point
@@ -125,7 +131,7 @@ class Choices {
 /// fall.
 class CellQueues {
  public:
-  explicit CellQueues(const Choices& choices) : next_(choices.codes().size()) {
+  explicit CellQueues(const Choices& choices) : next_(choices.size()) {
     for (std::uint32_t i = 0; i < next_.size(); ++i) Push(i, choices.left(i));
   }
   std::uint32_t most() const { return static_cast<std::uint32_t>(first_.size()) - 1; }
@@ -227,7 +233,7 @@ void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, uns
       if (left < count) continue;
       const std::size_t first = order.size();
       choices.Take(cell, &order);
-      taken.push_back({choices.codes()[cell], first, order.size()});
+      taken.push_back({choices.CodeOf(cell), first, order.size()});
     }
   }
   std::sort(taken.begin(), taken.end(),

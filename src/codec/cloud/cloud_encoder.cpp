@@ -33,6 +33,23 @@ IntensityScale ScaleOf(const XyzCloud& cloud, unsigned bits) {
   return {IntensityScale::Fitting(largest), bits};
 }
 
+bool HasPulses(const PointFields& fields) {
+  return fields.Has("line", FieldType::kU8) && fields.Find("timestamp") != nullptr;
+}
+
+/// The largest coordinate. The bits of finite floats without sign are in the order of the floats.
+float FarthestOf(const std::vector<float>& xyz) {
+  std::int32_t most = 0;
+  for (const float v : xyz) {
+    std::int32_t bits;
+    std::memcpy(&bits, &v, sizeof bits);
+    most = std::max(most, bits & INT32_MAX);
+  }
+  float farthest;
+  std::memcpy(&farthest, &most, sizeof farthest);
+  return farthest;
+}
+
 /// Shares the error between ranges and azimuths so that the cloud becomes small.
 PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   // A part of the points suffices.
@@ -88,7 +105,9 @@ std::optional<CloudEncoder> CloudEncoder::Create(const CloudLayout& layout, Exac
 
 void CloudEncoder::Load(ByteView raw, bool with_intensity) {
   std::vector<std::uint32_t> rows;
-  ReadXyz(raw, layout_, with_intensity && HasIntensity(layout_.fields), &cloud_, &rows);
+  const bool needs_rows = HasPulses(layout_.fields) || !choice_.fields.empty();
+  ReadXyz(raw, layout_, with_intensity && HasIntensity(layout_.fields), &cloud_,
+          needs_rows ? &rows : nullptr);
   LoadPulses(raw, rows);
   exact_.clear();
   for (const PointField& field : choice_.fields) {
@@ -105,9 +124,9 @@ void CloudEncoder::Load(ByteView raw, bool with_intensity) {
 /// Takes the lines and times of sensors whose scans do not repeat.
 void CloudEncoder::LoadPulses(ByteView raw, const std::vector<std::uint32_t>& rows) {
   pulses_.clear();
+  if (!HasPulses(layout_.fields)) return;
   const PointField* line = layout_.fields.Find("line");
   const PointField* time = layout_.fields.Find("timestamp");
-  if (line == nullptr || line->type != FieldType::kU8 || time == nullptr) return;
   for (const std::uint32_t row : rows) {
     const std::uint8_t* point = raw.data + std::size_t{row} * layout_.point_step;
     pulses_.push_back({point[line->offset], ReadNumber(point + time->offset, time->type)});
@@ -147,31 +166,46 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
   pulses_ = std::move(pulses);
 }
 
-/// Separates points that the grid can hold from those too far away.
-void CloudEncoder::SortOut(CloudHeader* header) {
+/// Returns the largest coordinate of the other points.
+float CloudEncoder::SortOutFarPoints(const CellGrid& grid) {
   near_.clear();
-  levels_.clear();
-  near_ids_.clear();
-  far_ids_.clear();
-  const IntensityScale fine(header->intensity.full(), kFineIntensityBits);
-  near_.reserve(cloud_.size());
-  near_ids_.reserve(cloud_.size());
   float most = 0;
-  const double surely = header->grid.SurelyHolds();
+  const double surely = grid.SurelyHolds();
   for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
     const Point point = {cloud_.xyz[3 * i], cloud_.xyz[3 * i + 1], cloud_.xyz[3 * i + 2]};
     float farthest = 0;
     for (const float v : point) farthest = std::max(farthest, std::abs(v));
     const auto farthest_m = static_cast<double>(farthest);
-    if (farthest_m > surely && (!header->grid.Reaches(farthest_m) || !header->grid.Holds(point))) {
+    if (farthest_m > surely && (!grid.Reaches(farthest_m) || !grid.Holds(point))) {
       far_ids_.push_back(i);
       continue;
     }
     most = std::max(most, farthest);
     near_.push_back(point);
     near_ids_.push_back(i);
-    if (header->intensity.bits() > 0) levels_.push_back(fine.LevelOf(cloud_.intensity[i]));
   }
+  return most;
+}
+
+/// Separates points that the grid can hold from those too far away.
+void CloudEncoder::SortOut(CloudHeader* header) {
+  near_ids_.clear();
+  far_ids_.clear();
+  near_ids_.reserve(cloud_.size());
+  float most = FarthestOf(cloud_.xyz);
+  const double surely = header->grid.SurelyHolds();
+  if (static_cast<double>(most) <= surely) {
+    near_ids_.resize(cloud_.size());
+    std::iota(near_ids_.begin(), near_ids_.end(), 0U);
+    near_.resize(cloud_.size());
+    std::memcpy(near_.data(), cloud_.xyz.data(), cloud_.xyz.size() * sizeof(float));
+  } else {
+    most = SortOutFarPoints(header->grid);
+  }
+  levels_.clear();
+  const IntensityScale fine(header->intensity.full(), kFineIntensityBits);
+  for (std::size_t i = 0; i < near_ids_.size() && header->intensity.bits() > 0; ++i)
+    levels_.push_back(fine.LevelOf(cloud_.intensity[near_ids_[i]]));
   header->depth = std::max(header->depth, header->grid.DepthFor(static_cast<double>(most)));
   header->far_points = static_cast<std::uint32_t>(far_ids_.size());
 }
@@ -318,11 +352,9 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   Candidate best;
   best.header = header;
   bool found = false;
-  sightings_.clear();
   const BeamTable* table = nullptr;
   if (near_.size() <= BeamKeeper::kMostPoints) {
-    sightings_.reserve(near_.size());
-    for (const Point& point : near_) sightings_.emplace_back(point);
+    SightAll(near_, &sightings_);
     sighted_.clear();
     for (std::size_t i = 0; i < near_ids_.size() && !pulses_.empty(); ++i)
       sighted_.push_back(pulses_[near_ids_[i]]);

@@ -73,6 +73,7 @@ class CloudEncoder {
   };
   void LoadPulses(ByteView raw, const std::vector<std::uint32_t>& rows);
   void SortOut(CloudHeader* header);
+  float SortOutFarPoints(const CellGrid& grid);
   void EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate);
   void CodeCells(const std::vector<Point>& points, const std::vector<std::uint32_t>& ids, bool few,
                  Candidate* candidate);

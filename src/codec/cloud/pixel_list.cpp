@@ -107,7 +107,8 @@ class PixelCheck {
 /// Sets the columns of the image, from the first with a point to the last. Returns false if the
 /// image is too large.
 bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
-                const std::vector<std::uint32_t>& fitting, bool bends, PixelList* list) {
+                const std::vector<std::uint32_t>& fitting, const PixelErrors& errors,
+                PixelList* list) {
   std::uint32_t first = table.columns() - 1;
   std::uint32_t last = 0;
   for (const std::uint32_t i : fitting) {
@@ -121,8 +122,8 @@ bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
   if (image.size() > kMostPixels) return false;
   image.ranges.assign(image.size(), 0);
   list->points.assign(image.size(), 0);
-  list->residuals.assign(image.size(), 0);
-  list->bends.assign(bends ? image.size() : 0, 0);
+  if (errors.tangent_um > 0) list->residuals.assign(image.size(), 0);
+  if (errors.bend_um > 0) list->bends.assign(image.size(), 0);
   return true;
 }
 
@@ -159,7 +160,7 @@ bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double near
                       PixelCheck::RangeMm(placed[i]) > 0;
     (fits ? fitting : list->rest).push_back(static_cast<std::uint32_t>(i));
   }
-  if (!PlaceImage(*cloud.table, placed, fitting, errors.bend_um > 0, list)) return false;
+  if (!PlaceImage(*cloud.table, placed, fitting, errors, list)) return false;
   RangeImage& image = list->image;
   const auto pixel_of = [&](std::uint32_t point) {
     const PlacedPoint& p = placed[point];
@@ -173,7 +174,7 @@ bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double near
       continue;
     }
     image.ranges[pixel] = PixelCheck::RangeMm(placed[i]);
-    list->residuals[pixel] = placed[i].residual;
+    if (errors.tangent_um > 0) list->residuals[pixel] = placed[i].residual;
     if (errors.bend_um > 0) list->bends[pixel] = placed[i].bend;
     list->points[pixel] = i;
     ++list->returns;

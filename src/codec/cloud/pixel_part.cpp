@@ -13,10 +13,6 @@ namespace {
 
 using mixing::BitLength;
 
-std::int32_t RoundedQuotient(std::int32_t number, std::int32_t width) {
-  return (number >= 0 ? number + width / 2 : number - width / 2) / width;
-}
-
 constexpr std::int32_t kUnknownResidual = INT32_MIN;
 
 /// The last two residuals of a beam, and its last quotient.
@@ -27,6 +23,21 @@ struct ResidualHistory {
 };
 
 }  // namespace
+
+/// Quotients of numbers up to 2^24, rounded, without a division for each.
+class Rounder {
+ public:
+  explicit Rounder(std::int32_t width) : half_(width / 2), per_width_(1.0 / width) {}
+  std::int32_t Of(std::int32_t number) const {
+    // A half keeps quotients away from the next integer by more than rounding moves them.
+    const auto size = static_cast<std::int32_t>((std::abs(number) + half_ + 0.5) * per_width_);
+    return number < 0 ? -size : size;
+  }
+
+ private:
+  std::int32_t half_;
+  double per_width_;
+};
 
 template <class Coder>
 bool CodePlaces(BeamTable* table, Coder* coder) {
@@ -88,14 +99,14 @@ bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
       const std::size_t pixel = std::size_t{beam} * image.columns + column;
       if (image.ranges[pixel] == 0) continue;
       const std::int32_t width = ResidualWidth(settings.tangent_um, image.ranges[pixel]);
+      const Rounder rounder(width);
       const bool has_column = of_column[column] != kUnknownResidual;
       const std::int32_t above = has_column ? of_column[column] : row.last;
       const std::array<std::int32_t, kResidualGuesses> guesses = {0, above, row.last, row.before};
       const auto chosen = static_cast<std::size_t>(settings.guess);
       const std::int32_t guess = guesses[chosen];
       const auto away = [&](std::size_t other) {
-        const std::int32_t q =
-            RoundedQuotient(guesses[(chosen + other) % kResidualGuesses] - guess, width);
+        const std::int32_t q = rounder.Of(guesses[(chosen + other) % kResidualGuesses] - guess);
         return static_cast<std::uint32_t>(std::clamp(q, -3, 3) + 3);
       };
       const auto wide =
@@ -105,7 +116,7 @@ bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                                                      away(1) * 7 + away(2), wide * 7 + away(1),
                                                      wide * 7 + away(2)};
       const std::int32_t quotient =
-          model->Code(RoundedQuotient((*residuals)[pixel] - guess, width), contexts, coder);
+          model->Code(rounder.Of((*residuals)[pixel] - guess), contexts, coder);
       const std::int64_t back = guess + std::int64_t{quotient} * width;
       if (coder->overran() || back < -kTurn || back > kTurn) return false;
       (*residuals)[pixel] = of_column[column] = static_cast<std::int32_t>(back);
@@ -134,22 +145,19 @@ class ExtraCoder {
   /// Returns false for a damaged stream.
   bool Code(std::size_t limit, std::vector<ExtraBin>* extras) {
     std::size_t at = 0;
-    std::uint32_t column = columns_ - 1;
-    for (std::uint32_t pixel = 0; pixel < bins_.size(); ++pixel) {
-      if (++column == columns_) column = left_ = 0;
-      if (bins_[pixel] < 0) {
-        left_ = above_[column] = 0;
-        continue;
+    for (std::uint32_t row = 0; row < bins_.size(); row += columns_) {
+      left_ = 0;
+      for (std::uint32_t column = 0; column < columns_; ++column) {
+        const std::uint32_t pixel = row + column;
+        if (bins_[pixel] < 0) {
+          left_ = above_[column] = 0;
+          continue;
+        }
+        Look(pixel, column);
+        const std::size_t first = at;
+        if (!CodePixel(pixel, limit, extras, &at)) return false;
+        left_ = above_[column] = at > first ? 1 : 0;
       }
-      Look(pixel, column);
-      std::uint32_t count = 0;
-      for (; CodeMore(at < extras->size() && (*extras)[at].pixel == pixel, count); ++count, ++at) {
-        if (at == limit) return false;
-        if constexpr (Coder::kDecodes) extras->push_back({pixel, 0, 0});
-        if (!CodeReturn(pixel, &(*extras)[at]) || coder_.overran()) return false;
-      }
-      left_ = above_[column] = count > 0 ? 1 : 0;
-      if (coder_.overran()) return false;
     }
     return at == extras->size();
   }
@@ -159,6 +167,19 @@ class ExtraCoder {
   using CountModel = BitModel<3, 8>;
   static constexpr std::int32_t kNoReturn = INT32_MAX;
 
+  /// Codes the further returns of a pixel, from extra `at` on.
+  bool CodePixel(std::uint32_t pixel, std::size_t limit, std::vector<ExtraBin>* extras,
+                 std::size_t* at) {
+    std::uint32_t count = 0;
+    while (CodeMore(*at < extras->size() && (*extras)[*at].pixel == pixel, count)) {
+      if (*at == limit) return false;
+      if constexpr (Coder::kDecodes) extras->push_back({pixel, 0, 0});
+      if (!CodeReturn(pixel, &(*extras)[*at]) || coder_.overran()) return false;
+      ++count;
+      ++*at;
+    }
+    return !coder_.overran();
+  }
   static std::uint32_t LengthOf(std::int32_t v) {
     return static_cast<std::uint32_t>(BitLength(static_cast<std::uint32_t>(std::abs(v))));
   }
