@@ -7,7 +7,7 @@ const text = (path) => readFileSync(new URL(path, import.meta.url), 'utf8');
 const draco = './node_modules/three/examples/jsm/libs/draco/';
 const licensed = ['three', 'uplot', '@foxglove/ws-protocol', 'eventemitter3', 'debug', 'ms'];
 
-/** What goes out as it is: the worker that decodes Draco, its decoder, and licences. */
+/** Adds files that are copied unchanged: the Draco worker, its decoder, and licences. */
 function plainFiles() {
   const licenses = () =>
     licensed

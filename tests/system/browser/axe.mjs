@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What axe says of the page as it is.
+// Runs axe, a checker of accessibility, on the page as it stands.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
-/** {violations, passes}: rules, with what breaks them. */
+/** Returns {violations, passes}: ids of rules, violations with the elements. */
 export async function audit(page) {
   await page.evaluate(axe);
   const { violations, passes } = await page.evaluate(() => window.axe.run());

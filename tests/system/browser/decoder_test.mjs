@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The decoder of the page against that of this machine, over the streams of decoder_cases.
+// Compares the page's decoder with the native one, on the streams of decoder_cases.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
@@ -32,7 +32,7 @@ function* readStreams() {
 
 const streams = [...readStreams()];
 
-/** Processor time [ms] of a task, the least of some tries: the first compiles. */
+/** The CPU time [ms] of a task, the least of several tries because the first one compiles. */
 function cpuOf(task) {
   let least = Infinity;
   for (let i = 0; i < TRIES && least > MOST_MS; ++i) {
@@ -44,7 +44,7 @@ function cpuOf(task) {
   return least;
 }
 
-/** How far coordinates differ; all else is the same. */
+/** Returns how far coordinates differ; asserts that all other bytes are equal. */
 function compare(raw, expected, where) {
   assert.equal(raw.length, expected.length, where);
   const [a, b] = [raw, expected].map((v) => new DataView(v.buffer, v.byteOffset, v.byteLength));
@@ -107,7 +107,7 @@ test('a sensor model that is damaged is refused', () => {
   let opened = 0;
   for (const file of readdirSync(corpus)) {
     const model = readFileSync(`${corpus}/${file}`);
-    if (model.length === 0) continue; // stands for points
+    if (model.length === 0) continue; // an empty model means points
     try {
       opened += new Decoder(module, model) ? 1 : 0;
     } catch (error) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A server of the page that does what a test says: channels and messages of any kind, as foxglovesink
-// would send them, and what the page tells it.
+// A server whose channels and messages, like those of foxglovesink, a test chooses; it keeps what the
+// page sends.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import http from 'node:http';
@@ -13,7 +13,7 @@ const TYPES = { html: 'text/html', js: 'text/javascript', css: 'text/css', wasm:
 const NS = 1_000_000n;
 const now = () => BigInt(Math.round(performance.timeOrigin + performance.now())) * NS;
 
-/** Slices that lidarenc made of scans of lidartestsrc, and what a channel says of them. */
+/** Slices of lidartestsrc, coded by lidarenc, and the `about` of their channel. */
 export function recordSlices({ model = 'os0-32', mode = '512x10', slices = 8, scans = 10, coder = '' } = {}) {
   const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-slices-'));
   const line =
@@ -33,7 +33,7 @@ export function recordSlices({ model = 'os0-32', mode = '512x10', slices = 8, sc
   return { about, coded, slices };
 }
 
-/** The channel of `recorded` slices under a topic. */
+/** The channel of recorded slices for clouds of `topic`. */
 export const sliceChannel = (id, topic, { about }) => ({
   id, topic: `${topic}/slices`, encoding: 'lidar-slice', schemaName: 'lidar.Slice', schemaEncoding: 'json',
   schema: JSON.stringify({ ...about, clouds: topic }),
@@ -105,7 +105,7 @@ export class FakeServer {
     });
   }
 
-  /** A message of a channel, if the page wants it. */
+  /** Sends a message of a channel, if the page has subscribed to it; returns whether it has. */
   send(channel, payload, captured = now()) {
     const subscription = this.subscribed.get(channel);
     if (subscription === undefined) return false;
@@ -117,13 +117,13 @@ export class FakeServer {
     return true;
   }
 
-  /** The state of the recording of a channel. */
+  /** Sends the status of a channel's recording. */
   describe(channel, status) {
     const subscriptionId = this.subscribed.get(channel);
     this.client.send(JSON.stringify({ op: 'recording', subscriptionId, number: 0, damaged: 0, end: null, ...status }));
   }
 
-  /** Where the sensor was at `ms`, in a replay. */
+  /** Sends the pose of the sensor at `ms`, as part of a replay. */
   sendPose(channel, position, ms, replay) {
     const head = Buffer.alloc(24);
     head.writeUInt8(1, 0);
@@ -134,7 +134,7 @@ export class FakeServer {
     return this.send(channel, Buffer.concat([head, pose]), at);
   }
 
-  /** Slice `i` of what was recorded, `age` ms after its capture, of a replay if it has a number. */
+  /** Sends recorded slice `i` as captured `age` ms ago; `replay` is 0 for the live stream. */
   sendSlice(channel, { coded, slices }, i, age = 0, replay = 0) {
     const head = Buffer.alloc(24);
     head.writeUInt8(1, 0);

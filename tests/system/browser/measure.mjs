@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What foxglovesink costs at OS1-128 and 10 scans/s, as a Markdown table: tests/benchmarks/ecosystem.sh
-// runs it, and docs/results/ecosystem.md has the figures.
+// Measures what foxglovesink costs at OS1-128 and 10 scans/s, as a Markdown table of
+// docs/results/ecosystem.md; tests/benchmarks/ecosystem.sh runs it.
 import { mkdtempSync, rmSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -11,7 +11,7 @@ import { Pipeline, sleep, until } from './support.mjs';
 
 const sinkOf = (statistics) => Object.values(statistics.elements).find((e) => e.factory === 'foxglovesink');
 
-/** A program that takes clouds as they come. They have no capture time, so their time is when the sink got them. */
+/** Measures with a client that takes all clouds. They lack a capture time; the sink's time of arrival counts. */
 async function measureClient(name, width, source, coder) {
   const { port, pipeline } = await start(source, coder);
   const socket = new WebSocket(`ws://127.0.0.1:${port}`, ['foxglove.sdk.v1'], { maxPayload: 2 ** 28 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the page costs and shows in a headless Chromium, where software draws it, as Markdown tables
-// of docs/results/ecosystem.md: measure_page.mjs [way], the way of a slice to the screen alone.
+// Measures the page in a headless Chromium that draws by software, as Markdown tables of
+// docs/results/ecosystem.md. Usage: measure_page.mjs [way]; `way`: only a slice's way to the screen.
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -8,13 +8,13 @@ import { audit } from './axe.mjs';
 import { CODERS, cpuOf, eachStream, head, row, SECONDS, start } from './measuring.mjs';
 import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './support.mjs';
 
-const SETTLED_MS = 3000; // compilers, and what else a page does once
+const SETTLED_MS = 3000; // until compilers and other work at the start have ended
 const CLOUDS = ['lidar.Slice', 'foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
-const LONG_MS = 50; // tasks of which a browser tells
+const LONG_MS = 50; // browsers report tasks from this duration on
 
 const quantile = (share, values) => values.sort((a, b) => a - b)[Math.floor(share * values.length)] ?? NaN;
 const ms = (seconds) => (1000 * seconds).toFixed(0);
-/** The parts of a slice's way, by the times that end them. */
+/** The parts of a slice's way to the screen; each key is the time at which the part ends. */
 const PARTS = {
   sent: 'first column to `foxglovesink`: the sensor, coder, SCReAM and receiver',
   received: 'to the page: socket, and the main thread that is busy',
@@ -23,7 +23,7 @@ const PARTS = {
   drawn: 'the frame, up to the begin of the next',
 };
 
-/** CPU time so far of the threads of that name in all of the browser [s]. */
+/** The CPU time so far [s] of all of the browser's threads named `thread`. */
 function browserCpu(thread) {
   const isOurs = (pid) => {
     try {
@@ -36,8 +36,8 @@ function browserCpu(thread) {
 }
 
 /**
- * In the page: turns the camera, so that there is always something to draw, and notes tasks that held
- * up the main thread, and of each slice when each of its PARTS ended.
+ * Runs in the page: turns the camera, so that each frame is drawn, and notes long tasks of the main
+ * thread, and when each of a slice's PARTS ended.
  */
 function observe(turns) {
   const seen = { slices: [], longest: 0, blocked: 0 };
@@ -66,7 +66,7 @@ function observe(turns) {
     received.delete(sent);
     return points(about, header, ...rest);
   };
-  // What is drawn in a frame is on the screen when the next begins.
+  // A picture is on the screen when the next frame begins.
   let drawn = [];
   const draw = scene.draw.bind(scene);
   scene.draw = () => {
@@ -84,7 +84,7 @@ const read = (page) =>
     return { ...window.measured, ...clouds, frames: scene.frames, points: scene.fresh.count, at: performance.now() };
   }, CLOUDS);
 
-/** What the page does in SECONDS: `before` and `now`, and the processor time of its workers [s]. */
+/** Reads the page `before` and after (`now`) SECONDS, and its workers' CPU time [s]. */
 async function watch(page, turns) {
   await until('a picture', () => page.evaluate(() => window.lidarPage.scene.fresh.count > 0));
   await sleep(SETTLED_MS);
@@ -110,7 +110,7 @@ async function measureStream(browser, name, width, source, coder) {
   await pipeline.stop();
 }
 
-/** From a robot by SCReAM to the screen. */
+/** Measures the way of slices from the sensor over SCReAM to the screen. */
 async function measureWay(browser, model) {
   const [port, rtp] = [await freePort(), await freePort()];
   const pipeline = await Pipeline.start(

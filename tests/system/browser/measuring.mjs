@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What measure.mjs and measure_page.mjs share: scans of an OS1-128 from files, and Markdown.
+// Common to measure.mjs and measure_page.mjs: scans of an OS1-128 from files, and Markdown.
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';
@@ -8,11 +8,11 @@ import { freePort, Pipeline } from './support.mjs';
 export const SECONDS = Number(process.env.WAIT_S ?? 20);
 export const CODERS = { raw: '', 'Draco at 2 cm': '! dracoenc geometry=xyz max-error=0.02' };
 const WIDTHS = [1024, 2048];
-const TICKS = 100; // a second, of /proc
-const SCANS = 10; // that are played again and again
+const TICKS = 100; // a second, in /proc
+const SCANS = 10; // in a loop
 const FIELDS = 'x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16';
 
-/** CPU time of the threads of that name so far [s]. */
+/** The CPU time so far [s] of a process's threads whose name begins with `name`. */
 export function cpuOf(pid, name) {
   let ticks = 0;
   for (const task of readdirSync(`/proc/${pid}/task`)) {
@@ -24,7 +24,7 @@ export function cpuOf(pid, name) {
   return ticks / TICKS;
 }
 
-/** Puts scans into files, so that no ray caster runs beside what is measured; gives what plays them. */
+/** Writes scans to files, so that no ray caster runs meanwhile; returns a source that plays them. */
 function record(folder, width) {
   const files = path.join(folder, `${width}-%d.bin`);
   const line =
@@ -39,7 +39,7 @@ function record(folder, width) {
   );
 }
 
-/** `measure(name, width, source, coder)` for each size and coder. */
+/** Calls `measure(name, width, source, coder)` for each width of scans and each coder. */
 export async function eachStream(folder, coders, measure) {
   for (const width of WIDTHS) {
     const source = record(folder, width);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The page in a real browser: what a user sees and does, and what a server that ends, refuses or
-// waits for a stalled client does to it.
+// The page in a real browser: what a user sees and does, also if the server ends, refuses or waits
+// for a stalled client.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import os from 'node:os';
@@ -23,7 +23,7 @@ const address = (port, rest = '') => `http://127.0.0.1:${port}/${rest}`;
 const state = (page) => page.evaluate(() => document.body.dataset.state);
 const isLive = (page) => until('the page is live', async () => (await state(page)) === 'live');
 
-/** How much of the scene is not background, and a sum that changes with it. */
+/** Returns the share of the scene that is not background, and a checksum of it. */
 function look(page) {
   return page.evaluate(async () => {
     const blob = await window.lidarPage.scene.picture();
@@ -45,7 +45,7 @@ function look(page) {
   });
 }
 
-// With a graphics card, and without.
+// Draws by WebGL, as with a graphics card, and by raster.js, as without.
 for (const by of ['webgl', 'raster'])
 test(`points are drawn by ${by} and move, in every colour`, limits, async () => {
   const port = await freePort();
@@ -167,7 +167,7 @@ test('slices go to the page as the robot coded them', limits, async () => {
   await until('points', async () => (await look(page)).drawn > 1000);
   const read = () => page.evaluate(() => ({ ...window.lidarPage.received, age: window.lidarPage.age }));
   const before = (await read())['lidar.Slice'].messages;
-  // The server goes on only where scans are acknowledged.
+  // The server sends on only if scans are acknowledged.
   await until('ten more scans', async () => (await read())['lidar.Slice'].messages > before + 80);
   const now = await read();
   assert.equal(now['foxglove.PointCloud'], undefined, 'decoded clouds come, too');
@@ -244,10 +244,10 @@ test('two viewers see it; a stalled one holds up neither them nor the pipeline',
   await got;
   stalled._socket.pause();
   const { clouds, messages_dropped: dropped } = sink;
-  // They are 40 kB each: more than the kernel keeps for it.
+  // Clouds of 40 kB each: more than the kernel buffers for the stalled client.
   await until('its socket is full', () => sink.clouds > clouds + 400);
   assert.ok(sink.messages_dropped > dropped, 'nothing was dropped for it');
-  // How fast they come says how busy the machine is, and nothing of the stalled one.
+  // The rate depends on the load of the machine, not on the stalled client: wait for a count.
   const counts = async () => {
     const pages = [first, second].map(({ page }) =>
       page.evaluate(() => window.lidarPage.received['foxglove.PointCloud'].messages));
@@ -313,7 +313,7 @@ test('it fits a phone, follows the theme, and the keyboard reaches all of it', l
   await page.click('#panel');
   assert.ok((await covered()) < 0.2, `${await covered()} of the scene is covered`);
   await page.click('#panel');
-  await page.click('#pause'); // brings the timeline
+  await page.click('#pause'); // shows the timeline
   assert.ok((await covered()) < 0.25, `${await covered()} of the scene is covered`);
   const heights = await page.$$eval('.always button, #timeline button', (all) => all.map((b) => b.getBoundingClientRect().height));
   await page.click('#pause');

@@ -38,14 +38,14 @@ test('a server that comes back brings poses of its own', () => {
   assert.equal(x(3), 7);
 });
 
-/** Slice `i` of scans of two at 10 Hz; it needs the one of its place before, but for the first of each `period` scans. */
+/** Slice `i` of scans of two slices at 10 Hz; it refers to slice `i` - 2, except in every `period`th scan. */
 function coded(i, { period = 5, size = 100, source = 'a' } = {}) {
   const scan = i >> 1;
   const link = { name: i, needs: scan % period === 0 ? null : i - 2 };
   return { captured: 100 + 0.05 * i, header: { scan, slice: i & 1 }, bytes: { length: size, i }, links: [link], source };
 }
 
-/** A decoder that knows what it has been given; slices that lack something have no points. */
+/** A decoder that keeps the names of its slices; a slice that lacks its reference gives no points. */
 class Decoder {
   constructor(slices) {
     Object.assign(this, { slices, known: new Set(), decoded: 0 });
@@ -156,7 +156,7 @@ test('recordings of two sensors are one, and wait for each other', () => {
   assert.deepEqual([replay.reach, shown, replay.last], [152, [150], Infinity]);
   replay.status(left, { number: 1, from: 100, to: 200, damaged: 0, end: 152 });
   assert.equal(replay.last, 152);
-  // What is not shown any more is acknowledged, too.
+  // Slices that will not be shown are acknowledged, too.
   const rest = { op: 'drawn', id: 1, scan: 3, slice: 0 };
   replay.begin(160);
   assert.deepEqual(told.splice(0)[0], rest);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Foxglove's own client and schemas on foxglovesink: npm's @foxglove/ws-protocol gets the messages,
-// protobufjs reads them by the schemas in the channels.
+// Foxglove's own client against foxglovesink: npm's @foxglove/ws-protocol gets the messages,
+// protobufjs reads them by the channels' schemas.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
@@ -10,12 +10,12 @@ import descriptor from 'protobufjs/ext/descriptor/index.js';
 import WebSocket from 'ws';
 import { freePort, Pipeline, until } from './support.mjs';
 
-// They are CommonJS, whose names Node does not see.
+// These packages are CommonJS: Node cannot import their names.
 const require = createRequire(import.meta.url);
 const { NumericType } = require('@foxglove/schemas');
 const jsonSchemas = require('@foxglove/schemas/jsonschema');
 
-/** The first message of each channel, decoded, after `count` channels had one. */
+/** Waits until `count` channels had a message; returns the first of each, decoded. */
 async function messages(port, subprotocol, count) {
   const socket = new WebSocket(`ws://127.0.0.1:${port}`, [subprotocol]);
   const client = new ws.FoxgloveClient({ ws: socket });
@@ -48,7 +48,7 @@ function typeOf(channel) {
 }
 const decode = (channel, bytes) => typeOf(channel).decode(bytes);
 
-/** Our schema has the fields that Foxglove's has, by name. */
+/** Asserts that our schema has the same names of fields as Foxglove's. */
 function assertSameFields({ channel, type }) {
   const schema = jsonSchemas[channel.schemaName.replace('foxglove.', '')];
   assert.ok(schema, channel.schemaName);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices that the page decodes itself, and what it tells the server of them.
+// Slices that the page decodes itself, and its acknowledgements to the server.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
@@ -18,7 +18,7 @@ before(async () => {
   recorded = recordSlices();
   browser = await openBrowser();
 }, limits);
-const closings = new Set(); // of tests that failed, which would keep Node waiting
+const closings = new Set(); // for tests that failed: open servers would keep Node running
 after(async () => {
   await browser?.close();
   for (const stop of closings) await stop();
@@ -62,7 +62,7 @@ test('a whole scan stays, however few come', limits, async () => {
   for (let i = 0; i < 8; ++i) server.sendSlice(2, recorded, i);
   await until('a scan', () => acknowledged(server)?.slice === 7);
   const whole = await points(page);
-  // The next that comes is four scans later; half of it replaces half.
+  // The next scan is four later; its first half replaces that half of the old one.
   for (let i = 32; i < 36; ++i) server.sendSlice(2, recorded, i);
   await until('half a scan', () => acknowledged(server)?.scan === 4 && acknowledged(server)?.slice === 3);
   const mixed = await points(page);
@@ -136,7 +136,7 @@ test('the page goes back into what it got, and returns to live', limits, async (
   assert.match(await page.textContent('#timeline output'), /^3\.0 s ago/);
   await page.fill('#timeline input', '-4');
   await until('an earlier one', async () => Math.abs((await shownAt(page)) - end + 4) < 0.2);
-  // It plays on, while what is new comes and is acknowledged.
+  // Playing continues, while live slices come and are acknowledged.
   await page.click('#pause');
   await until('a subscription', () => server.subscribed.has(2));
   for (let i = 400; i < 408; ++i) server.sendSlice(2, recorded, i);
@@ -152,14 +152,14 @@ test('the page goes back into what it got, and returns to live', limits, async (
   await close();
 });
 
-/** A page of a stream with a recording of the last hour. */
+/** Opens a page on a stream with a recording of the last hour. */
 async function openRecorded(options = {}) {
   const opened = await open([sliceChannel(2, '/points', { about: { ...recorded.about, recording: true } })], options);
   const { server, page } = opened;
   const to = Date.now() / 1000;
   const describe = (rest = {}) => server.describe(2, { from: to - 3600, to, ...rest });
   const replay = () => server.told.findLast(({ op }) => op === 'replay');
-  /** Slices [first, end) of the replay that the page asked for, 12.5 ms each, from 0.2 s before its time on. */
+  /** Sends slices [first, end) of 12.5 ms of the replay that the page asked for; slice 0 is 0.2 s before its time. */
   const play = (first, end) => {
     const { number, time } = replay();
     for (let i = first; i < end; ++i) server.sendSlice(2, recorded, i, Date.now() - 1000 * time + 200 - 12.5 * i, number);
@@ -171,7 +171,7 @@ async function openRecorded(options = {}) {
 }
 const stateOf = (page) => page.textContent('#state span');
 const says = (page, words) => until(words, async () => (await stateOf(page)) === words);
-/** Waits for a picture of a time after `time`, and not of what is live. */
+/** Waits for a picture of the 5 s after `time`, thus not for a live one. */
 const shows = (page, time) =>
   until(`the picture at ${time}`, async () => {
     const shown = await shownAt(page);
@@ -191,7 +191,7 @@ test('the page goes back into a recording of the server, and returns to live at 
   play(0, 80);
   await shows(page, time - 0.02);
   assert.ok(Math.abs((await points(page)) - whole) < 0.2 * whole, 'the scan is not whole');
-  // What is live, and what another replay was sent, is not shown.
+  // Live slices, and those of another replay, are not shown.
   server.sendSlice(2, recorded, 9);
   server.sendSlice(2, recorded, 79, Date.now() - 1000 * time - 900, number + 1);
   await shows(page, time + 0.6);
@@ -274,7 +274,7 @@ test('a recording that cannot be read is told, and what the page has itself is t
   await close();
 });
 
-/** Frames that a coder makes of a picture that changes, each a file. */
+/** Frames of a moving picture, coded by `coder`. */
 function recordVideo(coder) {
   const folder = mkdtempSync(path.join(os.tmpdir(), 'lidar-video-'));
   const line = `videotestsrc num-buffers=12 pattern=ball ! video/x-raw,width=160,height=120 ! ${coder} ! multifilesink location=${folder}/%05d.bin`;
@@ -471,7 +471,7 @@ test('the distance between two points is measured, and heights are clipped', lim
   await close();
 });
 
-/** What axe has against the page as it is, by rule. */
+/** The rules of axe that the page breaks. */
 const violations = async (page) => (await audit(page)).violations;
 
 const VIEWS = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pipelines with a foxglovesink, and Debian's Chromium to look at them.
+// Starts pipelines with a foxglovesink, and Debian's Chromium with their page.
 import { spawn } from 'node:child_process';
 import net from 'node:net';
 import { chromium } from 'playwright-core';
@@ -17,7 +17,7 @@ export function freePort() {
   });
 }
 
-/** Waits for `question()` to be true; throws with `what` after `patienceMs`. */
+/** Waits until `question()` returns a true value, and returns it; throws after `patienceMs`. */
 export async function until(what, question, patienceMs = 60_000) {
   const end = Date.now() + patienceMs;
   for (;;) {
@@ -37,7 +37,7 @@ const canConnect = (port) =>
 
 const running = new Set();
 
-/** gst-launch-1.0 with this description, whose foxglovesink listens on `port`. */
+/** A gst-launch-1.0 whose foxglovesink listens on `port`. */
 export class Pipeline {
   static async start(description, port) {
     const child = spawn('gst-launch-1.0', ['-q', ...description.split(/\s+/)], {
@@ -68,20 +68,20 @@ export class Pipeline {
     running.delete(this);
   }
 
-  /** Those of tests that failed, which would keep Node waiting. */
+  /** Stops pipelines of tests that failed: they would keep Node running. */
   static stopAll() {
     return Promise.all([...running].map((pipeline) => pipeline.stop()));
   }
 }
 
-/** Chromium without a graphics card. */
+/** Chromium that draws by software. */
 export const openBrowser = () =>
   chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
 
-/** A page at `url`, whose complaints are in `complaints`. */
+/** Opens `url`; warnings and errors of the page collect in `complaints`. */
 export async function openPage(browser, url, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   context.setDefaultTimeout(120_000);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which channels of a server the page takes: those of the chosen robot, slices before clouds.
+// Chooses channels of a server: those of the chosen robot, and slices rather than decoded clouds.
 import { canDecode } from './slices.js';
 
 const CLOUDS = ['foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
 const SLICES = 'lidar.Slice';
 
-/** The topic of the clouds of a channel, or null where it has none. */
+/** The topic of the clouds that a channel has, also as slices; null if it has none. */
 function cloudTopic({ schemaName, schema, topic }) {
   if (CLOUDS.includes(schemaName)) return topic;
   if (schemaName !== SLICES) return null;
@@ -18,14 +18,14 @@ function cloudTopic({ schemaName, schema, topic }) {
 
 const robotOf = (topic) => topic.split('/').filter(Boolean)[0];
 
-/** The names of the robots, if the topics of all clouds begin with one: /r7/points. */
+/** The robots' names, with which all topics of clouds must begin: r7 of /r7/points. */
 export function robotsOf(list) {
   const topics = list.map(cloudTopic).filter((topic) => topic !== null);
   if (!topics.every((topic) => topic.split('/').filter(Boolean).length > 1)) return [];
   return [...new Set(topics.map(robotOf))].sort();
 }
 
-/** `known` has the schemas that the page understands; `paused`: it shows no new clouds. */
+/** `known` has the schemas that the page reads; `idle`: take nothing; `paused`: take no clouds. */
 export function chooseChannels(list, { known, robot, idle, paused }) {
   if (idle) return [];
   const robots = robotsOf(list);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Charts of the last minute: a chart a question, shown where its numbers exist.
+// Charts of the last minute; a chart appears once one of its numbers comes.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { MOST_LINKS } from './links.js';
@@ -8,7 +8,7 @@ import { number, t } from './text.js';
 const KEPT_S = 60;
 const MBIT = 1e-6;
 const KB = 1e-3;
-const QUIET_SHARE = 2.5; // of the others' height: a quiet line may leave the picture, not flatten it
+const QUIET_SHARE = 2.5; // a quiet line stretches the axis to at most this multiple of the others' maximum
 const LINKS = Array.from({ length: MOST_LINKS }, (_, i) => i);
 
 const ofLinks = (title, unit, what, scale = 1) => ({
@@ -17,7 +17,7 @@ const ofLinks = (title, unit, what, scale = 1) => ({
   series: LINKS.map((i) => ({ key: `link_${i}_${what}`, link: `link_${i}`, label: 'link', scale })),
 });
 
-/** Members of lidar.Statistics, and what the page measures itself (`received`, `age`, `link_0`). */
+/** Keys are members of lidar.Statistics, or are added by the page (`received`, `age`, `link_0`). */
 const CHARTS = [
   {
     title: 'Age of the cloud',
@@ -104,7 +104,7 @@ class Chart {
     parent.append(this.element);
   }
 
-  /** One number a series; null where it is not known. */
+  /** Adds a number to each series, null if `message` lacks it. */
   add(time, message) {
     const numbers = this.config.series.map(({ key, scale = 1 }) =>
       typeof message[key] === 'number' ? message[key] * scale : null,
@@ -136,7 +136,7 @@ class Chart {
     this.plot.setData(this.data);
   }
 
-  /** The upper end of the axis: of what is not quiet, and of as much of the rest as that bears. */
+  /** The upper end of the axis: quiet lines count up to QUIET_SHARE of the others' maximum. */
   top() {
     const most = (quiet) =>
       this.config.series.reduce((all, series, i) => {

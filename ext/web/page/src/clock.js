@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How old clouds are. A browser's clock may be far from the server's, so the least difference that
-// was seen stands for both clocks' and for the way.
+// The age of clouds. A browser's clock may be far from the server's, so the least difference seen
+// counts as the offset of the clocks plus the shortest delay.
 
-const SYNCHRONISED_S = 1; // a way that takes longer is rather a clock that is wrong
+const SYNCHRONISED_S = 1; // a larger difference is an offset of the clocks, not a delay
 const KEPT = 600;
 
 export const nowSeconds = () => (performance.timeOrigin + performance.now()) * 1e-3;
@@ -12,7 +12,7 @@ export class Clock {
     this.differences = [];
   }
 
-  /** A message left the server at `sent` [s]. */
+  /** Notes a message that left the server at `sent` [s]; returns the present [s]. */
   arrived(sent) {
     this.differences.push(nowSeconds() - sent);
     if (this.differences.length > KEPT) this.differences.shift();

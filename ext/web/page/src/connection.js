@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The connection to a server: subscribes to what the page wants of it, and comes back after a loss.
+// The connection to a server: subscribes to the channels that the page wants, and reconnects.
 import { FoxgloveClient } from '@foxglove/ws-protocol';
 
 const RETRY_FIRST_MS = 500;
 const RETRY_MOST_MS = 5000;
 const PROTOCOLS = ['foxglove.sdk.v1', 'foxglove.websocket.v1'];
-const EXPIRED = 4401; // how the server closes the socket of an old token
+const EXPIRED = 4401; // the server's code when it closes the socket of an expired token
 const REFUSALS = { 401: 'refused', 403: 'foreign', 429: 'limited', 503: 'full' };
-const FINAL = ['refused', 'expired']; // a new token has to come
+const FINAL = ['refused', 'expired']; // no new try before the user enters another token
 
-/** The socket is in the folder of the page, which may be behind a proxy. */
+/** The socket's path is the page's folder, because a proxy may add a prefix. */
 function socketAddress(host, token) {
   const url = new URL('.', location.href);
   if (host !== location.host) {
@@ -25,9 +25,9 @@ function socketAddress(host, token) {
 export class Connection {
   /**
    * `on.state(state)`: connecting, open, lost, or why the server refuses; `on.message(channel, bytes,
-   * nanoseconds)`; `on.channels(list)` of all that are offered; `on.dropped(channel)` of one that was
-   * subscribed to, `on.subscribed(channel)` of a new one; `on.recording(channel, status)`; `wanted(list)`
-   * picks those to subscribe to.
+   * nanoseconds)`; `on.channels(list)`: all that the server offers; `on.subscribed(channel)`;
+   * `on.dropped(channel)`: the end of a subscription; `on.recording(channel, status)`; `wanted(list)`
+   * picks the channels to subscribe to.
    */
   constructor(host, token, on, wanted) {
     Object.assign(this, { host, token, on, wanted });
@@ -64,7 +64,7 @@ export class Connection {
     this.client = client;
   }
 
-  /** Subscribes to what is wanted now, and to nothing else. */
+  /** Subscribes to the channels wanted now, and ends all other subscriptions. */
   choose() {
     const list = [...this.offered.values()];
     this.on.channels?.(list);
@@ -81,7 +81,7 @@ export class Connection {
     }
   }
 
-  /** An operation of our server's own; the client above has read the others. */
+  /** Reads operations that only our server has; FoxgloveClient reads the others. */
   read(data) {
     if (typeof data !== 'string' || !data.includes('"recording"')) return;
     const { op, subscriptionId, ...status } = JSON.parse(data);
@@ -89,7 +89,7 @@ export class Connection {
     if (channel) this.on.recording?.(channel, status);
   }
 
-  /** An operation of our own, about the subscription to `channel`. */
+  /** Sends an operation that only our server has, about the subscription to `channel`. */
   tell(op, channel, rest = {}) {
     if (this.socket.readyState !== WebSocket.OPEN) return;
     for (const [subscriptionId, known] of this.subscriptions)
@@ -107,7 +107,7 @@ export class Connection {
     this.retry = Math.min(this.retry * 1.6, RETRY_MOST_MS);
   }
 
-  /** A browser does not say why a socket was refused, but it does for a request. */
+  /** A browser hides why a socket was refused; the same request by HTTP returns the status. */
   async why() {
     if (this.host !== location.host) return 0;
     try {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The slices of one stream to points, by ext/web/decoder as WebAssembly. Each decoder has an instance
-// of its own, so that damage that traps costs one stream its references, and nothing else.
+// Decodes the slices of a stream into points, by ext/web/decoder as WebAssembly. Each decoder is an
+// instance: a slice that makes it trap costs only its own stream the references.
 
-export const POINT_FLOATS = 6; // x, y, z, intensity, beam, range: as fields.js has it
+export const POINT_FLOATS = 6; // x, y, z, intensity, beam, range, as in fields.js
 const DAMAGED = -1;
 const LACKS_REFERENCE = -2;
 
 export class Decoder {
-  /** `module`: the compiled lidar_decoder.wasm; `model`: bytes of the sensor model, none for points. */
+  /** `module`: the compiled lidar_decoder.wasm; `model`: the sensor model, empty for points. */
   constructor(module, model, maxPoints = 1 << 20) {
     Object.assign(this, { module, model, maxPoints });
     this.start();
@@ -29,8 +29,8 @@ export class Decoder {
   }
 
   /**
-   * {points, step, error, has} of a slice, whose `points` are a view until the next one; or
-   * {lacksReference} where there are none.
+   * Returns {points, step, error, has}; `points` is a view, valid until the next call. A slice that
+   * cannot be decoded gives {points: null, lacksReference}.
    */
   decode(slice) {
     const result = this.run(slice);
@@ -46,7 +46,7 @@ export class Decoder {
     };
   }
 
-  /** The blocks of a slice that others may refer to: [{name, needs}], `needs` null in one that stands alone. */
+  /** The slice's blocks, to which later ones may refer, as [{name, needs}]; `needs` null: no reference. */
   links(slice) {
     const count = this.put(slice) ? this.wasm.find_links(this.decoder) : 0;
     const words = new Uint32Array(this.wasm.memory.buffer, this.wasm.links(this.decoder), 3 * count);
@@ -66,7 +66,7 @@ export class Decoder {
     try {
       return this.put(slice) ? this.wasm.decode(this.decoder) : DAMAGED;
     } catch {
-      this.start(); // its memory is in no known state
+      this.start(); // the trap may have left its memory inconsistent
       return DAMAGED;
     }
   }

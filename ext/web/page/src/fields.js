@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points of any layout to the layout that is drawn: x, y, z, intensity, beam and range as floats.
+// Converts points of any layout to the one that is drawn: x, y, z, intensity, beam, range as floats.
 
-export const FLOATS = 6; // of a point
+export const FLOATS = 6; // a point
 
 /** Readers by foxglove.PackedElementField.NumericType. */
 const readers = [
@@ -45,7 +45,7 @@ export function unpack(cloud) {
   return { points, has: { intensity: !!intensity, beam: !!beam } };
 }
 
-/** The points that Draco gave: positions, and intensities where it had some. */
+/** Points of Draco's decoder; `intensities` may be null. */
 export function fromDraco(positions, intensities) {
   const count = positions.length / 3;
   const points = new Float32Array(count * FLOATS);

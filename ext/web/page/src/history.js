@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The coded slices of the last minutes, in the order in which they came, and what shows them again.
+// The coded slices of the last minutes, by capture time, and a player that shows them again.
 
-const MOST_AHEAD_S = 1; // a later time is a jump
-const PATIENCE_MS = 20; // until others have their turn
+const MOST_AHEAD_S = 1; // a time further ahead is a jump
+const PATIENCE_MS = 20; // of decoding, then the worker reads its messages
 
-/** Slices are {captured, header, bytes, links, source}; `source` stands for their decoder. */
+/** Slices are {captured, header, bytes, links, source}; a decoder is opened for each `source`. */
 export class History {
   constructor(mostBytes) {
     this.mostBytes = mostBytes;
@@ -18,7 +18,7 @@ export class History {
     this.named = new Map();
   }
 
-  /** In the order of time; the oldest go where there is no room, and what cannot be shown without them. */
+  /** Inserts by time. Drops the oldest slices if there is no room, and those that referred to them. */
   add(slice) {
     this.slices.splice(this.after(slice.captured) - this.first, 0, slice);
     this.bytes += slice.bytes.length;
@@ -39,7 +39,7 @@ export class History {
     return links.every(({ needs }) => needs === null || this.named.has(needs));
   }
 
-  /** Capture times [s] of the oldest and of the newest; null where there is none. */
+  /** Capture times [s] of the oldest and the newest slice; null if there is none. */
   get span() {
     return this.slices.length > 0 ? [this.slices[0].captured, this.slices.at(-1).captured] : null;
   }
@@ -51,7 +51,7 @@ export class History {
     return this.slices[number - this.first];
   }
 
-  /** The number of the first slice behind `time`. */
+  /** The number of the first slice later than `time`. */
   after(time) {
     let [low, high] = [0, this.slices.length];
     while (low < high) {
@@ -62,7 +62,7 @@ export class History {
     return this.first + low;
   }
 
-  /** Where the scan before that of the slice before `number` begins: from there on the picture is whole. */
+  /** The first slice of the last scan but one before slice `number`: a whole picture begins there. */
   scanBefore(number) {
     const scans = new Set();
     const source = this.at(number - 1)?.source;
@@ -74,7 +74,7 @@ export class History {
     return number;
   }
 
-  /** What has to be decoded before `slice` by a decoder that has the blocks `known`, the oldest first. */
+  /** The slices to decode before `slice`, oldest first, if the decoder has the blocks `known`. */
   needs(slice, known) {
     const found = new Set();
     const open = [slice];
@@ -90,9 +90,9 @@ export class History {
   }
 }
 
-/** Decodes what a history has, by decoders of its own. */
+/** Decodes the slices of a history; its decoders are not those of the live stream. */
 export class Player {
-  /** `open(source)` gives a Decoder; `pause()` lets others have their turn. */
+  /** `open(source)` returns a Decoder; `pause()` lets the worker read its messages. */
   constructor(history, open, pause) {
     Object.assign(this, { history, open, pause });
     this.decoders = new Map();
@@ -100,8 +100,8 @@ export class Player {
   }
 
   stop() {
-    this.shown = null; // time
-    this.next = 0; // number of the slice
+    this.shown = null; // time of the picture shown last
+    this.next = 0; // number of the slice to be shown next
     this.known = new Set(); // blocks that the decoders have
   }
 
@@ -112,15 +112,15 @@ export class Player {
     return this.decoders.get(source).decode(bytes);
   }
 
-  /** Whether the slices up to `time` do not just follow what has been shown. */
+  /** Returns true if the slices up to `time` do not continue the picture shown last. */
   isJump(time) {
     const { shown, next, history } = this;
     return shown === null || time < shown || time > shown + MOST_AHEAD_S || next < history.first;
   }
 
   /**
-   * {jumped, slices: [{slice, decoded}], next}: what is new in the picture at `time`, after a jump
-   * all of it, and the time of the slice behind it. Null where `isWanted()` ends meanwhile.
+   * Returns {jumped, slices: [{slice, decoded}], next}: what is new in the picture at `time`, after a
+   * jump all of it; `next` is the time of the slice after it. Null if `isWanted()` turns false.
    */
   async show(time, isWanted = () => true) {
     const { history } = this;

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The links of a sender over several, as a sender sees them, or as its receiver does.
+// Statistics of several links: from the sender if it reports, otherwise from the receiver.
 
 export const MOST_LINKS = 4;
 const NS_TO_MS = 1e-6;
-const SENDER_S = 3; // while what it says of its links counts, and not what a receiver does
+const SENDER_S = 3; // after its last report, in which a receiver's reports are ignored
 
 const inMs = (ns) => (typeof ns === 'number' ? ns * NS_TO_MS : undefined);
 
-/** What a sender calls `host:port@interface` is the interface to its user. */
+/** A user knows a link `host:port@interface` by its interface. */
 const nameOf = ({ link, address }, i) => String(link ?? address ?? i + 1).replace(/^.*@/, '');
 
 const stateOf = ({ usable, in_gap: inGap }) => (usable === false ? 'unusable' : inGap ? 'in_gap' : null);
 
 export class Links {
   constructor() {
-    this.sender = -Infinity; // when it said something
-    this.before = []; // what a receiver had got of each link, and when
+    this.sender = -Infinity; // time of its last report [s]
+    this.before = []; // each link's bytes in the receiver's last report, and its time
   }
 
-  /** Members for the charts of a lidar.Statistics that came at `now` [s]: `link_0` to `link_3`. */
+  /** Members for the charts, `link_0` to `link_3`, from a lidar.Statistics that came at `now` [s]. */
   of({ elements = {} }, now) {
     const all = Object.values(elements).filter(({ links }) => links?.length > 1);
     const sender = all.find(({ links }) => 'sent_bitrate' in links[0]);

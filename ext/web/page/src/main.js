@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Puts the page together: what comes from the server goes to the scene and the charts.
+// Puts the page together: passes messages of the server to the scene and the charts.
 import './style.css';
 import { Charts } from './charts.js';
 import { chooseChannels, robotsOf } from './channels.js';
@@ -20,7 +20,7 @@ import { compressedCloud, compressedVideo, frameTransform, pointCloud } from './
 const STALLED_MS = 2000;
 const SLOW_DRAW_MS = 250;
 const BUSY_MS = 100;
-const MOST_AGE_S = 60; // an older cloud rather has a clock that is wrong
+const MOST_AGE_S = 60; // an older cloud's clock is wrong: its age is not shown
 
 translate(document);
 const page = {
@@ -33,7 +33,7 @@ const page = {
   age: null, // [s] of the cloud drawn last
   received: {}, // by schema, since the start
   spanS: 0.1,
-  kept: null, // times of the slices that the page itself can show again [s]
+  kept: null, // [oldest, newest] of the slices that the page has kept [s]
   isLoading: false,
   robot: '',
   charts: new Charts(document.getElementById('charts')),
@@ -89,7 +89,7 @@ page.timeline = new Timeline(document.getElementById('timeline'), {
 // --- clouds ---
 
 let draco = null;
-const waiting = new Map(); // clouds that the worker has
+const waiting = new Map(); // clouds in the worker's queue
 
 function decodeDraco(cloud) {
   if (!draco) {
@@ -100,14 +100,14 @@ function decodeDraco(cloud) {
       if (sent && positions) addCloud(sent, fromDraco(positions, intensities));
     };
   }
-  if (waiting.size > 64) waiting.clear(); // it is slower than the stream: the newest counts
+  if (waiting.size > 64) waiting.clear(); // the worker is too slow: skip what it still has
   page.dracoId = (page.dracoId ?? 0) + 1;
   waiting.set(page.dracoId, { time: cloud.time, frame: cloud.frame });
   const data = cloud.data.slice().buffer;
   draco.postMessage({ id: page.dracoId, data }, [data]);
 }
 
-/** `ageOf(time)` of clouds whose server says when it sent them. */
+/** `cloud.ageOf` exists for slices, whose server reports when it sent them. */
 function addCloud(cloud, decoded) {
   page.quietMs = 0;
   ++page.clouds;
@@ -134,7 +134,7 @@ function addSlice(about, header, decoded, clock) {
   addCloud({ ...placed(about, header), ageOf: (captured) => clock.ageOf(captured) }, decoded);
 }
 
-// --- what was ---
+// --- the past ---
 
 function showPicture(picture) {
   if (!page.timeline.answered(picture, page.paused)) return;
@@ -144,7 +144,7 @@ function showPicture(picture) {
   page.scene.dirty = true;
 }
 
-/** Where the timeline reaches: into a recording, or into what this page has kept of the stream. */
+/** Sets the range of the timeline: the recording, or what this page has kept of the stream. */
 function setSpan() {
   const { replay, timeline } = page;
   const span = replay.span ?? (replay.isOn ? null : page.kept);
@@ -158,11 +158,11 @@ function jump(time) {
   if (page.replay.span === null) return page.slices.show(time);
   const wasOn = page.replay.isOn;
   page.replay.begin(time);
-  // A page that is paused takes slices while it replays: each that it subscribes to begins anew.
+  // A paused page subscribes to slices only while it replays.
   if (!wasOn) page.choose();
 }
 
-/** The picture of another time is to come. */
+/** Clears what belongs to the picture of the time before. */
 function showTime() {
   const { isPast } = page.timeline;
   if (!isPast) page.scene.fresh.clear();
@@ -224,7 +224,7 @@ function checkFlow() {
   if (quiet !== (page.state === 'stalled')) setState(quiet ? 'stalled' : 'live');
 }
 
-/** What is to be shown has not come yet. */
+/** Shows "loading" while the slices of the time to be shown have not come. */
 function checkReplay() {
   const { replay, timeline } = page;
   const isLoading = replay.isOn && (replay.wanted !== null || timeline.at >= replay.reach);
@@ -254,7 +254,7 @@ function tokenOf() {
   const url = new URL(location.href);
   const given = url.searchParams.get('token');
   if (given === null) return sessionStorage.getItem('token') ?? '';
-  // It need not stay where others can read it.
+  // Remove the token from the address, where others could read it.
   sessionStorage.setItem('token', given);
   url.searchParams.delete('token');
   history.replaceState(null, '', url);
@@ -310,14 +310,14 @@ function connect() {
   page.connection = new Connection(location.host, tokenOf(), on, wanted);
 }
 
-// A page that nobody sees or that holds its picture costs no network.
+// A hidden or paused page ends its subscriptions to clouds.
 page.choose = () => page.connection?.choose();
 document.addEventListener('visibilitychange', () => {
   page.quietMs = 0;
   page.choose();
 });
 
-/** Statistics of another pipeline, such as the sender's: ?also=robot:8765. */
+/** Reads the statistics of further pipelines, such as the sender's: ?also=robot:8765. */
 function connectOthers() {
   for (const host of new URL(location.href).searchParams.getAll('also')) {
     const on = {
@@ -330,7 +330,7 @@ function connectOthers() {
 
 // --- the loop ---
 
-/** What the server paces by, and the age that a viewer sees. */
+/** Sends the acknowledgements by which the server paces, and takes the age of the drawn cloud. */
 function afterDrawing() {
   page.slices.drawn();
   page.replay.acknowledge();
@@ -349,7 +349,7 @@ function frame(now) {
   if (!page.timeline.isPast) page.video.draw(time);
   else if (time !== null) page.video.replay(time);
   afterDrawing();
-  // Where the browser itself was busy, clouds may have come that it has not told of yet.
+  // After a busy stretch of the browser, clouds may have come that it has not delivered yet.
   page.quietMs += Math.min(now - drawn, BUSY_MS);
   drawn = now;
   if (now - drawnCharts > SLOW_DRAW_MS) {

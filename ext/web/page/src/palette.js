@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Colours of numbers: for dark and for light grounds, and the same in the scene and its legend.
+// Colours of numbers on dark and light grounds, for the scene and its legend.
 
 /**
- * Lightness rises with the number, from blue to yellow: colour-blind people, and prints without
- * colour, show the same order.
+ * Lightness rises with the number, from blue to yellow, so that the order also shows to
+ * colour-blind people and in black and white.
  */
 const dark = {
   spectrum: ['#3d4fa8', '#3a73b4', '#3697b0', '#45b79b', '#86d079', '#cfe25f', '#fff4a8'],

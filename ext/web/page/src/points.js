@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The points that are fresh: a ring in the memory of the graphics card, coloured where it is drawn.
+// The points of the last scans, in a ring buffer on the graphics card, coloured by its shader.
 import * as THREE from 'three';
 import { FLOATS } from './fields.js';
 import { MODES, rampOf, texels } from './palette.js';
 
 const CAPACITY = 1 << 19; // two scans of the largest sensors
-export const STRIDE = FLOATS + 1; // and the time
+export const STRIDE = FLOATS + 1; // the last is the time
 const FOR_EVER_S = 1e6;
 export const NO_CLIP = 1e6;
 
@@ -52,8 +52,8 @@ export class FreshPoints {
     ramp.magFilter = ramp.minFilter = THREE.LinearFilter;
     this.uniforms = {
       now: { value: 0 },
-      span: { value: 0.1 }, // until a point has lost its glow
-      hidden: { value: 0.1 }, // until it is not drawn any more
+      span: { value: 0.1 }, // age at which a point has lost its glow [s]
+      hidden: { value: 0.1 }, // age from which it is not drawn [s]
       floor: { value: -NO_CLIP },
       ceiling: { value: NO_CLIP },
       mode: { value: 0 },
@@ -68,7 +68,7 @@ export class FreshPoints {
       vertexShader,
       fragmentShader,
     });
-    // Two parts of one ring: what is fresh may go over its end.
+    // Two objects draw the ring: the batches may wrap around its end.
     this.parts = [geometry, geometry.clone()].map((part) => {
       for (const name of ['position', 'rest']) part.setAttribute(name, geometry.getAttribute(name));
       const points = new THREE.Points(part, material);
@@ -83,25 +83,25 @@ export class FreshPoints {
   clear() {
     this.next = 0;
     this.batches = []; // {start, count, stamp, place}, the oldest first
-    this.scan = this.scanBefore = undefined; // of slices
-    this.epoch = null; // times are floats: from here on
+    this.scan = this.scanBefore = undefined; // the last two, if points come as slices
+    this.epoch = null; // zero of the times [s], which are floats
     this.latest = 0;
     for (const part of this.parts) part.geometry.setDrawRange(0, 0);
   }
 
-  /** Points that are on the way to the screen. */
+  /** The number of points to be drawn. */
   get count() {
     return this.parts.reduce((sum, part) => sum + part.geometry.drawRange.count, 0);
   }
 
-  /** Capture time of the newest [s]; null where there is none. */
+  /** Capture time of the newest point [s]; null if there is none. */
   get time() {
     return this.epoch === null ? null : this.epoch + this.latest;
   }
 
   /**
-   * `points` as fields.js has them, at `time`, moved by `matrix` where there is one. Slices have a
-   * `place`, {scan, slice, slices}: they stay until the next of that place comes.
+   * Adds `points`, in the layout of fields.js, of capture time `time` [s], moved by `matrix` if there
+   * is one. A slice has a `place`, {scan, slice, slices}: it stays until the next scan covers it.
    */
   add(points, time, matrix, place = null) {
     const count = Math.min(points.length / FLOATS, CAPACITY);
@@ -135,7 +135,7 @@ export class FreshPoints {
     this.forget();
   }
 
-  /** Whether something newer stands where `batch` was. */
+  /** Returns true if a batch is too old, or if slices of the next scan cover its place. */
   isOver({ stamp, place }) {
     if (!place || this.isTrail) return stamp < this.latest - this.uniforms.hidden.value;
     if (place.scan === this.scan) return false;
@@ -144,7 +144,7 @@ export class FreshPoints {
     return (place.slice + 1) * newest.slices <= (newest.slice + 1) * place.slices;
   }
 
-  /** Drops batches that are over, or overwritten. */
+  /** Drops batches that are over, or that the ring has overwritten. */
   forget() {
     const { batches } = this;
     let held = batches.reduce((sum, batch) => sum + batch.count, 0);
@@ -156,7 +156,7 @@ export class FreshPoints {
     this.parts[1].geometry.setDrawRange(0, held - first);
   }
 
-  /** Only what is new goes to the graphics card. */
+  /** Marks the new points, so that only these go to the graphics card. */
   markDirty(start, count) {
     const end = Math.min(start + count, CAPACITY);
     this.buffer.addUpdateRange(start * STRIDE, (end - start) * STRIDE);
@@ -164,7 +164,7 @@ export class FreshPoints {
     this.buffer.needsUpdate = true;
   }
 
-  /** [[from, count]] in the ring, which may go over its end. */
+  /** The stretches [[from, count]] of the ring that `count` points from `start` take: two at its end. */
   spans(start, count) {
     const first = Math.min(count, CAPACITY - start);
     return first < count ? [[start, first], [0, count - first]] : [[start, count]];
@@ -182,7 +182,7 @@ export class FreshPoints {
     }
   }
 
-  /** The drawn point nearest to `[x, y]` of a picture of `width` and `height`, within `reach`. */
+  /** The drawn point nearest to pixel `[x, y]` of a `width` by `height` picture, within `reach`. */
   nearest(camera, { width, height }, [x, y], reach) {
     const e = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     const { data } = this;
@@ -200,7 +200,7 @@ export class FreshPoints {
     return found;
   }
 
-  /** After each frame. */
+  /** Call this after each frame. */
   drawn() {
     this.buffer.clearUpdateRanges();
   }
@@ -218,7 +218,7 @@ export class FreshPoints {
     this.uniforms.high.value = high;
   }
 
-  /** How long a point without a place stays [s], and in a trail every point. */
+  /** Sets how long [s] points without a place stay; in a trail, all points. */
   setSpan(span, isTrail) {
     this.uniforms.span.value = span;
     this.isTrail = isTrail;
@@ -229,7 +229,7 @@ export class FreshPoints {
     this.uniforms.hidden.value = hasPlaces && !this.isTrail ? FOR_EVER_S : this.uniforms.span.value;
   }
 
-  /** Only points between these heights [m] are drawn. */
+  /** Limits the drawn points to these heights [m]. */
   setClip(floor, ceiling) {
     this.uniforms.floor.value = floor;
     this.uniforms.ceiling.value = ceiling;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where each frame was and is: the newest transforms, and between and behind them what steady motion
-// gives, since slices come before the pose of their scan. A server that comes back begins anew.
+// The transforms of each frame, interpolated, and extrapolated past the newest one because slices
+// come before the pose of their scan. Nothing is interpolated across a loss of the server.
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
-const KEPT = 1 << 14; // half an hour: what is shown again has its poses
+const KEPT = 1 << 14; // half an hour at 10 Hz, longer than slices are kept
 const MOST_AHEAD_S = 0.5;
 const ONE = new Vector3(1, 1, 1);
 
 export class Poses {
   constructor() {
-    this.frames = new Map(); // child frame to transforms, the oldest first
-    this.begun = 0; // times that a server came
+    this.frames = new Map(); // lists of transforms by child frame, the oldest first
+    this.begun = 0; // number of losses of the server
   }
 
-  /** What comes now has nothing to do with what came. */
+  /** Ends the series of transforms: later ones do not continue it. */
   end() {
     ++this.begun;
   }
@@ -33,7 +33,7 @@ export class Poses {
     if (list.length > KEPT) list.shift();
   }
 
-  /** The transform at a time, or null where the frame has none. */
+  /** The transform of `frame` at `time` [s], or null if it has none. */
   at(frame, time) {
     const list = this.frames.get(frame) ?? [];
     if (list.length === 0) return null;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points drawn by the page itself, for browsers without a graphics card: their WebGL takes half a
-// microsecond a point, and this takes a tenth of it. The picture lies behind what WebGL draws.
+// Draws points on the CPU, for browsers without a graphics card: their WebGL takes half a
+// microsecond a point, this a tenth of it. The picture lies behind what WebGL draws.
 import * as THREE from 'three';
 import { rampOf, texels } from './palette.js';
 import { STRIDE } from './points.js';
 
-const VALUES = { height: 2, intensity: 3, range: 5, beam: 4 }; // where in a point
+const VALUES = { height: 2, intensity: 3, range: 5, beam: 4 }; // index of the float in a point
 const MOST_PX = 6;
 const LEAST_PX = 1.6;
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
-/** Whether a processor does what a graphics card should. */
+/** Returns true if the CPU renders what `gl` draws. */
 export function isSoftware(gl) {
   const about = gl.getParameter(gl.RENDERER) === 'WebKit WebGL' && gl.getExtension('WEBGL_debug_renderer_info');
   return SOFTWARE.test(gl.getParameter(about ? about.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
@@ -54,7 +54,7 @@ export class Raster {
     this.ground = packedColor(ground);
   }
 
-  /** `fresh` and `map` as `camera` sees them; near points are `scale / distance` pixels wide. */
+  /** Draws `fresh` and `map` as seen by `camera`; near points are `scale / distance` pixels wide. */
   draw(fresh, map, camera) {
     this.pixels.fill(this.ground);
     this.depths.fill(Infinity);
@@ -79,7 +79,7 @@ export class Raster {
     this.texture.needsUpdate = true;
   }
 
-  /** The table of colours for points of an age. */
+  /** Fills the table of colours for points of age `age` [s]. */
   tint({ span, glow, low, high }, age) {
     const fresh = Math.min(Math.max(1 - age / span.value, 0), 1);
     const bright = glow.value > 0.5 ? 0.62 + 0.38 * fresh * fresh : 1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A recording that the server has: asks for its slices from a time on, and acknowledges those whose
-// time has come, so that the server sends on as they are shown.
+// Replays a recording of the server: asks for its slices from a time on, and acknowledges those that
+// are shown, by which the server paces.
 
-const AHEAD_S = 1; // of the time that is shown
+const AHEAD_S = 1; // slices are acknowledged this long before they are shown
 
 const hasRecording = ({ schemaName, schema }) => {
   try {
@@ -14,30 +14,30 @@ const hasRecording = ({ schemaName, schema }) => {
 
 export class Replay {
   /**
-   * `on.begin(number)` before the slices of a replay, `on.end()`, `on.show(time)` once what has come
-   * reaches so far, `on.known()` after each word about a recording; `connection()` gives the one
-   * that streams come by.
+   * Calls `on.begin(number)` before the slices of a replay, `on.end()`, `on.show(time)` once all slices
+   * up to the time asked for are there, and `on.known()` after each status of a recording;
+   * `connection()` returns the Connection of the streams.
    */
   constructor(on, connection) {
     Object.assign(this, { on, connection });
-    this.number = 0; // of the last replay: the server sends it with each slice
+    this.number = 0; // of the last replay; each slice of it has this number
     this.isOn = false;
     this.streams = new Map(); // by channel: {newest, end, unshown}
     this.recordings = new Map(); // by channel: {from, to, damaged}
-    this.wanted = null; // time that is to be shown once its slices have come
+    this.wanted = null; // time [s] to be shown once its slices have come
   }
 
   get channels() {
     return [...(this.connection()?.subscriptions.values() ?? [])].filter(hasRecording);
   }
 
-  /** Times of all recordings together [s]; null: there is none. */
+  /** The first and the last time [s] of all recordings; null if there is none. */
   get span() {
     const known = [...this.recordings.values()].filter(({ to }) => to > 0);
     return known.length ? [Math.min(...known.map((r) => r.from)), Math.max(...known.map((r) => r.to))] : null;
   }
 
-  /** Whether no recording that the server offers can be read. */
+  /** Returns true if the server can read none of its recordings. */
   get isBroken() {
     return this.recordings.size > 0 && this.span === null;
   }
@@ -68,7 +68,7 @@ export class Replay {
     this.on.end();
   }
 
-  /** What has come and is not shown any more: the server paces by what is acknowledged. */
+  /** Acknowledges slices that will not be shown, because the server paces by acknowledgements. */
   drop() {
     for (const [channel, { unshown }] of this.streams) if (unshown.length > 0) this.tell(channel, unshown.at(-1));
     this.streams.clear();
@@ -78,7 +78,7 @@ export class Replay {
     this.connection().tell('drawn', channel, { scan, slice });
   }
 
-  /** A channel was subscribed to: the server begins it live. */
+  /** Restarts a replay after a subscription, which the server begins live. */
   subscribed(channel) {
     const offered = [...this.connection().offered.values()];
     for (const known of this.recordings.keys()) if (!offered.includes(known)) this.recordings.delete(known);
@@ -89,13 +89,13 @@ export class Replay {
     this.streams.delete(channel);
   }
 
-  /** What was known is of streams that are no longer shown. */
+  /** Forgets the recordings of streams that are no longer shown. */
   forget() {
     this.recordings.clear();
     this.on.known();
   }
 
-  /** The server's word about the recording of `channel`. */
+  /** Takes the server's status of the recording of `channel`. */
   status(channel, { number, from, to, damaged, end }) {
     this.recordings.set(channel, { from, to, damaged });
     const stream = number === this.number ? this.streams.get(channel) : undefined;
@@ -104,11 +104,11 @@ export class Replay {
     this.release();
   }
 
-  /** A slice is where it can be shown from, or a pose. */
+  /** Notes a slice that the worker has kept, or a pose. */
   arrived(channel, header) {
     const stream = this.streams.get(channel);
     if (!stream || header.replay !== this.number) return this.tell(channel, header);
-    // A pose comes without the worker, before the slices in front of it.
+    // A pose bypasses the worker, and so overtakes slices sent before it.
     if (!header.isPose) stream.newest = Math.max(stream.newest ?? 0, header.captured);
     stream.unshown.push(header);
     this.release();
@@ -118,13 +118,13 @@ export class Replay {
     return end !== null && (newest ?? 0) >= end;
   }
 
-  /** Up to this time everything has come. */
+  /** The time [s] up to which all slices have come. */
   get reach() {
     if (this.streams.size === 0) return -Infinity;
     return Math.min(...[...this.streams.values()].map((s) => (this.isWhole(s) ? Infinity : s.newest ?? -Infinity)));
   }
 
-  /** The time behind which nothing follows; Infinity: not known yet. */
+  /** The time [s] of the last slice of all; Infinity if it is not known yet. */
   get last() {
     const streams = [...this.streams.values()];
     if (streams.length === 0 || !streams.every((s) => this.isWhole(s))) return Infinity;
@@ -143,7 +143,7 @@ export class Replay {
     this.on.show(time);
   }
 
-  /** Acknowledges what has been shown, or will be soon. */
+  /** Acknowledges the slices shown up to AHEAD_S from now. */
   acknowledge() {
     for (const [channel, { unshown }] of this.streams) {
       let last = null;

@@ -2,8 +2,8 @@
 // Measures between two points that the user chooses in the picture.
 import * as THREE from 'three';
 
-const REACH_PX = 24; // of a finger
-const MOST_MOVED_PX = 6; // a longer way turns the camera
+const REACH_PX = 24; // distance at which a finger picks a point
+const MOST_MOVED_PX = 6; // a longer drag turns the camera
 
 export class Ruler {
   /** `onChange({points, distance, rise})` after each choice. */

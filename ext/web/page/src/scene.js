@@ -11,7 +11,7 @@ const RINGS_M = [10, 20, 30, 40, 50];
 const HOME = new THREE.Vector3(-27, -9, 24);
 const LOOK = new THREE.Vector3(6, 0, -1);
 const TURN = 0.08; // a key press [rad]
-const DAMPING_MS = 330; // until a turn of the camera is down to a third
+const DAMPING_MS = 330; // in which the camera's motion falls to a third
 const ZOOM = 0.88;
 
 function rings() {
@@ -43,7 +43,7 @@ function rings() {
 export class Scene {
   constructor(canvas) {
     this.canvas = canvas;
-    // three.js would ask for a picture that the browser has to blend with what is behind it.
+    // A context of three.js would have alpha, and the browser would blend it with the page.
     const context = canvas.getContext('webgl2', { alpha: false, antialias: false, powerPreference: 'high-performance' });
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.scene = new THREE.Scene();
@@ -88,7 +88,7 @@ export class Scene {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(w, h, false);
     this.camera.aspect = w / h;
-    // A tall window sees as much to the sides.
+    // A tall window gets a taller view, so that it is not too narrow.
     this.camera.fov = w < h ? 80 : 55;
     this.camera.updateProjectionMatrix();
     this.raster?.resize(this.canvas.width, this.canvas.height);
@@ -113,7 +113,7 @@ export class Scene {
     this.raster?.setColors(mode, isDark, this.scene.background);
   }
 
-  /** The sensor has moved; the camera goes with it where it follows. */
+  /** Moves the sensor, and the camera if it follows. */
   moveSensor(matrix) {
     const at = new THREE.Vector3().setFromMatrixPosition(matrix);
     if (this.follow) {
@@ -141,7 +141,7 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** What `isNew` joins the map. */
+  /** Draws points, and adds them to the map if they are `isNew`. */
   add(points, time, matrix, place, isNew) {
     this.fresh.add(points, time, matrix, place);
     if (matrix) {
@@ -157,7 +157,7 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Turns by steps to the right and up; zooms by steps inwards. */
+  /** Turns the camera by steps of TURN, and zooms by steps of ZOOM. */
   nudge(right, up, inwards) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
@@ -179,7 +179,7 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Camera and target from the sensor, as numbers; setting them puts both there. */
+  /** The positions of camera and target relative to the sensor, as six numbers. */
   get pose() {
     const { position } = this.camera;
     return [position, this.controls.target].flatMap((v) => v.clone().sub(this.sensor).toArray());
@@ -192,9 +192,9 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Draws where something has changed; true where it has. */
+  /** Draws if something has changed; returns whether it has. */
   draw() {
-    // As long at any frame rate: where one takes a second, the camera would turn on for minutes.
+    // Damping by time, not by frame: at a frame a second the camera would turn on for minutes.
     const now = performance.now();
     this.controls.dampingFactor = 1 - Math.exp((this.drawnAt - now) / DAMPING_MS);
     this.drawnAt = now;

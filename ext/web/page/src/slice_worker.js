@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes slices beside the page: {open, model} and {close} of a stream, {stream, header, data,
-// offset} and {show} of a time in; {stream, header, span} with points, step, error and has, or with
-// lacksReference, and {picture} out. `show` is null where nothing is to be shown again. Slices of the
-// replay that {replay} names are only kept, and {stream, header} says so.
+// Decodes slices in a worker. Its messages: {open, model} and {close} of a stream, {stream, header,
+// data, offset} of a slice, {show} of a time (null: none), {replay} of a number, {forget}. It answers
+// a slice by {stream, header, span} with points, step, error and has, or with lacksReference, and
+// {show} by {picture}. Slices of the current replay are only kept, and answered by {stream, header}.
 import { Decoder } from './decoder.js';
 import { History, Player } from './history.js';
 
@@ -26,7 +26,7 @@ async function open(id, model) {
     module ??= await compiled;
     source.decoder = new Decoder(module, model);
   } catch {
-    // The sensor model is damaged: there is no decoder.
+    // The sensor model is damaged: the stream has no decoder.
   }
 }
 
@@ -41,7 +41,7 @@ function decode({ stream, header, data, offset }) {
     return postMessage(answer);
   }
   const slice = source.decoder.decode(bytes);
-  // What leaves is a copy: the decoder writes the next slice to the same place.
+  // The answer gets a copy: the decoder writes the next slice to the same place.
   const points = slice.points?.slice() ?? null;
   if (points)
     history.add({ captured: header.captured, header, bytes, source, links: source.decoder.links(bytes) });
@@ -78,7 +78,7 @@ async function show(time, isReplay) {
   isShowing = false;
 }
 
-// One after the other: a decoder may still be on its way.
+// Messages wait for the one before, because opening a decoder takes time.
 let last = Promise.resolve();
 onmessage = ({ data: message }) => {
   if (message.show !== undefined) return void show(message.show, message.isReplay);

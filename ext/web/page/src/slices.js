@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams of slices as the robot coded them: what comes, what the worker makes of it, and what the
-// server is told of it.
+// Streams of slices as the robot coded them: passes them to the worker, its points to the page, and
+// acknowledgements to the server.
 import { Clock } from './clock.js';
 
 const HEADER = 24;
 const VERSION = 1;
-const NO_REFERENCE_MS = 1000; // between two complaints
+const NO_REFERENCE_MS = 1000; // between two 'lacksReference'
 
-/** A module of one function, whose only instruction is of SIMD. */
+/** A WebAssembly module that is valid only if the browser has SIMD. */
 const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 
 export const canDecode = () => typeof Worker === 'function' && WebAssembly.validate(new Uint8Array(SIMD));
 
 const fromBase64 = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 
-/** The header of a message, or null where this page does not know it. */
+/** The header of a message, or null if its version is another one. */
 export function readHeader(bytes) {
   if (bytes.length < HEADER) return null;
   const view = new DataView(bytes.buffer, bytes.byteOffset, HEADER);
@@ -34,22 +34,23 @@ class Stream {
   constructor(id, channel, about) {
     Object.assign(this, { id, channel, about });
     this.clock = new Clock();
-    this.newest = null; // that has come from there
-    this.told = null; // the server
+    this.newest = null; // header of the last live slice that the worker answered
+    this.told = null; // the header acknowledged last
     this.complained = 0;
   }
 }
 
 export class Slices {
   /**
-   * `on.points(about, header, decoded, clock)` of slices as they come; `on.arrived(channel, header)`
-   * of those of a replay, and `on.pose(header, bytes)` of poses between them; `on.picture(picture)` of what was asked for by show(), and `on.span([from,
-   * to])` of the times that can be; `connection()` gives the one that streams come by.
+   * Calls `on.points(about, header, decoded, clock)` for live slices, `on.arrived(channel, header)` for
+   * slices and poses of a replay, `on.pose(header, bytes)` for its poses, `on.picture(picture)` as the
+   * answer to show(), and `on.span([from, to])` with the times that show() can take; `connection()`
+   * returns the Connection of the streams.
    */
   constructor(on, connection) {
     Object.assign(this, { on, connection });
     this.streams = new Map(); // by channel
-    this.abouts = []; // by the id of the stream, also of those that have ended
+    this.abouts = []; // by the id of the stream, which may have ended
     this.damaged = 0;
   }
 
@@ -62,7 +63,7 @@ export class Slices {
     return stream;
   }
 
-  /** The worker, which is there once it is needed. */
+  /** Returns the worker, and starts it when first called. */
   start() {
     if (this.worker) return this.worker;
     this.worker = new Worker(new URL('./slice_worker.js', import.meta.url), { type: 'module' });
@@ -77,7 +78,7 @@ export class Slices {
     this.worker.postMessage({ close: stream.id });
   }
 
-  /** A message of `channel`; `captured` in nanoseconds. */
+  /** Takes a message of `channel`; `captured` is in nanoseconds. */
   add(channel, bytes, captured) {
     const header = readHeader(bytes);
     if (!header) return;
@@ -96,7 +97,7 @@ export class Slices {
     if (picture) return this.on.picture(picture);
     if (span) this.on.span(span);
     const stream = [...this.streams.values()].find((s) => s.id === id);
-    if (!stream) return; // it has ended
+    if (!stream) return; // the stream has ended
     if (header.replay !== 0) return this.on.arrived(stream.channel, header);
     stream.newest = header;
     if (result.points) return this.on.points(stream.about, header, result, stream.clock);
@@ -107,22 +108,22 @@ export class Slices {
     this.connection().tell('lacksReference', stream.channel);
   }
 
-  /** Asks for the picture at a capture time, of the replay or of what came; null: for no more. */
+  /** Asks for the picture at a capture time [s], of the replay or the live stream; null: stop. */
   show(time, isReplay = false) {
     this.worker?.postMessage({ show: time, isReplay });
   }
 
-  /** Only slices of this replay are kept; 0: of none. */
+  /** Has the worker keep only the slices of this replay; 0: none. */
   replay(number) {
     this.start().postMessage({ replay: number });
   }
 
-  /** What came so far is not to be shown again. */
+  /** Drops the kept slices of live streams. */
   forget() {
     this.worker?.postMessage({ forget: true });
   }
 
-  /** The page has drawn all that has come so far. */
+  /** Acknowledges the newest slice of each stream, which the page has drawn. */
   drawn() {
     for (const stream of this.streams.values()) {
       const { newest } = stream;

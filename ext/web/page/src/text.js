@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the page says, in English and in German. Elements with data-text have the text of that name,
-// with data-title and data-label a tooltip and what a screen reader says.
+// The texts of the page in English and German. An element's data-text names its text, data-title its
+// tooltip, data-label the label for screen readers.
 
 const TEXTS = {
   scene: [
@@ -120,7 +120,7 @@ export const language = asked.startsWith('de') ? 'de' : 'en';
 
 export const t = (name) => TEXTS[name]?.[language === 'de' ? 1 : 0] ?? name;
 
-/** Numbers as the language writes them. */
+/** Formats a number by the language's rules. */
 export const number = (value, digits = 0) =>
   value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits });
 

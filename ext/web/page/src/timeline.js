@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The time that is shown: the newest as it comes, or one before, playing on or held.
+// The time that is shown: live, or in the past, playing or paused.
 import { number, t } from './text.js';
 
-const LEAST_S = 1; // that is worth a slider
-const HOLE_S = 1; // while which nothing came: it is passed over
-const STEP_S = 10; // of the buttons
+const LEAST_S = 1; // a shorter span has no slider
+const HOLE_S = 1; // playback skips a longer gap between slices
+const STEP_S = 10; // of the buttons 'back' and 'forth'
 const KEYS_S = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -60, PageUp: 60 };
 
 /** 7.0 s, 42 s, 3:20 min or 5:03:20 h. */
@@ -19,17 +19,16 @@ export function duration(seconds) {
 
 export class Timeline {
   /**
-   * `on.jump(time)` and then `on.ask(time)` for pictures; `on.past()` and `on.live()` at changes;
-   * `on.reach()` is the time up to which they have come, `on.last()` that behind which there are no
-   * more.
+   * Asks for pictures by `on.jump(time)`, then `on.ask(time)`; calls `on.past()` and `on.live()` at
+   * changes. `on.reach()` is the time up to which slices have come, `on.last()` that of the last one.
    */
   constructor(element, on) {
     Object.assign(this, { element, on });
     this.slider = element.querySelector('input');
     this.output = element.querySelector('output');
     this.words = element.querySelector('#recording');
-    this.at = null; // what is shown [s]; null: the newest
-    this.asked = null; // and not answered
+    this.at = null; // the time that is shown [s]; null: live
+    this.asked = null; // the time [s] of a request without an answer
     this.span = [0, 0];
     this.slider.oninput = () => this.seek(this.span[1] + Number(this.slider.value));
     this.slider.onkeydown = (event) => {
@@ -55,7 +54,7 @@ export class Timeline {
     this.update();
   }
 
-  /** Goes by `seconds`; from the newest on only back. */
+  /** Jumps by `seconds`; from live only back. */
   step(seconds) {
     if (this.isPast || seconds < 0) this.seek((this.at ?? this.span[1]) + seconds);
   }
@@ -67,14 +66,14 @@ export class Timeline {
     this.update();
   }
 
-  /** There is nothing to go back to any more. */
+  /** Goes live, and empties the range. */
   forget() {
     this.live();
     this.span = [0, 0];
     this.update();
   }
 
-  /** What was asked for has come; whether it is still wanted. */
+  /** Takes the answer to a request; returns true if it is still wanted. */
   answered({ time, next }, isHeld) {
     if (time !== this.asked) return false;
     this.asked = null;
@@ -82,7 +81,7 @@ export class Timeline {
     return true;
   }
 
-  /** Time goes on by `seconds`. */
+  /** Advances the shown time by `seconds`. */
   tick(seconds, isHeld) {
     if (!this.isPast || isHeld) return;
     const at = Math.max(this.at + seconds, this.span[0]);
@@ -93,12 +92,12 @@ export class Timeline {
     this.on.ask(this.at);
   }
 
-  /** Words about what can be shown, if any. */
+  /** Shows words about the recording's state. */
   tell(words) {
     if (words !== this.words.textContent) this.words.textContent = words;
   }
 
-  /** Shows where it is. */
+  /** Updates the slider and its text. */
   update() {
     const [from, to] = this.span;
     this.element.hidden = !this.isPast && this.words.textContent === '' && to - from < LEAST_S;

@@ -6,7 +6,7 @@ import { NO_CLIP } from './points.js';
 import { number, t } from './text.js';
 
 const TRAIL_S = 1;
-const SHARE_MS = 400; // until a change is in the address
+const SHARE_MS = 400; // after the last change the address is updated
 const NARROW = '(max-width: 760px)';
 
 const byId = (id) => document.getElementById(id);
@@ -18,7 +18,7 @@ const stored = (key) => {
   }
 };
 
-/** What a fiftieth of the values lies below, and above. */
+/** The 2nd and the 98th percentile of the values. */
 function middle(values) {
   if (values.length === 0) return [0, 1];
   values.sort();
@@ -98,7 +98,7 @@ class Tools {
     context.putImageData(new ImageData(new Uint8ClampedArray(pixels), 256, 1), 0, 0);
   }
 
-  /** Finds scales in what comes, slowly, so that colours keep their meaning. */
+  /** Adapts the scales of colours to the points, slowly, so that colours keep their meaning. */
   learn(points, has) {
     if (has.intensity !== this.known.intensity || has.beam !== this.known.beam) {
       this.known = has;
@@ -119,7 +119,7 @@ class Tools {
       this.scales[mode] = kept.map((v, i) => (first ? found[i] : v + 0.2 * (found[i] - v)));
     }
     this.scales.range[0] = this.scales.intensity[0] = 0;
-    // Beams come in slices whole: the highest number is the last beam.
+    // Each slice has all beams: the largest number is the last beam.
     let beam = this.seen ? this.scales.beam[1] : 1;
     for (let i = 4; i < points.length; i += FLOATS * 7) beam = Math.max(beam, points[i]);
     this.scales.beam[1] = beam;
@@ -131,7 +131,7 @@ class Tools {
 
   // --- time ---
 
-  /** A scan stays until the next has come, a trail longer. */
+  /** Points stay for the time of a scan, or of a trail. */
   setSpan() {
     const trail = byId('trail').getAttribute('aria-pressed') === 'true';
     const span = trail ? TRAIL_S : this.page.spanS * 0.995;
@@ -212,7 +212,7 @@ class Tools {
     this.applyClip();
   }
 
-  /** The ends of the sliders stand for no clip. */
+  /** A slider at its end does not clip. */
   applyClip() {
     const [low, high] = this.clip.map((input) => Number(input.value));
     const isEnd = [low <= Number(this.clip[0].min), high >= Number(this.clip[1].max)];
@@ -242,7 +242,7 @@ class Tools {
 
   // --- the address ---
 
-  /** Puts into the address what another viewer needs to see the same. */
+  /** Puts the settings and the camera into the address, so that a copied link shows the same view. */
   share() {
     clearTimeout(this.sharing);
     this.sharing = setTimeout(() => {
@@ -332,7 +332,7 @@ class Tools {
     try {
       localStorage.setItem('theme', this.theme);
     } catch {
-      // A browser that keeps nothing shows the system's theme the next time.
+      // Without storage, the page shows the system's theme the next time.
     }
     this.applyTheme();
   }
@@ -354,7 +354,7 @@ class Tools {
     this.setMode(this.mode);
   }
 
-  /** Colours of the charts; another object after a change. */
+  /** The colours of the charts: a new object after each change. */
   style() {
     return this.colors;
   }

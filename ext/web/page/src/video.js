@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The camera beside the cloud: frames of foxglove.CompressedVideo, decoded by WebCodecs, and shown
-// when the cloud of their time is, as they come or once more.
+// The camera's picture: decodes frames of foxglove.CompressedVideo by WebCodecs, and shows each with
+// the cloud of its time, live or in the past.
 
 const CODECS = { h264: 'avc1.42E01F', vp8: 'vp8' };
 const MOST_WAITING = 8;
-const MOST_HELD = 4; // pictures: a decoder has few
-const FAR_S = 1; // rather another clock, or a jump
+const MOST_HELD = 4; // pictures: a decoder has few buffers
+const FAR_S = 1; // a larger difference of times is another clock, or a jump
 const MOST_BYTES = 32 << 20; // of coded frames
 
-/** Whether an H.264 access unit (Annex B) begins anew, or a VP8 frame does. */
+/** Returns true for an H.264 access unit (Annex B) with an IDR slice, or a VP8 key frame. */
 export function isKey(format, data) {
   if (format === 'vp8') return (data[0] & 1) === 0;
   for (let i = 0; i + 3 < data.length; ++i)
@@ -24,7 +24,7 @@ export class Video {
     this.clear();
   }
 
-  /** Another robot is to be shown. */
+  /** Drops the frames of the robot shown before. */
   clear() {
     this.kept = []; // coded frames, the oldest first
     this.bytes = 0;
@@ -32,10 +32,10 @@ export class Video {
     this.live();
   }
 
-  /** What comes is shown again. */
+  /** Shows new frames as they come. */
   live() {
     this.next = null; // number of the kept frame to be decoded next
-    this.at = null; // the time that is shown; null: the newest
+    this.at = null; // the time that is shown [s]; null: live
     this.reset();
   }
 
@@ -51,7 +51,7 @@ export class Video {
     this.needsKey = true;
     this.decoder = new VideoDecoder({
       output: (picture) => this.held.push(picture),
-      error: () => (this.format = null), // the next key frame starts anew
+      error: () => (this.format = null), // the next key frame starts a new decoder
     });
     this.decoder.configure({ codec: CODECS[format], optimizeForLatency: true });
   }
@@ -74,7 +74,7 @@ export class Video {
       if (!key) return;
       this.start(format);
     }
-    // A decoder that falls behind goes on with the next key frame.
+    // A decoder that falls behind skips to the next key frame.
     if (this.decoder.decodeQueueSize > MOST_WAITING) this.needsKey = true;
     if (this.needsKey && !key) return;
     this.needsKey = false;
@@ -82,7 +82,7 @@ export class Video {
     this.decoder.decode(new EncodedVideoChunk({ type: key ? 'key' : 'delta', timestamp, data }));
   }
 
-  /** Shows the picture of a time that was, as far as there are frames of it. */
+  /** Shows the kept picture of the past time `time` [s], if there is one. */
   replay(time) {
     const isJump = this.next === null || time < this.at || time > this.at + FAR_S || this.next < this.first;
     this.at = time;
@@ -101,7 +101,7 @@ export class Video {
     this.next = key < 0 ? null : this.first + key;
   }
 
-  /** Shows the newest picture that is no later than the cloud of `time` [s]; any, where there is none. */
+  /** Shows the newest picture not later than `time` [s], that of the cloud; null: the newest. */
   draw(time) {
     const ahead = (picture) => picture.timestamp * 1e-6 - time;
     const isDue = (picture) => time === null || ahead(picture) <= 0 || ahead(picture) > FAR_S;

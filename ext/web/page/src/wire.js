@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads Foxglove's protobuf messages: only the few that the server sends.
+// Reads those of Foxglove's protobuf messages that the server sends.
 
 class Reader {
   constructor(bytes) {
@@ -19,7 +19,7 @@ class Reader {
     }
   }
 
-  /** Calls `visit(field, value)` for each field; values of length are views. */
+  /** Calls `visit(field, value)` for each field; length-delimited values are views. */
   fields(visit) {
     while (this.at < this.bytes.length) {
       const tag = this.varint();
