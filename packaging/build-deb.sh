@@ -53,7 +53,7 @@ trap remove_roots EXIT
 
 say() { echo "== $* ($SECONDS s)"; }
 
-# Fails where lintian has an error or a warning.
+# Fails if lintian reports an error or a warning.
 build_packages() {
   local root=$work/build
   say "a root of $release to build in"
@@ -73,7 +73,7 @@ build_packages() {
   echo "ok lintian: $(grep -cE '^[EW]:' "$output/lintian.log" || true) errors and warnings"
 }
 
-# Each package, its size, and what it takes installed.
+# Prints each package, its size, and its size when installed.
 list_packages() {
   local package
   for package in "$output"/*.deb; do
@@ -81,7 +81,7 @@ list_packages() {
   done
 }
 
-# The network of the host is not theirs while they run: they may have any port.
+# The tests run without the network of the host, so that all ports are free.
 try_packages() {
   local root=$work/try began name
   say "a clean root of $release to install in"

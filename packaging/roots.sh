@@ -2,8 +2,8 @@
 # shellcheck shell=bash disable=SC2154
 # Sourced by the scripts that work in clean roots of Debian's releases, from $mirror and for $architectures.
 
-# make_root DIR RELEASE PACKAGE...: a minimal root of the release with these packages and an empty /src. A
-# mirror that is some weeks behind will do: what it signed is checked, its age is not.
+# make_root DIR RELEASE PACKAGE...: a minimal root of the release with these packages and an empty /src. The
+# mirror may be some weeks old: its signatures are checked, its dates are not.
 make_root() {
   local dir=$1 release=$2
   shift 2
@@ -25,13 +25,13 @@ leave_root() {
   umount "$1/dev/shm" "$1/proc" 2>/dev/null || true
 }
 
-# inside DIR COMMANDS: by a shell of the root, which ends where one fails.
+# inside DIR COMMANDS: runs them by a shell in the root, which ends if one fails.
 inside() {
   chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     DEB_BUILD_OPTIONS="${DEB_BUILD_OPTIONS:-}" sh -euc "$2"
 }
 
-# The same, with a loopback network of its own and nothing else.
+# inside_alone DIR COMMANDS: the same, in a network namespace that has only loopback.
 inside_alone() {
   local dir=$1 commands=$2
   export -f inside

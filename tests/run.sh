@@ -63,8 +63,8 @@ waiting=(--num-processes $((2 * $(nproc))))
 # A time limit is for tests that hang: a busy machine only takes longer.
 patient=(--timeout-multiplier 20)
 
-# ccache takes the headers from the compiler's own list, so a file that it lacks is not preprocessed
-# twice.
+# ccache takes the headers from the compiler's own list, so a file that is not in the cache is not
+# preprocessed twice.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 
 # targets DIR SUITE...: prints the targets that tests of the suites need, as ninja calls them.
@@ -100,7 +100,7 @@ build() {
 # only code that tests run for long has it. The plain build has refused warnings already.
 build_sanitized() {
   local cache
-  cache=$(command -v ccache)  # meson leaves it out where a compiler is named
+  cache=$(command -v ccache)  # meson does not use ccache if a compiler is named
   CC="$cache clang" CXX="$cache clang++" build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=0 \
     -Dbenchmarks=disabled -Dwerror=false
 }
@@ -111,8 +111,8 @@ start_sanitized() {
   sanitized_job=$!
   chrt --idle -p 0 "$sanitized_job"
 }
-# hurry PID: gives a process and its children their share of a busy machine again. If only root may
-# do that, they go on with the time that other processes leave.
+# hurry PID: ends the low priority of a process and its children. If only root may do that, they go
+# on with the time that other processes leave.
 hurry() {
   local child
   chrt --other -p 0 "$1" 2>/dev/null

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs scream-bench and another flow through one lidar-link, over real sockets.
 
-Prints what each got of the link, and its loss. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M, reno_fifo_5ms_20M,
-prague_ramp_20M, prague_step_1ms_20M, cubic_dualpi2_20M, cubic_pi2_20M (a classic one). cubic, reno and prague are greedy flows
+Prints the rate and the loss of both flows. A case is KIND_QUEUE_RATE: cubic_fifo_10ms_20M, reno_fifo_5ms_20M,
+prague_ramp_20M, prague_step_1ms_20M, cubic_dualpi2_20M, cubic_pi2_20M (PI2 without L4S). cubic, reno and prague are greedy flows
 of tcp-flow, udpprague is the L4S team's program (--udp-prague FOLDER, where it was built), gcc a stream of pion's Google
 Congestion Control (Debian: golang-go golang-github-pion-interceptor-dev).
 """
@@ -28,7 +28,7 @@ RTT_MS = 40
 SHORTEST_FIFO = 10 * 1500  # bytes
 PEER_CASES = ["udpprague_ramp_4M", "udpprague_ramp_8M", "udpprague_ramp_20M", "udpprague_step_1ms_20M",
               "udpprague_dualpi2_20M", "gcc_fifo_100ms_8M", "gcc_fifo_100ms_20M", "gcc_dualpi2_20M"]
-START_S = 1.0  # of the other flow, after ours
+START_S = 1.0  # the other flow starts this much later than ours
 SETTLE_S = 10.0
 LINK_PORT, RX_PORT = 45204, 45304
 

@@ -15,7 +15,7 @@ import threading
 import time
 import urllib.request
 
-PORT = 17502  # of the lidar packets; the IMU's is the next
+PORT = 17502  # for LiDAR packets; IMU packets use the next port
 
 
 class Sensor:
@@ -86,7 +86,7 @@ def percentile(values, share):
 
 
 def load(tool, seconds, model, mode, speeds, loss):
-    """Measures each speed. Returns whether exactly the losses were counted."""
+    """Measures each speed. Returns whether the element counted all lost packets, and no other."""
     exact = True
     with tempfile.TemporaryDirectory() as folder:
         pcap, metadata = f"{folder}/drive.pcap", f"{folder}/drive.json"

@@ -23,7 +23,7 @@ import build_tree  # noqa: E402
 
 RAMP = ["--aqm", "ramp"]
 STEPS = ["--steps", "12,4,8,3,15,6,10", "--step-time", "8", "--once", "--rtt", "40"] + RAMP
-# name: (description, link options, ECN, frames/s, seconds, settle)
+# name: (description, link options, ECN, frames/s, seconds)
 SCENARIOS = {
     "frames_20M_rtt25": ("20 Mbit/s, RTT 25, ramp 2-10 ms", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
     "frames_8M_rtt40": ("8 Mbit/s, RTT 40, ramp", ["--rate", "8", "--rtt", "40"] + RAMP, "ect1", 50, 40),

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """CPU time and bytes that SRTP costs each end, for a stream of 55 Mbit/s over loopback.
 
-usage: srtp_overhead.py [BUILD_DIR] [SECONDS]; the least of ROUNDS pairs of gst-launch-1.0 processes
+usage: srtp_overhead.py [BUILD_DIR] [SECONDS]; prints the least of ROUNDS runs
 """
 import os
 import pathlib

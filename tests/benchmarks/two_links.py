@@ -3,8 +3,8 @@
 """Streams a recorded drive over two links and over each alone, over sockets, and compares it with what a sender that
 knew them could deliver.
 
-Without --trace the links are two drives that lidar-trace makes. A trace may begin at one of
-its seconds: --trace A --trace B@37. A scan is in time if all its slices are decoded within 0.2 s of
+Without --trace the links are two drives that lidar-trace makes. A trace may be played from a later
+second on: --trace A --trace B@37. A scan is in time if all its slices are decoded within 0.2 s of
 their capture. Run it with real-time priority (chrt -r 10) on a machine that does nothing else.
 """
 import argparse
@@ -61,7 +61,7 @@ def traces(args, folder):
 
 
 def rotated(trace, start, path):
-    """Writes the trace from `start` on, as lidar-link begins with a file's first line."""
+    """Writes the trace turned to begin at `start` [s]: lidar-link begins with the first line."""
     steps = [tuple(map(float, line.split())) for line in trace.read_text().splitlines() if line.strip() and line[0] != "#"]
     end = steps[-1][0] + (steps[-1][0] - steps[-2][0])
     turned = sorted(((t - start) % end, rate) for t, rate in steps)

@@ -138,8 +138,8 @@ def way(folder):
 
 
 def ages(events, end):
-    """Returns, for many times, the birth of the newest event that has arrived; `events` are pairs of arrival and
-    birth."""
+    """Returns pairs of a time and the birth of the newest event that has arrived by then; `events` are pairs of arrival
+    and birth."""
     events.sort()
     newest, i, found, t = None, 0, [], events[0][0] + WARM_UP_S
     while t < end:

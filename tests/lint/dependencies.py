@@ -174,7 +174,7 @@ def check(root):
     for folder, (uses, _) in rows.items():
         if "*" not in folder and not (root / folder).is_dir():
             problems.append(f"docs/architecture.md: there is no folder {folder}")
-        for use in uses:  # a permission that is not used is a mistake that goes unseen
+        for use in uses:  # an unused permission would let a later violation pass
             target = use if "/" in use else "src/" + use
             if use in GROUPS or "*" in folder:
                 continue

@@ -31,7 +31,7 @@ def tree(root):
 
 
 def programs(root, files):
-    """Returns patterns of the names of programs that meson builds; what a loop fills in is open."""
+    """Returns patterns of the names of programs that meson builds; a part that a loop fills in matches anything."""
     found = []
     for file in files:
         if file.endswith("meson.build"):

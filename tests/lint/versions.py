@@ -59,7 +59,7 @@ class Guards:
     """Follows the conditions around a line: each says (library, version, whether it has that version)."""
 
     def __init__(self):
-        self.stack = []  # a level: what follows from its former branches, and what the present one says
+        self.stack = []  # per #if: facts from branches that do not hold, and from the present branch
 
     def see(self, line):
         match = CONDITION.match(line)

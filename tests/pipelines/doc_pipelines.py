@@ -7,7 +7,7 @@ not print when it plays: then it passes if it runs for some seconds without an e
 and writes a file may take longer, because the next ones may read it.
 Windows become fakesinks, and each page has ports and a folder of its own: several pages run at a time, with low
 priority.
-The examples bring elements of their own, and have a test of their own.
+docs/examples are left out: they have their own elements and test.
 Commands that name a sensor by `hostname=` are left out, and reported.
 """
 import concurrent.futures
@@ -25,7 +25,7 @@ PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except w
 QUIET_SECONDS, PLAY_SECONDS, WRITE_SECONDS = 4, 1.5, 30
 PATIENCE = 180  # seconds, on a busy machine
 AT_A_TIME = 4
-FIRST_PORT, PORTS = 21000, 100  # of the first page, and from one page to the next
+FIRST_PORT, PORTS = 21000, 100  # first port of the first page; ports of each page
 
 
 def commands(page):

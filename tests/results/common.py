@@ -68,7 +68,7 @@ def lidar_eval(*arguments):
 
 
 def rate_distortion(source, *arguments):
-    """Returns rows of `lidar-eval rd` for one source: coding, error bound's step, errors, bits, bitrate."""
+    """Returns the rows of `lidar-eval rd` for one source, by column."""
     with tempfile.NamedTemporaryFile(suffix=".csv") as file:
         lidar_eval("rd", source, *arguments, "--csv", file.name)
         with open(file.name) as table:

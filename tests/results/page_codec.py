@@ -127,7 +127,7 @@ DRIVERS = {
 
 
 def fields():
-    """Bits a point of fields and order, and of the points, at effort 1 within 2 cm."""
+    """Bits a point of the points alone, and what fields and order add, at effort 1 within 2 cm."""
 
     def bits(source, options):
         coder = f"lidarenc effort=1 max-error=0.02 intensity-bits=0 stats-interval=1 {options}"

@@ -119,7 +119,7 @@ def intensity():
 
 
 def loop():
-    """Rate controller and SCReAM in simulated time: what oscillates over a constant link."""
+    """How much rate controller and SCReAM oscillate over a constant link, in simulated time."""
     body = []
     for parameter, slices in enumerate(("whole scans", "8 slices")):
         text = common.run(

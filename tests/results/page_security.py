@@ -44,7 +44,7 @@ def script(name, *arguments):
 
 
 def growth():
-    """Costs of many connections, topics, robots, sensors and formats, and of a recording of bombs."""
+    """Costs of many connections, topics, robots, sensors and formats, and of a recording with compression bombs."""
     body = []
     for kind, runs in itertools.groupby(script("growth.py"), key=lambda run: run["kind"]):
         runs = list(runs)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""lidar-eval to-pcap: clouds of another sensor come out of the capture where they went in.
+"""lidar-eval to-pcap: clouds of another sensor, put into a capture, are read back at the same places.
 
 The packets are read here by hand, by Ouster's description of them, not by our parser.
 """

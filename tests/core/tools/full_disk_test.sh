@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Programs on a full disk: they say so, fail, and leave no empty file and no half one behind. A limit of the size of
-# files stands for the disk.
+# Programs on a full disk report it, fail, and leave neither an empty nor a truncated file. A limit of the size of
+# files simulates the full disk.
 # usage: full_disk_test.sh PROGRAM ...   (lidar-link, ouster-replay, then lidar-eval)
 set -uo pipefail
 folder=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""lidar-eval to-kitti and slam kitti:FOLDER: scans come back as they went out, and KITTI's own layout is read.
+"""lidar-eval to-kitti and slam kitti:FOLDER: scans that are written are read back, and KITTI's own layout is read.
 
     kitti_sequence_test.py LIDAR_EVAL
 """
@@ -43,7 +43,7 @@ def scans_come_back_with_their_beams_and_times(folder):
 def poses_of_a_camera_become_those_of_the_sensor(folder):
     """KITTI's cameras look along z, with x to the right: the trajectory must not turn."""
     before = slam(f"kitti:{folder}")["error"]
-    camera = [[0, -1, 0, 0.1], [0, 0, -1, -0.2], [1, 0, 0, -0.3]]  # the sensor in its frame
+    camera = [[0, -1, 0, 0.1], [0, 0, -1, -0.2], [1, 0, 0, -0.3]]  # the sensor's pose in the camera's frame
 
     def product(a, b):
         a4, b4 = a + [[0, 0, 0, 1]], b + [[0, 0, 0, 1]]
@@ -70,7 +70,7 @@ def poses_of_a_camera_become_those_of_the_sensor(folder):
 
 
 def straight_scans_of_listed_beams_are_read(folder):
-    """Scans as KITTI has them: without phases, beam by beam, each from straight ahead once around."""
+    """Scans as KITTI has them: without phases, beam by beam; each beam turns once, from straight ahead."""
     (folder / "velodyne").mkdir(parents=True)
     for scan in range(4):
         data = b""

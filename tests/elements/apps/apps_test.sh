@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The programs of docs/using-in-your-code.md build with what is installed, and both see the same.
+# The programs of docs/using-in-your-code.md build with what is installed, and print the same points.
 # Usage: apps_test.sh SOURCE_ROOT BUILD_ROOT
 set -euo pipefail
 source=$1

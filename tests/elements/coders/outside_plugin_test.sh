@@ -57,7 +57,7 @@ start() {
   until eval "$1"; do kill -0 $! || { cat output >&2; exit 1; }; sleep 0.05; done
 }
 
-# A source that is not live waits in the sender's queue, and no slice is left out.
+# A source that is not live waits for room in the sender's queue, so that no slice is skipped.
 send="rtplidarpay ! screamsink host=127.0.0.1 port=${ports[0]} start-bitrate=20000000"
 bound() { grep -qs "$(printf ':%04X ' "${ports[0]}")" /proc/net/udp /proc/net/udp6; }
 # shellcheck disable=SC2086

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Makes FOLDER/operator.conf of a nats-server that wants credentials, and two files of credentials:
-FOLDER/good.creds of a user of its account, and FOLDER/bad.creds of an account that it does not know.
+FOLDER/good.creds of a user of its account, and FOLDER/bad.creds of an account that the server does not know.
 Keys are made by openssl; JWTs are as nsc writes them."""
 import base64
 import hashlib

@@ -8,7 +8,7 @@ import ends
 
 MOST_BITRATE = 20_000_000  # of a sender [bit/s]
 MOST_PATIENCE = 180  # seconds, on a busy machine
-MOST_GROWTH_KB = 96 * 1024  # what the queues of docs/security.md hold together
+MOST_GROWTH_KB = 96 * 1024  # the sum of the queues of docs/security.md
 
 
 class Bench:
@@ -36,12 +36,12 @@ class Bench:
             time.sleep(0.02)
 
     def await_more_slices(self, more=3):
-        """Waits until so many more true slices were shown."""
+        """Waits until `more` slices of the sender were shown."""
         count = self.count_true() + more
         self.await_report(lambda _: self.count_true() >= count, f"fewer than {count} slices were shown")
 
     def await_packets(self, count):
-        """Waits until so many packets came in: the kernel keeps only a few hundred for a busy receiver."""
+        """Waits until `count` packets arrived: the kernel keeps only a few hundred for a busy receiver."""
         self.await_report(
             lambda report: report["net"]["packets-received"] >= count, f"fewer than {count} packets arrived"
         )
@@ -51,7 +51,7 @@ class Bench:
         return sum(c in self.true_crcs for c in self.receiver.shown)
 
     def expect_flow(self, seconds=0.6, part=0.7):
-        """Expects that the receiver shows what is sent now. A busy machine has several tries."""
+        """Expects that the receiver shows new slices. Tries several times, because the machine may be busy."""
         for tries in range(8):
             sent, shown = self.sender.sent, self.count_true()
             time.sleep(seconds)

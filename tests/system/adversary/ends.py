@@ -274,7 +274,7 @@ class Relay(threading.Thread):
         self.port = self.inside.getsockname()[1]
         self.to = (LOOPBACK, to_port)
         self.media = []
-        self.on_media = None  # called with each packet; returns those to send
+        self.on_media = None  # called with each packet; returns the packets to forward
         self.running = True
         self.start()
 

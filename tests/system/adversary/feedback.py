@@ -130,7 +130,7 @@ def hostile_twcc(context):
     while time.monotonic() < until:
         now, last = time.time(), receiver.newest
         ticks = int(now / wire.TWCC_TICK) // 256
-        received, lost = 0x2000, 0x0000  # runs of small deltas, and of nothing
+        received, lost = 0x2000, 0x0000  # chunks: runs of small deltas, and of lost packets
         hostile = [
             mutate(rng, receiver.report(now)),
             wire.twcc_packet(last, 9, ticks, sent, [], rng.randbytes(rng.randrange(99))),
@@ -145,7 +145,7 @@ def hostile_twcc(context):
             wire.twcc_packet(last - 9, 10, ticks, sent, [lost | 0] * 300 + [received | 10], bytes(10)),
             wire.twcc_packet(last - 9, 10, ticks, sent, [received | 10], bytes(10), media_ssrc=sent),
         ]
-        if rng.random() < 0.02:  # takes the session 30 ms
+        if rng.random() < 0.02:  # the session needs 30 ms for it
             hostile.append(wire.twcc_packet(0, 0xFFFF, ticks, sent, [lost | 0x1FFF] * 8, b""))
         for report in hostile:
             bench.stranger.sendto(report, receiver.rtcp_to)

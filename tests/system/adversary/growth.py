@@ -98,7 +98,7 @@ def mcap_text(text):
 
 
 def topics(args, count, folder):
-    """Topics of a recording, with a message in each."""
+    """A recording of topics with a message each."""
     path = folder / "topics.mcap"
     with path.open("wb") as file:
         file.write(b"\x89MCAP0\r\n" + mcap_record(1, mcap_text("") * 2))
@@ -187,7 +187,7 @@ def robots(args, count, folder):
 
 
 def formats(args, count, folder):
-    """Formats of a stream over NATS, and a damaged one."""
+    """Announces formats of a stream over NATS, then a damaged one until natssrc has counted it."""
     with server(folder) as client:
         receiver = ends.Victim(f"natssrc name=src url={client.url} subject={SUBJECT} ! fakesink name=out")
         client.flush()

@@ -14,7 +14,7 @@ from bench import Bench, mutate
 
 
 def another_writer(context):
-    """Units of every shape, written from the document, are all shown."""
+    """Units of every shape, written from docs/wire-format.md alone, are all shown."""
     bench = Bench(context, start=False)
     sender = bench.sender
     sent = 0
@@ -98,7 +98,7 @@ def repaired_slices(context):
 
 
 def hostile_configs(context):
-    """Configs that no decoder can take are refused where they arrive."""
+    """Configs that no decoder can take are refused by the depayloader."""
     bench = Bench(context)
     bench.settle()
     model = wire.sensor_model(32, 512)

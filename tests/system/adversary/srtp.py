@@ -8,7 +8,7 @@ from bench import MOST_PATIENCE, Bench, mutate
 
 
 def path_with_key(context):
-    """Between two ends with SRTP: reads, changes and repeats packets, and sends a recording later."""
+    """A relay between two ends with SRTP reads, changes and repeats packets, and later sends a recording."""
     key = "srtp-key=" + "5a" * 30
     bench = Bench(context, key, start=False)
     relay = ends.Relay(bench.port)

@@ -128,7 +128,7 @@ class Reader:
     def __init__(self):
         self.configs = {}  # id: bytes
         self.slices = []
-        self.partial = None  # the slice, its CRC and length, as a first fragment gave them
+        self.partial = None  # of a slice in fragments: the slice, its CRC and length, from the first one
         self.config_parts = None
         self.expected = None
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machines that give too little: processor time, buffers, files, disk; and applications that fork, stop or
-change what they stream. Streams survive, and what cannot work says so."""
+change what they stream. Streams survive, or report why they cannot."""
 import argparse
 import concurrent.futures
 import os

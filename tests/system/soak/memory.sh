@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs the demo and looks each second at how much memory its processes have of their own; fails if
-# an end or the link has grown since the first minute. Usage: memory.sh [MINUTES [OPTIONS OF THE
+# Runs the demo and reads the private memory of its processes each second; fails if an end or the
+# link has grown since the first minute. Usage: memory.sh [MINUTES [OPTIONS OF THE
 # DEMO]]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)

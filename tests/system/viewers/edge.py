@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A robot, and the edge that its viewers look at, each a process.
 
-As a program it is the edge: it runs the pipeline of its arguments, and for each line of its input prints how
-old [ms] slices were behind foxglovesink, p95 since the line before.
+As a program it is the edge: it runs the pipeline of its arguments, and for each line of its input prints the p95 of
+the slices' ages [ms] after foxglovesink since the line before.
 """
 import os
 import pathlib
@@ -22,7 +22,7 @@ class Edge:
     def __init__(self, model="os1-64", coder="", mbit=2, sink=""):
         self.port, media = free_port("tcp"), free_port("udp")
         # A tee serves its branches in turn: a slice that foxglovesink holds up comes late to the
-        # second.
+        # second branch.
         pipeline = (
             f"screamsrc port={media} ! rtplidardepay ! tee name=t t. ! identity ! foxglovesink port={self.port} {sink} "
             "t. ! fakesink name=behind sync=false async=false signal-handoffs=true"

@@ -3,7 +3,7 @@
 """Robots of a fleet behind one foxglovesink: lidar-edge, NATS, natssrc, and a viewer for each token.
 
 A token opens its own robot; a token that is changed, expired or of another robot opens nothing. A robot that sends
-garbage disturbs no viewer. Viewers go back into what JetStream keeps.
+garbage disturbs no viewer. Viewers replay what JetStream keeps.
 """
 import base64
 import hashlib
@@ -90,7 +90,7 @@ class Fleet:
             process.wait()
 
     def viewer(self, robot, topics):
-        """A viewer of the robot that has got slices."""
+        """Returns a viewer of the robot, once slices have come."""
         viewer = Viewer(self.port, topic=f"/{robot}/points/slices", path=f"/?token={token(topics)}")
         viewer.until(f"slices of {robot}", lambda: viewer.slices)
         return viewer
@@ -123,7 +123,7 @@ def main():
         own.run(0.2)
         assert all(topic.startswith("/r7/") for topic in own.channels), own.channels.keys()
         go_back(own)
-        # The number of another channel is easily guessed.
+        # A viewer subscribes to a channel of another robot, by its number.
         other = both.channels["/r8/points/slices"]["id"]
         own.forget()
         own.socket.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 8, "channelId": other}]}))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A viewer of foxglovesink's slices, and a slow way to it. Only the standard library is needed."""
+"""A viewer of foxglovesink's slices, and a slow link to it. Only the standard library is needed."""
 import base64
 import json
 import os
@@ -17,7 +17,7 @@ FRAME_SECONDS = 1 / 60
 
 
 class Socket:
-    """A WebSocket of a client (RFC 6455): texts go out, frames come in."""
+    """The WebSocket of a client (RFC 6455): sends texts, reads frames."""
 
     def __init__(self, port, path="/", host="127.0.0.1", tls=False):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=10)
@@ -48,7 +48,7 @@ class Socket:
         self.socket.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)  # a mask of zeros
 
     def frame(self):
-        """A frame that is there: its opcode and payload; None if more bytes are needed."""
+        """Returns opcode and payload of the next frame, or None if it has not come completely."""
         b = self.bytes
         if len(b) < 2:
             return None
@@ -85,7 +85,7 @@ class Socket:
 class Viewer:
     """Acknowledges the newest slice each FRAME_SECONDS, as the page does, and notes the age of all."""
 
-    SUBSCRIPTION, FRAME = 9, 4  # bytes of a frame's head
+    SUBSCRIPTION, FRAME = 9, 4  # id of the subscription; bytes of a frame's head
 
     def __init__(self, port, topic="/points/slices", **kwargs):
         self.socket = Socket(port, **kwargs)
