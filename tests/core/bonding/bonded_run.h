@@ -41,9 +41,9 @@ struct RunResult {
   std::uint64_t in_time = 0;        // scans of which each slice is whole 0.2 s after its capture
   std::vector<double> latency_ms;   // of slices that arrive whole, sorted
   std::vector<double> scan_age_ms;  // age of each scan when its last slice is whole; 1e9: never
-  std::int64_t media_bytes = 0;     // that the encoder put out, headers included
-  std::vector<std::int64_t> link_bytes;  // that left by each link
-  std::int64_t other_bytes = 0;          // of competing flows, that arrived
+  std::int64_t media_bytes = 0;     // output of the encoder, headers included
+  std::vector<std::int64_t> link_bytes;  // sent on each link
+  std::int64_t other_bytes = 0;          // received of competing flows
   struct Target {
     Duration time;
     DataRate rate;

@@ -48,7 +48,7 @@ inline void ExpectRoundTrip(const codec::RangeImage& image, const codec::RangeSe
   }
 }
 
-/// Blocks of a room, of all widths.
+/// Expects that blocks of a room, of several widths, keep their bins.
 inline void ExpectBinsOfRooms(const CodingCase& c, const codec::IntegerCoder* integers) {
   const SensorModel model = RoomSensor();
   const codec::RangeSettings settings{
@@ -62,7 +62,7 @@ inline void ExpectBinsOfRooms(const CodingCase& c, const codec::IntegerCoder* in
   ExpectRoundTrip(RoomScan(model, 500, 37), settings, &codec);
 }
 
-/// Blocks of noise, which no predictor helps with.
+/// Expects that blocks of noise, which no predictor helps with, keep their bins.
 inline void ExpectBinsOfNoise(const CodingCase& c, const codec::IntegerCoder* integers) {
   const SensorModel model = RoomSensor();
   std::mt19937 random(5);

@@ -95,12 +95,12 @@ scream::test::SimulationConfig Path(link::Capacity capacity, std::uint32_t slice
   return config;
 }
 
-/// How a rate moves about its mean.
+/// The variation of a rate about its mean.
 struct Swing {
   double mean_mbps = 0;
-  double deviation = 0;     // standard, of the mean
-  double peak_to_peak = 0;  // of the mean; the largest of windows of 10 s or less
-  double tone = 0;          // amplitude of the strongest sine between 0.1 and 2 Hz, of the mean
+  double deviation = 0;     // standard deviation, as a part of the mean
+  double peak_to_peak = 0;  // as a part of the mean; the largest in windows of up to 10 s
+  double tone = 0;          // amplitude of the strongest sine of 0.1 to 2 Hz, as a part of the mean
 };
 
 /// `rates` were sampled every 100 ms.

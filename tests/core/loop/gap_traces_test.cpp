@@ -110,7 +110,7 @@ TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
 }
 
 /// A fixed step has less data on its way when a gap begins, so that scans after the gap come
-/// sooner. Its lead in complete scans and in scans in time may be this large and no larger.
+/// sooner. This test bounds its lead, in complete scans and in scans in time.
 TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   constexpr int kStarts = 24;
   for (const char* trace : {"gap_1s_every_10s", "drive_1", "drive_2", "drive_3"}) {

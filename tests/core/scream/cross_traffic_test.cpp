@@ -10,7 +10,7 @@
 namespace lidar::scream::test {
 namespace {
 
-/// Frames of ten packets every 20 ms, about 1 ms apart, and a pause: arrivals in ticks of a report.
+/// Every 20 ms comes a frame of ten packets, about 1 ms apart. Arrivals are in ticks of reports.
 class CrossTrafficTest : public ::testing::Test {
  protected:
   /// Sends packets that take `own` ms each on the link. Packets that others sent since our last one

@@ -257,7 +257,7 @@ TEST_F(LossContextTest, KnowsRandomLossFromIt) {
   }
 }
 
-/// The longer of two delays that scatter is above most single ones.
+/// If delays scatter, the longer of two is above most others.
 TEST_F(LossContextTest, KnowsRandomLossWhereDelaysScatter) {
   link::Random random(1);
   for (int i = 0; i < 5000; ++i, now_ += 1ms) {

@@ -129,7 +129,7 @@ TEST(BesideOthers, TheStatisticsTellTheirShare) {
   EXPECT_EQ(cross_traffic("frames_20M_rtt25"), 0);
 }
 
-/// An idle link delivers packets as far apart as they leave, which is what they do beside others.
+/// An idle link delivers packets as far apart as they leave, as does a link with other flows.
 TEST(BesideOthers, NobodyIsFoundOnAnIdleLinkThatJitters) {
   Scenario s = *FindScenario("frames_20M_jitter4", Parameters());
   s.config.forward.path.jitter = 8ms;
@@ -175,8 +175,8 @@ TEST(BesidePrague, OneThatJoinsThreeOrFourIsNotLeftBehind) {
   }
 }
 
-/// Packets are few and far apart on a slow link. With frames the index is 0.64 and 0.88 if every
-/// measurement of the flow's own rate counts as a drop of the capacity.
+/// Packets are few and far apart on a slow link. Jain's index of frames falls to 0.64 and 0.88 if
+/// every measurement of the flow's own rate counts as a drop of the capacity.
 TEST(BesidePrague, AtFewMegabitsItGetsItsShareAsWell) {
   const std::pair<const char*, double> even[] = {{"prague_ramp_4M", 0.95},
                                                  {"prague_ramp_8M", 0.97}};
@@ -228,8 +228,8 @@ TEST(TwoFlows, ShareASlowLinkEvenlyAtAnyPhase) {
   EXPECT_GE(sum / static_cast<double>(phases.size()), 0.99);
 }
 
-/// The frames of one flow always meet the other's queue at other phases, and get more marks:
-/// the draft alone reaches an index of 0.87.
+/// The frames of the two flows never coincide, and those of one flow get more marks: with the draft
+/// alone, Jain's index is 0.87.
 TEST(TwoFlows, WhoseFramesNeverMeetKeepTheirBalanceAndTheQueue) {
   for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
     for (const Duration phase : {4ms, 10ms}) {

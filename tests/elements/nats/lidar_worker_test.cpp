@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-worker: robots that change hands.
+// lidar-worker: robots pass from worker to worker.
 #include <gst/base/gstbasetransform.h>
 
 #include <cmath>

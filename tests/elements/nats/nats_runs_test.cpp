@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What both ends count and tell: exactly, once until it is over, and in each run alike.
+// Counts and warnings of natssink and natssrc: counts are exact, a warning comes once for each
+// fault, and each run begins anew.
 #include <gst/check/gstharness.h>
 
 #include <set>

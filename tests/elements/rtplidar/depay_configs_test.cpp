@@ -280,7 +280,7 @@ TEST(RtpLidarDepay, SaysOnceThatNothingCanBeRead) {
   const Harness h = Depay();
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(h->element, bus);
-  for (std::uint16_t i = 0; i < 60; ++i) {  // as good as random
+  for (std::uint16_t i = 0; i < 60; ++i) {  // packets of pseudo-random bytes
     std::vector<std::uint8_t> bytes(200);
     for (std::size_t k = 0; k < bytes.size(); ++k)
       bytes[k] = static_cast<std::uint8_t>((i * 7'919U + k * 104'729U) >> 3);

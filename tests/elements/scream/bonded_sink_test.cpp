@@ -95,7 +95,7 @@ class BondedSink : public ::testing::Test {
       if (packets_[i] > before[i]) links.insert(i);
     return links;
   }
-  /// What the bond gave the link has left, as time goes on.
+  /// Advances time. Returns true once all packets given to the link have left.
   bool HasLeft(std::size_t link) {
     return Eventually([&] {
       Advance(GST_MSECOND);
@@ -123,7 +123,7 @@ class BondedSink : public ::testing::Test {
   std::atomic<GstClockTime> ended_at_{0};      // when the bond passed EOS on
 
  private:
-  /// The sources of the links wait for their sockets meanwhile.
+  /// Opens the segments of the feedback, because the links' own sources wait for their sockets.
   void Open() {
     GstSegment segment;
     gst_segment_init(&segment, GST_FORMAT_TIME);
@@ -313,7 +313,7 @@ TEST_F(BondedSink, TellsOnceOfSwappedFeedbackAndInTheNextRunAgain) {
   guint16 seq = 1;
   for (int run = 0; run < 2; ++run) {
     for (const std::size_t link : Send(seq++)) ASSERT_TRUE(HasLeft(link));
-    Advance(2 * GST_SECOND);  // both links are tried no more
+    Advance(2 * GST_SECOND);  // the copies that prove a link have ended
     for (int swapped = 0; swapped < 4; ++seq) {
       const auto links = Send(seq);
       if (links.size() != 1) continue;
@@ -323,7 +323,8 @@ TEST_F(BondedSink, TellsOnceOfSwappedFeedbackAndInTheNextRunAgain) {
       ASSERT_TRUE(HasLeft(own));
       Advance(20 * GST_MSECOND);
       Report(other, seq);
-      if (OfLink("feedback-ignored", other) == ignored) continue;  // it has a copy by now
+      if (OfLink("feedback-ignored", other) == ignored)
+        continue;  // the other link has a copy by now
       ++swapped;
       EXPECT_EQ(OfLink("feedback-ignored", other), ignored + 1);
       ASSERT_TRUE(Eventually([&] { return OfLink("feedback-accepted", own) == accepted + 1; }))

@@ -9,7 +9,7 @@
 namespace lidar::test {
 
 inline std::atomic<gint64> frozen_at{0};  // [us]; 0: the clock runs
-inline std::atomic<unsigned> looks{0};    // of all threads at the clock
+inline std::atomic<unsigned> looks{0};    // number of reads of the clock, by all threads
 inline thread_local std::function<void()> on_look;
 
 }  // namespace lidar::test

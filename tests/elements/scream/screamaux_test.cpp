@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamaux before a session that is only a few events, and before stock rtpbin.
+// screamaux before a session whose events the test sends, and before stock rtpbin.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -54,7 +54,7 @@ class ScreamAux : public ::testing::Test {
   guint8 extension = kExtension;  // of packets that Push() numbers
 
   void SetUp() override {
-    // The type of the list has a name once it was used.
+    // GObject registers GValueArray, the type of the list, at its first use.
     g_type_class_ref(G_TYPE_OBJECT);
     ASSERT_NE(g_type_from_name("GValueArray"), G_TYPE_INVALID);
     gst_harness_set_src_caps_str(

@@ -259,7 +259,7 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
       ASSERT_EQ(Push(r), GST_FLOW_OK);
     }
     ++r.seq;
-    r.payload = WholeSlice();  // without a time: as the one before
+    r.payload = WholeSlice();  // without a time, it is as old as the one before
     ASSERT_EQ(Push(r), GST_FLOW_OK);
     EXPECT_EQ(Passed(), asked ? 2U : 5U);
     EXPECT_EQ(Stats(element)["packets-old"], asked ? 3U : 0U);
@@ -304,7 +304,7 @@ TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
   Rtp recorded = r;
   recorded.payload = WholeSlice(lidar::rtp::ToNtp(now - 3600 * GST_SECOND));
   ASSERT_EQ(Push(recorded, GST_LIDAR_ECN_ECT1, "10.0.0.9"), GST_FLOW_OK);
-  r.payload = WholeSlice();  // without a time: as the one before
+  r.payload = WholeSlice();  // without a time, it is as old as the one before
   ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   EXPECT_EQ(Passed(), 2U);
   EXPECT_EQ(Stats(element)["packets-old"], 1U);

@@ -15,8 +15,8 @@ inline gst::CapsPtr CapsOf(GstHarness* harness) {
   return gst::CapsPtr(gst_pad_get_current_caps(harness->sinkpad));
 }
 
-/// A sensor that stands still, and a coder whose slices are all acknowledged: it refers to them,
-/// however slow the machine is.
+/// A sensor that stands still, and a coder whose slices are all acknowledged, so that it refers to
+/// them however slow the machine is.
 class Robot {
  public:
   explicit Robot(const std::string& options = "effort=2", unsigned slices = 400) {

@@ -25,7 +25,7 @@ class Tls : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  /// Makes a certificate of that name, in place of the last one.
+  /// Makes a certificate for `name`, which replaces the one before.
   bool Make(const std::string& name, const char* days = "2") {
     const std::string make =
         "cd " + folder_.string() +

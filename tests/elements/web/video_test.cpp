@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The camera next to the cloud: whole from a key frame on, with the time of its capture.
+// Video of a camera: frames go out from a key frame on, with the times of their capture.
 #include <gtest/gtest.h>
 
 #include "tests/elements/web/web_peer.h"

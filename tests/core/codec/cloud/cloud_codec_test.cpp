@@ -141,7 +141,7 @@ struct UnevenSensor {
   double rounding_deg = 0;  // of azimuths
   double jitter_deg = 0;    // of all beams of a firing
   double swing_deg = 0;     // of every fourth beam in every third firing
-  int ahead = 0;            // firings that beams are ahead, times 0, 1 and 2 in turn
+  int ahead = 0;            // beams are 0, 1 or 2 times as many firings ahead, in turn
 };
 std::ostream& operator<<(std::ostream& out, const UnevenSensor& s) { return out << s.name; }
 

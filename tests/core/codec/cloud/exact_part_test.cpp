@@ -369,8 +369,8 @@ TEST(ExactPart, ReadsNoMoreNumbersThanItMay) {
   EXPECT_TRUE(Decodes(section, order.size(), 1U << 20));
   EXPECT_FALSE(Decodes(section, order.size(), order.size()));
   EXPECT_FALSE(Decodes(section, 1U << 20, 1U << 20));
-  EXPECT_FALSE(Decodes({0, 33}, 1, 1U << 20));  // fields
-  EXPECT_FALSE(Decodes({0, 0}, 1, 1U << 20));   // nothing
+  EXPECT_FALSE(Decodes({0, 33}, 1, 1U << 20));  // more than 32 fields
+  EXPECT_FALSE(Decodes({0, 0}, 1, 1U << 20));   // neither fields nor an order
 }
 
 // Each step leads to a long run of taken places. A search from place to place would take minutes.

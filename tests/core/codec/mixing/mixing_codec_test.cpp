@@ -117,7 +117,7 @@ TEST(MixingCodecOf, RefinedModelsAreAnotherVersion) {
     EXPECT_TRUE(encoder.Encode(image, settings, &payload));
     return payload;
   };
-  EXPECT_EQ(payload_of(1)[0] >> 4, mixing::kTableVersion);  // effort 1 has none
+  EXPECT_EQ(payload_of(1)[0] >> 4, mixing::kTableVersion);  // effort 1 has no refined models
   auto payload = payload_of(2);
   EXPECT_EQ(payload[0] >> 4, mixing::kRefinedVersion);
   // A decoder refuses refined models at effort 1, and with a memory.
