@@ -72,9 +72,9 @@ LiveSession::LiveSession(GstBaseSrc* element, const OusterSettings& settings)
 LiveSession::~LiveSession() { link_.reset(); }
 
 bool LiveSession::Open() {
-  constexpr std::size_t kFilesOfLink = 6;    // sockets of HTTP and of the resolver
-  constexpr std::size_t kFilesOfFeed = 5;    // two sockets, and what wakes a wait for them
-  constexpr std::size_t kFilesOfOthers = 4;  // of the application's main loop
+  constexpr std::size_t kFilesOfLink = 6;  // sockets of HTTP and of the resolver
+  constexpr std::size_t kFilesOfFeed = 5;  // two sockets, and the descriptors that wake their wait
+  constexpr std::size_t kFilesOfOthers = 4;  // for the application's main loop
   const std::size_t wanted =
       kFilesOfFeed + kFilesOfOthers + (settings().hostname.empty() ? 0 : kFilesOfLink);
   if (!CanOpenFiles(wanted)) {

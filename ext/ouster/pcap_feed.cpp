@@ -49,7 +49,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
 }
 
 bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
-  // The reader is rewound for any place, because after an error it reads no more.
+  // Every jump rewinds the reader first, because it reads no more after an error.
   if (!reader_->Rewind() || (offset && !reader_->GoTo(*offset))) return false;
   first_ = last_ = first;
   error_.clear();

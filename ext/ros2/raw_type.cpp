@@ -29,7 +29,7 @@ struct RawData : ddsi_serdata {
 
 const RawData& Raw(const ddsi_serdata* data) { return *static_cast<const RawData*>(data); }
 
-/// Null if there is no memory for it.
+/// Returns null if memory is short.
 RawData* NewRaw(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) {
   std::unique_ptr<RawData> data(new (std::nothrow) RawData);
   if (!data) return nullptr;

@@ -32,7 +32,7 @@ constexpr const char* kPoses = "/pose";
 constexpr const char* kCamera = "/camera";
 /// Frames that may wait: a quarter of a second of most cameras.
 constexpr std::size_t kVideoDepth = 8;
-/// Scans of our streams have at most so many slices, and each slice has a transform.
+/// Scans of our streams have at most this many slices, each with a transform.
 constexpr guint kMaxDepth = 64;
 
 enum class Kind { kNone, kCloud, kDraco, kOdometry, kSlices, kH264, kVp8 };

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t kLongestToken = 4096;
 
-/// Base64 of URLs (RFC 4648, section 5).
+/// Decodes the URL-safe Base64 of RFC 4648, section 5.
 std::string FromBase64Url(std::string_view text) {
   std::string usual(text);
   std::replace(usual.begin(), usual.end(), '-', '+');
