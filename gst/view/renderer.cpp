@@ -197,7 +197,7 @@ void Renderer::Draw(const CloudInfo& info, const GstLidarSlice& slice, const std
   }
 }
 
-/// Circles on the ground every ten metres, for scale.
+/// Draws circles on the ground every ten metres, for scale.
 void Renderer::DrawRings() {
   constexpr int kCorners = 120;
   const auto at = [&](float radius, int i) {

@@ -124,7 +124,7 @@ static GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer,
   return gst_pad_push(self->srcpad, buffer);
 }
 
-/// Slices that lost their meta look like scans of few columns.
+/// Warns of a scan with too few columns: it may be a slice that lost its meta.
 static void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info) {
   State& state = *self->state;
   if (!info.sensor_model || info.width >= info.sensor_model->columns_per_scan) return;
@@ -197,7 +197,7 @@ static void TimerLoop(gpointer data) {
     GST_PAD_STREAM_LOCK(self->sinkpad);
     ScanQueue::Finished finished;
     FinishDue(self, &finished);
-    // The chain function reports errors of downstream; here they would go nowhere.
+    // The chain function returns errors of downstream; this task has no caller for them.
     PushScans(self, &finished);
     GST_PAD_STREAM_UNLOCK(self->sinkpad);
   }

@@ -98,7 +98,7 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   return FALSE;
 }
 
-/// Slices become files of their own, which is rarely what is wanted.
+/// Warns that each slice becomes a file, which is rarely wanted.
 static void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   GstLidarSlice slice{};
