@@ -287,7 +287,7 @@ void AppendValue(const Value& value, std::string* text) {
       value);
 }
 
-/// Returns nothing if all is well.
+/// Returns what is wrong with the value, if anything.
 std::optional<std::string> WrongIn(const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value))
     if (!IsPrintable(*text)) return "has characters that cannot be printed";

@@ -120,7 +120,7 @@ std::optional<BeamTable> FindBentColumns(const FoundBeams& found,
   return table;
 }
 
-/// Elevations and offsets beyond what points show would cost bits.
+/// Rounds elevations and offsets: digits that the points do not show would cost bits.
 void RoundAngles(BeamTable* table) {
   constexpr std::int32_t kUnit = 8;
   const auto rounded = [](std::int32_t angle) { return (angle + kUnit / 2) & ~(kUnit - 1); };

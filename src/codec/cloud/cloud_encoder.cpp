@@ -282,7 +282,7 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
   return true;
 }
 
-/// Exact fields of points in cells cost more than what cells save.
+/// Returns 0 with exact fields: these cost more for points in cells than the cells save.
 double CloudEncoder::LargestReach() const { return choice_.empty() ? kReaches.back() : 0; }
 
 /// Codes the exact fields of all points: of those in pixels_, by `table`, and of the others.

@@ -55,7 +55,7 @@ void Model::Refine() {
   Repeat(weights.jump, &r.gaps);
   r.mask.fill({});
   r.maps.fill({});
-  // Each begins as a candidate of a similar kind.
+  // Each further candidate begins as one of a similar kind.
   constexpr std::array<unsigned, Refinement::kFurther> kLike = {kCandidates - 1, kCandidates - 2,
                                                                 kCandidates - 2};
   constexpr unsigned kEach = kJumpNodes * kPlaces;

@@ -6,10 +6,10 @@
 namespace lidar::scream {
 namespace {
 
-/// Base history: RFC 6817's ten minutes,
+/// The base history has RFC 6817's ten minutes.
 constexpr Duration kBaseInterval = 10s;
 constexpr std::size_t kBaseHistory = 60;
-/// and a short one if marks prevent a long-standing queue.
+/// The base history is shorter if marks prevent a long-standing queue.
 constexpr std::size_t kBaseHistoryMarked = 3;
 /// A clock jumped if a delay is shorter than its minimum by this.
 constexpr Duration kJump = 100ms;

@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Per SSRC. Extension of sequence numbers needs less than half of the numbers.
+/// Limit of packets per SSRC: extended sequence numbers are unique within half of their range.
 constexpr std::size_t kMaxPackets = 32000;
 /// Settled packets are kept so that repeated reports are recognised, and late packets are told from
 /// lost ones. Beyond this number only those younger than kKeepSettled are kept.

@@ -21,7 +21,7 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kRenewInterval{200};
 constexpr milliseconds kListInterval{1'000};
-constexpr int kListPause = 5;  // times the duration of a list
+constexpr int kListPause = 5;  // least pause between lists, in durations of a list
 constexpr std::int64_t kHeartbeatNs = 500'000'000;
 constexpr int kMaxValueSize = 4'096;
 constexpr const char* kSeparator = ".lidar.";

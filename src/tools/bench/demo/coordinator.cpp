@@ -309,7 +309,7 @@ void Coordinator::Tick() {
   struct Child {
     ChildProcess* child;
     const char* name;
-    Phase may_end;  // the first phase in which it may
+    Phase may_end;  // the first phase in which the child may end
   };
   std::vector<Child> children = {{receiver_.get(), "receiver", Phase::kDraining},
                                  {sender_.get(), "sender", Phase::kDraining}};

@@ -77,7 +77,7 @@ std::optional<Duration> FrameMeter::OnPacket(const ReceivedPacket& packet) {
   const Duration age =
       FromTicks(SequenceDistance(RtpTimestamp(packet.unix_time), packet.timestamp)) - offset_;
   if (frames() == 0 && (age < Duration{0} || age > kPlausibleAge)) offset_ += age;
-  if (is_relative() && age < Duration{0}) offset_ += age;  // the youngest: age 0
+  if (is_relative() && age < Duration{0}) offset_ += age;  // the youngest frame has the age 0
   const Duration shown = std::max(Duration{0}, frames() == 0 && is_relative() ? Duration{0} : age);
   ages_ms_.Add(Milliseconds(shown));
   return shown;

@@ -32,7 +32,7 @@ struct Counts {
   SymbolCounts levels;
 };
 
-/// The returns of a slice as bins and levels.
+/// Counts symbols of a slice's returns, as bins and levels.
 void CountSlice(const Scan& scan, SliceOf slice, const RangeGrid& grid, unsigned bits,
                 Counts* counts) {
   const ColumnWindow window = WindowOf(scan, slice);

@@ -31,7 +31,7 @@ struct Curve {
   std::vector<Measurement> points;
 };
 
-/// Quantises the bounding cube automatically, as the paper does.
+/// Measures the paper's setting: Draco quantises the bounding cube.
 Curve PaperCurve(const ScanSet& set, const std::string& mode, const char* name) {
   constexpr unsigned kFewestBits = 8;
   constexpr unsigned kMostBits = 17;  // beyond, Draco codes the sensor's noise

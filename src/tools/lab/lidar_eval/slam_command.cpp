@@ -125,7 +125,7 @@ struct Calibrations {
   std::optional<Calibration> orientation;
 };
 
-/// A row a scan.
+/// Writes a row for each scan.
 void SaveErrors(const std::string& path, const SlamResult& r,
                 const std::vector<odometry::Twist>& errors) {
   tools::OutputFile output(path);
