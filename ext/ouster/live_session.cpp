@@ -21,7 +21,7 @@ namespace {
 constexpr guint kDefaultLidarPort = 7502;
 constexpr guint kDefaultImuPort = 7503;
 constexpr gint64 kSilenceUs = 1'000'000;        // a sensor is away after such a silence
-constexpr gint64 kFirstSilenceUs = 3'000'000;   // before its first packet
+constexpr gint64 kFirstSilenceUs = 3'000'000;   // the same before its first packet
 constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // interval between checks for silence
 constexpr gint64 kQuestionIntervalUs = 1'000'000;
 constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id

@@ -174,7 +174,8 @@ bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& se
   return true;
 }
 
-/// Writes one payload of kTemporal. With an error, the bins of `image` were chosen within it.
+/// Writes one payload of kTemporal. An `error_mm` above 0 is the one within which the
+/// bins of `image` were chosen.
 bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const RangeImage& image,
                             const RangeSettings& settings, BlockLink* link) {
   const BlockMemory* reference = link->reference.get();

@@ -6,7 +6,7 @@
 namespace lidar::codec {
 namespace {
 
-// Distance that stands for a return without a prediction [steps].
+// Distance that a return without a prediction counts as [steps].
 constexpr double kSurpriseSteps = 8;
 
 /// Distances cost about their logarithm.

@@ -170,7 +170,8 @@ std::optional<CongestionFeedback> FeedbackGenerator::Take(Time at) {
   return report;
 }
 
-/// The overlap is reduced for new packets, and for the oldest of those that came late.
+/// Returns the first number of a block of at most `max_metrics`. New packets, and the oldest of
+/// those that came late, go before the overlap.
 std::int64_t FeedbackGenerator::FirstToReport(const Source& source,
                                               std::int64_t max_metrics) const {
   const std::int64_t fresh = std::min(source.next_report, source.lowest_new);

@@ -206,7 +206,7 @@ std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   return hits;
 }
 
-/// Mixes the two echoes at an edge within the beam: the range lies between.
+/// Mixes the two echoes at an edge within the beam: the range lies between theirs.
 Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
   constexpr float kPulse = 1.0F;  // least distance of separate echoes [m]
   constexpr float kSurface = 0.15F;

@@ -191,7 +191,8 @@ class FreePlaces {
   }
 
  private:
-  std::vector<std::uint32_t> next_;  // itself if free, else a later place up to the next free one
+  /// A free place has itself here, a taken one a later place, but none past a free one.
+  std::vector<std::uint32_t> next_;
 };
 
 /// Codes the order as steps through a sequence.

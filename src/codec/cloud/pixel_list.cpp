@@ -85,12 +85,13 @@ class PixelCheck {
     off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }
-  /// Error by the rounding of a residual. The decoded range, which may be shorter, sets the width.
+  /// Returns the error by rounding a residual. Its width follows from the decoded range, which may
+  /// be shorter.
   double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
     return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;
   }
-  /// Error of the angle of a beam that passes the origin, by the decoded range.
+  /// Returns the error of SideAngle() [m] that follows from the error of the decoded range.
   double SideError(const BeamTable::Beam& beam, double rho_m) const {
     if (beam.side_um == 0) return 0;
     const double off = errors_.range_m + 1e-3;

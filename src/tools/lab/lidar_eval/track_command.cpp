@@ -53,7 +53,7 @@ std::vector<double> Targets(const std::string& name, const TrackArguments& o,
   return MakeTargets(profiles.at(name), o.length, o.profile);
 }
 
-/// "x.png" and "walk" to "x-walk.png" if there are several.
+/// Returns "x-walk.png" for "x.png" and "walk" if `several`, else `path`.
 std::string PathFor(const std::string& path, const std::string& name, bool several) {
   if (path.empty() || !several) return path;
   const std::size_t dot = path.rfind('.');
