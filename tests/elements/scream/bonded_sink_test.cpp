@@ -254,6 +254,36 @@ TEST_F(BondedSink, GivesEachLinkTheSettingsOfTheSink) {
   EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=333333\n"), std::string::npos);
 }
 
+TEST_F(BondedSink, SendsByTheInterfaceAndToThePortOfEachLink) {
+  for (const bool first : {true, false}) {
+    g_object_set(sink_, "bonding-addresses",
+                 first ? "127.0.0.1:5004@lo,127.0.0.1:5006@127.0.0.2"
+                       : "127.0.0.1:5004@127.0.0.2,127.0.0.1:5006@lo",
+                 nullptr);
+    ASSERT_EQ(gst_element_set_state(sink_, GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    for (std::size_t i = 0; i < 2; ++i) {
+      gchar* interface = nullptr;
+      guint port = 0;
+      g_object_get(Child(NameOf("ecnudpsink", i)).get(), "interface", &interface, "port", &port,
+                   nullptr);
+      const gst::StringPtr owner(interface);
+      const bool by_name = first == (i == 0);
+      EXPECT_STREQ(interface != nullptr ? interface : "", by_name ? "lo" : "") << i;
+      EXPECT_EQ(port, kPorts[i]);
+    }
+    gst_element_set_state(sink_, GST_STATE_NULL);
+  }
+}
+
+TEST_F(BondedSink, TellsThatNobodyAnswersWhereNoLinkIsHeard) {
+  Start();
+  for (guint16 seq = 1; seq <= 6; ++seq) {
+    for (const std::size_t link : Send(seq)) ASSERT_TRUE(HasLeft(link));
+    Advance(500 * GST_MSECOND);
+  }
+  EXPECT_TRUE(Eventually([&] { return Warnings("No feedback") > 0; }));
+}
+
 TEST_F(BondedSink, WaitsAtTheEndForWhatMayStillArrive) {
   Start();
   Advance(2 * GST_SECOND);

@@ -51,11 +51,12 @@ class DtlsEnds : public ::testing::Test {
  protected:
   ~DtlsEnds() override { frozen_at = 0; }
 
-  std::unique_ptr<DtlsKeys> Make(bool is_client, Wire* out, std::atomic<unsigned>* keys) {
-    static const test::TestCertificates papers({"robot", "edge"});
+  std::unique_ptr<DtlsKeys> Make(bool is_client, Wire* out, std::atomic<unsigned>* keys,
+                                 const char* edge = "edge") {
+    static const test::TestCertificates papers({"robot", "edge", "stranger"});
     Certificates certificates;
     std::string error;
-    EXPECT_TRUE(ReadCertificates(papers.WithKey(is_client ? "robot" : "edge"),
+    EXPECT_TRUE(ReadCertificates(papers.WithKey(is_client ? "robot" : edge),
                                  papers.Public(is_client ? "edge" : "robot"), &certificates,
                                  &error))
         << error;
@@ -253,6 +254,27 @@ TEST_F(DtlsEnds, AKeyedClientTakesThePauseBetweenStopAndStartForNoSilence) {
   EXPECT_TRUE(up_.Take().empty());
   frozen_at += 6 * G_USEC_PER_SEC;
   EXPECT_TRUE(test::Eventually([&] { return !up_.Take().empty(); }));
+}
+
+TEST_F(DtlsEnds, AClientTriesAStrangerOnceASecond) {
+  frozen_at = g_get_monotonic_time();
+  server_ = Make(false, &down_, &server_keys_, "stranger");
+  server_->Start();
+  StartClient();
+  const auto carry = [this] {
+    for (const Carried& d : up_.Take()) Give(*server_, {5'001, d.bytes});
+    for (const Carried& d : down_.Take()) Give(*client_, d);
+  };
+  for (std::uint64_t tries = 1; tries <= 2; ++tries) {
+    EXPECT_TRUE(test::Eventually([&] {
+      carry();
+      return client_->counts().refused == tries;
+    }));
+    up_.Take();
+    g_usleep(300'000);  // three times as long as it takes to look
+    EXPECT_TRUE(up_.Take().empty());
+    frozen_at += G_USEC_PER_SEC;
+  }
 }
 
 TEST_F(DtlsEnds, ASilenceIsToldOfOnceAndBehindAKeyAgain) {

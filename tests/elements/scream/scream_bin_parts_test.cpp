@@ -59,11 +59,23 @@ TEST_F(ScreamBin, TheSinkCountsTheHeadersOfItsAddressFamily) {
 TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
   const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
   if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
-  g_setenv("LIDAR_BIN_PARTS_KEY", std::string(60, '5').c_str(), TRUE);
-  Make("screamsink");
-  g_object_set(bin_.get(), "srtp-key", "env:LIDAR_BIN_PARTS_KEY", nullptr);
-  ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
-  EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28U + 10);  // the tag
+  const struct {
+    const char* cipher;
+    const char* auth;
+    std::size_t digits;
+    guint tag;
+  } kinds[] = {{"aes-128-icm", "hmac-sha1-80", 60, 10}, {"aes-128-icm", "hmac-sha1-32", 60, 4},
+               {"aes-256-icm", "hmac-sha1-80", 92, 10}, {"aes-256-icm", "hmac-sha1-32", 92, 4},
+               {"aes-128-gcm", "hmac-sha1-80", 56, 16}, {"aes-256-gcm", "hmac-sha1-80", 88, 16}};
+  for (const auto& kind : kinds) {
+    Make("screamsink");
+    g_object_set(bin_.get(), "srtp-key", std::string(kind.digits, '5').c_str(), "srtp-cipher",
+                 kind.cipher, "srtp-auth", kind.auth, nullptr);
+    ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS) << kind.cipher;
+    EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28 + kind.tag)
+        << kind.cipher << " " << kind.auth;
+    To(GST_STATE_NULL);
+  }
 }
 
 /// The bin would start again without encryption if it dropped the key.

@@ -225,6 +225,24 @@ TEST_F(ScreamRx, ShowsNothingOfTheOldPeerAfterAMove) {
   }
 }
 
+/// A sender that restarted under its SSRC, and now has two links.
+TEST_F(ScreamRx, PassesWhatTheNewPeerSendsUnderNumbersOfTheOld) {
+  Start();
+  Rtp r;
+  for (r.seq = 0; r.seq < 60; ++r.seq)
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  time.Settle();
+  time.Advance(2 * GST_SECOND);
+  for (r.seq = 10; Stats(element)["peer-moves"] == 0 && r.seq < 20; ++r.seq)
+    ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
+  const guint before = Passed(), first = r.seq;
+  for (; r.seq < 40; ++r.seq)
+    for (const char* host : {"10.0.0.2", "10.0.0.3"})
+      ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, host), GST_FLOW_OK);
+  EXPECT_EQ(Passed() - before, 40 - first) << "each once";
+  EXPECT_GT(Stats(element)["packets-copies"], 10U);
+}
+
 TEST_F(ScreamRx, BelievesTheSenderWhoseSlicesAreWholeOverOneWhoSendsOften) {
   Start();
   gst_harness_set_src_caps_str(rtp.get(),
@@ -395,9 +413,16 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
   for (const char* counter :
        {"packets-received", "ssrcs", "packets-foreign", "sender-reports", "goodbyes"})
     EXPECT_EQ(Stats(element)[counter], 0U) << counter;
+  while (EventPtr event{gst_harness_try_pull_event(rtcp.get())}) continue;
   // The address that was foreign is now the first.
   EXPECT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["packets-foreign"], 0U);
+  Report();
+  for (const GstEventType type : {GST_EVENT_STREAM_START, GST_EVENT_CAPS, GST_EVENT_SEGMENT}) {
+    const EventPtr event(gst_harness_try_pull_event(rtcp.get()));
+    ASSERT_TRUE(event) << gst_event_type_get_name(type);
+    EXPECT_EQ(GST_EVENT_TYPE(event.get()), type);
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "gst/scream/key_request.h"
+#include "src/rtcp/sender_report.h"
 #include "tests/elements/scream/screamtx_fixture.h"
 #include "tests/support/patience.h"
 
@@ -88,6 +89,35 @@ class ScreamTxFates : public ScreamTx {
   }
   guint64 reports_ = 0;
 };
+
+TEST_F(ScreamTxFates, AreReportedToTheReceiverAsTheyAreShown) {
+  g_object_set(element, "sender-report-interval", guint64{GST_SECOND}, nullptr);
+  Start();
+  Run(60, [](guint16 seq) {
+    return rtcp::PacketMetric{seq < 3 || seq > 5, seq == 20 ? Ecn::kCe : Ecn::kEct1, Duration{0}};
+  });
+  byes.clear();
+  time.Advance(GST_SECOND);
+  PushFrame(9'000'000, 1);
+  Collect();
+  ASSERT_EQ(byes.size(), 1U);
+  const auto report = rtcp::ParseSenderReport({byes[0].data(), byes[0].size()});
+  ASSERT_TRUE(report);
+  const Stats stats(element);
+  const auto bps = [](DataRate rate) { return static_cast<guint64>(rate.bits_per_second()); };
+  EXPECT_EQ(bps(report->target_bitrate), stats["target-bitrate"]);
+  EXPECT_EQ(bps(report->estimated_capacity), stats["estimated-capacity"]);
+  EXPECT_EQ(bps(report->sent_bitrate), stats["sent-bitrate"]);
+  EXPECT_EQ(static_cast<guint64>(report->ref_wnd.bytes()), stats["ref-wnd"]);
+  EXPECT_EQ(static_cast<guint64>(report->bytes_in_flight.bytes()), stats["bytes-in-flight"]);
+  EXPECT_EQ(static_cast<guint64>(report->rtt.count()) / 1'000, stats["rtt"] / 1'000);
+  EXPECT_EQ(static_cast<guint64>(report->queue_delay.count()) / 1'000,
+            stats["queue-delay"] / 1'000);
+  EXPECT_EQ(report->packets_sent, stats["packets-sent"]);
+  EXPECT_EQ(report->packets_lost, 3U);
+  EXPECT_EQ(report->packets_ce, 1U);
+  EXPECT_EQ(report->packets_dropped, 0U);
+}
 
 TEST_F(ScreamTxFates, AreCountedEachByItsName) {
   const rtcp::PacketMetric arrived{true, Ecn::kEct1, Duration{0}};
