@@ -11,6 +11,7 @@
 #include "src/base/byte_reader.h"
 #include "src/base/byte_writer.h"
 #include "src/base/crc.h"
+#include "src/base/rate_meter.h"
 #include "src/base/row_file.h"
 #include "src/base/sequence.h"
 #include "src/base/target_notifier.h"
@@ -22,6 +23,16 @@ using namespace std::chrono_literals;
 
 ByteView View(const char* text) {
   return {reinterpret_cast<const std::uint8_t*>(text), std::strlen(text)};
+}
+
+TEST(RateMeter, AveragesOverItsWindow) {
+  RateMeter meter(1s);
+  constexpr Time kBegin{10s};
+  EXPECT_EQ(meter.Rate(kBegin), DataRate());
+  for (int i = 0; i < 30; ++i) meter.Add(kBegin + i * 100ms, DataSize::Bytes(1'250));
+  EXPECT_NEAR(meter.Rate(kBegin + 2'900ms).bits_per_second(), 100e3, 1);
+  EXPECT_NEAR(meter.Rate(kBegin + 3'400ms).bits_per_second(), 50e3, 1);
+  EXPECT_EQ(meter.Rate(kBegin + 4s), DataRate());
 }
 
 TEST(Crc, MatchesThePublishedCheckValues) {

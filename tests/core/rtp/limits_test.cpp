@@ -217,6 +217,18 @@ TEST_F(Rivals, AreToldOfAfterAHundredPackets) {
   EXPECT_EQ(receiver.rival(), std::nullopt);
 }
 
+TEST_F(Rivals, AreForgottenAtAFlush) {
+  for (unsigned i = 0; i <= Receiver::kRivalPackets; ++i) {
+    Push(1, 1);
+    Push(2, 1);
+  }
+  EXPECT_EQ(receiver.rival(), 2U);
+  receiver.Finish();
+  EXPECT_EQ(receiver.rival(), std::nullopt);
+  Push(1, 1);
+  EXPECT_EQ(receiver.rival(), std::nullopt);
+}
+
 TEST_F(Rivals, TakeOverOnceTheStreamWasSilentForTheTimeOfAScan) {
   Push(1, 8, 0);
   Push(2, Receiver::kProbation, 99);

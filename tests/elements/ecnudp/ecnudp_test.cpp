@@ -300,6 +300,8 @@ TEST_P(WithoutCaps, TheSourceTakesWhatDownstreamWants) {
 INSTANTIATE_TEST_SUITE_P(
     Peers, WithoutCaps,
     ::testing::Values(
+        Peer{"application/x-rtp,encoding-name=(string)X",
+             "application/x-rtp,encoding-name=(string)X,payload=(int)96"},
         Peer{"ANY", nullptr}, Peer{"application/x-rtcp", "application/x-rtcp"},
         Peer{"application/x-rtp,media=application,encoding-name=X-LIDAR-DRACO,"
              "clock-rate=90000,payload=[0,127]",
