@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: each setting reaches its element, and a recorder that fails harms no other branch.
+// lidar-edge: each setting reaches its element, a session begins with nothing of the one before,
+// and a recorder that fails harms no other branch.
 #include "src/tools/apps/edge/pipeline.h"
+#include "src/tools/apps/edge/shared_port.h"
+#include "tests/elements/nats/free_ports.h"
 #include "tests/elements/nats/nats_server.h"
 #include "tests/support/patience.h"
 
@@ -68,6 +71,41 @@ TEST(EdgePipeline, GivesEachSettingToItsElement) {
                   {"keep-trying", "true"}});
   ExpectSettings(pipeline.get(), "mcapsink",
                  {{"location", "r1-%05d.mcap"}, {"max-file-size", "654321"}, {"max-files", "12"}});
+}
+
+TEST(SharedPort, ASocketThatIsOpenedHasNothingFromBefore) {
+  const auto number = static_cast<std::uint16_t>(FreePort());
+  const edge::SharedPort port("127.0.0.1", number, {{7, 7}});
+  GSocket* socket = port.socket(0);
+  g_socket_set_blocking(socket, FALSE);
+  using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
+  const Object address(g_inet_socket_address_new_from_string("127.0.0.1", number), g_object_unref);
+  const Object sender(g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM,
+                                   G_SOCKET_PROTOCOL_DEFAULT, nullptr),
+                      g_object_unref);
+  char packet[12] = {'\x80', 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7};
+  const auto send = [&] {
+    g_socket_send_to(G_SOCKET(sender.get()), G_SOCKET_ADDRESS(address.get()), packet, sizeof packet,
+                     nullptr, nullptr);
+  };
+  const auto received = [&] {
+    char bytes[100];
+    int count = 0;
+    while (g_socket_receive(socket, bytes, sizeof bytes, nullptr, nullptr) > 0) ++count;
+    return count;
+  };
+  send();  // while it is shut
+  edge::ShutSocket(socket, false);
+  EXPECT_EQ(received(), 0);
+  send();
+  EXPECT_EQ(received(), 1);
+  send();  // waits in the socket
+  edge::ShutSocket(socket, true);
+  send();
+  edge::ShutSocket(socket, false);
+  EXPECT_EQ(received(), 0) << "of the session before";
+  send();
+  EXPECT_EQ(received(), 1);
 }
 
 class EdgeRecorder : public ::testing::Test {
