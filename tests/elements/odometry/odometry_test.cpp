@@ -70,18 +70,24 @@ class Odometry : public ::testing::Test {
       ended = !event || GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
     }
   }
-  /// Returns the distance from the origin in each message of a scan.
-  std::vector<double> WaysOfMessages() {
-    std::vector<double> ways;
+  struct Told {
+    double way = 0;  // distance from the origin
+    guint64 time = 0;
+  };
+  /// Returns what the message of each scan says.
+  std::vector<Told> TakeMessages() {
+    std::vector<Told> all;
     while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_ELEMENT)}) {
       double x = 0;
       double y = 0;
       double z = 0;
+      guint64 time = 0;
       if (gst_structure_get(gst_message_get_structure(message.get()), "x", G_TYPE_DOUBLE, &x, "y",
-                            G_TYPE_DOUBLE, &y, "z", G_TYPE_DOUBLE, &z, nullptr) != FALSE)
-        ways.push_back(std::hypot(x, y, z));
+                            G_TYPE_DOUBLE, &y, "z", G_TYPE_DOUBLE, &z, "timestamp", G_TYPE_UINT64,
+                            &time, nullptr) != FALSE)
+        all.push_back({std::hypot(x, y, z), time});
     }
-    return ways;
+    return all;
   }
   unsigned CountMessages(const char* name) {
     unsigned count = 0;
@@ -236,9 +242,12 @@ TEST_F(Odometry, AlignsAScanOfWhichSlicesAreMissing) {
   EXPECT_EQ(Count("scans"), kGiven);
   EXPECT_EQ(Count("scans-lost"), 0U);
   // The vehicle drives 1 m in each scan.
-  const auto ways = WaysOfMessages();
-  ASSERT_EQ(ways.size(), kGiven);
-  for (unsigned scan = 0; scan < kGiven; ++scan) EXPECT_NEAR(ways[scan], scan, 0.3) << scan;
+  const auto told = TakeMessages();
+  ASSERT_EQ(told.size(), kGiven);
+  for (unsigned scan = 0; scan < kGiven; ++scan) {
+    EXPECT_NEAR(told[scan].way, scan, 0.3) << scan;
+    EXPECT_EQ(told[scan].time - told[0].time, scan * 100 * GST_MSECOND) << scan;
+  }
 }
 
 TEST_F(Odometry, WritesTheTrajectory) {
