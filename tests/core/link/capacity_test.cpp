@@ -59,6 +59,13 @@ TEST(Capacity, AnOutageStopsALinkOfAnyRate) {
   EXPECT_EQ(c.Finish(1500ms, Bytes(1000)), 4001ms);
 }
 
+TEST(Capacity, AnOutageOfManyPeriodsIsNotSkippedWithThem) {
+  auto c = Capacity::Steps({Mbps(1), Mbps(3)}, 1s, true);
+  c.AddOutage(3s, 9s);
+  EXPECT_EQ(c.Finish(0s, Bytes(5'000'000 / 8)), 3s);
+  EXPECT_EQ(c.Finish(0s, Bytes(12'000'000 / 8)), 12s);
+}
+
 TEST(Capacity, ATinyRateInATinyPeriodIsNotCountedPeriodByPeriod) {
   const auto c = Capacity::Steps({DataRate::BitsPerSecond(1), Mbps(0)}, 1ns, true);
   EXPECT_NEAR(Seconds(c.Finish(0s, Bytes(1000))), 16000, 1);

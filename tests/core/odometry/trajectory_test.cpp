@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
     Trajectory, BadTrajectoryFiles,
     testing::Values("", "# nothing\n", "hello world\n", "1 2 3\n", "1.0 0 0 0 0 0 0 0\n",
                     "1.0 nan 0 0 0 0 0 1\n", "2.0 0 0 0 0 0 0 1\n1.0 0 0 0 0 0 0 1\n",
-                    "1e300 0 0 0 0 0 0 1\n", "1 0 0 0 0 0 0 1\n1 2 3 4 5 6 7 8 9 10 11 12\n",
+                    "1e300 0 0 0 0 0 0 1\n", "0 0 0 0 0 0 0 1\n1 0 0 0 0 1 0 0 0 0 1 0\n",
                     "1 2 3 4 5 6 7 8 9 10 11 12 13\n", "9 9 9 0 9 9 9 0 9 9 9 0\n"));
 
 TEST(TrajectoryErrors, AreZeroForTheTruthInAnotherFrame) {

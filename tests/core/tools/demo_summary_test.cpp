@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
+
 #include "src/tools/bench/demo/measurements.h"
 #include "src/tools/bench/demo/summary.h"
 #include "src/tools/bench/demo/verdict.h"
@@ -85,6 +88,24 @@ TEST(DemoLedger, IgnoresRecordsThatMakeNoSense) {
   ledger.Add(nlohmann::json{{"type", "captured"}});
   ledger.Add(Record("captured", 1, 7, kOrigin));
   EXPECT_TRUE(ledger.scans().empty());
+}
+
+TEST(DemoLinkLog, IsReadWithWhatTheLinkDidToEachPacket) {
+  const std::string file = testing::TempDir() + "demo_link_log.csv";
+  std::ofstream(file) << "names of the columns\n"
+                         "0.5,1,0,1200,7,8,1,1,3,delivered,4.25,9\n"
+                         "0.6,1,0,900,7,8,1,3,3,delivered,0.5,9\n"
+                         "0.7,1,0,800,7,8,1,1,1,queue-full,0,0\n"
+                         "0.8,1,0,80\n";
+  const auto packets = ReadLinkLog(file);
+  std::remove(file.c_str());
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(packets[0].time_s, 0.5);
+  EXPECT_EQ(packets[0].size, 1'200);
+  EXPECT_EQ(packets[0].sojourn_ms, 4.25);
+  EXPECT_TRUE(packets[0].delivered && packets[0].marked);
+  EXPECT_TRUE(packets[1].delivered && !packets[1].marked) << "it came marked";
+  EXPECT_FALSE(packets[2].delivered || packets[2].marked);
 }
 
 TEST(DemoSamples, HaveTheUnitsOfTheirNames) {
