@@ -7,7 +7,10 @@ root=$(dirname "$here")
 
 usage() {
   cat <<EOF
-Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
+Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan] [--tidy]
+
+Without options, lint, core, pipelines and bench run in a build for users, and sanitize in a second
+build. Tests of elements and fuzz run in the second build only.
 
   --suite NAME    run one suite: lint, core, elements, pipelines, fuzz, bench, sanitize (elements,
                   fuzz, and core without long simulations and programs, under AddressSanitizer and
@@ -16,7 +19,7 @@ Usage: tests/run.sh [--suite NAME] [--no-install] [--no-sanitize] [--tsan]
                   browser (foxglovesink's page in Chromium), viewers (it behind nginx, Caddy and
                   slow links, for an idle machine)
   --no-install    do not install Debian packages
-  --no-sanitize   leave out the sanitizer build
+  --no-sanitize   leave out the sanitizer build; elements and fuzz run in the build for users
   --tsan          also run core (without the same) and elements under ThreadSanitizer
   --tidy          also run clang-tidy over src, gst and ext
 EOF
@@ -67,15 +70,19 @@ patient=(--timeout-multiplier 20)
 # preprocessed twice.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 
-# targets DIR SUITE...: prints the targets that tests of the suites need, as ninja calls them.
+# targets DIR SUITE...: prints the targets that tests of the suites need, as ninja calls them: with the
+# suite `product` all but tests, and otherwise not what $dear needs.
 targets() {
   local dir=$1
   shift
   jq -rn --arg dir "$dir/" --arg suites "$*" --arg dear "${dear[*]}" \
     --slurpfile tests <(meson introspect "$dir" --tests) --slurpfile all <(meson introspect "$dir" --targets) '
     def of($names): any(.suite[]; sub(".*:"; "") | IN($names | splits(" ")));
-    [$tests[0][] | select(of($suites) and (of($dear) | not)) | .depends[]] as $needed
-    | $all[0][] | select(.id | IN($needed[])) | .filename[] | ltrimstr($dir)'
+    ($suites | contains("product")) as $product
+    | [$tests[0][] | select(of($suites) and ($product or (of($dear) | not))) | .depends[]] as $needed
+    | $all[0][]
+    | select((.id | IN($needed[])) or ($product and .build_by_default and (.defined_in | contains("/tests/") | not)))
+    | .filename[] | ltrimstr($dir)'
 }
 
 # build DIR SUITES [meson options]: configures once, then builds what the suites need. Reports need
@@ -97,12 +104,12 @@ build() {
 }
 
 # clang needs half of gcc's time for code full of checks. Its optimizer would still take minutes, so
-# only code that tests run for long has it. The plain build has refused warnings already.
+# only code that tests run for long has it.
 build_sanitized() {
   local cache
   cache=$(command -v ccache)  # meson does not use ccache if a compiler is named
   CC="$cache clang" CXX="$cache clang++" build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=0 \
-    -Dbenchmarks=disabled -Dwerror=false
+    -Dbenchmarks=disabled
 }
 # The sanitized build uses the processor time that the tests of the first build leave: they mostly
 # wait.
@@ -227,8 +234,15 @@ if [ "$install" = yes ] && [ "${suites[*]}" = browser ]; then
   done
 fi
 
+needed_by=all
+# Elements and fuzz take a third of the compiler's time and half of the tests'. A run of all suites has
+# them under the sanitizers only, except what cannot run there (the suite `plain`).
+if [ "$sanitize" = yes ] && [ ${#suites[@]} -gt 0 ]; then
+  suites=(lint "core plain" pipelines bench)
+  needed_by="product ${suites[*]} beside"
+fi
 if [ ${#suites[@]} -gt 0 ]; then
-  if build "$root/build" all; then
+  if build "$root/build" "$needed_by"; then
     [ "$sanitize" = no ] || start_sanitized
     for suite in "${suites[@]}"; do
       case $suite in

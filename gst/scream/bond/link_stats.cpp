@@ -6,22 +6,22 @@
 namespace lidar::gst {
 namespace {
 
-using S = BondLinkStats;
+using Link = BondLinkStats;
 using C = bonding::LinkCounters;
 
 }  // namespace
 
 void AddLinkStats(const BondLinkStats& stats, GstStructure* out) {
-  static const std::array<Stat<S>, 9> kStats = {{
-      {"link", &S::link},
-      {"usable", &S::usable},
-      {"in-gap", &S::in_gap},
-      {"link-gaps", At<&S::counters, &C::gaps>},
-      {"packets-first", At<&S::counters, &C::packets>},
-      {"packets-copies", At<&S::counters, &C::copies>},
-      {"copies-cancelled", At<&S::counters, &C::cancelled>},
-      {"packets-saved", At<&S::counters, &C::saved>},
-      {"bottleneck", &S::bottleneck},
+  static const std::array<Stat<Link>, 9> kStats = {{
+      {"link", &Link::link},
+      {"usable", &Link::usable},
+      {"in-gap", &Link::in_gap},
+      {"link-gaps", At<&Link::counters, &C::gaps>},
+      {"packets-first", At<&Link::counters, &C::packets>},
+      {"packets-copies", At<&Link::counters, &C::copies>},
+      {"copies-cancelled", At<&Link::counters, &C::cancelled>},
+      {"packets-saved", At<&Link::counters, &C::saved>},
+      {"bottleneck", &Link::bottleneck},
   }};
   AddStats(out, kStats, stats);
 }

@@ -98,17 +98,17 @@ double AlignedStep(const std::vector<BeamAzimuths>& beams, double step) {
 }
 
 double PhaseAt(const BeamAzimuths& azimuths, double step) {
-  constexpr std::size_t kClasses = 64;
-  std::array<std::size_t, kClasses> histogram{};
+  constexpr std::size_t kPhases = 64;
+  std::array<std::size_t, kPhases> histogram{};
   std::vector<double> parts;
   for (const BeamAzimuth& a : azimuths) {
     const double columns = a.azimuth / step;
     parts.push_back(columns - std::floor(columns));
-    ++histogram[std::min(static_cast<std::size_t>(parts.back() * kClasses), kClasses - 1)];
+    ++histogram[std::min(static_cast<std::size_t>(parts.back() * kPhases), kPhases - 1)];
   }
   const auto peak = static_cast<std::size_t>(std::max_element(histogram.begin(), histogram.end()) -
                                              histogram.begin());
-  const double middle = (static_cast<double>(peak) + 0.5) / kClasses;
+  const double middle = (static_cast<double>(peak) + 0.5) / kPhases;
   std::vector<double> near;
   for (const double part : parts) {
     const double away = part - middle - std::round(part - middle);

@@ -124,11 +124,12 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
     return false;
   }
   const unsigned effort = std::clamp(settings.effort, 1U, mixing::kEfforts);
+  const unsigned version = s.slice.refined ? mixing::kRefinedVersion : mixing::kTableVersion;
   const std::size_t before = out->size();
   ByteWriter writer(out);
-  writer.U8(static_cast<std::uint8_t>(
-      effort | (s.slice.has_gaps ? kGapsBit : 0) | (settings.error_mm > 0 ? kSearchedBit : 0) |
-      (s.slice.refined ? mixing::kRefinedVersion : mixing::kTableVersion) << kVersionShift));
+  writer.U8(static_cast<std::uint8_t>(effort | (s.slice.has_gaps ? kGapsBit : 0) |
+                                      (settings.error_mm > 0 ? kSearchedBit : 0) |
+                                      version << kVersionShift));
   if (settings.error_mm > 0) WriteVarint(settings.error_mm, &writer);
   mixing::BinaryEncoder encoder(out);
   const bool coded = s.Code(effort, {settings.memory, settings.grid}, &encoder);

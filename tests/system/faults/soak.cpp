@@ -201,16 +201,17 @@ class Soak {
                 " mismatch %4" PRIu64 "  scans %6" PRIu64 " whole  %4.0f MB  [%s]\n",
                 minute, a.received, a.lost, a.damaged, a.mismatch, a.complete,
                 static_cast<double>(memory) / 1e6, story.c_str());
-    const auto demand = [](bool holds, const char* what) {
+    bool good = true;
+    const auto demand = [&](bool holds, const char* what) {
       if (!holds) std::printf("FAILED: %s\n", what);
-      return holds;
+      good = good && holds;
     };
-    const bool good = demand(error.empty(), ("no errors: " + error).c_str()) &
-                      demand(recovery != milliseconds::max(), "clouds come once the link is well") &
-                      demand(foreign == 0, "nothing is shown that was not sent") &
-                      demand(a.slices() >= last_.slices(), "accounts do not shrink") &
-                      demand(agree, "the receiver counts what the link let through") &
-                      demand(!grows, "memory does not grow");
+    demand(error.empty(), ("no errors: " + error).c_str());
+    demand(recovery != milliseconds::max(), "clouds come once the link is well");
+    demand(foreign == 0, "nothing is shown that was not sent");
+    demand(a.slices() >= last_.slices(), "accounts do not shrink");
+    demand(agree, "the receiver counts what the link let through");
+    demand(!grows, "memory does not grow");
     last_ = a;
     std::fflush(stdout);
     return good;

@@ -30,8 +30,7 @@ constexpr GstClockTime kFinish = 3 * GST_SECOND;
 }  // namespace
 
 Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket)
-    : config_(config),
-      robot_(robot),
+    : robot_(robot),
       socket_(socket),
       pipeline_(MakePipeline(config, robot, socket)),
       robot_watch_(robot.max_mbps),

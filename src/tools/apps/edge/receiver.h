@@ -67,7 +67,6 @@ class Receiver {
   void Update(Change change);
   void Say(const std::string& what) const;
 
-  const EdgeConfig& config_;
   const RobotConfig& robot_;
   GSocket* const socket_;
   const gst::ElementPtr pipeline_;
