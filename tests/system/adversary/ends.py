@@ -311,7 +311,7 @@ def record(seed, scans):
     """Records at least `scans` whole scans of a real sender, read by the rules of docs/wire-format.md."""
     receiver = HonestReceiver()
     victim = Victim(SENDER.format(port=receiver.port, seed=seed, options=""))
-    until = time.monotonic() + 30
+    until = time.monotonic() + 300  # a busy machine takes long
     reader, read, whole = wire.Reader(), 0, []
     while time.monotonic() < until and len(whole) < 8 * scans:
         time.sleep(0.05)
