@@ -21,7 +21,7 @@ struct PlaybackGroup {
 /// Used by the streaming thread, or while it stands still.
 class PlayedStream {
  public:
-  /// Makes the pad and adds it to `element` once its caps are known. `pad` is inactive.
+  /// `pad` is inactive; Prepare() adds it to `element` once its caps are known.
   PlayedStream(GstElement* element, GstPad* pad, std::string topic)
       : element_(element), pad_(pad), topic_(std::move(topic)) {}
 

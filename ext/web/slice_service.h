@@ -31,7 +31,7 @@ class SliceService {
   /// Call it regularly: sends what had to wait.
   void Tick();
 
-  /// Returns true if the client did not draw in time: its link has no room.
+  /// Returns true if the client acknowledges too late that it drew slices: its link has no room.
   bool IsLate(Client* client) const;
 
   /// Scans that slow viewers missed.

@@ -14,7 +14,7 @@ class Receipts {
   /// Watches the packets that leave by `src`. This object must outlive the pad.
   void Watch(GstPad* src);
   /// Sets `upstream` to the event that goes to the encoder in place of `event`. Returns false, and
-  /// null, for other events.
+  /// sets null, if `event` is not about received packets.
   bool OnEvent(GstEvent* event, GstEvent** upstream);
 
  private:

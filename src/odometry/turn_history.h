@@ -65,7 +65,7 @@ class TurnHistory {
   /// The force at rest, in the frame of the poses: gravity, and the accelerometer's offset.
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();
   /// Velocities in the frame of the poses: the mean over the last span, and that at its end by the
-  /// forces. The odometry's velocity would not do, because it is filtered.
+  /// forces. The odometry's velocity does not serve, because it is filtered.
   struct Reached {
     Eigen::Vector3d mean;
     Eigen::Vector3d velocity;

@@ -8,7 +8,7 @@
 namespace lidar::ouster {
 
 inline constexpr int kMaxJsonDepth = 16;
-/// Strings, lists and objects: each takes up to 100 times as much memory as text.
+/// Limit of strings, lists and objects: each takes up to 100 times as much memory as text.
 inline constexpr std::size_t kMaxJsonItems = 1U << 16;
 
 /// The object in `text`; discarded (`is_discarded()`) if the text is no JSON object or exceeds the

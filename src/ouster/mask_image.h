@@ -11,8 +11,8 @@
 
 namespace lidar::ouster {
 
-/// A byte for each pixel, not zero to keep it: beams x columns_per_scan, row-major, as packets have
-/// them.
+/// A byte for each pixel; pixels with 0 are left out. Beams x columns_per_scan, row-major, as
+/// packets have them.
 using PixelMask = std::vector<std::uint8_t>;
 
 /// Reads a binary PGM (P5, 8 bit) of one pixel a beam and column, destaggered as pictures of a scan

@@ -30,7 +30,7 @@ struct TwccFeedback {
 };
 
 /// The sender's side. TWCC has no ECN bits and no report time: packets count as Not-ECT, and the
-/// report as made at the arrival of its last packet.
+/// report as made when the last packet in it arrived.
 class TwccMapper {
  public:
   void OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t seq);

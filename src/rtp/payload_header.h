@@ -48,7 +48,7 @@ struct SliceInfo {
   std::uint16_t first_column = 0;
   std::uint32_t duration_ns = kUnknownDuration;
   std::uint64_t capture_ntp = 0;  // 0: not known
-  // Bit n: the sender skipped the slice n + 1 places before this one, across scans. For
+  // Bit n: the sender skipped the slice that is n + 1 slices earlier, also of an earlier scan. For
   // kSliceAfterSkip only.
   std::uint64_t skipped = 0;
 

@@ -51,8 +51,8 @@ struct SendDecision {
 ///
 /// Not thread-safe, no callbacks; a caller with a lock holds it around each call.
 ///
-/// It only sequences: `model/` measures the path, `response/` decides what follows from it, and
-/// `streams` shares the result.
+/// It only calls the parts in order: `model/` measures the path, `response/` decides what follows
+/// from it, and `streams` shares the result.
 class Controller {
  public:
   explicit Controller(const Parameters& parameters) : p_(parameters) {}

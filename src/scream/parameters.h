@@ -98,7 +98,7 @@ struct Parameters {
   /// or above this part after a measurement over less than a frame period and VIRTUAL_RTT, with
   /// fewer than half of the packets marked, or shortly after another reaction.
   double drop_threshold_unsure = 1.5;
-  /// The wait must also have grown by so many gaps between packets, on a path with marks.
+  /// The queue delay must also have grown by so many packet gaps on a path with marks.
   double drop_growth = 3;
   /// Queue that shows a busy link; without marks, this part of qdelay_target.
   Duration busy_qdelay = 5ms;
@@ -118,10 +118,10 @@ struct Parameters {
   /// Pacing: a frame has left this long before its period ends, within these fractions of the
   /// period. On a full link a queue of this length comes and goes with each frame.
   Duration pacing_reserve = 4ms;
-  /// If marks work, it is this part of the queue at which marking starts, if that is less,
+  /// If marks work, the reserve is this part of the queue delay at which marking starts, if less,
   double onset_reserve = 0.8;
   Duration shortest_pacing_reserve = 700us;
-  /// and less still for frames at shorter periods than this.
+  /// and still less for frames with shorter periods than this.
   Duration long_frame_period = 50ms;
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;

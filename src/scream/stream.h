@@ -47,8 +47,8 @@ class Stream {
   const StreamConfig& config() const { return config_; }
   double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
-  /// The present queue came from a gap or a drop of the capacity. Once it has left, it no longer
-  /// lowers the target.
+  /// Notes that the queue came from a gap or a drop of the capacity. The reduction of the target
+  /// that it causes then fades fast.
   void OnSuddenBacklog() { sudden_backlog_ = !queue_.empty() || rate_adjust_factor_ > 0; }
   /// Starts to measure silence, if that has not begun.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }

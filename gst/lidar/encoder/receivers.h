@@ -26,7 +26,7 @@ class ReceiverEvents {
     std::vector<Slice> received;
     bool key_requested = false;
   };
-  /// Returns false for other events; the caller keeps `event`.
+  /// Returns false if `event` is no report of a receiver; the caller keeps it.
   bool OnEvent(GstEvent* event);
   void Forget();
   /// All reports since the last call; empty if `src` leads to several places.

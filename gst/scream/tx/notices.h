@@ -28,7 +28,7 @@ class Notices {
   /// Starts with a new controller.
   void Reset(const scream::Controller& controller, Time now);
   FeedbackWatch& watch() { return watch_; }
-  /// No encoder took a target.
+  /// Notes that no encoder took a target.
   void OnUnheeded() { unheeded_ = true; }
   guint estimated_bps() const { return estimated_bps_; }
 

@@ -45,7 +45,7 @@ struct BeamTable {
     std::int32_t height_um = 0;  // of the line above the origin
     std::int32_t side_um = 0;    // distance at which it passes the origin, to the left
     std::array<std::int32_t, kMostPeriod>
-        swings{};               // of the next `period` columns, again and again
+        swings{};               // added to azimuths, by the firing modulo `period`
     std::int32_t reach_um = 0;  // position of range 0 along the beam
     std::uint32_t delay = 0;    // delay of the beam in columns; below columns()
 
@@ -108,8 +108,8 @@ struct BeamTable {
 
   /// Writes all but the beams, the places and the curves.
   void Write(ByteWriter* writer) const;
-  /// Returns nothing for numbers that no encoder writes. Beams that follow are 0; so are all places
-  /// if there are grains, and all curves on a path.
+  /// Returns nothing for numbers that no encoder writes. What the stream has later is 0: beams,
+  /// places if there are grains, and curves on a path.
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 

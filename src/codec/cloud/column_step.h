@@ -16,7 +16,7 @@ struct BeamAzimuth {
 /// The azimuths of a beam, rising.
 using BeamAzimuths = std::vector<BeamAzimuth>;
 
-/// Returns the smallest step that is the usual one of beams with a tenth of all points; 0: none.
+/// Returns the smallest step that is usual in beams with a tenth of all points together; 0: none.
 std::int32_t UsualStep(const std::vector<BeamAzimuths>& beams);
 /// Returns the mean step of neighbours that are one or a few steps apart; 0: none.
 double MeanStep(const std::vector<BeamAzimuths>& beams, std::int32_t usual);

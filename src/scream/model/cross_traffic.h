@@ -138,8 +138,8 @@ class CrossTraffic {
   Average sent_, arrived_, bytes_;
   Average lately_sent_, lately_arrived_;
   double sent_sent_ = 0, sent_arrived_ = 0;  // sums of products
-  int unseen_ = 0;                           // weight in a row without knowing to be alone
-  int against_ = 0;                          // weight in a row against `found_`
+  int unseen_ = 0;   // weight in a row of a queue that may not be ours alone
+  int against_ = 0;  // weight in a row of shares that contradict `found_`
   bool found_ = false;
 };
 

@@ -8,7 +8,7 @@
 namespace lidar::scream {
 
 /// The marks, losses, delays and round trips of packets that met a gap, an outage or another route
-/// do not count. Packets that were under way at a reaction cause no other reaction.
+/// do not count. Packets that were under way at a reaction cause no second reaction.
 class Evidence {
  public:
   void BeginAt(Time time) {

@@ -101,7 +101,7 @@ class PathModel {
   /// Time for which arrived packets are unreported and still count as in flight. It is 0 unless
   /// reports are far apart relative to the round trip.
   Duration UnreportedTime() const;
-  /// The clocks drift apart: until this time the draft sends at half the rate.
+  /// The draft sends at half the rate until this time, because the clocks drift apart.
   Time half_rate_until() const { return half_rate_until_; }
   /// Fills in round trips, delays, marks and rates; leaves other statistics alone.
   void Describe(Time now, Statistics* statistics) const;

@@ -68,7 +68,7 @@ class SentHistory {
   DataSize bytes_in_flight() const { return in_flight_; }
   /// Sending time of the packet that has been in flight longest.
   std::optional<Time> oldest_in_flight() const;
-  /// An SSRC has as many unsettled packets as its numbers can tell apart.
+  /// Returns true if an SSRC has as many unsettled packets as its numbers can distinguish.
   bool full() const;
   void set_max_reordering_window(Duration d) { max_reordering_window_ = d; }
   std::uint64_t foreign_blocks() const { return foreign_blocks_; }

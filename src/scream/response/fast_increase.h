@@ -24,7 +24,7 @@ class FastIncrease {
     round_start_ = now;
     ++rounds_;
   }
-  /// Behaves as at the start of a flow, after a gap or an outage.
+  /// Call it after a gap or an outage: the window then grows as at the start of a flow.
   void Restart() { starting_ = true; }
   /// Returns the fraction of the acknowledged bytes by which the window may grow. It falls with the
   /// queue's length.

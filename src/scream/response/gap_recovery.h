@@ -68,7 +68,7 @@ class GapRecovery {
   bool Slow(std::optional<DataRate> rate) const {
     return before_ && rate && *rate < before_->rate * kGapPart;
   }
-  /// A restored window ended behind a slow link: lowers the remembered rate.
+  /// The link was slow after a window was restored: lowers the remembered window and rate to it.
   void BelieveLess() {
     const auto tried = std::exchange(unproven_, std::nullopt);
     if (!tried || *tried >= before_->state.window) return;
@@ -89,7 +89,7 @@ class GapRecovery {
     if (rate < before_->rate * kGapPart) return std::nullopt;
     return rate * path.rtt().min() * p_.target_rate_divisor;
   }
-  /// Returns the next step back if no queue measures the link.
+  /// Returns the next larger window if no queue measures the link.
   std::optional<DataSize> Unproven(Time now, const PathModel& path, DataSize ref_wnd) const {
     // Packets before the newest may have marks from the gap.
     const bool calm = path.queue_delay().qdelay() < p_.busy_qdelay && !path.newest_marked();
@@ -111,7 +111,7 @@ class GapRecovery {
   std::optional<Time> last_sign_;  // last sign of a gap
   Time first_sign_{};
   Time last_restart_{};
-  std::optional<DataSize> unproven_;  // window of a step back that is not measured yet
+  std::optional<DataSize> unproven_;  // restored window that is not measured yet
 };
 
 }  // namespace lidar::scream

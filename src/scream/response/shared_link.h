@@ -18,7 +18,8 @@ inline double LateMarking(Duration onset) {
 }
 
 /// Returns 1 if marking starts so early that a bolder window adds little delay. Marks without a
-/// queue are a classic flow's (RFC 9332, section 2.1): the draft is bold enough beside it.
+/// queue of ours come from a classic flow's queue, by coupling (RFC 9332, section 2.1): the draft
+/// is bold enough beside it.
 inline double EarlyMarking(Duration onset) {
   constexpr Duration kCoupled = 700us, kOwn = 900us;
   const double own = std::clamp(Seconds(onset - kCoupled) / Seconds(kOwn - kCoupled), 0.0, 1.0);
@@ -44,8 +45,8 @@ inline double AboveHalf(DataRate own, DataRate link) {
 }
 
 /// Half of the link is enough beside other flows. A flow with less, or with an unknown share, is
-/// about as bold as Prague or Cubic; a flow with more gives way like the gentlest. So neither the
-/// kind nor the number of the others must be known.
+/// about as bold as Prague or Cubic; a flow with more gives way like the gentlest, the draft. So
+/// neither the kind nor the number of the others must be known.
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
   constexpr double kGrowthOfLess = 1.3;  // above Prague's, as whole scans leave pauses
   constexpr double kGrowthOfMore = 1.0 / 3;

@@ -25,8 +25,8 @@ struct RunOptions {
   double speed_mps = 12;
   std::uint32_t seed = 1;
   std::uint32_t slices = 0;
-  bool slam = false;  // the edge follows the sensor
-  bool view = false;  // both ends show themselves to browsers
+  bool slam = false;  // the edge finds the sensor's poses
+  bool view = false;  // both ends serve a page to browsers
   std::string pcap;
   std::string scans;  // a folder
   std::string metadata;
