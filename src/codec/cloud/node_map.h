@@ -34,10 +34,12 @@ class NodeMap {
     }
   }
 
-  static constexpr std::uint64_t kStepX = std::uint64_t{1} << 44;
-  static constexpr std::uint64_t kStepY = std::uint64_t{1} << 22;
+  static constexpr std::uint64_t kStepX = std::uint64_t{1} << 42;
+  static constexpr std::uint64_t kStepY = std::uint64_t{1} << 21;
   static constexpr std::uint64_t kStepZ = 1;
-  /// Positions plus one, so that neighbours of position 0 have keys, too.
+  /// Positions plus one, so that neighbours of position 0 have keys, too. A field of 21 bits holds
+  /// each position of a cloud in a tree of kMostDepth, because DepthFor() leaves the cells at its
+  /// edge free.
   static std::uint64_t KeyOf(const CellPosition& p) {
     return (p[0] + 1) * kStepX + (p[1] + 1) * kStepY + (p[2] + 1) * kStepZ;
   }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "src/codec/cloud/cell_cover.h"
@@ -54,13 +56,17 @@ TEST(CellTree, GivesBackCellsAndCounts) {
 
 class Cover : public ::testing::TestWithParam<decltype(&CoverByOwnCells)> {};
 
-TEST_P(Cover, GivesEachPointACellWhoseMiddleIsWithinTheError) {
-  const auto points = FloorAndWall(3'000);
+/// Expects that each point has one cell, whose middle is within 5 cm.
+void ExpectAllWithinTheError(const std::vector<Point>& points, decltype(&CoverByOwnCells) cover) {
   const CellGrid grid = CellGrid::ForError(0.05);
   EXPECT_LE(grid.error_m(), 0.05);
+  float farthest = 0;
+  for (const Point& p : points)
+    for (const float c : p) farthest = std::max(farthest, std::abs(c));
+  const unsigned depth = grid.DepthFor(static_cast<double>(farthest));
+  ASSERT_LE(depth, kMostDepth);
   CoveredPoints covered;
-  const unsigned depth = grid.DepthFor(5);
-  GetParam()(points, grid, depth, &covered);
+  cover(points, grid, depth, &covered);
   std::vector<int> seen(points.size(), 0);
   std::size_t at = 0;
   for (std::size_t i = 0; i < covered.cells.codes.size(); ++i) {
@@ -75,6 +81,21 @@ TEST_P(Cover, GivesEachPointACellWhoseMiddleIsWithinTheError) {
     }
   }
   EXPECT_EQ(seen, std::vector<int>(points.size(), 1));
+}
+
+TEST_P(Cover, GivesEachPointACellWhoseMiddleIsWithinTheError) {
+  ExpectAllWithinTheError(FloorAndWall(3'000), GetParam());
+}
+TEST_P(Cover, DistinguishesAllCellsOfTheDeepestTree) {
+  // The largest tree has 2^21 cells along an axis. These points are 2^20 cells apart.
+  const float apart = CellGrid::ForError(0.05).step_m * static_cast<float>(1 << 20);
+  for (const std::size_t axis : {0U, 1U, 2U}) {
+    Point near{1, 2, 3};
+    Point far = near;
+    near[axis] -= apart / 2;
+    far[axis] += apart / 2;
+    ExpectAllWithinTheError({near, far}, GetParam());
+  }
 }
 INSTANTIATE_TEST_SUITE_P(All, Cover, ::testing::Values(&CoverByOwnCells, &CoverByFewCells));
 
