@@ -237,7 +237,6 @@ void Odometry::StartMap(const Surface& fine) {
   map_ = LocalMap({settings_.voxel_size_m, settings_.max_range_m});
   AddToMap(fine);
   lost_scans_ = fitting_scans_ = 0;
-  lost_for_ = Duration{0};
 }
 
 /// Aligns to a coarse map: the motion is unknown, so a car may have left the reach of the fine
