@@ -244,7 +244,6 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
   if (!OpenSockets(metadata) || !SetMetadata(std::move(metadata))) return false;
   new_init_id_us_ = 0;
   wrong_sizes_in_a_row_ = 0;
-  size_reported_ = false;
   if (first) last_packet_us_ = g_get_monotonic_time();
   gst_element_post_message(
       gst_element(),
