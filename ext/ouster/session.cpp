@@ -221,21 +221,17 @@ void Session::UpdateCounters() {
   PostLoss(now);
 }
 
-/// Posts that packets were lost, at most once a second.
 void Session::PostLoss(const Counters& now) {
-  const guint64 lost = now.batcher.lost_packets;
-  if (lost == posted_losses_) return;
+  const guint64 total = now.batcher.lost_packets;
   const auto time = static_cast<GstClockTime>(g_get_monotonic_time()) * GST_USECOND;
-  if (GST_CLOCK_TIME_IS_VALID(last_loss_post_) && time - last_loss_post_ < GST_SECOND) return;
-  last_loss_post_ = time;
+  const auto lost = loss_report_.Take(total, time);
+  if (!lost) return;
   gst_element_post_message(
       gst_element(),
-      gst_message_new_element(
-          GST_OBJECT(element_),
-          gst_structure_new("ouster-packet-loss", "lost", G_TYPE_UINT64, lost - posted_losses_,
-                            "total", G_TYPE_UINT64, lost, "dropped-by-kernel", G_TYPE_UINT64,
-                            now.kernel_drops, nullptr)));
-  posted_losses_ = lost;
+      gst_message_new_element(GST_OBJECT(element_),
+                              gst_structure_new("ouster-packet-loss", "lost", G_TYPE_UINT64, *lost,
+                                                "total", G_TYPE_UINT64, total, "dropped-by-kernel",
+                                                G_TYPE_UINT64, now.kernel_drops, nullptr)));
 }
 
 Counters Session::counters() const {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 
+#include "ext/ouster/loss_report.h"
 #include "ext/ouster/settings.h"
 #include "gst/common/imu_pad.h"
 #include "gst/common/stats.h"
@@ -96,8 +97,7 @@ class Session {
   bool ended_ = false;
   GstClockTime start_ = 0;  // slices that end before it are left out
   Counters base_;           // of earlier streams
-  guint64 posted_losses_ = 0;
-  GstClockTime last_loss_post_ = GST_CLOCK_TIME_NONE;
+  LossReport loss_report_;
 
   mutable std::mutex mutex_;  // guards all below; never held while waiting, pushing or posting
   Counters counters_;
