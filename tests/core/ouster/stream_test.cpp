@@ -280,6 +280,9 @@ TEST(Legacy, TheFirstSenderHeardIsTheSensorUntilItFallsSilent) {
   EXPECT_EQ(push(1, Time{1001ms}, {2}), PacketVerdict::kForeign);
   EXPECT_EQ(push(1, Time{1002ms}, {1}), PacketVerdict::kLidar);
   EXPECT_EQ(push(2, Time{2500ms}, {2}), PacketVerdict::kLidar);
+  // A seek leads back to the first sender.
+  stream->Reposition();
+  EXPECT_EQ(push(3, Time{1500ms}, {1}), PacketVerdict::kLidar);
 }
 
 TEST(Imu, ReadsLegacyPacketsInSiUnits) {
