@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gst/common/buffer_map.h"
@@ -22,19 +23,25 @@ class RunTrace {
   explicit RunTrace(GstHarness* h, bool with_bytes = true)
       : h_(h), with_bytes_(with_bytes), bus_(gst_bus_new()) {
     gst_element_set_bus(h->element, bus_);
-    constexpr auto kAll =
-        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST |
-                                     GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM);
-    probe_ = gst_pad_add_probe(h->sinkpad, kAll, OnData, this, nullptr);
+    Watch(h->sinkpad);
   }
   ~RunTrace() {
-    gst_pad_remove_probe(h_->sinkpad, probe_);
+    for (const auto& [pad, probe] : probes_) gst_pad_remove_probe(pad.get(), probe);
     gst_element_set_bus(h_->element, nullptr);
     gst_object_unref(bus_);
   }
   RunTrace(const RunTrace&) = delete;
   RunTrace& operator=(const RunTrace&) = delete;
 
+  /// Adds what passes another pad of the element. All threads may call it.
+  void Watch(GstPad* pad) {
+    constexpr auto kAll =
+        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST |
+                                     GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM);
+    const std::lock_guard lock(mutex_);
+    probes_.emplace_back(GST_PAD(gst_object_ref(pad)),
+                         gst_pad_add_probe(pad, kAll, OnData, this, nullptr));
+  }
   /// Starts the element, with the events that come before the first buffer.
   void Begin(const std::string& caps) {
     gst_harness_play(h_);
@@ -163,6 +170,11 @@ class RunTrace {
         break;
       case GST_MESSAGE_LATENCY:
         break;
+      case GST_MESSAGE_ELEMENT: {
+        const gst::StringPtr text(gst_structure_to_string(gst_message_get_structure(message)));
+        lines->push_back(std::string("message ") + text.get());
+        return;
+      }
       default:
         return;  // GStreamer's own message
     }
@@ -174,8 +186,8 @@ class RunTrace {
   GstHarness* const h_;
   const bool with_bytes_;
   GstBus* const bus_;
-  gulong probe_ = 0;
-  std::mutex mutex_;  // guards the lines
+  std::mutex mutex_;  // guards all below
+  std::vector<std::pair<gst::PadPtr, gulong>> probes_;
   Lines lines_;
   GstClockTime first_capture_ = GST_CLOCK_TIME_NONE;
 };

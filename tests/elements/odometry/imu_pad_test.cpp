@@ -101,6 +101,27 @@ TEST(ImuInput, TurnsRatesAsTheImuIsMounted) {
   EXPECT_LT((turns[0].rate - Eigen::Vector3d(0, 1, 0.5)).norm(), 1e-6) << turns[0].rate;
 }
 
+TEST(ImuInput, KeepsTheNewestSamplesWhereNoScanTakesThem) {
+  constexpr std::size_t kTooMany = 10;
+  ImuInput input;
+  ASSERT_TRUE(input.SetCaps(ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < ImuInput::kMostSamples + kTooMany; ++i) {
+    cdr::Imu imu;
+    imu.header.stamp = Time{} + Duration{static_cast<std::int64_t>(i)};
+    const auto sample = cdr::WriteImuSample(imu);
+    bytes.insert(bytes.end(), sample.begin(), sample.end());
+  }
+  ASSERT_TRUE(input.Add({bytes.data(), bytes.size()}));
+  const auto kept = input.Take();
+  ASSERT_EQ(kept.size(), ImuInput::kMostSamples);
+  EXPECT_EQ(kept.front().time, Time{} + Duration{kTooMany});
+  EXPECT_EQ(kept.back().time, Time{} + Duration{kTooMany + ImuInput::kMostSamples - 1});
+  ASSERT_TRUE(input.Add({bytes.data(), kImuSampleSize}));
+  input.Clear();
+  EXPECT_TRUE(input.Take().empty());
+}
+
 TEST_F(ImuPad, UsesSamplesThatAgreeWithTheScans) {
   ASSERT_TRUE(Describe(kImuFields));
   EXPECT_GE(ScansWithImu(0), kScans / 2);

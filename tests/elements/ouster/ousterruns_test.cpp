@@ -1,0 +1,492 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// ouster_src: each property has an effect, each count counts, and an element that was stopped
+// behaves as a new one.
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <set>
+
+#include "gst/net/udp_socket.h"
+#include "src/tools/bench/ouster_replay/http_server.h"
+#include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/run_trace.h"
+
+namespace lidar::test {
+namespace {
+
+/// A capture that can be changed, of a sensor of 32 beams: 64 packets of a scan, and IMU packets.
+struct CaptureFile {
+  struct Record {
+    guint64 us;  // when it was captured
+    std::string frame;
+  };
+  static constexpr std::size_t kPayload = 42;  // in a frame
+  static constexpr std::size_t kLidarFrame = 8490;
+  static constexpr std::size_t kColumns = kPayload + 32;
+
+  explicit CaptureFile(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    head = bytes.substr(0, 24);
+    for (std::size_t at = 24; at + 16 <= bytes.size();) {
+      guint32 words[3];
+      std::memcpy(words, bytes.data() + at, sizeof words);
+      records.push_back({words[0] * G_USEC_PER_SEC + words[1], bytes.substr(at + 16, words[2])});
+      at += 16 + words[2];
+    }
+  }
+  void Write(const std::string& path, std::size_t cut = 0) const {
+    std::string bytes = head;
+    for (const auto& [us, frame] : records) {
+      const auto size = static_cast<guint32>(frame.size());
+      const guint32 words[4] = {static_cast<guint32>(us / G_USEC_PER_SEC),
+                                static_cast<guint32>(us % G_USEC_PER_SEC), size, size};
+      bytes.append(reinterpret_cast<const char*>(words), sizeof words) += frame;
+    }
+    std::ofstream(path, std::ios::binary) << bytes.substr(0, bytes.size() - cut);
+  }
+  /// Returns only the lidar packets, as the scan `n` periods later and captured `delay_us` later.
+  std::vector<Record> Scan(guint n, guint64 delay_us = 0) const {
+    std::vector<Record> scan;
+    for (Record r : records) {
+      if (r.frame.size() != kLidarFrame) continue;
+      r.us += n * 100'000 + delay_us;
+      r.frame[kPayload + 2] = static_cast<char>(r.frame[kPayload + 2] + static_cast<char>(n));
+      const std::size_t column = (kLidarFrame - kColumns - 32) / 16;
+      for (std::size_t c = 0; c < 16; ++c) {
+        guint64 t = 0;
+        std::memcpy(&t, &r.frame[kColumns + c * column], sizeof t);
+        t += n * 100'000'000;
+        std::memcpy(&r.frame[kColumns + c * column], &t, sizeof t);
+      }
+      scan.push_back(std::move(r));
+    }
+    return scan;
+  }
+
+  std::string head;
+  std::vector<Record> records;
+};
+
+const std::string kDual = "OS-0-32-U1_v2.2.0_1024x10";
+const std::string kRunFiles =
+    ::testing::TempDir() + "ouster_run_" + std::to_string(g_random_int()) + "_";
+
+/// Removes the files of these tests.
+class RunFiles : public ::testing::Environment {
+ public:
+  void TearDown() override {
+    for (const char* name : {"beams.json", "ptp.json", "ptp.pcap", "half.pcap", "mask.pgm",
+                             "troubles.pcap", "damaged.pcap"})
+      std::remove((kRunFiles + name).c_str());
+  }
+};
+const auto* const kRemoval = ::testing::AddGlobalTestEnvironment(new RunFiles);
+
+std::string TextOfFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Writes metadata in which `from` is replaced. Returns its path.
+std::string ChangedMetadata(const char* name, const std::string& from, const std::string& to) {
+  std::string text = TextOfFile(DataPath(kDual + ".json"));
+  text.replace(text.find(from), from.size(), to);
+  const std::string path = kRunFiles + name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+/// Writes a capture of a sensor on PTP: its clock is 37 s ahead of UTC. Returns its path.
+std::string CaptureOnPtp() {
+  CaptureFile file(DataPath(kDual + ".pcap"));
+  file.records = file.Scan(0);
+  for (CaptureFile::Record& r : file.records) {
+    guint64 ns = 0;
+    std::memcpy(&ns, &r.frame[CaptureFile::kColumns], sizeof ns);
+    r.us = ns / 1000 - 37 * G_USEC_PER_SEC;
+  }
+  const std::string path = kRunFiles + "ptp.pcap";
+  file.Write(path);
+  return path;
+}
+
+std::string HalfACapture() {
+  CaptureFile file(DataPath(kDual + ".pcap"));
+  file.records.resize(file.records.size() / 2);
+  const std::string path = kRunFiles + "half.pcap";
+  file.Write(path);
+  return path;
+}
+
+std::string LeftMask() {
+  const std::string path = kRunFiles + "mask.pgm";
+  std::ofstream mask(path, std::ios::binary);
+  mask << "P5\n1024 32\n255\n";
+  for (int i = 0; i < 32; ++i) mask << std::string(512, '\xff') << std::string(512, '\0');
+  return path;
+}
+
+/// ouster_src on a file: its clouds and its IMU's samples.
+class FileRun {
+ public:
+  explicit FileRun(const std::string& properties) {
+    const gst::ElementPtr element(gst_parse_launch(("ouster_src " + properties).c_str(), nullptr));
+    h_.reset(gst_harness_new_with_element(element.get(), nullptr, "src"));
+    gst_harness_use_systemclock(h_.get());
+    trace_.emplace(h_.get());
+    g_signal_connect(element.get(), "pad-added", G_CALLBACK(OnPad), this);
+  }
+  ~FileRun() {
+    Stop();
+    trace_.reset();
+  }
+  FileRun(const FileRun&) = delete;
+  FileRun& operator=(const FileRun&) = delete;
+
+  /// Plays to the end. Returns what happened.
+  Lines Play() {
+    gst_harness_play(h_.get());
+    AwaitEnd();
+    Lines lines = trace_->Take();
+    lines.push_back("latency " + std::to_string(gst_harness_query_latency(h_.get())));
+    return lines;
+  }
+  Lines SeekToBegin() {
+    EXPECT_TRUE(gst_element_seek_simple(h_->element, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
+    AwaitEnd();
+    return trace_->TakeBuffers();
+  }
+  void Stop() {
+    trace_->Stop();
+    trace_->Take();
+  }
+
+ private:
+  static void OnPad(GstElement*, GstPad* pad, gpointer self) {
+    static_cast<FileRun*>(self)->trace_->Watch(pad);
+  }
+  void AwaitEnd() {
+    for (bool ended = false; !ended;) {
+      const gst::EventPtr event(gst_harness_pull_event(h_.get()));
+      ASSERT_TRUE(event);
+      ended = GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
+    }
+  }
+  Harness h_;
+  std::optional<RunTrace> trace_;
+};
+
+/// The properties of a file's source, without `changed`.
+std::string WithFile(const std::string& changed) {
+  std::string all;
+  if (changed != "location") all += " location=" + DataPath(kDual + ".pcap");
+  if (changed != "metadata") all += " metadata=" + DataPath(kDual + ".json");
+  return all;
+}
+
+struct OusterEffect {
+  const char* others;  // properties that the effect needs
+  const char* property;
+  std::string value;
+};
+
+const OusterEffect kFileEffects[] = {
+    {"", "location", HalfACapture()},
+    {"", "metadata", ChangedMetadata("beams.json", "27.67", "30.67")},
+    {"", "is-live", "true"},
+    {"num-buffers=12", "loop", "true"},
+    {"", "imu", "false"},
+    {"", "slices-per-scan", "4"},
+    {"", "channels", "ring"},
+    {"", "return", "second"},
+    {"", "pts-from", "arrival"},
+    {"", "min-range", "3"},
+    {"", "max-range", "3"},
+    {"", "azimuth-sectors", "0-90"},
+    {"", "mask-location", LeftMask()},
+    {"", "invalid", "nan"},
+    {"", "destagger", "true"},
+};
+
+class OusterEachFileProperty : public ::testing::TestWithParam<OusterEffect> {};
+TEST_P(OusterEachFileProperty, ChangesWhatComesOut) {
+  const auto& [others, property, value] = GetParam();
+  const auto play = [&](const std::string& more) {
+    return FileRun(WithFile(property) + " " + others + more).Play();
+  };
+  const auto change = std::string(" ") + property + "=" + value;
+  static const Lines usual = FileRun(WithFile("")).Play();
+  EXPECT_NE(play(change), *others != '\0' ? FileRun(WithFile("") + " " + others).Play() : usual)
+      << property;
+}
+INSTANTIATE_TEST_SUITE_P(Of, OusterEachFileProperty, ::testing::ValuesIn(kFileEffects));
+
+TEST(OusterProperties, ThePtpOffsetMakesASynchronisedClockOfUtc) {
+  const std::string source =
+      "location=" + CaptureOnPtp() + " metadata=" +
+      ChangedMetadata("ptp.json", "\"base_pn\": \"\",",
+                      "\"config_params\": {\"timestamp_mode\": \"TIME_FROM_PTP_1588\"},");
+  const auto synchronised = [](const Lines& lines) {
+    return std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+      return line.find("clock-synchronised=(boolean)true") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(synchronised(FileRun(source).Play()));
+  EXPECT_TRUE(synchronised(FileRun(source + " ptp-utc-tai-offset=-36.5").Play()));
+  EXPECT_FALSE(synchronised(FileRun(source + " ptp-utc-tai-offset=0").Play()));
+}
+
+/// Returns whether a program could bind a port of this machine.
+bool IsFree(const char* address, guint16 port) {
+  const std::unique_ptr<GSocket, gst::GObjectUnref> socket(
+      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
+  const std::unique_ptr<GSocketAddress, gst::GObjectUnref> place(
+      g_inet_socket_address_new_from_string(address, port));
+  return g_socket_bind(socket.get(), place.get(), FALSE, nullptr) != FALSE;
+}
+
+/// A sensor that refuses each configuration, and keeps what it was asked.
+class RefusingSensor {
+ public:
+  explicit RefusingSensor(int status) : status_(status) {}
+  std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
+  bool asked() const { return asked_; }
+
+ private:
+  tools::HttpReply Answer(const tools::HttpRequest& request) {
+    asked_ = true;
+    if (request.method == "GET" && status_ < 500) return {200, "{}", {}};
+    return {status_, "{}", {}};
+  }
+  const int status_;
+  std::atomic<bool> asked_{false};
+  tools::HttpServer server_{"127.0.0.1", 0,
+                            [this](const tools::HttpRequest& r) { return Answer(r); }};
+};
+
+/// Live sources: the ports they take, what they ask a sensor, and what they say first.
+class OusterLiveEffects : public ::testing::Test {
+ protected:
+  /// Returns the text of the first error or warning.
+  static std::string FirstProblem(const std::string& properties) {
+    const gst::ElementPtr pipeline(
+        gst_parse_launch(("ouster_src " + properties + " ! fakesink").c_str(), nullptr));
+    gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+    GstBus* bus = gst_element_get_bus(pipeline.get());
+    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
+        bus, kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING)));
+    gst_object_unref(bus);
+    gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+    if (!message) return "nothing";
+    return GST_MESSAGE_TYPE_NAME(message.get()) + (": " + TextOf(message.get()));
+  }
+  std::string Ports(guint16 lidar, guint16 imu) const {
+    return "metadata=" + DataPath(kDual + ".json") + " lidar-port=" + std::to_string(lidar) +
+           " imu-port=" + std::to_string(imu) + " ";
+  }
+  /// Returns which of two addresses' ports a source takes.
+  std::string Taken(const std::string& properties, guint16 port) const {
+    const gst::ElementPtr source(gst_parse_launch(("ouster_src " + properties).c_str(), nullptr));
+    EXPECT_NE(gst_element_set_state(source.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+    std::string taken;
+    for (const char* address : {"127.0.0.1", "127.0.0.2"})
+      if (!IsFree(address, port)) taken += std::string(address) + " ";
+    gst_element_set_state(source.get(), GST_STATE_NULL);
+    return taken;
+  }
+};
+
+TEST_F(OusterLiveEffects, PortsAndAddressAreThoseOfItsSockets) {
+  const guint16 a = FreePort();
+  const guint16 b = FreePort();
+  EXPECT_EQ(Taken(Ports(a, b), a), "127.0.0.1 127.0.0.2 ");
+  EXPECT_EQ(Taken(Ports(a, b), b), "127.0.0.1 127.0.0.2 ");
+  EXPECT_EQ(Taken(Ports(a, b) + "address=127.0.0.2", a), "127.0.0.2 ");
+  EXPECT_EQ(Taken(Ports(a, b) + "imu=false", b), "");
+  EXPECT_EQ(Taken(Ports(a, a), b), "");
+  EXPECT_EQ(IsFree("127.0.0.1", a), true) << "a source that stopped leaves its port";
+}
+
+TEST_F(OusterLiveEffects, AGroupMustBeOneAndItsInterfaceMustExist) {
+  const std::string ports = Ports(FreePort(), FreePort());
+  const std::string group = FirstProblem(ports + "multicast-group=10.0.0.1");
+  EXPECT_NE(group.find("joining multicast group"), std::string::npos) << group;
+  const std::string interface =
+      FirstProblem(ports + "multicast-group=239.201.7.1 multicast-iface=nosuch0");
+  EXPECT_NE(interface.find("nosuch0"), std::string::npos) << interface;
+}
+
+TEST_F(OusterLiveEffects, TheReceiveBufferIsThatOfItsSocket) {
+  for (const guint bytes : {8192U, 32768U}) {
+    const gst::ElementPtr pipeline(
+        gst_parse_launch(("ouster_src name=s " + Ports(FreePort(), FreePort()) +
+                          "buffer-size=" + std::to_string(bytes) + " ! fakesink")
+                             .c_str(),
+                         nullptr));
+    const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(pipeline.get()), "s"));
+    gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+    EXPECT_TRUE(Eventually([&] {
+      GstStructure* stats = nullptr;
+      g_object_get(source.get(), "stats", &stats, nullptr);
+      const gst::StructurePtr owned(stats);
+      guint granted = 0;
+      gst_structure_get_uint(stats, "receive-buffer", &granted);
+      return granted == bytes;
+    })) << bytes;
+    gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  }
+}
+
+const OusterEffect kSensorEffects[] = {
+    {R"("udp_port_lidar":7)", "lidar-port", "7"},
+    {R"("udp_port_imu":9)", "imu-port", "9"},
+    {R"("udp_dest":"10.1.2.3")", "udp-dest", "10.1.2.3"},
+    {R"("lidar_mode":"512x10")", "lidar-mode", "512x10"},
+    {R"("udp_profile_lidar":"LEGACY")", "udp-profile-lidar", "LEGACY"},
+    {R"("timestamp_mode":"TIME_FROM_PTP_1588")", "sensor-timestamp-mode", "TIME_FROM_PTP_1588"},
+    {R"("azimuth_window":[0,90000])", "azimuth-window", "0,90000"},
+    {R"("signal_multiplier":0.5)", "signal-multiplier", "0.5"},
+};
+
+TEST_F(OusterLiveEffects, ASensorIsAskedForWhatTheSettingsSayAndNothingElse) {
+  const RefusingSensor sensor(400);
+  for (const auto& [asked, property, value] : kSensorEffects) {
+    const std::string error =
+        FirstProblem("hostname=" + sensor.host() + " " + property + "=" + value);
+    EXPECT_NE(error.find("does not take the configuration {" + std::string(asked) + "}"),
+              std::string::npos)
+        << error;
+  }
+  EXPECT_TRUE(sensor.asked());
+}
+
+TEST_F(OusterLiveEffects, ASensorThatFailsIsWaitedForOrAnError) {
+  const RefusingSensor sensor(503);
+  EXPECT_EQ(FirstProblem("hostname=" + sensor.host()).rfind("warning: ", 0), 0U);
+  EXPECT_EQ(FirstProblem("reconnect=false hostname=" + sensor.host()).rfind("error: ", 0), 0U);
+}
+
+TEST(OusterProperties, AreAllInATest) {
+  std::set<std::string> tried = {"ptp-utc-tai-offset", "address",     "multicast-group",
+                                 "multicast-iface",    "buffer-size", "hostname",
+                                 "reconnect"};
+  for (const OusterEffect& effect : kFileEffects) tried.insert(effect.property);
+  for (const OusterEffect& effect : kSensorEffects) tried.insert(effect.property);
+  const gst::ElementPtr element(gst_element_factory_make("ouster_src", nullptr));
+  gst_object_ref_sink(element.get());
+  guint count = 0;
+  GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count);
+  for (guint i = 0; i < count; ++i)
+    if (std::string(g_type_name(specs[i]->owner_type)) == "GstLidarOusterSrc" &&
+        (specs[i]->flags & G_PARAM_WRITABLE) != 0) {
+      EXPECT_EQ(tried.count(specs[i]->name), 1U) << specs[i]->name;
+    }
+  g_free(specs);
+}
+
+/// Writes a capture in which each count has something to count. Returns its path.
+std::string CaptureOfTroubles() {
+  using Record = CaptureFile::Record;
+  CaptureFile file(DataPath(kDual + ".pcap"));
+  const std::vector<Record> imu = [&] {
+    std::vector<Record> found;
+    for (const Record& r : file.records)
+      if (r.frame.size() != CaptureFile::kLidarFrame) found.push_back(r);
+    return found;
+  }();
+  std::vector<Record> all;
+  const auto add = [&](const std::vector<Record>& scan, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) all.push_back(scan[i]);
+  };
+  add(file.Scan(0), 0, 64);
+  all.push_back(imu[0]);
+  all.push_back(imu[1]);
+  const std::vector<Record> second = file.Scan(1);
+  add(second, 0, 9);  // two packets are missing, and a third one comes late
+  add(second, 12, 40);
+  all.push_back(second[9]);
+  add(second, 40, 45);
+  all.push_back(second[44]);
+  Record foreign = second[45];
+  foreign.frame[CaptureFile::kPayload + 7] ^= 1;
+  all.push_back(foreign);
+  Record stray = second[45];
+  stray.frame[CaptureFile::kPayload + 3] ^= 0x40;
+  all.push_back(stray);
+  add(second, 45, 64);
+  Record short_one = imu[2];
+  short_one.frame[39] = 8 + 40;  // its length by its UDP header
+  all.push_back(short_one);
+  add(file.Scan(2, 5 * G_USEC_PER_SEC), 0, 64);
+  std::vector<Record> restarted = file.Scan(3, 5 * G_USEC_PER_SEC);
+  for (Record& r : restarted) r.frame[CaptureFile::kPayload + 4] ^= 1;
+  add(restarted, 0, 60);
+  file.records = all;
+  const std::string path = kRunFiles + "troubles.pcap";
+  file.Write(path, 1000);
+  return path;
+}
+
+bool HasLine(const Lines& lines, const std::string& part) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const auto& line) { return line.find(part) != std::string::npos; });
+}
+
+TEST(OusterSecondRun, IsAsTheFirst) {
+  FileRun run("location=" + CaptureOfTroubles() + " metadata=" + DataPath(kDual + ".json"));
+  const Lines first = run.Play();
+  EXPECT_TRUE(HasLine(
+      first,
+      "packets=(guint64)251, packets-lost=(guint64)2, packets-late=(guint64)1, "
+      "packets-duplicate=(guint64)1, packets-stray=(guint64)1, packets-wrong-size=(guint64)1, "
+      "packets-foreign=(guint64)1, packets-damaged=(guint64)0, packets-imu=(guint64)2, "
+      "clock-jumps=(guint64)1, dropped-by-kernel=(guint64)0, restarts=(guint64)1, "
+      "reconnects=(uint)0, slices=(guint64)32, slices-incomplete=(guint64)2, "
+      "receive-buffer=(uint)0, clock-synchronised=(boolean)false;"))
+      << first[first.size() - 2];
+  EXPECT_TRUE(HasLine(first, "message ouster-packet-loss, lost=(guint64)3, total=(guint64)3"));
+  EXPECT_TRUE(HasLine(first, "message warning The sensor was restarted"));
+  EXPECT_TRUE(HasLine(first, "troubles.pcap is cut short"));
+  run.Stop();
+  EXPECT_EQ(run.Play(), first);
+}
+
+TEST(OusterSecondRun, OfAFileThatWasSoughtGivesTheSameClouds) {
+  const std::string troubles = CaptureOfTroubles();
+  FileRun run("location=" + troubles + " metadata=" + DataPath(kDual + ".json"));
+  Lines first = run.Play();
+  first.erase(std::remove_if(first.begin(), first.end(),
+                             [](const auto& line) { return line.rfind("buffer", 0) != 0; }),
+              first.end());
+  Lines again = run.SeekToBegin();
+  for (Lines* lines : {&first, &again})
+    for (std::string& line : *lines) {
+      const std::size_t number = line.find(" slice ");  // scans are counted on
+      if (number != std::string::npos) line.erase(number, line.find(' ', number + 7) - number);
+    }
+  EXPECT_EQ(again, first);
+}
+
+TEST(OusterSecondRun, CountsADamagedPacketAndMissesIt) {
+  CaptureFile file(DataPath("crc_test.pcap"));
+  auto lidar = std::find_if(file.records.begin() + 5, file.records.end(), [](const auto& r) {
+    return r.frame.size() == CaptureFile::kLidarFrame;
+  });
+  lidar->frame[CaptureFile::kColumns + 100] ^= 1;
+  const std::string path = kRunFiles + "damaged.pcap";
+  file.Write(path);
+  FileRun run("location=" + path + " metadata=" + DataPath("crc_test.json"));
+  for (int i = 0; i < 2; ++i) {
+    const Lines lines = run.Play();
+    EXPECT_TRUE(HasLine(lines, "packets-damaged=(guint64)1,")) << lines[lines.size() - 2];
+    EXPECT_TRUE(HasLine(lines, "packets-lost=(guint64)1,")) << lines[lines.size() - 2];
+    EXPECT_TRUE(HasLine(lines, "slices-incomplete=(guint64)2,")) << lines[lines.size() - 2];
+    run.Stop();
+  }
+}
+
+}  // namespace
+}  // namespace lidar::test
