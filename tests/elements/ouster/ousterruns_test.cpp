@@ -214,12 +214,10 @@ const OusterEffect kFileEffects[] = {
 class OusterEachFileProperty : public ::testing::TestWithParam<OusterEffect> {};
 TEST_P(OusterEachFileProperty, ChangesWhatComesOut) {
   const auto& [others, property, value] = GetParam();
-  const auto play = [&](const std::string& more) {
-    return FileRun(WithFile(property) + " " + others + more).Play();
-  };
   const auto change = std::string(" ") + property + "=" + value;
   static const Lines usual = FileRun(WithFile("")).Play();
-  EXPECT_NE(play(change), *others != '\0' ? FileRun(WithFile("") + " " + others).Play() : usual)
+  EXPECT_NE(FileRun(WithFile(property) + " " + others + change).Play(),
+            *others != '\0' ? FileRun(WithFile("") + " " + others).Play() : usual)
       << property;
 }
 INSTANTIATE_TEST_SUITE_P(Of, OusterEachFileProperty, ::testing::ValuesIn(kFileEffects));
