@@ -419,7 +419,7 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
   EXPECT_EQ(Stats(element)["packets-foreign"], 0U);
   Report();
   for (const GstEventType type : {GST_EVENT_STREAM_START, GST_EVENT_CAPS, GST_EVENT_SEGMENT}) {
-    const EventPtr event(gst_harness_try_pull_event(rtcp.get()));
+    const EventPtr event(gst_harness_pull_event(rtcp.get()));
     ASSERT_TRUE(event) << gst_event_type_get_name(type);
     EXPECT_EQ(GST_EVENT_TYPE(event.get()), type);
   }
