@@ -219,7 +219,7 @@ TEST_F(BondedSink, CountsWhatStrangersSendToAnyLink) {
   Restart();
 }
 
-/// Returns the element's own properties as text, without what is of one link or changes by itself.
+/// Returns the writable properties of the element as text, without those of one link.
 std::string SettingsOf(GstElement* element) {
   const std::set<std::string> of_link = {"name",   "parent",      "host",         "port",
                                          "socket", "used-socket", "peer-address", "stats"};
@@ -228,7 +228,8 @@ std::string SettingsOf(GstElement* element) {
   const std::unique_ptr<GParamSpec*, void (*)(gpointer)> specs(raw, g_free);
   std::string text;
   for (guint i = 0; i < count; ++i) {
-    if ((raw[i]->flags & G_PARAM_READABLE) == 0 || of_link.count(raw[i]->name) > 0) continue;
+    if ((raw[i]->flags & G_PARAM_READWRITE) != G_PARAM_READWRITE || of_link.count(raw[i]->name) > 0)
+      continue;
     GValue value = G_VALUE_INIT;
     g_value_init(&value, raw[i]->value_type);
     g_object_get_property(G_OBJECT(element), raw[i]->name, &value);
