@@ -14,6 +14,7 @@
 #include "gst/common/imu_caps.h"
 #include "src/base/byte_writer.h"
 #include "src/cdr/motion_samples.h"
+#include "tests/support/own_properties.h"
 #include "tests/support/run_trace.h"
 
 namespace lidar::test {
@@ -171,16 +172,8 @@ INSTANTIATE_TEST_SUITE_P(Of, OdometryEachProperty, ::testing::ValuesIn(kOdometry
 TEST(OdometryProperties, AreAllInTheTable) {
   std::set<std::string> tried;
   for (const OdometryEffect& effect : kOdometryEffects) tried.insert(effect.property);
-  const gst::ElementPtr element(gst_element_factory_make("lidarodometry", nullptr));
-  gst_object_ref_sink(element.get());
-  guint count = 0;
-  GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count);
-  for (guint i = 0; i < count; ++i)
-    if (std::string(g_type_name(specs[i]->owner_type)) == "GstLidarOdometry" &&
-        (specs[i]->flags & G_PARAM_WRITABLE) != 0) {
-      EXPECT_EQ(tried.count(specs[i]->name), 1U) << specs[i]->name;
-    }
-  g_free(specs);
+  for (const std::string& name : OwnWritableProperties("lidarodometry"))
+    EXPECT_EQ(tried.count(name), 1U) << name;
 }
 
 /// A wall 80 m ahead, which shows no motion to the side.

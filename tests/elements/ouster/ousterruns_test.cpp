@@ -11,6 +11,7 @@
 #include "gst/net/udp_socket.h"
 #include "src/tools/bench/ouster_replay/http_server.h"
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/own_properties.h"
 #include "tests/support/run_trace.h"
 
 namespace lidar::test {
@@ -373,16 +374,8 @@ TEST(OusterProperties, AreAllInATest) {
                                  "reconnect"};
   for (const OusterEffect& effect : kFileEffects) tried.insert(effect.property);
   for (const OusterEffect& effect : kSensorEffects) tried.insert(effect.property);
-  const gst::ElementPtr element(gst_element_factory_make("ouster_src", nullptr));
-  gst_object_ref_sink(element.get());
-  guint count = 0;
-  GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count);
-  for (guint i = 0; i < count; ++i)
-    if (std::string(g_type_name(specs[i]->owner_type)) == "GstLidarOusterSrc" &&
-        (specs[i]->flags & G_PARAM_WRITABLE) != 0) {
-      EXPECT_EQ(tried.count(specs[i]->name), 1U) << specs[i]->name;
-    }
-  g_free(specs);
+  for (const std::string& name : OwnWritableProperties("ouster_src"))
+    EXPECT_EQ(tried.count(name), 1U) << name;
 }
 
 /// Writes a capture in which each count has something to count. Returns its path.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "src/base/byte_writer.h"
+#include "tests/support/own_properties.h"
 #include "tests/support/run_trace.h"
 
 namespace lidar::test {
@@ -86,18 +87,9 @@ TEST(Properties, AreAllInTheTable) {
     tried.insert(name + " " + effect.property);
     elements.insert(name);
   }
-  for (const std::string& name : elements) {
-    const gst::ElementPtr element(gst_element_factory_make(name.c_str(), nullptr));
-    gst_object_ref_sink(element.get());
-    guint count = 0;
-    GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count);
-    for (guint i = 0; i < count; ++i) {
-      const std::string type = g_type_name(specs[i]->owner_type);
-      if (type.rfind("GstLidar", 0) != 0 || (specs[i]->flags & G_PARAM_WRITABLE) == 0) continue;
-      EXPECT_EQ(tried.count(name + " " + specs[i]->name), 1U) << name << " " << specs[i]->name;
-    }
-    g_free(specs);
-  }
+  for (const std::string& element : elements)
+    for (const std::string& name : OwnWritableProperties(element))
+      EXPECT_EQ(tried.count(element + " " + name), 1U) << element << " " << name;
 }
 
 TEST(Properties, OfAFilterTakeEffectWhileItPlays) {

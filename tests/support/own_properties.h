@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Properties that a table of tests must have.
+#pragma once
+#include <gst/gst.h>
+
+#include <memory>
+#include <set>
+#include <string>
+
+#include "gst/common/refs.h"
+
+namespace lidar::test {
+
+/// Returns the names of an element's writable properties that its own classes add.
+inline std::set<std::string> OwnWritableProperties(const std::string& element_name) {
+  const gst::ElementPtr element(gst_element_factory_make(element_name.c_str(), nullptr));
+  gst_object_ref_sink(element.get());
+  guint count = 0;
+  const std::unique_ptr<GParamSpec*, void (*)(gpointer)> specs(
+      g_object_class_list_properties(G_OBJECT_GET_CLASS(element.get()), &count), g_free);
+  std::set<std::string> names;
+  for (guint i = 0; i < count; ++i) {
+    const GParamSpec& spec = *specs.get()[i];
+    if (g_str_has_prefix(g_type_name(spec.owner_type), "GstLidar") &&
+        (spec.flags & G_PARAM_WRITABLE) != 0)
+      names.insert(spec.name);
+  }
+  return names;
+}
+
+}  // namespace lidar::test
