@@ -65,9 +65,9 @@ void Streams::Allocate(Time now, DataRate total) {
                                       [now](const auto& s) { return s.second.active(now); });
   for (auto& [id, stream] : streams_) stream.set_counts(!any_active || stream.active(now));
   // Needs above the minima are met by the part of them that the path can carry.
-  const DataRate extra = needed_bitrate() - min_bitrate();
-  const double need_share =
-      extra > DataRate() ? std::clamp((total - min_bitrate()) / extra, 0.0, 1.0) : 0;
+  const DataRate least = min_bitrate();
+  const DataRate extra = needed_bitrate() - least;
+  const double need_share = extra > DataRate() ? std::clamp((total - least) / extra, 0.0, 1.0) : 0;
   for (auto& [id, stream] : streams_) {
     const StreamConfig& c = stream.config();
     if (!stream.counts()) {

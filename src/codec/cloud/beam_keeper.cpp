@@ -21,6 +21,10 @@ bool IsNear(const Sighting& s, const PlacedPoint& p) {
   return p.above_m * p.above_m + side * side < kNear * kNear;
 }
 
+double PartOf(std::size_t near, std::size_t all) {
+  return all == 0 ? 0 : static_cast<double>(near) / static_cast<double>(all);
+}
+
 /// Places points on beams, and then in columns.
 class Placer {
  public:
@@ -39,7 +43,7 @@ class Placer {
     std::size_t near = 0;
     for (std::size_t i = 0; i < points_.size(); ++i)
       near += PlaceInColumn(finder, points_[i], &placed_[i]);
-    return PartOf(near);
+    return PartOf(near, points_.size());
   }
   /// Does both in one pass.
   double Place() {
@@ -51,7 +55,7 @@ class Placer {
       PlaceOnBeam(locator, points_[i], &placed_[i]);
       near += PlaceInColumn(finder, points_[i], &placed_[i]);
     }
-    return PartOf(near);
+    return PartOf(near, points_.size());
   }
   /// Returns the azimuth less the offset of the beam.
   std::int32_t StraightOf(const PlacedPoint& p) const {
@@ -81,9 +85,6 @@ class Placer {
     p->residual = found.residual;
     return IsNear(s, *p) ? 1 : 0;
   }
-  double PartOf(std::size_t near) const {
-    return points_.empty() ? 0 : static_cast<double>(near) / static_cast<double>(points_.size());
-  }
 
   const std::vector<Sighting>& points_;
   const BeamTable& table_;
@@ -96,7 +97,7 @@ double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>
   std::size_t near = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (IsNear(points[i], placed[i])) ++near;
-  return points.empty() ? 0 : static_cast<double>(near) / static_cast<double>(points.size());
+  return PartOf(near, points.size());
 }
 
 /// Turns all beams by the most common distance from columns.
