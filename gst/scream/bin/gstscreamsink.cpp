@@ -173,7 +173,7 @@ static const std::array<Property<SinkSettings>, 27> kProperties = {{
     Within<&SinkSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
-/// What is taken for feedback of a link's receiver.
+/// Decides whether a packet is feedback of the receiver.
 struct FeedbackRule {
   SharedSocketAddress peer;
   bool strict;

@@ -57,7 +57,7 @@ GSocketFamily FamilyOf(const OpenLink& link) {
   return g_socket_address_get_family(link.peer.get());
 }
 
-/// What the filter of a link's feedback needs.
+/// State of the filter of a link's feedback.
 struct FeedbackOfLink {
   SinkLinks::Takes takes;
   SharedSocketAddress peer;

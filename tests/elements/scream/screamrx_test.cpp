@@ -286,7 +286,7 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
   }
 }
 
-/// What has no capture time is judged as the slice before it, but not by that of another run.
+/// A slice without a capture time counts as old as the slice before it in the same run.
 TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
   g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
   Start();
