@@ -39,7 +39,7 @@ std::size_t ClassOf(const Sighting& s, double height_m, double classes_per_tange
   return static_cast<std::size_t>((tangent + kMostTangent) * classes_per_tangent);
 }
 
-/// Finds the height with the sharpest tangents, for each window.
+/// Finds for each window of tangents the height at which their histogram is sharpest.
 std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
   std::vector<double> heights(kWindows, 0);
   std::vector<double> best(kWindows, 0);
@@ -64,7 +64,7 @@ std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
   return heights;
 }
 
-/// Finds peaks of the tangents at the height of each window.
+/// Finds peaks in the histogram of tangents, with each window at its own height.
 std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
   constexpr std::size_t kFiner = 2;
   constexpr double kPerTangent = kFiner / kTangentStep;
@@ -118,7 +118,8 @@ class NearestLine {
     constexpr double kSteepest = 1.81;      // length of a line of kMostTangent by its rho
     constexpr std::ptrdiff_t kAround = 32;  // bounds the time if many lines are near a point
     const double rho = std::max(s.rho_m, 1e-3);
-    // Lines of other tangents pass the point further off, at any of the heights.
+    // Lines whose tangents are outside of these limits pass the point further off, at any of the
+    // heights.
     const std::ptrdiff_t first = Below((s.z_m - low_ + kSteepest * reach_m) / rho);
     const std::ptrdiff_t end = Below((s.z_m - high_ - kSteepest * reach_m) / rho);
     const std::ptrdiff_t middle = Below((s.z_m - middle_) / rho);

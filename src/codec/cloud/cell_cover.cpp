@@ -30,7 +30,7 @@ CellPosition OwnCell(const Point& point, const CellGrid& grid, unsigned depth) {
   return cell;
 }
 
-/// Returns where the entries of each i begin in a list; they end before `first[i + 1]`.
+/// Returns the index of the first entry of each group in a list. Group `i` has `counts[i]` entries.
 std::vector<std::uint32_t> Sums(const std::vector<std::uint32_t>& counts) {
   std::vector<std::uint32_t> first(counts.size() + 1, 0);
   for (std::size_t i = 0; i < counts.size(); ++i) first[i + 1] = first[i] + counts[i];

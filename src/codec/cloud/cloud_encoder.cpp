@@ -91,8 +91,8 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   return best;
 }
 
-/// Distance from the sensor, in errors, up to which cells are cheaper than ranges, because points
-/// are closer together than cells.
+/// Distance from the sensor, in multiples of the error, up to which cells are cheaper than ranges,
+/// because points are closer together than cells.
 constexpr double kUsualReach = 50;
 constexpr std::array<double, 8> kReaches = {0, 15, 25, 35, kUsualReach, 70, 100, 150};
 

@@ -35,7 +35,7 @@ std::int32_t WidestGap(const std::vector<BeamAzimuths>& beams) {
   return middle & (kTurn - 1);
 }
 
-/// Distance of columns from even ones, by sectors.
+/// Distances of columns from where even steps would put them: a mean for each sector.
 class Drift {
  public:
   bool known(double azimuth) const { return counts_[SectorOf(azimuth)] > 0; }
@@ -81,7 +81,7 @@ class Drift {
   std::vector<std::size_t> counts_ = std::vector<std::size_t>(kSectors, 0);
 };
 
-/// A point's azimuth, and its distance from an even column.
+/// A point's azimuth, and the distance of its column from where even steps would put it.
 struct Drifted {
   double azimuth;
   double drift;

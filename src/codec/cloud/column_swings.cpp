@@ -11,7 +11,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// The strongest places of a beam's points among `period` columns.
+/// The `period` places at which most of a beam's points lie, within `period` successive columns.
 struct Swing {
   std::array<double, BeamTable::kMostPeriod> at{};  // distance from the column, in columns
   double covered = 0;                               // part of the points near a place

@@ -191,7 +191,8 @@ class FreePlaces {
   }
 
  private:
-  /// A free place has itself here, a taken one a later place, but none past a free one.
+  /// A free place has its own number here; a taken one has a later place, at most the next free
+  /// one.
   std::vector<std::uint32_t> next_;
 };
 
