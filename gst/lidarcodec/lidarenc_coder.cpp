@@ -46,8 +46,8 @@ void LidarEncCoder::Load(const GstLidarRawSlice& raw, std::optional<unsigned> ef
            : cloud_->Load(points, with_intensity_);
 }
 
-/// Called once no other encoding of the slice can follow: keeps the blocks of the last one, which
-/// was sent.
+/// Keeps the blocks of the last encoding, which was sent. Call it when no other encoding of the
+/// slice can follow.
 void LidarEncCoder::KeepBlocks() {
   keeper_.OnEncoded(std::move(slice_.blocks));
   slice_.blocks.clear();
