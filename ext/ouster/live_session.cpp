@@ -87,7 +87,7 @@ bool LiveSession::Open() {
   return OpenFeed() && OpenLink();
 }
 
-/// Opens the sockets at once if a file has the metadata; otherwise they wait for the sensor's.
+/// Opens the sockets at once if a file has the metadata; otherwise once the sensor has sent them.
 bool LiveSession::OpenFeed() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
     auto metadata = LoadMetadata();
@@ -219,8 +219,8 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// Returns false after an error, without `reconnect` or if no packet ever came, which shows a wrong
-/// setting.
+/// Returns false after an error, without `reconnect`, or if no packet ever came: then a setting is
+/// wrong.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {
@@ -289,7 +289,7 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
   if (stream() == nullptr) return;
   const Time utc = GST_CLOCK_TIME_IS_VALID(d.arrival) ? ToTime(d.arrival) : utc_now;
   const ouster::Arrival arrival{now + (utc - utc_now), utc, SenderOf(*d.from)};
-  // An earlier arrival has no running time.
+  // A packet that arrived before running time 0 is dropped.
   if (arrival.local < Time{}) return;
   const ByteView payload{d.data, d.size};
   switch (Push(payload, arrival)) {
