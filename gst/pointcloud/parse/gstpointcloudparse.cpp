@@ -53,7 +53,7 @@ struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
   CloudStamper stamper;  // its timeline has a lock of its own
-  // Only the streaming thread uses these, and the rest of the stamper.
+  // Only the streaming thread uses these, and the stamper except for its timeline.
   std::optional<CloudInfo> info;             // of the file; width 0: not known
   std::optional<lidar::CloudFileType> type;  // empty: raw points
   CapsPtr caps;
