@@ -20,7 +20,7 @@ constexpr int kZstdLevel = 1;
 constexpr int kZlibLevel = 1;
 constexpr int kGzipWindow = 15 + 16;  // zlib's plugin writes gzip
 constexpr int kAnyWindow = 15 + 32;   // reads zlib and gzip
-// Greatest output of a byte of data [bytes].
+// Most bytes that one byte of data can unpack to.
 constexpr std::size_t kZlibMost = 1032;
 constexpr std::size_t kZstdMost = std::size_t{1} << 16;
 

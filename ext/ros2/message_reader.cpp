@@ -64,7 +64,7 @@ void MessageReader::SetStamp(Time stamp) {
   if (ns > 0) gst_lidar_buffer_set_capture_time(buffer_.get(), static_cast<GstClockTime>(ns));
 }
 
-/// Sets the part of `caps`, which follow from the message alone, that downstream takes.
+/// Sets those of `caps` that downstream takes. `caps` follow from the message alone.
 MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   const CapsPtr wanted = wanted_();
   if (wanted)
