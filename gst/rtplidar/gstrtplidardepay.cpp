@@ -82,9 +82,9 @@ const std::array<Stat<Shown>, 20> kStats = {{
     {"outages", A<&ReceiverAccounts::outages>},
 }};
 
-// So many packets of another payload type without one of ours cannot be chance.
+// This many packets of another payload type without one of ours are no accident.
 constexpr guint64 kWrongTypePackets = 20;
-// So many unreadable packets before the first readable one cannot be chance.
+// This many unreadable packets before the first readable one are no accident.
 constexpr guint64 kUnreadablePackets = 20;
 
 lidar::Duration ReorderTime(const Settings& s) {
