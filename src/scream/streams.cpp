@@ -77,7 +77,7 @@ void Streams::Allocate(Time now, DataRate total) {
     const DataRate floor = c.min_bitrate + (c.need() - c.min_bitrate) * need_share;
     stream.set_target_bitrate(floor);
     left = left - floor;
-    // The target allows for all queues, so each stream bears its own.
+    // The target leaves room for all queues, and each stream's own queue lowers its share.
     const double weight =
         std::max(1e-6, c.priority) / (p_.target_rate_divisor + stream.queue_compensation());
     open.push_back({&stream, weight, floor, c.most()});

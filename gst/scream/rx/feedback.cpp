@@ -40,7 +40,8 @@ void Wait(RxState& state, RxLock& lock, Time now) {
   gst_clock_id_unref(id);
 }
 
-/// Returns RTCP in a buffer with its destination (may be NULL), for ecnudpsink with `reply`.
+/// Returns a buffer with the RTCP in `bytes`. `to`, which may be NULL, is its destination for an
+/// ecnudpsink with `reply`.
 GstBuffer* ToBuffer(GSocketAddress* to, const std::vector<std::uint8_t>& bytes) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
   gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());

@@ -134,7 +134,8 @@ BufferPtr SrtpInput::Decode(GstBuffer* datagram, const Head& head) {
     if (BufferPtr decoded = DecodeKnown(datagram, head)) return decoded;
     ++found->second.failures;
   }
-  // RTCP carries its index and is never lost, so a packet that fails is a recording.
+  // An RTCP stream is never lost, because each of its packets carries its index: a packet that
+  // fails is a recording.
   if (!known || (!head.rtcp && IsLost(found->second))) return TryStranger(datagram, head);
   return nullptr;
 }
