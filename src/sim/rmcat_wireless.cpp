@@ -90,7 +90,7 @@ RmcatCase WiredBottleneck(const std::string& name, const std::string& descriptio
   return c;
 }
 
-/// The same with a background flow from 40 to 80 s on link `on`.
+/// WiredBottleneck() with a background flow from 40 to 80 s on link `on`.
 RmcatCase BesideBackground(bool tcp, std::size_t on, const Parameters& p) {
   const std::string way = on == 0 ? "same_way" : "other_way";
   RmcatCase c =
