@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The same drive without adaptation: Draco at q = 16 as in the paper, and lidarenc at a fixed step.
-# A run of Draco that adapts separates the effects of codec and adaptation.
+# The drive of experiment c without adaptation: Draco at q = 16 as in the paper, and lidarenc at a
+# fixed step. A run of Draco that adapts separates the effects of codec and adaptation.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The same drive without ECN: a FIFO of 100 ms that marks nothing.
+# The drive of experiment c without ECN: a FIFO of 100 ms that marks nothing.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"

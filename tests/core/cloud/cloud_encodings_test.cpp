@@ -183,7 +183,7 @@ TEST(CaptureTimeOfAFile, IsSecondsAndNineDigitsOrNone) {
   }
 }
 
-/// Headers that claim more than a file can hold, or fields that cannot be.
+/// Headers that claim more than a file can hold, or that have impossible fields.
 TEST(ClaimsOfHeaders, AreRefusedBeyondTheirLimitsHoweverTheFileGoesOn) {
   const auto pcd = [](const std::string& size, const std::string& count) {
     const std::string file =

@@ -109,8 +109,8 @@ TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
   }
 }
 
-/// A fixed step has less data on its way when a gap begins, so that scans after the gap come
-/// sooner. This test bounds its lead, in complete scans and in scans in time.
+/// An encoder at a fixed step has less data under way when a gap begins, so its scans after the gap
+/// arrive sooner. The test bounds its lead, counted in complete scans and in scans in time.
 TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   constexpr int kStarts = 24;
   for (const char* trace : {"gap_1s_every_10s", "drive_1", "drive_2", "drive_3"}) {

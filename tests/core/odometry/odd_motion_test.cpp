@@ -103,7 +103,7 @@ TEST(OddMotion, AFerryIsTheWorld) {
   EXPECT_LT(Angle(e.pose), 0.01);
 }
 
-/// Turns the points of a sensor that stands as if it had turned since the first scan.
+/// Turns the points of a standing sensor, as if the sensor had turned since the first scan.
 TimedPoints TurnedScan(Drive* drive, std::uint64_t number, double rate) {
   TimedPoints scan = drive->Scan(number);
   for (std::size_t i = 0; i < scan.points.size(); ++i) {

@@ -152,7 +152,7 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
   EXPECT_TRUE(traffic_.unseen());
 }
 
-/// Few packets of a slow flow count, so that its share of others is found late.
+/// Few packets of a slow flow count, so the flow finds the others' share late.
 TEST_F(CrossTrafficTest, IsUnseenWhileFewPacketsTellOfAShareThatIsKnown) {
   Send(50, 0.5);
   ASSERT_GT(traffic_.share().value_or(0), 0.4);

@@ -55,7 +55,8 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
 
 class QueueDelayTest : public ::testing::Test {
  protected:
-  /// Sends a packet a millisecond that takes `owd`, on clocks an hour apart.
+  /// Sends a packet each millisecond. Its way takes `owd`, and the clocks of both ends differ by an
+  /// hour.
   void Run(int packets, Duration owd, Duration rtt_excess) {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
       const Duration way_back = 40ms + rtt_excess - owd - 1h;

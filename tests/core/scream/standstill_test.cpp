@@ -58,7 +58,7 @@ TEST(Standstill, ClosesTheWindowToProbes) {
   }
 }
 
-/// Whole scans of 3 Mbit/s, which is all that the stream may have, on 10 Mbit/s with short gaps.
+/// Whole scans at 3 Mbit/s, the stream's maximum, over a link of 10 Mbit/s with short gaps.
 TEST(Standstill, LeavesABacklogThatSoonGoesToAStreamAtItsMaximum) {
   Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
   s.config.forward.capacity = link::Capacity::Constant(Mbps(10));

@@ -186,7 +186,7 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   }
   NatsPipeline second("natssrc name=n durable=slam" + At(kBox) + "! fakesink name=see sync=false");
   second.Play();
-  // Messages that the first had taken and not acknowledged come again later.
+  // Messages that the first natssrc took but did not acknowledge come again later.
   const auto has_all = [&] {
     auto seen = all;
     for (const Kept& kept : second.buffers()) seen.push_back(kept);

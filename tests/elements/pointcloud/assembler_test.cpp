@@ -157,7 +157,8 @@ TEST_F(Assembler, KnowsWhenAScanBeganWhoseFirstSliceWasLost) {
 }
 
 TEST_F(Assembler, AWindowMayPassTheEndOfTheTurn) {
-  // A window of 16 columns from column 24: slices at 24 and 0. The first one is lost.
+  // The sensor's window has 16 columns from column 24 on: slices at columns 24 and 0. Scan 0 lacks
+  // the slice at 24.
   Push(MakeSlice({0, 1, 2, 0}));
   Push(MakeSlice({1, 0, 2, 24}));
   Push(MakeSlice({1, 1, 2, 0}));

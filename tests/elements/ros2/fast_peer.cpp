@@ -35,7 +35,7 @@ using eprosima::fastcdr::FastBuffer;
 using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 
-/// Out and In have the same call, which writes or reads members.
+/// Out and In can be called alike: Out writes the value, and In reads it.
 struct Out {
   Cdr& cdr;
   template <class T>

@@ -31,7 +31,7 @@ TEST(Slices, GoToAViewerAsTheyAre) {
     }
     bytes += pushed.size();
   }
-  // The first slice of all came before the viewer.
+  // The very first slice came before the viewer.
   EXPECT_GE(viewer.own, 10 * kScanSlices - 10 - 1);
   EXPECT_LT(edge.sink.Stat("bytes-sent"), bytes * 11 / 10 + 8192);
   EXPECT_EQ(edge.sink.Stat("points-sent"), 0U);
