@@ -89,12 +89,12 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The store sends the stored entry later. An earlier write of ours may have made it.
+  // The store sends its entry later, which an earlier write of ours may have made.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
   robot->revision = 0;
-  // A new bucket does not show the last write of the owner in the old one.
+  // A new bucket lacks the owner's last write to the old one.
   const Duration lease = std::max(robot->record.lease, settings_.lease);
   robot->free_at = IsHeld(*robot, now) ? now : now + lease + lease / kMargin;
 }
