@@ -87,7 +87,7 @@ SourcePtr ClientService::Every(guint interval_ms, GSourceFunc function) {
 
 // --- HTTP ---
 
-/// No request that is served has a body.
+/// Discards bodies of requests, because the server reads none.
 void ClientService::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
                               gpointer self) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(request), FALSE);

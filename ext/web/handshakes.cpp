@@ -6,7 +6,7 @@
 namespace lidar::web {
 namespace {
 
-/// GIO has ten threads.
+/// GIO has ten threads, and each handshake occupies one.
 constexpr int kAtOnce = 8;
 constexpr int kOfAnAddress = 3;
 constexpr gint64 kLongestHandshake_us = 10 * gint64{G_USEC_PER_SEC};
