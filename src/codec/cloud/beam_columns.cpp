@@ -29,7 +29,7 @@ std::vector<BeamAzimuths> AzimuthsOf(const std::vector<Sighting>& points, const 
   return all;
 }
 
-/// Subtracts the angle that the beam's side adds to its azimuths.
+/// Subtracts the angle that a beam adds to its azimuths if it does not pass through the origin.
 void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   for (BeamAzimuth& a : *azimuths) {
     const double angle = SideAngle(beam, static_cast<double>(a.rho_m));

@@ -100,7 +100,7 @@ double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>
   return PartOf(near, points.size());
 }
 
-/// Turns all beams by the most common distance from columns.
+/// Turns all beams by the most common distance of points from their columns.
 void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
   const double columns = 2 * M_PI * table->turn / BeamTable::kParts / kTurn;
   std::complex<double> phases;

@@ -79,7 +79,7 @@ class Choices {
 
  private:
   /// Adds the point's own cell and those of its neighbours that are near enough. Only neighbours on
-  /// the point's side can be.
+  /// the point's side of its cell can be.
   void AddPoint(const Point& point, const CellGrid& grid, unsigned depth) {
     const CellPosition own = OwnCell(point, grid, depth);
     AddChoice(own);

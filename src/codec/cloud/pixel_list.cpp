@@ -86,7 +86,7 @@ class PixelCheck {
     return Within(off, errors_.error_m, s.range_m);
   }
   /// Returns the error by rounding a residual. Its width follows from the decoded range, which may
-  /// be shorter.
+  /// be shorter than the original.
   double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
     return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;
