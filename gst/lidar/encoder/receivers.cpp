@@ -90,7 +90,7 @@ ReceiverEvents::News ReceiverEvents::Take(GstPad* src) {
   if (looked_at_us_ == 0 || now - looked_at_us_ >= kLookInterval) {
     looked_at_us_ = now;
     const bool had_one_way = std::exchange(one_way_, HasOneWay(src));
-    // A new receiver lacks the slices of the other one.
+    // Data reach a second receiver now, which lacks the earlier slices.
     news.key_requested = news.key_requested || (had_one_way && !one_way_);
   }
   if (!one_way_) news.received.clear();
