@@ -269,8 +269,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_object_unref(stream);
 }
 
-/// Returns the part of the caps that needs a channel of its own. A cloud's width does not, because
-/// its messages have it.
+/// Returns the caps without fields that may change within a channel, such as a cloud's width, which
+/// each message has.
 static std::string KindOf(lidar::ScalarCaps caps, MessageType type) {
   auto& fields = caps.fields;
   if (type == MessageType::kCloud)
