@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 8;
 constexpr std::size_t kMaxSpans = 256;  // of a run
-/// A larger jump counts as damage: so many messages take a stream days.
+/// A larger jump counts as damage: this many messages take a stream days.
 constexpr std::uint64_t kMaxMissing = 100'000'000;
 
 }  // namespace
