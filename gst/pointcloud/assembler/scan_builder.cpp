@@ -76,7 +76,8 @@ void ScanBuilder::TakeTimes(const SliceView& slice) {
   GstClockTime sweep = GST_BUFFER_DURATION(slice.buffer);
   if (!GST_CLOCK_TIME_IS_VALID(sweep)) sweep = GST_CLOCK_TIME_IS_VALID(scan) ? scan / slices : 0;
   const GstClockTime before = sweep * slice.meta.slice_index;
-  // The first slice has the exact time; until it comes, count back from another.
+  // The first slice has the exact time; until it comes, the time is counted back from another
+  // slice.
   if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(pts_))
     pts_ = Back(GST_BUFFER_PTS(slice.buffer), before);
   if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(capture_))
