@@ -54,9 +54,9 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-/// Returns the size of the largest message to take: a domain that other code of the process created
-/// may pass larger ones. A hundred messages other than clouds may wait, so their limit is lower; it
-/// holds thousands of transforms.
+/// Returns the size of the largest message to take. A domain that other code of the process created
+/// may pass larger ones. Messages other than clouds have a lower limit, because a hundred of them
+/// may wait; it holds thousands of transforms.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
   return cdr::IsCloud(type) ? Domain::kMaxMessage : kMaxSmall;
