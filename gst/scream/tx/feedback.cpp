@@ -78,7 +78,7 @@ bool Take(GstLidarScreamTx* self, const rtcp::CongestionFeedback& report, GSocke
     state.controller->OnRouteChange(now);
   }
   if (result == scream::FeedbackResult::kAccepted) state.pacing.OnAccepted(now);
-  // TWCC names no receiver, whose elements may still drop the packets that it reports.
+  // A TWCC report does not name its receiver, where elements may still drop the reported packets.
   if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
     KeepReceipts(state, report);
   state.reporter.Evaluate(now);
