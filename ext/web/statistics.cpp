@@ -52,7 +52,8 @@ void Collect(GstElement* element, json* all) {
   }
 }
 
-/// A member of the message: the statistic `from` of an element that also has `beside`.
+/// A member of the message: the statistic `from` of an element that also has the statistic
+/// `beside`.
 struct Summary {
   const char* name;
   const char* from;
