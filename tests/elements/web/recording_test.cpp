@@ -37,11 +37,11 @@ class Recordings : public ::testing::Test {
 
   std::string path() const { return folder_ + "/r%d.mcap"; }
   std::string file() const { return folder_ + "/r0.mcap"; }
-  void OpenEdge() { edge_.emplace("sink_0::recording=" + path(), "effort=2", 700); }
+  void OpenEdge() { edge_.emplace("sink_0::recording=" + path()); }
   /// Edge and recorder get slices.
   void Push(guint n) {
     for (guint i = 0; i < n; ++i) {
-      gst::BufferPtr buffer(gst_buffer_make_writable(edge_->robot.Next().release()));
+      gst::BufferPtr buffer = edge_->robot.Next();
       const std::uint64_t captured = kFirst_ns + pushed_++ * kSlice_ns;
       gst_lidar_buffer_set_capture_time(buffer.get(), captured);
       GST_BUFFER_PTS(buffer.get()) = captured - kFirst_ns;
@@ -331,14 +331,14 @@ class Histories : public ::testing::Test {
  protected:
   void Push(guint n) {
     for (guint i = 0; i < n; ++i) {
-      gst::BufferPtr buffer(gst_buffer_make_writable(edge_.robot.Next().release()));
+      gst::BufferPtr buffer = edge_.robot.Next();
       gst_lidar_buffer_set_capture_time(buffer.get(), kFirst_ns + pushed_++ * kSlice_ns);
       kept_.Keep(buffer.get(), edge_.robot.caps());
       edge_.Push(std::move(buffer));
     }
   }
 
-  Edge edge_{"", "effort=2", 700};
+  Edge edge_;
   KeptStream kept_{edge_.sink.harness()->srcpad};
   std::uint64_t pushed_ = 0;
 };

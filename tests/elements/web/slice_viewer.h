@@ -3,6 +3,10 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <map>
+#include <memory>
+#include <vector>
+
 #include "src/base/base64.h"
 #include "src/codec/slice_decoder.h"
 #include "tests/elements/web/web_peer.h"
@@ -15,32 +19,53 @@ inline gst::CapsPtr CapsOf(GstHarness* harness) {
   return gst::CapsPtr(gst_pad_get_current_caps(harness->sinkpad));
 }
 
-/// A sensor that stands still, and a coder whose slices are all acknowledged, so that it refers to
-/// them however slow the machine is.
-class Robot {
+/// Slices of clouds of a sensor that stands still. All robots share them, because rendering them
+/// takes longer than anything else that robots do.
+class StillClouds {
  public:
-  explicit Robot(const std::string& options = "effort=2", unsigned slices = 400) {
-    clouds_.reset(gst_harness_new_parse(
-        ("lidartestsrc model=os0-32 mode=512x10 slices-per-scan=4 speed=0 num-buffers=" +
-         std::to_string(slices))
-            .c_str()));
-    gst_harness_play(clouds_.get());
-    coder_.reset(gst_harness_new_parse(("lidarenc key-interval=0 " + options).c_str()));
+  static constexpr std::size_t kSlices = 700;
+
+  static const StillClouds& Get() {
+    // Outlives GStreamer.
+    static const auto* const clouds = new StillClouds;
+    return *clouds;
   }
-  gst::BufferPtr Next() {
-    GstBuffer* cloud = gst_harness_pull(clouds_.get());
-    if (!has_caps_) gst_harness_set_src_caps(coder_.get(), CapsOf(clouds_.get()).release());
-    has_caps_ = true;
-    EXPECT_EQ(gst_harness_push(coder_.get(), cloud), GST_FLOW_OK);
-    gst::BufferPtr slice(gst_harness_pull(coder_.get()));
-    GstLidarSlice name;
-    gst_lidar_buffer_get_slice(slice.get(), &name);
-    GstLidarSlicesReceived received{};
-    received.receiver = 1;
-    received.count = 1;
-    received.slices[0] = {name.scan_id, name.slice_index};
-    gst_harness_push_upstream_event(coder_.get(), gst_lidar_event_new_slices_received(&received));
-    return slice;
+  GstBuffer* At(std::size_t i) const { return slices_.at(i).get(); }
+  GstCaps* caps() const { return caps_.get(); }
+
+ private:
+  StillClouds() {
+    const std::string source =
+        "lidartestsrc model=os0-32 mode=512x10 slices-per-scan=4 speed=0 num-buffers=" +
+        std::to_string(kSlices);
+    Harness harness(gst_harness_new_parse(source.c_str()));
+    gst_harness_play(harness.get());
+    while (slices_.size() < kSlices) slices_.emplace_back(gst_harness_pull(harness.get()));
+    caps_ = CapsOf(harness.get());
+  }
+
+  std::vector<gst::BufferPtr> slices_;
+  gst::CapsPtr caps_;
+};
+
+/// Coded slices of a robot. All are acknowledged, so that the coder refers to them however slow the
+/// machine is.
+class CodedSlices {
+ public:
+  explicit CodedSlices(const std::string& options)
+      : coder_(gst_harness_new_parse(("lidarenc key-interval=0 " + options).c_str())) {
+    gst_harness_set_src_caps(coder_.get(), gst_caps_ref(StillClouds::Get().caps()));
+  }
+  /// Those of robots with these options.
+  static std::shared_ptr<CodedSlices> Of(const std::string& options) {
+    static auto* const all = new std::map<std::string, std::shared_ptr<CodedSlices>>;
+    auto& slices = (*all)[options];
+    if (!slices) slices = std::make_shared<CodedSlices>(options);
+    return slices;
+  }
+  gst::BufferPtr At(std::size_t i) {
+    while (slices_.size() <= i) CodeNext();
+    return gst::BufferPtr(gst_buffer_copy(slices_[i].get()));
   }
   gst::CapsPtr caps() { return CapsOf(coder_.get()); }
   /// Makes the next slices stand alone.
@@ -51,9 +76,42 @@ class Robot {
   }
 
  private:
-  Harness clouds_;
+  void CodeNext() {
+    GstBuffer* cloud = StillClouds::Get().At(slices_.size());
+    EXPECT_EQ(gst_harness_push(coder_.get(), gst_buffer_ref(cloud)), GST_FLOW_OK);
+    slices_.emplace_back(gst_harness_pull(coder_.get()));
+    GstLidarSlice name;
+    gst_lidar_buffer_get_slice(slices_.back().get(), &name);
+    GstLidarSlicesReceived received{};
+    received.receiver = 1;
+    received.count = 1;
+    received.slices[0] = {name.scan_id, name.slice_index};
+    gst_harness_push_upstream_event(coder_.get(), gst_lidar_event_new_slices_received(&received));
+  }
+
   Harness coder_;
-  bool has_caps_ = false;
+  std::vector<gst::BufferPtr> slices_;
+};
+
+/// Sends the slices of a sensor that stands still.
+class Robot {
+ public:
+  explicit Robot(const std::string& options = "effort=2")
+      : options_(options), slices_(CodedSlices::Of(options)) {}
+  gst::BufferPtr Next() { return slices_->At(sent_++); }
+  gst::CapsPtr caps() { return slices_->caps(); }
+  /// Makes the next slices stand alone.
+  void AskForKey() {
+    // Other robots did not ask.
+    slices_ = std::make_shared<CodedSlices>(options_);
+    if (sent_ > 0) slices_->At(sent_ - 1);
+    slices_->AskForKey();
+  }
+
+ private:
+  std::string options_;
+  std::shared_ptr<CodedSlices> slices_;
+  std::size_t sent_ = 0;
 };
 
 /// The header of a slice, as the page reads it.
@@ -137,9 +195,8 @@ struct Edge {
   Sink sink;
   bool has_caps = false;
 
-  explicit Edge(const std::string& properties = "", const std::string& options = "effort=2",
-                unsigned slices = 400)
-      : robot(options, slices), sink(properties) {}
+  explicit Edge(const std::string& properties = "", const std::string& options = "effort=2")
+      : robot(options), sink(properties) {}
   std::string Push() { return Push(robot.Next()); }
   std::string Push(gst::BufferPtr buffer) {
     if (!has_caps) gst_harness_set_src_caps(sink.harness(), robot.caps().release());
