@@ -45,7 +45,7 @@ class Placer {
       near += PlaceInColumn(finder, points_[i], &placed_[i]);
     return PartOf(near, points_.size());
   }
-  /// Does both in one pass.
+  /// Places points on beams and in columns, in one pass.
   double Place() {
     const BeamLocator locator(table_);
     const ColumnFinder finder(table_);

@@ -327,7 +327,7 @@ FoundBeams FindBendingBeams(const std::vector<Sighting>& points) {
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
   FoundBeams found;
   for (const BeamLine& line : FirstLines(points)) found.beams.push_back({line, {}});
-  // Lines between two heights are found after the others are removed.
+  // The found lines are fitted first: further lines show once the points of these are left out.
   for (const double reach_m : {0.04, 0.02}) {
     Assign(points, reach_m, &found);
     for (FoundBeam& beam : found.beams)

@@ -15,7 +15,7 @@ BeamLocator::BeamLocator(const BeamTable& table) {
   }
   constexpr std::uint32_t kAround = 3;
   if (table.has_offsets()) around_ = kAround;
-  // Sets the last beam above the upper edge of each bucket.
+  // Sets for each bucket the last beam above its upper edge.
   buckets_.assign(kBuckets, 0);
   std::uint32_t next = 0;
   for (std::uint32_t beam = 0; beam < lines_.size(); ++beam) {

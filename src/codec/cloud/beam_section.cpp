@@ -214,7 +214,7 @@ struct DecodedSection {
   std::size_t returns = 0;
 };
 
-/// Removes `flag` from the guess, and puts it into `is_set`, which may be null.
+/// Removes `flag` from the guess. `is_set`, which may be null, gets whether the flag was set.
 bool ReadSettings(ByteReader* reader, ResidualSettings* settings, unsigned flag, bool* is_set) {
   bool ok = true;
   settings->tangent_um = ReadVarint(reader, &ok);

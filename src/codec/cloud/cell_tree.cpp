@@ -36,7 +36,7 @@ struct Direction {
   }
   /// Tangent of the elevation in 1/parts, within +-limit.
   std::int64_t Tangent(std::int64_t parts, std::int64_t limit) const {
-    // Doubles hold these quotients exactly enough for the integers below them, and divide faster.
+    // Doubles are exact enough to round these quotients down correctly, and divide faster.
     const auto quotient = static_cast<std::int64_t>(
         static_cast<double>(z * parts) / static_cast<double>(std::max<std::int64_t>(rho, 1)));
     return std::clamp(quotient, -limit, limit);
@@ -56,7 +56,7 @@ struct Direction {
 using CellBits = std::uint64_t;
 constexpr std::array<unsigned, 8> kChildAt = {21, 22, 25, 26, 37, 38, 41, 42};
 
-/// Neighbours of a node that touch a child.
+/// The neighbours of a node that touch a given child of the node.
 constexpr std::array<std::uint32_t, 8> NodesByChild() {
   std::array<std::uint32_t, 8> nodes{};
   for (unsigned child = 0; child < 8; ++child)
@@ -104,7 +104,7 @@ constexpr std::array<Neighbour, 27> FindNeighbours() {
 }
 constexpr std::array<Neighbour, 27> kNeighbours = FindNeighbours();
 
-/// Numbers in base 3 whose digits are bits, from the lowest bit or from the highest.
+/// Bits read as the digits of a number in base 3, from the lowest bit or from the highest.
 template <unsigned kDigits>
 constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
   std::array<std::uint32_t, 1U << kDigits> numbers{};

@@ -247,8 +247,8 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
   candidate->nodes = tree_.nodes();
 }
 
-/// Codes the points of near_ with these indices. Few cells have more varied counts, so the highest
-/// effort also tries each point's own cell, and keeps the smaller stream.
+/// Codes the points of near_ with these indices. The counts of few, shared cells vary more, so the
+/// highest effort also tries each point's own cell, and keeps the smaller stream.
 void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate) {
   candidate->header.points = static_cast<std::uint32_t>(ids.size());
   if (ids.empty()) return;

@@ -146,7 +146,7 @@ class DelaySearch {
     }
     return best;
   }
-  /// Moves each place to the mean of these beams.
+  /// Moves each place by the mean distance of the points of `beams` from it.
   void Average(const std::vector<std::size_t>& beams) {
     std::vector<double> sums(size_, 0);
     std::vector<std::uint32_t> counts(size_, 0);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::int32_t kLeastStep = kTurn / static_cast<std::int32_t>(BeamTable::kMostColumns);
 constexpr std::int32_t kMostStep = kTurn / 64;
 
-/// Returns the most common step of neighbours of a beam, in units; 0: none.
+/// Returns the most common step between neighbouring points of a beam, in units; 0: none.
 std::int32_t UsualStep(const BeamAzimuths& azimuths) {
   constexpr std::int32_t kClass = 64;  // 0.0055 degrees
   std::map<std::int32_t, std::size_t> histogram;

@@ -164,7 +164,7 @@ std::vector<std::uint32_t> Sequence(const Visited& v, unsigned key,
   return sequence;
 }
 
-/// Returns the place in the sequence of each point of the old order.
+/// Returns for each point, in the old order, its place in the sequence.
 std::vector<std::uint32_t> PlacesInSequence(const std::vector<std::uint32_t>& sequence,
                                             const std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> places(order.size());

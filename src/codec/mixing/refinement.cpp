@@ -8,7 +8,7 @@ namespace {
 
 /// Weight of an input without training.
 constexpr std::int16_t kNewWeight = 800;
-// Start states count as at most 4 bits seen, or 8.
+// A start state counts as at most 4 bits seen, that of a further candidate as at most 8.
 constexpr std::uint16_t kLeastBinRate = RateAfter(4);
 constexpr std::uint16_t kLeastFurtherRate = RateAfter(8);
 
@@ -17,7 +17,7 @@ void Hasten(std::array<Counter, kSize>* counters) {
   for (Counter& counter : *counters) counter.rate = std::max(counter.rate, kLeastBinRate);
 }
 
-/// Fills each row of `sets` with the weights of that row.
+/// Fills each row of `sets` with copies of the weights of that row.
 template <std::size_t kRows, std::size_t kSize>
 void Repeat(const std::array<Weights, kRows>& rows, std::array<Weights, kSize>* sets) {
   constexpr std::size_t kEach = kSize / kRows;

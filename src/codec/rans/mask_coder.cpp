@@ -34,7 +34,7 @@ std::array<NibbleModel, 256> MakeInitialModels() {
   return models;
 }
 
-/// Bit i of the result is byte i of eight, each being 0 or 1.
+/// Packs eight bytes of 0 or 1: byte i becomes bit i.
 unsigned PackEight(const std::uint8_t* bytes) {
   std::uint64_t eight = 0;
   for (unsigned i = 0; i < 8; ++i) eight |= std::uint64_t{bytes[i]} << (8 * i);
@@ -56,8 +56,8 @@ void MaskCoder::Reset(const AzimuthAlignment& alignment, std::uint32_t columns) 
   row_.assign(std::size_t{Groups(columns)} * kGroup, 0);
 }
 
-/// Calls code(lane, model, pixels) for all groups of a row in the order of coding; it returns the
-/// bits of the group. Then keeps `row_` for the beam below.
+/// Calls code(lane, model, pixels) for all groups of a row in the order of coding; `code` returns
+/// the bits of the group. Then keeps `row_` for the beam below.
 template <class CodeFour>
 [[gnu::always_inline]] inline void MaskCoder::CodeRow(std::uint32_t beam, std::uint32_t columns,
                                                       CodeFour&& code) {
