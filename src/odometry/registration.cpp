@@ -38,7 +38,8 @@ struct NormalEquations {
     squares += weight * other.squares;
     pairs += other.pairs;
   }
-  /// Share of each direction of a translation. The trace is 1 if all points lie on surfaces.
+  /// Part of the weight on each direction of a translation. The trace is 1 if all points lie on
+  /// surfaces.
   Eigen::Matrix3d Constraint() const { return lhs.topLeftCorner<3, 3>() / weights; }
 };
 

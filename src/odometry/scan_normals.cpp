@@ -12,7 +12,7 @@ constexpr int kBins = 1024;  // of azimuth, a power of two
 constexpr float kSide_m = 0.6F;
 constexpr float kLeastBins = 6;
 constexpr float kMostBins = 24;
-/// Bins to each side that level a point: more would round kerbs and window frames.
+/// Bins to each side over which a point is averaged: more would round kerbs and window frames.
 constexpr int kBesides = 3;
 constexpr std::size_t kSums = kBins + 1;  // of a ring
 constexpr float kBinsPerRadian = kBins / 6.2831853F;
