@@ -282,7 +282,7 @@ bool Controller::Overdue(Time now) const {
   return oldest && now - *oldest > path_.rtt().smoothed() + Lateness();
 }
 
-/// Returns true if acknowledgements are slower than packets were sent: a gap, or its start.
+/// Returns true if packets are acknowledged more slowly than they were sent: a gap, or its start.
 bool Controller::Stalled(Time now) const {
   return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
 }

@@ -64,7 +64,7 @@ void Streams::Allocate(Time now, DataRate total) {
   const bool any_active = std::any_of(streams_.begin(), streams_.end(),
                                       [now](const auto& s) { return s.second.active(now); });
   for (auto& [id, stream] : streams_) stream.set_counts(!any_active || stream.active(now));
-  // Needs above the minima are met by the part of them that the path can carry.
+  // All needs above the minima are met in the same part, as far as the path can carry.
   const DataRate least = min_bitrate();
   const DataRate extra = needed_bitrate() - least;
   const double need_share = extra > DataRate() ? std::clamp((total - least) / extra, 0.0, 1.0) : 0;

@@ -14,8 +14,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::chrono::milliseconds kDtlsTick{100};
-// A client drops a handshake after this time, because the pauses of DTLS double, and begins one if
-// its packets stay unanswered for this time.
+// A client drops a handshake after this time, because the pauses between repetitions of DTLS
+// double. It begins a new handshake if its packets stay unanswered for this time.
 constexpr std::chrono::seconds kDtlsPatience{5};
 constexpr std::chrono::seconds kDtlsPause{1};  // between handshakes that fail
 // A server may have to repeat its last datagram.

@@ -9,11 +9,12 @@
 namespace lidar::gst {
 namespace {
 
-// The key in use with the previous and the next key, or with two next keys.
+// The key in use and two more: the previous and the next one, or the next two.
 constexpr std::size_t kMaxKeys = 3;
 constexpr std::chrono::seconds kStragglers{10};
 constexpr std::size_t kMaxStreams = 2'048;
-// Long losses hide rollovers and cause such failures. A sender without feedback is slow.
+// A stream is lost after this many failures over this time: a long loss may hide a rollover, and a
+// sender without feedback is slow.
 constexpr unsigned kFailuresUntilLost = 20;
 constexpr std::chrono::seconds kSilenceUntilLost{2};
 constexpr std::uint32_t kMaxRollover = 100'000;  // reached after months

@@ -45,7 +45,7 @@ void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   if (!state.controller || !state.gate.open()) return;
   const auto id = state.controller->FindStream(*ssrc);
   TxStream* stream = id ? FindStream(state, *id) : nullptr;
-  // The element that manages a video encoder's RTP session sends the encoder such requests.
+  // A video encoder gets such requests from the element that manages its RTP session.
   if (stream == nullptr || !stream->wants_receipts) return;
   stream->key_unit_due = true;
   state.reporter.Evaluate(TxNow(state));
