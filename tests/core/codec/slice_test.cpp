@@ -112,7 +112,7 @@ TEST_P(Efforts, KeepBinsThatOnlyTheFastCoderCanCount) {
 
 INSTANTIATE_TEST_SUITE_P(All, Efforts, ::testing::Range(0U, EffortControl::kHighest + 1));
 
-/// How a slice is coded; its figures must be the truth for each.
+/// A way to code a slice, for which its figures must be true.
 struct Coding {
   unsigned threads;
   unsigned effort;

@@ -268,8 +268,8 @@ TEST_P(Tracking, KnowsTheMinimumWithoutEverHavingBeenThere) {
   }
 }
 
-/// A target that falls to the minimum while a scan is under way is of use only if the minimum is
-/// known before the next scan begins.
+/// If a target falls to the minimum while a scan is under way, the minimum must be known before the
+/// next scan begins.
 TEST_P(Tracking, TellsTheMinimumAfterTheLastSliceOfEachScan) {
   Stream run(Codec());
   double told = 0;

@@ -181,7 +181,7 @@ TEST_F(FullLink, WaitsForAllThatIsInFlightForHalfOfTheDelayAtMost) {
   EXPECT_EQ(c_.LatePackets(now_ + 301ms, id_), 1U);
 }
 
-/// A packet is waited for no longer than a round trip, however late another one was.
+/// The controller waits for a packet no longer than a round trip, however late another packet was.
 TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
   Controller c{Parameters()};
   const StreamId id = c.AddStream({});

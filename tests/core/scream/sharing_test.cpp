@@ -145,7 +145,7 @@ double Jain(Scenario s, double frames_per_second = 50) {
   return Measure(s, Simulate(s.config)).jain;
 }
 
-/// The last flow to join is slowest, and learns least of the others.
+/// The last flow to join is slowest, and learns least about the others.
 TEST(BesideOthers, FourOfOursThatJoinOneAfterTheOtherShareAlike) {
   Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
   for (int i = 1; i <= 3; ++i) {
