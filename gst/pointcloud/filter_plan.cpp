@@ -194,7 +194,8 @@ BufferPtr FilterPlan::Apply(GstBuffer* buffer, const Transform& placed) {
   const bool is_slice = gst_lidar_buffer_get_slice(buffer, &slice) != FALSE;
   auto owned = std::make_unique<FilteredCloud>(
       filter_->Apply({points, in_.width, in_.height, slice.first_column, *pose}));
-  if (!owned->points.empty()) Describe(*owned);
+  if (owned->points.empty()) return BufferPtr(gst_buffer_new());
+  Describe(*owned);
   FilteredCloud* cloud = owned.release();
   BufferPtr out(gst_buffer_new_wrapped_full(
       static_cast<GstMemoryFlags>(0), cloud->points.data(), cloud->points.size(), 0,

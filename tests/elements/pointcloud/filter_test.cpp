@@ -151,6 +151,14 @@ TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
   EXPECT_EQ(removed, 3U);
 }
 
+TEST_F(Filter, ASliceBetweenTheColumnsThatStayIsAGap) {
+  Start("column-step=4", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  ASSERT_EQ(Push(std::vector<std::uint8_t>(24, 1), 4), GST_FLOW_OK);
+  ASSERT_EQ(Push(std::vector<std::uint8_t>(24, 1), 6), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_received(h_.get()), 1U);
+  EXPECT_EQ(Info()->width, 1U);
+}
+
 TEST_F(Filter, PutsCloudsWhereTheirPoseSays) {
   Start("apply-pose=true transform=0,0,100,0,0,0", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
   std::vector<std::uint8_t> points;
