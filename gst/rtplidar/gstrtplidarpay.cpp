@@ -210,6 +210,12 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
   return base->max_ptime >= 0 ? MIN(scan, static_cast<GstClockTime>(base->max_ptime)) : scan;
 }
 
+/// Aggregates change the latency.
+static void NoteChange(GObject* object, GParamSpec* spec) {
+  if (g_strcmp0(spec->name, "aggregate") == 0)
+    gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
+}
+
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!GST_LIDAR_RTP_PAY(parent)->state->base_src_query(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return TRUE;
@@ -246,7 +252,7 @@ static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
 
 static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_pay_debug, "rtplidarpay", 0, "RTP payloader for clouds");
-  ServeState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class, kProperties>(klass);
+  ServeState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class, kProperties, NoteChange>(klass);
   auto* element = GST_ELEMENT_CLASS(klass);
   Describe(klass,
            {"RTP payloader for point clouds", "Codec/Payloader/Network/RTP",

@@ -161,6 +161,18 @@ TEST_F(PayLimits, TellsTheEncoderOfEachSliceThatAReceiverHasUpToTheMostOfAnEvent
   ADD_FAILURE() << "no receipt";
 }
 
+TEST_F(PayLimits, SaysThatAggregatesChangeTheLatency) {
+  const gst::ElementPtr pay(gst_element_factory_make("rtplidarpay", nullptr));
+  gst_object_ref_sink(pay.get());
+  const std::unique_ptr<GstBus, gst::Unref> bus(gst_bus_new());
+  gst_element_set_bus(pay.get(), bus.get());
+  g_object_set(pay.get(), "config-interval", 3, nullptr);
+  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_LATENCY)));
+  g_object_set(pay.get(), "aggregate", TRUE, nullptr);
+  EXPECT_TRUE(gst::MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_LATENCY)));
+  gst_element_set_bus(pay.get(), nullptr);
+}
+
 TEST_F(PayLimits, AFlushForgetsWhatWasCollected) {
   g_object_set(h_->element, "aggregate", TRUE, "config-interval", 0, nullptr);
   Push(0, 0);
