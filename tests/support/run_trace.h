@@ -35,12 +35,19 @@ class RunTrace {
 
   /// Adds what passes another pad of the element. All threads may call it.
   void Watch(GstPad* pad) {
-    constexpr auto kAll =
-        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST |
-                                     GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM);
+    // Each buffer of a list comes alone, too, because no pad that is watched takes lists.
+    constexpr auto kAll = static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER |
+                                                       GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM);
     const std::lock_guard lock(mutex_);
     probes_.emplace_back(GST_PAD(gst_object_ref(pad)),
                          gst_pad_add_probe(pad, kAll, OnData, this, nullptr));
+  }
+  /// Adds the events that a pad of the harness gets from the element.
+  void WatchUpstream(GstPad* pad) {
+    const std::lock_guard lock(mutex_);
+    probes_.emplace_back(
+        GST_PAD(gst_object_ref(pad)),
+        gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_EVENT_UPSTREAM, OnUpstream, this, nullptr));
   }
   /// Starts the element, with the events that come before the first buffer.
   void Begin(const std::string& caps) {
@@ -100,13 +107,14 @@ class RunTrace {
     auto* self = static_cast<RunTrace*>(data);
     const std::lock_guard lock(self->mutex_);
     if (info->type & GST_PAD_PROBE_TYPE_BUFFER) self->Add(GST_PAD_PROBE_INFO_BUFFER(info));
-    if (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) {
-      GstBufferList* list = GST_PAD_PROBE_INFO_BUFFER_LIST(info);
-      for (guint i = 0; i < gst_buffer_list_length(list); ++i)
-        self->Add(gst_buffer_list_get(list, i));
-    }
     if (info->type & GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM)
       self->lines_.push_back(TextOf(GST_PAD_PROBE_INFO_EVENT(info)));
+    return GST_PAD_PROBE_OK;
+  }
+  static GstPadProbeReturn OnUpstream(GstPad*, GstPadProbeInfo* info, gpointer data) {
+    auto* self = static_cast<RunTrace*>(data);
+    const std::lock_guard lock(self->mutex_);
+    self->lines_.push_back("upstream " + TextOf(GST_PAD_PROBE_INFO_EVENT(info)));
     return GST_PAD_PROBE_OK;
   }
   void Add(GstBuffer* buffer) {
@@ -124,11 +132,18 @@ class RunTrace {
     if (gst_lidar_buffer_get_slice(buffer, &s))
       line += " slice " + std::to_string(s.scan_id) + " " + std::to_string(s.slice_index) + " of " +
               std::to_string(s.slice_count) + " from " + std::to_string(s.first_column);
+    GstLidarPose pose{};
+    if (gst_lidar_buffer_get_pose(buffer, &pose))
+      line += " pose " + std::to_string(pose.position[0]);
     const GstClockTime capture = gst_lidar_buffer_get_capture_time(buffer);
-    if (!GST_CLOCK_TIME_IS_VALID(first_capture_)) first_capture_ = capture;
     // Some elements take the time of day for the first buffer.
-    if (GST_CLOCK_TIME_IS_VALID(capture))
+    constexpr GstClockTime kYear2020 = 1'577'836'800 * GST_SECOND;
+    const bool is_today = GST_CLOCK_TIME_IS_VALID(capture) && capture > kYear2020;
+    if (is_today && !GST_CLOCK_TIME_IS_VALID(first_capture_)) first_capture_ = capture;
+    if (is_today)
       line += " captured " + std::to_string(GST_CLOCK_DIFF(first_capture_, capture));
+    else if (GST_CLOCK_TIME_IS_VALID(capture))
+      line += " captured at " + std::to_string(capture);
     lines_.push_back(std::move(line));
   }
   static std::string TextOf(GstEvent* event) {
@@ -146,10 +161,11 @@ class RunTrace {
       case GST_EVENT_SEGMENT:
         gst_event_parse_segment(event, &s);
         return line + " " + gst_format_get_name(s->format) + " from " + Text(s->start) + " base " +
-               Text(s->base) + " time " + Text(s->time);
+               Text(s->base) + " time " + Text(s->time) + " to " + Text(s->stop);
       case GST_EVENT_GAP:
         gst_event_parse_gap(event, &at, &lasts);
         return line + " at " + Text(at) + " for " + Text(lasts);
+      case GST_EVENT_CUSTOM_UPSTREAM:
       case GST_EVENT_CUSTOM_DOWNSTREAM:
       case GST_EVENT_CUSTOM_DOWNSTREAM_STICKY: {
         const gst::StringPtr text(gst_structure_to_string(gst_event_get_structure(event)));

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The course of a scripted run of an element, and the file that it must be equal to.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "gst/common/latency.h"
+#include "tests/support/run_trace.h"
+
+namespace lidar::test {
+
+/// Plays an element that `launch` describes, and writes down each step with all that it causes.
+/// Upstream is live, with a latency of 20 ms.
+class Course {
+ public:
+  explicit Course(const std::string& launch, const char* sink_pad = "sink",
+                  bool with_bytes = true) {
+    // Some elements number their streams at random.
+    g_random_set_seed(1);
+    const gst::ElementPtr element(gst_parse_launch(launch.c_str(), nullptr));
+    h_.reset(gst_harness_new_with_element(element.get(), sink_pad, "src"));
+    gst_harness_set_upstream_latency(h_.get(), 20 * GST_MSECOND);
+    trace_.emplace(h_.get(), with_bytes);
+    trace_->WatchUpstream(h_->srcpad);
+  }
+  ~Course() {
+    trace_.reset();
+    h_.reset();
+  }
+  Course(const Course&) = delete;
+  Course& operator=(const Course&) = delete;
+
+  GstHarness* harness() { return h_.get(); }
+  GstElement* element() { return h_->element; }
+
+  void Begin(const std::string& caps) {
+    trace_->Begin(caps);
+    Note("begin");
+  }
+  void SetCaps(const std::string& caps) {
+    trace_->PushCaps(caps);
+    Note("caps");
+  }
+  void Set(const char* property, const char* value) {
+    gst_util_set_object_arg(G_OBJECT(element()), property, value);
+    Note(std::string("set ") + property + "=" + value);
+  }
+  void Push(const std::string& what, gst::BufferPtr buffer) {
+    const GstFlowReturn flow = gst_pad_push(h_->srcpad, buffer.release());
+    Note(what + ": " + gst_flow_get_name(flow));
+  }
+  void PushEvent(const std::string& what, GstEvent* event) {
+    const bool taken = gst_pad_push_event(h_->srcpad, event) != FALSE;
+    Note(what + (taken ? "" : ": refused"));
+  }
+  void PushUpstream(const std::string& what, GstEvent* event) {
+    const bool taken = gst_pad_push_event(h_->sinkpad, event) != FALSE;
+    Note(what + (taken ? "" : ": refused"));
+  }
+  void PushSegment(GstFormat format, guint64 start = 0) {
+    GstSegment segment;
+    gst_segment_init(&segment, format);
+    segment.start = segment.time = segment.position = start;
+    PushEvent("segment", gst_event_new_segment(&segment));
+  }
+  void Gap(GstClockTime at, GstClockTime lasts) { PushEvent("gap", gst_event_new_gap(at, lasts)); }
+  void Tag() { PushEvent("tag", gst_event_new_tag(gst_tag_list_new_empty())); }
+  /// An event that the element does not know.
+  void Unknown() {
+    PushEvent("unknown", gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM,
+                                              gst_structure_new_empty("unknown-event")));
+    PushUpstream(
+        "unknown upstream",
+        gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, gst_structure_new_empty("unknown-event")));
+  }
+  void Flush() {
+    trace_->Flush();
+    Note("flush");
+  }
+  void End() { PushEvent("end", gst_event_new_eos()); }
+  void Stop() {
+    trace_->Stop();
+    Note("stop");
+  }
+  /// Asks the element, from downstream, for its latency, and in `format` for the rest.
+  void Ask(GstFormat format = GST_FORMAT_TIME) {
+    const gst::QueryPtr latency(gst_query_new_latency());
+    if (gst_pad_peer_query(h_->sinkpad, latency.get())) {
+      const gst::Latency l = gst::ReadLatency(latency.get());
+      lines_.push_back("latency " + std::to_string(l.min) + (l.live ? " live" : ""));
+    }
+    gint64 value = 0;
+    if (gst_pad_peer_query_duration(h_->sinkpad, format, &value))
+      lines_.push_back("duration " + std::to_string(value));
+    if (gst_pad_peer_query_position(h_->sinkpad, format, &value))
+      lines_.push_back("position " + std::to_string(value));
+    const gst::QueryPtr seeking(gst_query_new_seeking(format));
+    if (gst_pad_peer_query(h_->sinkpad, seeking.get())) {
+      gboolean seekable = FALSE;
+      gint64 start = 0;
+      gst_query_parse_seeking(seeking.get(), nullptr, &seekable, &start, &value);
+      lines_.push_back((seekable ? "seekable from " : "not seekable from ") +
+                       std::to_string(start) + " to " + std::to_string(value));
+    }
+    Note("asked");
+  }
+  /// Expects the lines of the file, which UPDATE_GOLDEN=1 in the environment writes.
+  void Expect(const std::string& path) {
+    if (std::getenv("UPDATE_GOLDEN") != nullptr) {
+      std::ofstream file(path);
+      for (const std::string& line : lines_) file << line << "\n";
+    }
+    std::ifstream file(path);
+    ASSERT_TRUE(file.is_open()) << path;
+    std::size_t n = 0;
+    for (std::string line; std::getline(file, line); ++n)
+      ASSERT_EQ(n < lines_.size() ? lines_[n] : "the end", line)
+          << path << ":" << n + 1 << ". Where this is meant, UPDATE_GOLDEN=1 writes the file.";
+    EXPECT_EQ(lines_.size(), n) << path << " is shorter: " << lines_[n];
+  }
+
+ private:
+  void Note(const std::string& step) {
+    lines_.push_back("- " + step);
+    for (std::string& line : trace_->Take()) {
+      if (line.rfind("stats ", 0) == 0) {
+        NoteStats(line);
+        continue;
+      }
+      if (line == "upstream event reconfigure") continue;  // of the harness
+      // The order of fields differs between GStreamer's releases.
+      if (line.rfind("event caps ", 0) == 0) {
+        Lines fields = FieldsOf(line);
+        std::sort(fields.begin() + 1, fields.end());
+        line = Joined(fields);
+      }
+      lines_.push_back(std::move(line));
+    }
+  }
+  /// Notes the fields that have changed, of our own classes: GStreamer's differ between releases.
+  void NoteStats(std::string line) {
+    for (const char* first : {"scans-sent", "slices-received"})
+      if (const std::size_t own = line.find(first); own != std::string::npos)
+        line = "stats, " + line.substr(own);
+    Lines fields = FieldsOf(line);
+    Lines changed = {"stats"};
+    for (std::size_t i = 1; i < fields.size(); ++i)
+      if (std::find(stats_.begin(), stats_.end(), fields[i]) == stats_.end())
+        changed.push_back(fields[i]);
+    if (changed.size() > 1) lines_.push_back(Joined(changed));
+    stats_ = std::move(fields);
+  }
+  static Lines FieldsOf(const std::string& line) {
+    Lines fields;
+    std::size_t begin = 0;
+    for (std::size_t end = 0; end != std::string::npos; begin = end + 2) {
+      end = line.find(", ", begin);
+      fields.push_back(line.substr(begin, end == std::string::npos ? end : end - begin));
+    }
+    return fields;
+  }
+  static std::string Joined(const Lines& fields) {
+    std::string line;
+    for (const std::string& field : fields) line += (line.empty() ? "" : ", ") + field;
+    return line;
+  }
+
+  Harness h_;
+  std::optional<RunTrace> trace_;
+  Lines lines_;
+  Lines stats_;  // the fields that were noted last
+};
+
+}  // namespace lidar::test
