@@ -93,7 +93,7 @@ std::optional<MessageReader::FrameHead> MessageReader::ReadHead() {
   return frame;
 }
 
-/// A message begins with text or binary and goes on with continuations only.
+/// A message begins with a text or binary frame and goes on with continuation frames only.
 bool MessageReader::IsAllowed(const FrameHead& frame) {
   if (IsControl(frame.opcode)) return true;
   const bool continues = frame.opcode == Opcode::kContinuation;
