@@ -101,7 +101,7 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
     return false;
   }
   // The callback may still run after the end of the subscription, so the target lives until the
-  // completion callback. It never comes if the server has closed the connection.
+  // completion callback, which never comes if the server has closed the connection.
   const natsStatus told = natsSubscription_SetOnCompleteCB(
       raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.get());
   if (told != NATS_OK) untold_.push_back(std::move(target));
