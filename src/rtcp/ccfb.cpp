@@ -109,8 +109,8 @@ std::optional<CongestionFeedback> CcfbParser::Parse(ByteView packet) {
   auto count = Read(blocks, NumReports::kCount);
   auto minus_one = Read(blocks, NumReports::kCountMinusOne);
   if (!count && !minus_one) return std::nullopt;
-  // The two readings give different lengths for even counts only. For odd counts the reference has
-  // a block in place of RFC 8888's padding.
+  // The two readings give different lengths for even counts only. For odd counts the reference
+  // implementation of SCReAM sends a block where RFC 8888 has padding.
   if (!count || (minus_one && !count->padding_is_zero))
     reading_ = NumReports::kCountMinusOne;
   else if (!minus_one)

@@ -84,7 +84,8 @@ std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint1
     return source->first;
   }
   source->restart.reset();
-  // The record grows backwards for a packet before the very first one, but not for a forgotten one.
+  // A packet before the very first one extends the record backwards. A packet that the record has
+  // dropped does not.
   if (extended < source->first && source->next_report > source->first) return std::nullopt;
   return source->unwrapper.Unwrap(seq);
 }
@@ -170,8 +171,8 @@ std::optional<CongestionFeedback> FeedbackGenerator::Take(Time at) {
   return report;
 }
 
-/// Returns the first number of a block of at most `max_metrics`. New packets, and the oldest of
-/// those that came late, go before the overlap.
+/// Returns the first number of a block of at most `max_metrics`. If there is no room for all, new
+/// packets and late ones take precedence over those that are reported again (the overlap).
 std::int64_t FeedbackGenerator::FirstToReport(const Source& source,
                                               std::int64_t max_metrics) const {
   const std::int64_t fresh = std::min(source.next_report, source.lowest_new);
