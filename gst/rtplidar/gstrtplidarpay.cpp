@@ -60,8 +60,8 @@ struct _GstLidarRtpPay {
 };
 
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
-// The element has no rank, because a search for a payloader of video would find that it takes
-// everything.
+// The element has no rank: otherwise a search for a payloader of video would choose it, because it
+// takes all caps.
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_NONE, gst_lidar_rtp_pay_get_type())
 
 static StructurePtr Stats(GObject* object) {
