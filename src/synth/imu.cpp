@@ -9,11 +9,11 @@ namespace {
 using Vector = std::array<double, 3>;
 
 constexpr double kGravity = 9.80665;
-/// Half a period: the differences average over a period, as a unit does.
+/// Half a period of samples: differences over a period average over it, as those of a real unit do.
 constexpr Duration kStep = std::chrono::milliseconds(5);
 /// Correlation time of the bias [s].
 constexpr double kWanderTime = 100;
-/// A Gauss-Markov process has its Allan deviation's peak at this part of its standard deviation.
+/// The peak of a Gauss-Markov process's Allan deviation, relative to its standard deviation.
 constexpr double kAllanPeak = 0.618;
 
 Vector Cross(const Vector& a, const Vector& b) {

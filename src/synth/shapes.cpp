@@ -145,7 +145,8 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
 }
 
 bool EnterFoliage(const Shape& s, Random* noise, Span* span) {
-  // The way through leaves to a hit is exponential; half.x sets the mean.
+  // A ray's way through leaves until it hits one has an exponential distribution; half.x sets the
+  // mean.
   const float mean = 0.55F * s.half.x;
   const float depth = -mean * std::log(1.0F - noise->Uniform());
   span->in += depth;

@@ -10,7 +10,7 @@
 namespace lidar::synth {
 namespace {
 
-/// Only houses are drawn in streets whose middle is farther from the sensor: they hide the rest.
+/// Streets whose middle is farther from the sensor than this have only houses, which hide the rest.
 constexpr double kInSight = 75;
 constexpr float kCornerFree = 10.5F;  // no shape stands nearer to the middle of a crossing [m]
 constexpr float kCornerHouse = 27;    // reach of the other street's houses [m]
@@ -127,8 +127,8 @@ void ClearCrossings(const Line& line, double straight_anchor, std::size_t first,
                 shapes->end());
 }
 
-/// Calls add(line, view, distance) for each street in view. Its view is as if it ran along x; the
-/// distance is from the anchor.
+/// Calls add(line, view, distance) for each street in view. The view is one in which the street
+/// runs along x; the distance is that of the street from the anchor.
 template <class Add>
 void Town::ForEachLine(const View& view, const Add& add) const {
   const Terrain::Point here = Terrain::ToPlan({view.anchor_x, view.anchor_y});

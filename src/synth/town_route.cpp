@@ -110,7 +110,7 @@ void TownRoute::MakeTimes(double speed_mps) {
     speeds_[i] = std::min(speed_mps, std::sqrt(kSideways / std::max(curvature, 1e-6)));
   }
   length_m_ = distances_.back();
-  // Two laps, so that the end of the lap meets its beginning.
+  // Goes around twice, so that the speeds at the end of the lap fit those at its beginning.
   const auto limit = [&](std::size_t at, std::size_t from) {
     const double reach = 2 * kForward * LengthOf(std::min(at, from) % n);
     speeds_[at % n] =
