@@ -24,7 +24,7 @@ using lidar::scream::test::TcpKind;
 
 constexpr std::uint64_t kPairs = 10;
 constexpr unsigned kRuns = 20;
-/// Run n starts the other flow n times this late.
+/// Run n starts the other flow after n times this duration.
 constexpr Duration kPhase = 137ms;
 
 /// Less than a packet passes in a gap at this rate.
@@ -60,8 +60,8 @@ double Uncertainty(const std::vector<double>& values) {
   return 1.96 * std::sqrt(squares / (n - 1) / n) / mean;
 }
 
-/// Compares a stream over a pair of generated drives with a sender that knew the drives and sends
-/// as much, evenly.
+/// Compares a stream over a pair of generated drives with a sender that knows the drives in
+/// advance, and sends as much at a constant rate.
 void PrintPair(std::uint64_t seed, bool adapts, Duration duration) {
   RunConfig config;
   config.links = {{Drive(seed)}, {Drive(seed + 1)}};

@@ -159,8 +159,8 @@ TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
   ExpectSameStream(Replay(0), sent);
 }
 
-/// The sink waits five seconds for an answer. It sends caps until 256 messages are unanswered, here
-/// for three seconds.
+/// The sink waits five seconds for an answer. Meanwhile it sends, caps included, until 256 messages
+/// are unanswered, which takes three seconds here.
 TEST_F(NatsJetStream, GoesOnWhereCapsWereNeverAnswered) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At(kBox));
   sender.Play();
@@ -245,7 +245,7 @@ TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
   ASSERT_TRUE(a.WaitForBuffers(8));
   b.Play();
   ASSERT_TRUE(Eventually([&] { return b.stat("connected") == 1; }));
-  // The second natssrc gets its share once the server has its subscription.
+  // The second natssrc gets its share once the server has that subscription.
   ASSERT_TRUE(Eventually([&] {
     PublishSlices(8, At(kBox));
     return b.count() > 0;
@@ -344,7 +344,8 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_EQ(last.from, sent.front().capture_time);
   EXPECT_EQ(last.to, sent.back().capture_time);
   EXPECT_EQ(last.damaged, 0U);
-  // Slices begin up to a second before, because libnats writes times in whole seconds.
+  // The first slice may be up to a second earlier than `half`, because libnats writes times in
+  // whole seconds.
   const GstClockTime half = sent[150].capture_time;
   const auto later = AskForHistory(receiver, {half, 0, 100'000}, &last);
   ASSERT_FALSE(later.empty());

@@ -115,9 +115,9 @@ TEST(OusterLive, CountsWhatIsLostOnTheWay) {
     return sensor.counts().sent > end;
   }));
   const auto stat = [&](const char* name) { return Stat(receiver.source(), name); };
-  // Losses are seen when later packets have come, and a slow receiver lags. If the machine stops
-  // the sensor for a second, its clock jumps, and slices from before the jump end at their newest
-  // packet.
+  // A loss is seen once a later packet has come, and the receiver may lag on a busy machine. If the
+  // machine stops the sensor for a second, the sensor's clock jumps, and losses at the end of
+  // slices before the jump are not seen.
   const auto lost = [&] { return stat("packets-lost") - before; };
   const auto known = [&] { return lost() >= sensor.counts().lost || stat("clock-jumps") > 0; };
   EXPECT_TRUE(receiver.PullUntil([&](GstBuffer*) { return known(); }));

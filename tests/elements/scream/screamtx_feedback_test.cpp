@@ -160,7 +160,7 @@ TEST_F(ScreamTxFates, AreCountedEachByItsName) {
 
 TEST_F(ScreamTx, TellsTheEncoderTheRoundTripAndTheQueueThatItShows) {
   Start();
-  // The path is empty with 40 ms at first, then a queue adds 30 ms.
+  // The path is empty at first and takes 40 ms. Then a queue adds 30 ms.
   for (const guint64 round_trip_ms : {40U, 70U})
     for (guint32 i = 0; i < 30; ++i) {
       PushFrame(next_seq_ * 900U, 1);
