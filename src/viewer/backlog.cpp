@@ -53,7 +53,7 @@ Backlog::Iterator Backlog::Erase(Iterator slice) {
   return slices_.erase(slice);
 }
 
-/// Erases the slices of the key's place, up to the key.
+/// Erases the slices of the same sector that came before `key`.
 void Backlog::EraseBefore(const Slice& key) {
   for (auto it = slices_.begin(); it->get() != &key;)
     it = (*it)->id.index == key.id.index ? Erase(it) : std::next(it);
