@@ -13,9 +13,9 @@ constexpr std::uint64_t kSecond_ns = 1'000'000'000;
 constexpr std::uint64_t kRewind_ns = 11 * kSecond_ns;
 /// Two and a half scans of a sensor at 10 Hz.
 constexpr std::uint64_t kPicture_ns = 250'000'000;
-/// 11 s of a recording that has clouds, too.
+/// Most bytes to read: 11 s of a recording that also has clouds.
 constexpr std::size_t kMostRead = std::size_t{512} << 20;
-/// 11 s of 12 Mbit/s.
+/// Most bytes to keep: 11 s at 12 Mbit/s.
 constexpr std::size_t kMostKept = std::size_t{16} << 20;
 
 }  // namespace
