@@ -63,6 +63,16 @@ TEST(EffortControl, IsThereWithinSeconds) {
   EXPECT_EQ(Play({}, {}, 3, &control).back(), 3U);
 }
 
+TEST(EffortControl, DecidesByNoFewerThanEightSlicesHoweverLongTheyAre) {
+  EffortControl control;
+  const unsigned first = control.effort();
+  const Duration sweep = std::chrono::milliseconds(500);
+  for (int i = 0; i < 7; ++i) control.OnSlice(sweep, 1'000, std::chrono::microseconds(10));
+  EXPECT_EQ(control.effort(), first);
+  control.OnSlice(sweep, 1'000, std::chrono::microseconds(10));
+  EXPECT_EQ(control.effort(), first + 1);
+}
+
 TEST(EffortControl, StaysWhereItIsHoweverNearTheLimit) {
   for (std::size_t returns = 3'000; returns < 60'000; returns += 1'000) {
     EffortControl control;

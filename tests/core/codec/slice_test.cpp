@@ -252,6 +252,26 @@ TEST(RangeSlices, HaveNoMoreColumnsThanATurn) {
   }
 }
 
+TEST(RangeSlices, HaveNoMoreColumnsThanATurnInAllTheirBlocks) {
+  const auto encode = [](std::uint32_t first_column, std::uint32_t columns,
+                         std::vector<std::uint8_t>* bytes) {
+    RangeEncoder encoder(test::RoomSensor());
+    RangeImage wall;
+    wall.beams = 32;
+    wall.columns = columns;
+    wall.first_column = first_column;
+    wall.ranges.assign(wall.size(), 5'000);
+    EXPECT_TRUE(encoder.Encode(wall, {}, bytes));
+  };
+  for (const std::uint32_t second : {111U, 112U, 113U, 512U}) {
+    std::vector<std::uint8_t> bytes;
+    encode(0, 400, &bytes);
+    encode(400, second, &bytes);
+    SliceDecoder decoder(test::RoomFormat(), kMaxPoints);
+    EXPECT_EQ(decoder.Decode({bytes.data(), bytes.size()}).has_value(), second <= 112) << second;
+  }
+}
+
 TEST(RangeSlices, AreNeverCoarserThanTheirErrorAllowsWhateverTheStep) {
   const RangeImage image = test::RoomScan(test::RoomSensor(), 0, 64);
   const auto raw = test::RawCloud(test::RoomSensor(), image);

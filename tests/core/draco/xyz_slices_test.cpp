@@ -173,12 +173,18 @@ TEST(XyzSlices, ThatNoGridCanHoldAreSaidToBeOutOfReach) {
   EXPECT_EQ(Coded(points, {}).result, SliceResult::kOutOfReach);
 }
 
-TEST(XyzSlices, TakeTheSmallerOfDracosCodersForTheOrderGiven) {
-  Points points(5'000);  // along a line, a cell or two from each to the next
+/// Along a line, a cell or two from each to the next.
+Points Line() {
+  Points points(5'000);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto t = static_cast<float>(i) * 0.02F;
     points[i] = {t, 3 * std::sin(t), std::cos(t), 0};
   }
+  return points;
+}
+
+TEST(XyzSlices, TakeTheSmallerOfDracosCodersForTheOrderGiven) {
+  Points points = Line();
   std::mt19937 random(1);
   for (const bool in_order : {true, false}) {
     if (!in_order) std::shuffle(points.begin(), points.end(), random);
@@ -190,6 +196,54 @@ TEST(XyzSlices, TakeTheSmallerOfDracosCodersForTheOrderGiven) {
     EXPECT_EQ(size(7) == size(0), in_order);
     EXPECT_LE(size(7), size(0));
   }
+}
+
+TEST(XyzSlices, AreCodedByTheCoderThatWasTheSmallerOneUntilBothAreTriedAgain) {
+  const Points line = Line();
+  auto encoder = *SliceEncoder::Create(PlainFormat(), Geometry::kXyz);
+  Points shuffled = line;
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(1));
+  const auto encode = [&](const Points& points, unsigned level) {
+    const auto* raw = reinterpret_cast<const std::uint8_t*>(points.data());
+    encoder.Load({raw, points.size() * sizeof(Point)}, 0, false);
+    SliceSettings settings;
+    settings.level = level;
+    EncodedSlice slice;
+    EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
+    return slice.bytes.size();
+  };
+  const std::size_t smallest = encode(line, 7);
+  EXPECT_EQ(smallest, encode(line, 0));
+  // Slices 1 to 63 take the sequential coder, and slice 64 the kd-tree.
+  for (unsigned i = 1; i < 64; ++i) ASSERT_EQ(encode(line, 7), smallest) << i;
+  const std::size_t in_a_tree = encode(shuffled, 7);
+  EXPECT_LT(in_a_tree, encode(shuffled, 0));
+  EXPECT_EQ(encode(shuffled, 7), in_a_tree);
+}
+
+TEST(XyzSlices, OfAThinnedCloudAreThoseOfWhatWasKept) {
+  const Points all = Rings(900);
+  Points some;
+  std::vector<bool> kept(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    kept[i] = i % 3 == 1;
+    if (kept[i]) some.push_back(all[i]);
+  }
+  std::vector<std::vector<std::uint8_t>> coded;
+  for (const bool thins : {true, false}) {
+    const Points& points = thins ? all : some;
+    auto encoder = *SliceEncoder::Create(PlainFormat(), Geometry::kXyz);
+    const auto* raw = reinterpret_cast<const std::uint8_t*>(points.data());
+    encoder.Load({raw, points.size() * sizeof(Point)}, 0, true);
+    if (thins) encoder.Thin(kept);
+    EXPECT_EQ(encoder.returns(), some.size());
+    EncodedSlice slice;
+    SliceSettings settings;
+    settings.intensity_bits = 6;
+    EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
+    coded.push_back(slice.bytes);
+  }
+  EXPECT_EQ(coded[0], coded[1]);
 }
 
 template <class T>

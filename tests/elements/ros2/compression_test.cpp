@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include "ext/draco/field_codec.h"
 #include "ext/ros2/cloud_compression.h"
 #include "ext/ros2/message_reader.h"
 #include "ext/ros2/message_writer.h"
@@ -99,6 +100,44 @@ TEST_P(CompressedClouds, MayHaveRowsWithPadding) {
   ASSERT_TRUE(made) << why;
   EXPECT_EQ(made->points, padded);
   EXPECT_EQ(cdr::RowStride(made->cloud), cloud_.layout.row_step);
+}
+
+TEST_P(CompressedClouds, HaveTheirOwnSizeWhateverTheStepOfARowSays) {
+  cloud_.layout.row_step += 1'000;
+  Bytes packed;
+  std::string why;
+  const auto made = Decompress(*Compress(GetParam(), cloud_, &packed), &why);
+  ASSERT_TRUE(made) << why;
+  EXPECT_EQ(made->points, points_);
+  EXPECT_EQ(made->cloud.data.size, points_.size());
+}
+
+TEST_P(CompressedClouds, MayHaveAsManyFieldsAsDracoTakes) {
+  const std::size_t most = draco::FieldLayout::kMaxFields;
+  for (const std::size_t count : {most, most + 1}) {
+    cdr::PointCloud2 cloud = cloud_;
+    cloud.layout.fields = {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}};
+    for (std::size_t i = 3; i < count; ++i)
+      cloud.layout.fields.push_back(
+          {"f" + std::to_string(i), static_cast<std::uint32_t>(9 + i), 2, 1});
+    cloud.layout.point_step = static_cast<std::uint32_t>(9 + count);
+    cloud.layout.width = 20;
+    cloud.layout.row_step = cloud.layout.width * cloud.layout.point_step;
+    Bytes points(cloud.layout.row_step);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<std::uint8_t>(i % 61);
+    cloud.data = ViewOf(points);
+    Bytes packed;
+    std::string why;
+    const auto compressed = Compress(GetParam(), cloud, &packed);
+    if (count > most && GetParam() == CloudCompression::kDraco) {
+      EXPECT_FALSE(compressed);
+      continue;
+    }
+    ASSERT_TRUE(compressed);
+    const auto made = Decompress(*compressed, &why);
+    ASSERT_TRUE(made) << why;
+    EXPECT_EQ(made->points, points);
+  }
 }
 
 TEST_P(CompressedClouds, AreWhatTheSinkPublishes) {

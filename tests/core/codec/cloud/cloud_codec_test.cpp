@@ -310,6 +310,30 @@ TEST(CloudCodec, TakesCloudsWhoseLinesAndTimesSayNothing) {
   EncodePaths(clouds);
 }
 
+TEST(CloudCodec, CodesWhatIsKeptOfAThinnedCloudAsACloudOfThatAlone) {
+  const PathCloud all = PathScan(0);
+  PathCloud some;
+  std::vector<bool> kept(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    kept[i] = i % 2 == 0;
+    if (kept[i]) some.push_back(all[i]);
+  }
+  std::vector<std::vector<std::uint8_t>> coded;
+  for (const bool thins : {true, false}) {
+    const PathCloud& cloud = thins ? all : some;
+    auto encoder = CloudEncoder::Create(PathLayout());
+    encoder->Load(
+        {reinterpret_cast<const std::uint8_t*>(cloud.data()), cloud.size() * sizeof(PathPoint)},
+        true);
+    if (thins) encoder->Thin(kept);
+    EncodedSlice slice;
+    ASSERT_EQ(encoder->Encode({0.02, 0, 6}, &slice), SliceResult::kEncoded);
+    EXPECT_EQ(slice.returns, some.size());
+    coded.push_back(slice.bytes);
+  }
+  EXPECT_EQ(coded[0], coded[1]);
+}
+
 TEST(CloudCodec, TakesNoMoreAtAHigherEffort) {
   for (const PlainPoints& points : {SpinningScan(0), FirstOf(ScanOf("vlp16"), 5'000)}) {
     double last = 1e9;
