@@ -87,29 +87,43 @@ class Sender {
   OracleResult result_;
 };
 
-/// The times at which links become free.
-class FreeLinks {
+/// Each link, behind a pacer that lets out what the link carried a delay ago. Both are servers in
+/// series, and a slice is whole when the later one has finished it.
+class PacedLinks {
  public:
-  explicit FreeLinks(const std::vector<Capacity>& links)
-      : links_(links), free_(links.size(), Duration{0}), ends_(links.size()) {}
+  PacedLinks(const std::vector<Capacity>& links, Duration delay)
+      : links_(links), delay_(delay), free_(links.size()), ends_(links.size()) {}
 
   /// Sends a slice that is made at `now`. Returns when it arrives, if a link delivers it by
   /// `deadline`.
   std::optional<Duration> Send(Duration now, Duration deadline, DataSize size, Bonding bonding) {
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      ends_[i] = links_[i].Finish(std::max(now, free_[i]), size);
-    const auto first = std::min_element(ends_.begin(), ends_.end());
-    if (first == ends_.end() || *first > deadline) return std::nullopt;
+    for (std::size_t i = 0; i < links_.size(); ++i) ends_[i] = Ends(i, now, size);
+    const auto first = std::min_element(
+        ends_.begin(), ends_.end(), [](const Times& a, const Times& b) { return a.link < b.link; });
+    if (first == ends_.end() || first->link > deadline) return std::nullopt;
     const auto best = static_cast<std::size_t>(first - ends_.begin());
     for (std::size_t i = 0; i < links_.size(); ++i)
-      if (i == best || (bonding == Bonding::kOnEach && ends_[i] <= deadline)) free_[i] = ends_[i];
-    return *first;
+      if (i == best || (bonding == Bonding::kOnEach && ends_[i].link <= deadline))
+        free_[i] = ends_[i];
+    return first->link;
   }
 
  private:
+  struct Times {
+    Duration pacer{0}, link{0};
+  };
+
+  Times Ends(std::size_t i, Duration now, DataSize size) const {
+    const Duration start = std::max(now, free_[i].pacer);
+    const Duration known = links_[i].Finish(start - delay_, size);
+    const Duration pacer = known < Duration::max() - delay_ ? known + delay_ : Duration::max();
+    return {pacer, std::max(pacer, links_[i].Finish(std::max(start, free_[i].link), size))};
+  }
+
   const std::vector<Capacity>& links_;
-  std::vector<Duration> free_;
-  std::vector<Duration> ends_;  // end of the slice on each link
+  Duration delay_;
+  std::vector<Times> free_;  // when pacers and links become free
+  std::vector<Times> ends_;  // of the slice
 };
 
 bool IsEmpty(const OracleConfig& c) {
@@ -140,13 +154,13 @@ OracleResult AskOracleOfLinks(const std::vector<Capacity>& links, const OracleCo
   result.scans = static_cast<std::uint64_t>(Seconds(config.duration) * config.scans_per_second);
   const double period = 1 / (config.scans_per_second * config.slices_per_scan);
   const DataSize size = config.rate * FromSeconds(period);
-  FreeLinks free(links);
+  PacedLinks paced(links, config.known_after);
   for (std::uint64_t scan = 0; scan < result.scans; ++scan) {
     std::uint32_t whole = 0;
     for (std::uint32_t i = 0; i < config.slices_per_scan; ++i) {
       const Duration now =
           FromSeconds(static_cast<double>(scan * config.slices_per_scan + i) * period);
-      const auto end = free.Send(now, now + config.max_age - config.rtt / 2, size, bonding);
+      const auto end = paced.Send(now, now + config.max_age - config.rtt / 2, size, bonding);
       if (!end) continue;
       ++whole;
       result.latency_ms.push_back(Milliseconds(*end - now) + Milliseconds(config.rtt) / 2);

@@ -18,6 +18,9 @@ struct OracleConfig {
   /// A scan whose first slice has waited longer is dropped whole, except for the newest scan.
   Duration max_age = std::chrono::milliseconds{200};
   Duration rtt = std::chrono::milliseconds{40};
+  /// The sender of several links gives each no more than what the link carried this long ago. With
+  /// 0 it knows the links in advance.
+  Duration known_after{0};
   std::uint32_t slices_per_scan = 8;
   double scans_per_second = 10;
 };

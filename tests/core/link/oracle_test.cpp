@@ -128,6 +128,63 @@ TEST(OracleOfLinks, CountsWhatArrivesInTime) {
   EXPECT_GT(r.latency_ms.back(), 180);
 }
 
+OracleConfig KnownAfter(Duration delay) {
+  OracleConfig config = TenSeconds(1.4);
+  config.known_after = delay;
+  return config;
+}
+
+/// A slice must leave within 180 ms of its capture.
+TEST(OracleOfLinks, UsesALinkAgainWhenTheEndOfItsGapIsKnown) {
+  const std::vector<Capacity> gap = {Trace("0 8\n2 0\n3 8")};
+  EXPECT_EQ(AskOracleOfLinks(gap, KnownAfter(0ms)).complete, 91U) << "those from 2.9 s on";
+  EXPECT_EQ(AskOracleOfLinks(gap, KnownAfter(40ms)).complete, 91U);
+  EXPECT_EQ(AskOracleOfLinks(gap, KnownAfter(100ms)).complete, 90U) << "those from 3.0 s on";
+  EXPECT_EQ(AskOracleOfLinks(gap, KnownAfter(200ms)).complete, 89U) << "those from 3.1 s on";
+}
+
+/// Each slice is 17.5 kbit. Those of 2.0 to 2.0375 s are on the link when the gap is known at
+/// 2.04 s, and leave at its end. The slice of 2.05 s leaves after 2.14 s.
+TEST(OracleOfLinks, HoldsSlicesThatAreMadeInAKnownGap) {
+  const std::vector<Capacity> gap = {Trace("0 8\n2 0\n2.1 8")};
+  const OracleResult late = AskOracleOfLinks(gap, KnownAfter(40ms));
+  const OracleResult ahead = AskOracleOfLinks(gap, KnownAfter(0ms));
+  const std::size_t second = late.latency_ms.size() - 2;
+  ASSERT_EQ(late.latency_ms.size(), ahead.latency_ms.size());
+  EXPECT_NEAR(late.latency_ms.back(), 122.1875, 1e-2) << "made at 2.0 s";
+  EXPECT_NEAR(ahead.latency_ms.back(), 122.1875, 1e-2);
+  EXPECT_NEAR(late.latency_ms[second], 112.1875, 1e-2) << "made at 2.05 s";
+  EXPECT_NEAR(ahead.latency_ms[second], 111.875, 1e-2) << "made at 2.0125 s";
+}
+
+TEST(OracleOfLinks, LosesNothingOverConstantLinksThatAreKnownLate) {
+  const std::vector<Capacity> links = {Trace("0 1"), Trace("0 0.5")};
+  const OracleResult ahead = AskOracleOfLinks(links, KnownAfter(0ms));
+  const OracleResult late = AskOracleOfLinks(links, KnownAfter(1s));
+  EXPECT_EQ(late.complete, ahead.complete);
+  EXPECT_EQ(late.latency_ms, ahead.latency_ms);
+}
+
+TEST(OracleOfLinks, DeliversLessTheLaterItKnows) {
+  for (std::uint64_t seed = 1; seed <= 5; seed += 2) {
+    DriveTraceConfig first, second;
+    first.seed = seed;
+    second.seed = seed + 1;
+    const std::vector<Capacity> links = {Trace(MakeDriveTrace(first)),
+                                         Trace(MakeDriveTrace(second))};
+    OracleConfig config;
+    config.rate = Mbps(1.5);
+    OracleResult sooner = AskOracleOfLinks(links, config);
+    for (const Duration delay : {20ms, 40ms, 100ms, 200ms}) {
+      config.known_after = delay;
+      const OracleResult later = AskOracleOfLinks(links, config);
+      EXPECT_LE(later.complete, sooner.complete) << Milliseconds(delay);
+      EXPECT_GE(later.Latency(99), sooner.Latency(99)) << Milliseconds(delay);
+      sooner = later;
+    }
+  }
+}
+
 TEST(OracleOfLinks, WithoutLinksOrSlicesDeliversNothing) {
   EXPECT_EQ(AskOracleOfLinks({}, TenSeconds(1)).complete, 0U);
   EXPECT_EQ(AskOracleOfLinks({}, TenSeconds(1)).scans, 100U);
