@@ -315,11 +315,14 @@ Alignment Odometry::AlignFrom(const Pose& guess, const TimedPoints& scan, const 
   return align(kWidestSigma);
 }
 
+double Odometry::KnownView(const Pose& pose) const {
+  const double moved = (pose.position - entered_.position).norm();
+  return std::max(0.0, 1 - moved / (kNewView * settings_.voxel_size_m));
+}
+
 bool Odometry::ShowsThePlace(const Alignment& found, const Pose& guess) const {
   if (fitting_scans_ < kUsualScans) return true;
-  const double moved = (guess.position - entered_.position).norm();
-  const double known_view = 1 - moved / (kNewView * settings_.voxel_size_m);
-  return found.standing_share >= kLeastOfUsual * known_view * usual_standing_share_;
+  return found.standing_share >= kLeastOfUsual * KnownView(guess) * usual_standing_share_;
 }
 
 /// A scan fits if enough of its points fit and a vehicle can move as the pose says.
@@ -364,8 +367,9 @@ void Odometry::Follow(const Alignment& found, const Moving& predicted, Time midd
   lost_scans_ = 0;
   lost_for_ = Duration{0};
   ++fitting_scans_;
-  usual_standing_share_ += (found.standing_share - usual_standing_share_) /
-                           static_cast<double>(std::min(fitting_scans_, kUsualScans));
+  const double learned =
+      std::max(1.0 / std::min(fitting_scans_, kUsualScans), 1 - KnownView(predicted.pose));
+  usual_standing_share_ += learned * (found.standing_share - usual_standing_share_);
   const Duration gap = middle - *last_time_;
   turns_.Teach(*last_time_, middle, (pose_.Inverse() * found.pose).rotation,
                Exp(velocity_ * Seconds(gap)).rotation);

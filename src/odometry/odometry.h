@@ -108,6 +108,8 @@ class Odometry {
   Estimate Match(Time middle, const Moving& predicted, const TimedPoints& scan,
                  const Surface& fine);
   Alignment AlignFrom(const Pose& guess, const TimedPoints& scan, const Surface& fine);
+  /// Returns the part of the view that the last scan in the map shows, too: 0 to 1.
+  double KnownView(const Pose& pose) const;
   bool ShowsThePlace(const Alignment& found, const Pose& guess) const;
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
   void Follow(const Alignment& found, const Moving& predicted, Time middle, const Surface& fine);

@@ -237,5 +237,20 @@ TEST(OddScans, ReachesFartherAfterAGapInWhichTheCarBraked) {
   EXPECT_LT((found.position - way.position).norm(), 0.6);
 }
 
+/// Past a gap, the map shows little of the scene, so fewer upright surfaces fit.
+TEST(OddScans, TracksASceneThatAGapHasMadeNew) {
+  Drive drive(synth::SceneKind::kField, 15, 4);
+  Odometry odometry({});
+  int lost = 0;
+  Estimate e;
+  for (std::uint64_t i = 0; i < 130; ++i) {
+    if (i >= 100 && i < 115) continue;
+    e = odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
+    lost += e.tracking == Tracking::kLost ? 1 : 0;
+  }
+  EXPECT_EQ(lost, 0);
+  EXPECT_LT((e.pose.position - drive.WayTo(129).position).norm(), 1.5);
+}
+
 }  // namespace
 }  // namespace lidar::odometry
