@@ -32,7 +32,7 @@ constexpr double kQueues = 16;
 constexpr double kPauseMs = 60;
 /// A larger change of a delay is due to another clock or path.
 constexpr double kJumpMs = 1000;
-/// The shortest delay of the last one to two windows is that of an empty queue.
+/// The shortest delay of the present window and the one before counts as that of an empty queue.
 constexpr Duration kBaseWindow = 10s;
 constexpr std::size_t kMaxSent = 8192;
 
@@ -99,7 +99,8 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   const double sent_ms = Milliseconds(arrival.sent - last->sent);
   const auto ticks = static_cast<std::int32_t>(arrival.report_timestamp - last->report_timestamp);
   const double arrived_ms = ticks / 65.536 - Milliseconds(arrival.age - last->age);
-  // The arrival itself must not decide whether it counts, so the packet before shows the queue.
+  // Whether a packet counts must not depend on its own arrival, so the packet before it shows the
+  // queue.
   const bool busy = l.queue_ms > sent_ms + kMarginMs;
   l.Measure(arrival.sent, arrived_ms - sent_ms);
   for (std::size_t other = 0; other < kMaxLinks; ++other)
