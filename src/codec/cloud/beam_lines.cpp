@@ -118,8 +118,8 @@ class NearestLine {
     constexpr double kSteepest = 1.81;      // length of a line of kMostTangent by its rho
     constexpr std::ptrdiff_t kAround = 32;  // bounds the time if many lines are near a point
     const double rho = std::max(s.rho_m, 1e-3);
-    // Lines whose tangents are outside of these limits pass the point further off, at any of the
-    // heights.
+    // Lines with tangents outside of these limits pass the point at a larger distance, whatever
+    // their height.
     const std::ptrdiff_t first = Below((s.z_m - low_ + kSteepest * reach_m) / rho);
     const std::ptrdiff_t end = Below((s.z_m - high_ - kSteepest * reach_m) / rho);
     const std::ptrdiff_t middle = Below((s.z_m - middle_) / rho);
@@ -327,7 +327,8 @@ FoundBeams FindBendingBeams(const std::vector<Sighting>& points) {
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
   FoundBeams found;
   for (const BeamLine& line : FirstLines(points)) found.beams.push_back({line, {}});
-  // The found lines are fitted first: further lines show once the points of these are left out.
+  // The lines found so far are fitted first, because further lines show only once their points are
+  // left out.
   for (const double reach_m : {0.04, 0.02}) {
     Assign(points, reach_m, &found);
     for (FoundBeam& beam : found.beams)

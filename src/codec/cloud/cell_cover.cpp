@@ -182,7 +182,7 @@ bool CellGrid::Reaches(double farthest_m) const {
 }
 
 double CellGrid::SurelyHolds() const {
-  // Floats round each coordinate of a middle by up to half of this share of it.
+  // Floats round each coordinate of a cell's middle by up to half of its product with kRounding.
   constexpr double kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
   return static_cast<double>(step_m) * kRoom / kRounding - static_cast<double>(step_m);
 }

@@ -70,7 +70,8 @@ constexpr std::array<std::uint32_t, 8> NodesByChild() {
 }
 constexpr std::array<std::uint32_t, 8> kNodesBy = NodesByChild();
 
-/// Cells of a node's children, the first child at bit 0.
+/// Returns, for each set of children (bit n: child n), their bits in CellBits, shifted so that
+/// child 0 is bit 0.
 constexpr std::array<CellBits, 256> SpreadChildren() {
   std::array<CellBits, 256> spread{};
   for (unsigned children = 0; children < 256; ++children)
@@ -80,8 +81,8 @@ constexpr std::array<CellBits, 256> SpreadChildren() {
 }
 constexpr std::array<CellBits, 256> kSpread = SpreadChildren();
 
-/// A neighbour of a node: shift of its children from the node's own, and which of them are within
-/// CellBits.
+/// A neighbour of a node: the shift in CellBits from the node's children to the neighbour's, and
+/// the neighbour's children that are among the 4 x 4 x 4 cells.
 struct Neighbour {
   int shift = 0;
   unsigned inside = 0;

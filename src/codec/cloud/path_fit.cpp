@@ -78,7 +78,8 @@ std::uint32_t CountColumns(std::vector<Line>* lines) {
   double columns = 0;
   for (Line& line : *lines) {
     if (line.empty()) continue;
-    // Lasers fire in turn, within a column.
+    // The lasers of a column fire one after the other within its period. Times may be early by an
+    // eighth of it.
     const double start = std::floor((line.front().time - first) / period + 0.125);
     for (Sample& s : line) {
       const double column = start + std::round((s.time - line.front().time) / period);

@@ -116,7 +116,7 @@ class TableCoder {
   }
 
  private:
-  // First contexts of each kind.
+  // Number of the first context of each kind.
   static constexpr std::uint32_t kLogits = 4'096;
   static constexpr std::uint32_t kWeights = 24'576;
   static constexpr std::uint32_t kSpread = 32'000;
