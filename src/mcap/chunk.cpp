@@ -44,7 +44,8 @@ std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& reco
 bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records) {
   if (chunk.is_run) return ReadRun(input, chunk, records);
   const auto record = RecordAt(input, chunk.offset);
-  // Chunks of the index do not overlap, so the record must not exceed the size there.
+  // Chunks of the index do not overlap, so the record must not exceed the size that the index
+  // gives.
   const bool fits = record && record->end() - chunk.offset <= chunk.size;
   const auto header = fits ? ReadHeader(input, *record) : std::nullopt;
   if (!header || header->chunk.records_size > 2 * kMaxChunk) return false;

@@ -37,7 +37,7 @@ std::optional<SummaryPlace> FindSummary(Input* input) {
 
 /// The summary's records; nothing if its checksum does not fit.
 std::optional<Bytes> ReadSummary(Input* input, const SummaryPlace& place) {
-  // The checksum covers the footer, too, up to itself.
+  // The checksum also covers the footer, up to the checksum itself.
   constexpr std::uint64_t kCovered = kFooterRecord - 4;
   Bytes bytes(static_cast<std::size_t>(place.end - place.start + kCovered));
   if (!input->Read(place.start, bytes.size(), bytes.data())) return std::nullopt;
