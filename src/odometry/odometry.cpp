@@ -42,8 +42,8 @@ constexpr int kLostForGood = 10;  // number of lost scans after which a new map 
 constexpr int kTrustedMap = 3;
 /// Deviation for the search without a known motion [m].
 constexpr double kWidestSigma = 2;
-/// Greatest acceleration of a vehicle [m/s^2, rad/s^2]. The first motion and an alignment may be
-/// off by kSlack cubes.
+/// Greatest acceleration of a vehicle [m/s^2, rad/s^2]. kSlack, in cubes, is added for the errors
+/// of the first motion and of alignments.
 constexpr double kMostAcceleration = 30;
 constexpr double kMostTurnAcceleration = 30;
 constexpr double kSlack = 0.3;
