@@ -64,7 +64,7 @@ Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
 bool SliceLedger::Contradicts(std::int64_t number, std::uint32_t count) {
   const Scan* scan = Find(number);
   if (scan == nullptr || scan->slices.size() == count) return false;
-  // A guessed count may change until a slice is counted by it.
+  // A guessed number of slices may change until the first slice of the scan is counted.
   return scan->count_known || scan->open != scan->slices.size();
 }
 
