@@ -110,7 +110,8 @@ void Controller::TakeOutageRestart(Time now) {
   const auto restart = outage_.OnFeedback(now);
   if (!restart) return;
   window_.Restart(std::max(window_.ref_wnd(), *restart));
-  // The packets that the gap delayed arrive first. The restart already answered their marks.
+  // Packets that the gap delayed arrive during the next round trip. The restart already answered
+  // their marks, so they do not count.
   path_.evidence().BeginAt(now + path_.rtt().smoothed());
   fast_increase_.Restart();
 }

@@ -78,7 +78,8 @@ bool Take(GstLidarScreamTx* self, const rtcp::CongestionFeedback& report, GSocke
     state.controller->OnRouteChange(now);
   }
   if (result == scream::FeedbackResult::kAccepted) state.pacing.OnAccepted(now);
-  // A TWCC report does not name its receiver, where elements may still drop the reported packets.
+  // A report by TWCC does not name a receiver: elements behind its session may still drop the
+  // packets.
   if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
     KeepReceipts(state, report);
   state.reporter.Evaluate(now);

@@ -144,7 +144,8 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks) {
   EstimateCapacity(now);
 }
 
-/// A queue shows the capacity at any rate of the source. The acknowledged rate is a lower bound.
+/// Packets that come out of a queue show the capacity, whatever the rate of the source. Otherwise
+/// the acknowledged rate is a lower bound of the capacity.
 void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = std::max(acked_peak_, acked_rate_.Rate(now));
   const auto rate = busy_run_.latest_capacity();
