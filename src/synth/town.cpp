@@ -218,7 +218,8 @@ float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float r
     if (clearance < kClose) return std::max(t, 0.0F);
     const float fall =
         ground.slope_x * ray.direction.x + ground.slope_y * ray.direction.y - ray.direction.z;
-    // The ray would meet ground of the greatest curvature at the new t, and meets none sooner.
+    // The ray would meet the ground at the new t if that had the greatest curvature. Real ground is
+    // lower, so no point before is missed.
     t += 2 * clearance / (fall + std::sqrt(fall * fall + 2 * curvature * clearance));
   }
   return reach;
