@@ -70,8 +70,9 @@ patient=(--timeout-multiplier 20)
 # preprocessed twice.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 
-# targets DIR SUITE...: prints the targets that tests of the suites need, as ninja calls them: with the
-# suite `product` all but tests, and otherwise not what $dear needs.
+# targets DIR SUITE...: prints, in ninja's names, the targets that tests of the suites need, without
+# the tests in $dear. With the suite `product` it prints these tests' targets, too, and all default
+# targets outside of tests/.
 targets() {
   local dir=$1
   shift

@@ -82,7 +82,7 @@ TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrcWithoutAPause) {
   second.scan_number = 500;
   Receiver receiver(milliseconds(100));
   DeliverAll(&receiver, Sender(first).Scans(0, 3));
-  // Three packets are the probation: the scan is followed before it is over.
+  // A stream is followed after three packets, its probation: before its first scan is over.
   EXPECT_EQ(DeliverAll(&receiver, Sender(second).Scans(3, 1)), AllSlices(3, 1));
   EXPECT_EQ(receiver.accounts().restarts, 1U);
 }

@@ -73,7 +73,7 @@ TEST(Outage, IsForgottenASecondAfterThePathReturns) {
   for (const char* name : {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40",
                            "slices_8M_rtt40", "frames_8M_fifo100_notect"}) {
     const Trial run(WithOutage(Named(name)));
-    // Rounds of 10 frames/s are long.
+    // Rounds are long at 10 frames/s, so the rate rises more slowly.
     EXPECT_GT(run.Utilisation(41s, 43s), std::string(name) == "frames10_8M_rtt40" ? 0.6 : 0.7)
         << name;
     EXPECT_LT(run.MaxQueueMs(42s, 43s), 60) << name;

@@ -254,7 +254,7 @@ TEST_F(NatsRuns, WhatTheStreamNumbersHasItsNumberAndAGapIsMarked) {
   stranger.Flush();
   const Harness h(gst_harness_new_with_element(source.get(), nullptr, "src"));
   gst_harness_play(h.get());
-  // The first message of the stream is the caps, and its second the sink's.
+  // The first message of the stream has the caps, so the sink's first buffer is the second message.
   const struct {
     guint64 offset;
     bool discont;

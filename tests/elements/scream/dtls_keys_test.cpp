@@ -225,7 +225,8 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
     for (guint16 port = first; port < first + 20; ++port) {
       ++hello.front()[kRandomOfHello];
       for (const Bytes& part : hello) Give(*server_, {port, part});
-      // The oldest of four handshakes gives way to another, so it answers first.
+      // Each hello waits for the answer to the one before, because a new handshake replaces the
+      // oldest of four.
       const std::size_t due = std::min<std::size_t>(expected, port - first + 1U);
       EXPECT_TRUE(test::Eventually([&] { return take() >= due; }));
     }

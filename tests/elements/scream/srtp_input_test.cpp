@@ -222,7 +222,7 @@ TEST_F(SrtpIn, RefusesARecordingOfAStreamThatFellSilent) {
   Forge(30);
   for (int round = 0; round < 20; ++round)
     for (const BufferPtr& packet : recording) EXPECT_FALSE(Passes(packet));
-  // The stream continues at its place.
+  // The replays have changed nothing: the live stream still passes.
   EXPECT_TRUE(Passes(sender.Protect(7)));
 }
 

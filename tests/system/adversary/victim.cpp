@@ -126,8 +126,8 @@ double CpuSeconds() {
 }
 
 /// The application forks, as Python's subprocess does. Returns how the child ended, or -1 if it did
-/// not within 5 s. A child that becomes another program ends with the number of sockets that it
-/// sees.
+/// not within 5 s. A child that becomes another program has as its exit code the number of sockets
+/// that it sees.
 int ForkAndWait(bool becomes_another) {
   std::fflush(stdout);
   const pid_t child = fork();

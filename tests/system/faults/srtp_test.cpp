@@ -121,8 +121,8 @@ TEST(Srtp, IsJoinedAfterTheSequenceNumbersWrapped) {
   Path path(Key(30) + " sender-report-interval=100000000", Key(30));
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'526, nullptr);
   path.sender.pipeline().SetState(GST_STATE_PLAYING);
-  // Ten packets come before the wrap. The sender sends 57 packets at first and then waits for
-  // feedback, so few packets of the 65 come after these.
+  // The sequence number wraps after ten packets, and the receiver starts after 65: after the
+  // sender's first window of 57 packets, and before feedback lets many more leave.
   WaitForPackets(path, 65);
   path.receiver.pipeline().SetState(GST_STATE_PLAYING);
   EXPECT_NE(path.receiver.NextCloud(seconds(20)), milliseconds::max());

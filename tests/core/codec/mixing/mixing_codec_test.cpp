@@ -267,7 +267,7 @@ TEST(MixingCodecOf, DamagedPayloadsGiveAnImageOrNothing) {
     damaged[random() % damaged.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
     accepted += decode(damaged) ? 1 : 0;
   }
-  // The CRC of the unit finds the rest.
+  // The CRC of the unit finds the remaining damage.
   EXPECT_LT(accepted, 20);
   EXPECT_TRUE(decode(payload));
 }
