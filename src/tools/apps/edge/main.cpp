@@ -73,9 +73,11 @@ class Edge {
  private:
   void Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* reports) const {
     if (shared_port_) exposition->Add("lidar_edge_stray_datagrams", "", shared_port_->strays());
-    for (const auto& receiver : receivers_)
-      reports->emplace_back(StatisticsSubject(config_.nats, receiver->robot()),
-                            fleet::ToText(receiver->Tell(exposition)));
+    for (const auto& receiver : receivers_) {
+      const Session& session = receiver->session();
+      reports->emplace_back(StatisticsSubject(config_.nats, session.robot()),
+                            fleet::ToText(session.Tell(exposition)));
+    }
   }
 
   const EdgeConfig& config_;

@@ -1,47 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/apps/edge/receiver.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <exception>
-#include <nlohmann/json.hpp>
-#include <utility>
-
-#include "src/tools/apps/edge/pipeline.h"
-#include "src/tools/apps/edge/shared_port.h"
-#include "src/tools/common/elements.h"
 #include "src/tools/common/event_loop.h"
 
 namespace lidar::edge {
 namespace {
 
-using gst::MessagePtr;
-using gst::StructurePtr;
-using std::chrono::seconds;
-using tools::StatsOf;
-
 constexpr std::chrono::milliseconds kPoll{100};
-constexpr seconds kFirstPause{2};  // after a failure
-constexpr seconds kLongestPause{64};
-constexpr seconds kHealthySession{10};  // a session of this age did not fail at once
-constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
 }  // namespace
 
 Receiver::Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket)
-    : robot_(robot),
-      socket_(socket),
-      pipeline_(MakePipeline(config, robot, socket)),
-      robot_watch_(robot.max_mbps),
-      failures_(kFirstPause, kLongestPause),
-      record_failures_(kFirstPause, kLongestPause) {
-  if (!robot.record.empty()) {  // throws now if it cannot record
-    AddRecorder(pipeline_.get(), robot);
-    RemoveRecorder(pipeline_.get());
-  }
-  thread_ = std::thread([this] { Run(); });
-}
+    : session_(config, robot, socket), thread_([this] { Run(); }) {}
 
 Receiver::~Receiver() {
   AskToEnd();
@@ -58,185 +28,12 @@ void Receiver::Run() {
   std::unique_lock lock(mutex_);
   while (!ending_) {
     lock.unlock();
-    Poll(tools::Now());
+    session_.Poll(tools::Now());
     lock.lock();
     wake_.wait_for(lock, kPoll, [this] { return ending_; });
   }
   lock.unlock();
-  Finish();
-}
-
-template <class Change>
-void Receiver::Update(Change change) {
-  const std::lock_guard lock(mutex_);
-  change(&account_);
-  account_.state = state_;
-}
-
-Receiver::Account Receiver::account() const {
-  const std::lock_guard lock(mutex_);
-  return account_;
-}
-
-void Receiver::Say(const std::string& what) const {
-  std::fprintf(stderr, "%s: %s\n", GST_OBJECT_NAME(pipeline_.get()), what.c_str());
-}
-
-void Receiver::Begin(Time now) {
-  state_ = State::kWaiting;
-  Update([](Account* a) { ++a->sessions; });
-  began_at_ = now;
-  watch_at_.reset();
-  robot_watch_.Begin();
-  if (socket_ != nullptr) ShutSocket(socket_, false);
-  // ReadBus() reports errors.
-  gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
-}
-
-void Receiver::End() {
-  if (socket_ != nullptr) ShutSocket(socket_, true);
-  gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
-  RemoveRecorder(pipeline_.get());
-  recording_ = false;
-}
-
-/// Writes and sends received data, for up to kFinish, and ends the session.
-void Receiver::Finish() {
-  if (state_ != State::kResting && BytesReceived() > 0)
-    Drain(pipeline_.get(), kFinish,
-          [this](GstMessage* message) { NoteError(tools::Now(), message); });
-  End();
-}
-
-void Receiver::Rest(Time now, Duration pause, const std::string& why) {
-  End();
-  state_ = State::kResting;
-  begin_at_ = now + pause;
-  Update([](Account*) {});
-  Say(why);
-}
-
-/// Replaces a failed recorder after a pause, while the stream continues.
-void Receiver::Record(Time now) {
-  if (robot_.record.empty() || recording_ || now < record_at_) return;
-  recording_ = true;
-  record_at_ = now;
-  try {
-    AddRecorder(pipeline_.get(), robot_);
-  } catch (const std::exception& e) {
-    NoteRecordFailure(now, e.what());
-  }
-}
-
-void Receiver::NoteRecordFailure(Time now, const std::string& why) {
-  RemoveRecorder(pipeline_.get());
-  recording_ = false;
-  if (now - record_at_ > kHealthySession) record_failures_.Reset();
-  record_at_ = now + record_failures_.Next();
-  Update([&](Account* a) {
-    ++a->record_failures;
-    a->last_error = why;
-  });
-  Say(why);
-}
-
-/// Returns false if the session is over.
-bool Receiver::NoteError(Time now, GstMessage* message) {
-  const std::string text = tools::MessageText(message);
-  if (IsFromRecorder(message)) {
-    if (recording_) NoteRecordFailure(now, text);  // the first of its errors
-    return true;
-  }
-  if (now - began_at_ > kHealthySession) failures_.Reset();
-  Update([&](Account* a) {
-    ++a->failures;
-    a->last_error = text;
-  });
-  Rest(now, failures_.Next(), text);
-  return false;
-}
-
-/// Returns false if the session is over.
-bool Receiver::ReadBus(Time now) {
-  GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
-  while (const MessagePtr message{gst_bus_pop(bus)}) {
-    switch (GST_MESSAGE_TYPE(message.get())) {
-      case GST_MESSAGE_ERROR:
-        if (!NoteError(now, message.get())) return false;
-        break;
-      case GST_MESSAGE_WARNING: {
-        const std::string text = tools::MessageText(message.get());
-        Update([&](Account* a) { a->last_error = text; });
-        Say(text);
-        break;
-      }
-      case GST_MESSAGE_EOS:
-        Rest(now, seconds(0), "the robot has said goodbye");
-        return false;
-      default:
-        break;
-    }
-  }
-  return true;
-}
-
-guint64 Receiver::BytesReceived() const {
-  guint64 bytes = 0;
-  if (const StructurePtr stats = StatsOf(pipeline_.get(), "screamsrc"))
-    gst_structure_get_uint64(stats.get(), "bytes-received", &bytes);
-  return bytes;
-}
-
-/// Checks once a second that the robot is there and keeps to its limit.
-void Receiver::Watch(Time now) {
-  if (watch_at_ && now < *watch_at_) return;
-  watch_at_ = now + seconds(1);
-  robot_watch_.Note(now, BytesReceived());
-  if (state_ == State::kWaiting && robot_watch_.is_there()) {
-    Say("the robot is here");
-    state_ = State::kReceiving;
-    Update([](Account*) {});
-  }
-  if (robot_watch_.IsGone()) return Rest(now, seconds(0), "the robot is gone");
-  const Duration pause = robot_watch_.ToShutOut();
-  if (pause == Duration{}) return;
-  Update([](Account* a) { ++a->penalties; });
-  char why[96];
-  std::snprintf(why, sizeof why, "the robot sends more than max-mbps, and is shut out for %.0f s",
-                std::ceil(Seconds(pause)));
-  Rest(now, pause, why);
-}
-
-void Receiver::Poll(Time now) {
-  if (state_ == State::kResting) {
-    if (now < begin_at_) return;
-    Begin(now);
-  }
-  Record(now);
-  if (ReadBus(now)) Watch(now);
-}
-
-nlohmann::json Receiver::Tell(fleet::Exposition* exposition) const {
-  static constexpr const char* kStates[] = {"waiting", "receiving", "resting"};
-  const Account a = account();
-  const std::string labels = fleet::RobotLabels(robot_.name, robot_.sensor);
-  exposition->Add("lidar_edge_receiving", labels, a.state == State::kReceiving ? 1 : 0);
-  exposition->Add("lidar_edge_sessions", labels, static_cast<double>(a.sessions));
-  exposition->Add("lidar_edge_failures", labels, static_cast<double>(a.failures));
-  exposition->Add("lidar_edge_penalties", labels, static_cast<double>(a.penalties));
-  exposition->Add("lidar_edge_record_failures", labels, static_cast<double>(a.record_failures));
-  nlohmann::json report = {{"robot", robot_.name},
-                           {"sensor", robot_.sensor},
-                           {"time", g_get_real_time() * 1000},
-                           {"state", kStates[static_cast<int>(a.state)]},
-                           {"sessions", a.sessions},
-                           {"failures", a.failures},
-                           {"penalties", a.penalties},
-                           {"record-failures", a.record_failures}};
-  if (!a.last_error.empty()) report["last-error"] = a.last_error;
-  fleet::AddStats(pipeline_.get(), {"screamsrc", "rtplidardepay", "natssink", "mcapsink"}, labels,
-                  exposition, &report);
-  return report;
+  session_.Finish(tools::Now());
 }
 
 }  // namespace lidar::edge
