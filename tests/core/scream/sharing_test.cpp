@@ -200,7 +200,7 @@ TEST(BesidePrague, BothGetAboutTheSameBehindAStepAsWell) {
           << name << " " << frames_per_second;
 }
 
-/// Packets of whole scans leave evenly except for the pacer's ripple.
+/// Whole scans are paced evenly enough not to lose against Prague.
 TEST(BesidePrague, WholeScansGetAboutTheSame) {
   EXPECT_GE(Jain(*FindScenario("prague_ramp_20M", Parameters()), 10), 0.97);
 }

@@ -78,7 +78,8 @@ double MeanWindowUnderLoss(TcpKind kind, double loss, Duration rtt) {
   return sum;
 }
 
-/// Between the response to periodic losses, sqrt(3/2p), and to independent ones, 1.31/sqrt(p).
+/// The window of Reno lies between sqrt(3/2p), for periodic losses, and 1.31/sqrt(p), for
+/// independent ones.
 TEST(Response, OfRenoFallsWithTheSquareRootOfTheLoss) {
   for (const double p : {0.0005, 0.002, 0.01}) {
     const double window = MeanWindowUnderLoss(TcpKind::kReno, p, 50ms) * std::sqrt(p);

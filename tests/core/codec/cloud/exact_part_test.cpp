@@ -373,7 +373,8 @@ TEST(ExactPart, ReadsNoMoreNumbersThanItMay) {
   EXPECT_FALSE(Decodes({0, 0}, 1, 1U << 20));   // neither fields nor an order
 }
 
-// Each step leads to a long run of taken places. A search from place to place would take minutes.
+// Each place in the order is coded as a step to a long run of taken places. A search from place to
+// place would take minutes.
 TEST(ExactPart, DecodesAnOrderFullOfStepsBackInTime) {
   constexpr std::uint32_t kPoints = 1U << 19;
   std::vector<std::uint32_t> order(kPoints);
