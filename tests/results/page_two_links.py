@@ -33,12 +33,12 @@ def pairs_of(text):
         body.append([
             encoder, f"{statistics.mean(float(row[2]) for row in own):.2f}",
             *(f"{statistics.mean(of):.2f}, {min(of):.2f}" for of in percent),
-            *(f"{statistics.mean(of):.0f}, {max(of)}" for senders in delays for of in senders),
+            *(f"{statistics.mean(of):.0f}, {max(of)}" for both in delays for of in both),
             f"{statistics.mean(float(row[8]) for row in own):.0f}",
         ])
     head = [
-        "encoder", "Mbit/s", "in time [%]", "bound [%]", "late bound [%]", "p95 [ms]", "bound's", "late bound's",
-        "p99 [ms]", "bound's", "late bound's", "sent twice [%]",
+        "encoder", "Mbit/s", "in time [%]", "bound [%]", "late bound [%]", "p95 [ms]", "bound's", "p99 [ms]", "bound's",
+        "sent twice [%]",
     ]
     return common.table(head, body)
 

@@ -45,7 +45,7 @@ double Bytes(const RunResult& r) {
 
 double Sent(const RunResult& r) { return Bytes(r) / static_cast<double>(r.media_bytes); }
 
-/// One oracle knows the drives in advance, the other after a round trip.
+/// The first oracle knows the drives in advance, the second after a round trip.
 TEST(TwoLinkRun, ReachesTheBoundOverGeneratedDrives) {
   double sum = 0, sum_late = 0;
   for (std::uint64_t seed = 1; seed <= 19; seed += 2) {
