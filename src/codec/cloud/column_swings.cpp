@@ -11,7 +11,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// The `period` places at which most of a beam's points lie, within `period` successive columns.
+/// The places at which most of a beam's points lie: one place for each of `period` successive
+/// columns.
 struct Swing {
   std::array<double, BeamTable::kMostPeriod> at{};  // distance from the column, in columns
   double covered = 0;                               // part of the points near a place
