@@ -288,8 +288,8 @@ bool Controller::Stalled(Time now) const {
   return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
 }
 
-/// Returns the further delay of the packets that met a gap, at the rate from before it. Some of
-/// them may have arrived by now; they still count.
+/// Returns how much longer packets that met a gap wait, at the rate from before the gap. Packets
+/// that have arrived meanwhile still count.
 Duration Controller::WaitBehindGap(Time now) const {
   const auto rate = gap_recovery_.rate_before();
   if (!rate || !Overdue(now)) return Duration{0};
