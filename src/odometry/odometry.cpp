@@ -226,8 +226,8 @@ void Odometry::AddToMap(const Surface& fine) {
   confidence_.EnterMap();
 }
 
-/// Scans between two map steps stay out of the map. Each would add the error of its pose, and its
-/// lines, which move with the sensor, would hold the pose back.
+/// Scans between two map steps stay out of the map. Each would add the error of its pose. Its lines
+/// of points, which move with the sensor, would hold the pose back.
 bool Odometry::IsFarFromTheLastInMap() const {
   const Pose moved = entered_.Inverse() * pose_;
   return moved.position.norm() >= kMapStep * settings_.voxel_size_m || Angle(moved) >= kMapTurn;
