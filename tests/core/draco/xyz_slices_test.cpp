@@ -35,7 +35,8 @@ codec::CloudFormat PlainFormat() {
 
 double Distance(const Point& a, const Point& b) {
   double squares = 0;
-  for (std::size_t i = 0; i < 3; ++i) squares += std::pow(double{a[i]} - double{b[i]}, 2);
+  for (std::size_t i = 0; i < 3; ++i)
+    squares += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2);
   return std::sqrt(squares);
 }
 
