@@ -16,6 +16,21 @@
 
 namespace lidar::test {
 
+/// Expects the lines of the file, which UPDATE_GOLDEN=1 in the environment writes.
+inline void ExpectGoldenLines(const Lines& lines, const std::string& path) {
+  if (std::getenv("UPDATE_GOLDEN") != nullptr) {
+    std::ofstream file(path);
+    for (const std::string& line : lines) file << line << "\n";
+  }
+  std::ifstream file(path);
+  ASSERT_TRUE(file.is_open()) << path;
+  std::size_t n = 0;
+  for (std::string line; std::getline(file, line); ++n)
+    ASSERT_EQ(n < lines.size() ? lines[n] : "the end", line)
+        << path << ":" << n + 1 << ". Where this is meant, UPDATE_GOLDEN=1 writes the file.";
+  EXPECT_EQ(lines.size(), n) << path << " is shorter: " << lines[n];
+}
+
 /// Plays an element that `launch` describes, and writes down each step with all that it causes.
 /// Upstream is live, with a latency of 20 ms.
 class Course {
@@ -111,20 +126,7 @@ class Course {
     }
     Note("asked");
   }
-  /// Expects the lines of the file, which UPDATE_GOLDEN=1 in the environment writes.
-  void Expect(const std::string& path) {
-    if (std::getenv("UPDATE_GOLDEN") != nullptr) {
-      std::ofstream file(path);
-      for (const std::string& line : lines_) file << line << "\n";
-    }
-    std::ifstream file(path);
-    ASSERT_TRUE(file.is_open()) << path;
-    std::size_t n = 0;
-    for (std::string line; std::getline(file, line); ++n)
-      ASSERT_EQ(n < lines_.size() ? lines_[n] : "the end", line)
-          << path << ":" << n + 1 << ". Where this is meant, UPDATE_GOLDEN=1 writes the file.";
-    EXPECT_EQ(lines_.size(), n) << path << " is shorter: " << lines_[n];
-  }
+  void Expect(const std::string& path) { ExpectGoldenLines(lines_, path); }
 
  private:
   void Note(const std::string& step) {

@@ -188,6 +188,17 @@ TEST_F(Assembler, FollowsASenderThatStartsAgain) {
   EXPECT_EQ(Stat("late-slices"), 0U);
 }
 
+TEST_F(Assembler, TakesASliceOfSixteenScansBeforeForThatOfANewSender) {
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(100, i));
+  Pull();
+  Push(Slice(85, 0));
+  EXPECT_EQ(Stat("late-slices"), 1U);
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(84, i));
+  EXPECT_EQ(Stat("late-slices"), 1U);
+  ASSERT_EQ(Waiting(), 1U);
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 84U);
+}
+
 TEST_F(Assembler, DropsSlicesThatNoScanIsMadeOf) {
   Push(MakeSlice({0, 4, 4, 0}));               // index past the count
   Push(MakeSlice({0, 0, 4'000'000'000U, 0}));  // more slices than a turn has columns

@@ -2,6 +2,8 @@
 // pointcloudparse reads files of pcdenc, plyenc and other programs.
 #include <gtest/gtest.h>
 
+#include <gst/base/gsttypefindhelper.h>
+
 #include <fstream>
 
 #include "tests/elements/mcap/recording.h"
@@ -40,6 +42,22 @@ TEST_F(FileParse, PcdComesBackAsItWas) {
     }
     EXPECT_NE(read.caps.at("see").find("height=(int)32"), std::string::npos);
     EXPECT_NE(read.caps.at("see").find("width=(int)512"), std::string::npos);
+  }
+}
+
+TEST(CloudFileTypes, AreFoundInShortFilesOfUnknownSize) {
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
+  const std::string pcd = "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\n";
+  for (const auto& [type, text] : std::vector<std::pair<const char*, std::string>>{
+           {"application/x-ply", ply},
+           {"application/x-pcd", pcd},
+           {"application/vnd.las", "LASF" + std::string(60, '\0')},
+           {"application/x-ply", "ply\nforma"},
+           {"application/x-pcd", pcd + std::string(600, ' ')}}) {
+    const gst::CapsPtr caps(gst_type_find_helper_for_data(
+        nullptr, reinterpret_cast<const guint8*>(text.data()), text.size(), nullptr));
+    ASSERT_TRUE(caps) << text;
+    EXPECT_TRUE(gst_structure_has_name(gst_caps_get_structure(caps.get(), 0), type)) << text;
   }
 }
 
