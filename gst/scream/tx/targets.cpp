@@ -49,9 +49,9 @@ bool EvaluateTargets(TxStream& stream, const scream::Controller& controller, boo
                      Time now) {
   if (stream.has_caps && stream.notifier.ShouldNotify(now, controller.target_bitrate(stream.id)))
     stream.target_due = true;
-  if (key_unit_on_loss && stream.is_video) {
+  if (stream.is_video) {
     const guint64 lost = controller.stream_statistics(now, stream.id).packets_lost;
-    stream.key_unit_due = stream.key_unit_due || lost > stream.lost_seen;
+    if (key_unit_on_loss && lost > stream.lost_seen) stream.key_unit_due = true;
     stream.lost_seen = lost;
   }
   return TargetsAreDue(stream, now);

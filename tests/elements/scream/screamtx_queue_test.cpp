@@ -254,6 +254,46 @@ TEST_F(ScreamTx, AsksAVideoEncoderForKeyFramesTwiceASecondAtMost) {
   EXPECT_LE(asked, 6U);
 }
 
+TEST_F(ScreamTx, AsksAVideoEncoderForOneKeyFrameAfterEachLossWhereAskedTo) {
+  guint32 frame = 0;
+  const auto run = [&](int frames) {
+    for (int i = 0; i < frames; ++i) {
+      PushFrame(frame++ * 1'800, 1);
+      time.Advance(20 * GST_MSECOND);
+      Acknowledge();
+    }
+  };
+  Start(kVideoCaps);
+  for (const bool asks : {false, true, true}) {
+    g_object_set(element, "key-unit-on-loss", static_cast<gboolean>(asks), nullptr);
+    run(50);
+    EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), 0U);
+    const guint64 lost = Stats(element)["packets-lost"];
+    PushFrame(frame++ * 1'800, 1);
+    time.Advance(20 * GST_MSECOND);
+    Collect();
+    ASSERT_EQ(sent.size(), acknowledged_ + 1);
+    rtcp::CongestionFeedback report;
+    report.sender_ssrc = receiver;
+    report.blocks.push_back({sent.back().ssrc, sent.back().seq, {{false, Ecn::kNotEct, {}}}});
+    for (int i = 0; i < 10; ++i) {
+      PushFrame(frame++ * 1'800, 1);
+      time.Advance(20 * GST_MSECOND);
+    }
+    Collect();
+    ASSERT_GT(sent.size(), acknowledged_ + 3);
+    while (report.blocks[0].metrics.size() < sent.size() - acknowledged_)
+      report.blocks[0].metrics.push_back({true, Ecn::kEct1, Duration{0}});
+    acknowledged_ = sent.size();
+    report.report_timestamp = static_cast<std::uint32_t>(
+        gst_util_uint64_scale(time.now(), 65536, GST_SECOND) & 0xffffffff);
+    Feed(report);
+    run(50);
+    EXPECT_EQ(Stats(element)["packets-lost"], lost + 1);
+    EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), asks ? 1U : 0U);
+  }
+}
+
 TEST_F(ScreamTx, AsksNoOtherEncoderForKeyFrames) {
   g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
   Start();
