@@ -178,7 +178,6 @@ bool SinkLinks::Fails(std::size_t link) {
 void SinkLinks::Change(std::size_t link, const std::string& trouble) {
   const bool usable = trouble.empty();
   links_[link].usable = usable;
-  if (usable) health_[link].failed_us = 0;
   BondSetUsable(bond_, link, usable);
   gst_element_post_message(
       bin_, gst_message_new_element(
