@@ -6,6 +6,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <atomic>
 #include <string>
 #include <thread>
@@ -216,20 +217,58 @@ TEST_P(Loopback, PacketsLeaveByTheInterfaceAndByNoOther) {
   EXPECT_EQ(Text(got.get()), "sent");
 }
 
-TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
+Object<GSocket> LoopbackSocket() {
   const Object<GInetAddress> loopback(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
   const Object<GSocketAddress> local(g_inet_socket_address_new(loopback.get(), 0));
-  const Object<GSocket> socket(
+  Object<GSocket> socket(
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
-  ASSERT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
-  ASSERT_TRUE(g_socket_set_option(socket.get(), IPPROTO_IP, IP_RECVTOS, 1, nullptr));
-  const Object<GSocketAddress> bound(g_socket_get_local_address(socket.get(), nullptr));
-  const Harness sink =
-      NewSink("127.0.0.1", g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound.get())));
-  g_object_set(sink->element, "qos-dscp", 46, nullptr);
-  gst_util_set_object_arg(G_OBJECT(sink->element), "ecn", "ect1");
-  ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
-  EXPECT_EQ(ReceiveTos(g_socket_get_fd(socket.get())), 46 << 2 | 1);
+  EXPECT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
+  return socket;
+}
+
+TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
+  const auto receiver = LoopbackSocket();
+  ASSERT_TRUE(g_socket_set_option(receiver.get(), IPPROTO_IP, IP_RECVTOS, 1, nullptr));
+  const Object<GSocketAddress> bound(g_socket_get_local_address(receiver.get(), nullptr));
+  const auto given = LoopbackSocket();
+  ASSERT_TRUE(g_socket_set_option(given.get(), IPPROTO_IP, IP_TOS, 18 << 2 | 2, nullptr));
+  GstElement* element = SinkElement();
+  g_object_set(element, "socket", given.get(), "host", "127.0.0.1", "port",
+               g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound.get())), nullptr);
+  const Harness sink = Wrap(element);
+  for (const int dscp : {46, 0, 1, 63, -1, 0}) {
+    g_object_set(sink->element, "qos-dscp", dscp, nullptr);
+    for (const int ecn : {GST_LIDAR_ECN_NOT_ECT, GST_LIDAR_ECN_ECT1, GST_LIDAR_ECN_ECT0}) {
+      g_object_set(sink->element, "ecn", ecn, nullptr);
+      ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
+      EXPECT_EQ(ReceiveTos(g_socket_get_fd(receiver.get())), (dscp < 0 ? 18 : dscp) << 2 | ecn)
+          << dscp;
+    }
+  }
+}
+
+TEST(EcnUdpSink, CountsEachRunAlone) {
+  const Harness src = NewSource();
+  GstElement* element = SinkElement();
+  const auto pushed = [&](const std::string& text) {
+    const Harness sink(gst_harness_new_with_element(element, "sink", nullptr));
+    gst_harness_set_src_caps_str(sink.get(), "application/x-rtp");
+    for (const char* field : {"packets-sent", "bytes-sent", "send-errors", "dropped-no-peer"})
+      EXPECT_EQ(Stat(sink.get(), field), 0U) << field;
+    EXPECT_EQ(gst_harness_push(sink.get(), Payload(text)), GST_FLOW_OK);
+    return std::array{Stat(sink.get(), "packets-sent"), Stat(sink.get(), "bytes-sent"),
+                      Stat(sink.get(), "send-errors"), Stat(sink.get(), "dropped-no-peer")};
+  };
+  using Counts = std::array<guint64, 4>;
+  g_object_set(element, "host", "127.0.0.1", "port", LocalPort(src.get()), nullptr);
+  EXPECT_EQ(pushed("fits"), (Counts{1, 4, 0, 0}));
+  EXPECT_EQ(pushed(std::string(70'000, 'x')), (Counts{0, 0, 1, 0}));
+  EXPECT_EQ(pushed("fit"), (Counts{1, 3, 0, 0}));
+  g_object_set(element, "reply", TRUE, nullptr);
+  EXPECT_EQ(pushed("to nobody"), (Counts{0, 0, 0, 1}));
+  EXPECT_EQ(pushed("to nobody"), (Counts{0, 0, 0, 1}));
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_object_unref(element);
 }
 
 TEST(EcnUdpSink, AnUnknownHostIsAnElementErrorThatNamesIt) {

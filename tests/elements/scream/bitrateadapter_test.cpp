@@ -191,19 +191,45 @@ TEST(BitrateAdapter, KeepsToItsLimitsAndItsFraction) {
   EXPECT_EQ(target(), 300'000);
 }
 
+TEST(BitrateAdapter, LeavesNoEncoderToItsOwnChoice) {
+  RegisterStandIn("mpph264enc");
+  Chain chain("mpph264enc name=e ! bitrateadapter name=a fraction=0.001");
+  EXPECT_TRUE(chain.Send(1));
+  EXPECT_EQ(Uint(chain.Find("e"), "bps"), 1U) << "0 is automatic";
+}
+
 TEST(BitrateAdapter, TellsItsLimitsDownstreamBehindTheCaps) {
+  struct Case {
+    const char* properties;
+    guint min, nominal, max;
+  };
+  constexpr guint kNone = G_MAXUINT;
   gst_lidar_init();
-  const lidar::test::Harness h(gst_harness_new_parse("bitrateadapter min=500000 max=2000000"));
-  gst_harness_set_src_caps_str(h.get(), "video/x-h264");
-  for (;;) {
-    const EventPtr event(gst_harness_try_pull_event(h.get()));
-    ASSERT_TRUE(event) << "no bounds came";
+  for (const Case& want :
+       {Case{"min=500000 max=2000000", 500'000, 2'000'000, 2'000'000},
+        Case{"min=500000 max=2000000 fraction=0.25", 2'000'000, 8'000'000, 8'000'000},
+        Case{"min=500000", 500'000, kNone, kNone}, Case{"max=2000000", 0, 2'000'000, 2'000'000},
+        Case{"min=3 max=4000000000 fraction=0.5", 6, kNone, kNone},
+        Case{"fraction=0.5", 0, 0, 0}}) {
+    const lidar::test::Harness h(
+        gst_harness_new_parse((std::string("bitrateadapter ") + want.properties).c_str()));
+    gst_harness_set_src_caps_str(h.get(), "video/x-h264");
     GstLidarBitrateBounds bounds{};
-    if (!gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) continue;
-    EXPECT_EQ(bounds.min_bitrate, 500'000U);
-    EXPECT_EQ(bounds.max_bitrate, 2'000'000U);
-    return;
+    while (const EventPtr event{gst_harness_try_pull_event(h.get())})
+      if (gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) break;
+    EXPECT_EQ(bounds.min_bitrate, want.min) << want.properties;
+    EXPECT_EQ(bounds.nominal_bitrate, want.nominal) << want.properties;
+    EXPECT_EQ(bounds.max_bitrate, want.max) << want.properties;
   }
+}
+
+TEST(BitrateAdapter, HasToldNothingYetInASecondRun) {
+  Chain chain("vp8enc name=e ! bitrateadapter name=a");
+  chain.Send(700'000);
+  EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 700'000U);
+  gst_element_set_state(chain.Find("a").get(), GST_STATE_READY);
+  gst_element_set_state(chain.Find("a").get(), GST_STATE_PAUSED);
+  EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 0U);
 }
 
 TEST(BitrateAdapter, FindsTheEncoderWithinABinAndPastParsers) {
@@ -225,13 +251,17 @@ TEST(BitrateAdapter, LetsTheEventPassAndWarnsOnceWhereThereIsNoEncoder) {
   Chain chain("identity ! bitrateadapter name=a");
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(chain.get(), bus);
-  chain.Send(1'000'000);
-  chain.Send(2'000'000);
-  const lidar::gst::MessagePtr first(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
-  const lidar::gst::MessagePtr second(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
-  EXPECT_TRUE(first);
-  EXPECT_FALSE(second);
-  EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 0U);
+  for (int run = 0; run < 2; ++run) {
+    chain.Send(1'000'000);
+    chain.Send(2'000'000);
+    const lidar::gst::MessagePtr first(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+    const lidar::gst::MessagePtr second(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+    EXPECT_TRUE(first) << run;
+    EXPECT_FALSE(second) << run;
+    EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 0U);
+    gst_element_set_state(chain.Find("a").get(), GST_STATE_READY);
+    gst_element_set_state(chain.Find("a").get(), GST_STATE_PAUSED);
+  }
   gst_element_set_bus(chain.get(), nullptr);
   gst_object_unref(bus);
 }
