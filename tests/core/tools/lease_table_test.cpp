@@ -219,6 +219,20 @@ TEST_F(Lease, GoesOnFromAStoreThatForgotItsNewestEntries) {
   EXPECT_EQ(table_.HeldAt(later).at("r").progress->scan, 7U);
 }
 
+TEST_F(Lease, MissesAnEntryFromTheFirstRefusalOnAndSaysSoTwiceInTheTimeOfALease) {
+  table_.SetRobots({"r"}, At(0));
+  table_.OnEntry("r", 90, LeaseRecord{"other", seconds(1), Scan(9)}, At(0));
+  const auto refuse = [&](int ms) {
+    const auto writes = table_.Poll(At(ms));
+    ASSERT_EQ(writes.size(), 1U) << ms;
+    table_.OnRefused(writes[0].ticket, 91, At(ms));
+  };
+  refuse(2'000);
+  refuse(2'300);
+  for (const int ms : {2'499, 2'500, 2'501, 2'999, 3'000, 3'001, 3'499, 3'500})
+    EXPECT_EQ(table_.MissesEntries(At(ms)), ms % 500 == 0) << ms;
+}
+
 TEST_F(Lease, OfARobotThatFailsHereIsLeftToOthers) {
   table_.SetRobots({"r"}, At(0));
   Time now = Pass(At(0), 400);

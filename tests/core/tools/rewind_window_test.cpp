@@ -42,6 +42,11 @@ TEST_F(Rewind, IsBoundedWhereTheRobotsClockStands) {
   EXPECT_EQ(Back(), 610U);
 }
 
+TEST_F(Rewind, HoldsSoManyMessagesOnly) {
+  for (int i = 0; i < 70'000; ++i) Add(7, 7);
+  EXPECT_EQ(Back(), 65'535U);
+}
+
 TEST_F(Rewind, GoesByStorageTimesWhereTheRobotsClockGoesBack) {
   for (std::uint64_t ms = 0; ms < 10'000; ms += 100) Add(ms, 90'000'000 - ms);
   EXPECT_EQ(Back(), 10U);

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <sys/socket.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ext/nats/jetstream.h"
@@ -24,6 +25,9 @@ TEST(FleetExposition, HasNumbersByTheirNames) {
   fleet::Exposition exposition;
   exposition.Add("natssink", "{robot=\"a\"}", stats.get());
   exposition.Add("lidar_edge_x", "", 1);
+  using Limits = std::numeric_limits<double>;
+  for (const double none : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()})
+    exposition.Add("lidar_edge_y", "", none);
   EXPECT_EQ(
       exposition.text(),
       "# TYPE lidar_edge_x untyped\nlidar_edge_x 1\n"
@@ -88,8 +92,17 @@ TEST(FleetMetrics, CutOffWhoSaysNothingOrTooMuch) {
   fleet::MetricsServer server("127.0.0.1", 0);
   for (const auto& request : {std::string(), std::string(100'000, 'x')})
     EXPECT_EQ(Received(Clients(server.port(), 1, request)[0].get()), "");
-  const auto lost = Clients(server.port(), 1, "GET / HTTP/1.1\r\n\r\n");
-  EXPECT_EQ(Received(lost[0].get()).substr(0, 12), "HTTP/1.1 404");
+}
+
+TEST(FleetMetrics, AreAtTheirPathWithAndWithoutAQuery) {
+  fleet::MetricsServer server("127.0.0.1", 0);
+  for (const auto& [line, status] :
+       {std::pair{"GET /metrics HTTP/1.1", "200"}, std::pair{"GET /metrics?x=1 HTTP/1.0", "200"},
+        std::pair{"GET / HTTP/1.1", "404"}, std::pair{"GET /metrics2 HTTP/1.1", "404"},
+        std::pair{"GET /x/metrics HTTP/1.1", "404"}, std::pair{"POST /metrics HTTP/1.1", "404"}}) {
+    const auto client = Clients(server.port(), 1, std::string(line) + "\r\nHost: x\r\n\r\n");
+    EXPECT_EQ(Received(client[0].get()).substr(9, 3), status) << line;
+  }
 }
 
 TEST(FleetMetrics, ALargeTextArrivesWhole) {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Programs that a program of ours starts, and pipes that it writes to.
+#include "src/tools/common/child_process.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "src/tools/common/async_writer.h"
+#include "tests/support/patience.h"
+
+namespace lidar::tools {
+namespace {
+
+ChildProcess::Config Shell(const std::string& script) {
+  return {{"/bin/sh", "-c", script}, "", false};
+}
+
+TEST(ChildProcess, EndsWithItsExitCodeOrItsSignal) {
+  struct Case {
+    ChildProcess::Config config;
+    int result;
+  };
+  const Case cases[] = {{Shell("exit 0"), 0},
+                        {Shell("exit 3"), 3},
+                        {Shell("kill -9 $$"), 128 + SIGKILL},
+                        {Shell("kill -15 $$"), 128 + SIGTERM},
+                        {{{"/no/such/program"}, "", false}, 127}};
+  for (const auto& [config, result] : cases) {
+    ChildProcess child(config);
+    EXPECT_EQ(child.Wait(), result) << config.command.back();
+    EXPECT_TRUE(child.Ended());
+    EXPECT_EQ(child.Wait(), result) << "again";
+  }
+  ChildProcess child(Shell("sleep 1000"));
+  EXPECT_FALSE(child.Ended());
+  child.Signal(SIGTERM);
+  EXPECT_TRUE(test::Eventually([&] { return child.Ended(); }));
+  EXPECT_EQ(child.Wait(), 128 + SIGTERM) << "known to have ended";
+}
+
+TEST(ChildProcess, GivesWholeLines) {
+  ChildProcess child(Shell("printf 'one\n\nth'; printf 'ree\nrest'"));
+  std::vector<std::string> lines;
+  EXPECT_TRUE(test::Eventually(
+      [&] { return !child.ReadLines([&](const std::string& line) { lines.push_back(line); }); }));
+  EXPECT_EQ(lines, (std::vector<std::string>{"one", "", "three"}));
+}
+
+/// A pipe whose writing end is full after a page.
+struct Pipe {
+  Pipe() {
+    int fds[2];
+    EXPECT_EQ(pipe2(fds, O_CLOEXEC), 0);
+    read = FileDescriptor(fds[0]);
+    write = FileDescriptor(fds[1]);
+    fcntl(write.get(), F_SETPIPE_SZ, 4'096);
+  }
+  std::string Read(std::size_t size) const {
+    std::string text(size, ' ');
+    std::size_t done = 0;
+    while (done < size) {
+      const ssize_t n = ::read(read.get(), text.data() + done, size - done);
+      if (n <= 0) break;
+      done += static_cast<std::size_t>(n);
+    }
+    return text.substr(0, done);
+  }
+
+  FileDescriptor read, write;
+};
+
+TEST(AsyncWriter, WritesAllInOrderAndHasRoomAgainForWhatWasRead) {
+  const Pipe pipe;
+  AsyncWriter writer(pipe.write.get(), 100);
+  for (int i = 0; i < 50; ++i) {
+    const std::string text(80, static_cast<char>('a' + i % 26));
+    // The room of the text before is free just after it was written.
+    std::uint64_t refused = 0;
+    EXPECT_TRUE(test::Eventually([&] { return writer.Write(text) || ++refused > 10'000; }));
+    ASSERT_LE(refused, 10'000U) << i;
+    EXPECT_EQ(pipe.Read(80), text);
+  }
+}
+
+TEST(AsyncWriter, DropsAndCountsWhatASlowReaderLeavesNoRoomFor) {
+  Pipe pipe;
+  std::string received;
+  {
+    AsyncWriter writer(pipe.write.get(), 10'000);
+    EXPECT_FALSE(writer.Write(std::string(10'001, 'x'))) << "never fits";
+    EXPECT_TRUE(writer.Write(std::string(9'000, 'a')));
+    EXPECT_TRUE(writer.Write(std::string(1'000, 'b')));
+    EXPECT_FALSE(writer.Write("c"));
+    EXPECT_EQ(writer.dropped(), 2U);
+    received = pipe.Read(10'000);
+  }
+  pipe.write = FileDescriptor();
+  EXPECT_EQ(received + pipe.Read(1), std::string(9'000, 'a') + std::string(1'000, 'b'));
+}
+
+}  // namespace
+}  // namespace lidar::tools
