@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Garbage from the network, wrong settings, and servers that want credentials.
 #include <cstdlib>
+#include <map>
 
 #include "ext/nats/stream_format.h"
 #include "tests/elements/nats/nats_pipeline.h"
@@ -146,6 +147,32 @@ TEST_F(NatsErrors, ASinkThatKeepsTryingIsTakenOnceTheServerWants) {
   receiver.Play();
   EXPECT_TRUE(receiver.WaitForBuffers(8));
   EXPECT_EQ(sender.stat("connected"), 1U);
+}
+
+TEST_F(NatsErrors, ASinkThatKeepsTryingCountsOverAllItsConnections) {
+  const auto connected = [](const NatsPipeline& sender) {
+    return Eventually([&] { return sender.stat("connected") == 1; });
+  };
+  server_.Start({"--auth", "s3cret"});
+  NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n keep-trying=true" +
+                      At("token=s3cret"));
+  sender.Play();
+  ASSERT_TRUE(connected(sender));
+  std::map<std::string, guint64> before;
+  for (guint64 round = 1; round <= 2; ++round) {
+    EXPECT_EQ(sender.stat("reconnects"), round - 1);
+    server_.Start({"--auth", "other"});
+    ASSERT_TRUE(Eventually([&] { return sender.stat("refusals") > before["refusals"]; }));
+    EXPECT_EQ(sender.stat("connected"), 0U);
+    EXPECT_GT(sender.stat("server-errors"), before["server-errors"]);
+    server_.Start({"--auth", "s3cret"});
+    ASSERT_TRUE(connected(sender));
+    for (const char* count : {"refusals", "server-errors", "messages"}) {
+      EXPECT_GE(sender.stat(count), before[count]) << count;
+      before[count] = sender.stat(count);
+    }
+    EXPECT_EQ(sender.stat("reconnects"), round);
+  }
 }
 
 TEST_F(NatsErrors, CredentialsAreTakenFromAFile) {
