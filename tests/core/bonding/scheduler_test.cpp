@@ -174,6 +174,36 @@ TEST_F(TwoLinks, CopiesWhatWasLost) {
   EXPECT_EQ(copies[0].id.seq, lost);
 }
 
+TEST(ThreeLinks, GetOneCopyOfWhatWasLostUntilThatIsOverdue) {
+  Scheduler scheduler(3, Method::kBackup);
+  for (std::size_t i = 0; i < 3; ++i) scheduler.OnPath(i, {Mbps(8), 40ms});
+  std::uint16_t seq = 0;
+  const auto send = [&] {
+    const PacketId id{kMedia, ++seq};
+    const LinkSet links = scheduler.OnPacket(kStart, {id, kSize, seq, true});
+    for (std::size_t i = 0; i < 3; ++i)
+      if (links[i]) scheduler.OnSent(kStart, i, id);
+    return links;
+  };
+  const auto arrives = [&](LinkSet links) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (links[i]) scheduler.OnFeedback(kStart, i, Arrived(seq));
+    return links.count();
+  };
+  while (arrives(send()) > 1) ASSERT_LT(seq, 100);
+  const LinkSet first = send();
+  const std::uint16_t lost = seq;
+  ASSERT_EQ(first.count(), 1U);
+  ASSERT_EQ(send(), first);
+  arrives(first);
+  const auto copies = scheduler.TakeCopies(kStart);
+  ASSERT_EQ(copies.size(), 1U);
+  EXPECT_EQ(copies[0].id.seq, lost);
+  EXPECT_FALSE(first[copies[0].link]);
+  EXPECT_TRUE(scheduler.TakeCopies(kStart + 39ms).empty()) << "the copy may still arrive";
+  EXPECT_EQ(scheduler.TakeCopies(kStart + 100ms).size(), 1U) << "on the third link";
+}
+
 TEST_F(TwoLinks, SendsNothingThatArrivedOnTheOtherLink) {
   const PacketId id{kMedia, 1};
   ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, 1}), SetOf({0, 1}));

@@ -255,6 +255,19 @@ TEST_F(BondedSink, GivesEachLinkTheSettingsOfTheSink) {
   EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=333333\n"), std::string::npos);
 }
 
+TEST_F(BondedSink, CountsTheErrorsOfEachLinkAsItsOwn) {
+  Start();
+  g_object_set(Child("ecnudpsink1").get(), "interface", "none0", nullptr);
+  for (guint16 seq = 1; seq < 9; ++seq) Send(seq);
+  ASSERT_GT(packets_[0], 0);
+  ASSERT_GT(packets_[1], 0);
+  EXPECT_TRUE(Eventually([&] {
+    Advance(GST_MSECOND);
+    return OfLink("send-errors", 1) > 0 && OfLink("packets-sent", 0) > 0;
+  }));
+  EXPECT_EQ(OfLink("send-errors", 0), 0U);
+}
+
 TEST_F(BondedSink, SendsByTheInterfaceAndToThePortOfEachLink) {
   for (const bool first : {true, false}) {
     g_object_set(sink_, "bonding-addresses",

@@ -427,6 +427,7 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(element, bus);
   Start();
+  std::string state = Stats(element).Text("ecn-state");
   for (guint32 i = 0; i < 100; ++i) {
     PushFrame(i * 900, 2);
     time.Advance(20 * GST_MSECOND);
@@ -436,9 +437,16 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
   EXPECT_EQ(ecns.front(), GST_LIDAR_ECN_ECT1);
   EXPECT_EQ(ecns.back(), GST_LIDAR_ECN_NOT_ECT);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
-  const gst::MessagePtr message(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_ELEMENT));
-  ASSERT_TRUE(message);
-  EXPECT_TRUE(gst_message_has_name(message.get(), "scream-ecn-state-changed"));
+  while (state != "bleached") {
+    const gst::MessagePtr message(
+        gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_ELEMENT));
+    ASSERT_TRUE(message);
+    EXPECT_TRUE(gst_message_has_name(message.get(), "scream-ecn-state-changed"));
+    const GstStructure* told = gst_message_get_structure(message.get());
+    EXPECT_STREQ(gst_structure_get_string(told, "previous"), state.c_str());
+    ASSERT_STRNE(gst_structure_get_string(told, "state"), state.c_str());
+    state = gst_structure_get_string(told, "state");
+  }
   gst_element_set_state(element, GST_STATE_NULL);
   gst_element_set_bus(element, nullptr);
   gst_object_unref(bus);
