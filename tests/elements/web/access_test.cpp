@@ -32,6 +32,13 @@ TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 200U);
   EXPECT_TRUE(Peer(sink.Url("ws", "/?token=secret"), {"foxglove.sdk.v1"}).connected());
   EXPECT_EQ(sink.Stat("clients-refused"), 6U);
+  const auto status = [&](const char* path, const char* authorization) {
+    return HttpGet(sink.Url("http", path), "GET", authorization).status;
+  };
+  EXPECT_EQ(status("/session", "Bearer secret"), 200U);
+  EXPECT_EQ(status("/session", "Bearer secrets"), 401U);
+  EXPECT_EQ(status("/session", "Basic secret"), 401U);
+  EXPECT_EQ(status("/session?token=wrong", "Bearer secret"), 401U) << "the query goes first";
 }
 
 TEST(FoxgloveSink, AdmitsNoMoreThanMaxClientsAtATime) {

@@ -118,14 +118,17 @@ TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
   }
   ASSERT_TRUE(WaitUntil([&] { return sink.Stat("clients") == 0; }));
   const guint64 before = sink.Stat("points-sent");
+  const guint64 bytes = sink.Stat("bytes-sent");
+  EXPECT_GT(bytes, 64U);
   sink.PushCloud(8);
   EXPECT_EQ(sink.Stat("points-sent"), before);
-  // The count of messages includes those to the client that is gone.
+  // The counts include what the client got that is gone.
   Peer second(&sink);
   second.Subscribe("/points", 1);
   sink.PushCloud(9);
   EXPECT_EQ(FirstX(second.Next()), 9.0F);
   EXPECT_TRUE(WaitUntil([&] { return sink.Stat("messages-sent") == 2; }));
+  EXPECT_GE(sink.Stat("bytes-sent"), bytes + bytes / 2);
 }
 
 TEST(FoxgloveSink, ThinsCloudsToMaxPoints) {
@@ -279,6 +282,13 @@ TEST(FoxgloveSink, TellsClientsOfPadsThatComeAndGo) {
     const std::array<double, 8> words = {0, 0, 0, 0, 0, 0, 1, 0};
     gst_harness_push(second.get(), gst_buffer_new_memdup(words.data(), sizeof words));
     peer.Channel("/pose_7");
+    const gst::PadPtr next(gst_element_request_pad_simple(sink.element(), "sink_%u"));
+    EXPECT_STREQ(GST_OBJECT_NAME(next.get()), "sink_8");
+    const gst::PadPtr earlier(gst_element_request_pad_simple(sink.element(), "sink_3"));
+    const gst::PadPtr last(gst_element_request_pad_simple(sink.element(), "sink_%u"));
+    EXPECT_STREQ(GST_OBJECT_NAME(last.get()), "sink_9");
+    for (GstPad* pad : {next.get(), earlier.get(), last.get()})
+      gst_element_release_request_pad(sink.element(), pad);
     gst_element_release_request_pad(
         sink.element(), gst::PadPtr(gst_element_get_static_pad(sink.element(), "sink_7")).get());
   }

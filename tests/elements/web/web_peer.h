@@ -93,9 +93,13 @@ struct HttpAnswer {
   std::string policy;
   std::string body;
 };
-inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET") {
+inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET",
+                          const char* authorization = nullptr) {
   SoupSession* session = soup_session_new();
   SoupMessage* message = soup_message_new(method, url.c_str());
+  if (authorization != nullptr)
+    soup_message_headers_replace(soup_message_get_request_headers(message), "Authorization",
+                                 authorization);
   AcceptCertificates(message);
   GError* error = nullptr;
   GBytes* body = nullptr;
