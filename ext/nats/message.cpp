@@ -99,7 +99,8 @@ void WriteMetas(GstBuffer* buffer, HeaderWriter* headers) {
     NumberWriter w;
     for (const double v : pose.position) w.Add(v);
     for (const double v : pose.orientation) w.Add(v);
-    headers->Set(kPose, w.Add(static_cast<guint>(pose.tracking)).text());
+    w.Add(static_cast<guint>(pose.tracking));
+    headers->Set(kPose, w.Add(pose.position_deviation).Add(pose.orientation_deviation).text());
   }
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT)) headers->Set(kDiscont, "1");
 }
@@ -143,7 +144,10 @@ bool ReadPose(natsMsg* message, GstBuffer* buffer) {
     if (!r.Get(&v) || !std::isfinite(v)) return false;
   for (double& v : pose.orientation)
     if (!r.Get(&v) || !std::isfinite(v)) return false;
-  if (!r.Get(&tracking) || !r.done() || tracking > GST_LIDAR_TRACKING_LOST) return false;
+  if (!r.Get(&tracking) || tracking > GST_LIDAR_TRACKING_LOST) return false;
+  for (double* v : {&pose.position_deviation, &pose.orientation_deviation})
+    if (!r.Get(v) || !std::isfinite(*v)) return false;
+  if (!r.done()) return false;
   pose.tracking = static_cast<GstLidarTracking>(tracking);
   gst_lidar_buffer_set_pose(buffer, &pose);
   return true;

@@ -64,9 +64,11 @@ struct Counters {
   guint64 longest_scan_time = 0;
   guint map_voxels = 0;
   gdouble inlier_share = 0;
+  gdouble position_deviation = 0;
+  gdouble orientation_deviation = 0;
 };
 
-const std::array<Stat<Counters>, 12> kStats = {{
+const std::array<Stat<Counters>, 14> kStats = {{
     {"scans", &Counters::scans},
     {"scans-lost", &Counters::scans_lost},
     {"scans-degenerate", &Counters::scans_degenerate},
@@ -79,6 +81,8 @@ const std::array<Stat<Counters>, 12> kStats = {{
     {"longest-scan-time", &Counters::longest_scan_time},
     {"map-voxels", &Counters::map_voxels},
     {"inlier-share", &Counters::inlier_share},
+    {"position-deviation", &Counters::position_deviation},
+    {"orientation-deviation", &Counters::orientation_deviation},
 }};
 
 /// The state of a stream. Only the streaming thread uses it.
@@ -91,7 +95,6 @@ struct Stream {
   Pose map_from_odometry;
   Estimate last;
   lidar::RowFile trajectory;
-  Tracking tracking = Tracking::kStarted;  // of the last scan
   bool posted_lost = false;
   bool posted_full = false;
 };
@@ -148,7 +151,8 @@ static const std::array<Property<Settings>, 10> kProperties = {{
      &Settings::post_messages, 0, 0, GST_PARAM_MUTABLE_PLAYING},
     {"stats",
      "scans, scans-lost, scans-degenerate, scans-with-imu, maps, loops, local-maps, "
-     "scans-not-in-local-maps, scan-time [ns], longest-scan-time [ns], map-voxels, inlier-share",
+     "scans-not-in-local-maps, scan-time [ns], longest-scan-time [ns], map-voxels, inlier-share, "
+     "position-deviation [m], orientation-deviation [rad]",
      ReadStats},
 }};
 
@@ -172,6 +176,8 @@ static void CountScan(State* state, const Estimate& estimate, GstClockTime time)
   c.longest_scan_time = MAX(c.longest_scan_time, time);
   c.map_voxels = static_cast<guint>(state->stream.odometry->map().voxels());
   c.inlier_share = estimate.inlier_share;
+  c.position_deviation = lidar::gst::PositionDeviation(estimate);
+  c.orientation_deviation = lidar::gst::OrientationDeviation(estimate);
 }
 
 /// Warns when tracking begins to fail, once until tracking works again.
@@ -238,7 +244,7 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   for (const MotionSample& s : state.imu.Take()) stream.odometry->OnTurn(s.time, s.rate, s.force);
   const Estimate estimate = stream.odometry->OnScan(scan->start, scan->duration, scan->points);
   const auto time = static_cast<GstClockTime>(g_get_monotonic_time() - begin_us) * GST_USECOND;
-  stream.tracking = estimate.tracking;
+  stream.last = estimate;
   CountScan(&state, estimate, time);
   GST_LOG_OBJECT(self, "%s, %.3f m %.3f m %.3f m, %d iterations in %" GST_TIME_FORMAT,
                  ToString(estimate.tracking), estimate.pose.position.x(),
@@ -250,7 +256,6 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   PushPose(GST_ELEMENT(self), estimate, pts);
   SearchLoops(self, estimate);
   PushMap(GST_ELEMENT(self), stream.map_from_odometry, estimate.time, pts);
-  stream.last = estimate;
 }
 
 /// Waits until all scans were searched for loops, and pushes the corrected pose of the last scan.
@@ -294,7 +299,7 @@ static GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
   // The scan is aligned only when its last slice is there: earlier slices leave with a predicted
   // pose.
   if (stream.collector.complete()) FinishScan(self, GST_BUFFER_PTS(buffer));
-  const GstLidarPose pose = ToMeta(stream.odometry->PredictAt(*at), stream.tracking);
+  const GstLidarPose pose = ToMeta(stream.odometry->PredictAt(*at), stream.last);
   gst_lidar_buffer_set_pose(buffer, &pose);
   return GST_FLOW_OK;
 }

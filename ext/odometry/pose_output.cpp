@@ -13,10 +13,6 @@ namespace {
 
 using odometry::Estimate;
 using odometry::Pose;
-using odometry::Tracking;
-
-/// Returns the typical length of a vector with that covariance.
-gdouble Deviation(const Eigen::Matrix3d& covariance) { return std::sqrt(covariance.trace()); }
 
 GstStructure* PoseMessage(const char* name, const Pose& pose) {
   const auto& p = pose.position;
@@ -27,10 +23,9 @@ GstStructure* PoseMessage(const char* name, const Pose& pose) {
 }
 
 cdr::Odometry ToOdometry(const Pose& pose) {
-  const GstLidarPose meta = ToMeta(pose, Tracking::kTracking);
   cdr::Odometry told;
-  std::copy_n(meta.position, 3, told.position.begin());
-  std::copy_n(meta.orientation, 4, told.orientation.begin());
+  std::copy_n(pose.position.data(), 3, told.position.begin());
+  std::copy_n(pose.rotation.coeffs().data(), 4, told.orientation.begin());
   return told;
 }
 
@@ -44,11 +39,22 @@ GstBuffer* ToBuffer(const std::vector<std::uint8_t>& bytes, Time time, GstClockT
 
 }  // namespace
 
-GstLidarPose ToMeta(const Pose& pose, Tracking tracking) {
+double PositionDeviation(const Estimate& e) {
+  return std::sqrt(e.covariance.topLeftCorner<3, 3>().trace());
+}
+
+double OrientationDeviation(const Estimate& e) {
+  return std::sqrt(e.covariance.bottomRightCorner<3, 3>().trace());
+}
+
+GstLidarPose ToMeta(const Pose& pose, const Estimate& last) {
   const auto& p = pose.position;
   const auto& q = pose.rotation;
-  return {
-      {p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}, static_cast<GstLidarTracking>(tracking)};
+  return {{p.x(), p.y(), p.z()},
+          {q.x(), q.y(), q.z(), q.w()},
+          static_cast<GstLidarTracking>(last.tracking),
+          PositionDeviation(last),
+          OrientationDeviation(last)};
 }
 
 GstStructure* OdometryMessage(const Estimate& e) {
@@ -56,9 +62,8 @@ GstStructure* OdometryMessage(const Estimate& e) {
   gst_structure_set(told, "timestamp", G_TYPE_UINT64,
                     static_cast<guint64>(e.time.time_since_epoch().count()), "tracking",
                     G_TYPE_STRING, ToString(e.tracking), "inlier-share", G_TYPE_DOUBLE,
-                    e.inlier_share, "position-deviation", G_TYPE_DOUBLE,
-                    Deviation(e.covariance.topLeftCorner<3, 3>()), "orientation-deviation",
-                    G_TYPE_DOUBLE, Deviation(e.covariance.bottomRightCorner<3, 3>()), nullptr);
+                    e.inlier_share, "position-deviation", G_TYPE_DOUBLE, PositionDeviation(e),
+                    "orientation-deviation", G_TYPE_DOUBLE, OrientationDeviation(e), nullptr);
   return told;
 }
 

@@ -9,7 +9,11 @@
 
 namespace lidar::gst {
 
-GstLidarPose ToMeta(const odometry::Pose& pose, odometry::Tracking tracking);
+/// Return the typical lengths of the errors [m, rad].
+double PositionDeviation(const odometry::Estimate& estimate);
+double OrientationDeviation(const odometry::Estimate& estimate);
+/// Returns the meta of `pose`, with the confidence of `last`, the scan before it.
+GstLidarPose ToMeta(const odometry::Pose& pose, const odometry::Estimate& last);
 
 /// Return the messages of a scan and of a loop. The caller owns them.
 GstStructure* OdometryMessage(const odometry::Estimate& estimate);

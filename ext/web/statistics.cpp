@@ -62,7 +62,7 @@ struct Summary {
 };
 constexpr double kMs = 1e-6;  // of ns
 // Reports of a sender in another pipeline count, too; later rows win.
-constexpr std::array<Summary, 19> kSummaries = {{
+constexpr std::array<Summary, 22> kSummaries = {{
     {"target_bitrate", "sender_target_bitrate", "sender_reports"},
     {"sent_bitrate", "sender_sent_bitrate", "sender_reports"},
     {"estimated_capacity", "sender_estimated_capacity", "sender_reports"},
@@ -82,6 +82,9 @@ constexpr std::array<Summary, 19> kSummaries = {{
     {"packets_lost", "packets_lost", "packets_ce"},
     {"packets_ce", "packets_ce", "packets_ce"},
     {"slices_lost", "slices_lost", "slices_lost"},
+    {"position_deviation", "position_deviation", "position_deviation"},
+    {"poses_degenerate", "scans_degenerate", "scans_degenerate"},
+    {"poses_lost", "scans_lost", "scans_degenerate"},
 }};
 
 bool IsSenders(const Summary& summary) {

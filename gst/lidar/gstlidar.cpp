@@ -98,7 +98,9 @@ void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPose* pose) {
   gst_structure_set(WritableMeta(buffer, GST_LIDAR_POSE_META_NAME), "x", G_TYPE_DOUBLE, p[0], "y",
                     G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2], "qx", G_TYPE_DOUBLE, q[0], "qy",
                     G_TYPE_DOUBLE, q[1], "qz", G_TYPE_DOUBLE, q[2], "qw", G_TYPE_DOUBLE, q[3],
-                    "tracking", G_TYPE_UINT, static_cast<guint>(pose->tracking), nullptr);
+                    "tracking", G_TYPE_UINT, static_cast<guint>(pose->tracking),
+                    "position-deviation", G_TYPE_DOUBLE, pose->position_deviation,
+                    "orientation-deviation", G_TYPE_DOUBLE, pose->orientation_deviation, nullptr);
 }
 
 gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose) {
@@ -110,7 +112,9 @@ gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose) {
       !gst_structure_get(s, "x", G_TYPE_DOUBLE, &p[0], "y", G_TYPE_DOUBLE, &p[1], "z",
                          G_TYPE_DOUBLE, &p[2], "qx", G_TYPE_DOUBLE, &q[0], "qy", G_TYPE_DOUBLE,
                          &q[1], "qz", G_TYPE_DOUBLE, &q[2], "qw", G_TYPE_DOUBLE, &q[3], "tracking",
-                         G_TYPE_UINT, &tracking, nullptr)) {
+                         G_TYPE_UINT, &tracking, "position-deviation", G_TYPE_DOUBLE,
+                         &pose->position_deviation, "orientation-deviation", G_TYPE_DOUBLE,
+                         &pose->orientation_deviation, nullptr)) {
     return FALSE;
   }
   pose->tracking = static_cast<GstLidarTracking>(MIN(tracking, GST_LIDAR_TRACKING_LOST));

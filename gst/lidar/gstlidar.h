@@ -72,6 +72,9 @@ typedef struct {
   gdouble position[3];    /* x, y, z [m] */
   gdouble orientation[4]; /* unit quaternion x, y, z, w: sensor to start */
   GstLidarTracking tracking;
+  /* One standard deviation of the error since the start, at the last scan that was aligned. */
+  gdouble position_deviation;    /* [m] */
+  gdouble orientation_deviation; /* [rad] */
 } GstLidarPose;
 
 GST_LIDAR_API void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPose* pose);

@@ -173,6 +173,9 @@ const std::vector<StatisticsField> kStatisticsFields = {
     {"packets_lost", "Packets that the network lost"},
     {"packets_ce", "Packets that the network marked"},
     {"slices_lost", "Slices that did not arrive whole"},
+    {"position_deviation", "One standard deviation of the odometry's error since the start [m]"},
+    {"poses_degenerate", "Scans that did not show the motion along one direction"},
+    {"poses_lost", "Scans that did not fit the map of the odometry"},
 };
 
 std::vector<std::uint8_t> FileDescriptorSet() {

@@ -45,7 +45,8 @@ gst::BufferPtr Bytes(std::size_t size) {
 TEST_F(NatsParts, AMessageCarriesAllThatABufferHas) {
   const gst::BufferPtr buffer = Bytes(100);
   const GstLidarSlice slice{4'000'000'000, 3, 8, 512};
-  const GstLidarPose pose{{1.5, -2.25, 1e-300}, {0.1, 0.2, 0.3, 0.9}, GST_LIDAR_TRACKING_LOST};
+  const GstLidarPose pose{
+      {1.5, -2.25, 1e-300}, {0.1, 0.2, 0.3, 0.9}, GST_LIDAR_TRACKING_LOST, 0.5, 0.25};
   gst_lidar_buffer_set_slice(buffer.get(), &slice);
   gst_lidar_buffer_set_pose(buffer.get(), &pose);
   gst_lidar_buffer_set_capture_time(buffer.get(), 1'764'000'000'123'456'789);
@@ -68,6 +69,8 @@ TEST_F(NatsParts, AMessageCarriesAllThatABufferHas) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(back.position[i], pose.position[i]);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(back.orientation[i], pose.orientation[i]);
   EXPECT_EQ(back.tracking, pose.tracking);
+  EXPECT_EQ(back.position_deviation, 0.5);
+  EXPECT_EQ(back.orientation_deviation, 0.25);
 }
 
 TEST_F(NatsParts, ABareBufferComesBackBare) {

@@ -116,6 +116,11 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   ASSERT_TRUE(gst_lidar_buffer_get_pose(scans.back().get(), &last));
   EXPECT_EQ(first.tracking, GST_LIDAR_TRACKING_STARTED);
   EXPECT_EQ(last.tracking, GST_LIDAR_TRACKING_OK);
+  EXPECT_EQ(first.position_deviation, 0);
+  EXPECT_GT(last.position_deviation, 0);
+  EXPECT_LT(last.position_deviation, 1);
+  EXPECT_GT(last.orientation_deviation, 0);
+  EXPECT_LT(last.orientation_deviation, 0.1);
   EXPECT_LT(Distance(first), 0.01);
   EXPECT_NEAR(Distance(last), 9, 0.5);
   EXPECT_EQ(Count("scans"), 10U);

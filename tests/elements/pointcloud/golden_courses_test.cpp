@@ -79,7 +79,7 @@ gst::BufferPtr At(gst::BufferPtr buffer, const Stamp& stamp) {
 }
 
 gst::BufferPtr WithPose(gst::BufferPtr buffer) {
-  const GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK};
+  const GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
   gst_lidar_buffer_set_pose(buffer.get(), &pose);
   return buffer;
 }

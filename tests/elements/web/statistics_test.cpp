@@ -60,19 +60,23 @@ TEST(Statistics, SumUpWhatElementsTellInTheirUnits) {
       Talking("coder", "s,step=(double)0.02,error-bound=(double)0.01,target-bitrate=(guint64)1;");
   GstElement* receiver = Talking("receiver", "s,packets-lost=(guint64)7,packets-ce=(guint64)2;");
   GstElement* depay = Talking("depay", "s,slices-lost=(guint64)11;");
+  GstElement* odometry = Talking(
+      "odometry",
+      "s,position-deviation=(double)0.5,scans-lost=(guint64)3,scans-degenerate=(guint64)4;");
   GstElement* bin = gst_bin_new("inner");
   gst_bin_add(GST_BIN(pipeline.get()), bin);
   gst_bin_add_many(GST_BIN(bin), coder, net, nullptr);
-  gst_bin_add_many(GST_BIN(pipeline.get()), receiver, depay, nullptr);
+  gst_bin_add_many(GST_BIN(pipeline.get()), receiver, depay, odometry, nullptr);
   const auto message = nlohmann::json::parse(StatisticsOf(coder));
   const std::vector<std::pair<const char*, double>> expected = {
-      {"target_bitrate", 8e6},    {"sent_bitrate", 7e6}, {"estimated_capacity", 9e6},
-      {"queue_delay", 3},         {"rtt", 25},           {"ref_wnd", 41000},
-      {"bytes_in_flight", 31000}, {"step", 0.02},        {"error_bound", 0.01},
-      {"packets_lost", 7},        {"packets_ce", 2},     {"slices_lost", 11}};
+      {"target_bitrate", 8e6},     {"sent_bitrate", 7e6}, {"estimated_capacity", 9e6},
+      {"queue_delay", 3},          {"rtt", 25},           {"ref_wnd", 41000},
+      {"bytes_in_flight", 31000},  {"step", 0.02},        {"error_bound", 0.01},
+      {"packets_lost", 7},         {"packets_ce", 2},     {"slices_lost", 11},
+      {"position_deviation", 0.5}, {"poses_lost", 3},     {"poses_degenerate", 4}};
   for (const auto& [name, value] : expected)
     EXPECT_DOUBLE_EQ(message.value(name, -1.0), value) << name;
-  EXPECT_EQ(message["elements"].size(), 4U);
+  EXPECT_EQ(message["elements"].size(), 5U);
   EXPECT_EQ(message["elements"]["net"]["rtt"], 25'000'000);
   const auto now = static_cast<double>(g_get_real_time()) / 1e6;
   EXPECT_NEAR(message["timestamp"]["sec"].get<double>(), now, 60);

@@ -68,6 +68,20 @@ const CHARTS = [
     ],
   },
   {
+    title: 'Deviation of the pose',
+    unit: 'm',
+    series: [{ key: 'position_deviation', label: 'position' }],
+  },
+  {
+    title: 'Poses',
+    unit: 'since the start',
+    whole: true,
+    series: [
+      { key: 'poses_lost', label: 'poses lost' },
+      { key: 'poses_degenerate', label: 'degenerate', quiet: true },
+    ],
+  },
+  {
     title: 'To this page',
     unit: 'Mbit/s',
     series: [{ key: 'received', label: 'received', scale: MBIT }],
