@@ -52,7 +52,6 @@ bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
   // Every jump rewinds the reader first, because it reads no more after an error.
   if (!reader_->Rewind() || (offset && !reader_->GoTo(*offset))) return false;
   first_ = last_ = first;
-  error_.clear();
   return true;
 }
 
