@@ -81,6 +81,8 @@ TEST(Temporal, BlocksNeedTheirReferenceAndNothingElse) {
   EXPECT_TRUE(decoder.lacks_reference());
   EXPECT_FALSE(pair.Decode(pair.dependent, &decoder, nullptr));
   EXPECT_TRUE(decoder.lacks_reference());
+  EXPECT_FALSE(pair.Decode({0x00}, &decoder, &store));
+  EXPECT_FALSE(decoder.lacks_reference()) << "damage is no lack of a reference";
   EXPECT_TRUE(pair.Decode(pair.key, &decoder, nullptr));
   EXPECT_TRUE(pair.Decode(pair.key, &decoder, &store));
   EXPECT_TRUE(pair.Decode(pair.dependent, &decoder, &store));

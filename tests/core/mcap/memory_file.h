@@ -81,6 +81,12 @@ class FileMaker {
     channel.schema_id = catalogue_.AddSchema(std::move(schema));
     return catalogue_.AddChannel(std::move(channel));
   }
+  std::uint16_t AddChannelWithoutSchema(const std::string& topic) {
+    Channel channel;
+    channel.topic = topic;
+    channel.message_encoding = "json";
+    return catalogue_.AddChannel(std::move(channel));
+  }
   bool Add(std::uint16_t channel, std::uint64_t time, const std::string& data) {
     return writer_.Add({channel, 0, time, time + 7}, View(data));
   }

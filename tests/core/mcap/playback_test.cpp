@@ -153,6 +153,18 @@ TEST_F(Growing, CountsTheDamageOfAllItsFilesAlsoBehindASeek) {
   EXPECT_EQ(playback->damaged_chunks(), 2U);
 }
 
+TEST_F(Growing, PassesOverMessagesWithoutASchema) {
+  Record(0, 2);
+  const std::uint16_t bare = maker_.AddChannelWithoutSchema("notes");
+  ASSERT_TRUE(maker_.Add(bare, Time(2), "{}"));
+  Record(3, 5);
+  ASSERT_TRUE(maker_.writer().Finish());
+  Save("a.mcap", maker_.file());
+  const auto playback = Playback::Open(folder_ + "/a.mcap", &cancelled_, &why_);
+  ASSERT_NE(playback, nullptr) << why_;
+  EXPECT_EQ(Count(playback.get()), 4U);
+}
+
 TEST_F(Growing, CountsFilesThatBreakOffAndThoseThatCannotBeRead) {
   Record(0, 2);
   Save("a1.mcap", maker_.file());

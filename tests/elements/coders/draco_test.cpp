@@ -10,6 +10,18 @@
 namespace lidar::gst {
 namespace {
 
+TEST(DracoEnc, RefusesRangesOfMoreColumnsThanATurn) {
+  const SensorModel model = test::RoomSensor();
+  for (const guint columns : {511U, 512U, 513U}) {
+    const Harness h = Encoder(kDraco, "geometry=range");
+    const CloudInfo info = OrganisedInfo(model, columns);
+    SetCaps(h.get(), info);
+    GstBuffer* empty = gst_buffer_new_allocate(nullptr, info.FrameSize(), nullptr);
+    gst_buffer_memset(empty, 0, 0, info.FrameSize());
+    EXPECT_EQ(gst_harness_push(h.get(), empty) == GST_FLOW_OK, columns <= 512) << columns;
+  }
+}
+
 TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {
   const StringPtr program(g_find_program_in_path("draco_decoder"));
   if (!program) GTEST_SKIP() << "draco_decoder (Debian package draco) is not installed";

@@ -78,6 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"metadata=@crc_test.json lidar-port=47503 multicast-group=239.1.1.1 "
                  "multicast-iface=nope0",
                  "no network interface \"nope0\""},
+        BadInput{"location=@crc_test.pcap min-range=3 max-range=3", "max-range"},
         BadInput{"location=@crc_test.pcap min-range=9 max-range=3", "max-range"}));
 
 /// Returns the classic header of a capture with this link type.

@@ -291,6 +291,19 @@ TEST(ExactPart, BelongsToThePointsThatAreKeptOfAThinnedCloud) {
   ExpectSame(expected, wish, Decoded(cloud, wish, slice.bytes));
 }
 
+TEST(ExactDecoder, RefusesASliceWithoutTheFieldsThoughTheOneBeforeHadThem) {
+  const Cloud cloud = SpinningScan();
+  const Wish wish = {{"ring"}, true};
+  const auto with = Encoded(cloud, wish);
+  const auto without = Encoded(cloud, {{}, false});
+  ExactDecoder decoder(ChoiceOf(cloud, wish).fields, kMostDecoded);
+  EXPECT_TRUE(decoder.Decode({with.data(), with.size()}));
+  EXPECT_FALSE(decoder.Decode({without.data(), without.size()}));
+  ExactDecoder plain({}, kMostDecoded);
+  EXPECT_FALSE(plain.Decode({with.data(), with.size()}));
+  EXPECT_TRUE(plain.Decode({without.data(), without.size()}));
+}
+
 TEST(CloudEncoder, SeesWhereFieldsOrOrderDoNotComeBack) {
   const Cloud cloud = Shuffled(SpinningScan());
   for (const bool keeps_order : {false, true}) {
