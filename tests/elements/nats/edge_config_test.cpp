@@ -112,6 +112,18 @@ INSTANTIATE_TEST_SUITE_P(
         WrongConfig{R"({"nats":{"prefix":"a.>"},"robots":[{"name":"a","port":1}]})",
                     "nats.prefix is no word of letters, digits, - and _"}));
 
+TEST(EdgeConfig, APortIsFor1000RobotsAtMost) {
+  const auto parse = [](int robots) {
+    std::string text = R"({"port": 5000, "robots": [)";
+    for (int i = 1; i <= robots; ++i)
+      text += (i > 1 ? R"(,{"name": "r)" : R"({"name": "r)") + std::to_string(i) +
+              R"(", "ssrc": ")" + std::to_string(i) + R"("})";
+    return ParseEdgeConfig(text + "]}");
+  };
+  EXPECT_EQ(parse(1'000).robots.size(), 1'000U);
+  EXPECT_THROW(parse(1'001), std::runtime_error);
+}
+
 TEST(EdgeConfig, NamesHave64LettersAtMost) {
   const auto with = [](std::size_t letters) {
     return ParseEdgeConfig(R"({"robots":[{"port":1,"name":")" + std::string(letters, 'a') +

@@ -54,7 +54,9 @@ TEST(EdgePipeline, GivesEachSettingToItsElement) {
                   {"srtp-cipher", "aes-256-gcm"},
                   {"dtls-certificate", "edge.pem"},
                   {"dtls-peer-certificate", "robot.crt"},
+                  {"close-socket", "false"},
                   {"eos-on-bye", "true"}});
+  ExpectSettings(pipeline.get(), "tee", {{"allow-not-linked", "true"}});
   ExpectSettings(pipeline.get(), "natssink",
                  {{"url", "nats.invalid"},
                   {"credentials-file", "a.creds"},
@@ -68,7 +70,15 @@ TEST(EdgePipeline, GivesEachSettingToItsElement) {
                   {"max-age", "7000000000"},
                   {"max-bytes", "12345"},
                   {"buffer-size", "70000"},
+                  {"drain-timeout", "1000000000"},
+                  {"sync", "false"},
+                  {"async", "false"},
                   {"keep-trying", "true"}});
+  ExpectSettings(pipeline.get(), "queue",
+                 {{"leaky", "downstream"},
+                  {"max-size-bytes", "8388608"},
+                  {"max-size-buffers", "16384"},
+                  {"max-size-time", "30000000000"}});
   ExpectSettings(pipeline.get(), "mcapsink",
                  {{"location", "r1-%05d.mcap"}, {"max-file-size", "654321"}, {"max-files", "12"}});
 }
