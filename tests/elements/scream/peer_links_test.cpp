@@ -42,6 +42,27 @@ struct PeerLinks : ::testing::Test {
   std::uint16_t seq = 65530;
 };
 
+TEST_F(PeerLinks, NoCopiesTakeThePlaceOfALinkThatSends) {
+  std::vector<LinkAddress> links;
+  for (guint i = 0; i < PeerLatch::kMaxLinks; ++i)
+    links.emplace_back(Address("10.3.0.1", 5000 + i));
+  const auto send_all = [&](int packets) {
+    for (int i = 0; i < packets; ++i, ++seq, now += 10ms) {
+      for (const LinkAddress& link : links) Send(link, seq);
+      Send(thief, seq);
+    }
+  };
+  send_all(3 * PeerLatch::kCopies);
+  EXPECT_EQ(latch.links(), PeerLatch::kMaxLinks);
+  for (const LinkAddress& link : links) EXPECT_TRUE(latch.IsPeer(link.get()));
+  EXPECT_FALSE(latch.IsPeer(thief.get()));
+  links.pop_back();
+  now += PeerLatch::kPeerSilence;
+  send_all(1);
+  EXPECT_EQ(latch.links(), PeerLatch::kMaxLinks);
+  EXPECT_TRUE(latch.IsPeer(thief.get())) << "in the place of the silent one";
+}
+
 TEST_F(PeerLinks, CopiesMakeAnAddressALink) {
   SendBoth(first, second, PeerLatch::kCopies - 1);
   EXPECT_EQ(latch.links(), 1U);
