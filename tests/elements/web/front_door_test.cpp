@@ -6,9 +6,11 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <vector>
 
 #include "ext/web/handshakes.h"
+#include "ext/web/server.h"
 #include "ext/web/slice_service.h"
 #include "tests/elements/web/web_peer.h"
 
@@ -107,6 +109,29 @@ TEST_F(TwoAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
     EndThoseThatRun();
     return Ended() == peers_.size();
   }));
+}
+
+TEST(Server, SharesATopicOfOneSchemaExceptOneOfSlices) {
+  using foxglove::Schema;
+  std::string error;
+  const auto server = Server::Start({}, &error);
+  ASSERT_TRUE(server) << error;
+  EXPECT_FALSE(server->Open(kStatisticsTopic, Schema::kPointCloud));
+  std::set<std::uint32_t> ids;
+  for (const Schema schema : {Schema::kPointCloud, Schema::kCompressedPointCloud,
+                              Schema::kCompressedVideo, Schema::kPose, Schema::kSlice}) {
+    const Schema other = schema == Schema::kPose ? Schema::kSlice : Schema::kPose;
+    const SharedTopic topic = server->Open("/a", schema);
+    ASSERT_TRUE(topic);
+    EXPECT_TRUE(ids.insert(topic->channel().id).second) << "a channel of its own";
+    EXPECT_EQ(topic->channel().schema, schema);
+    EXPECT_FALSE(server->Open("/a", other));
+    const bool is_shared = schema != Schema::kSlice;
+    EXPECT_EQ(server->Open("/a", schema), is_shared ? topic : nullptr);
+    if (is_shared) server->Close(topic);
+    EXPECT_FALSE(server->Open("/a", other)) << "it is open still";
+    server->Close(topic);
+  }
 }
 
 TEST(SliceService, WantsNothingRecodedOnceTheLastViewerLeft) {
