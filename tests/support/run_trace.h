@@ -126,6 +126,7 @@ class RunTrace {
                        std::to_string(GST_BUFFER_OFFSET(buffer)) + " flags " +
                        std::to_string(GST_BUFFER_FLAGS(buffer) & kFlags) + " size " +
                        std::to_string(gst_buffer_get_size(buffer));
+    if (GST_BUFFER_DTS_IS_VALID(buffer)) line += " decoded at " + Text(GST_BUFFER_DTS(buffer));
     const gst::BufferMap map(buffer, GST_MAP_READ);
     if (with_bytes_ && map) line += " crc " + std::to_string(Crc32(map.view()));
     GstLidarSlice s{};

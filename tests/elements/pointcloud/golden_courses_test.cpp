@@ -128,7 +128,7 @@ void FilterCourse(Course& c) {
 void AssemblerCourse(Course& c, const std::string& caps, std::size_t points) {
   const auto slice = [&](guint scan, guint index, guint slices = 4) {
     auto made = At(Row(points, static_cast<float>(10 * scan + index)),
-                   {100 * scan + 25 * index, 25, {scan, index, slices, 2 * index + 1}});
+                   {100 * scan + 25 * index, 24, {scan, index, slices, 2 * index + 1}});
     // The first slice has times of its own.
     if (index == 0) GST_BUFFER_PTS(made.get()) += 2 * GST_MSECOND;
     if (index == 0)
@@ -180,7 +180,9 @@ void ParseBytesCourse(Course& c) {
   c.PushEvent("stream", gst_event_new_stream_start("bytes"));
   c.SetCaps(CapsText(2, 1, false));
   c.PushSegment(GST_FORMAT_BYTES);
-  c.Push("a whole one", Row(2, 1));
+  auto whole = Row(2, 1);
+  GST_BUFFER_DTS(whole.get()) = 5;
+  c.Push("a whole one", std::move(whole));
   c.Push("a half", Row(1, 3));
   c.Push("a half and one", Row(3, 4));
   c.Unknown();
