@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes lists of integers as a Draco point cloud, an attribute a list.
+// Codes lists of integers as a Draco point cloud, with an attribute for each list.
 #pragma once
 #include "src/codec/integer_coder.h"
 

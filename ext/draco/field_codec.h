@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points of any fields as Draco files, each field an attribute, as ROS's
-// draco_point_cloud_transport has them.
+// Codes points with any fields as Draco files, in the format of ROS's draco_point_cloud_transport:
+// each field is an attribute.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -17,7 +17,7 @@ class MessageReader {
                                              const mcap::Channel& channel);
   virtual ~MessageReader() = default;
 
-  /// Caps of the buffers from the last Read() on. NULL before it if they depend on a message.
+  /// Caps of the last Read()'s buffer. NULL before the first Read() if they depend on the message.
   GstCaps* caps() const { return caps_.get(); }
   /// Returns null if `message`, which may be any bytes, is damaged. The buffer has no PTS.
   virtual BufferPtr Read(ByteView message) = 0;

@@ -16,7 +16,7 @@ enum class MessageType { kCloud, kImu, kOdometry, kSlice };
 
 /// Schema of the messages of that type, without an id.
 mcap::Schema SchemaOf(MessageType type);
-/// Returns nothing for a schema that is none of ours.
+/// Returns nothing for a schema that is not ours.
 std::optional<MessageType> TypeOf(const mcap::Schema& schema);
 /// The message for buffers of `caps`; nothing if they cannot be recorded.
 std::optional<MessageType> TypeOf(const GstCaps* caps);

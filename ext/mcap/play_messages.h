@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages of mcapsrc about recordings that it cannot play, or not whole.
+// Messages of mcapsrc about recordings that it cannot play, or only in part.
 #pragma once
 #include <gst/gst.h>
 
@@ -19,7 +19,7 @@ struct PlayedCounts {
 /// Posts an error: no topic of the recording can be played, or the wanted one cannot.
 void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
                        const std::string& location, const std::string& topic);
-/// Warns of files that break off or cannot be read; `why` belongs to the last one.
+/// Warns of files that break off or cannot be read; `why` is the reason for the last one.
 void WarnOfFiles(GstElement* element, const mcap::Playback& playback, const std::string& why);
 /// Posts an error if nothing could be read, and a warning if parts are left out.
 void PostDamage(GstElement* element, const PlayedCounts& counts);

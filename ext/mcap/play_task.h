@@ -7,8 +7,8 @@
 
 namespace lidar::gst {
 
-/// A change of state starts and stops it; in between it may pause and resume. It stands still while
-/// it is paused and a thread holds lock(). All functions may be called from any thread.
+/// A change of state starts and stops it; in between it may pause and resume. While it is paused,
+/// it cannot resume as long as a thread holds lock(). All functions may be called from any thread.
 class PlayTask {
  public:
   PlayTask(GstTaskFunction loop, gpointer data) : task_(gst_task_new(loop, data, nullptr)) {

@@ -17,8 +17,8 @@ class Seek {
   /// Returns the segment after the seek. Returns nothing unless the seek is forward, by time, and
   /// to a place with data.
   std::optional<GstSegment> AppliedTo(GstSegment played) const;
-  /// Returns `made`, from AppliedTo(), as the task plays it: without a flush it continues the
-  /// running time of `played`, the segment when the task paused.
+  /// Returns the segment that the task plays; `made` is the result of AppliedTo(). Without a flush
+  /// the running time of `played`, the segment when the task paused, continues.
   GstSegment Begun(GstSegment made, const GstSegment& played) const;
   bool flushes() const { return (flags_ & GST_SEEK_FLAG_FLUSH) != 0; }
   guint32 seqnum() const { return gst_event_get_seqnum(event_.get()); }

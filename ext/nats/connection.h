@@ -31,7 +31,8 @@ struct ConnectionState {
   unsigned disconnections = 0;
   std::uint64_t errors = 0;  // reports of the server
   std::string last_error;    // the latest report, or empty
-  // Number of missed heartbeats of JetStream's consumers, which the server may have lost.
+  // Number of heartbeats that did not come from JetStream's consumers. The server may have lost the
+  // consumer.
   unsigned missed_heartbeats = 0;
 };
 

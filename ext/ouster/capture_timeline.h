@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The duration of a capture and places in it, for the reading thread and those that query.
+// The duration of a capture and places in it, for the reading thread and for threads that query.
 #pragma once
 #include <gst/gst.h>
 

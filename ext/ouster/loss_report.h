@@ -10,7 +10,7 @@ namespace lidar::gst {
 class LossReport {
  public:
   /// Returns the number of packets lost since the last report; nothing if there are none, or within
-  /// a second of the last report. `total` falls when a packet comes late.
+  /// a second of the last report. A late packet reduces `total`.
   std::optional<guint64> Take(guint64 total, GstClockTime now) {
     if (total <= reported_) return std::nullopt;
     if (GST_CLOCK_TIME_IS_VALID(last_) && now - last_ < GST_SECOND) return std::nullopt;

@@ -19,7 +19,7 @@ const char* NameOf(CloudCompression compression);
 std::optional<cdr::MadeCloud> Decompress(const cdr::CompressedCloud& compressed, std::string* why);
 
 /// Packs the points without loss. Returns nothing if the compression is not built in, or cannot
-/// pack the cloud. The result's data are `packed`.
+/// pack the cloud. `packed` holds the result's data.
 std::optional<cdr::CompressedCloud> Compress(CloudCompression compression,
                                              const cdr::PointCloud2& cloud,
                                              std::vector<std::uint8_t>* packed);

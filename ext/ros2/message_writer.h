@@ -16,8 +16,8 @@
 
 namespace lidar::gst {
 
-/// The frame, and the child frame whose pose a message gives. An empty name means the caps' or the
-/// default one.
+/// The frame, and the child frame whose pose a message gives. An empty name means that of the caps,
+/// or the default.
 struct Frames {
   std::string frame_id;
   std::string child_frame_id;

@@ -13,8 +13,8 @@
 
 namespace lidar::web {
 
-/// Returns the address of a client: that of the peer, or the last one forwarded by a proxy on this
-/// machine.
+/// Returns a client's address: the peer's, or the last address in `forwarded` if the peer is a
+/// proxy on this machine.
 std::string AddressOf(GInetAddress* peer, std::string_view forwarded);
 
 /// Counts wrong tokens by address, and forgives them one by one.

@@ -33,7 +33,7 @@ class Archive {
   /// Continues at a time, or behind the item that had the `position`.
   virtual void Seek(std::uint64_t time_ns) = 0;
   virtual void GoOn(std::uint64_t position) = 0;
-  /// Returns nothing if no more follow yet, or soon after Cancel().
+  /// Returns nothing if there is no next item yet, or soon after Cancel().
   virtual std::optional<Item> Next() = 0;
   /// Closes files and frees buffers until the next Seek() or GoOn().
   virtual void Rest() = 0;

@@ -33,7 +33,7 @@ class Client {
 
   /// Control texts wait in order; a client that lets too many wait is closed.
   void SendText(const std::string& text);
-  /// Returns how many of the channel's messages were dropped, maybe this one.
+  /// Returns how many of the channel's messages were dropped, this one included.
   std::size_t Send(Outbox::Item item, std::size_t depth);
   /// Notes that a message of the channel is not sent to this client.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // TLS handshakes, few at a time, because each occupies a thread of GIO while its peer is slow. The
-// address with the fewest connections is next, so a thousand stalled ones delay only their own
-// address.
+// address with the fewest connections is next, so a thousand stalled connections of one address
+// delay only that address.
 #pragma once
 #include <functional>
 #include <list>

@@ -61,8 +61,8 @@ void EndStream(Coder* coder, const Class* klass) {
 /// Statistics as element messages.
 class MessageTimer {
  public:
-  /// Posts `stats` if `interval` (0: never) has passed since the last post or, before it, since the
-  /// first call.
+  /// Posts `stats` if `interval` (0: never) has passed since the last post, or since the first call
+  /// if there was no post.
   void Post(GstElement* element, Duration interval, StructurePtr (*stats)(GObject*)) {
     const gint64 now_us = g_get_monotonic_time();
     if (!last_us_) last_us_ = now_us;

@@ -27,7 +27,7 @@ struct SpecArgs {
 template <class T, class = void>
 struct Kind;
 
-/// Numbers, which GObject has as `Wire`.
+/// Numbers, which GObject stores as `Wire`.
 template <class Wire, GType type, auto new_spec, auto get_value, auto set_value>
 struct NumberKind {
   static GType Type() { return type; }

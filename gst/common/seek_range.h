@@ -29,8 +29,8 @@ inline GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegme
   return static_cast<GstClockTime>(std::max<gint64>(end + std::min<gint64>(time, 0), 0));
 }
 
-/// Moves `segment`, which is in time, by the seek `event`. Returns false and changes nothing for an
-/// empty range, which GStreamer treats as the caller's error.
+/// Applies the seek `event` to `segment`, whose format is time. Returns false and changes nothing
+/// for an empty range, which GStreamer treats as the caller's error.
 inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
   gdouble rate = 1;
   GstSeekFlags flags = GST_SEEK_FLAG_NONE;

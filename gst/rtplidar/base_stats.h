@@ -5,8 +5,8 @@
 
 namespace lidar::gst {
 
-/// Returns `stats` of `object` as `parent_class` or an ancestor of it has them, so that the element
-/// can add its own fields.
+/// Returns the `stats` that `object` inherits from `parent_class` or its ancestors, so that the
+/// element can add its own fields.
 inline StructurePtr BaseClassStats(GObject* object, gpointer parent_class) {
   GParamSpec* spec = g_object_class_find_property(G_OBJECT_CLASS(parent_class), "stats");
   GValue value = G_VALUE_INIT;

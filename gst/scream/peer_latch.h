@@ -16,7 +16,7 @@
 namespace lidar::gst {
 using namespace std::chrono_literals;
 
-/// Digests of the latest packets. Each is found once.
+/// Digests of the latest packets. A search removes the digest that it finds.
 template <std::size_t size>
 class Digests {
  public:

@@ -14,7 +14,7 @@ constexpr std::make_signed_t<U> SequenceDistance(U a, U b) {
   return static_cast<std::make_signed_t<U>>(static_cast<U>(a - b));
 }
 
-/// Extends wrapping numbers to 64 bit: each is read as the nearest to the newest one so far.
+/// Extends numbers that wrap to 64 bits: each to the value nearest to the newest number so far.
 template <class U>
 class SequenceUnwrapper {
  public:

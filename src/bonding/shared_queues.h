@@ -13,12 +13,12 @@
 namespace lidar::bonding {
 
 /// While a FIFO does not run empty, two packets of a link arrive as far apart as all packets that
-/// entered between them take to leave. Packets of another link take time there only in the same
-/// FIFO. So the spacing of arrivals is regressed on what the other link sent in between, what the
-/// link itself sent, and the spacing of departures, which stands for the flows of others. RFC 8382
-/// compares delays, and mistakes two queues that copies fill alike for one; but copies do not space
-/// the packets of the other queue. In addition, links that share a FIFO must see equally long
-/// queues at the same time.
+/// entered between them take to leave. Packets of another link add to that time only if they pass
+/// the same FIFO. So the spacing of arrivals is regressed on what the other link sent in between,
+/// what the link itself sent, and the spacing of departures, which stands for the flows of others.
+/// RFC 8382 compares delays instead. Copies fill two queues alike, so that it would take them for
+/// one queue; but packets in one queue do not change the spacing in the other. In addition, links
+/// that share a FIFO must see equally long queues at the same time.
 class SharedQueues {
  public:
   /// A packet of a report.

@@ -10,8 +10,8 @@ namespace lidar {
 
 /// Ranges are multiples of `unit_mm`, here called cells. Neighbouring cells share a bin and decode
 /// to its middle, rounded up to a whole millimetre. A step that is no whole number of cells makes
-/// bins of two sizes, evenly mixed: so sizes of slices change as smoothly as steps do, and the
-/// error is that of the larger bins.
+/// bins of two sizes, evenly mixed: so encoded sizes change as smoothly as the step does. The error
+/// is that of the larger bins.
 class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
@@ -114,7 +114,7 @@ class RangeGrid {
   }
 
  private:
-  /// Returns the middle of a bin's cells. Its first cell is the first whole one after its start.
+  /// Returns the middle of a bin's cells. Cells belong to the bin in which they begin.
   template <class Wide>
   Wide Middle(Wide bin) const {
     const Wide first = (bin * parts_ + (kParts - 1)) / kParts;

@@ -40,7 +40,7 @@ enum class Bonding {
   kWhereWholeFirst,
   kOnEach,  // on each link that can deliver it in time
 };
-/// The same over several links: a slice that no link delivers within `max_age` is dropped, and a
+/// The bound over several links: a slice that no link delivers within `max_age` is dropped, and a
 /// scan counts if all its slices arrive. AskOracle() differs for a single link: it finishes each
 /// scan that has begun.
 OracleResult AskOracleOfLinks(const std::vector<Capacity>& links, const OracleConfig& config,

@@ -110,7 +110,7 @@ struct SummaryOffset {
   std::uint64_t size = 0;
 };
 
-/// Each appends a whole record to `out`.
+/// These functions append a whole record to `out`.
 void Append(const Header& header, Bytes* out);
 void Append(const Footer& footer, Bytes* out);
 void Append(const Schema& schema, Bytes* out);
@@ -125,8 +125,8 @@ void Append(const SummaryOffset& offset, Bytes* out);
 /// `crc` is that of the data section; 0: not known.
 void AppendDataEnd(std::uint32_t crc, Bytes* out);
 
-/// Each parses the content of a record, which may be followed by fields of later versions. Returns
-/// nothing if it is cut off.
+/// These functions parse the content of a record, which may be followed by fields of later
+/// versions. They return nothing if the content is cut off.
 std::optional<Footer> ParseFooter(ByteView content);
 std::optional<Schema> ParseSchema(ByteView content);
 std::optional<Channel> ParseChannel(ByteView content);

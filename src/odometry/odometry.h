@@ -20,7 +20,7 @@ struct OdometrySettings {
   double voxel_size_m = 1;   // of the map
   bool deskew = true;        // correct points for the motion since they were sampled
   Pose start;                // of the first scan
-  /// Velocity per second at the first scan, in the sensor's frame. Unset: the first two scans show
+  /// Motion in a second at the first scan, in the sensor's frame. Unset: the first two scans show
   /// it.
   std::optional<Twist> start_velocity;
   RegistrationSettings registration;

@@ -13,18 +13,18 @@ struct RegistrationSettings {
   /// Weight of a neighbour without a surface if surfaces hold every direction. Neighbours with a
   /// surface have weight 1. A neighbour without a surface is seldom the same spot.
   double spare_point_weight = 1;
-  /// The same weight if surfaces leave a direction open.
+  /// Weight of a neighbour without a surface if surfaces leave a direction open.
   double point_weight = 1;
-  /// Share of such a neighbour's pull that turns the sensor: distant wrong spots would turn it
-  /// most.
+  /// Part of the pull of a neighbour without a surface that may turn the sensor: distant wrong
+  /// neighbours would turn it most.
   double point_turn = 1;
   /// Surfaces hold a direction whose share is at least this (0: no surface faces it, 1: all do).
   double held_by_surfaces = 0.04;
   /// A direction is not observed if surfaces hold it less than this (0: no surface faces it, 1: all
   /// do).
   double least_constraint = 0.04;
-  /// It is not observed, either, if surfaces hold it less than this part of the next direction, as
-  /// along a tunnel.
+  /// A direction is not observed, either, if surfaces hold it less than this part of the next
+  /// direction, as along a tunnel.
   double least_balance = 0.3;
   /// Greatest distance of a fitting point from its surface or neighbour. It does not depend on the
   /// reach, so that a wide search does not make a scan fit.
@@ -47,8 +47,9 @@ struct Prediction {
 struct Alignment {
   Pose pose;
   double inlier_share = 0;  // share of the points that fit
-  /// The same without the surfaces that face the best held direction. Usually these are ground,
-  /// which fits at every place. Their normals come from the scan, or else from the map.
+  /// Share of the points that fit, without the surfaces that face the best held direction. Usually
+  /// these are ground, which fits at every place. Their normals come from the scan, or else from
+  /// the map.
   double standing_share = 0;
   int iterations = 0;
   /// The scene does not show the motion along a direction; the guess is kept there.

@@ -17,7 +17,7 @@ class CaptureIndex {
   explicit CaptureIndex(std::unique_ptr<PcapReader> reader) : reader_(std::move(reader)) {}
 
   /// Reads up to a datagram of `time` or later, or to the end. Calls `go_on` now and then, and
-  /// returns false if that does.
+  /// returns false if `go_on` does.
   bool ReadUntil(Duration time, const std::function<bool()>& go_on);
 
   /// The first datagram's capture time; nothing before it was read.

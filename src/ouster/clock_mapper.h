@@ -30,8 +30,8 @@ class ClockMapper {
 
   /// Notes that a packet with a column sampled at `sensor_ns` arrived at `arrival`.
   void Observe(std::uint64_t sensor_ns, Time arrival);
-  /// Returns true if Observe() would find a clock jump. Call Map() for data from before the jump
-  /// first.
+  /// Returns true if Observe() would find a clock jump. If so, first call Map() for the data from
+  /// before the jump.
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
   /// Lets the next packet set the offset anew.
   void Reset() { offset_.reset(); }

@@ -55,7 +55,7 @@ class IpReassembler {
     bool more = false;
     ByteView payload;
   };
-  /// Returns the whole IP payload after its last part.
+  /// Returns the whole IP payload if `fragment` completes it.
   std::optional<std::vector<std::uint8_t>> Add(const Fragment& fragment, Time time);
 
  private:

@@ -60,7 +60,7 @@ class AdaptiveModel : public SizeModel {
   /// Intensity's part of the bytes of a slice if the codec does not report it.
   double IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
                         const PredictedSize& predicted) const;
-  /// `again`: the slice has been learned from before.
+  /// `again`: the model has already learned from this slice.
   void LearnGeometry(Learned* learned, const SliceFeatures& slice, double x, double observed,
                      bool again);
   void LearnIntensity(Learned* learned, const SliceFeatures& slice, double bits, double observed,

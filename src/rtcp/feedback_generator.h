@@ -31,9 +31,9 @@ struct FeedbackConfig {
   /// Number of unreported packets of all SSRCs that make a report due.
   int packets_per_feedback = 16;
   bool report_on_marker = true;
-  /// A report is due at once if arriving packets change between CE and not CE,
+  /// A report is due at once if arriving packets change between CE and not CE.
   bool report_on_ce_change = true;
-  /// but not earlier than this after the last report.
+  /// Least time from the last report to a report that is due for such a change.
   Duration ce_change_interval = 5ms;
   /// Number of packets of an SSRC that are reported again, so that a lost report costs nothing.
   int overlap = 32;

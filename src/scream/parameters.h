@@ -82,46 +82,48 @@ struct Parameters {
   double acked_bitrate_margin = 0.8;
   double backoff_scale_low_target_rate = 0.25;
 
-  // Extensions:
-  // Growth beyond the draft's is at most this fraction of the acknowledged bytes. It increases
+  // Extensions: Growth beyond the draft's is at most this fraction of the acknowledged bytes.
   double fast_increase_max = 0.5;
-  /// by this for each round without congestion,
+  /// Step by which that growth increases with each round without congestion.
   double fast_increase_step = 0.03;
-  /// or by this if no marks give an early warning,
+  /// fast_increase_step if no marks give an early warning.
   double fast_increase_step_unmarked = 0.02;
-  /// after so many rounds. A queue of busy_qdelay stops it.
+  /// Rounds without congestion before that growth begins. A queue of busy_qdelay stops it.
   int fast_increase_rounds = 3;
   /// Slope of the growth above the inflection point (8 in the draft).
   double fast_increase_slope = 3;
-  /// The capacity has fallen if the target is above this part of its measured value,
+  /// The capacity has fallen if the target is above this part of its measured value.
   double drop_threshold = 0.9;
-  /// or above this part after a measurement over less than a frame period and VIRTUAL_RTT, with
-  /// fewer than half of the packets marked, or shortly after another reaction.
+  /// The same part after a measurement over less than a frame period and VIRTUAL_RTT, with fewer
+  /// than half of the packets marked, or shortly after another reaction.
   double drop_threshold_unsure = 1.5;
-  /// The queue delay must also have grown by so many packet gaps on a path with marks.
+  /// The queue delay on a path with marks must also have grown by this many packet gaps.
   double drop_growth = 3;
   /// Queue that shows a busy link; without marks, this part of qdelay_target.
   Duration busy_qdelay = 5ms;
   double busy_qdelay_unmarked = 0.45;
-  /// Bytes in flight relative to ref_wnd while most packets are marked,
+  /// Bytes in flight relative to ref_wnd while most packets are marked.
   double bounded_overhead = 1.0;
-  /// and while they are not.
+  /// The same while most packets are not marked.
   double open_overhead = 1.2;
-  /// Tolerated loss rate if the path carries ECT(1),
+  /// Tolerated loss rate if the path carries ECT(1).
   double isolated_loss_threshold = 0.05;
-  /// unless the packets around the loss waited as long as this.
+  /// Losses show congestion if the queue delays packets by more than this.
   Duration isolated_loss_qdelay = 6ms;
-  /// Factor of l4s_alpha's filter. Alpha has the draft's attack after two rounds in a row with this
-  /// fraction, or one round of at least long_frame_period.
+  /// Factor of l4s_alpha's filter. Alpha rises as fast as the draft's after two rounds in a row in
+  /// which a part of even_alpha_max was marked, or after one such round of at least
+  /// long_frame_period.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
-  /// Pacing: a frame has left this long before its period ends, within these fractions of the
-  /// period. On a full link a queue of this length comes and goes with each frame.
+  /// Pacing: a frame has left this long before its period ends. On a full link a queue of this
+  /// length comes and goes with each frame.
   Duration pacing_reserve = 4ms;
-  /// If marks work, the reserve is this part of the queue delay at which marking starts, if less,
+  /// If marks work, the reserve is this part of the queue delay at which marking starts, from
+  /// shortest_pacing_reserve to pacing_reserve.
   double onset_reserve = 0.8;
   Duration shortest_pacing_reserve = 700us;
-  /// and still less for frames with shorter periods than this.
+  /// Frames with shorter periods than this have a smaller min_pacing_reserve, in proportion. The
+  /// limits are fractions of the period.
   Duration long_frame_period = 50ms;
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
@@ -129,11 +131,12 @@ struct Parameters {
   /// Company: part of the draft's growth near the inflection point, for a flow with less than its
   /// share and without marks. The draft grows there by a segment of 1500 bytes a round trip.
   double classic_growth = 1.5;
-  /// The same part if marking starts early,
+  /// The same part if marking starts early.
   double early_growth = 0.45;
-  /// and part of the draft's reaction to marks in both cases.
+  /// Part of the draft's reaction to marks, for such a flow and if marking starts early.
   double prague_backoff = 0.1;
-  /// Packets leave this much sooner or later than evenly, which shows other flows' packets.
+  /// Packets leave by this much sooner or later than at even intervals, so that arrivals show other
+  /// flows' packets.
   Duration pacing_ripple = 300us;
   /// Part of the multiplicative growth if losses occur at a full queue that other flows also fill.
   double fast_increase_beside = 0.2;

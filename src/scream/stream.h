@@ -48,7 +48,7 @@ class Stream {
   double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
   /// Notes that the queue came from a gap or a drop of the capacity. The reduction of the target
-  /// that it causes then fades fast.
+  /// that this queue causes then fades fast.
   void OnSuddenBacklog() { sudden_backlog_ = !queue_.empty() || rate_adjust_factor_ > 0; }
   /// Starts to measure silence, if that has not begun.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }

@@ -36,7 +36,7 @@ struct QueuedPacket {
   DataSize size;
   bool marker = false;              ///< last packet of an access unit
   std::uint32_t rtp_timestamp = 0;  ///< the same for all packets of an access unit
-  /// The same for access units that are useful together, as the slices of a scan.
+  /// Equal for access units that are useful only together, as the slices of a scan.
   std::optional<std::uint32_t> group = std::nullopt;
 };
 

@@ -9,7 +9,7 @@
 
 namespace lidar::loop {
 
-/// A goal, and the figure of a run.
+/// A goal, and the figure that a run reached.
 struct GoalResult {
   std::string text;  // "complete 98.1 % of the oracle's, 97 % wanted"
   bool holds = false;

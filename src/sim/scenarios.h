@@ -43,7 +43,7 @@ struct DropMetrics {
 struct BesideMetrics {
   double ours_mbps = 0, theirs_mbps = 0;
   double their_loss = 0;
-  /// Returns how many times as much the larger one gets.
+  /// Returns the larger of the two rates divided by the smaller.
   double ratio() const {
     return std::max(ours_mbps, theirs_mbps) / std::max(1e-9, std::min(ours_mbps, theirs_mbps));
   }

@@ -43,7 +43,8 @@ struct PlaceMatch {
 };
 
 /// Finds the best place of the map of `b` on that of `a`, turned by `yaw` plus or minus `yaw_range`
-/// [rad]. Then tilts it so that their ground meets. Returns nothing if they share no ground.
+/// [rad]. Then tilts the map of `b` so that the grounds of both meet. Returns nothing if they share
+/// no ground.
 std::optional<PlaceMatch> Match(const Place& a, const Place& b, double yaw, double yaw_range);
 
 }  // namespace lidar::slam

@@ -8,8 +8,8 @@
 
 namespace lidar::viewer {
 
-/// An encoder refers to ever newer slices of a place. So a reference to a slice that stands alone
-/// makes all slices of that place before it obsolete.
+/// Slices that wait for a decoder. An encoder refers to ever newer slices of a sector. So once a
+/// slice refers to one that stands alone, all slices of that sector before the latter are obsolete.
 class Backlog {
  public:
   explicit Backlog(std::size_t most_bytes) : most_bytes_(most_bytes) {}

@@ -17,8 +17,8 @@ struct SliceId {
   std::uint32_t index = 0;
 };
 
-/// A scan begins if the unacknowledged bytes, at the rate of acknowledgements, take at most kSlack
-/// more than the shortest delay. Times must not go back.
+/// Decides when a scan may begin: if the unacknowledged bytes, at the rate of recent
+/// acknowledgements, arrive within the shortest delay and kSlack. Times must not go back.
 class Pace {
  public:
   /// `max_bitrate` of 0: no limit.

@@ -8,7 +8,7 @@
 
 namespace lidar::test {
 
-/// Returns true once the element's next wait ends at `time`, and false if that never comes.
+/// Returns true once the element waits for `time` on the test clock, and false after kPatience.
 inline bool AwaitClockWait(GstHarness* h, GstClockTime time) {
   auto* clock = GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element));
   return Eventually([&] { return gst_test_clock_get_next_entry_time(clock) == time; });

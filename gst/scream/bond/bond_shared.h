@@ -60,7 +60,7 @@ struct BondShared {
   bool IsRepeatedRequest(BondStream& stream, GstEvent* event);
   BondWork TakeWorkLocked(const std::vector<std::unique_ptr<BondStream>>& streams);
   void ForgetPacketsLocked(const BondStream* stream);
-  /// Forgets packets, reports and what the streams were told.
+  /// Forgets packets, reports and what was sent to the streams' encoders.
   void Clear(const std::vector<std::unique_ptr<BondStream>>& streams);
 
   std::mutex mutex;

@@ -11,7 +11,7 @@ class FeedbackWatch {
  public:
   /// Packets unanswered for this time show that there is no receiver.
   static constexpr Duration kFeedbackTimeout = std::chrono::seconds(2);
-  /// The same at the end of a stream that was never answered.
+  /// Shorter limit at the end of a stream that was never answered.
   static constexpr Duration kFirstAnswer = std::chrono::milliseconds(300);
 
   void OnSent(Time now) {

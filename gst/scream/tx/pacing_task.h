@@ -39,7 +39,7 @@ class PacingTask {
   /// Call it when a receiver took packets: delays the deadline of an end with input that is not
   /// live.
   void OnAccepted(Time now);
-  /// The stream begins anew: its end has not been sent.
+  /// Call it when the stream begins anew: a new end is then sent, too.
   void ForgetEnd();
 
  private:

@@ -28,7 +28,7 @@ struct Pulse {
 
 class BeamKeeper {
  public:
-  /// An image has no more pixels, and a search of more points takes seconds.
+  /// Larger clouds exceed the pixels of an image, and a search in them takes seconds.
   static constexpr std::size_t kMostPoints = 1U << 20;
 
   /// Places a cloud's points in beams of earlier clouds if they fit, else in new ones. Returns null

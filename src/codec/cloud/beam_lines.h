@@ -32,7 +32,7 @@ struct FoundBeams {
 
 /// Finds beams that meet in the origin: their elevations are exact.
 FoundBeams FindMeetingBeams(const std::vector<Sighting>& points);
-/// Finds beams that pass the origin at up to 0.5 m.
+/// Finds beams that pass the origin at a distance of up to 0.5 m.
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points);
 /// Finds beams that meet in the origin and bend: peaks of the elevations.
 FoundBeams FindBendingBeams(const std::vector<Sighting>& points);

@@ -54,7 +54,7 @@ class BeamLocator {
     const Line& line = lines_[beam];
     return (s.z_m - line.height_m) * line.cosine - s.rho_m * line.sine;
   }
-  /// Maps a direction to its bucket: the quotient rises with the tangent, from -1 to 1.
+  /// Maps a direction to its bucket, by a quotient that rises with the elevation from -1 to 1.
   static std::uint32_t BucketOf(double z, double rho) {
     return static_cast<std::uint32_t>((1 - z / (rho + std::abs(z))) * (0.4999 * kBuckets));
   }

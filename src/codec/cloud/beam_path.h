@@ -7,8 +7,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Degrees of the polynomials that multiply 1, the cosine and sine of the turn, and those of twice
-/// the turn.
+/// Degrees of the polynomials that multiply 1; the cosine and the sine of the turn; the cosine and
+/// the sine of twice the turn.
 constexpr std::array<unsigned, 3> kPathDegrees = {15, 7, 3};
 constexpr unsigned kPathTerms = 40;
 constexpr std::uint32_t kMostPathBeams = 16;
@@ -17,7 +17,8 @@ constexpr std::uint32_t kMostPathBeams = 16;
 using PathCurve = std::array<std::int32_t, kPathTerms>;
 constexpr std::int32_t kPathUnit = 4;
 
-/// Curves of a beam: of what it adds to the azimuth of the turn, and of its elevation.
+/// The two curves of a beam: of the angle that it adds to the azimuth of the turn, and of its
+/// elevation.
 struct PathBeam {
   PathCurve azimuth{};
   PathCurve elevation{};

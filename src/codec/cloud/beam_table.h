@@ -15,7 +15,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Angles are in 2^-22 turns: half of one moves a point at 200 m by 0.15 mm.
+/// Angles are in 2^-22 turns: half a unit moves a point at 200 m by 0.15 mm.
 constexpr unsigned kTurnBits = 22;
 constexpr std::int32_t kTurn = 1 << kTurnBits;
 constexpr double kRadians = 2 * M_PI / kTurn;
@@ -31,12 +31,12 @@ struct Sighting {
 };
 void SightAll(const std::vector<Point>& points, std::vector<Sighting>* sightings);
 
-/// Returns std::atan2(y, x), which takes four times as long.
+/// Returns what std::atan2(y, x) does, in a quarter of its time.
 double AngleOf(double y, double x);
 
-/// The points of a beam lie on a line in the plane of `rho` and z, one for each column of a turn,
-/// at the azimuth of the column. A beam that passes the origin at a distance adds to the azimuth.
-/// Points of bending beams are only near the line.
+/// The points of a beam lie on a line in the plane of `rho` and z: one point in each column of a
+/// turn, at the azimuth of the column. A beam that passes the origin at a distance adds an angle to
+/// the azimuth. Points of bending beams are only near the line.
 struct BeamTable {
   static constexpr std::uint32_t kMostPeriod = 4;
   struct Beam {
@@ -108,8 +108,8 @@ struct BeamTable {
 
   /// Writes all but the beams, the places and the curves.
   void Write(ByteWriter* writer) const;
-  /// Returns nothing for numbers that no encoder writes. What the stream has later is 0: beams,
-  /// places if there are grains, and curves on a path.
+  /// Returns nothing for numbers that no encoder writes. Parts that come later in the stream are 0:
+  /// beams, places if there are grains, and curves on a path.
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 
@@ -147,7 +147,7 @@ class ColumnAngles {
   std::vector<std::int32_t> angles_;
 };
 
-/// Finds the columns of azimuths.
+/// Finds the column of an azimuth.
 class ColumnFinder {
  public:
   /// A column, and how far the azimuth is off.

@@ -38,7 +38,7 @@ struct CellGrid {
   unsigned DepthFor(double farthest_m) const;
   /// Returns true if a depth holds all coordinates up to `farthest_m`.
   bool Reaches(double farthest_m) const;
-  /// Returns true if floats are fine enough for the error at the point, which a tree must reach.
+  /// Returns true if floats are fine enough for the error at `point`. A tree must reach the point.
   bool Holds(const Point& point) const;
   /// Distance up to which floats are fine enough at all points.
   double SurelyHolds() const;

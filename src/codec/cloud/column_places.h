@@ -7,7 +7,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Moves each beam to the middle of its columns.
+/// Shifts the offset of each beam so that its points lie in the middle of their columns.
 void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table);
 /// Gives the columns places of their own if that saves more bits than it takes.
 void FindPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);

@@ -16,7 +16,8 @@ struct BeamAzimuth {
 /// The azimuths of a beam, rising.
 using BeamAzimuths = std::vector<BeamAzimuth>;
 
-/// Returns the smallest step that is usual in beams with a tenth of all points together; 0: none.
+/// Returns the smallest step that is usual in beams which together have a tenth of all points; 0:
+/// none.
 std::int32_t UsualStep(const std::vector<BeamAzimuths>& beams);
 /// Returns the mean step of neighbours that are one or a few steps apart; 0: none.
 double MeanStep(const std::vector<BeamAzimuths>& beams, std::int32_t usual);
@@ -31,7 +32,7 @@ inline std::uint32_t TurnOf(double step) {
 
 /// Returns the most common distance of a beam's azimuths from multiples of `step`, in steps.
 double PhaseAt(const BeamAzimuths& azimuths, double step);
-/// Returns the mean of these distances, for azimuths that are spread.
+/// Returns the circular mean of these distances, for azimuths that scatter.
 double MeanPhase(const BeamAzimuths& azimuths, double step);
 
 struct Side {

@@ -34,7 +34,8 @@ class FiringGuess {
     if (!begun_ || (starts_ && b.is_known)) {
       base_ = Plus(base_, off);
     } else if (b.is_known && std::abs(off / 2) < kNear / 2) {
-      // Rounded numbers lie around the sum, so base and offset learn a part each.
+      // Rounding puts levels on both sides of the guess, so a small difference changes offset and
+      // base only in part.
       b.offset = Plus(b.offset, off / 8);
       base_ = Plus(base_, off / (count_ + 1));
     } else {

@@ -10,8 +10,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes `levels` of `bits`, 1 to 8, one for each point of `cells`; within a cell they rise.
-/// Returns false for a damaged stream.
+/// Codes `levels` of 1 to 8 `bits`: one level for each point of `cells`. Within a cell the levels
+/// rise. Returns false for a damaged stream.
 template <class Coder>
 bool CodeLevels(const CellList& cells, unsigned bits, std::vector<std::uint8_t>* levels,
                 Coder* coder);

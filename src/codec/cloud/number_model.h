@@ -9,8 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes bits of `kNodes` kinds by contexts. Counters are made when their context first comes,
-/// because small clouds have few.
+/// Codes bits of `kNodes` kinds by contexts. Counters are made when their context first occurs,
+/// because small clouds have few contexts.
 template <unsigned kContexts, std::uint32_t kNodes>
 class BitModel {
  public:

@@ -38,7 +38,7 @@ struct PixelList {
 /// Width of a class of residuals, in units: no azimuth is off by more than `tangent_um` at
 /// `range_mm`.
 inline std::int32_t ResidualWidth(std::uint32_t tangent_um, std::uint32_t range_mm) {
-  // 2 2^22 / (2000 pi)
+  // The factor is 2 * 2^22 / (2000 pi).
   const std::uint64_t far_um = std::uint64_t{tangent_um} * 1'335;
   const std::uint32_t away_mm = range_mm == 0 ? 1 : range_mm;
   // Divisions of 32 bits are faster.

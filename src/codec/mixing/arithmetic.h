@@ -21,7 +21,7 @@ inline std::int32_t ClampLogit(std::int32_t logit) {
   return std::min(std::max(logit, -kMostLogit), kMostLogit);
 }
 
-/// The compiler makes the tables, of integers, so that they are the same on every machine.
+/// The compiler computes the tables with integers, so that they are the same on every machine.
 struct Tables {
   constexpr Tables();
   std::array<std::uint16_t, 4'096> chance{};      // of logit i - 2048

@@ -107,7 +107,7 @@ class BinSearch {
     return a.bin == b.bin && parts_[a.way].row().west[0] == parts_[b.way].row().west[0];
   }
 
-  /// Makes each kept trial a way, one step longer.
+  /// Turns each kept trial into a way that is one step longer.
   void Go(const Azimuth& above) {
     const std::array<typename Part::Row, kMostWays> before = {parts_[0].row(), parts_[1].row()};
     std::array<typename Part::Row, kMostWays> after;

@@ -14,7 +14,7 @@
 
 namespace lidar::codec::mixing {
 
-/// Larger bins are not coded, so that sums of a few values fit 32 bits.
+/// Bins from this one on are not coded, so that sums of a few bins fit 32 bits.
 constexpr std::int32_t kMaxBins = 1 << 25;
 
 /// Surroundings of a return.
@@ -237,7 +237,8 @@ class RangePart {
       return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
   }
-  /// Chance of a node, computed once for all bins that are tried. Nodes of a side come in order.
+  /// Chance of a node, computed once for all bins that are tried. The nodes of each sign must come
+  /// in the order of the code.
   std::int32_t ChanceOf(unsigned node) {
     if ((asked_ >> node & 1) != 0) return chances_[node];
     asked_ |= 1U << node;

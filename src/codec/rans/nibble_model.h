@@ -27,8 +27,8 @@ struct Interval {
 
 namespace detail {
 
-/// For each symbol the starts that Update() moves towards: a step behind the symbol. Their slope
-/// keeps intervals from vanishing.
+/// For each symbol, the starts that Update() moves towards: low up to the symbol, high behind it.
+/// Their slope keeps intervals from vanishing.
 struct Targets {
   constexpr Targets() {
     for (unsigned symbol = 0; symbol < kNibbles; ++symbol)
@@ -62,7 +62,7 @@ class NibbleModel {
  public:
   /// Uniform.
   NibbleModel() : NibbleModel(UniformCounts()) {}
-  /// Proportional to `counts`. A zero counts as a little.
+  /// Proportional to `counts`. A count of 0 gets a small probability.
   explicit NibbleModel(const std::array<std::uint16_t, kNibbles>& counts) {
     std::uint32_t total = 0;
     for (const std::uint16_t c : counts) total += c;

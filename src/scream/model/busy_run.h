@@ -23,7 +23,8 @@ class BusySpacing {
   Duration span() const { return all_.arrived; }
   Duration arrived() const { return all_.arrived - pause_.arrived; }
   Duration left() const { return all_.left - pause_.left; }
-  /// Returns nothing for less than `least`, as arrival times of reports are coarse.
+  /// Returns nothing if the packets came within less than `least`, because arrival times are
+  /// coarse.
   std::optional<DataRate> rate(Duration least) const {
     if (arrived() < least) return std::nullopt;
     return (all_.size - pause_.size) / arrived();
@@ -88,15 +89,15 @@ class BusyRun {
       spacing.Add(latest_[i].time - latest_[i - 1].time, Duration{0}, latest_[i].size);
     return latest_.size() < kMinLatest ? std::nullopt : spacing.rate(kMinLatestBusy);
   }
-  /// Returns the larger of that of the whole run and the present one, or nothing for a run that is
-  /// too short.
+  /// Returns the larger of the whole run's capacity and the present one. Returns nothing for a run
+  /// that is too short.
   std::optional<DataRate> capacity() const {
     const auto whole = packets_ < kMinPackets ? std::nullopt : spacing_.rate(kMinBusy);
     return whole ? std::max(whole, latest_capacity()) : std::nullopt;
   }
-  /// Returns the growth of the queueing delay from the first packet to the last, in gaps between
-  /// departures. A link that is slower than the sender spreads the packets. The longest pause does
-  /// not count. Infinite if all packets left at once.
+  /// Returns the growth of the queueing delay from the first packet to the last, as a multiple of
+  /// the mean time between departures. A link that is slower than the sender spreads the packets.
+  /// The longest pause does not count. Infinite if all packets left at once.
   double growth() const {
     const Duration arrived = spacing_.arrived();
     const Duration left = spacing_.left();

@@ -6,8 +6,8 @@
 namespace lidar::scream {
 
 /// An L4S bottleneck marks each packet behind a long queue, a classic one few packets. So the queue
-/// of unmarked packets, in rounds with marks, separates them. The shortest delay of the last
-/// seconds is subtracted, as a longer route is no queue.
+/// that unmarked packets met, in rounds with marks, distinguishes the two. The shortest delay of
+/// the last seconds is subtracted, as a longer route is no queue.
 class ClassicEcn {
  public:
   void OnPacket(Time now, Duration qdelay, bool marked) {

@@ -29,8 +29,8 @@ class CrossTraffic {
       Skip(packet.sent);
       return;
     }
-    // The packet before shows the queue: the choice of packets must not depend on their own
-    // arrival.
+    // Which packets count must not depend on their own arrival, so the packet before shows the
+    // queue.
     const double waited_ms = std::min(lately_waited_ms_, waited_ms_);
     waited_ms_ = Ms(qdelay);
     lately_waited_ms_ += (waited_ms_ - lately_waited_ms_) / 4;
@@ -50,17 +50,18 @@ class CrossTraffic {
   }
   /// Arrival times have the same rounding only within a report.
   void BeginReport() { last_.reset(); }
-  /// Stays while departures are too even to show other flows.
+  /// Returns true if other flows were found. The result stays while departures are too even to show
+  /// them.
   bool found() const { return found_; }
   /// Share of the link that others use while we send; unset while too little is known.
   std::optional<double> share() const {
     if (sent_sent_ < kEvidence) return std::nullopt;
     return sent_arrived_ / sent_sent_;
   }
-  /// Returns true after a long queue that is not known to be ours alone. Either others fill it
-  /// while our packets are too far apart to show them, or reports are too coarse.
+  /// Returns true after a long queue of unknown origin: other flows fill it while our packets are
+  /// too far apart to show them, or reports are too coarse.
   bool unseen() const { return unseen_ >= kDecisionWeight; }
-  /// Capacity of the link for all flows; unset as share() is.
+  /// Capacity of the link for all flows; unset while share() is.
   std::optional<DataRate> link_rate() const {
     const auto share = this->share();
     const double own_ms = arrived_.value - share.value_or(0) * sent_.value;
@@ -69,7 +70,7 @@ class CrossTraffic {
   }
 
  private:
-  /// An average over as many packets as the sums have.
+  /// A moving average over as many packets as the sums cover.
   struct Average {
     double value = 0;
     void Add(double x, double weight) { value += (x - value) * weight; }
@@ -99,8 +100,8 @@ class CrossTraffic {
     sent_sent_ *= factor;
     sent_arrived_ *= factor;
   }
-  /// The weight is the time since the last packet [ms]: if few packets say something, each counts
-  /// more.
+  /// The weight is the time since the last packet [ms], so that a few packets far apart weigh as
+  /// much as many close ones.
   static int Weight(double apart_ms) {
     return static_cast<int>(std::clamp(apart_ms, 1.0, kMostWeight));
   }
@@ -125,7 +126,8 @@ class CrossTraffic {
   static constexpr double kLongestGap = 1.5;
   /// Mean error of delays, as arrival times are rounded up.
   static constexpr double kTickMs = 0.5;
-  /// [ms^2]; arrival times of 1/1024 s then leave an error of 0.1 in the share.
+  /// Sum of squared deviations of departure gaps [ms^2] that shows the share: rounding of arrival
+  /// times to 1/1024 s then leaves an error of 0.1.
   static constexpr double kEvidence = 30;
   static constexpr double kMostEvidence = 2 * kEvidence;
   static constexpr double kShareToFind = 0.2;

@@ -7,7 +7,7 @@
 
 namespace lidar::scream {
 
-/// It rises fast and falls slowly (draft).
+/// The average rises fast and falls slowly (draft).
 class L4sAlpha {
  public:
   explicit L4sAlpha(const Parameters& p) : p_(p) {}

@@ -9,8 +9,8 @@
 namespace lidar::scream {
 
 /// A radio loses packets at any queue length; a full queue loses those that overflow it. The rank
-/// of a loss is the share of recent packet pairs that waited less than the two around it. The mean
-/// rank is one half for random loss, and nearly one for a full queue, however short.
+/// of a loss is the share of recent packet pairs that waited less than the two packets around the
+/// loss. The mean rank is one half for random loss, and nearly one for a full queue, however short.
 class LossContext {
  public:
   void OnAcked(Time sent, Duration qdelay) {
@@ -34,8 +34,8 @@ class LossContext {
   Duration LongerOfPair(std::size_t second) const {
     return std::max(recent_[second - 1].qdelay, recent_[second].qdelay);
   }
-  /// Returns the longer delay of the packets before and after the loss, or of the two nearest at
-  /// either end.
+  /// Returns the longer of two delays: those of the packets just before and just after the loss. If
+  /// there are none on one side, it takes the two nearest packets.
   Duration QdelayAround(Time sent) const {
     const auto after = std::find_if(recent_.begin(), recent_.end(),
                                     [sent](const Packet& p) { return p.sent >= sent; });

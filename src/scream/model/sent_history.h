@@ -39,8 +39,8 @@ struct AckSummary {
   Time report{};  ///< time of the report on the receiver's clock, unwrapped
   /// Sending times of packets that an earlier report acknowledged without their CE mark.
   std::vector<Time> late_ce;
-  /// The draft's bytes_newly_acked: the advance of the highest acknowledged numbers, with lost
-  /// packets.
+  /// The draft's bytes_newly_acked: bytes up to the new highest acknowledged number of each SSRC,
+  /// lost packets included.
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
   /// Round trip of the newest acknowledged packet, without the receiver's holding time if the

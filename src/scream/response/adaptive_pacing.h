@@ -8,7 +8,8 @@
 
 namespace lidar::scream {
 
-/// Returns the reserve. If marks work, a frame may queue as long as packets stay unmarked.
+/// Returns the reserve: the time from when a frame has left to the end of its period. If marks
+/// work, a frame may queue as long as packets stay unmarked.
 inline Duration PacingReserve(const Parameters& p, const PathModel& path, Time now) {
   if (!path.L4sWorks(now)) return p.pacing_reserve;
   return std::clamp(FromSeconds(Seconds(path.marking_onset()) * p.onset_reserve),

@@ -30,7 +30,7 @@ inline std::optional<DataSize> WindowAfterDrop(Time now, const Parameters& p, co
   if (!p.extensions.capacity || !capacity) return std::nullopt;
   if (!path.Queueing(path.BusyQdelay(now))) return std::nullopt;
   if (now - present.last_drop_time() < path.ReactionInterval()) return std::nullopt;
-  // Packets that arrive spaced as they left may show only our own rate beside others.
+  // Packets that arrive spaced as they left may show only our own rate if other flows use the link.
   if (path.L4sWorks(now) && path.busy_run().growth() < p.drop_growth) return std::nullopt;
   const bool sure = SureOfDrop(now, p, path, present, frame_period);
   if (*capacity * (sure ? p.drop_threshold : p.drop_threshold_unsure) > target_bitrate)

@@ -68,7 +68,8 @@ class GapRecovery {
   bool Slow(std::optional<DataRate> rate) const {
     return before_ && rate && *rate < before_->rate * kGapPart;
   }
-  /// The link was slow after a window was restored: lowers the remembered window and rate to it.
+  /// Call it if the link was slow after a window was restored: lowers the remembered window to the
+  /// restored one, and the rate in the same ratio.
   void BelieveLess() {
     const auto tried = std::exchange(unproven_, std::nullopt);
     if (!tried || *tried >= before_->state.window) return;
@@ -99,9 +100,10 @@ class GapRecovery {
 
   /// A link that carries less than this part of its earlier capacity is in a gap.
   static constexpr double kGapPart = 0.25;
-  /// The state from before a gap is forgotten this long after the last sign of the gap,
+  /// The state from before a gap is forgotten this long after the last sign of the gap.
   static constexpr Duration kLongestMemory = 3s;
-  /// and after a gap of this length: its rate then is the link's new capacity.
+  /// A gap of this length also makes it forget that state: the rate in the gap is then the link's
+  /// new capacity.
   static constexpr Duration kLongestGap = 10s;
   /// Part of the missing window that is restored each round trip while nothing measures the link.
   static constexpr double kUnprovenPart = 0.5;

@@ -60,7 +60,8 @@ class ReferenceWindow {
   /// Call it when the link's capacity has fallen to what `window` fills. The draft's own reaction
   /// then waits.
   void Drop(Time now, DataSize window);
-  /// Sets the window after a gap or an outage. Marks and losses that wait for a reaction met it.
+  /// Sets the window after a gap or an outage. Marks and losses that still wait for a reaction come
+  /// from that gap or outage.
   void Restart(DataSize window);
   void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
 

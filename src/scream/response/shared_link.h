@@ -10,8 +10,8 @@
 
 namespace lidar::scream {
 
-/// Returns 1 if marking starts as late as a ramp's or without a sign of it, and 0 if it starts so
-/// early that each queued packet is marked.
+/// Returns 1 if marking starts at a queue as long as a ramp's, or if it is not known where it
+/// starts; 0 if it starts at so short a queue that each queued packet is marked.
 inline double LateMarking(Duration onset) {
   constexpr Duration kEarly = 1250us, kLate = 2ms;
   return std::clamp(Seconds(onset - kEarly) / Seconds(kLate - kEarly), 0.0, 1.0);
@@ -38,8 +38,8 @@ inline double AboveHalf(DataRate own, DataRate link) {
   // It is below one half, so that two of our flows with half each both give way early, and because
   // a flow's bursts make the link look faster than it is.
   constexpr double kHalf = 0.46;
-  // A step in place of this ramp gives two of our flows a queue of 5.2 ms for 3.9 at p99, and
-  // Prague at 4 Mbit/s a Jain's index of 0.946 for 0.955.
+  // If this ramp were a step, two of our flows would have a queue of 5.2 ms instead of 3.9 ms at
+  // p99, and Jain's index beside Prague at 4 Mbit/s would be 0.946 instead of 0.955.
   constexpr double kClearly = 0.03;
   return std::clamp((own / link - kHalf) / kClearly, -1.0, 1.0);
 }
@@ -50,7 +50,8 @@ inline double AboveHalf(DataRate own, DataRate link) {
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
   constexpr double kGrowthOfLess = 1.3;  // above Prague's, as whole scans leave pauses
   constexpr double kGrowthOfMore = 1.0 / 3;
-  /// The draft's alpha exceeds ours for the same marks, as its attack is faster than its decay.
+  /// Backoff of a flow that has clearly more than half, as strong as the draft's. It is above 1,
+  /// because the draft's alpha, which rises faster than it falls, exceeds ours for the same marks.
   constexpr double kGentlest = 2.5;
   Boldness b;
   if (!p.extensions.company) return b;

@@ -14,8 +14,8 @@ inline DataSize BurstWindow(const Parameters& p, const PathModel& path, const St
          (p.target_rate_divisor + streams.queue_compensation()) * p.packet_pacing_headroom;
 }
 
-/// Returns true if the window delays bursts at the maximum bitrate. It suffices for frames that
-/// leave evenly; whole scans, and data from a gap, could leave faster.
+/// Returns true if the window delays bursts at the maximum bitrate. A window that suffices for
+/// frames at an even pace may delay whole scans, and data from a gap.
 inline bool HoldsBurstsBack(const Parameters& p, const PathModel& path, const Streams& streams,
                             DataSize ref_wnd) {
   return p.extensions.capacity && streams.max_bitrate() < DataRate::Infinite() &&

@@ -11,7 +11,7 @@
 
 namespace lidar::test {
 
-/// `n` is the natssrc or natssink. The buffers that pass the pad of `see` are kept.
+/// A pipeline whose natssrc or natssink is named `n`. Buffers that pass the element `see` are kept.
 class NatsPipeline {
  public:
   explicit NatsPipeline(const std::string& description) {

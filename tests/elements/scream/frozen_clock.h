@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The monotonic clock of a program whose srtp_input_test.cpp replaces GLib's.
+// The monotonic clock of programs in which srtp_input_test.cpp replaces GLib's.
 #pragma once
 #include <glib.h>
 

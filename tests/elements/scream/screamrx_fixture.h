@@ -65,8 +65,7 @@ class ScreamRx : public ::testing::Test {
     EXPECT_TRUE(report);
     return report.value_or(CongestionFeedback{});
   }
-  /// Pushes the very first packet, which is reported at once. Later packets follow the rules of
-  /// reports.
+  /// Pushes the first packet of all. screamrx reports it at once, unlike later packets.
   void PushFirst(guint16 seq) {
     Rtp r;
     r.seq = seq;

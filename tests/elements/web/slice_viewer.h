@@ -56,7 +56,7 @@ class CodedSlices {
       : coder_(gst_harness_new_parse(("lidarenc key-interval=0 " + options).c_str())) {
     gst_harness_set_src_caps(coder_.get(), gst_caps_ref(StillClouds::Get().caps()));
   }
-  /// Those of robots with these options.
+  /// Returns the slices that all robots with these options share.
   static std::shared_ptr<CodedSlices> Of(const std::string& options) {
     static auto* const all = new std::map<std::string, std::shared_ptr<CodedSlices>>;
     auto& slices = (*all)[options];
@@ -102,7 +102,7 @@ class Robot {
   gst::CapsPtr caps() { return slices_->caps(); }
   /// Makes the next slices stand alone.
   void AskForKey() {
-    // Other robots did not ask.
+    // From now on the slices are not shared, because the other robots did not ask.
     slices_ = std::make_shared<CodedSlices>(options_);
     if (sent_ > 0) slices_->At(sent_ - 1);
     slices_->AskForKey();

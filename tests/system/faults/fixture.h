@@ -48,8 +48,9 @@ class Faults : public ::testing::Test {
   }
   /// Lets the sender end well and compares the counts of both sides. Each slice that the payloader
   /// sent is received or missing at the depayloader, once; the received ones are those that the
-  /// link let through. A slice announces which of the 64 before it were left out. If a sender left
-  /// out older ones while nothing came through, they count as lost: then `sends_all` is false.
+  /// link let through. A slice announces which of the 64 slices before it the sender left out.
+  /// Earlier ones that it left out while nothing came through count as lost: then `sends_all` is
+  /// false.
   void ExpectBooksAgree(bool sends_all = true) {
     std::this_thread::sleep_for(milliseconds(500));
     EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));

@@ -26,7 +26,8 @@ class SharedPort {
   struct Unref {
     void operator()(GSocket* socket) const { g_object_unref(socket); }
   };
-  // Sockets in the order of binding, the kernel's numbering. The first takes datagrams of no robot.
+  // Sockets in the order of binding, by which the kernel numbers them. The first takes datagrams of
+  // no robot.
   std::vector<std::unique_ptr<GSocket, Unref>> sockets_;
 };
 

@@ -50,8 +50,8 @@ struct Measurements {
   Ledger ledger;
   std::vector<LinkPacket> packets;
   std::vector<SenderSample> samples;
-  // Means over time of the encoder's bitrate bounds; 0: unknown. Slices made coarse by a gap give
-  // guesses.
+  // Means over time of the encoder's bitrate bounds; 0: unknown. After slices that a gap made
+  // coarse, the bounds are guesses.
   double encoder_min_bps = 0;
   double encoder_max_bps = 0;
   /// The latest bitrate bounds, and since when they hold.
