@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every path and program that the docs or a comment name exists.
+"""Every path and program that the docs or a comment name exists, and the scripts of printed commands can be run.
 
 Every element has its page and every property its blurb, every message that docs/troubleshooting.md
 explains exists, and every page is in the site.
 """
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -96,6 +97,9 @@ class Checker:
         for match in PATH.finditer(BUILT.sub("", code)):
             self.path(where, match.group(1))
         word = code.split()[0] if code.split() else ""
+        script = self.root / word
+        if not inline and word.endswith((".py", ".sh")) and script.is_file() and not os.access(script, os.X_OK):
+            self.problems.append(f"{where}: {word} cannot be run: chmod +x {word}")
         if inline and FILE.fullmatch(word) and word not in self.names:
             self.problems.append(f"{where}: no file is called {word}")
         if PROGRAM.fullmatch(word) and not self.is_program(word) and word not in self.strings:

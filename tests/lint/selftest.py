@@ -223,6 +223,7 @@ PLANTED = [
     ("paths", "docs/a.md", "See `src/gone`.", "there is no src/gone"),
     ("paths", "docs/a.md", "`gone.cpp`", "no file is called gone.cpp"),
     ("paths", "docs/a.md", "    pipelines/gone.sh --help", "there is no pipelines/gone.sh"),
+    ("paths", "docs/a.md", "    pipelines/turn.sh --help", "pipelines/turn.sh cannot be run"),
     ("paths", "docs/a.md", "```\nlidar-gone --help\n```", "no program is called lidar-gone"),
     ("paths", "docs/a.md", "`lidar-gone`", "no program is called lidar-gone"),
     (
