@@ -3,8 +3,6 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <map>
-#include <memory>
 #include <vector>
 
 #include "src/base/base64.h"
@@ -48,24 +46,26 @@ class StillClouds {
   gst::CapsPtr caps_;
 };
 
-/// Coded slices of a robot. All are acknowledged, so that the coder refers to them however slow the
-/// machine is.
-class CodedSlices {
+/// Codes the slices of a sensor that stands still. All are acknowledged at once, so that the coder
+/// refers to them.
+class Robot {
  public:
-  explicit CodedSlices(const std::string& options)
+  explicit Robot(const std::string& options = "effort=2")
       : coder_(gst_harness_new_parse(("lidarenc key-interval=0 " + options).c_str())) {
     gst_harness_set_src_caps(coder_.get(), gst_caps_ref(StillClouds::Get().caps()));
   }
-  /// Returns the slices that all robots with these options share.
-  static std::shared_ptr<CodedSlices> Of(const std::string& options) {
-    static auto* const all = new std::map<std::string, std::shared_ptr<CodedSlices>>;
-    auto& slices = (*all)[options];
-    if (!slices) slices = std::make_shared<CodedSlices>(options);
-    return slices;
-  }
-  gst::BufferPtr At(std::size_t i) {
-    while (slices_.size() <= i) CodeNext();
-    return gst::BufferPtr(gst_buffer_copy(slices_[i].get()));
+  gst::BufferPtr Next() {
+    GstBuffer* cloud = StillClouds::Get().At(sent_++);
+    EXPECT_EQ(gst_harness_push(coder_.get(), gst_buffer_ref(cloud)), GST_FLOW_OK);
+    gst::BufferPtr slice(gst_harness_pull(coder_.get()));
+    GstLidarSlice name;
+    gst_lidar_buffer_get_slice(slice.get(), &name);
+    GstLidarSlicesReceived received{};
+    received.receiver = 1;
+    received.count = 1;
+    received.slices[0] = {name.scan_id, name.slice_index};
+    gst_harness_push_upstream_event(coder_.get(), gst_lidar_event_new_slices_received(&received));
+    return slice;
   }
   gst::CapsPtr caps() { return CapsOf(coder_.get()); }
   /// Makes the next slices stand alone.
@@ -76,41 +76,7 @@ class CodedSlices {
   }
 
  private:
-  void CodeNext() {
-    GstBuffer* cloud = StillClouds::Get().At(slices_.size());
-    EXPECT_EQ(gst_harness_push(coder_.get(), gst_buffer_ref(cloud)), GST_FLOW_OK);
-    slices_.emplace_back(gst_harness_pull(coder_.get()));
-    GstLidarSlice name;
-    gst_lidar_buffer_get_slice(slices_.back().get(), &name);
-    GstLidarSlicesReceived received{};
-    received.receiver = 1;
-    received.count = 1;
-    received.slices[0] = {name.scan_id, name.slice_index};
-    gst_harness_push_upstream_event(coder_.get(), gst_lidar_event_new_slices_received(&received));
-  }
-
   Harness coder_;
-  std::vector<gst::BufferPtr> slices_;
-};
-
-/// Sends the slices of a sensor that stands still.
-class Robot {
- public:
-  explicit Robot(const std::string& options = "effort=2")
-      : options_(options), slices_(CodedSlices::Of(options)) {}
-  gst::BufferPtr Next() { return slices_->At(sent_++); }
-  gst::CapsPtr caps() { return slices_->caps(); }
-  /// Makes the next slices stand alone.
-  void AskForKey() {
-    // From now on the slices are not shared, because the other robots did not ask.
-    slices_ = std::make_shared<CodedSlices>(options_);
-    if (sent_ > 0) slices_->At(sent_ - 1);
-    slices_->AskForKey();
-  }
-
- private:
-  std::string options_;
-  std::shared_ptr<CodedSlices> slices_;
   std::size_t sent_ = 0;
 };
 
