@@ -72,7 +72,7 @@ typedef struct {
   gdouble position[3];    /* x, y, z [m] */
   gdouble orientation[4]; /* unit quaternion x, y, z, w: sensor to start */
   GstLidarTracking tracking;
-  /* One standard deviation of the error since the start, at the last scan that was aligned. */
+  /* Typical length of the error since the start, after the last whole scan. */
   gdouble position_deviation;    /* [m] */
   gdouble orientation_deviation; /* [rad] */
 } GstLidarPose;

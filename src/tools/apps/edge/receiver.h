@@ -11,7 +11,7 @@ namespace lidar::edge {
 
 class Receiver {
  public:
-  /// As Session.
+  /// Takes the arguments of Session, and throws as it does.
   Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
   /// Ends the session, and waits for it.
   ~Receiver();
