@@ -113,14 +113,17 @@ static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* clou
   coder = {};
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
   coder.with_intensity = with_intensity != FALSE;
-  coder.encoder = lidar::draco::SliceEncoder::Create(coder.format, settings.wanted_geometry(),
-                                                     settings.range_coder);
   coded->refusal =
       "geometry=range needs a field range:U32 and a sensor-model with as many beams and at least "
       "as many columns, xyz the fields x, y and z as F32 side by side; geometry=auto chooses";
+  std::optional<Geometry> geometry = settings.wanted_geometry();
+  if (info.sensor_model && info.width > info.sensor_model->columns_per_scan) {
+    if (geometry == Geometry::kRange) return FALSE;
+    geometry = Geometry::kXyz;
+  }
+  coder.encoder = lidar::draco::SliceEncoder::Create(coder.format, geometry, settings.range_coder);
   if (!coder.encoder) return FALSE;
   const bool range = coder.encoder->geometry() == Geometry::kRange;
-  if (range && info.width > info.sensor_model->columns_per_scan) return FALSE;
   const auto kept = lidar::codec::KeptFields(info.fields, coder.with_intensity, range);
   coded->caps =
       gst_lidar_coded_caps_new(GST_LIDAR_DRACO_MEDIA_TYPE, kept.ToString().c_str(), cloud);

@@ -10,16 +10,22 @@
 namespace lidar::gst {
 namespace {
 
-TEST(DracoEnc, RefusesRangesOfMoreColumnsThanATurn) {
+TEST(DracoEnc, CodesNoRangesOfMoreColumnsThanATurn) {
   const SensorModel model = test::RoomSensor();
-  for (const guint columns : {511U, 512U, 513U}) {
-    const Harness h = Encoder(kDraco, "geometry=range");
-    const CloudInfo info = OrganisedInfo(model, columns);
-    SetCaps(h.get(), info);
-    GstBuffer* empty = gst_buffer_new_allocate(nullptr, info.FrameSize(), nullptr);
-    gst_buffer_memset(empty, 0, 0, info.FrameSize());
-    EXPECT_EQ(gst_harness_push(h.get(), empty) == GST_FLOW_OK, columns <= 512) << columns;
-  }
+  for (const char* geometry : {"range", "auto"})
+    for (const guint columns : {511U, 512U, 513U}) {
+      const Harness h = Encoder(kDraco, std::string("geometry=") + geometry);
+      const CloudInfo info = OrganisedInfo(model, columns);
+      SetCaps(h.get(), info);
+      GstBuffer* empty = gst_buffer_new_allocate(nullptr, info.FrameSize(), nullptr);
+      gst_buffer_memset(empty, 0, 0, info.FrameSize());
+      const bool coded = columns <= 512 || std::string(geometry) == "auto";
+      EXPECT_EQ(gst_harness_push(h.get(), empty) == GST_FLOW_OK, coded) << columns;
+      if (!coded) continue;
+      const CapsPtr caps(gst_pad_get_current_caps(GST_PAD_PEER(h->sinkpad)));
+      EXPECT_STREQ(gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "geometry"),
+                   columns <= 512 ? "range" : "xyz");
+    }
 }
 
 TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {
