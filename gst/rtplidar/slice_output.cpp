@@ -79,16 +79,21 @@ void SliceOutput::Push(std::vector<rtp::ReceivedSlice> slices, Time now) {
   };
   for (rtp::ReceivedSlice& slice : slices) {
     if (config_ != slice.config) {
-      if (!MayChangeTo(slice.config, now)) continue;
+      if (!MayChangeTo(slice.config, now)) {
+        discont_ = true;
+        continue;
+      }
       flush();
       asked_ = slice.config;
       // Refused caps are offered again with the next slice, because a flush refuses them, too.
       config_ = SetCapsOf(*slice.config) ? slice.config : nullptr;
     }
     if (!config_) {
+      discont_ = true;
       ++not_accepted_;
       continue;
     }
+    slice.discont |= std::exchange(discont_, false);
     if (!list) list.reset(gst_buffer_list_new());
     gst_buffer_list_add(list.get(), ToBuffer(&slice));
   }
@@ -99,7 +104,7 @@ void SliceOutput::Reset() {
   config_.reset();
   asked_.reset();
   changes_ = {kFormatChanges, kFormatChangePeriod};
-  warned_of_coder_ = warned_of_changes_ = false;
+  discont_ = warned_of_coder_ = warned_of_changes_ = false;
   not_accepted_ = format_changes_ = 0;
 }
 

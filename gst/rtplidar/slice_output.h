@@ -18,7 +18,8 @@ class SliceOutput {
   explicit SliceOutput(GstRTPBaseDepayload* element) : element_(element) {}
 
   /// Pushes the slices; those of one config form a list. Drops slices of a coder that the next
-  /// element does not take, and of formats that change too often, and warns once of each.
+  /// element does not take, and of formats that change too often, and warns once of each. The first
+  /// slice after dropped ones is marked DISCONT.
   void Push(std::vector<rtp::ReceivedSlice> slices, Time now);
   /// Resets all state with the counts. The caller holds the element's lock.
   void Reset();
@@ -41,6 +42,7 @@ class SliceOutput {
   Config config_;  // of the caps on the src pad
   Config asked_;   // of the caps that were offered last
   Allowance changes_{kFormatChanges, kFormatChangePeriod};
+  bool discont_ = false;  // slices before the next one were dropped
   bool warned_of_coder_ = false;
   bool warned_of_changes_ = false;
   std::atomic<guint64> not_accepted_{0};
