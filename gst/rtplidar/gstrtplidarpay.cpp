@@ -210,9 +210,10 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
   return base->max_ptime >= 0 ? MIN(scan, static_cast<GstClockTime>(base->max_ptime)) : scan;
 }
 
-/// Aggregates change the latency.
-static void NoteChange(GObject* object, GParamSpec* spec) {
-  if (g_strcmp0(spec->name, "aggregate") == 0)
+/// Posts that the latency changes with the properties that `HoldTime` reads; the base class has
+/// max-ptime.
+static void NotifyChange(GObject* object, GParamSpec* spec) {
+  if (g_strcmp0(spec->name, "aggregate") == 0 || g_strcmp0(spec->name, "max-ptime") == 0)
     gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
 }
 
@@ -252,7 +253,8 @@ static void gst_lidar_rtp_pay_init(GstLidarRtpPay* self) {
 
 static void gst_lidar_rtp_pay_class_init(GstLidarRtpPayClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_rtp_pay_debug, "rtplidarpay", 0, "RTP payloader for clouds");
-  ServeState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class, kProperties, NoteChange>(klass);
+  ServeState<GstLidarRtpPay, gst_lidar_rtp_pay_parent_class, kProperties>(klass);
+  G_OBJECT_CLASS(klass)->notify = NotifyChange;
   auto* element = GST_ELEMENT_CLASS(klass);
   Describe(klass,
            {"RTP payloader for point clouds", "Codec/Payloader/Network/RTP",

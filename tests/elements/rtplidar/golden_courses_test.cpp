@@ -82,6 +82,11 @@ void PayCourse(Course& c) {
   c.Push("without repetitions", slice(40, 0, 200));
   c.Set("aggregate", "true");
   c.Ask();
+  gint64 held = 0;
+  g_object_get(c.harness()->element, "max-ptime", &held, nullptr);
+  c.Set("max-ptime", "30000000");
+  c.Ask();
+  c.Set("max-ptime", std::to_string(held).c_str());
   for (guint i = 1; i < kSlices; ++i) c.Push("together", slice(40, i, 90));
   c.Push("together", slice(41, 0, 90));
   c.Set("aggregate", "false");
