@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <regex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "gst/common/latency.h"
 #include "tests/support/run_trace.h"
@@ -147,16 +149,18 @@ class Course {
       lines_.push_back(std::move(line));
     }
   }
-  /// Leaves out how long something took, and digits of doubles that differ between machines.
+  /// Leaves out how long something took, and digits of doubles that differ between machines: a
+  /// number halfway between two of three digits is the upper one.
   static std::string Steady(const std::string& line) {
-    static const std::regex kClock("(encode-time|decode-time|age)=\\([a-z0-9]+\\)[0-9]+");
+    static const std::regex kClock("(encode-time|decode-time| age)=\\([a-z0-9]+\\)[0-9]+");
     static const std::regex kDouble("\\(double\\)([-+.e0-9]+)");
     std::string steady = std::regex_replace(line, kClock, "$1");
     std::smatch found;
     std::string rounded;
     while (std::regex_search(steady, found, kDouble)) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.3g", std::stod(found[1].str()));
+      char text[G_ASCII_DTOSTR_BUF_SIZE];
+      const double value = g_ascii_strtod(found[1].str().c_str(), nullptr) * (1 + 1e-9);
+      g_ascii_formatd(text, sizeof text, "%.3g", value);
       rounded += found.prefix().str() + text;
       steady = found.suffix().str();
     }
@@ -195,5 +199,38 @@ class Course {
   Lines lines_;
   Lines stats_;  // the fields that were noted last
 };
+
+/// A course of a name, which its file has, too.
+struct ScriptedCourse {
+  std::string name;
+  std::string launch;
+  std::function<void(Course&)> script;
+};
+
+class GoldenCourse : public ::testing::Test {
+ public:
+  GoldenCourse(ScriptedCourse course, std::string folder, bool with_bytes)
+      : course_(std::move(course)), folder_(std::move(folder)), with_bytes_(with_bytes) {}
+
+ private:
+  void TestBody() override {
+    Course course(course_.launch, "sink", with_bytes_);
+    course_.script(course);
+    course.Expect(folder_ + "/" + course_.name + ".txt");
+  }
+  const ScriptedCourse course_;
+  const std::string folder_;
+  const bool with_bytes_;
+};
+
+/// Adds a test of each course to the program, before it runs. Returns their number.
+inline std::size_t AddGoldenCourses(const char* suite, const std::vector<ScriptedCourse>& courses,
+                                    const std::string& folder, bool with_bytes = true) {
+  for (const ScriptedCourse& course : courses)
+    ::testing::RegisterTest(
+        suite, course.name.c_str(), nullptr, nullptr, __FILE__, __LINE__,
+        [=]() -> ::testing::Test* { return new GoldenCourse(course, folder, with_bytes); });
+  return courses.size();
+}
 
 }  // namespace lidar::test

@@ -2,7 +2,9 @@
 // All that coders put out, send and say in scripted runs is as it was.
 #include <gtest/gtest.h>
 
-#include <functional>
+#ifdef HAVE_DRACO
+#include <draco/core/draco_version.h>
+#endif
 
 #include "gst/common/coordinate_frames.h"
 #include "src/base/byte_writer.h"
@@ -209,17 +211,20 @@ void DecoderCourse(Course& c, const std::string& encoder) {
   c.End();
 }
 
-struct CoderScript {
-  std::string name;
-  std::string launch;
-  std::function<void(Course&)> script;
-};
+/// Returns whether the sizes of this coder are those of the files: Draco's differ between releases.
+bool HasTheirSizes([[maybe_unused]] const std::string& name) {
+#ifdef HAVE_DRACO
+  if (name.rfind("draco", 0) == 0) return std::string(draco::kDracoVersion) == "1.5.5";
+#endif
+  return true;
+}
 
-std::vector<CoderScript> CoderScripts() {
-  std::vector<CoderScript> scripts;
+std::vector<test::ScriptedCourse> CoderScripts() {
+  std::vector<test::ScriptedCourse> scripts;
   for (const CoderCase& coder : OurCoders()) {
     const std::string encoder = std::string(coder.encoder) + " max-error=0.02 ";
     const std::string name = coder.name;
+    if (!HasTheirSizes(name)) continue;
     scripts.push_back({name + "_enc", encoder + "error-check=3", EncoderCourse});
     scripts.push_back({name + "_enc_thin",
                        encoder + "degradation-preference=maintain-framerate threads=2 "
@@ -231,14 +236,8 @@ std::vector<CoderScript> CoderScripts() {
   return scripts;
 }
 
-class CoderGoldenCourses : public ::testing::TestWithParam<CoderScript> {};
-TEST_P(CoderGoldenCourses, AreAsTheyWere) {
-  Course course(GetParam().launch, "sink", false);
-  GetParam().script(course);
-  course.Expect(std::string(GOLDEN_COURSES_FOLDER) + "/" + GetParam().name + ".txt");
-}
-INSTANTIATE_TEST_SUITE_P(Of, CoderGoldenCourses, ::testing::ValuesIn(CoderScripts()),
-                         [](const auto& which) { return which.param.name; });
+const std::size_t kCoderCourses =
+    test::AddGoldenCourses("CoderGoldenCourses", CoderScripts(), GOLDEN_COURSES_FOLDER, false);
 
 }  // namespace
 }  // namespace lidar::gst

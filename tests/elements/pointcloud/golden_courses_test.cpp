@@ -2,7 +2,6 @@
 // All that elements put out, send and say in scripted runs is as it was.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 
 #include "gst/common/coordinate_frames.h"
@@ -12,12 +11,6 @@
 
 namespace lidar::test {
 namespace {
-
-struct Scripted {
-  const char* name;
-  const char* launch;
-  std::function<void(Course&)> script;
-};
 
 using Numbers = std::vector<float>;
 
@@ -279,40 +272,34 @@ void FilesCourse(Course& c) {
   }
 }
 
-const Scripted kScripts[] = {
-    {"filter", "pointcloudfilter", FilterCourse},
-    {"filter_far", "pointcloudfilter min-range=1.5 max-range=6 invalid=remove", FilterCourse},
-    {"filter_zero", "pointcloudfilter max-range=6 invalid=zero", FilterCourse},
-    {"filter_nan", "pointcloudfilter crop-box=2,-9,-9,5,9,9 invalid=nan", FilterCourse},
-    {"filter_inside", "pointcloudfilter crop-box=2,-9,-9,5,9,9 crop-inside=true", FilterCourse},
-    {"filter_thin", "pointcloudfilter beam-step=2 column-step=3", FilterCourse},
-    {"filter_voxels", "pointcloudfilter voxel-size=2 invalid=remove", FilterCourse},
-    {"filter_pose", "pointcloudfilter apply-pose=true", FilterCourse},
-    {"filter_moved", "pointcloudfilter transform=1,2,3,0,0,0 frame-id=lidar", FilterCourse},
-    {"filter_fields", "pointcloudfilter fields=z,x:F64", FilterCourse},
-    {"filter_frame", "pointcloudfilter target-frame=map tf-timeout=0", FilterCourse},
-    {"assembler", "scanassembler max-wait=30000000",
-     [](Course& c) { AssemblerCourse(c, CapsText(2, 2, true), 4); }},
-    {"assembler_plain", "scanassembler",
-     [](Course& c) { AssemblerCourse(c, CapsText(2, 2, false), 4); }},
-    {"assembler_points", "scanassembler",
-     [](Course& c) { AssemblerCourse(c, CapsText(3, 1, false), 3); }},
-    {"parse_bytes", "pointcloudparse", ParseBytesCourse},
-    {"parse_bytes_at_20", "pointcloudparse framerate=20/1", ParseBytesCourse},
-    {"parse_files", "pointcloudparse", ParseFilesCourse},
-    {"parse_files_at_20", "pointcloudparse framerate=20/1", ParseFilesCourse},
-    {"pcd", "pcdenc", FilesCourse},
-    {"ply", "plyenc", FilesCourse},
-};
-
-class GoldenCourses : public ::testing::TestWithParam<Scripted> {};
-TEST_P(GoldenCourses, AreAsTheyWere) {
-  Course course(GetParam().launch);
-  GetParam().script(course);
-  course.Expect(std::string(GOLDEN_COURSES_FOLDER) + "/" + GetParam().name + ".txt");
-}
-INSTANTIATE_TEST_SUITE_P(Of, GoldenCourses, ::testing::ValuesIn(kScripts),
-                         [](const auto& which) { return which.param.name; });
+const std::size_t kCourses = AddGoldenCourses(
+    "GoldenCourses",
+    {
+        {"filter", "pointcloudfilter", FilterCourse},
+        {"filter_far", "pointcloudfilter min-range=1.5 max-range=6 invalid=remove", FilterCourse},
+        {"filter_zero", "pointcloudfilter max-range=6 invalid=zero", FilterCourse},
+        {"filter_nan", "pointcloudfilter crop-box=2,-9,-9,5,9,9 invalid=nan", FilterCourse},
+        {"filter_inside", "pointcloudfilter crop-box=2,-9,-9,5,9,9 crop-inside=true", FilterCourse},
+        {"filter_thin", "pointcloudfilter beam-step=2 column-step=3", FilterCourse},
+        {"filter_voxels", "pointcloudfilter voxel-size=2 invalid=remove", FilterCourse},
+        {"filter_pose", "pointcloudfilter apply-pose=true", FilterCourse},
+        {"filter_moved", "pointcloudfilter transform=1,2,3,0,0,0 frame-id=lidar", FilterCourse},
+        {"filter_fields", "pointcloudfilter fields=z,x:F64", FilterCourse},
+        {"filter_frame", "pointcloudfilter target-frame=map tf-timeout=0", FilterCourse},
+        {"assembler", "scanassembler max-wait=30000000",
+         [](Course& c) { AssemblerCourse(c, CapsText(2, 2, true), 4); }},
+        {"assembler_plain", "scanassembler",
+         [](Course& c) { AssemblerCourse(c, CapsText(2, 2, false), 4); }},
+        {"assembler_points", "scanassembler",
+         [](Course& c) { AssemblerCourse(c, CapsText(3, 1, false), 3); }},
+        {"parse_bytes", "pointcloudparse", ParseBytesCourse},
+        {"parse_bytes_at_20", "pointcloudparse framerate=20/1", ParseBytesCourse},
+        {"parse_files", "pointcloudparse", ParseFilesCourse},
+        {"parse_files_at_20", "pointcloudparse framerate=20/1", ParseFilesCourse},
+        {"pcd", "pcdenc", FilesCourse},
+        {"ply", "plyenc", FilesCourse},
+    },
+    GOLDEN_COURSES_FOLDER);
 
 }  // namespace
 }  // namespace lidar::test

@@ -2,19 +2,11 @@
 // All that the payloader and the depayloader put out, send and say in scripted runs is as it was.
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "tests/elements/rtplidar/slices.h"
 #include "tests/support/golden_course.h"
 
 namespace lidar::test {
 namespace {
-
-struct RtpScripted {
-  const char* name;
-  const char* launch;
-  std::function<void(Course&)> script;
-};
 
 GstLidarTargetBitrate Target(guint bps) {
   GstLidarTargetBitrate target{};
@@ -186,24 +178,20 @@ void RefusedCourse(Course& c) {
   c.End();
 }
 
-const RtpScripted kRtpScripts[] = {
-    {"pay", "rtplidarpay mtu=1000", PayCourse},
-    {"pay_together", "rtplidarpay aggregate=true max-ptime=60000000 config-interval=2", PayCourse},
-    {"pay_numbers", "rtplidarpay pt=100 ssrc=5 seqnum-offset=65530 timestamp-offset=9", PayCourse},
-    {"depay", "rtplidardepay", DepayCourse},
-    {"depay_at_once", "rtplidardepay max-reorder-time=0", DepayCourse},
-    {"depay_aggregates", "rtplidardepay", AggregatesCourse},
-    {"depay_refused", "rtplidardepay", RefusedCourse},
-};
-
-class RtpGoldenCourses : public ::testing::TestWithParam<RtpScripted> {};
-TEST_P(RtpGoldenCourses, AreAsTheyWere) {
-  Course course(GetParam().launch);
-  GetParam().script(course);
-  course.Expect(std::string(GOLDEN_COURSES_FOLDER) + "/" + GetParam().name + ".txt");
-}
-INSTANTIATE_TEST_SUITE_P(Of, RtpGoldenCourses, ::testing::ValuesIn(kRtpScripts),
-                         [](const auto& which) { return which.param.name; });
+const std::size_t kRtpCourses = AddGoldenCourses(
+    "RtpGoldenCourses",
+    {
+        {"pay", "rtplidarpay mtu=1000", PayCourse},
+        {"pay_together", "rtplidarpay aggregate=true max-ptime=60000000 config-interval=2",
+         PayCourse},
+        {"pay_numbers", "rtplidarpay pt=100 ssrc=5 seqnum-offset=65530 timestamp-offset=9",
+         PayCourse},
+        {"depay", "rtplidardepay", DepayCourse},
+        {"depay_at_once", "rtplidardepay max-reorder-time=0", DepayCourse},
+        {"depay_aggregates", "rtplidardepay", AggregatesCourse},
+        {"depay_refused", "rtplidardepay", RefusedCourse},
+    },
+    GOLDEN_COURSES_FOLDER);
 
 }  // namespace
 }  // namespace lidar::test
