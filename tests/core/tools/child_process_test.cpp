@@ -51,14 +51,17 @@ TEST(ChildProcess, GivesWholeLines) {
   EXPECT_EQ(lines, (std::vector<std::string>{"one", "", "three"}));
 }
 
-/// A pipe whose writing end is full after a page.
+/// A pipe of one page, the smallest that the kernel grants.
 struct Pipe {
   Pipe() {
     int fds[2];
     EXPECT_EQ(pipe2(fds, O_CLOEXEC), 0);
     read = FileDescriptor(fds[0]);
     write = FileDescriptor(fds[1]);
-    fcntl(write.get(), F_SETPIPE_SZ, 4'096);
+    fcntl(write.get(), F_SETPIPE_SZ, 1);
+  }
+  std::size_t capacity() const {
+    return static_cast<std::size_t>(fcntl(write.get(), F_GETPIPE_SZ));
   }
   std::string Read(std::size_t size) const {
     std::string text(size, ' ');
@@ -89,18 +92,20 @@ TEST(AsyncWriter, WritesAllInOrderAndHasRoomAgainForWhatWasRead) {
 
 TEST(AsyncWriter, DropsAndCountsWhatASlowReaderLeavesNoRoomFor) {
   Pipe pipe;
+  const std::size_t more = 2 * pipe.capacity();  // than the pipe takes
+  const std::size_t room = more + 1'000;
   std::string received;
   {
-    AsyncWriter writer(pipe.write.get(), 10'000);
-    EXPECT_FALSE(writer.Write(std::string(10'001, 'x'))) << "never fits";
-    EXPECT_TRUE(writer.Write(std::string(9'000, 'a')));
+    AsyncWriter writer(pipe.write.get(), room);
+    EXPECT_FALSE(writer.Write(std::string(room + 1, 'x'))) << "never fits";
+    EXPECT_TRUE(writer.Write(std::string(more, 'a')));
     EXPECT_TRUE(writer.Write(std::string(1'000, 'b')));
     EXPECT_FALSE(writer.Write("c"));
     EXPECT_EQ(writer.dropped(), 2U);
-    received = pipe.Read(10'000);
+    received = pipe.Read(room);
   }
   pipe.write = FileDescriptor();
-  EXPECT_EQ(received + pipe.Read(1), std::string(9'000, 'a') + std::string(1'000, 'b'));
+  EXPECT_EQ(received + pipe.Read(1), std::string(more, 'a') + std::string(1'000, 'b'));
 }
 
 }  // namespace
