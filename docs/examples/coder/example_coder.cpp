@@ -104,19 +104,19 @@ static gboolean example_enc_set_format(GstLidarEncoder* base, const GstLidarClou
 static void example_enc_load(GstLidarEncoder* base, const GstLidarRawSlice* raw,
                              GstLidarLoadedSlice* loaded) {
   ExampleEnc* self = EXAMPLE_ENC(base);
-  double nearest = INFINITY;
-  double farthest = -INFINITY;
+  gfloat nearest = INFINITY;
+  gfloat farthest = -INFINITY;
   self->points->clear();
   for (gsize at = 0; at < raw->size; at += self->point_step) {
     std::array<gfloat, 3> p;
     std::memcpy(p.data(), raw->data + at + self->x_offset, sizeof p);
     if (!std::isfinite(p[0] + p[1] + p[2]) || (p[0] == 0 && p[1] == 0 && p[2] == 0)) continue;
     self->points->push_back(p);
-    nearest = std::min<double>(nearest, p[0]);
-    farthest = std::max<double>(farthest, p[0]);
+    nearest = std::min(nearest, p[0]);
+    farthest = std::max(farthest, p[0]);
   }
   loaded->returns = static_cast<guint>(self->points->size());
-  loaded->extent = loaded->returns > 0 ? farthest - nearest : 0;
+  loaded->extent = loaded->returns > 0 ? static_cast<double>(farthest - nearest) : 0;
   loaded->rows = loaded->returns;
   loaded->mode = "xyz-example";
 }
