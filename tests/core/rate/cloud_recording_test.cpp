@@ -13,6 +13,7 @@
 #include "src/cdr/point_cloud2.h"
 #include "src/mcap/writer.h"
 #include "src/tools/lab/codec_lab/scan_source.h"
+#include "tests/core/rate/test_clouds.h"
 
 namespace lidar::tools {
 namespace {
@@ -21,22 +22,6 @@ using std::chrono::milliseconds;
 
 constexpr const char* kClouds = "sensor_msgs/msg/PointCloud2";
 constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
-
-struct TestPoint {
-  float x, y, z, intensity;
-};
-
-cdr::PointCloud2 CloudOf(const std::vector<TestPoint>& points, std::uint32_t width) {
-  cdr::PointCloud2 cloud;
-  cloud.layout.width = width;
-  cloud.layout.height = static_cast<std::uint32_t>(points.size()) / width;
-  cloud.layout.fields = {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}, {"intensity", 12, 7, 1}};
-  cloud.layout.point_step = sizeof(TestPoint);
-  cloud.layout.row_step = width * cloud.layout.point_step;
-  cloud.data = {reinterpret_cast<const std::uint8_t*>(points.data()),
-                points.size() * sizeof(TestPoint)};
-  return cloud;
-}
 
 class CloudRecording : public ::testing::Test {
  protected:
@@ -170,6 +155,15 @@ TEST_F(CloudRecording, ARecordingThatBrokeOffGivesWhatItHas) {
   for (int s = 0; s < 5; ++s) AddCloud(points, milliseconds(1000 * s + 1000));
   ASSERT_TRUE(writer_.Flush());
   EXPECT_EQ(LoadScans(Write(file_.size()), {}).scans.size(), 5U);
+}
+
+TEST_F(CloudRecording, AFolderIsReadPartByPart) {
+  AddCloud(AddTopic("/points"), milliseconds(1000));
+  std::filesystem::copy_file(Write(), folder_ + "/drive_10.mcap");
+  std::filesystem::rename(path_, folder_ + "/drive_9.mcap");
+  std::ofstream(folder_ + "/metadata.yaml") << "rosbag2_bagfile_information:";
+  EXPECT_EQ(LoadScans(folder_, {}).scans.size(), 2U);
+  EXPECT_EQ(LoadScans(folder_ + ",/points", {}).scans.size(), 2U);
 }
 
 TEST_F(CloudRecording, CodedSlicesAreRefusedWithTheWayToClouds) {

@@ -2,6 +2,7 @@
 #include "src/tools/lab/codec_lab/cloud_recording.h"
 
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -9,8 +10,7 @@
 #include "src/cdr/point_cloud2.h"
 #include "src/cdr/ros_types.h"
 #include "src/cloud/field_number.h"
-#include "src/mcap/input_file.h"
-#include "src/mcap/reader.h"
+#include "src/tools/lab/codec_lab/message_reader.h"
 
 namespace lidar::tools {
 namespace {
@@ -21,38 +21,34 @@ constexpr Duration kLongestPeriod = std::chrono::seconds(1);
 constexpr std::uint32_t kMostRings = 1024;
 constexpr std::uint64_t kLatest_ns = INT64_MAX;
 
-/// The topics of a file whose messages are of one schema.
-std::vector<std::string> TopicsOf(const mcap::FileIndex& index, std::string_view schema) {
-  std::vector<std::string> topics;
-  for (const auto& [id, channel] : index.channels) {
-    const auto found = index.schemas.find(channel.schema_id);
-    if (found == index.schemas.end() || found->second.name != schema) continue;
-    if (channel.message_encoding == "cdr") topics.push_back(channel.topic);
-  }
+/// The topics with messages of one type.
+std::set<std::string> TopicsOf(const MessageReader& reader, std::string_view type) {
+  std::set<std::string> topics;
+  for (const RecordedTopic& topic : reader.Topics())
+    if (topic.type == type) topics.insert(topic.name);
   return topics;
 }
 
-std::string Join(const std::vector<std::string>& topics) {
+std::string Join(const std::set<std::string>& topics) {
   std::string text;
   for (const std::string& topic : topics) text += (text.empty() ? "" : ", ") + topic;
   return text;
 }
 
 std::string ChooseTopic(const std::string& path, const std::string& wanted,
-                        const mcap::FileIndex& index) {
-  const auto clouds = TopicsOf(index, cdr::InfoOf(cdr::RosType::kPointCloud2).name);
-  const auto slices = TopicsOf(index, cdr::CodedSlice::kName);
+                        const MessageReader& reader) {
+  const auto clouds = TopicsOf(reader, cdr::InfoOf(cdr::RosType::kPointCloud2).name);
+  const auto slices = TopicsOf(reader, cdr::CodedSlice::kName);
   if (clouds.empty() && !slices.empty())
     throw std::runtime_error(path + ": holds coded slices, no clouds; make clouds of them: " +
                              "gst-launch-1.0 -e mcapsrc location=" + path +
                              " ! lidardec ! scanassembler ! mcapsink location=clouds.mcap");
   if (clouds.empty()) throw std::runtime_error(path + ": no topic of PointCloud2 messages in it");
-  if (wanted.empty() && clouds.size() == 1) return clouds.front();
+  if (wanted.empty() && clouds.size() == 1) return *clouds.begin();
   if (wanted.empty())
     throw std::runtime_error(path + ": clouds of several topics; say FILE,TOPIC with one of " +
                              Join(clouds));
-  for (const std::string& topic : clouds)
-    if (topic == wanted) return topic;
+  if (clouds.count(wanted) > 0) return wanted;
   throw std::runtime_error(path + ": no clouds on " + wanted + "; there are on " + Join(clouds));
 }
 
@@ -66,11 +62,12 @@ struct NumberAt {
 
 class Recording final : public ScanStream {
  public:
-  Recording(std::string path, std::string topic, std::unique_ptr<mcap::Reader> reader)
+  Recording(std::string path, std::string topic, std::unique_ptr<MessageReader> reader)
       : ScanStream(1 / Seconds(kUsualPeriod)),
         path_(std::move(path)),
         topic_(std::move(topic)),
         reader_(std::move(reader)) {
+    reader_->Select(topic_);
     next_ = ReadCloud();
     if (!next_)
       throw std::runtime_error(path_ + ": no cloud on " + topic_ +
@@ -102,18 +99,16 @@ class Recording final : public ScanStream {
 
   std::optional<TimedScan> ReadCloud() {
     while (const auto message = reader_->Next()) {
-      const auto channel = reader_->index().channels.find(message->header.channel_id);
-      if (channel == reader_->index().channels.end() || channel->second.topic != topic_) continue;
       const auto cloud = cdr::ReadPointCloud2(message->data, &why_);
       if (!cloud) continue;
       TimedScan timed;
       timed.start = cloud->header.stamp;
       if (timed.start == Time{}) {
-        if (message->header.log_time > kLatest_ns) {
+        if (message->log_time_ns > kLatest_ns) {
           why_ = "a cloud was logged after the year 2262";
           continue;
         }
-        timed.start += Duration{static_cast<std::int64_t>(message->header.log_time)};
+        timed.start += Duration{static_cast<std::int64_t>(message->log_time_ns)};
       }
       if (TakePoints(*cloud, &timed.scan)) return timed;
     }
@@ -167,7 +162,7 @@ class Recording final : public ScanStream {
 
   std::string path_;
   std::string topic_;
-  std::unique_ptr<mcap::Reader> reader_;
+  std::unique_ptr<MessageReader> reader_;
   std::optional<cdr::PointConverter> converter_;
   std::vector<std::uint8_t> bytes_;
   std::string why_;  // why the last cloud could not be read
@@ -180,12 +175,8 @@ class Recording final : public ScanStream {
 }  // namespace
 
 std::unique_ptr<ScanStream> OpenRecording(const std::string& path, const std::string& topic) {
-  std::string why;
-  auto file = mcap::InputFile::Open(path, &why);
-  auto reader = file ? mcap::Reader::Open(std::move(file), &why) : nullptr;
-  if (!reader) throw std::runtime_error(path + ": " + why);
-  if (reader->index().empty()) throw std::runtime_error(path + ": there is no message in it");
-  const std::string chosen = ChooseTopic(path, topic, reader->index());
+  auto reader = OpenMessages(path);
+  const std::string chosen = ChooseTopic(path, topic, *reader);
   return std::make_unique<Recording>(path, chosen, std::move(reader));
 }
 

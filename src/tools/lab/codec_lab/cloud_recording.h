@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds in recordings: the PointCloud2 messages of an MCAP file, ours or of others.
+// Clouds in recordings: PointCloud2 messages of MCAP files and of bags.
 #pragma once
 #include <memory>
 #include <string>

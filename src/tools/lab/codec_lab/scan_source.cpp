@@ -13,17 +13,16 @@
 #include "src/synth/scanner.h"
 #include "src/tools/common/output_file.h"
 #include "src/tools/lab/codec_lab/cloud_file.h"
-#include "src/tools/lab/codec_lab/kitti_sequence.h"
-#ifdef HAVE_MCAP
 #include "src/tools/lab/codec_lab/cloud_recording.h"
-#endif
+#include "src/tools/lab/codec_lab/kitti_sequence.h"
+#include "src/tools/lab/codec_lab/message_reader.h"
 
 namespace lidar::tools {
 
 const char* const kSourceHelp =
     "What to read: drive.pcap (with drive.json beside it), drive.pcap,sensor.json, cloud.bin, "
-    "cloud.pcd, cloud.ply, a folder of these, drive.mcap or drive.mcap,/topic, kitti:FOLDER, or "
-    "synth:MODEL:SCENE[:COLUMNS] such as synth:os1-64:street";
+    "cloud.pcd, cloud.ply, a folder of these, drive.mcap or drive.mcap,/topic, drive.db3, a bag's "
+    "folder, kitti:FOLDER, or synth:MODEL:SCENE[:COLUMNS] such as synth:os1-64:street";
 
 ColumnWindow WindowOf(const Scan& scan, SliceOf slice) {
   const std::uint32_t width = scan.geometry->model.columns_per_scan / slice.count;
@@ -245,18 +244,17 @@ class CloudFiles final : public ScanStream {
   std::size_t next_ = 0;
 };
 
-#ifndef HAVE_MCAP
-std::unique_ptr<ScanStream> OpenRecording(const std::string& path, const std::string&) {
-  throw std::runtime_error(path + ": built without recordings, which need libzstd and liblz4");
-}
-#endif
-
-std::unique_ptr<ScanStream> OpenFolder(const std::string& folder) {
+std::unique_ptr<ScanStream> OpenFolder(const std::string& folder, const std::string& topic) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
+  bool recording = false;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (IsCloudFile(entry.path().string())) files.push_back(entry.path().string());
+    recording |= IsRecordingFile(entry.path().string());
+  }
+  if (recording && files.empty()) return OpenRecording(folder, topic);
   std::sort(files.begin(), files.end());
-  if (files.empty()) throw std::runtime_error(folder + ": no .bin, .pcd or .ply file in it");
+  if (files.empty())
+    throw std::runtime_error(folder + ": no .bin, .pcd, .ply, .mcap or .db3 file in it");
   return std::make_unique<CloudFiles>(std::move(files));
 }
 
@@ -272,16 +270,16 @@ std::unique_ptr<ScanStream> OpenScans(const std::string& text, const SourceOptio
   if (const auto folder = KittiFolderOf(text)) return OpenKittiSequence(*folder);
   const std::size_t comma = text.find(',');
   const std::string path = text.substr(0, comma);
-  if (std::filesystem::is_directory(path)) return OpenFolder(path);
+  const std::string part = comma == std::string::npos ? "" : text.substr(comma + 1);
+  if (std::filesystem::is_directory(path)) return OpenFolder(path, part);
   if (IsCloudFile(path)) return std::make_unique<CloudFiles>(std::vector<std::string>{path});
+  if (IsRecordingFile(path)) return OpenRecording(path, part);
   if (EndsWith(path, ".pcap") || EndsWith(path, ".pcapng"))
-    return OpenCapture(path, comma == std::string::npos
+    return OpenCapture(path, part.empty()
                                  ? std::filesystem::path(path).replace_extension(".json").string()
-                                 : text.substr(comma + 1));
-  if (EndsWith(path, ".mcap"))
-    return OpenRecording(path, comma == std::string::npos ? "" : text.substr(comma + 1));
+                                 : part);
   throw std::runtime_error(
-      text + ": not a .pcap, .pcapng, .mcap, .bin, .pcd, .ply, kitti: or synth: source");
+      text + ": not a .pcap, .pcapng, .mcap, .db3, .bin, .pcd, .ply, kitti: or synth: source");
 }
 
 ScanSet LoadScans(const std::string& text, const SourceOptions& options) {

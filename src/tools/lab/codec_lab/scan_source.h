@@ -54,6 +54,7 @@ class ScanStream {
 ///   cloud.bin              a cloud (KITTI's x y z intensity floats)
 ///   cloud.pcd, cloud.ply   a cloud
 ///   drive.mcap             the clouds of a recording; drive.mcap,/points: those of one topic
+///   drive.db3, folder      the same of a bag of ROS 2, whose parts are databases or MCAP files
 ///   kitti:FOLDER           a sequence of KITTI's odometry benchmark
 ///   folder                 consecutive clouds in such files, by name
 ///   synth:os1-64:street    a synthetic sensor in street, tunnel, field or town; a third part is

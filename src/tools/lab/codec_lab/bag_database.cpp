@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The messages of a database of rosbag2 (rosbag2_storage_sqlite3): the tables `topics` and
+// `messages`. The file may hold any bytes and any schema.
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+
+#include "src/tools/lab/codec_lab/message_reader.h"
+
+namespace lidar::tools {
+namespace {
+
+constexpr int kMostBytes = 128 << 20;  // of a message
+constexpr std::size_t kMostTopics = 10'000;
+constexpr std::size_t kLongestName = 1024;
+
+struct Closer {
+  void operator()(sqlite3* database) const { sqlite3_close(database); }
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+using Statement = std::unique_ptr<sqlite3_stmt, Closer>;
+
+class BagDatabase final : public MessageReader {
+ public:
+  explicit BagDatabase(const std::string& path) : path_(path) {
+    // A pipe would wait for its writer.
+    if (!std::filesystem::is_regular_file(path)) Fail("it is no file");
+    file_size_ = std::filesystem::file_size(path);
+    sqlite3* database = nullptr;
+    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX;
+    const int result = sqlite3_open_v2(path.c_str(), &database, flags, nullptr);
+    database_.reset(database);
+    if (result != SQLITE_OK) FailWithItsReason();
+    // A view may compute without end, and functions of the file's schema may do anything.
+    sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytes);
+    ReadTopics();
+  }
+
+  std::vector<RecordedTopic> Topics() const override { return topics_; }
+
+  /// Only messages that are returned are loaded.
+  void Select(const std::string& topic) override {
+    std::string ids;
+    for (std::size_t i = 0; i < topics_.size(); ++i)
+      if (topics_[i].name == topic) ids += (ids.empty() ? "" : ",") + std::to_string(ids_[i]);
+    messages_.statement = Prepare(
+        "SELECT _rowid_, CASE typeof(data) WHEN 'blob' THEN length(data) END, timestamp, "
+        "CASE WHEN topic_id IN (" +
+        ids + ") AND typeof(data) = 'blob' AND length(data) <= " + std::to_string(kMostBytes) +
+        " THEN data END FROM messages NOT INDEXED");
+    messages_.last_row = INT64_MIN;
+    messages_.bytes = 0;
+  }
+
+  std::optional<RecordedMessage> Next() override {
+    sqlite3_stmt* row = messages_.statement.get();
+    while (row != nullptr && Step(&messages_)) {
+      if (sqlite3_column_type(row, 2) != SQLITE_INTEGER) continue;
+      if (sqlite3_column_type(row, 3) != SQLITE_BLOB) continue;
+      const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(row, 3));
+      const auto size = static_cast<std::size_t>(sqlite3_column_bytes(row, 3));
+      const auto time = static_cast<std::uint64_t>(sqlite3_column_int64(row, 2));
+      return RecordedMessage{time, {data, size}};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// Rows in the order of the file, which is that of recording. NOT INDEXED: a sort would keep all
+  /// of them. Column 0 is the number of the row, column 1 the size of its values in bytes.
+  struct Rows {
+    Statement statement;
+    std::int64_t last_row = INT64_MIN;
+    std::uint64_t bytes = 0;
+  };
+
+  void ReadTopics() {
+    Rows rows;
+    rows.statement = Prepare(
+        "SELECT _rowid_, length(name) + length(type), id, name, type, serialization_format "
+        "FROM topics NOT INDEXED");
+    const auto text = [&](int column) {
+      const auto* chars = sqlite3_column_text(rows.statement.get(), column);
+      const std::string found(chars == nullptr ? "" : reinterpret_cast<const char*>(chars));
+      if (found.size() > kLongestName) Fail("a name of a topic is too long");
+      return found;
+    };
+    while (Step(&rows)) {
+      if (topics_.size() == kMostTopics) Fail("too many topics");
+      if (text(5) != "cdr") continue;
+      topics_.push_back({text(3), text(4)});
+      ids_.push_back(sqlite3_column_int64(rows.statement.get(), 2));
+    }
+  }
+
+  Statement Prepare(const std::string& sql) {
+    sqlite3_stmt* statement = nullptr;
+    if (sqlite3_prepare_v2(database_.get(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
+      FailWithItsReason();
+    return Statement(statement);
+  }
+
+  /// Returns false at the end. Pages of a damaged file may form a loop, so that its rows have no
+  /// end.
+  bool Step(Rows* rows) {
+    sqlite3_stmt* row = rows->statement.get();
+    const int result = sqlite3_step(row);
+    if (result == SQLITE_DONE) return false;
+    if (result != SQLITE_ROW) FailWithItsReason();
+    const std::int64_t number = sqlite3_column_int64(row, 0);
+    rows->bytes += static_cast<std::uint64_t>(sqlite3_column_int64(row, 1));
+    if (number <= rows->last_row || rows->bytes > file_size_)
+      Fail("the file is damaged: its rows repeat");
+    rows->last_row = number;
+    return true;
+  }
+
+  [[noreturn]] void Fail(const std::string& why) const {
+    throw std::runtime_error(path_ + ": " + why);
+  }
+  [[noreturn]] void FailWithItsReason() const {
+    const bool damaged = sqlite3_errcode(database_.get()) == SQLITE_CORRUPT;
+    Fail(std::string("cannot be read as a bag of ROS 2: ") + sqlite3_errmsg(database_.get()) +
+         (damaged ? "; save the rest: sqlite3 " + path_ + " .recover | sqlite3 saved.db3" : ""));
+  }
+
+  std::string path_;
+  std::uint64_t file_size_ = 0;
+  std::unique_ptr<sqlite3, Closer> database_;
+  std::vector<RecordedTopic> topics_;
+  std::vector<std::int64_t> ids_;  // of each topic
+  Rows messages_;
+};
+
+}  // namespace
+
+std::unique_ptr<MessageReader> OpenBagDatabase(const std::string& path) {
+  return std::make_unique<BagDatabase>(path);
+}
+
+}  // namespace lidar::tools
