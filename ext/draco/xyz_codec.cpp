@@ -59,8 +59,8 @@ struct Grid {
   int bits;
 };
 
-/// Draco computes in floats: it rounds the offset from the corner and its quotient by the step, and
-/// both again when it decodes. Returns the sum of these errors [m].
+/// Draco computes in floats. Its encoder rounds the offset from the corner and the offset divided
+/// by the step; its decoder rounds both again. Returns the sum of these errors [m].
 double RoundingOf(const Box& box) { return kRounding * (8 * box.extent + 2 * box.farthest); }
 
 /// Returns the grid that keeps to the settings, or nothing.

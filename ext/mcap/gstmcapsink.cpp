@@ -307,7 +307,7 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   if (!state.recorder) return false;
   state.topics.insert(topic);
   state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
-  // A stream that has earlier caps again continues in their channel.
+  // If earlier caps of the stream come again, it continues in their channel.
   const auto [known, is_new] = stream->channels.try_emplace(KindOf(caps, writer.type()));
   stream->channel_id = known->second;
   if (!is_new) return true;

@@ -91,7 +91,8 @@ static gboolean Event(GstBaseSink* base, GstEvent* event) {
   return GST_BASE_SINK_CLASS(gst_lidar_mcap_stream_parent_class)->event(base, event);
 }
 
-/// Each recording has its own channels, even if the element was only in READY between them.
+/// Each recording has its own channels, even if the element went no lower than READY between two of
+/// them.
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     State& state = StateOf(element);
@@ -120,8 +121,8 @@ static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
 }
 
 GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name) {
-  // The stream does not preroll, which would delay the others if it is sparse, nor wait for the
-  // clock, which disks do not need.
+  // The stream does not preroll, because a sparse stream would delay the others. It does not wait
+  // for the clock, because disks do not need that.
   auto* stream = static_cast<GstElement*>(g_object_new(GST_TYPE_LIDAR_MCAP_STREAM, "name", name,
                                                        "async", FALSE, "sync", FALSE, nullptr));
   StateOf(stream).sink = sink;

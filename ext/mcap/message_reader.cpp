@@ -53,7 +53,7 @@ class SliceReader : public MessageReader {
 
 class CloudReader : public MessageReader {
  public:
-  /// `caps` may be NULL, because ROS messages have nearly all of their content.
+  /// `caps` may be NULL, because ROS messages have nearly all of the caps' content.
   explicit CloudReader(CapsPtr caps) {
     if (caps) info_ = CloudInfo::FromFrameCaps(caps.get());
     if (info_) caps_ = std::move(caps);

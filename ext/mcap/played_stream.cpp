@@ -15,7 +15,7 @@ GstEvent* WithSeqnum(const PlaybackGroup& group, GstEvent* event) {
 }  // namespace
 
 bool PlayedStream::Follow(const mcap::Schema& schema, const mcap::Channel& channel) {
-  // Another file has its own channels, usually with the same content.
+  // Each file has channels of its own, usually with the same content as in other files.
   if (reader_ && metadata_ == channel.metadata) return true;
   auto reader = MessageReader::Make(schema, channel);
   if (!reader) return false;

@@ -67,7 +67,8 @@ natsStatus SetPace(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetWriteDeadline(o, Connection::kWriteTimeoutMs);
   // The flusher of libnats would wait a millisecond for more to send.
   if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
-  // Messages that libnats held back would be stored before those lost with the connection.
+  // Messages in this buffer of libnats would be stored before older messages, which were lost with
+  // the connection and are sent again.
   if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 0);
   return s;
 }

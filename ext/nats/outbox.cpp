@@ -12,8 +12,8 @@ std::size_t Outbox::SizeOf(const Outgoing& item) {
   return gst_buffer_get_size(item.buffer.get()) + kOverhead;
 }
 
-/// Counts the message, and its format with the first message that has it: a format may be larger
-/// than all its messages.
+/// Counts the message. Counts a format with the first message that has it, because a format may be
+/// larger than all its messages.
 void Outbox::Count(const Outgoing& item) {
   bytes_ += SizeOf(item);
   if (item.format && ++formats_[item.format] == 1) bytes_ += item.format->memory();

@@ -313,7 +313,7 @@ bool Publisher::ConfigDue(Clock::time_point now) const {
   const StreamFormat::Ptr format = NextFormat();
   if (!format) return false;
   if (format != sent_format_) return true;
-  // Answers to requests must not fill JetStream's storage.
+  // Answers to requests are rare if JetStream keeps messages, so that they do not fill its storage.
   if (asked_ && now - config_at_ >= (keeps() ? kConfigInterval / 2 : kAskedInterval)) return true;
   // If JetStream keeps little, caps must not be dropped before the messages that need them.
   const std::uint64_t max_bytes = settings_.stream.max_bytes;

@@ -44,7 +44,7 @@ std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
     if (!self->js_) status = NATS_NO_MEMORY;
   } else {
     status = self->SubscribeLive();
-    // The server has the subscription before a caller can publish.
+    // This waits until the server has the subscription, so that callers can publish after it.
     if (self->connection_->state().connected())
       natsConnection_FlushTimeout(self->connection_->get(), Connection::kConnectTimeoutMs);
   }
@@ -54,7 +54,7 @@ std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
 }
 
 Subscriber::~Subscriber() {
-  // A socket that closes with unread messages loses the data that it sent.
+  // Closing a socket with unread messages would lose the acknowledgements that it sent.
   if (connection_ && acknowledges() && connection_->state().connected())
     natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
 }
@@ -216,7 +216,7 @@ void Subscriber::CountOverruns() {
   dropped_ = dropped;
 }
 
-/// A message out of order makes the consumer begin anew after the last good one.
+/// A message out of order makes the consumer begin anew after the last good message.
 Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   jsMsgMetaData* raw = nullptr;
   if (natsMsg_GetMetaData(&raw, delivery->message.get()) != NATS_OK) return Event::kNothing;

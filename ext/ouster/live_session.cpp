@@ -51,7 +51,8 @@ ouster::Sender SenderOf(const NativeAddress& from) {
   return sender;
 }
 
-/// Returns true if the process may open `count` more files. GLib aborts if it cannot open its own.
+/// Returns true if the process may open `count` more files. GLib aborts if it cannot open a file
+/// that it needs.
 bool CanOpenFiles(std::size_t count) {
   std::vector<int> files;
   while (files.size() < count) {
@@ -93,7 +94,8 @@ bool LiveSession::OpenFeed() {
     auto metadata = LoadMetadata();
     if (!metadata || !SetMetadata(*std::move(metadata)) || !OpenSockets(stream()->metadata()))
       return false;
-    // Only packets can show that metadata from a file are wrong, so they are awaited from now on.
+    // Only packets can show that metadata from a file are wrong, so the wait for packets begins
+    // here.
     last_packet_us_ = g_get_monotonic_time();
   }
   return true;
@@ -219,8 +221,8 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// Returns false after an error, without `reconnect`, or if no packet ever came: then a setting is
-/// wrong.
+/// Returns false, after an error, without `reconnect`, or if no packet ever came, because a setting
+/// is wrong then.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {
@@ -260,7 +262,8 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
 void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
   const gint64 now = g_get_monotonic_time();
   if (new_init_id_us_ == 0) new_init_id_us_ = now;
-  // If our sensor has no serial number, the packet may be from another, while ours continues.
+  // If our sensor has no serial number, the packet may be from another sensor, while ours
+  // continues.
   const bool may_be_another = stream()->metadata().serial == 0;
   if ((link_ || may_be_another) && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
   new_init_id_us_ = 0;

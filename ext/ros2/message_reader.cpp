@@ -64,7 +64,7 @@ void MessageReader::SetStamp(Time stamp) {
   if (ns > 0) gst_lidar_buffer_set_capture_time(buffer_.get(), static_cast<GstClockTime>(ns));
 }
 
-/// Sets those of `caps` that downstream takes. `caps` follow from the message alone.
+/// Sets new caps: what downstream takes of `caps`, which follow from the message alone.
 MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   const CapsPtr wanted = wanted_();
   if (wanted)
@@ -81,7 +81,7 @@ MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   return Verdict::kBuffer;
 }
 
-/// Makes converter and caps for clouds of a layout that is new.
+/// Makes converter and caps for clouds of a new layout.
 MessageReader::Verdict MessageReader::Adapt(const cdr::PointCloud2& cloud) {
   converter_.reset();
   const CapsPtr wanted = wanted_();

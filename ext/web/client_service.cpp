@@ -185,7 +185,7 @@ void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> cha
   if (!channels.empty()) client->SendText(foxglove::Advertise(channels));
 }
 
-/// The client may end during a call of its own, so it is deleted after that call.
+/// A call of the client itself may end it, so it is deleted after that call.
 void ClientService::ForgetClient(Client* client) {
   for (const auto& [channel, subscription] : client->subscriptions) {
     const auto topic = topics_.find(channel);

@@ -210,7 +210,7 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   }
   if (info) state.info = std::move(*info);
   if (kind != Kind::kOdometry && !IsVideo(kind)) state.used->scan_duration = ScanDurationOf(caps);
-  // Clouds of another width need no other channel; coded slices are another stream.
+  // Clouds of another width stay in the channel; coded slices with other caps are another stream.
   if (kind == state.kind && kind != Kind::kSlices) return TRUE;
   CloseTopics(&state);
   const bool good = OpenTopics(sink, kind, caps);
