@@ -24,7 +24,7 @@ void Enable(int fd, int level, int name) {
   if (setsockopt(fd, level, name, &on, sizeof on) != 0) return;
 }
 
-/// Writes a control message after `used` bytes of them. Returns the new number of bytes.
+/// Writes a control message after `used` bytes of others. Returns the new number of bytes.
 template <class Value>
 std::size_t Append(SendControl* control, std::size_t used, int level, int type,
                    const Value& value) {

@@ -85,7 +85,8 @@ void SliceOutput::Push(std::vector<rtp::ReceivedSlice> slices, Time now) {
       }
       flush();
       asked_ = slice.config;
-      // Refused caps are offered again with the next slice, because a flush refuses them, too.
+      // Refused caps are offered again with the next slice, because a flushing pad refuses them,
+      // too.
       config_ = SetCapsOf(*slice.config) ? slice.config : nullptr;
     }
     if (!config_) {

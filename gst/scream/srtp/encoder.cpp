@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-// The links alternate, and a copy of an old packet may leave behind many new ones.
+// The links alternate, and a copy of an old packet may leave after many newer packets.
 constexpr guint kWindow = 4'096;  // packets
 
 }  // namespace

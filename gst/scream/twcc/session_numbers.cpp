@@ -34,7 +34,8 @@ std::optional<Reported> Read(const GstStructure* s) {
   if (!gst_structure_get_boolean(s, "lost", &lost)) return std::nullopt;
   if (!lost && gst_structure_get_uint64(s, "remote-ts", &remote) &&
       GST_CLOCK_TIME_IS_VALID(remote)) {
-    // A report's reference time is below one period, and its deltas sum to less than another.
+    // A report's reference time is below one period, and its deltas sum to less than another
+    // period.
     if (remote > static_cast<guint64>((2 * rtcp::kTwccPeriod).count())) return std::nullopt;
     r.arrival = Duration{static_cast<std::int64_t>(remote)};
   }
