@@ -56,7 +56,8 @@ Duration Scheduler::LeastTravel(const Link& link) {
   return std::min(link.path.min_rtt / 2, kMaxAge / 2);
 }
 
-/// A gap is expected to last as long again as it has lasted.
+/// Returns the time until the link has delivered `size` whole. A gap is expected to last as long
+/// again as it has lasted.
 Duration Scheduler::WholeIn(std::size_t link, Time now, DataSize size) const {
   const Link& l = links_[link];
   if (!l.usable) return Duration::max() / 2;

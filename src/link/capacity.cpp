@@ -33,7 +33,7 @@ struct TraceLine {
   DataRate rate;
 };
 
-/// A line without content returns nothing and leaves `error` empty.
+/// Returns nothing for a line without content, and leaves `error` empty.
 std::optional<TraceLine> ParseLine(std::string_view line, std::string* error) {
   line = line.substr(0, line.find('#'));
   const auto first = NextWord(&line);

@@ -87,8 +87,8 @@ class Sender {
   OracleResult result_;
 };
 
-/// Each link, behind a pacer that lets out what the link carried a delay ago. Both are servers in
-/// series, and a slice is whole when the later one has finished it.
+/// The links, each behind a pacer that lets out what the link carried `delay` earlier. A slice is
+/// whole when both pacer and link have finished it.
 class PacedLinks {
  public:
   PacedLinks(const std::vector<Capacity>& links, Duration delay)

@@ -248,7 +248,7 @@ void SliceLedger::Continue(const SliceLedger& previous) {
     const auto between = static_cast<std::uint64_t>(origin_.scan - last.scan - 1);
     accounts_.scans_lost += between;
     accounts_.slices_lost += between * count + origin_.index;
-    // Finish() keeps the frontier's scan, so that is the last one of `previous`.
+    // Finish() keeps the frontier's scan, so this scan is the last one of `previous`.
     accounts_.slices_lost += previous.scans_.back().slices.size() - last.index - 1;
     if (Scan* scan = Find(origin_.scan)) scan->joined_late = false;
   } else {

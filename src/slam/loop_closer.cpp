@@ -94,7 +94,7 @@ void LoopCloser::AddScan(const odometry::StampedPose& pose, const Points& points
 
 void LoopCloser::Finish() {
   if (open_.empty()) return;
-  // The middle scan is near both ends of the map.
+  // The middle scan, whose pose becomes the map's, is near both ends of the map.
   const double half = (open_.front().driven_m + open_.back().driven_m) / 2;
   const auto middle = std::lower_bound(open_.begin(), open_.end(), half,
                                        [](const Step& s, double at) { return s.driven_m < at; });

@@ -9,7 +9,7 @@ namespace {
 using Vector = std::array<double, 3>;
 
 constexpr double kGravity = 9.80665;
-/// Half a period of samples: differences over a period average over it, as those of a real unit do.
+/// Half a sample period. Differences over a whole period average the motion, as a real unit does.
 constexpr Duration kStep = std::chrono::milliseconds(5);
 /// Correlation time of the bias [s].
 constexpr double kWanderTime = 100;

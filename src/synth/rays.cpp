@@ -23,7 +23,7 @@ Vec3 Rays::Direction(std::uint64_t scan, std::uint32_t beam, std::uint32_t colum
                             : ToVec3(projection_.Direction(beam, column));
 }
 
-/// Goes back from the point at 1 m, by its distance along the beam.
+/// Steps back along the beam from the point of range 1 m.
 Vec3 Rays::Origin(std::uint32_t column) const {
   if (firing_ != nullptr) return {};
   const Vec3 at_1m = ToVec3(projection_.Point(0, column, 1000));

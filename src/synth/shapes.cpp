@@ -76,7 +76,7 @@ bool EnterCabin(Vec3 half, const Ray& r, Span* span) {
          span->in > kNearest;
 }
 
-/// Origin and direction of a ray, with w along the middle of a cylinder.
+/// Origin and direction of a ray in a cylinder's coordinates: w runs along its axis.
 struct Axes {
   float ou, ov, ow;
   float du, dv, dw;

@@ -89,7 +89,7 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The store sends its entry, which an earlier write of ours may have made, later.
+  // The store sends its entry later. An earlier write of this worker may have made the entry.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;

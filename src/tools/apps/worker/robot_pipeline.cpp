@@ -46,7 +46,7 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
     g_object_set(odometry, "initial-velocity", NumbersText(*begin->velocity).c_str(), nullptr);
 }
 
-/// Drops the velocity, that of the record's scan, if `stream` is not the record's stream.
+/// Drops the velocity if `stream` is not the record's stream, because it belongs to a scan there.
 std::optional<Progress> BeginIn(std::uint64_t stream, std::optional<Progress> begin) {
   if (begin && begin->stream != stream) begin->velocity.reset();
   return begin;

@@ -298,7 +298,7 @@ void Coordinator::CheckLimit() {
   failure_ = std::string("gave up waiting for ") + kWaitingFor[static_cast<int>(phase_)];
 }
 
-/// Returns true if all data arrived, or had time to arrive: the link may be in a gap.
+/// Returns true if all data arrived, or after kArrivalLimit, because the link may be in a gap.
 bool Coordinator::AllArrived() const {
   const Duration waited = Now() - phase_since_;
   return waited >= kArrivalLimit || (waited >= kTick && m_.ledger.Count().slices_lost == 0);

@@ -16,7 +16,8 @@ namespace mixing = codec::mixing;
 using mixing::SliceBins;
 
 constexpr std::uint32_t kSlices = 8;
-// At least one per class of steps, with ranges in units of 1 and of 8 mm.
+// Largest errors [m] to train with: each class of steps gets one at least, for ranges in units of 1
+// mm and of 8 mm.
 constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
 constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
 constexpr double kLevelError = 0.02;
