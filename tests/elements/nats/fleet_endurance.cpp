@@ -221,7 +221,7 @@ void FleetEndurance::Run() {
     RestartDue();
     if (options_.kill_every <= 0 || now < kill_at) continue;
     kill_at = now + options_.kill_every * spread(random_);
-    // The last report of the edge is then fresh.
+    // The last report of the edge is fresh if the edge is killed now.
     edge_->Sample();
     KillSomething();
   }

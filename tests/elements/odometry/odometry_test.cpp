@@ -229,7 +229,7 @@ TEST_F(Odometry, PredictsThePoseOfEachSlice) {
 }
 
 TEST_F(Odometry, AlignsAScanOfWhichSlicesAreMissing) {
-  // Each scan lacks another of its eight slices: from the first to the last.
+  // Scan n lacks its slice n.
   constexpr unsigned kGiven = 8;
   Prepare(8, kGiven);
   const PadPtr sink(gst_element_get_static_pad(element_.get(), "sink"));

@@ -49,7 +49,8 @@ struct CaptureFile {
     }
     std::ofstream(path, std::ios::binary) << bytes.substr(0, bytes.size() - cut);
   }
-  /// Returns only the lidar packets, as the scan `n` periods later and captured `delay_us` later.
+  /// Returns the lidar packets alone, moved to the scan `n` periods later and captured `delay_us`
+  /// later.
   std::vector<Record> Scan(guint n, guint64 delay_us = 0) const {
     std::vector<Record> scan;
     for (Record r : records) {
@@ -298,7 +299,7 @@ class OusterLiveEffects : public ::testing::Test {
     return "metadata=" + DataPath(kDual + ".json") + " lidar-port=" + std::to_string(lidar) +
            " imu-port=" + std::to_string(imu) + " ";
   }
-  /// Returns which of two addresses' ports a source takes.
+  /// Returns at which of two addresses a source takes `port`.
   std::string Taken(const std::string& properties, guint16 port) const {
     const gst::ElementPtr source(gst_parse_launch(("ouster_src " + properties).c_str(), nullptr));
     EXPECT_NE(gst_element_set_state(source.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);

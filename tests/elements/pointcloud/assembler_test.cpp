@@ -88,7 +88,7 @@ class Assembler : public ::testing::Test {
   Harness h_;
 };
 
-/// Returns the first byte of each column, beam by beam: the index of its slice, plus one.
+/// Returns the first byte of each column, beam by beam. It is 1 + the index of the column's slice.
 std::vector<int> ColumnsOf(const BufferPtr& scan, gsize step = 13) {
   const BufferMap map(scan.get(), GST_MAP_READ);
   std::vector<int> columns;

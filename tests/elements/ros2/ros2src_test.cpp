@@ -148,7 +148,7 @@ void Want(gpointer filter, const char* field) {
   gst_util_set_object_arg(G_OBJECT(filter), "caps", caps.c_str());
 }
 
-/// What is wanted changes while the source waits for a message, and while it gives one.
+/// The wanted caps change while the source waits for a message, and while it gives one.
 TEST_F(Ros2Src, GivesWhatIsWantedFromTheNextMessageOn) {
   StartWithPeer("qos=reliable", " ! capsfilter name=filter");
   const std::unique_ptr<GstElement, gst::Unref> filter(

@@ -35,7 +35,7 @@ class SlowReader {
   SlowReader(const SlowReader&) = delete;
   SlowReader& operator=(const SlowReader&) = delete;
 
-  /// Takes what it has: its size.
+  /// Takes a message. Returns its size, or 0 if there is none.
   std::size_t Take() {
     ddsi_serdata* data = nullptr;
     dds_sample_info_t info{};

@@ -122,7 +122,7 @@ TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
   EXPECT_GT(bytes, 64U);
   sink.PushCloud(8);
   EXPECT_EQ(sink.Stat("points-sent"), before);
-  // The counts include what the client got that is gone.
+  // The counts include those of the client that has left.
   Peer second(&sink);
   second.Subscribe("/points", 1);
   sink.PushCloud(9);
