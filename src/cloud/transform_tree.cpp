@@ -20,7 +20,7 @@ constexpr double kUnitTolerance = 0.01;
 constexpr double kFarthest = 1e9;
 /// Greatest depth of frames; deeper ones form a circle.
 constexpr std::size_t kMaxDepth = 64;
-/// Between orientations whose cosine is above this, a straight line suffices.
+/// Orientations whose cosine is above this are interpolated along a straight line.
 constexpr double kNearlyParallel = 0.9995;
 
 /// ROS 1 wrote frames with a slash.
