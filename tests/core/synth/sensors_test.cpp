@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "src/cloud/range_projection.h"
+
 namespace lidar::synth {
 namespace {
 
@@ -32,6 +34,20 @@ TEST_P(Sensors, StandInOneLineOnceDestaggered) {
     const auto sensor = MakeSensor(GetParam().name, columns);
     for (const Beam& b : sensor->model.beams)
       EXPECT_NEAR(b.azimuth_deg * columns / 360, b.pixel_shift, 0.5);
+  }
+}
+
+TEST_P(Sensors, BeginTheirTurnBehindAndGoClockwise) {
+  const auto sensor = MakeSensor(GetParam().name, 1024);
+  const RangeProjection projection(sensor->model);
+  for (std::uint32_t beam = 0; beam < GetParam().beams; ++beam) {
+    const double offset = sensor->model.beams[beam].azimuth_deg;
+    const auto azimuth_of = [&](std::uint32_t column) {
+      const auto direction = projection.Direction(beam, column);
+      return std::atan2(double{direction[1]}, double{direction[0]}) * 180 / std::acos(-1.0);
+    };
+    EXPECT_NEAR(std::remainder(azimuth_of(0) + offset - 180, 360), 0, 0.1) << beam;
+    EXPECT_NEAR(std::remainder(azimuth_of(256) + offset - 90, 360), 0, 0.1) << beam;
   }
 }
 
