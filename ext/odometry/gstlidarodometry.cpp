@@ -24,6 +24,7 @@
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refs.h"
+#include "gst/common/refused_caps.h"
 #include "gst/common/stats.h"
 #include "src/base/row_file.h"
 #include "src/odometry/trajectory.h"
@@ -88,6 +89,7 @@ const std::array<Stat<Counters>, 14> kStats = {{
 /// The state of a stream. Only the streaming thread uses it.
 struct Stream {
   std::optional<CloudInfo> info;
+  RefusedCaps refused;
   ScanCollector collector;
   std::unique_ptr<Odometry> odometry;
   std::unique_ptr<LoopThread> loops;  // null: no loops are closed
@@ -308,7 +310,11 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   Stream& stream = GST_LIDAR_ODOMETRY(base)->state->stream;
   FinishScan(GST_LIDAR_ODOMETRY(base), GST_CLOCK_TIME_NONE);
   stream.info = CloudInfo::FromCaps(in);
-  if (stream.info && stream.collector.SetInfo(*stream.info)) return TRUE;
+  if (stream.info && stream.collector.SetInfo(*stream.info)) {
+    stream.refused.Reset();
+    return TRUE;
+  }
+  if (!stream.refused.Note(in)) return FALSE;
   GST_ELEMENT_ERROR(base, STREAM, FORMAT,
                     ("Odometry needs clouds with x, y, z as F32 side by side."),
                     ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "gst/common/latency.h"
+#include "tests/support/patience.h"
 #include "tests/support/run_trace.h"
 
 namespace lidar::test {
@@ -33,19 +35,24 @@ inline void ExpectGoldenLines(const Lines& lines, const std::string& path) {
   EXPECT_EQ(lines.size(), n) << path << " is shorter: " << lines[n];
 }
 
+/// The pads of an element that a course uses; null: none.
+struct CoursePads {
+  const char* sink = "sink";
+  const char* src = "src";
+};
+
 /// Plays an element that `launch` describes, and writes down each step with all that it causes.
 /// Upstream is live, with a latency of 20 ms.
 class Course {
  public:
-  explicit Course(const std::string& launch, const char* sink_pad = "sink",
-                  bool with_bytes = true) {
+  explicit Course(const std::string& launch, const CoursePads& pads = {}, bool with_bytes = true) {
     // Some elements number their streams at random.
     g_random_set_seed(1);
     const gst::ElementPtr element(gst_parse_launch(launch.c_str(), nullptr));
-    h_.reset(gst_harness_new_with_element(element.get(), sink_pad, "src"));
-    gst_harness_set_upstream_latency(h_.get(), 20 * GST_MSECOND);
+    h_.reset(gst_harness_new_with_element(element.get(), pads.sink, pads.src));
+    if (pads.sink != nullptr) gst_harness_set_upstream_latency(h_.get(), 20 * GST_MSECOND);
     trace_.emplace(h_.get(), with_bytes);
-    trace_->WatchUpstream(h_->srcpad);
+    if (pads.sink != nullptr) trace_->WatchUpstream(h_->srcpad);
   }
   ~Course() {
     trace_.reset();
@@ -57,10 +64,28 @@ class Course {
   GstHarness* harness() { return h_.get(); }
   GstElement* element() { return h_->element; }
 
+  RunTrace* trace() { return &*trace_; }
+
   void Begin(const std::string& caps) {
     trace_->Begin(caps);
     Note("begin");
   }
+  /// Starts a source. It has done its work once `count` lines begin with `line`.
+  void Play(const std::string& what, const char* line, std::size_t count = 1) {
+    gst_element_set_state(element(), GST_STATE_PLAYING);
+    Await(what, line, count);
+  }
+  void Send(const std::string& what, GstEvent* event, const char* line, std::size_t count = 1) {
+    if (gst_element_send_event(element(), event))
+      Await(what, line, count);
+    else
+      Note(what + ": refused");
+  }
+  void Await(const std::string& what, const char* line, std::size_t count = 1) {
+    EXPECT_TRUE(Eventually([&] { return trace_->Count(line) >= count; })) << what;
+    Note(what);
+  }
+  void AddLine(const std::string& line) { lines_.push_back(line); }
   void SetCaps(const std::string& caps) {
     trace_->PushCaps(caps);
     Note("caps");
@@ -72,6 +97,12 @@ class Course {
   void Push(const std::string& what, gst::BufferPtr buffer) {
     const GstFlowReturn flow = gst_pad_push(h_->srcpad, buffer.release());
     Note(what + ": " + gst_flow_get_name(flow));
+  }
+  /// The element has done its work once `count` lines begin with `line`.
+  void PushUntil(const std::string& what, gst::BufferPtr buffer, const char* line,
+                 std::size_t count = 1) {
+    EXPECT_EQ(gst_pad_push(h_->srcpad, buffer.release()), GST_FLOW_OK) << what;
+    Await(what, line, count);
   }
   void PushEvent(const std::string& what, GstEvent* event) {
     const bool taken = gst_pad_push_event(h_->srcpad, event) != FALSE;
@@ -109,17 +140,23 @@ class Course {
   /// Asks the element, from downstream, for its latency, and in `format` for the rest.
   void Ask(GstFormat format = GST_FORMAT_TIME) {
     const gst::QueryPtr latency(gst_query_new_latency());
-    if (gst_pad_peer_query(h_->sinkpad, latency.get())) {
+    if (Answers(latency.get())) {
       const gst::Latency l = gst::ReadLatency(latency.get());
       lines_.push_back("latency " + std::to_string(l.min) + (l.live ? " live" : ""));
     }
     gint64 value = 0;
-    if (gst_pad_peer_query_duration(h_->sinkpad, format, &value))
+    const gst::QueryPtr duration(gst_query_new_duration(format));
+    if (Answers(duration.get())) {
+      gst_query_parse_duration(duration.get(), nullptr, &value);
       lines_.push_back("duration " + std::to_string(value));
-    if (gst_pad_peer_query_position(h_->sinkpad, format, &value))
+    }
+    const gst::QueryPtr position(gst_query_new_position(format));
+    if (Answers(position.get())) {
+      gst_query_parse_position(position.get(), nullptr, &value);
       lines_.push_back("position " + std::to_string(value));
+    }
     const gst::QueryPtr seeking(gst_query_new_seeking(format));
-    if (gst_pad_peer_query(h_->sinkpad, seeking.get())) {
+    if (Answers(seeking.get())) {
       gboolean seekable = FALSE;
       gint64 start = 0;
       gst_query_parse_seeking(seeking.get(), nullptr, &seekable, &start, &value);
@@ -131,6 +168,10 @@ class Course {
   void Expect(const std::string& path) { ExpectGoldenLines(lines_, path); }
 
  private:
+  bool Answers(GstQuery* query) {
+    return (h_->sinkpad != nullptr ? gst_pad_peer_query(h_->sinkpad, query)
+                                   : gst_element_query(element(), query)) != FALSE;
+  }
   void Note(const std::string& step) {
     lines_.push_back("- " + step);
     for (std::string& line : trace_->Take()) {
@@ -150,18 +191,20 @@ class Course {
     }
   }
   /// Leaves out how long something took, and digits of doubles that differ between machines: a
-  /// number halfway between two of three digits is the upper one.
+  /// number halfway between two of three digits is the upper one, and a tiny one is 0.
   static std::string Steady(const std::string& line) {
-    static const std::regex kClock("(encode-time|decode-time| age)=\\([a-z0-9]+\\)[0-9]+");
-    static const std::regex kDouble("\\(double\\)([-+.e0-9]+)");
+    static const std::regex kClock(
+        "(encode-time|decode-time|scan-time| age)=\\([a-z0-9]+\\)[0-9]+");
+    static const std::regex kDouble("(?:\\(double\\)| pose )([-+.e0-9]+)");
     std::string steady = std::regex_replace(line, kClock, "$1");
     std::smatch found;
     std::string rounded;
     while (std::regex_search(steady, found, kDouble)) {
       char text[G_ASCII_DTOSTR_BUF_SIZE];
       const double value = g_ascii_strtod(found[1].str().c_str(), nullptr) * (1 + 1e-9);
-      g_ascii_formatd(text, sizeof text, "%.3g", value);
-      rounded += found.prefix().str() + text;
+      constexpr double kTiny = 1e-6;
+      g_ascii_formatd(text, sizeof text, "%.3g", std::abs(value) < kTiny ? 0 : value);
+      rounded += found.prefix().str() + (found[0].str()[0] == ' ' ? " pose " : "") + text;
       steady = found.suffix().str();
     }
     return rounded + steady;
@@ -205,6 +248,7 @@ struct ScriptedCourse {
   std::string name;
   std::string launch;
   std::function<void(Course&)> script;
+  CoursePads pads = {};
 };
 
 class GoldenCourse : public ::testing::Test {
@@ -214,7 +258,7 @@ class GoldenCourse : public ::testing::Test {
 
  private:
   void TestBody() override {
-    Course course(course_.launch, "sink", with_bytes_);
+    Course course(course_.launch, course_.pads, with_bytes_);
     course_.script(course);
     course.Expect(folder_ + "/" + course_.name + ".txt");
   }

@@ -23,9 +23,10 @@ class RunTrace {
   explicit RunTrace(GstHarness* h, bool with_bytes = true)
       : h_(h), with_bytes_(with_bytes), bus_(gst_bus_new()) {
     gst_element_set_bus(h->element, bus_);
-    Watch(h->sinkpad);
+    if (h->sinkpad != nullptr) Watch(h->sinkpad);
   }
   ~RunTrace() {
+    if (added_ != 0) g_signal_handler_disconnect(h_->element, added_);
     for (const auto& [pad, probe] : probes_) gst_pad_remove_probe(pad.get(), probe);
     gst_element_set_bus(h_->element, nullptr);
     gst_object_unref(bus_);
@@ -41,6 +42,16 @@ class RunTrace {
     const std::lock_guard lock(mutex_);
     probes_.emplace_back(GST_PAD(gst_object_ref(pad)),
                          gst_pad_add_probe(pad, kAll, OnData, this, nullptr));
+  }
+  /// Takes and adds what passes each pad that the element adds from now on, with the pad's name.
+  void TakeAddedPads() {
+    added_ = g_signal_connect(h_->element, "pad-added", G_CALLBACK(OnAdded), this);
+  }
+  /// Returns how many lines since the last Take() begin so.
+  std::size_t Count(const std::string& begin) {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::count_if(
+        lines_.begin(), lines_.end(), [&](const auto& line) { return line.rfind(begin, 0) == 0; }));
   }
   /// Adds the events that a pad of the harness gets from the element.
   void WatchUpstream(GstPad* pad) {
@@ -103,12 +114,33 @@ class RunTrace {
   static std::string Text(GstClockTime time) {
     return GST_CLOCK_TIME_IS_VALID(time) ? std::to_string(time) : "none";
   }
-  static GstPadProbeReturn OnData(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  static void OnAdded(GstElement*, GstPad* pad, gpointer data) {
+    auto* self = static_cast<RunTrace*>(data);
+    if (!GST_PAD_IS_SRC(pad)) return;
+    const gst::StringPtr name(gst_pad_get_name(pad));
+    GstPad* sink = gst_pad_new(name.get(), GST_PAD_SINK);
+    gst_object_ref_sink(sink);
+    gst_pad_set_chain_function(sink, [](GstPad*, GstObject*, GstBuffer* buffer) -> GstFlowReturn {
+      gst_buffer_unref(buffer);
+      return GST_FLOW_OK;
+    });
+    self->Watch(sink);
+    gst_pad_set_active(sink, TRUE);
+    gst_pad_link(pad, sink);
+    gst_object_unref(sink);
+  }
+  /// Returns " on imu" for a pad that is not the harness's own.
+  std::string PlaceOf(GstPad* pad) const {
+    const gst::PadPtr peer(pad == h_->sinkpad ? nullptr : gst_pad_get_peer(pad));
+    return peer ? std::string(" on ") + GST_PAD_NAME(peer.get()) : "";
+  }
+  static GstPadProbeReturn OnData(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
     auto* self = static_cast<RunTrace*>(data);
     const std::lock_guard lock(self->mutex_);
-    if (info->type & GST_PAD_PROBE_TYPE_BUFFER) self->Add(GST_PAD_PROBE_INFO_BUFFER(info));
+    if (info->type & GST_PAD_PROBE_TYPE_BUFFER)
+      self->Add(GST_PAD_PROBE_INFO_BUFFER(info), self->PlaceOf(pad));
     if (info->type & GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM)
-      self->lines_.push_back(TextOf(GST_PAD_PROBE_INFO_EVENT(info)));
+      self->lines_.push_back(TextOf(GST_PAD_PROBE_INFO_EVENT(info)) + self->PlaceOf(pad));
     return GST_PAD_PROBE_OK;
   }
   static GstPadProbeReturn OnUpstream(GstPad*, GstPadProbeInfo* info, gpointer data) {
@@ -117,7 +149,7 @@ class RunTrace {
     self->lines_.push_back("upstream " + TextOf(GST_PAD_PROBE_INFO_EVENT(info)));
     return GST_PAD_PROBE_OK;
   }
-  void Add(GstBuffer* buffer) {
+  void Add(GstBuffer* buffer, const std::string& place) {
     constexpr guint kFlags = GST_BUFFER_FLAG_DISCONT | GST_BUFFER_FLAG_CORRUPTED |
                              GST_BUFFER_FLAG_MARKER | GST_BUFFER_FLAG_GAP |
                              GST_BUFFER_FLAG_DELTA_UNIT | GST_BUFFER_FLAG_DROPPABLE;
@@ -145,7 +177,7 @@ class RunTrace {
       line += " captured " + std::to_string(GST_CLOCK_DIFF(first_capture_, capture));
     else if (GST_CLOCK_TIME_IS_VALID(capture))
       line += " captured at " + std::to_string(capture);
-    lines_.push_back(std::move(line));
+    lines_.push_back(line + place);
   }
   static std::string TextOf(GstEvent* event) {
     std::string line = std::string("event ") + GST_EVENT_TYPE_NAME(event);
@@ -203,6 +235,7 @@ class RunTrace {
   GstHarness* const h_;
   const bool with_bytes_;
   GstBus* const bus_;
+  gulong added_ = 0;
   std::mutex mutex_;  // guards all below
   std::vector<std::pair<gst::PadPtr, gulong>> probes_;
   Lines lines_;

@@ -12,50 +12,12 @@
 
 #include "ext/odometry/imu_input.h"
 #include "gst/common/imu_caps.h"
-#include "src/base/byte_writer.h"
-#include "src/cdr/motion_samples.h"
+#include "tests/elements/odometry/corner_drive.h"
 #include "tests/support/own_properties.h"
 #include "tests/support/run_trace.h"
 
 namespace lidar::test {
 namespace {
-
-constexpr const char* kRunCaps =
-    "application/x-pointcloud2,width=0,height=1,point-step=16,"
-    "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,t:F32:12\",framerate=10/1";
-constexpr GstClockTime kPeriod = 100 * GST_MSECOND;
-
-/// A corner of three walls, from 2 to 19 m away, seen by a sensor that moves along x at 10 m/s and
-/// samples a wall after the other.
-gst::BufferPtr CornerFrom(double metres) {
-  std::vector<std::uint8_t> bytes;
-  ByteWriter w(&bytes);
-  for (unsigned wall = 0; wall < 3; ++wall)
-    for (int a = -10; a < 10; ++a)
-      for (int b = -10; b < 10; ++b) {
-        const double t = 0.1 * (20 * (a + 10) + b + 10 + 400.0 * wall) / 1200;
-        const double u = a * 0.7;
-        const double v = b * 0.7;
-        const double here = metres + 10 * t;
-        const std::array<double, 3> p = wall == 0   ? std::array{u - here, v, -2.0}
-                                        : wall == 1 ? std::array{u - here, 10.0, v}
-                                                    : std::array{12 - here, u, v};
-        for (const double value : {p[0], p[1], p[2], t}) w.LeF32(static_cast<float>(value));
-      }
-  return gst::BufferPtr(gst_buffer_new_memdup(bytes.data(), bytes.size()));
-}
-
-gst::BufferPtr ScanAt(gst::BufferPtr buffer, GstClockTime time) {
-  GST_BUFFER_PTS(buffer.get()) = time;
-  GST_BUFFER_DURATION(buffer.get()) = kPeriod;
-  gst_lidar_buffer_set_capture_time(buffer.get(), GST_SECOND + time);
-  return buffer;
-}
-
-gst::BufferPtr SliceOf(gst::BufferPtr buffer, const GstLidarSlice& slice) {
-  gst_lidar_buffer_set_slice(buffer.get(), &slice);
-  return buffer;
-}
 
 /// lidarodometry with sinks for its clouds, its poses and its map, and a source of samples.
 class OdometryRun {
@@ -79,10 +41,10 @@ class OdometryRun {
   OdometryRun(const OdometryRun&) = delete;
   OdometryRun& operator=(const OdometryRun&) = delete;
 
-  void Begin() { trace_->Begin(kRunCaps); }
+  void Begin() { trace_->Begin(kCornerCaps); }
   void Push(gst::BufferPtr buffer) { gst_pad_push(h_->srcpad, buffer.release()); }
   void Drive(unsigned from, unsigned to) {
-    for (unsigned i = from; i < to; ++i) Push(ScanAt(CornerFrom(i), i * kPeriod));
+    for (unsigned i = from; i < to; ++i) Push(ScanAt(CornerFrom(i), i * kCornerPeriod));
   }
   void BeginImu() {
     gst_pad_send_event(imu_.get(), gst_event_new_stream_start("imu"));
@@ -93,17 +55,7 @@ class OdometryRun {
     gst_segment_init(&segment, GST_FORMAT_TIME);
     gst_pad_send_event(imu_.get(), gst_event_new_segment(&segment));
   }
-  void SendStillness(GstClockTime from) {
-    std::vector<std::uint8_t> bytes;
-    for (unsigned i = 0; i < 10; ++i) {
-      cdr::Imu imu;
-      imu.header.stamp =
-          Time{} + Duration{static_cast<std::int64_t>(GST_SECOND + from + i * 10 * GST_MSECOND)};
-      const auto sample = cdr::WriteImuSample(imu);
-      bytes.insert(bytes.end(), sample.begin(), sample.end());
-    }
-    gst_pad_chain(imu_.get(), gst_buffer_new_memdup(bytes.data(), bytes.size()));
-  }
+  void SendStillness(GstClockTime from) { gst_pad_chain(imu_.get(), StillnessAt(from).release()); }
   void End() { gst_pad_push_event(h_->srcpad, gst_event_new_eos()); }
   void Stop() {
     trace_->Stop();
@@ -176,29 +128,19 @@ TEST(OdometryProperties, AreAllInTheTable) {
     EXPECT_EQ(tried.count(name), 1U) << name;
 }
 
-/// A wall 80 m ahead, which shows no motion to the side.
-gst::BufferPtr FarWall() {
-  std::vector<std::uint8_t> bytes;
-  ByteWriter w(&bytes);
-  for (int a = -10; a < 10; ++a)
-    for (int b = -10; b < 10; ++b)
-      for (const int value : {80, a, b, 0}) w.LeF32(static_cast<float>(value));
-  return gst::BufferPtr(gst_buffer_new_memdup(bytes.data(), bytes.size()));
-}
-
 /// Leaves much behind: lost scans, new maps, a scan under way, and samples that no scan has taken.
 void RunWithTroubles(OdometryRun* run) {
   run->BeginImu();
   for (unsigned i = 0; i < 9; ++i) {
-    run->SendStillness(i * kPeriod);
+    run->SendStillness(i * kCornerPeriod);
     run->Drive(i, i + 1);
   }
-  for (unsigned i = 9; i < 22; ++i) run->Push(ScanAt(FarWall(), i * kPeriod));
+  for (unsigned i = 9; i < 22; ++i) run->Push(ScanAt(FarWall(), i * kCornerPeriod));
   run->Drive(90, 92);
-  run->Push(ScanAt(gst::BufferPtr(gst_buffer_new_memdup("cut", 3)), 92 * kPeriod));
-  run->Push(ScanAt(FarWall(), 92 * kPeriod));
-  run->SendStillness(93 * kPeriod);
-  run->Push(SliceOf(ScanAt(CornerFrom(93), 93 * kPeriod), {7, 0, 2, 0}));
+  run->Push(ScanAt(gst::BufferPtr(gst_buffer_new_memdup("cut", 3)), 92 * kCornerPeriod));
+  run->Push(ScanAt(FarWall(), 92 * kCornerPeriod));
+  run->SendStillness(93 * kCornerPeriod);
+  run->Push(SliceOf(ScanAt(CornerFrom(93), 93 * kCornerPeriod), {7, 0, 2, 0}));
 }
 
 bool HasLine(const Lines& lines, const std::string& part) {
@@ -238,7 +180,7 @@ TEST(OdometryFlush, LeavesNothingOfTheScanUnderWayAndKeepsThePlace) {
     run->Begin();
     run->Drive(0, 3);
   }
-  flushed.Push(SliceOf(ScanAt(FarWall(), 3 * kPeriod), {7, 0, 2, 0}));
+  flushed.Push(SliceOf(ScanAt(FarWall(), 3 * kCornerPeriod), {7, 0, 2, 0}));
   flushed.Flush();
   for (OdometryRun* run : {&plain, &flushed}) {
     run->Take();

@@ -272,6 +272,67 @@ void FilesCourse(Course& c) {
   }
 }
 
+/// Two sensors. A step ends once the merger has put out what it can.
+void MergeCourse(Course& c) {
+  const Harness second(gst_harness_new_with_element(c.element(), "sink_1", nullptr));
+  const auto begin = [&](const std::string& caps) {
+    gst_pad_push_event(second->srcpad, gst_event_new_stream_start("second"));
+    gst_harness_set_src_caps_str(second.get(), caps.c_str());
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_pad_push_event(second->srcpad, gst_event_new_segment(&segment));
+  };
+  const auto both = [&](const std::string& what, gst::BufferPtr one, gst::BufferPtr other) {
+    EXPECT_EQ(gst_pad_push(second->srcpad, other.release()), GST_FLOW_OK) << what;
+    c.PushUntil(what, std::move(one), "buffer");
+  };
+  gst_harness_set_live(c.harness(), FALSE);
+  gst_harness_set_live(second.get(), FALSE);
+  c.Ask();
+  const std::string caps = CapsText(2, 1, false);
+  c.Begin(caps);
+  begin(caps);
+  both("at once", At(Row(2, 1), {0}), At(Row(2, 5), {0}));
+  both("the second is later", At(Row(2, 1), {100}), At(Row(2, 5), {180}));
+  both("the first is later", At(Row(2, 1), {290}), At(Row(2, 5), {210, 90}));
+  EXPECT_EQ(gst_pad_push(second->srcpad, At(Row(2, 6), {300, 50}).release()), GST_FLOW_OK);
+  c.Push("of a later turn", At(Row(2, 1), {400}));
+  EXPECT_EQ(gst_pad_push(second->srcpad, At(Row(2, 7), {410}).release()), GST_FLOW_OK);
+  c.Await("of the same", "buffer");
+  both("with a pose", WithPose(At(Row(2, 1), {500})), At(Row(2, 5), {500}));
+  both("without times", Row(2, 1), Row(2, 5));
+  both("slices", At(Row(2, 1), {600, 50, {6, 0, 2, 0}}), At(Row(2, 5), {600, 50, {6, 1, 2, 0}}));
+  both("slices again", At(Row(2, 1), {650, 50, {6, 1, 2, 0}}), At(Row(2, 5), {650}));
+  gst_pad_push_event(second->srcpad, gst_event_new_gap(800 * GST_MSECOND, 100 * GST_MSECOND));
+  c.PushUntil("beside a gap", At(Row(2, 1), {800}), "buffer");
+  gst_harness_set_src_caps_str(
+      second.get(), CapsText(1, 1, false, "intensity:F32:0,x:F32:4,y:F32:8,z:F32:12", 16).c_str());
+  both("of another layout", At(Row(2, 1), {900}), At(Floats({9, 1, 2, 3}), {900}));
+  gst_child_proxy_set(GST_CHILD_PROXY(c.element()), "sink_1::transform", "10,0,0,0,0,180", nullptr);
+  both("turned", At(Row(2, 1), {1'000}), At(Floats({9, 1, 2, 3}), {1'000}));
+  gst_child_proxy_set(GST_CHILD_PROXY(c.element()), "sink_1::transform", "", nullptr);
+  for (GstHarness* h : {c.harness(), second.get()})
+    gst_pad_push_event(h->srcpad, gst_event_new_flush_start());
+  for (GstHarness* h : {c.harness(), second.get()})
+    gst_pad_push_event(h->srcpad, gst_event_new_flush_stop(TRUE));
+  c.PushSegment(GST_FORMAT_TIME, 2 * GST_SECOND);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_push_event(second->srcpad, gst_event_new_segment(&segment));
+  both("behind a flush", At(Row(2, 1), {2'000}), At(Floats({9, 1, 2, 3}), {10}));
+  gst_pad_push_event(second->srcpad, gst_event_new_eos());
+  c.PushUntil("alone", At(Row(2, 1), {2'100}), "buffer");
+  gst_pad_push_event(c.harness()->srcpad, gst_event_new_eos());
+  c.Await("ended", "event eos");
+  c.Stop();
+  c.Begin(caps);
+  begin(caps);
+  both("in a second run", At(Row(2, 1), {0}), At(Row(2, 5), {0}));
+  both("slices", At(Row(2, 1), {100, 50, {6, 0, 2, 0}}), At(Row(2, 5), {100}));
+  EXPECT_EQ(gst_pad_push(second->srcpad, At(Row(2, 1), {200}).release()), GST_FLOW_OK);
+  c.PushUntil("of another size", At(Row(3, 1), {200}), "event eos");
+}
+
 const std::size_t kCourses = AddGoldenCourses(
     "GoldenCourses",
     {
@@ -292,6 +353,7 @@ const std::size_t kCourses = AddGoldenCourses(
          [](Course& c) { AssemblerCourse(c, CapsText(2, 2, false), 4); }},
         {"assembler_points", "scanassembler",
          [](Course& c) { AssemblerCourse(c, CapsText(3, 1, false), 3); }},
+        {"merge", "pointcloudmerge", MergeCourse, {"sink_0"}},
         {"parse_bytes", "pointcloudparse", ParseBytesCourse},
         {"parse_bytes_at_20", "pointcloudparse framerate=20/1", ParseBytesCourse},
         {"parse_files", "pointcloudparse", ParseFilesCourse},
