@@ -23,7 +23,7 @@ constexpr const char* kDiscont = "Lidar-Discont";
 constexpr const char* kMessageId = "Nats-Msg-Id";  // JetStream stores each id once
 
 constexpr guint kMaxSlices = 4'096;
-constexpr std::size_t kMaxHeader = 512;
+constexpr std::size_t kMaxHeader = 512;  // the longest pose: 7 doubles, 21 floats and an integer
 constexpr std::size_t kMaxSubject = 200;
 
 /// Writes numbers with blanks between them.
@@ -100,7 +100,10 @@ void WriteMetas(GstBuffer* buffer, HeaderWriter* headers) {
     for (const double v : pose.position) w.Add(v);
     for (const double v : pose.orientation) w.Add(v);
     w.Add(static_cast<guint>(pose.tracking));
-    headers->Set(kPose, w.Add(pose.position_deviation).Add(pose.orientation_deviation).text());
+    for (int row = 0; row < 6; ++row)
+      for (int column = row; column < 6; ++column)
+        w.Add(static_cast<float>(pose.covariance[row * 6 + column]));
+    headers->Set(kPose, w.text());
   }
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT)) headers->Set(kDiscont, "1");
 }
@@ -145,8 +148,13 @@ bool ReadPose(natsMsg* message, GstBuffer* buffer) {
   for (double& v : pose.orientation)
     if (!r.Get(&v) || !std::isfinite(v)) return false;
   if (!r.Get(&tracking) || tracking > GST_LIDAR_TRACKING_LOST) return false;
-  for (double* v : {&pose.position_deviation, &pose.orientation_deviation})
-    if (!r.Get(v) || !std::isfinite(*v)) return false;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      float v = 0;
+      if (!r.Get(&v) || !std::isfinite(v)) return false;
+      pose.covariance[row * 6 + column] = pose.covariance[column * 6 + row] = double{v};
+    }
+  }
   if (!r.done()) return false;
   pose.tracking = static_cast<GstLidarTracking>(tracking);
   gst_lidar_buffer_set_pose(buffer, &pose);

@@ -67,6 +67,7 @@ struct Counters {
   gdouble inlier_share = 0;
   gdouble position_deviation = 0;
   gdouble orientation_deviation = 0;
+  Covariance covariance{};
 };
 
 const std::array<Stat<Counters>, 14> kStats = {{
@@ -124,7 +125,9 @@ GST_ELEMENT_REGISTER_DEFINE(lidarodometry, "lidarodometry", GST_RANK_NONE,
 static StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_ODOMETRY(object)->state;
   std::lock_guard lock(state.mutex);
-  return ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
+  StructurePtr stats = ToStructure("application/x-lidar-odometry-stats", kStats, state.counters);
+  SetCovariance(state.counters.covariance.data(), stats.get());
+  return stats;
 }
 
 static const std::array<Property<Settings>, 10> kProperties = {{
@@ -154,7 +157,7 @@ static const std::array<Property<Settings>, 10> kProperties = {{
     {"stats",
      "scans, scans-lost, scans-degenerate, scans-with-imu, maps, loops, local-maps, "
      "scans-not-in-local-maps, scan-time [ns], longest-scan-time [ns], map-voxels, inlier-share, "
-     "position-deviation [m], orientation-deviation [rad]",
+     "position-deviation [m], orientation-deviation [rad], covariance [m^2, rad^2]",
      ReadStats},
 }};
 
@@ -180,6 +183,7 @@ static void CountScan(State* state, const Estimate& estimate, GstClockTime time)
   c.inlier_share = estimate.inlier_share;
   c.position_deviation = lidar::gst::PositionDeviation(estimate);
   c.orientation_deviation = lidar::gst::OrientationDeviation(estimate);
+  c.covariance = lidar::gst::CovarianceOf(estimate);
 }
 
 /// Warns when tracking begins to fail, once until tracking works again.

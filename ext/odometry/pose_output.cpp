@@ -39,6 +39,12 @@ GstBuffer* ToBuffer(const std::vector<std::uint8_t>& bytes, Time time, GstClockT
 
 }  // namespace
 
+Covariance CovarianceOf(const Estimate& e) {
+  Covariance rows;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(rows.data()) = e.covariance;
+  return rows;
+}
+
 double PositionDeviation(const Estimate& e) {
   return std::sqrt(e.covariance.topLeftCorner<3, 3>().trace());
 }
@@ -50,11 +56,13 @@ double OrientationDeviation(const Estimate& e) {
 GstLidarPose ToMeta(const Pose& pose, const Estimate& last) {
   const auto& p = pose.position;
   const auto& q = pose.rotation;
-  return {{p.x(), p.y(), p.z()},
-          {q.x(), q.y(), q.z(), q.w()},
-          static_cast<GstLidarTracking>(last.tracking),
-          PositionDeviation(last),
-          OrientationDeviation(last)};
+  GstLidarPose meta{{p.x(), p.y(), p.z()},
+                    {q.x(), q.y(), q.z(), q.w()},
+                    static_cast<GstLidarTracking>(last.tracking),
+                    {}};
+  const Covariance covariance = CovarianceOf(last);
+  std::copy(covariance.begin(), covariance.end(), meta.covariance);
+  return meta;
 }
 
 GstStructure* OdometryMessage(const Estimate& e) {
@@ -62,8 +70,8 @@ GstStructure* OdometryMessage(const Estimate& e) {
   gst_structure_set(told, "timestamp", G_TYPE_UINT64,
                     static_cast<guint64>(e.time.time_since_epoch().count()), "tracking",
                     G_TYPE_STRING, ToString(e.tracking), "inlier-share", G_TYPE_DOUBLE,
-                    e.inlier_share, "position-deviation", G_TYPE_DOUBLE, PositionDeviation(e),
-                    "orientation-deviation", G_TYPE_DOUBLE, OrientationDeviation(e), nullptr);
+                    e.inlier_share, nullptr);
+  SetCovariance(CovarianceOf(e).data(), told);
   return told;
 }
 
@@ -75,8 +83,7 @@ GstStructure* LoopMessage(const Pose& map_from_odometry, std::size_t loops) {
 
 GstBuffer* PoseBuffer(const Estimate& e, GstClockTime pts) {
   cdr::Odometry told = ToOdometry(e.pose);
-  for (Eigen::Index i = 0; i < 36; ++i)
-    told.pose_covariance[static_cast<std::size_t>(i)] = e.covariance(i / 6, i % 6);
+  told.pose_covariance = CovarianceOf(e);
   auto bytes = cdr::WritePose(told, static_cast<std::uint64_t>(e.tracking));
   // WritePose() leaves out a covariance of 0, as the first scan has.
   bytes.resize(kPoseSizeWithCovariance);

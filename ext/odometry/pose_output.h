@@ -3,13 +3,15 @@
 #pragma once
 #include <gst/gst.h>
 
+#include "gst/common/pose_covariance.h"
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/odometry/odometry.h"
 
 namespace lidar::gst {
 
-/// Return the typical lengths of the errors [m, rad].
+Covariance CovarianceOf(const odometry::Estimate& estimate);
+/// Return the roots of the sums of the variances in three directions [m, rad].
 double PositionDeviation(const odometry::Estimate& estimate);
 double OrientationDeviation(const odometry::Estimate& estimate);
 /// Returns the meta of `pose`, with the confidence of `last`, the scan before it.

@@ -62,7 +62,7 @@ struct Summary {
 };
 constexpr double kMs = 1e-6;  // of ns
 // Reports of a sender in another pipeline count, too; later rows win.
-constexpr std::array<Summary, 22> kSummaries = {{
+constexpr std::array<Summary, 23> kSummaries = {{
     {"target_bitrate", "sender_target_bitrate", "sender_reports"},
     {"sent_bitrate", "sender_sent_bitrate", "sender_reports"},
     {"estimated_capacity", "sender_estimated_capacity", "sender_reports"},
@@ -83,6 +83,7 @@ constexpr std::array<Summary, 22> kSummaries = {{
     {"packets_ce", "packets_ce", "packets_ce"},
     {"slices_lost", "slices_lost", "slices_lost"},
     {"position_deviation", "position_deviation", "position_deviation"},
+    {"pose_covariance", "covariance", "scans_degenerate"},
     {"poses_degenerate", "scans_degenerate", "scans_degenerate"},
     {"poses_lost", "scans_lost", "scans_degenerate"},
 }};
@@ -96,7 +97,8 @@ void AddSummaries(const json& elements, json* message) {
     for (const json& element : elements) {
       const auto value = element.find(summary.from);
       const auto beside = element.find(summary.beside);
-      if (beside == element.end() || value == element.end() || !value->is_number()) continue;
+      if (beside == element.end() || value == element.end()) continue;
+      if (!value->is_number() && !value->is_array()) continue;
       if (IsSenders(summary) && *beside == 0) continue;  // no report yet
       if (summary.scale < 1)
         (*message)[summary.name] = value->get<double>() * summary.scale;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/lidar/gstlidar.h"
 
+#include "gst/common/pose_covariance.h"
+
 namespace {
 
 // GStreamer takes a meta's name only once in a process.
@@ -95,12 +97,12 @@ GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer) {
 void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPose* pose) {
   const gdouble* p = pose->position;
   const gdouble* q = pose->orientation;
-  gst_structure_set(WritableMeta(buffer, GST_LIDAR_POSE_META_NAME), "x", G_TYPE_DOUBLE, p[0], "y",
-                    G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2], "qx", G_TYPE_DOUBLE, q[0], "qy",
-                    G_TYPE_DOUBLE, q[1], "qz", G_TYPE_DOUBLE, q[2], "qw", G_TYPE_DOUBLE, q[3],
-                    "tracking", G_TYPE_UINT, static_cast<guint>(pose->tracking),
-                    "position-deviation", G_TYPE_DOUBLE, pose->position_deviation,
-                    "orientation-deviation", G_TYPE_DOUBLE, pose->orientation_deviation, nullptr);
+  GstStructure* s = WritableMeta(buffer, GST_LIDAR_POSE_META_NAME);
+  gst_structure_set(s, "x", G_TYPE_DOUBLE, p[0], "y", G_TYPE_DOUBLE, p[1], "z", G_TYPE_DOUBLE, p[2],
+                    "qx", G_TYPE_DOUBLE, q[0], "qy", G_TYPE_DOUBLE, q[1], "qz", G_TYPE_DOUBLE, q[2],
+                    "qw", G_TYPE_DOUBLE, q[3], "tracking", G_TYPE_UINT,
+                    static_cast<guint>(pose->tracking), nullptr);
+  lidar::gst::SetCovariance(pose->covariance, s);
 }
 
 gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose) {
@@ -112,9 +114,8 @@ gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose) {
       !gst_structure_get(s, "x", G_TYPE_DOUBLE, &p[0], "y", G_TYPE_DOUBLE, &p[1], "z",
                          G_TYPE_DOUBLE, &p[2], "qx", G_TYPE_DOUBLE, &q[0], "qy", G_TYPE_DOUBLE,
                          &q[1], "qz", G_TYPE_DOUBLE, &q[2], "qw", G_TYPE_DOUBLE, &q[3], "tracking",
-                         G_TYPE_UINT, &tracking, "position-deviation", G_TYPE_DOUBLE,
-                         &pose->position_deviation, "orientation-deviation", G_TYPE_DOUBLE,
-                         &pose->orientation_deviation, nullptr)) {
+                         G_TYPE_UINT, &tracking, nullptr) ||
+      !lidar::gst::GetCovariance(s, pose->covariance)) {
     return FALSE;
   }
   pose->tracking = static_cast<GstLidarTracking>(MIN(tracking, GST_LIDAR_TRACKING_LOST));

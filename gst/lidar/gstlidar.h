@@ -72,9 +72,9 @@ typedef struct {
   gdouble position[3];    /* x, y, z [m] */
   gdouble orientation[4]; /* unit quaternion x, y, z, w: sensor to start */
   GstLidarTracking tracking;
-  /* Typical length of the error since the start, after the last whole scan. */
-  gdouble position_deviation;    /* [m] */
-  gdouble orientation_deviation; /* [rad] */
+  /* Of the error since the start, after the last whole scan: x, y, z [m], and turns about these
+   * axes [rad]. Symmetric, row by row, as in nav_msgs/Odometry. */
+  gdouble covariance[36];
 } GstLidarPose;
 
 GST_LIDAR_API void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPose* pose);

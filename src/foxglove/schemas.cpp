@@ -151,8 +151,11 @@ std::string StatisticsSchema() {
        {{"type", "object"},
         {"title", "elements"},
         {"description", "The property stats of each element, by its name"}}}};
-  for (const StatisticsField& field : kStatisticsFields)
-    properties[field.name] = {{"type", "number"}, {"description", field.description}};
+  for (const StatisticsField& field : kStatisticsFields) {
+    nlohmann::json& property = properties[field.name];
+    property = {{"type", field.is_array ? "array" : "number"}, {"description", field.description}};
+    if (field.is_array) property["items"] = {{"type", "number"}};
+  }
   return nlohmann::json{
       {"title", "lidar.Statistics"}, {"type", "object"}, {"properties", properties}}
       .dump();
@@ -173,7 +176,10 @@ const std::vector<StatisticsField> kStatisticsFields = {
     {"packets_lost", "Packets that the network lost"},
     {"packets_ce", "Packets that the network marked"},
     {"slices_lost", "Slices that did not arrive whole"},
-    {"position_deviation", "One standard deviation of the odometry's error since the start [m]"},
+    {"position_deviation",
+     "Of the odometry since the start: root of the sum of the variances of x, y and z [m]"},
+    {"pose_covariance",
+     "Of the odometry since the start, 6 x 6: x, y, z [m], and turns about these axes [rad]", true},
     {"poses_degenerate", "Scans that did not show the motion along one direction"},
     {"poses_lost", "Scans that did not fit the map of the odometry"},
 };

@@ -33,6 +33,7 @@ std::vector<std::uint8_t> FileDescriptorSet();
 struct StatisticsField {
   const char* name;
   const char* description;  // with its unit
+  bool is_array = false;    // of numbers
 };
 extern const std::vector<StatisticsField> kStatisticsFields;
 

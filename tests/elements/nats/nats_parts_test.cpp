@@ -2,6 +2,8 @@
 // The parts of the plugin that need no server.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <random>
@@ -45,8 +47,10 @@ gst::BufferPtr Bytes(std::size_t size) {
 TEST_F(NatsParts, AMessageCarriesAllThatABufferHas) {
   const gst::BufferPtr buffer = Bytes(100);
   const GstLidarSlice slice{4'000'000'000, 3, 8, 512};
-  const GstLidarPose pose{
-      {1.5, -2.25, 1e-300}, {0.1, 0.2, 0.3, 0.9}, GST_LIDAR_TRACKING_LOST, 0.5, 0.25};
+  GstLidarPose pose{{1.5, -2.25, 1e-300}, {0.1, 0.2, 0.3, 0.9}, GST_LIDAR_TRACKING_LOST, {}};
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column)
+      pose.covariance[row * 6 + column] = std::ldexp(row * column - 7, row + column - 20);
   gst_lidar_buffer_set_slice(buffer.get(), &slice);
   gst_lidar_buffer_set_pose(buffer.get(), &pose);
   gst_lidar_buffer_set_capture_time(buffer.get(), 1'764'000'000'123'456'789);
@@ -69,8 +73,24 @@ TEST_F(NatsParts, AMessageCarriesAllThatABufferHas) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(back.position[i], pose.position[i]);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(back.orientation[i], pose.orientation[i]);
   EXPECT_EQ(back.tracking, pose.tracking);
-  EXPECT_EQ(back.position_deviation, 0.5);
-  EXPECT_EQ(back.orientation_deviation, 0.25);
+  for (int i = 0; i < 36; ++i) EXPECT_EQ(back.covariance[i], pose.covariance[i]) << i;
+}
+
+TEST_F(NatsParts, TheLongestPoseComesBack) {
+  const gst::BufferPtr buffer = Bytes(1);
+  constexpr double kLongDouble = -1.2345678901234567e-301;
+  const auto kLongFloat = double{-1.23456794e-31F};
+  GstLidarPose pose{};
+  std::fill_n(pose.position, 3, kLongDouble);
+  std::fill_n(pose.orientation, 4, kLongDouble);
+  std::fill_n(pose.covariance, 36, kLongFloat);
+  gst_lidar_buffer_set_pose(buffer.get(), &pose);
+  const auto read = Read(WriteMessage("a", nullptr, kId, {1, 2}, buffer.get()).get());
+  ASSERT_TRUE(read);
+  GstLidarPose back{};
+  ASSERT_TRUE(gst_lidar_buffer_get_pose(read->buffer.get(), &back));
+  EXPECT_EQ(back.orientation[3], kLongDouble);
+  EXPECT_EQ(back.covariance[35], kLongFloat);
 }
 
 TEST_F(NatsParts, ABareBufferComesBackBare) {
@@ -83,32 +103,45 @@ TEST_F(NatsParts, ABareBufferComesBackBare) {
   EXPECT_EQ(GST_BUFFER_DURATION(read->buffer.get()), GST_CLOCK_TIME_NONE);
 }
 
+const std::string kZeros = " 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0";  // a covariance
+
 struct BadHeader {
   const char* name;
-  const char* value;
+  std::string value;
 };
 class NatsBadHeader : public NatsParts, public ::testing::WithParamInterface<BadHeader> {};
 INSTANTIATE_TEST_SUITE_P(
     All, NatsBadHeader,
-    ::testing::Values(
-        BadHeader{"Lidar-Caps", "0123456789ABCDEF"}, BadHeader{"Lidar-Caps", "01"},
-        BadHeader{"Lidar-Caps", "../../../../etc/"}, BadHeader{"Lidar-Place", "1"},
-        BadHeader{"Lidar-Place", "1 -2"}, BadHeader{"Lidar-Place", "1 2 3"},
-        BadHeader{"Lidar-Place", " 1 2"}, BadHeader{"Lidar-Place", "1  2"},
-        BadHeader{"Lidar-Place", "99999999999999999999 1"}, BadHeader{"Lidar-Capture-Time", "-1"},
-        BadHeader{"Lidar-Capture-Time", "18446744073709551615"},
-        BadHeader{"Lidar-Capture-Time", "12x"}, BadHeader{"Lidar-Duration", "1e9"},
-        BadHeader{"Lidar-Slice", "1 2 3"}, BadHeader{"Lidar-Slice", "1 8 8 0"},
-        BadHeader{"Lidar-Slice", "1 0 0 0"}, BadHeader{"Lidar-Slice", "1 0 4097 0"},
-        BadHeader{"Lidar-Slice", "4294967296 0 1 0"}, BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1"},
-        BadHeader{"Lidar-Pose", "nan 0 0 0 0 0 1 1"}, BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 4"},
-        BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1e999 1"}));
+    ::testing::Values(BadHeader{"Lidar-Caps", "0123456789ABCDEF"}, BadHeader{"Lidar-Caps", "01"},
+                      BadHeader{"Lidar-Caps", "../../../../etc/"}, BadHeader{"Lidar-Place", "1"},
+                      BadHeader{"Lidar-Place", "1 -2"}, BadHeader{"Lidar-Place", "1 2 3"},
+                      BadHeader{"Lidar-Place", " 1 2"}, BadHeader{"Lidar-Place", "1  2"},
+                      BadHeader{"Lidar-Place", "99999999999999999999 1"},
+                      BadHeader{"Lidar-Capture-Time", "-1"},
+                      BadHeader{"Lidar-Capture-Time", "18446744073709551615"},
+                      BadHeader{"Lidar-Capture-Time", "12x"}, BadHeader{"Lidar-Duration", "1e9"},
+                      BadHeader{"Lidar-Slice", "1 2 3"}, BadHeader{"Lidar-Slice", "1 8 8 0"},
+                      BadHeader{"Lidar-Slice", "1 0 0 0"}, BadHeader{"Lidar-Slice", "1 0 4097 0"},
+                      BadHeader{"Lidar-Slice", "4294967296 0 1 0"},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1"},
+                      BadHeader{"Lidar-Pose", "nan 0 0 0 0 0 1 1" + kZeros},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 4" + kZeros},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1e999 1" + kZeros},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 1 0" + kZeros},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 1 0.5 0.01"}));
+
+TEST_F(NatsParts, APoseOfTheRightLengthIsRead) {
+  const gst::BufferPtr buffer = Bytes(10);
+  const MessagePtr message = WriteMessage("a", nullptr, kId, {1, 2}, buffer.get());
+  natsMsgHeader_Set(message.get(), "Lidar-Pose", ("0 0 0 0 0 0 1 1" + kZeros).c_str());
+  EXPECT_TRUE(Read(message.get()));
+}
 
 TEST_P(NatsBadHeader, IsRefused) {
   const gst::BufferPtr buffer = Bytes(10);
   const MessagePtr message = WriteMessage("a", nullptr, kId, {1, 2}, buffer.get());
   ASSERT_TRUE(Read(message.get()));
-  natsMsgHeader_Set(message.get(), GetParam().name, GetParam().value);
+  natsMsgHeader_Set(message.get(), GetParam().name, GetParam().value.c_str());
   EXPECT_FALSE(Read(message.get())) << GetParam().name << ": " << GetParam().value;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/pose_covariance.h"
 #include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
 
@@ -116,11 +118,15 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   ASSERT_TRUE(gst_lidar_buffer_get_pose(scans.back().get(), &last));
   EXPECT_EQ(first.tracking, GST_LIDAR_TRACKING_STARTED);
   EXPECT_EQ(last.tracking, GST_LIDAR_TRACKING_OK);
-  EXPECT_EQ(first.position_deviation, 0);
-  EXPECT_GT(last.position_deviation, 0);
-  EXPECT_LT(last.position_deviation, 1);
-  EXPECT_GT(last.orientation_deviation, 0);
-  EXPECT_LT(last.orientation_deviation, 0.1);
+  EXPECT_EQ(first.covariance[0], 0);
+  EXPECT_GT(last.covariance[0], 0);
+  EXPECT_LT(last.covariance[0], 1);
+  EXPECT_GT(last.covariance[35], 0);
+  EXPECT_LT(last.covariance[35], 0.01);
+  EXPECT_NE(last.covariance[5], 0) << "a turn moves the position";
+  Covariance told;
+  ASSERT_TRUE(GetCovariance(Stats().get(), told.data()));
+  EXPECT_TRUE(std::equal(told.begin(), told.end(), last.covariance));
   EXPECT_LT(Distance(first), 0.01);
   EXPECT_NEAR(Distance(last), 9, 0.5);
   EXPECT_EQ(Count("scans"), 10U);
@@ -307,6 +313,9 @@ TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
       offset += sizeof value;
     }
     EXPECT_EQ(map.data()[offset], count == 0 ? GST_LIDAR_TRACKING_STARTED : GST_LIDAR_TRACKING_OK);
+    Covariance covariance;
+    ASSERT_TRUE(GetCovariance(told, covariance.data()));
+    EXPECT_EQ(std::memcmp(map.data() + offset + 8, covariance.data(), sizeof covariance), 0);
     guint64 time = 0;
     gst_structure_get_uint64(told, "timestamp", &time);
     EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer), time);

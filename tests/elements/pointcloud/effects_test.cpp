@@ -35,7 +35,7 @@ gst::BufferPtr Cloud() {
   GST_BUFFER_DURATION(cloud.get()) = 100 * GST_MSECOND;
   const GstLidarSlice whole{0, 0, 1, 0};
   gst_lidar_buffer_set_slice(cloud.get(), &whole);
-  const GstLidarPose pose{{1, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
+  const GstLidarPose pose{{1, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
   gst_lidar_buffer_set_pose(cloud.get(), &pose);
   return cloud;
 }

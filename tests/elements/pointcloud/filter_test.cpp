@@ -167,7 +167,7 @@ TEST_F(Filter, PutsCloudsWhereTheirPoseSays) {
   ASSERT_EQ(Push(points), GST_FLOW_OK);  // without a pose
   EXPECT_EQ(gst_harness_buffers_received(h_.get()), 0U);
   GstBuffer* buffer = gst_buffer_new_memdup(points.data(), points.size());
-  const GstLidarPose pose{{10, 20, 30}, {0, 0, 1, 0}, GST_LIDAR_TRACKING_OK, 0, 0};
+  const GstLidarPose pose{{10, 20, 30}, {0, 0, 1, 0}, GST_LIDAR_TRACKING_OK, {}};
   gst_lidar_buffer_set_pose(buffer, &pose);
   ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
   const BufferPtr out(gst_harness_pull(h_.get()));

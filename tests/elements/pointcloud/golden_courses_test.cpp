@@ -72,7 +72,7 @@ gst::BufferPtr At(gst::BufferPtr buffer, const Stamp& stamp) {
 }
 
 gst::BufferPtr WithPose(gst::BufferPtr buffer) {
-  const GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
+  const GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
   gst_lidar_buffer_set_pose(buffer.get(), &pose);
   return buffer;
 }

@@ -56,7 +56,7 @@ void FilterClouds(GstHarness* h) {
   for (const double range : {5.0, 3.0}) {
     g_object_set(h->element, "max-range", range, nullptr);
     auto cloud = At(Points(2, 4), 100, 1, 0, 1);
-    const GstLidarPose pose{{1, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
+    const GstLidarPose pose{{1, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
     gst_lidar_buffer_set_pose(cloud.get(), &pose);
     Push(h, std::move(cloud));
   }

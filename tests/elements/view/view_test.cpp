@@ -59,7 +59,7 @@ class View : public ::testing::Test {
     const GstLidarSlice slice{scan, 0, 1, 0};
     gst_lidar_buffer_set_slice(buffer.get(), &slice);
     const GstLidarPose pose{
-        {place[0], place[1], place[2]}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
+        {place[0], place[1], place[2]}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
     gst_lidar_buffer_set_pose(buffer.get(), &pose);
     return Push(std::move(buffer), scan * 100 * GST_MSECOND);
   }
@@ -247,7 +247,7 @@ TEST_F(View, TakesPosesThatMakeNoSense) {
 
 TEST(TrailMap, IsBoundedHoweverLongTheWay) {
   TrailMap map(1000);
-  GstLidarPose pose{{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
+  GstLidarPose pose{{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
   for (int i = 0; i < 40'000; ++i) {
     pose.position[0] = i;
     map.MoveTo(pose, 0.1 * i);
@@ -264,10 +264,10 @@ TEST(TrailMap, IsBoundedHoweverLongTheWay) {
 TEST(TrailMap, FollowsTheVelocityWithinAScan) {
   TrailMap map(1000);
   const double half = std::sqrt(0.5);
-  map.MoveTo({{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0}, 10.0);
-  map.MoveTo({{2, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0}, 10.1);
+  map.MoveTo({{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 10.0);
+  map.MoveTo({{2, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 10.1);
   EXPECT_NEAR(map.PoseAfter(0.05).position[0], 3, 1e-5);
-  map.MoveTo({{4, 0, 0}, {0, 0, half, half}, GST_LIDAR_TRACKING_OK, 0, 0}, 20);
+  map.MoveTo({{4, 0, 0}, {0, 0, half, half}, GST_LIDAR_TRACKING_OK, {}}, 20);
   const Rigid after_a_gap = map.PoseAfter(0.05);
   EXPECT_NEAR(after_a_gap.position[0], 4, 1e-5);
   EXPECT_NEAR(after_a_gap.heading(), 1.5708F, 1e-3);

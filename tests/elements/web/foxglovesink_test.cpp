@@ -184,7 +184,7 @@ TEST(FoxgloveSink, SendsThePosesThatOdometryPutOnClouds) {
   Peer peer(&sink);
   peer.Subscribe("/points", 1);
   std::vector<float> point = {1, 0, 0, 0};
-  const GstLidarPose pose = {{4, 5, 6}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
+  const GstLidarPose pose = {{4, 5, 6}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
   const auto push = [&] {
     GstBuffer* buffer = gst_buffer_new();
     point.resize(16, 1);

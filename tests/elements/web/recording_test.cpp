@@ -281,7 +281,7 @@ class KeptStream {
     GstBuffer* kept = gst_buffer_copy(buffer);
     const std::lock_guard lock(mutex_);
     GST_BUFFER_OFFSET(kept) = buffers_.size() + 1;
-    GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, 0, 0};
+    GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
     if (buffers_.size() % kScanSlices == 0) gst_lidar_buffer_set_pose(kept, &pose);
     buffers_.emplace_back(gst_sample_new(kept, caps.get(), nullptr, nullptr));
     gst_buffer_unref(kept);

@@ -62,7 +62,8 @@ TEST(Statistics, SumUpWhatElementsTellInTheirUnits) {
   GstElement* depay = Talking("depay", "s,slices-lost=(guint64)11;");
   GstElement* odometry = Talking(
       "odometry",
-      "s,position-deviation=(double)0.5,scans-lost=(guint64)3,scans-degenerate=(guint64)4;");
+      "s,position-deviation=(double)0.5,covariance=(double)<0.25,0.125>,scans-lost=(guint64)3,"
+      "scans-degenerate=(guint64)4;");
   GstElement* bin = gst_bin_new("inner");
   gst_bin_add(GST_BIN(pipeline.get()), bin);
   gst_bin_add_many(GST_BIN(bin), coder, net, nullptr);
@@ -76,6 +77,7 @@ TEST(Statistics, SumUpWhatElementsTellInTheirUnits) {
       {"position_deviation", 0.5}, {"poses_lost", 3},     {"poses_degenerate", 4}};
   for (const auto& [name, value] : expected)
     EXPECT_DOUBLE_EQ(message.value(name, -1.0), value) << name;
+  EXPECT_EQ(message["pose_covariance"], nlohmann::json({0.25, 0.125}));
   EXPECT_EQ(message["elements"].size(), 5U);
   EXPECT_EQ(message["elements"]["net"]["rtt"], 25'000'000);
   const auto now = static_cast<double>(g_get_real_time()) / 1e6;
