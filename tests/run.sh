@@ -71,8 +71,8 @@ patient=(--timeout-multiplier 20)
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 
 # targets DIR SUITE...: prints, in ninja's names, the targets that tests of the suites need, without
-# the tests in $dear. With the suite `product` it prints these tests' targets, too, and all default
-# targets outside of tests/.
+# the tests in $dear. With the suite `product` it also prints the targets of the tests in $dear, and
+# all default targets outside of tests/.
 targets() {
   local dir=$1
   shift
