@@ -35,7 +35,7 @@ constexpr double kLeastStep_m = 0.5;
 constexpr std::size_t kMostCandidates = 8;
 constexpr std::size_t kFewestMaps = 3;  // the first, the last, and one that can be forgotten
 
-/// Shares of one map's points that are near the other map.
+/// Share of one map's points that are near the other map, and share of these that fit it.
 struct Shares {
   double overlap = 0;
   double fit = 0;

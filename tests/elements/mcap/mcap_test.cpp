@@ -182,7 +182,7 @@ TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
     gst_harness_push_event(late, gst_event_new_eos());
   }
   // The sink of the late stream would wait for ever without gaps, and the queue before the other
-  // would be full.
+  // sink would be full.
   const auto played = Play("mcapsrc name=m" + At("a.mcap") +
                            " m.src_0 ! queue max-size-buffers=10 ! fakesink name=see0 m.src_1 ! "
                            "queue ! fakesink name=see1");

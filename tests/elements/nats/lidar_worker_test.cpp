@@ -125,7 +125,8 @@ class LidarWorker : public NatsTest {
   }
   std::uint64_t LastOf(const char* stream) { return InfoOf(stream)->State.LastSeq; }
   std::string Record() { return Newest("r1.front").text; }
-  /// The robot drives at 10 m/s, and its record had another velocity.
+  /// Expects poses without the record's velocity: the robot drives at 10 m/s, and the record had
+  /// another one.
   void ExpectNoVelocityOfTheRecord(NatsPipeline* consumer) {
     ASSERT_TRUE(consumer->WaitForBuffers(10));
     EXPECT_LT(LargestJump(consumer->buffers()), 5);
