@@ -30,9 +30,9 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
 /// `running_time` may be GST_CLOCK_TIME_NONE.
 GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, RecordedStream* stream,
                            GstBuffer* buffer, GstClockTime running_time);
-/// A stream ended; with the last one the recording is complete.
+/// Ends a stream. The end of the last stream completes the recording.
 void McapSinkStreamEnded(GstLidarMcapSink* sink);
-/// Running times restart.
+/// Call it when running times restart.
 void McapSinkFlushed(GstLidarMcapSink* sink);
 /// Returns a topic that no other stream has.
 std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted);

@@ -28,7 +28,8 @@ class Timeline {
     last_ = std::max(last_, time);
     return time;
   }
-  /// The next buffer relates running times anew: they restarted, and the recording continues.
+  /// Running times restarted, and the recording continues: the next buffer relates them to 1970
+  /// anew.
   void Restart() { origin_.reset(); }
 
  private:

@@ -77,7 +77,7 @@ class UdpBatchReceiver {
   int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Datagrams the kernel dropped because the socket's buffer was full, since it was opened.
   guint kernel_drops() const { return kernel_drops_; }
-  /// Begins with another socket: the kernel reports no count before that socket's first drop.
+  /// Resets the count for another socket. The kernel reports no count before its first drop.
   void ForgetDrops() { kernel_drops_ = 0; }
 
  private:

@@ -56,7 +56,7 @@ class RangeGrid {
   /// The step in cells / kParts.
   std::uint32_t parts() const { return parts_; }
   double step_m() const { return 1e-3 / kParts * parts_ * unit_mm_; }
-  /// Cells of the larger bins.
+  /// Number of cells in each of the larger bins.
   std::uint32_t largest_bin() const { return (parts_ + kParts - 1) / kParts; }
   /// The largest distance between a range and RangeOf(BinOf(range)).
   double error_m() const {
@@ -97,7 +97,7 @@ class RangeGrid {
   bool ToRanges(std::vector<std::int32_t>* bins) const {
     std::uint32_t last = 0;
     for (const std::int32_t bin : *bins) last |= static_cast<std::uint32_t>(bin);
-    // `last` is at least the largest bin, and less than twice that.
+    // This `last` is at least the largest bin, and less than twice the largest bin.
     const std::uint64_t parts = (last + std::uint64_t{1}) * parts_ + kParts;
     // Usually 32 bits suffice, and a processor can compute several numbers at once.
     if (parts <= UINT32_MAX && 2 * unit_mm_ * (parts / kParts + 1) <= kMaxRangeMm) {

@@ -29,7 +29,7 @@ class Aggregator {
   /// (running time in 90 kHz) exceed those of the first unit by more than 16 bits.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
   /// Returns the packet, which has the RTP timestamp of its first unit; it is a single unit packet
-  /// if there is only one unit. Returns nothing if there is none.
+  /// if there is only one unit. Returns nothing if there is no unit.
   std::optional<Packet> Take();
   bool empty() const { return units_ == 0; }
 

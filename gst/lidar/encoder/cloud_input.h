@@ -31,7 +31,7 @@ class CloudInput {
   /// Returns nothing after an error message if the buffer does not hold the cloud of its caps.
   std::optional<GstLidarRawSlice> Read(GstLidarEncoder* encoder, const BufferMap& map,
                                        const GstLidarSlice& slice);
-  /// Warns, once, that a cloud was left out whose box is `extent_m` long.
+  /// Warns, once, that a cloud was left out. `extent_m` is the length of its box.
   void WarnOfReach(GstLidarEncoder* encoder, double extent_m);
 
  private:

@@ -47,7 +47,7 @@ class SrtpInput {
 
   /// Links two pads that have no link. Returns false if they do not fit.
   bool Link(GstPad* socket, GstPad* target);
-  /// Gives datagrams of DTLS to `on_dtls`, which are refused without it. Call it before Link().
+  /// Gives DTLS datagrams to `on_dtls`; without it they are refused. Call it before Link().
   void SetDtls(OnDtls on_dtls) { on_dtls_ = std::move(on_dtls); }
   /// All threads may call it. Returns false without the srtp plugin. Keeps the key of the packets
   /// that pass; of more than two newer keys it drops the oldest.

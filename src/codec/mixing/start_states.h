@@ -34,8 +34,8 @@ struct StartStates {
 
   /// Sets all chances to a half, and all weights alike.
   void Reset();
-  /// Rounds to the values of a table, and to low counts of bits, so that a slice can still change
-  /// them.
+  /// Rounds to values that a table can hold. Counters then count as having seen few bits, so that a
+  /// slice can still change them.
   void Round();
   /// Appends the table of rounded states.
   void Write(std::vector<std::uint8_t>* out) const;

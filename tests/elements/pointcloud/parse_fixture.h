@@ -22,7 +22,7 @@ inline BufferPtr Bytes(gsize size, guint8 value = 7) {
 
 class Parse : public ::testing::Test {
  protected:
-  /// A source of bytes, as files are.
+  /// Starts the element behind a source of bytes, such as a file.
   void Start(const std::string& caps, const char* element = "pointcloudparse") {
     h_.reset(gst_harness_new_parse(element));
     gst_harness_play(h_.get());

@@ -113,7 +113,7 @@ class Router {
   std::atomic<bool> loses{false};
   /// Link 1 loses the receiver's datagrams.
   std::atomic<bool> mutes{false};
-  /// Link 1 has a new address at the receiver each time so many milliseconds have passed.
+  /// Link 1 gets a new address at the receiver every so many milliseconds; 0: never.
   std::atomic<int> moves_each_ms{0};
   std::atomic<int> moves{0};
 
