@@ -118,7 +118,9 @@ class RunTrace {
     auto* self = static_cast<RunTrace*>(data);
     if (!GST_PAD_IS_SRC(pad)) return;
     const gst::StringPtr name(gst_pad_get_name(pad));
-    GstPad* sink = gst_pad_new(name.get(), GST_PAD_SINK);
+    static GstStaticPadTemplate any =
+        GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
+    GstPad* sink = gst_pad_new_from_static_template(&any, name.get());
     gst_object_ref_sink(sink);
     gst_pad_set_chain_function(sink, [](GstPad*, GstObject*, GstBuffer* buffer) -> GstFlowReturn {
       gst_buffer_unref(buffer);
