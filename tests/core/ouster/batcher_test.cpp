@@ -170,6 +170,14 @@ TEST_F(Batcher, ANewInitIdEndsTheScanAndStartsAnother) {
   EXPECT_TRUE(slices[9].after_gap);
 }
 
+TEST_F(Batcher, LeavingSoonAfterARestartIsNoLoss) {
+  Packets restarted(packets_.begin(), packets_.begin() + 70);
+  for (std::size_t i = 64; i < restarted.size(); ++i) SetInitId(&restarted[i], 7);
+  Run(restarted);
+  EXPECT_EQ(stats_.restarts, 1U);
+  EXPECT_EQ(stats_.lost_packets, 0U);
+}
+
 TEST_F(Batcher, OneDamagedFrameIdChangesNothing) {
   Packets damaged = packets_;
   damaged[100][3] ^= 0x40;

@@ -50,11 +50,15 @@ class StaticSensor : public ::testing::Test {
     arrived_.clear();
     gst_harness_push_upstream_event(sender_.get(), gst_lidar_event_new_packets_received(&received));
   }
-  /// Passes on what the receiver asks of the sender. Returns true if it asked for a key unit.
+  /// Passes on what the receiver asks of the sender. Returns true if it asked for a key unit, and
+  /// numbered its requests from 1 on.
   bool CarryKeyRequest() {
     bool asked = false;
     while (EventPtr event{gst_harness_try_pull_upstream_event(receiver_.get())}) {
       if (!gst_event_has_name(event.get(), "GstForceKeyUnit")) continue;
+      guint count = 0;
+      gst_structure_get_uint(gst_event_get_structure(event.get()), "count", &count);
+      EXPECT_EQ(count, ++key_requests_);
       asked = true;
       gst_harness_push_upstream_event(sender_.get(), event.release());
     }
@@ -86,6 +90,7 @@ class StaticSensor : public ::testing::Test {
   }
 
   bool acknowledges_ = true;
+  guint key_requests_ = 0;
 
  private:
   /// Adds noise of the sensor to a room that is the same in all scans.

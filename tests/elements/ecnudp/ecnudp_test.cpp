@@ -388,6 +388,30 @@ TEST(EcnUdp, WorksAgainAfterEveryStateCycle) {
   }
 }
 
+/// A batch of datagrams waits in the element while downstream takes the first one.
+TEST(EcnUdpSrc, AStopForgetsDatagramsThatWait) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
+  gst_element_set_state(src->element, GST_STATE_PAUSED);
+  {
+    const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+    for (int i = 0; i < 3; ++i)
+      ASSERT_EQ(gst_harness_push(sink.get(), Payload("before")), GST_FLOW_OK);
+  }
+  const PadPtr pad(gst_element_get_static_pad(src->element, "src"));
+  const gulong probe = gst_pad_add_probe(
+      pad.get(), static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_BUFFER),
+      [](GstPad*, GstPadProbeInfo*, gpointer) { return GST_PAD_PROBE_OK; }, nullptr, nullptr);
+  gst_element_set_state(src->element, GST_STATE_PLAYING);
+  ASSERT_TRUE(test::Eventually([&] { return Stat(src.get(), "packets-received") == 3; }));
+  gst_element_set_state(src->element, GST_STATE_READY);
+  gst_pad_remove_probe(pad.get(), probe);
+  gst_harness_play(src.get());
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  ASSERT_EQ(gst_harness_push(sink.get(), Payload("after")), GST_FLOW_OK);
+  EXPECT_EQ(Text(BufferPtr(gst_harness_pull(src.get())).get()), "after");
+}
+
 /// Sends datagrams to a port of this machine as fast as it can, until it goes out of scope.
 class Flood {
  public:

@@ -260,6 +260,27 @@ TEST_F(FilterByTransforms, CloudsWaitForAStreamOfTransformsThatBeginsAgain) {
   }
 }
 
+/// Clouds behind one that waited in vain do not wait for the same transform, but in a second run.
+TEST_F(FilterByTransforms, ASecondRunWaitsAgain) {
+  Start("target-frame=map tf-timeout=1000000");
+  Tell(moving_.get(), "map", "os", 100, 1);
+  EXPECT_EQ(PushAt(101), GST_FLOW_OK);
+  EXPECT_EQ(Stat("clouds-without-transform"), 1U);
+  gst_element_set_state(h_->element, GST_STATE_NULL);
+  gst_util_set_object_arg(G_OBJECT(h_->element), "tf-timeout", "60000000000");
+  for (const test::Harness* h : {&h_, &fixed_, &moving_}) gst_harness_play(h->get());
+  gst_harness_set_src_caps_str(
+      h_.get(), CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1, ",frame-id=os").c_str());
+  gst_harness_set_src_caps_str(moving_.get(), "application/x-tf,static=false");
+  Tell(moving_.get(), "map", "os", 100, 1);
+  {
+    const Waiter cloud([this] { EXPECT_EQ(PushAt(101), GST_FLOW_OK); });
+    EXPECT_TRUE(cloud.AwaitSleep());
+    Tell(moving_.get(), "map", "os", 102, 3);
+  }
+  EXPECT_EQ(Stat("clouds-without-transform"), 0U);
+}
+
 TEST_F(FilterByTransforms, NobodyWaitsForTransformsOfAPadThatIsGone) {
   Start("target-frame=map tf-timeout=60000000000");
   for (const test::Harness* h : {&fixed_, &moving_})

@@ -267,6 +267,7 @@ void FilesCourse(Course& c) {
     c.Flush();
     c.Push("behind a flush", cloud(4));
     c.Push("of another size", Row(1, 1));
+    c.SetCaps("application/x-pointcloud2,width=1,height=1,point-step=1");
     c.End();
     c.Stop();
   }
