@@ -12,6 +12,10 @@ class EffortHarness {
  public:
   EffortHarness(const std::string& properties, gint scans, gint seconds)
       : harness_(Codec(kLidar, properties)) {
+    SetRate(scans, seconds);
+  }
+  /// Sends caps.
+  void SetRate(gint scans, gint seconds) {
     CloudInfo info = OrganisedInfo(model_, 64);
     info.framerate_n = scans;
     info.framerate_d = seconds;
@@ -65,6 +69,13 @@ TEST(Effort, RisesByItselfWhereThereIsTime) {
 // A slice sweeps in a microsecond here, so that no machine has time.
 TEST(Effort, FallsByItselfWhereThereIsNone) {
   EXPECT_EQ(EffortHarness("effort=auto", 125'000, 1).Push(20), "range-adaptive");
+}
+
+TEST(Effort, StaysWhereOnlyTheCapsAreOthers) {
+  EffortHarness h("effort=auto", 125'000, 1);
+  EXPECT_EQ(h.Push(20), "range-adaptive");
+  h.SetRate(125'001, 1);
+  EXPECT_EQ(h.Push(), "range-adaptive");
 }
 
 }  // namespace

@@ -206,16 +206,48 @@ TEST(OusterLive, GoesOnAfterARestartWithScansAndTimesThatGoOn) {
 
 TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
   SoftwareSensor sensor({});
-  Receiver receiver(sensor.host(), "udp-dest=@auto");
-  ASSERT_TRUE(receiver.Pull());
+  Receiver receiver(sensor.host(), "udp-dest=@auto slices-per-scan=8");
+  const BufferPtr first = receiver.Pull();
+  ASSERT_TRUE(first);
+  const gsize size = gst_buffer_get_size(first.get());
   EXPECT_EQ(receiver.Info().sensor_model->columns_per_scan, 512U);
   ASSERT_EQ(sensor.state().SetConfig(
                 {{"lidar_mode", "1024x10"}, {"udp_profile_lidar", "RNG19_RFL8_SIG16_NIR16_DUAL"}},
                 {false, true}, "127.0.0.1"),
             "");
-  ASSERT_TRUE(receiver.PullUntil(
-      [&](GstBuffer*) { return receiver.Info().sensor_model->columns_per_scan == 1024; }));
+  // The caps of the pad may be newer than a buffer, whose size tells its geometry.
+  bool discont = false;
+  ASSERT_TRUE(receiver.PullUntil([&](GstBuffer* buffer) {
+    discont = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+    return gst_buffer_get_size(buffer) != size;
+  }));
+  EXPECT_TRUE(discont);
+  EXPECT_EQ(receiver.Info().sensor_model->columns_per_scan, 1024U);
   EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
+}
+
+/// The socket's buffer overflows in a pause; then the sensor sends to another port.
+TEST(OusterLive, WhatTheKernelDroppedStaysCountedOnAnotherPort) {
+  SoftwareSensor sensor({});
+  const auto send_to = [&](guint16 port) {
+    EXPECT_EQ(sensor.state().SetConfig({{"udp_port_lidar", port}, {"udp_dest", "127.0.0.1"}},
+                                       {false, true}, "127.0.0.1"),
+              "");
+  };
+  send_to(FreePort());
+  Receiver receiver(sensor.host(), "lidar-port=0 imu=false buffer-size=32768");
+  ASSERT_TRUE(receiver.Pull());
+  receiver.SetState(GST_STATE_PAUSED);
+  g_usleep(300'000);  // thirty buffers of packets
+  receiver.SetState(GST_STATE_PLAYING);
+  const auto dropped = [&] { return Stat(receiver.source(), "dropped-by-kernel"); };
+  ASSERT_TRUE(Eventually([&] { return dropped() > 0; }));
+  receiver.Await("ouster-metadata-changed");
+  send_to(FreePort());
+  ASSERT_TRUE(receiver.Await("ouster-metadata-changed"));
+  receiver.Drain();
+  ASSERT_TRUE(receiver.Pull());
+  EXPECT_GT(dropped(), 0U);
 }
 
 TEST(OusterLive, APauseIsNoLossAndLeavesNothingOldBehind) {

@@ -269,6 +269,7 @@ TEST_F(FilterByTransforms, ASecondRunWaitsAgain) {
   gst_element_set_state(h_->element, GST_STATE_NULL);
   gst_util_set_object_arg(G_OBJECT(h_->element), "tf-timeout", "60000000000");
   for (const test::Harness* h : {&h_, &fixed_, &moving_}) gst_harness_play(h->get());
+  EXPECT_EQ(Stat("transforms"), 0U);
   gst_harness_set_src_caps_str(
       h_.get(), CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1, ",frame-id=os").c_str());
   gst_harness_set_src_caps_str(moving_.get(), "application/x-tf,static=false");
