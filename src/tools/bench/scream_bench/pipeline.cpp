@@ -15,22 +15,22 @@ struct MainLoopUnref {
 };
 
 struct Runner {
-  GstElement* pipeline;
   std::string program;
   const std::function<void()>* tick;
+  const std::function<void()>* end;
   std::unique_ptr<GMainLoop, MainLoopUnref> loop{g_main_loop_new(nullptr, FALSE)};
   bool ending = false;
   int result = 0;
 };
 
-/// Sends EOS, so that queues drain; a second signal stops at once.
+/// Lets queues drain; a second signal stops at once.
 void End(Runner* runner) {
   if (runner->ending) {
     g_main_loop_quit(runner->loop.get());
     return;
   }
   runner->ending = true;
-  gst_element_send_event(runner->pipeline, gst_event_new_eos());
+  (*runner->end)();
   constexpr guint kDrainMs = 1000;
   g_timeout_add(
       kDrainMs,
@@ -62,8 +62,8 @@ void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char
 }
 
 int RunPipeline(GstElement* pipeline, const std::string& program, Duration duration,
-                const std::function<void()>& every_100_ms) {
-  Runner runner{pipeline, program, &every_100_ms};
+                const std::function<void()>& every_100_ms, const std::function<void()>& end) {
+  Runner runner{program, &every_100_ms, &end};
   GstBus* bus = gst_element_get_bus(pipeline);
   const guint watch = gst_bus_add_watch(bus, OnMessage, &runner);
   gst_object_unref(bus);
@@ -92,7 +92,6 @@ int RunPipeline(GstElement* pipeline, const std::string& program, Duration durat
   }
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   g_main_loop_run(runner.loop.get());
-  gst_element_set_state(pipeline, GST_STATE_NULL);
   for (const guint source : {watch, interrupt, terminate, tick}) g_source_remove(source);
   return runner.result;
 }

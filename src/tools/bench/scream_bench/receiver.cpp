@@ -96,6 +96,7 @@ constexpr const char* kCaps =
 class Receiver {
  public:
   explicit Receiver(const BenchOptions& options);
+  ~Receiver() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
   int Run();
 
  private:
@@ -245,10 +246,13 @@ void Receiver::Finish() {
 }
 
 int Receiver::Run() {
-  const int result =
-      RunPipeline(pipeline_.get(), "scream-bench rx", options_.duration, [this] { Tick(); });
+  const int result = RunPipeline(
+      pipeline_.get(), "scream-bench rx", options_.duration, [this] { Tick(); },
+      [this] { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); });
   Finish();
-  return result;
+  if (result != 0 || meter_.packets() > 0) return result;
+  std::fprintf(stderr, "Nothing has come: does \"scream-bench tx\" send, and does UDP pass?\n");
+  return 1;
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ class Sender {
   void Build();
   GstPad* AddSinkPad(GstElement* sink);
   void SendFrames();
+  void StopSending();
   void PushFrame(GstClockTime running_time);
   gst::StructurePtr Stats() const;
   void Tick();
@@ -74,9 +75,15 @@ Sender::Sender(const BenchOptions& options)
 }
 
 Sender::~Sender() {
+  StopSending();
+  gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
+}
+
+/// The thread ends the stream. An EOS event to the pipeline would race with its lists of buffers,
+/// which basesrc of GStreamer 1.22 takes for single ones.
+void Sender::StopSending() {
   stop_ = true;
   if (thread_.joinable()) thread_.join();
-  gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
 }
 
 void Sender::Build() {
@@ -198,12 +205,10 @@ void Sender::Finish(const GstStructure* stats, double seconds) {
 }
 
 int Sender::Run() {
-  gst::StructurePtr last(gst_structure_new_empty("stats"));
-  const int result = RunPipeline(pipeline_.get(), "scream-bench tx", options_.duration, [&] {
-    Tick();
-    if (started_ != Duration{0}) last = Stats();
-  });
-  stop_ = true;
+  const int result = RunPipeline(
+      pipeline_.get(), "scream-bench tx", options_.duration, [this] { Tick(); },
+      [this] { StopSending(); });
+  const gst::StructurePtr last = Stats();
   const double seconds = started_ == Duration{0} ? 0 : Seconds(UnixNow() - started_);
   Finish(last.get(), seconds);
   const bool unheard =
