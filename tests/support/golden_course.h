@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <regex>
@@ -15,25 +13,11 @@
 #include <vector>
 
 #include "gst/common/latency.h"
+#include "tests/support/golden_lines.h"
 #include "tests/support/patience.h"
 #include "tests/support/run_trace.h"
 
 namespace lidar::test {
-
-/// Expects the lines of the file, which UPDATE_GOLDEN=1 in the environment writes.
-inline void ExpectGoldenLines(const Lines& lines, const std::string& path) {
-  if (std::getenv("UPDATE_GOLDEN") != nullptr) {
-    std::ofstream file(path);
-    for (const std::string& line : lines) file << line << "\n";
-  }
-  std::ifstream file(path);
-  ASSERT_TRUE(file.is_open()) << path;
-  std::size_t n = 0;
-  for (std::string line; std::getline(file, line); ++n)
-    ASSERT_EQ(n < lines.size() ? lines[n] : "the end", line)
-        << path << ":" << n + 1 << ". Where this is meant, UPDATE_GOLDEN=1 writes the file.";
-  EXPECT_EQ(lines.size(), n) << path << " is shorter: " << lines[n];
-}
 
 /// The pads of an element that a course uses; null: none.
 struct CoursePads {

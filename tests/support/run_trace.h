@@ -10,11 +10,10 @@
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/base/crc.h"
+#include "tests/support/golden_lines.h"
 #include "tests/support/harness.h"
 
 namespace lidar::test {
-
-using Lines = std::vector<std::string>;
 
 class RunTrace {
  public:
