@@ -111,8 +111,12 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
     if (!EncodeIntegers(settings, image.columns)) return std::nullopt;
     return settings.coder;
   }
+  if (settings.coder == RangeCoder::kBlended) {
+    EncodeByRans(&blended_mask_, &blended_, image.columns);
+    return settings.coder;
+  }
   // The adaptive coder takes slices with too long ranges or too few bits for the mixing coder.
-  EncodeAdaptively(image.columns);
+  EncodeByRans(&mask_coder_, &coder_, image.columns);
   return RangeCoder::kAdaptive;
 }
 
@@ -145,7 +149,7 @@ double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid
   RangeSettings geometry;
   geometry.grid = grid;
   CollectReturns(image, geometry);
-  EncodeAdaptively(image.columns);
+  EncodeByRans(&mask_coder_, &coder_, image.columns);
   const std::size_t bytes = payload_.size();
   payload_.clear();
   return 8.0 * static_cast<double>(bytes);
@@ -225,11 +229,12 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
     if (mask_[i] != 0) lists_.levels[next++] = coarse[image.intensity[i]];
 }
 
-void RangeEncoder::EncodeAdaptively(std::uint32_t columns) {
+template <class Masks, class Coder>
+void RangeEncoder::EncodeByRans(Masks* mask_coder, Coder* coder, std::uint32_t columns) {
   rans_.Start(MaskCoder::Pieces(alignment_.beams(), columns) +
-              SymbolModel::kMostPieces * (lists_.values.size() + lists_.levels.size()));
-  if (has_gaps_) mask_coder_.Encode(mask_, alignment_, columns, &rans_);
-  coder_.Encode({alignment_, mask_, columns}, lists_, &rans_);
+              Coder::kMostPieces * (lists_.values.size() + lists_.levels.size()));
+  if (has_gaps_) mask_coder->Encode(mask_, alignment_, columns, &rans_);
+  coder->Encode({alignment_, mask_, columns}, lists_, &rans_);
   rans_.Finish(&payload_);
 }
 
@@ -276,8 +281,14 @@ bool RangeDecoder::Decode(ByteReader* reader, std::size_t max_points, RangeImage
     return true;
   }
   mask_.assign(image->size(), 1);
-  return header->coder == RangeCoder::kAdaptive ? DecodeAdaptively(*header, payload, image)
-                                                : DecodeIntegers(*header, mask, payload, image);
+  switch (header->coder) {
+    case RangeCoder::kAdaptive:
+      return DecodeByRans(&mask_coder_, &coder_, *header, payload, image);
+    case RangeCoder::kBlended:
+      return DecodeByRans(&blended_mask_, &blended_, *header, payload, image);
+    default:
+      return DecodeIntegers(*header, mask, payload, image);
+  }
 }
 
 double RangeDecoder::error_m() const {
@@ -313,13 +324,14 @@ bool RangeDecoder::DecodeLinked(const RangeHeader& header, ByteView payload, Blo
   return true;
 }
 
-bool RangeDecoder::DecodeAdaptively(const RangeHeader& header, ByteView payload,
-                                    RangeImage* image) {
-  RansDecoder rans(payload, SymbolModel::kMostPieces * header.columns, &padded_);
-  if (header.has_gaps && !mask_coder_.Decode(alignment_, header.columns, &rans, &mask_))
+template <class Masks, class Coder>
+bool RangeDecoder::DecodeByRans(Masks* mask_coder, Coder* coder, const RangeHeader& header,
+                                ByteView payload, RangeImage* image) {
+  RansDecoder rans(payload, Coder::kMostPieces * header.columns, &padded_);
+  if (header.has_gaps && !mask_coder->Decode(alignment_, header.columns, &rans, &mask_))
     return false;
   const BlockShape shape{alignment_, mask_, header.columns};
-  return coder_.Decode(shape, header.grid, &rans, image) && rans.AtEnd();
+  return coder->Decode(shape, header.grid, &rans, image) && rans.AtEnd();
 }
 
 bool RangeDecoder::DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,

@@ -14,6 +14,8 @@
 #include "src/codec/range_header.h"
 #include "src/codec/range_image.h"
 #include "src/codec/rans/adaptive_coder.h"
+#include "src/codec/rans/blended_coder.h"
+#include "src/codec/rans/blended_mask.h"
 #include "src/codec/rans/mask_coder.h"
 
 namespace lidar::codec {
@@ -45,7 +47,8 @@ class RangeEncoder {
  private:
   void CollectReturns(const RangeImage& image, const RangeSettings& settings);
   std::size_t returns() const { return lists_.values.size(); }
-  void EncodeAdaptively(std::uint32_t columns);
+  template <class Masks, class Coder>
+  void EncodeByRans(Masks* mask_coder, Coder* coder, std::uint32_t columns);
   bool EncodeIntegers(const RangeSettings& settings, std::uint32_t columns);
   std::optional<RangeCoder> EncodePayload(const RangeImage& image, const RangeSettings& settings,
                                           BlockLink* link);
@@ -62,6 +65,8 @@ class RangeEncoder {
   bool has_gaps_ = false;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;
+  BlendedMask blended_mask_;
+  BlendedCoder blended_;
   RansEncoder rans_;
   Mask mask_;
   IntegerLists lists_;
@@ -94,7 +99,9 @@ class RangeDecoder {
  private:
   bool DecodeLinked(const RangeHeader& header, ByteView payload, BlockStore* store,
                     RangeImage* image, std::shared_ptr<BlockMemory>* left);
-  bool DecodeAdaptively(const RangeHeader& header, ByteView payload, RangeImage* image);
+  template <class Masks, class Coder>
+  bool DecodeByRans(Masks* mask_coder, Coder* coder, const RangeHeader& header, ByteView payload,
+                    RangeImage* image);
   bool DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
                       RangeImage* image);
   /// Spreads the lists, which are ranges by now, over the pixels that have returns.
@@ -107,6 +114,8 @@ class RangeDecoder {
   bool lacks_reference_ = false;
   MaskCoder mask_coder_;
   AdaptiveCoder coder_;
+  BlendedMask blended_mask_;
+  BlendedCoder blended_;
   Mask mask_;
   IntegerLists lists_;
   std::vector<std::uint8_t> padded_;  // buffer for RansDecoder

@@ -13,7 +13,7 @@ constexpr unsigned kThinnedFlag = 0x40;
 
 bool IsKnown(std::uint8_t coder) {
   return coder >= static_cast<std::uint8_t>(RangeCoder::kDraco) &&
-         coder <= static_cast<std::uint8_t>(RangeCoder::kTemporal);
+         coder <= static_cast<std::uint8_t>(RangeCoder::kBlended);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ enum class RangeCoder : std::uint8_t {
   kAdaptive = 3,  // residuals of our prediction, by adaptive rANS
   kMixing = 4,    // each bit by mixed contexts (docs/mixing-coder.md)
   kTemporal = 5,  // as kMixing, with memory of earlier scans
+  kBlended = 6,   // as kAdaptive, with blended contexts
 };
 
 struct RangeHeader {

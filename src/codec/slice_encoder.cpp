@@ -72,6 +72,7 @@ std::string SliceEncoder::Mode() const {
     case RangeCoder::kMixing:
       return (refers_ ? "range-temporal" : "range-mixing") + std::to_string(effort_);
     case RangeCoder::kTemporal:
+    case RangeCoder::kBlended:
     case RangeCoder::kAdaptive:
       break;
   }

@@ -78,11 +78,11 @@ ResidualGuess BestGuess(const RangeImage& image, std::uint32_t tangent_um,
   return static_cast<ResidualGuess>(best);
 }
 
-RangeSettings SettingsOf(const PixelErrors& errors, const PointLevels& levels, unsigned effort,
+RangeSettings SettingsOf(const PixelErrors& errors, const PointLevels& levels, const RangeWay& way,
                          const RangeImage& image) {
   RangeSettings settings;
-  settings.coder = effort > 0 ? RangeCoder::kMixing : RangeCoder::kAdaptive;
-  settings.effort = effort;
+  settings.coder = way.coder;
+  settings.effort = way.effort;
   settings.refined = true;
   settings.grid = RangeGrid::ForError(errors.range_m, CommonUnit(image.ranges, 1));
   if (levels.levels != nullptr) settings.intensity = levels.scale;
@@ -145,7 +145,7 @@ void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* 
 }  // namespace
 
 bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
-                       unsigned effort, PixelList* list, std::vector<std::uint8_t>* out) {
+                       const RangeWay& way, PixelList* list, std::vector<std::uint8_t>* out) {
   RangeImage& image = list->image;
   table.bends = errors.bend_um > 0;
   const SensorModel model = ModelOf(table);
@@ -156,7 +156,7 @@ bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLe
   }
   std::vector<std::uint8_t> block;
   RangeEncoder encoder(model);
-  const RangeSettings settings = SettingsOf(errors, levels, effort, image);
+  const RangeSettings settings = SettingsOf(errors, levels, way, image);
   if (!encoder.Encode(image, settings, &block)) return false;
   // The codes of the next parts depend on the decoded ranges.
   RangeImage decoded;

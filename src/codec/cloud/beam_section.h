@@ -10,6 +10,7 @@
 #include "src/codec/cloud/pixel_list.h"
 #include "src/codec/cloud_io.h"
 #include "src/codec/intensity_scale.h"
+#include "src/codec/range_header.h"
 
 namespace lidar::codec::cloud {
 
@@ -19,9 +20,15 @@ struct PointLevels {
   IntensityScale scale;  // scale of the coded levels
 };
 
+/// How the ranges are coded.
+struct RangeWay {
+  RangeCoder coder = RangeCoder::kBlended;
+  unsigned effort = 1;  // of kMixing
+};
+
 /// Appends the section. Returns false if the range coder refuses the image.
 bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
-                       unsigned effort, PixelList* list, std::vector<std::uint8_t>* out);
+                       const RangeWay& way, PixelList* list, std::vector<std::uint8_t>* out);
 
 /// Appends the points of the next section of `reader`: beam by beam, in the order of columns, the
 /// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with both

@@ -91,6 +91,13 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   return best;
 }
 
+/// The way to code ranges at an effort below the highest.
+RangeWay WayOf(unsigned effort) {
+  constexpr std::array<RangeCoder, EffortControl::kHighest> kCoders = {
+      RangeCoder::kAdaptive, RangeCoder::kBlended, RangeCoder::kMixing};
+  return {kCoders[effort], effort};
+}
+
 /// Distance from the sensor, in multiples of the error, up to which cells are cheaper than ranges,
 /// because points are closer together than cells.
 constexpr double kUsualReach = 50;
@@ -269,12 +276,12 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
 
 /// Returns false if most points lie in no pixel.
 bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
-                               Candidate* candidate) {
+                               const RangeWay& way, Candidate* candidate) {
   if (!FillPixels({&sightings_, &placed_, &table}, errors, nearest_m, &pixels_)) return false;
   candidate->header.has_beams = true;
   const PointLevels levels{levels_.empty() ? nullptr : &levels_, candidate->header.intensity};
   if (pixels_.returns < near_.size() / 4 ||
-      !EncodeBeamSection(table, errors, levels, effort_, &pixels_, &candidate->beams)) {
+      !EncodeBeamSection(table, errors, levels, way, &pixels_, &candidate->beams)) {
     return false;
   }
   EncodeCells(pixels_.rest, candidate);
@@ -334,7 +341,8 @@ bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelError
     Candidate candidate;
     candidate.header = header;
     effort_ = lower;
-    const bool coded = EncodeBeams(table, errors, reach * errors.error_m, &candidate);
+    const bool coded = EncodeBeams(table, errors, reach * errors.error_m,
+                                   {RangeCoder::kMixing, lower}, &candidate);
     effort_ = effort;
     if (!coded || (found && candidate.size() >= best->size())) return false;
     *best = std::move(candidate);
@@ -362,10 +370,10 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   }
   if (table != nullptr) {
     const PixelErrors errors = CheapestErrors({&sightings_, &placed_, table}, error_m);
-    found =
-        effort_ < EffortControl::kHighest
-            ? EncodeBeams(*table, errors, std::min(kUsualReach, LargestReach()) * error_m, &best)
-            : EncodeBeamsInAllWays(*table, errors, &best);
+    found = effort_ < EffortControl::kHighest
+                ? EncodeBeams(*table, errors, std::min(kUsualReach, LargestReach()) * error_m,
+                              WayOf(effort_), &best)
+                : EncodeBeamsInAllWays(*table, errors, &best);
   }
   if (found && effort_ < EffortControl::kHighest) return best;
   Candidate cells;

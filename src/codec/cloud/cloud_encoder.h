@@ -78,7 +78,7 @@ class CloudEncoder {
   void CodeCells(const std::vector<Point>& points, const std::vector<std::uint32_t>& ids, bool few,
                  Candidate* candidate);
   bool EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
-                   Candidate* candidate);
+                   const RangeWay& way, Candidate* candidate);
   bool EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors, Candidate* best);
   double LargestReach() const;
   void EncodeExact(const BeamTable* table, Candidate* candidate) const;

@@ -21,8 +21,8 @@ Coded ValueOf(const Residual& residual, const Prediction& p) {
   return {Sum(p.value, Difference(residual.magnitude ^ sign, sign)), residual.magnitude};
 }
 
-/// Writes the columns of the 1s in `count` bytes of `mask`, and returns their number. `columns` has
-/// room for eight more.
+}  // namespace
+
 std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns) {
   constexpr std::uint32_t kAtOnce = 8;
   std::uint16_t* next = columns;
@@ -43,8 +43,6 @@ std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint
   return static_cast<std::size_t>(next - columns);
 }
 
-}  // namespace
-
 void AdaptiveCoder::Reset(const BlockShape& shape) {
   values_.predictor.Reset(shape.alignment, shape.columns);
   levels_.predictor.Reset(shape.alignment, shape.columns);
@@ -57,7 +55,7 @@ void AdaptiveCoder::Reset(const BlockShape& shape) {
 template <class CodeRow>
 bool AdaptiveCoder::ForEachRow(const BlockShape& shape, CodeRow&& code_row) {
   Reset(shape);
-  columns_.resize(shape.columns + 8);
+  columns_.resize(shape.columns + kListMargin);
   const std::uint8_t* mask = shape.mask.data();
   std::size_t first = 0;
   for (std::uint32_t beam = 0; beam < shape.alignment.beams(); ++beam, mask += shape.columns) {

@@ -20,8 +20,16 @@ struct BlockShape {
   std::uint32_t columns;
 };
 
+/// Writes the columns of the 1s in `count` bytes of `mask`, and returns their number. `columns` has
+/// room for kListMargin more.
+std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns);
+constexpr std::size_t kListMargin = 8;
+
 class AdaptiveCoder {
  public:
+  /// Pieces of RansEncoder that a value may take.
+  static constexpr std::size_t kMostPieces = SymbolModel::kMostPieces;
+
   /// Values are below kMaxBins.
   void Encode(const BlockShape& shape, const IntegerLists& lists, RansEncoder* encoder);
   /// Adds the symbols that Encode() would write.

@@ -10,8 +10,6 @@ namespace {
 // (4). Part of the format.
 constexpr std::array<std::uint32_t, 8> kChance = {2, 24, 36, 55, 15, 32, 47, 63};
 
-/// The models before the first pixel. The bits of a context from bit 0: the pixel above to the
-/// left, the four above, the one to their right, and the two to the left.
 std::array<NibbleModel, 256> MakeInitialModels() {
   std::array<NibbleModel, 256> models;
   for (unsigned context = 0; context < models.size(); ++context) {
@@ -49,9 +47,13 @@ void Unpack(unsigned four, std::uint8_t* bytes) {
 
 }  // namespace
 
-void MaskCoder::Reset(const AzimuthAlignment& alignment, std::uint32_t columns) {
+const std::array<NibbleModel, MaskCoder::kContexts>& MaskCoder::InitialModels() {
   static const std::array<NibbleModel, kContexts> initial = MakeInitialModels();
-  models_ = initial;
+  return initial;
+}
+
+void MaskCoder::Reset(const AzimuthAlignment& alignment, std::uint32_t columns) {
+  models_ = InitialModels();
   above_.Reset(alignment, columns, 1);
   row_.assign(std::size_t{Groups(columns)} * kGroup, 0);
 }

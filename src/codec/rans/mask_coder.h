@@ -26,6 +26,10 @@ class MaskCoder {
   static std::size_t Pieces(std::uint32_t beams, std::uint32_t columns) {
     return std::size_t{beams} * Groups(columns);
   }
+  static constexpr unsigned kContexts = 256;
+  /// The models before the first pixel. The bits of a context from bit 0: the pixel above to the
+  /// left, the four above, the one to their right, and the two to the left.
+  static const std::array<NibbleModel, kContexts>& InitialModels();
 
  private:
   static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
@@ -35,7 +39,6 @@ class MaskCoder {
   void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code);
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
 
-  static constexpr unsigned kContexts = 256;
   std::array<NibbleModel, kContexts> models_;
   AlignedRow<std::uint8_t> above_;
   std::vector<std::uint8_t> row_;  // the coded row, with room to the next multiple of four

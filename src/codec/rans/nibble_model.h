@@ -111,9 +111,11 @@ class NibbleModel {
 #endif
   }
 
+  /// Each `kHaste` doubles the speed of learning.
+  template <int kHaste = 0>
   void Update(unsigned symbol) {
     const int age = start_[kAge];
-    const std::int16_t rate = detail::kRates.rates[age];
+    const auto rate = static_cast<std::int16_t>(detail::kRates.rates[age] - kHaste);
     start_[kAge] = static_cast<std::int16_t>(std::min(age + 1, int{detail::Rates::kOldest}));
     for (unsigned i = 0; i < kNibbles; i += 8) {
       Vector target;
@@ -125,8 +127,47 @@ class NibbleModel {
     }
   }
 
+  /// Takes the distribution of `other` before the first update.
+  void InheritOnce(const NibbleModel& other) {
+    if (start_[kAge] == 0) std::copy_n(other.start_.begin(), kNibbles, start_.begin());
+  }
+
+  /// The mean of four distributions, rounded down after each of two steps. The starts of each rise,
+  /// so those of the mean do, too.
+  static NibbleModel Blend(const std::array<NibbleModel*, 4>& models) {
+    NibbleModel blend{Unset()};
+    for (unsigned i = 0; i < kNibbles; i += 8) {
+      const auto load = [&](unsigned k) {
+        Vector v;
+        std::memcpy(&v, &models[k]->start_[i], sizeof v);
+        return v;
+      };
+      const Vector start = MeanOf(MeanOf(load(0), load(1)), MeanOf(load(2), load(3)));
+      std::memcpy(&blend.start_[i], &start, sizeof start);
+    }
+    blend.start_[kNibbles] = static_cast<std::int16_t>(kProbabilityOne - 65536);
+    return blend;
+  }
+  /// Returns Blend(models).IntervalOf(symbol).
+  static Interval BlendedInterval(const std::array<NibbleModel*, 4>& models, unsigned symbol) {
+    const auto mean = [&](unsigned at) {
+      const auto start = [&](unsigned k) {
+        return static_cast<std::uint16_t>(models[k]->start_[at]);
+      };
+      return static_cast<std::uint32_t>(((start(0) + start(1)) >> 1) +
+                                        ((start(2) + start(3)) >> 1)) >>
+             1;
+    };
+    const std::uint32_t start = mean(symbol);
+    return {static_cast<std::uint16_t>(start),
+            static_cast<std::uint16_t>(mean(symbol + 1) - start)};
+  }
+
  private:
+  struct Unset {};
+  explicit NibbleModel(Unset) {}
   using Vector = std::int16_t __attribute__((vector_size(16)));
+  static Vector MeanOf(Vector a, Vector b) { return (a & b) + ((a ^ b) >> 1); }
   static constexpr unsigned kAge = kNibbles + 1;
   static constexpr std::uint32_t kFloor = 8;
   static std::array<std::uint16_t, kNibbles> UniformCounts() {

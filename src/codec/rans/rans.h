@@ -51,10 +51,16 @@ class RansEncoder {
     ~Writer() { encoder_->next_ = next_; }
 
     /// Adds a symbol, and the low `count` <= kMaxJointBits of `bits`, whose other bits are 0.
+    template <int kHaste = 0>
     [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, NibbleModel* model,
                                     std::uint32_t bits = 0, unsigned count = 0) {
-      *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
-      model->Update(symbol);
+      Put(lane, model->IntervalOf(symbol), bits, count);
+      model->Update<kHaste>(symbol);
+    }
+    /// Adds a symbol of another model.
+    [[gnu::always_inline]] void Put(unsigned lane, const Interval& interval, std::uint32_t bits,
+                                    unsigned count) {
+      *next_++ = {interval, bits << 8 | count << 2 | lane};
     }
     /// Adds the low `count` <= kMaxPlainBits of `bits`, whose other bits are 0.
     void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
@@ -83,14 +89,21 @@ class RansDecoder {
   bool overran() const { return position_ > end_; }
 
   /// The next call must be GetBits() of the same lane, with a count of 0 if no bits follow.
+  template <int kHaste = 0>
   unsigned Get(unsigned lane, NibbleModel* model) {
-    const std::uint64_t x = states_[lane];
-    const auto slot = static_cast<std::uint32_t>(x & (kProbabilityOne - 1));
-    const unsigned symbol = model->Find(slot);
-    const Interval i = model->IntervalOf(symbol);
-    states_[lane] = i.size * (x >> kProbabilityBits) + slot - i.start;
-    model->Update(symbol);
+    const unsigned symbol = model->Find(Slot(lane));
+    Take(lane, model->IntervalOf(symbol));
+    model->Update<kHaste>(symbol);
     return symbol;
+  }
+  /// Get() in two steps, for a symbol of another model: its place in the model's intervals, and
+  /// then the interval that holds it.
+  std::uint32_t Slot(unsigned lane) const {
+    return static_cast<std::uint32_t>(states_[lane] & (kProbabilityOne - 1));
+  }
+  void Take(unsigned lane, const Interval& i) {
+    const std::uint64_t x = states_[lane];
+    states_[lane] = i.size * (x >> kProbabilityBits) + (x & (kProbabilityOne - 1)) - i.start;
   }
   std::uint32_t GetBits(unsigned lane, unsigned count) {
     return GetBits(lane, count, (1U << count) - 1);

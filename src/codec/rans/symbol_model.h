@@ -61,46 +61,47 @@ struct SymbolCounts {
   std::array<std::uint64_t, kNibbles> longs{};
 };
 
-/// A residual is a symbol and some bits. Only rare long ones take another path, so a processor has
-/// hardly a jump to mispredict.
-class SymbolModel {
- public:
-  /// Pieces of RansEncoder that a residual may take.
-  static constexpr std::size_t kMostPieces = 3;
-
-  void Reset(const InitialModels& start) {
-    models_.fill(start.residuals);
-    long_model_ = start.longs;
-  }
-
-  [[gnu::always_inline]] void Encode(const Residual& residual, unsigned context, unsigned lane,
-                                     RansEncoder::Writer* writer) {
-    const auto magnitude = static_cast<std::uint32_t>(residual.magnitude);
+/// A residual as a symbol and the bits that follow it.
+struct ClassedResidual {
+  [[gnu::always_inline]] ClassedResidual(std::uint32_t magnitude, bool negative) {
     const unsigned positive = kClassOfMagnitude.symbol[std::min(magnitude, kLongMagnitude)];
     const ResidualClass& c = kResidualClasses[positive];
-    const bool is_long = magnitude >= kLongMagnitude;
-    const std::uint32_t low = is_long ? 0 : magnitude - static_cast<std::uint32_t>(c.base);
-    writer->Put(lane, positive + (magnitude != 0 ? static_cast<unsigned>(-residual.sign) : 0U),
-                &models_[lane][context], low, static_cast<unsigned>(c.bits));
-    if (is_long) EncodeLong(magnitude - kLongMagnitude, lane, writer);
+    is_long = magnitude >= kLongMagnitude;
+    rest = magnitude - kLongMagnitude;
+    low = is_long ? 0 : magnitude - static_cast<std::uint32_t>(c.base);
+    bits = static_cast<unsigned>(c.bits);
+    symbol = positive + (magnitude != 0 && negative ? 1U : 0U);
   }
+  unsigned symbol;
+  unsigned bits;
+  std::uint32_t low;   // as many bits
+  std::uint32_t rest;  // if it is long
+  bool is_long;
+};
 
-  /// Counts the symbols that Encode() would write.
-  static void Count(const Residual& residual, unsigned context, SymbolCounts* counts) {
-    const auto magnitude = static_cast<std::uint32_t>(residual.magnitude);
-    const unsigned positive = kClassOfMagnitude.symbol[std::min(magnitude, kLongMagnitude)];
-    ++counts->residuals[context][positive + (magnitude != 0 && residual.sign != 0 ? 1 : 0)];
-    if (magnitude >= kLongMagnitude)
-      ++counts->longs[std::min(BitLength(magnitude - kLongMagnitude), kLongest)];
+/// Codes what long magnitudes have above kLongMagnitude.
+class LongModel {
+ public:
+  void Reset(const NibbleModel& start) { model_ = start; }
+  /// The first symbol of `rest`.
+  static unsigned SymbolOf(std::uint32_t rest) { return std::min(BitLength(rest), kLongest); }
+  /// Codes as many bits as fit with the length, and the higher ones by themselves.
+  void Encode(std::uint32_t rest, unsigned lane, RansEncoder::Writer* writer) {
+    const unsigned length = SymbolOf(rest);
+    const unsigned bits = PlainBits(length);
+    const unsigned low = std::min(bits, kMaxJointBits);
+    rest &= (1U << bits) - 1;
+    writer->Put(lane, length, &model_, rest & ((1U << low) - 1), low);
+    if (bits > low) writer->PutBits(lane, rest >> low, bits - low);
   }
-
-  [[gnu::always_inline]] Residual Decode(unsigned context, unsigned lane, RansDecoder* decoder) {
-    const unsigned symbol = decoder->Get(lane, &models_[lane][context]);
-    const ResidualClass& c = kResidualClasses[symbol];
-    const std::uint32_t low = decoder->GetBits(lane, static_cast<unsigned>(c.bits), c.mask);
-    std::int32_t magnitude = static_cast<std::int32_t>(low) + c.base;
-    if (__builtin_expect(symbol >= kFirstLongSymbol, 0)) magnitude += DecodeLong(lane, decoder);
-    return {magnitude, c.sign};
+  std::int32_t Decode(unsigned lane, RansDecoder* decoder) {
+    const unsigned length = decoder->Get(lane, &model_);
+    const unsigned bits = PlainBits(length);
+    const unsigned low = std::min(bits, kMaxJointBits);
+    std::uint32_t rest = decoder->GetBits(lane, low);
+    if (bits > low) rest |= decoder->GetBits(lane, bits - low) << low;
+    if (length > 0 && length < kLongest) rest |= 1U << (length - 1);
+    return static_cast<std::int32_t>(rest);
   }
 
  private:
@@ -110,32 +111,54 @@ class SymbolModel {
   static unsigned BitLength(std::uint32_t v) {
     return v == 0 ? 0 : 32 - static_cast<unsigned>(__builtin_clz(v));
   }
-  /// Codes as many bits as fit with the length, and the higher ones by themselves.
-  void EncodeLong(std::uint32_t rest, unsigned lane, RansEncoder::Writer* writer) {
-    const unsigned length = std::min(BitLength(rest), kLongest);
-    const unsigned bits = PlainBits(length);
-    const unsigned low = std::min(bits, kMaxJointBits);
-    rest &= (1U << bits) - 1;
-    writer->Put(lane, length, &long_model_, rest & ((1U << low) - 1), low);
-    if (bits > low) writer->PutBits(lane, rest >> low, bits - low);
-  }
-  std::int32_t DecodeLong(unsigned lane, RansDecoder* decoder) {
-    const unsigned length = decoder->Get(lane, &long_model_);
-    const unsigned bits = PlainBits(length);
-    const unsigned low = std::min(bits, kMaxJointBits);
-    std::uint32_t rest = decoder->GetBits(lane, low);
-    if (bits > low) rest |= decoder->GetBits(lane, bits - low) << low;
-    if (length > 0 && length < kLongest) rest |= 1U << (length - 1);
-    return static_cast<std::int32_t>(rest);
-  }
   /// Number of written bits of a rest of `length` bits, whose highest bit is 1.
   static unsigned PlainBits(unsigned length) {
     if (length == kLongest) return kLongestBits;
     return length > 0 ? length - 1 : 0;
   }
 
+  NibbleModel model_;
+};
+
+/// A residual is a symbol and some bits. Only rare long ones take another path, so a processor has
+/// hardly a jump to mispredict.
+class SymbolModel {
+ public:
+  /// Pieces of RansEncoder that a residual may take.
+  static constexpr std::size_t kMostPieces = 3;
+
+  void Reset(const InitialModels& start) {
+    models_.fill(start.residuals);
+    long_model_.Reset(start.longs);
+  }
+
+  [[gnu::always_inline]] void Encode(const Residual& residual, unsigned context, unsigned lane,
+                                     RansEncoder::Writer* writer) {
+    const ClassedResidual coded(static_cast<std::uint32_t>(residual.magnitude), residual.sign != 0);
+    writer->Put(lane, coded.symbol, &models_[lane][context], coded.low, coded.bits);
+    if (coded.is_long) long_model_.Encode(coded.rest, lane, writer);
+  }
+
+  /// Counts the symbols that Encode() would write.
+  static void Count(const Residual& residual, unsigned context, SymbolCounts* counts) {
+    const ClassedResidual coded(static_cast<std::uint32_t>(residual.magnitude), residual.sign != 0);
+    ++counts->residuals[context][coded.symbol];
+    if (coded.is_long) ++counts->longs[LongModel::SymbolOf(coded.rest)];
+  }
+
+  [[gnu::always_inline]] Residual Decode(unsigned context, unsigned lane, RansDecoder* decoder) {
+    const unsigned symbol = decoder->Get(lane, &models_[lane][context]);
+    const ResidualClass& c = kResidualClasses[symbol];
+    const std::uint32_t low = decoder->GetBits(lane, static_cast<unsigned>(c.bits), c.mask);
+    std::int32_t magnitude = static_cast<std::int32_t>(low) + c.base;
+    if (__builtin_expect(symbol >= kFirstLongSymbol, 0))
+      magnitude += long_model_.Decode(lane, decoder);
+    return {magnitude, c.sign};
+  }
+
+ private:
   std::array<std::array<NibbleModel, kContexts>, kRansLanes> models_;
-  NibbleModel long_model_;
+  LongModel long_model_;
 };
 
 }  // namespace lidar::codec

@@ -31,6 +31,18 @@ INSTANTIATE_TEST_SUITE_P(
         GoldenBlock{
             "adaptive_dense", RangeCoder::kAdaptive, {4, 300, 100, 1, 0}, 256, 8, FullScale::kWord},
         GoldenBlock{"adaptive_empty", RangeCoder::kAdaptive, {4, 64, 0, 1, 100}, 256, 0},
+        // Blended contexts: a turn, a sector whose rows end in a part of a group, all pixels, none.
+        GoldenBlock{"blended_turn", RangeCoder::kBlended, {8, 1024, 0, 1, 10}, 41 * 256, 5},
+        GoldenBlock{"blended_slice",
+                    RangeCoder::kBlended,
+                    {16, 126, 960, 8, 25},
+                    5 * 256 + 77,
+                    0,
+                    FullScale::kByte,
+                    12},
+        GoldenBlock{
+            "blended_dense", RangeCoder::kBlended, {4, 300, 100, 1, 0}, 256, 8, FullScale::kWord},
+        GoldenBlock{"blended_empty", RangeCoder::kBlended, {4, 64, 0, 1, 100}, 256, 0},
         // Each effort of the mixing coder: turns and sectors, with levels and without, all gaps.
         GoldenBlock{"mixing1_turn",
                     RangeCoder::kMixing,

@@ -20,7 +20,10 @@ INSTANTIATE_TEST_SUITE_P(All, RangeCoders,
                                            test::CodingCase{RangeCoder::kAdaptive, 40.5, 0},
                                            test::CodingCase{RangeCoder::kAdaptive, 41, 8},
                                            test::CodingCase{RangeCoder::kAdaptive, 1, 1},
-                                           test::CodingCase{RangeCoder::kAdaptive, 65'535, 8}));
+                                           test::CodingCase{RangeCoder::kAdaptive, 65'535, 8},
+                                           test::CodingCase{RangeCoder::kBlended, 41, 0},
+                                           test::CodingCase{RangeCoder::kBlended, 40.5, 5},
+                                           test::CodingCase{RangeCoder::kBlended, 1, 8}));
 
 // The encoder computes bins in floating point.
 TEST(RangeEncoders, PutRangesAtTheEdgesOfBinsWhereTheGridPutsThem) {

@@ -98,8 +98,8 @@ struct SensorCase {
 };
 class SensorClouds : public ::testing::TestWithParam<SensorCase> {};
 
-// The limits at effort 3 are those of refined models; the other limits are 5 % above what the first
-// version of the coder took.
+// The limits at efforts 1 and 3 are those of blended and of refined models; the other limits are 5
+// % above what the first version of the coder took.
 TEST_P(SensorClouds, ComeBackWithinTheErrorInFewBits) {
   const SensorCase& c = GetParam();
   const PlainPoints points = ScanOf(c.name);
@@ -113,7 +113,7 @@ TEST_P(SensorClouds, ComeBackWithinTheErrorInFewBits) {
 }
 INSTANTIATE_TEST_SUITE_P(
     All, SensorClouds,
-    ::testing::Values(SensorCase{"at128", 0, 4.2, 3.0}, SensorCase{"at128", 1, 3.4, 2.12},
+    ::testing::Values(SensorCase{"at128", 0, 4.2, 3.0}, SensorCase{"at128", 1, 3.51, 2.2},
                       SensorCase{"at128", 3, 2.9, 1.87}, SensorCase{"vlp16", 0, 3.8, 2.1},
                       SensorCase{"vlp16", 3, 2.69, 1.56}),
     [](const auto& c) { return std::string(c.param.name) + std::to_string(c.param.effort); });
@@ -223,7 +223,7 @@ PlainPoints Turned(PlainPoints points, double degrees) {
 TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
   const PlainPoints points = UnevenScan(GetParam());
   const auto bits = BitsOfStream({points, Turned(points, 0.4), Turned(points, 7)});
-  EXPECT_LE(bits[0], 2.3);
+  EXPECT_LE(bits[0], 2.4);
   EXPECT_LE(bits[1], 1.05 * bits[0]);
   // The gap of 9 degrees without firings has moved by 7 degrees.
   EXPECT_LE(bits[2], 1.15 * bits[0]);
@@ -284,7 +284,7 @@ double BitsOf(const EncodedSlice& slice) {
 TEST(CloudCodec, FollowsAPathThatDoesNotRepeat) {
   for (const unsigned effort : {1U, 3U})
     for (const EncodedSlice& slice : EncodePaths({PathScan(0), PathScan(1), PathScan(2)}, effort))
-      EXPECT_LE(BitsOf(slice), 4);
+      EXPECT_LE(BitsOf(slice), effort == 1 ? 4.3 : 4);
 }
 
 TEST(CloudCodec, SortsThePointsOfAPathByTheirTimes) {
@@ -296,7 +296,7 @@ TEST(CloudCodec, SortsThePointsOfAPathByTheirTimes) {
 TEST(CloudCodec, CodesHowPointsLeaveTheirPath) {
   const PathCloud cloud = PathScan(0, 0.05);
   const double in_cells = BitsPerPoint(RoundTrip(PlainOf(cloud), {0.02, 0, 0}, 1));
-  EXPECT_LE(BitsOf(EncodePaths({cloud})[0]), 0.6 * in_cells);
+  EXPECT_LE(BitsOf(EncodePaths({cloud})[0]), 0.65 * in_cells);
 }
 
 TEST(CloudCodec, TakesCloudsWhoseLinesAndTimesSayNothing) {
@@ -450,7 +450,7 @@ TEST(BeamSection, IsRefusedWithAnImageThatReachesPastItsTable) {
     list.image.ranges.assign(list.image.size(), 5'000);
     list.residuals.assign(list.image.size(), 0);
     std::vector<std::uint8_t> bytes;
-    EXPECT_TRUE(EncodeBeamSection(table, {0.02, 0.02, 0, 0}, {}, 1, &list, &bytes));
+    EXPECT_TRUE(EncodeBeamSection(table, {0.02, 0.02, 0, 0}, {}, {}, &list, &bytes));
     ByteReader reader(bytes.data(), bytes.size());
     XyzCloud cloud;
     return DecodeBeamSection(&reader, 8, {}, &cloud);

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes a block's integers by rANS symbols, each predicted by a blend of four contexts.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/rans/adaptive_coder.h"
+#include "src/codec/rans/symbol_model.h"
+
+namespace lidar::codec {
+
+/// Coder of one list: of bins or levels (docs/wire-format.md, "Blended coder").
+class BlendedChannel {
+ public:
+  /// Pieces of RansEncoder that a value may take.
+  static constexpr std::size_t kMostPieces = 5;
+
+  /// Values are below `limit`.
+  explicit BlendedChannel(std::int32_t limit) : limit_(limit) {}
+  void Reset(const BlockShape& shape, const InitialModels& start);
+  /// Codes the values of a row whose returns are in `columns`.
+  template <class T>
+  void EncodeRow(std::uint32_t beam, const std::uint16_t* columns, std::size_t count,
+                 const T* values, RansEncoder* encoder);
+  /// Returns false if a value is not below the limit.
+  bool DecodeRow(std::uint32_t beam, const std::uint16_t* columns, std::size_t count,
+                 std::int32_t* values, RansDecoder* decoder);
+
+ private:
+  static constexpr std::int32_t kUnknown = -1;
+  static constexpr unsigned kBlended = 4;
+  static constexpr unsigned kCandidates = 3;
+  /// Number of contexts of each kind.
+  static constexpr std::array<std::uint32_t, kBlended> kSizes = {kContexts * 4, 7 * 7 * 7 * 4,
+                                                                 11 * 11 * 11, 15 * 8 * 4 * 2};
+  /// What beams above had at an azimuth.
+  struct Known {
+    std::int32_t value = kUnknown;
+    std::int32_t before = kUnknown;  // value above that
+    std::int32_t residual = 0;       // of `value`, -3 to 3
+  };
+  /// State of a row after the values so far.
+  struct Row {
+    std::int32_t west = kUnknown;
+    std::int32_t west2 = kUnknown;
+    std::int32_t residual = 0;      // of the last value, -3 to 3
+    std::int32_t other = kUnknown;  // surface that the last jump left
+    std::uint32_t next = 0;         // column behind the last value
+  };
+  /// What is known about a value before it is coded.
+  struct View {
+    std::int32_t median;
+    std::int32_t mirror;  // 1 or -1
+    std::int32_t west;
+    std::array<std::int32_t, kCandidates> candidates;  // surfaces to which a jump may lead
+    std::array<NibbleModel*, kBlended> models;
+  };
+  /// The candidates that lie behind a jump's first value: a bit for each.
+  static unsigned Behind(const View& view, std::int32_t sense);
+  void StartRow(std::uint32_t beam);
+  View Look(std::uint32_t column);
+  void Keep(const View& view, std::int32_t value, std::uint32_t column);
+  void EndRow(std::uint32_t beam);
+  void Learn(const View& view, unsigned symbol);
+  void EncodeJump(const View& view, std::int32_t value, std::int32_t sense, unsigned lane,
+                  RansEncoder::Writer* writer);
+  std::int32_t DecodeJump(const View& view, std::int32_t sense, unsigned lane,
+                          RansDecoder* decoder);
+
+  std::int32_t limit_;
+  AlignedRow<Known> above_;
+  std::vector<std::int32_t>
+      north_;                // nearest value above the pixels from the one before the row on
+  Known* known_ = nullptr;   // of the row's first pixel
+  bool blind_ = true;        // the row has no value above it
+  std::int32_t latest_ = 0;  // value of the latest return
+  std::uint32_t columns_ = 0;
+  Row row_;
+  std::array<std::vector<NibbleModel>, kBlended> models_;
+  std::array<NibbleModel, 1U << kCandidates> choices_;
+  std::array<NibbleModel, kCandidates> distances_;  // from a candidate
+  LongModel longs_;
+};
+
+class BlendedCoder {
+ public:
+  /// Pieces of RansEncoder that a value may take.
+  static constexpr std::size_t kMostPieces = BlendedChannel::kMostPieces;
+
+  /// Does what AdaptiveCoder does, in fewer bits and more time.
+  void Encode(const BlockShape& shape, const IntegerLists& lists, RansEncoder* encoder);
+  bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
+              RangeImage* image);
+
+ private:
+  void Reset(const BlockShape& shape, bool with_levels);
+
+  BlendedChannel values_{AdaptiveCoder::kMaxBins};
+  BlendedChannel levels_{256};
+  std::vector<std::uint16_t> columns_;
+  std::vector<std::int32_t> row_;
+};
+
+}  // namespace lidar::codec

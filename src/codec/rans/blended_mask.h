@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Codes which pixels have a return: four at a time, by a blend of four contexts.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "src/codec/azimuth_alignment.h"
+#include "src/codec/rans/mask_coder.h"
+#include "src/codec/rans/nibble_model.h"
+#include "src/codec/rans/rans.h"
+
+namespace lidar::codec {
+
+/// Does what MaskCoder does, in fewer bits and more time.
+class BlendedMask {
+ public:
+  void Encode(const Mask& mask, const AzimuthAlignment& alignment, std::uint32_t columns,
+              RansEncoder* encoder);
+  bool Decode(const AzimuthAlignment& alignment, std::uint32_t columns, RansDecoder* decoder,
+              Mask* mask);
+
+ private:
+  static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
+  static constexpr unsigned kBlended = 4;
+  /// Number of contexts of each kind.
+  static constexpr std::array<std::uint32_t, kBlended> kSizes = {256, 2'048, 4'050, 1'728};
+  using Models = std::array<NibbleModel*, kBlended>;
+
+  void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
+  Models ModelsOf(const std::uint8_t* above, std::uint32_t before);
+  template <class CodeFour>
+  void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code);
+
+  std::array<std::vector<NibbleModel>, kBlended> models_;
+  AlignedRow<std::uint8_t> above_;  // a bit for each beam above, the nearest in bit 0; 1: a return
+  std::vector<std::uint8_t> row_;   // the coded row, with room to the next multiple of four
+};
+
+}  // namespace lidar::codec
