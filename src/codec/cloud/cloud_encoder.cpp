@@ -278,6 +278,7 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
 bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                                const RangeWay& way, Candidate* candidate) {
   if (!FillPixels({&sightings_, &placed_, &table}, errors, nearest_m, &pixels_)) return false;
+  if (way.coder != RangeCoder::kMixing) pixels_.DropFewExtras();
   candidate->header.has_beams = true;
   const PointLevels levels{levels_.empty() ? nullptr : &levels_, candidate->header.intensity};
   if (pixels_.returns < near_.size() / 4 ||

@@ -130,6 +130,13 @@ bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
 
 }  // namespace
 
+void PixelList::DropFewExtras() {
+  constexpr std::size_t kFewest = 256;  // pixels to a further return
+  if (extras.size() * kFewest > returns) return;
+  for (const ExtraReturn& extra : extras) rest.push_back(extra.point);
+  extras.clear();
+}
+
 std::size_t CountFitting(const PlacedCloud& cloud, const PixelErrors& errors) {
   const PixelCheck check(cloud, errors);
   std::size_t count = 0;

@@ -33,6 +33,9 @@ struct PixelList {
   std::vector<ExtraReturn> extras;
   std::vector<std::uint32_t> rest;  // indices of the points that fit no pixel
   std::size_t returns = 0;          // number of pixels with a return
+
+  /// Leaves further returns to the rest if there are so few that asking each pixel costs more.
+  void DropFewExtras();
 };
 
 /// Width of a class of residuals, in units: no azimuth is off by more than `tangent_um` at

@@ -437,6 +437,30 @@ TEST(CloudCodec, RefusesFarPointsWithoutAPlaceAndBytesBehindTheEnd) {
   EXPECT_FALSE(decodes(1e30F, {0, 1}));
 }
 
+TEST(CloudCodec, CodesFewFurtherReturnsInCellsWhereThatIsFaster) {
+  const auto direction = [](const std::array<float, 4>& p) {
+    const float range = std::hypot(p[0], p[1], p[2]);
+    return std::array<float, 3>{p[0] / range, p[1] / range, p[2] / range};
+  };
+  PlainPoints points;
+  unsigned further = 0;
+  for (const auto& p : SpinningScan(0)) {
+    const bool is_first =
+        points.empty() || std::abs(direction(p)[0] - direction(points.back())[0]) +
+                                  std::abs(direction(p)[2] - direction(points.back())[2]) >
+                              1e-4F;
+    if (is_first || further++ < 3) points.push_back(p);
+  }
+  const auto in_cells = [&](unsigned effort) {
+    const Coded coded = RoundTrip(points, {0.02, 0, 0}, effort);
+    EXPECT_EQ(coded.slice.bytes[0], 0x11);  // it has beams
+    EXPECT_LE(LargestDistance(points, coded.cloud), 0.02 + 1e-5);
+    return coded.slice.bytes[2];
+  };
+  EXPECT_EQ(in_cells(1), 3);
+  EXPECT_EQ(in_cells(2), 0);
+}
+
 TEST(BeamSection, IsRefusedWithAnImageThatReachesPastItsTable) {
   const auto decodes = [](std::uint32_t first_column) {
     BeamTable table;
