@@ -105,6 +105,9 @@ test('mouse and keys orbit, pause holds, a snapshot is saved', limits, async () 
 });
 
 test('charts advance with the statistics of the pipeline', limits, async () => {
+  const ALL = [
+    'Age of the cloud', 'Bitrate', 'Delay', 'Window', 'Precision', 'Losses', 'Deviation of the pose', 'Poses', 'To this page',
+  ];
   const [port, rtp] = [await freePort(), await freePort()];
   const way =
     `${SENSOR} ! queue ! lidarenc ! rtplidarpay ! screamsink host=127.0.0.1 port=${rtp} ` +
@@ -116,14 +119,15 @@ test('charts advance with the statistics of the pipeline', limits, async () => {
     const shown = await page.$$eval('.chart:not([hidden]) h2', (all) =>
       all.map((h) => h.firstChild.textContent),
     );
-    return shown.length === 7 && shown;
+    return shown.length === ALL.length && shown;
   });
-  assert.deepEqual(titles, ['Age of the cloud', 'Bitrate', 'Delay', 'Window', 'Precision', 'Losses', 'To this page']);
+  assert.deepEqual(titles, ALL);
   const samples = () => page.evaluate(() => window.lidarPage.charts.samples);
   const before = await samples();
   await until('more samples', async () => (await samples()) >= before + 8);
-  assert.ok((await page.$$('.chart:not([hidden]) canvas')).length === 7);
+  assert.ok((await page.$$('.chart:not([hidden]) canvas')).length === ALL.length);
   await until('a map', () => page.evaluate(() => window.lidarPage.scene.map.count > 1000));
+  await until('an ellipse', () => page.evaluate(() => window.lidarPage.scene.ellipse.object.visible));
   assert.equal(await page.isDisabled('#follow'), false);
   assert.deepEqual(complaints, []);
   await context.close();

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Clock, nowSeconds } from '../../../ext/web/page/src/clock.js';
+import { ellipseOf } from '../../../ext/web/page/src/ellipse.js';
 import { History, Player } from '../../../ext/web/page/src/history.js';
 import { Links } from '../../../ext/web/page/src/links.js';
 import { Poses } from '../../../ext/web/page/src/poses.js';
@@ -36,6 +37,26 @@ test('a server that comes back brings poses of its own', () => {
   poses.end();
   poses.add(pose(3, 7, 0)); // a recording
   assert.equal(x(3), 7);
+});
+
+test('the ellipse of a position has three standard deviations along each of its axes', () => {
+  const corners = (xx, xy, yy) => {
+    const covariance = Array(36).fill(0);
+    Object.assign(covariance, { 0: xx, 1: xy, 6: xy, 7: yy });
+    const numbers = ellipseOf(covariance);
+    return Array.from({ length: numbers.length / 3 }, (_, i) => numbers.slice(3 * i, 3 * i + 2));
+  };
+  const most = (points, [x, y]) => Math.max(...points.map((p) => Math.abs(p[0] * x + p[1] * y)));
+  const slope = Math.SQRT1_2;
+  // 4 m along the diagonal, 1 m across it
+  const tilted = corners(8.5, 7.5, 8.5);
+  assert.ok(Math.abs(most(tilted, [slope, slope]) - 12) < 0.05);
+  assert.ok(Math.abs(most(tilted, [slope, -slope]) - 3) < 0.05);
+  assert.deepEqual(tilted[0].map((v) => v.toFixed(6)), tilted.at(-1).map((v) => v.toFixed(6)));
+  assert.ok(Math.abs(most(corners(0, 0, 4), [0, 1]) - 6) < 1e-9);
+  assert.equal(most(corners(0, 0, 4), [1, 0]), 0);
+  assert.equal(most(corners(0, 0, 0), [1, 1]), 0);
+  assert.ok(corners(1, 1 + 1e-12, 1).flat().every(Number.isFinite));
 });
 
 /** Slice `i` of scans of two slices at 10 Hz; it refers to slice `i` - 2, except in every `period`th scan. */

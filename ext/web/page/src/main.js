@@ -165,7 +165,8 @@ function jump(time) {
 /** Clears what belongs to the picture of the time before. */
 function showTime() {
   const { isPast } = page.timeline;
-  if (!isPast) page.scene.fresh.clear();
+  if (isPast) page.scene.setCovariance(null);
+  else page.scene.fresh.clear();
   page.age = null;
   document.body.dataset.time = isPast ? 'past' : 'live';
   setState(page.state);
@@ -185,6 +186,8 @@ function onStatistics(message) {
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
   if (sink?.scan_duration > 0 && !page.paused) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
+  // Of the past, statistics have nothing.
+  if (message.pose_covariance && !page.timeline.isPast) page.scene.setCovariance(message.pose_covariance);
   const links = page.links.of(message, nowSeconds());
   page.charts.add({ ...page.quality, ...message, ...links, received: page.receivedBps, age: page.age });
 }

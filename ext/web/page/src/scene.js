@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The scene: fresh points, map, ground rings, and a camera that orbits or follows.
+// The scene: fresh points, map, ground rings, the ellipse of the position, and a camera that orbits
+// or follows.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { Ellipse } from './ellipse.js';
 import { WorldMap } from './map.js';
 import { FreshPoints } from './points.js';
 import { isSoftware, Raster } from './raster.js';
@@ -57,7 +59,8 @@ export class Scene {
     this.map = new WorldMap();
     this.rings = rings();
     this.ruler = new Ruler(this.fresh, this.camera, canvas);
-    this.scene.add(this.rings, this.ruler.object);
+    this.ellipse = new Ellipse();
+    this.scene.add(this.rings, this.ellipse.object, this.ruler.object);
     const asked = new URLSearchParams(location.search).get('draw'); // raster or webgl
     if (asked === 'raster' || (asked !== 'webgl' && isSoftware(this.renderer.getContext()))) {
       this.raster = new Raster();
@@ -103,6 +106,7 @@ export class Scene {
       line.material.opacity = 0.8;
     }
     this.map.setColors(colors.map, colors.accent);
+    this.ellipse.object.material.color.set(colors.accent);
     this.ruler.setColor(colors.text);
     this.setColors(mode, isDark);
     this.dirty = true;
@@ -151,9 +155,17 @@ export class Scene {
     this.dirty = true;
   }
 
+  /** Draws the ellipse of `covariance`, or none if it is null. */
+  setCovariance(covariance) {
+    this.ellipse.object.visible = covariance !== null;
+    if (covariance) this.ellipse.set(covariance);
+    this.dirty = true;
+  }
+
   clear() {
     this.fresh.clear();
     this.map.clear();
+    this.setCovariance(null);
     this.dirty = true;
   }
 
@@ -203,6 +215,7 @@ export class Scene {
     this.dirty = false;
     this.rings.position.copy(this.sensor);
     this.rings.position.z += this.ground;
+    this.ellipse.object.position.copy(this.rings.position);
     this.fresh.update();
     if (this.raster) {
       this.camera.updateMatrixWorld();

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The ellipse of three standard deviations of the sensor's horizontal position.
+import * as THREE from 'three';
+
+const SIGMAS = 3;
+const CORNERS = 64;
+
+/** Points of the ellipse around 0, as x, y, 0; `covariance` is that of lidar.Statistics. */
+export function ellipseOf(covariance) {
+  const [xx, xy, yy] = [0, 1, 7].map((i) => covariance[i]);
+  // The Cholesky factor makes the ellipse of a circle.
+  const a = Math.sqrt(xx);
+  const b = a > 0 ? xy / a : 0;
+  const c = Math.sqrt(Math.max(yy - b * b, 0));
+  return Array.from({ length: CORNERS + 1 }, (_, i) => {
+    const turn = (i / CORNERS) * 2 * Math.PI;
+    const [u, v] = [SIGMAS * Math.cos(turn), SIGMAS * Math.sin(turn)];
+    return [a * u, b * u + c * v, 0];
+  }).flat();
+}
+
+export class Ellipse {
+  constructor() {
+    this.geometry = new THREE.BufferGeometry();
+    this.corners = new THREE.BufferAttribute(new Float32Array((CORNERS + 1) * 3), 3);
+    this.geometry.setAttribute('position', this.corners);
+    this.object = new THREE.Line(this.geometry, new THREE.LineBasicMaterial());
+    this.object.frustumCulled = false;
+    this.object.visible = false;
+  }
+
+  set(covariance) {
+    this.corners.array.set(ellipseOf(covariance));
+    this.corners.needsUpdate = true;
+  }
+}
