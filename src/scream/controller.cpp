@@ -190,6 +190,7 @@ CongestionSignals Controller::Signals(Time now, const AckSummary& acks) const {
   s.is_l4s = p_.ecn == Ecn::kEct1 && !(p_.extensions.company && path_.classic_ecn().found());
   s.qdelay = path_.queue_delay().qdelay();
   s.qdelay_avg = path_.queue_delay().qdelay_avg();
+  s.qdelay_avg_falls = path_.queue_delay().qdelay_avg_falls();
   s.ref_wnd_delay_scale = path_.queue_delay().ref_wnd_delay_scale();
   s.boldness = BesideOthers(p_, path_, now);
   s.s_rtt = path_.rtt().smoothed();

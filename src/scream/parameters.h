@@ -27,6 +27,7 @@ struct Parameters {
     Parameters p;
     p.reduce_jitter = p.clock_drift = p.link_layer_loss = p.undershoot_remedy = false;
     p.extensions = {false, false, false, false};
+    p.ref_wnd_i_update_growth = 1.05;
     p.pacing_catch_up = Duration{0};
     return p;
   }
@@ -44,9 +45,11 @@ struct Parameters {
   double post_congestion_delay_rtt = 100;
   double mul_increase_factor = 0.02;
   Duration virtual_rtt = 25ms;
-  double l4s_avg_g_up = 1.0 / 8;
-  double l4s_avg_g_down = 1.0 / 128;
+  double l4s_avg_g = 1.0 / 16;
   double qdelay_avg_g = 1.0 / 4;
+  double ref_wnd_i_update_max_hold_rtts = 50;
+  /// ref_wnd_i moves if ref_wnd exceeds its lowest value since then by this factor (draft: 1.05).
+  double ref_wnd_i_update_growth = 1;
 
   // Optional, jitter scale:
   bool reduce_jitter = true;
@@ -110,9 +113,8 @@ struct Parameters {
   double isolated_loss_threshold = 0.05;
   /// Losses show congestion if the queue delays packets by more than this.
   Duration isolated_loss_qdelay = 6ms;
-  /// Factor of l4s_alpha's filter. Alpha rises as fast as the draft's after two rounds in a row in
-  /// which a part of even_alpha_max was marked, or after one such round of at least
-  /// long_frame_period.
+  /// Factor of l4s_alpha's filter. Alpha rises by an eighth after two rounds in a row in which a
+  /// part of even_alpha_max was marked, or after one such round of at least long_frame_period.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
   /// Pacing: a frame has left this long before its period ends. On a full link a queue of this

@@ -7,7 +7,6 @@
 
 namespace lidar::scream {
 
-/// The average rises fast and falls slowly (draft).
 class L4sAlpha {
  public:
   explicit L4sAlpha(const Parameters& p) : p_(p) {}
@@ -26,15 +25,9 @@ class L4sAlpha {
     const double fraction =
         std::min(1.0, static_cast<double>(marked_) / static_cast<double>(delivered_));
     const double slow = std::max(1.0, Seconds(round) / Seconds(kEvenRound));
-    const double down =
-        even ? std::min(p_.l4s_avg_g_up, p_.even_alpha_g * slow) : p_.l4s_avg_g_down;
-    const double up = even && !CountsAsFall(fraction, round) ? down : p_.l4s_avg_g_up;
-    if (fraction >= alpha_)
-      alpha_ = up * fraction + (1 - up) * alpha_;
-    else if (even)
-      alpha_ = down * fraction + (1 - down) * alpha_;
-    else
-      alpha_ *= 1 - down;
+    const bool fall = even && CountsAsFall(fraction, round) && fraction >= alpha_;
+    const double g = !even ? p_.l4s_avg_g : fall ? kFall : std::min(kFall, p_.even_alpha_g * slow);
+    alpha_ = g * fraction + (1 - g) * alpha_;
     last_update_ = now;
     delivered_ = marked_ = 0;
   }
@@ -60,6 +53,7 @@ class L4sAlpha {
     return marked_rounds_ >= enough;
   }
 
+  static constexpr double kFall = 1.0 / 8;
   static constexpr Duration kUpdateInterval = 10ms;
   /// Longer rounds, as of whole scans, weigh more.
   static constexpr Duration kEvenRound = 40ms;

@@ -76,7 +76,8 @@ bool QueueDelay::Update(Time now, Duration s_rtt) {
   const bool new_base = p_.clock_drift && UpdateDrift(now, s_rtt);
   if (now - last_update_qdelay_avg_time_ < std::min(p_.virtual_rtt, s_rtt)) return new_base;
   last_update_qdelay_avg_time_ = now;
-  qdelay_avg_ = qdelay_ < qdelay_avg_
+  qdelay_avg_falls_ = qdelay_ < qdelay_avg_;
+  qdelay_avg_ = qdelay_avg_falls_
                     ? qdelay_
                     : Scale(qdelay_, p_.qdelay_avg_g) + Scale(qdelay_avg_, 1 - p_.qdelay_avg_g);
   if (p_.reduce_jitter) CalculateRefWndDelayScale();

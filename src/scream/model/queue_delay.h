@@ -36,6 +36,8 @@ class QueueDelay {
   Duration base() const { return base_.value_or(Duration{0}); }
   Duration qdelay() const { return qdelay_; }
   Duration qdelay_avg() const { return qdelay_avg_; }
+  /// Returns true if qdelay_avg fell at its last update.
+  bool qdelay_avg_falls() const { return qdelay_avg_falls_; }
   /// 1: no jitter, 0: much jitter. Always 1 without REDUCE_JITTER.
   double ref_wnd_delay_scale() const { return ref_wnd_delay_scale_; }
 
@@ -56,6 +58,7 @@ class QueueDelay {
   Duration qdelay_{0};
   RecentMin shortest_back_{5min};  // clocks drift, so an old minimum says nothing
   Duration qdelay_avg_{0};
+  bool qdelay_avg_falls_ = false;
   Duration qdelay_max_avg_ = p_.qdelay_target_lo;
   Duration qdelay_min_avg_{0};
   Duration qdelay_dev_avg_{0};

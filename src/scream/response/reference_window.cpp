@@ -31,7 +31,8 @@ void ReferenceWindow::Start(DataRate rate, Duration s_rtt) {
 
 void ReferenceWindow::Drop(Time now, DataSize window) {
   Restart(window);
-  ref_wnd_i_ = Bytes(window);
+  ref_wnd_i_ = ref_wnd_lowest_ = Bytes(window);
+  ref_wnd_i_update_time_ = now;
   last_reaction_to_congestion_time_ = last_congestion_detected_time_ = last_drop_time_ = now;
 }
 
@@ -71,15 +72,14 @@ RateReason ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
     return RateReason::kIncrease;
   if (std::exchange(loss_detected_, false) && s.loss_is_congestion) return RateReason::kLoss;
   if (data_units_marked_) return RateReason::kCe;
-  if (s.qdelay_avg > p_.qdelay_target_lo / 2) return RateReason::kDelay;
+  // The extension capacity reacts to a queue that shrinks, too.
+  const bool falls = s.qdelay_avg_falls && !p_.extensions.capacity;
+  if (s.qdelay_avg > p_.qdelay_target_lo / 2 && !falls) return RateReason::kDelay;
   return RateReason::kIncrease;
 }
 
 void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignals& s, double scl) {
-  if (ref_wnd_i_update_allowed_) {
-    ref_wnd_i_ = ref_wnd_;
-    ref_wnd_i_update_allowed_ = false;
-  }
+  NoteInflectionPoint(now, s.s_rtt);
   if (reason == RateReason::kLoss)
     ref_wnd_ *= p_.beta_loss;
   else if (reason == RateReason::kDelay)
@@ -89,8 +89,17 @@ void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignal
   else
     ref_wnd_ *= p_.beta_ecn;
   ref_wnd_ = std::max(ref_wnd_, Bytes(p_.min_ref_wnd));
+  ref_wnd_lowest_ = ref_wnd_;
   last_reaction_to_congestion_time_ = now;
   ForgetSigns();
+}
+
+/// The reductions of one congestion do not lower the inflection point step by step.
+void ReferenceWindow::NoteInflectionPoint(Time now, Duration s_rtt) {
+  const bool held = Ratio(now - ref_wnd_i_update_time_, s_rtt) > p_.ref_wnd_i_update_max_hold_rtts;
+  if (ref_wnd_ <= ref_wnd_lowest_ * p_.ref_wnd_i_update_growth && !held) return;
+  ref_wnd_i_ = ref_wnd_;
+  ref_wnd_i_update_time_ = now;
 }
 
 double ReferenceWindow::L4sBackoff(Time now, const CongestionSignals& s, double scl) {
@@ -147,10 +156,8 @@ void ReferenceWindow::Increase(Time now, const CongestionSignals& s, double scl)
       p_.mss +
       std::max(s.max_bytes_in_flight, s.max_bytes_in_flight_prev) * p_.bytes_in_flight_head_room;
   const double next = ref_wnd_ + increment;
-  if (increment > 0 && next <= Bytes(max_allowed) && s.target_bitrate < s.target_bitrate_max) {
+  if (increment > 0 && next <= Bytes(max_allowed) && s.target_bitrate < s.target_bitrate_max)
     ref_wnd_ = next;
-    ref_wnd_i_update_allowed_ = true;
-  }
   ref_wnd_ = std::max(ref_wnd_, Bytes(p_.min_ref_wnd));
 }
 

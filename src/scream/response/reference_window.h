@@ -29,6 +29,7 @@ struct CongestionSignals {
   bool is_l4s = true;  ///< marks are L4S marks, not classic ECN
   Duration qdelay{0};
   Duration qdelay_avg{0};
+  bool qdelay_avg_falls = false;
   double ref_wnd_delay_scale = 1;
   Boldness boldness;
   /// Extension: a reaction may be this much early, as the next report is far away.
@@ -85,12 +86,14 @@ class ReferenceWindow {
   double L4sBackoff(Time now, const CongestionSignals& s, double scl);
   double VirtualBackoff(const CongestionSignals& s) const;
   double UndershootScale(const CongestionSignals& s) const;
+  void NoteInflectionPoint(Time now, Duration s_rtt);
   void Increase(Time now, const CongestionSignals& s, double scl);
 
   const Parameters& p_;
   double ref_wnd_;
   double ref_wnd_i_ = 1;
-  bool ref_wnd_i_update_allowed_ = true;
+  double ref_wnd_lowest_ = 0;  // after the last reduction
+  Time ref_wnd_i_update_time_{};
   bool loss_detected_ = false;      // since the last reaction
   bool data_units_marked_ = false;  // since the last reaction
   Time last_congestion_detected_time_{};

@@ -23,7 +23,7 @@ class SendWindow {
       if (path.Queueing(2 * path.BusyQdelay(now))) overhead = p_.bounded_overhead;
       overhead *= 1 + Seconds(path.UnreportedTime()) / Seconds(path.rtt().smoothed());
     }
-    return ref_wnd * overhead;
+    return std::max(ref_wnd * overhead, 2 * p_.mss);
   }
   /// Returns when a packet of `size` may leave. A closed window passes one at RATE_PACE_MIN, so
   /// that lost feedback cannot stop the sender.

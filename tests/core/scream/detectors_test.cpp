@@ -23,9 +23,10 @@ TEST(Parameters, TheDraftColumnIsTheDrafts) {
   EXPECT_DOUBLE_EQ(p.post_congestion_delay_rtt, 100);
   EXPECT_DOUBLE_EQ(p.mul_increase_factor, 0.02);
   EXPECT_EQ(p.virtual_rtt, Duration(25ms));
-  EXPECT_DOUBLE_EQ(p.l4s_avg_g_up, 1.0 / 8);
-  EXPECT_DOUBLE_EQ(p.l4s_avg_g_down, 1.0 / 128);
+  EXPECT_DOUBLE_EQ(p.l4s_avg_g, 1.0 / 16);
   EXPECT_DOUBLE_EQ(p.qdelay_avg_g, 1.0 / 4);
+  EXPECT_DOUBLE_EQ(p.ref_wnd_i_update_max_hold_rtts, 50);
+  EXPECT_DOUBLE_EQ(p.ref_wnd_i_update_growth, 1.05);
   EXPECT_DOUBLE_EQ(p.qdelay_min_max_avg_g, 1.0 / 16);
   EXPECT_DOUBLE_EQ(p.qdelay_dev_avg_g, 1.0 / 32);
   EXPECT_EQ(p.qdelay_dev_threshold, Duration(10ms));
@@ -130,6 +131,16 @@ TEST_F(QueueDelayTest, TheDraftKnowsNoClockJumps) {
   Run(1, 3020ms, 0ms);
   EXPECT_TRUE(ok_);
   EXPECT_EQ(delay_.qdelay(), Duration(3s));
+}
+
+TEST_F(QueueDelayTest, TheAverageFallsUntilItsNextUpdateAtWhichItDoesNot) {
+  Run(25, 20ms, 0ms);
+  Run(50, 60ms, 40ms);
+  EXPECT_FALSE(delay_.qdelay_avg_falls());
+  Run(25, 25ms, 5ms);
+  EXPECT_TRUE(delay_.qdelay_avg_falls());
+  Run(25, 25ms, 5ms);
+  EXPECT_FALSE(delay_.qdelay_avg_falls());
 }
 
 TEST_F(QueueDelayTest, ResetForgetsAllAverages) {

@@ -10,13 +10,13 @@
 namespace lidar::scream {
 namespace {
 
-TEST(L4sAlpha, AttacksWithAnEighthAndDecaysWithA128th) {
+TEST(L4sAlpha, RisesAndFallsByASixteenth) {
   const Parameters p = Parameters::Draft();
   L4sAlpha alpha(p);
   alpha.Update(kStart, 10, 5, 40ms, 40ms);
-  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 16);
   alpha.Update(kStart + 10ms, 10, 0, 40ms, 40ms);
-  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8 * 127 / 128);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 16 * 15 / 16);
 }
 
 TEST(L4sAlpha, GathersPacketsForTenMilliseconds) {
@@ -26,7 +26,7 @@ TEST(L4sAlpha, GathersPacketsForTenMilliseconds) {
   alpha.Update(kStart + 5ms, 10, 10, 40ms, 40ms);
   EXPECT_DOUBLE_EQ(alpha.value(), 0);
   alpha.Update(kStart + 10ms, 10, 0, 40ms, 40ms);
-  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 8);
+  EXPECT_DOUBLE_EQ(alpha.value(), 0.5 / 16);
 }
 
 TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarked) {

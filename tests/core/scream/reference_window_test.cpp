@@ -94,6 +94,36 @@ TEST_F(ReferenceWindowTest, QueueDelayActsAsVirtualMarks) {
   EXPECT_DOUBLE_EQ(Factor(), 1);
 }
 
+TEST_F(ReferenceWindowTest, AQueueDelayThatFallsIsNoCongestion) {
+  signals_.qdelay = signals_.qdelay_avg = 45ms;
+  signals_.qdelay_avg_falls = true;
+  EXPECT_DOUBLE_EQ(Factor(), 1);
+  signals_.data_units_marked = true;
+  Factor();
+  EXPECT_EQ(reason_, RateReason::kCe);
+}
+
+TEST_F(ReferenceWindowTest, TheInflectionPointWaitsForGrowthByFivePercent) {
+  const auto reduce_at = [this](std::int64_t window, Duration after) {
+    window_.Set(DataSize::Bytes(window));
+    Factor(after);
+    return window_.ref_wnd_i().bytes();
+  };
+  signals_.loss_detected = true;
+  EXPECT_EQ(reduce_at(100000, 25ms), 100000);  // to 70000
+  EXPECT_EQ(reduce_at(73500, 25ms), 100000);   // to 51450
+  EXPECT_EQ(reduce_at(54023, 25ms), 54023);
+}
+
+TEST_F(ReferenceWindowTest, TheInflectionPointWaitsFiftyRoundTripsAtMost) {
+  signals_.loss_detected = true;
+  Factor();
+  Factor(50 * 25ms);
+  EXPECT_EQ(window_.ref_wnd_i().bytes(), 100000);
+  Factor(25ms);
+  EXPECT_EQ(window_.ref_wnd_i().bytes(), 49000);
+}
+
 TEST_F(ReferenceWindowTest, AfterALongTimeWithoutCongestionItComesBackToWhatIsInFlight) {
   signals_.data_units_marked = true;
   signals_.max_bytes_in_flight_prev = DataSize::Bytes(40000);

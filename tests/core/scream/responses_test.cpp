@@ -184,6 +184,10 @@ TEST_F(SendWindowTest, IsClosedToTheWindowBehindAQueue) {
   EXPECT_NEAR(Overhead(), 1, 0.01);
 }
 
+TEST_F(SendWindowTest, IsTwoSegmentsAtLeast) {
+  EXPECT_EQ(window_.Max(path_.now, DataSize::Bytes(100), path_.model), 2 * parameters_.mss);
+}
+
 TEST_F(SendWindowTest, LetsAPacketGoAtTheMinimumRateWhileItIsClosed) {
   window_.OnSent(kStart);
   const DataSize max = DataSize::Bytes(5000);
