@@ -53,15 +53,18 @@ def link(packets, *program):
     receiver.bind(("127.0.0.1", 0))
     receiver.settimeout(WAIT)
     sender.settimeout(WAIT)
+    sender.setsockopt(socket.IPPROTO_IP, socket.IP_RECVTOS, 1)
     ends = ["--listen", "127.0.0.1:0", "--forward", f"127.0.0.1:{receiver.getsockname()[1]}"]
     with subprocess.Popen([*program, *ends, "--json-lines"], stdout=subprocess.PIPE, text=True) as running:
         port = json.loads(running.stdout.readline())["listening"][0]
         for text in packets.split():
             send(sender, text, ("127.0.0.1", port))
             payload, control, _, back = receiver.recvmsg(65536, 100)
+            receiver.setsockopt(socket.IPPROTO_IP, socket.IP_TOS, 96 | payload[3] & 1)
             receiver.sendto(payload[:1 + payload[3]], back)
-            answer = sender.recv(65536)
-            print(f"{len(payload)} bytes, sequence {payload[3]}, TOS {control[0][2][0]}; answer of {len(answer)} bytes")
+            answer, of_answer, _, _ = sender.recvmsg(65536, 100)
+            print(f"{len(payload)} bytes, sequence {payload[3]}, TOS {control[0][2][0]}; "
+                  f"answer of {len(answer)} bytes, TOS {of_answer[0][2][0]}")
         running.send_signal(signal.SIGINT)
         running.communicate()
     sys.exit(running.returncode)

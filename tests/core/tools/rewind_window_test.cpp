@@ -52,6 +52,13 @@ TEST_F(Rewind, GoesByStorageTimesWhereTheRobotsClockGoesBack) {
   EXPECT_EQ(Back(), 10U);
 }
 
+TEST_F(Rewind, BeginsAnewWhereANumberComesAgain) {
+  for (std::uint64_t ms = 0; ms < 500; ms += 100) Add(ms, ms);
+  --number_;
+  Add(500, 500);
+  EXPECT_EQ(Back(), 0U);
+}
+
 TEST_F(Rewind, BeginsAnewWhereTheNumbersGoBack) {
   number_ = 1'000;
   for (std::uint64_t ms = 0; ms < 500; ms += 100) Add(ms, ms);

@@ -116,6 +116,16 @@ TEST(SharedPort, ASocketThatIsOpenedHasNothingFromBefore) {
   EXPECT_EQ(received(), 0) << "of the session before";
   send();
   EXPECT_EQ(received(), 1);
+  // RTCP has the types 192 to 223, and its SSRC before the place of RTP's.
+  for (const auto& [type, at] :
+       {std::pair{191, 11}, std::pair{192, 7}, std::pair{223, 7}, std::pair{224, 11}})
+    for (const int place : {7, 11}) {
+      packet[1] = static_cast<char>(type);
+      packet[7] = packet[11] = 0;
+      packet[place] = 7;
+      send();
+      EXPECT_EQ(received(), place == at ? 1 : 0) << type;
+    }
 }
 
 class EdgeRecorder : public ::testing::Test {
