@@ -177,14 +177,15 @@ class Course {
       lines_.push_back(std::move(line));
     }
   }
-  /// Leaves out how long something took if it took any time, and digits of doubles that differ
-  /// between machines: a number halfway between two of three digits is the upper one, and a tiny
-  /// one is 0.
+  /// Leaves out how long something took if it took any time, arrays of doubles, and digits of
+  /// doubles that differ between machines: a number halfway between two of three digits is the
+  /// upper one, and a tiny one is 0.
   static std::string Steady(const std::string& line) {
     static const std::regex kClock(
         "(encode-time|decode-time|scan-time| age)=\\([a-z0-9]+\\)[1-9][0-9]*");
     static const std::regex kDouble("(?:\\(double\\)| pose )([-+.e0-9]+)");
-    std::string steady = std::regex_replace(line, kClock, "$1");
+    static const std::regex kDoubles("=\\(double\\)< [^>]*>");
+    std::string steady = std::regex_replace(std::regex_replace(line, kClock, "$1"), kDoubles, "");
     std::smatch found;
     std::string rounded;
     while (std::regex_search(steady, found, kDouble)) {
