@@ -259,7 +259,7 @@ DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
   if (p_.extensions.gaps && started_ && Stalled(now)) asked = asked * p_.stall_share;
   if (p_.extensions.gaps && outage_.Silence(now) < kLongestSilence)
-    asked = std::max(asked, streams_.needed_bitrate() * p_.needed_margin);
+    asked = std::max(asked, streams_.needed_bitrate());
   return std::min(asked, streams_.max_bitrate());
 }
 

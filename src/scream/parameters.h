@@ -148,8 +148,6 @@ struct Parameters {
   Duration backlog_drain = 200ms;
   /// Part of a late wake-up that is caught up. The draft's pacing has no such term.
   Duration pacing_catch_up = 4ms;
-  /// Margin on the needed bitrate, as encoders round.
-  double needed_margin = 1.03;
 
   /// Limit for all streams together; minimum bitrates take precedence.
   DataRate max_total_bitrate = DataRate::Infinite();

@@ -122,8 +122,7 @@ void Streams::LeaveRoomForBacklogs(Time now) {
     if (wait(stream) < longest / 2) continue;
     const DataRate target = stream.target_bitrate();
     const StreamConfig& c = stream.config();
-    const DataRate floor =
-        std::min(target, std::max(c.min_bitrate, c.needed_bitrate * p_.needed_margin));
+    const DataRate floor = std::min(target, c.need());
     stream.set_target_bitrate(std::max(floor, target - stream.backlog_rate(now)));
   }
 }

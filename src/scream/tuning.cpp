@@ -80,7 +80,6 @@ const std::vector<Tunable>& Tunables() {
       {"onset-reserve", &P::onset_reserve},
       {"stall-share", &P::stall_share},
       {"link-may-be-faster", &P::link_may_be_faster, 1, 100},
-      {"needed-margin", &P::needed_margin, 1, 2},
       {"classic-growth", &P::classic_growth, 0, 10},
       {"early-growth", &P::early_growth, 0, 10},
       {"prague-backoff", &P::prague_backoff, 0, 10},
