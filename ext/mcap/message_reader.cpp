@@ -96,9 +96,21 @@ class CloudReader : public MessageReader {
     if (info.sensor_model && info.sensor_model->beams.size() != info.height)
       info.sensor_model.reset();
     info_ = std::move(info);
-    CapsPtr caps(info_->ToCaps());
+    CapsPtr caps = CapsOfLayout();
     if (!caps_ || !gst_caps_is_equal(caps.get(), caps_.get())) caps_ = std::move(caps);
     return true;
+  }
+  /// Returns the recorded caps with the layout of the message.
+  CapsPtr CapsOfLayout() const {
+    CapsPtr caps(caps_ ? gst_caps_copy(caps_.get()) : info_->ToCaps());
+    gst_caps_set_simple(caps.get(), "width", G_TYPE_INT, static_cast<gint>(info_->width), "height",
+                        G_TYPE_INT, static_cast<gint>(info_->height), "point-step", G_TYPE_INT,
+                        static_cast<gint>(info_->point_step), "fields", G_TYPE_STRING,
+                        info_->fields.ToString().c_str(), "is-dense", G_TYPE_BOOLEAN,
+                        gboolean{info_->is_dense}, nullptr);
+    if (!info_->sensor_model)
+      gst_structure_remove_field(gst_caps_get_structure(caps.get(), 0), "sensor-model");
+    return caps;
   }
 
   std::optional<CloudInfo> info_;
@@ -126,7 +138,11 @@ class ImuReader : public MessageReader {
 
 class OdometryReader : public MessageReader {
  public:
-  OdometryReader() { caps_.reset(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE)); }
+  /// `caps` may be NULL.
+  explicit OdometryReader(CapsPtr caps) {
+    caps_ =
+        caps ? std::move(caps) : CapsPtr(gst_caps_new_empty_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE));
+  }
 
   BufferPtr Read(ByteView message) override {
     const auto odometry = cdr::ReadOdometry(message);
@@ -152,7 +168,7 @@ std::unique_ptr<MessageReader> MessageReader::Make(const mcap::Schema& schema,
     case MessageType::kImu:
       return std::make_unique<ImuReader>(std::move(caps));
     case MessageType::kOdometry:
-      return std::make_unique<OdometryReader>();
+      return std::make_unique<OdometryReader>(std::move(caps));
     case MessageType::kSlice:
       break;
   }
