@@ -127,6 +127,12 @@ static void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
     GST_ELEMENT_ERROR(self, RESOURCE, NO_SPACE_LEFT,
                       ("No space is left for \"%s\".", fault.path.c_str()),
                       ("What was recorded before is complete. %s", reason));
+  else if (fault.complete)
+    GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
+                      ("\"%s\" is complete. With a number in location, as in rec-%%05d.mcap, what "
+                       "follows becomes another file.",
+                       fault.path.c_str()),
+                      (nullptr));
   else if (fault.opening)
     GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
                       ("Cannot write \"%s\": %s.", fault.path.c_str(), reason), (nullptr));
@@ -346,10 +352,10 @@ GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, Recorde
     for (const NewMessage& message : state->messages) {
       const mcap::MessageHeader header{stream->channel_id, stream->sequence++,
                                        log_time + message.after, message.publish_time};
-      ++state->counted.messages;
-      state->counted.bytes += message.data.size();
       const ByteView data{message.data.data(), message.data.size()};
       if (auto fault = state->recorder->Add(header, data, begins_scan)) return fault;
+      ++state->counted.messages;
+      state->counted.bytes += message.data.size();
     }
     return std::nullopt;
   });

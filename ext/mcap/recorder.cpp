@@ -66,9 +66,8 @@ std::optional<RecorderFault> Recorder::Add(const mcap::MessageHeader& header, By
     if (auto fault = Finish()) return fault;
   }
   if (!writer_) {
-    // A recording without numbers has one file, which is complete already.
     if (!names_.is_numbered() && next_number_ > 0)
-      return RecorderFault{names_.Name(0), EEXIST, true};
+      return RecorderFault{names_.Name(0), EEXIST, true, true};
     BeginFile();
     file_start_ = header.log_time;
   }

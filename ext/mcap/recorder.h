@@ -28,6 +28,7 @@ struct RecorderFault {
   std::string path;
   int error = 0;  // errno
   bool opening = false;
+  bool complete = false;  // the only file already is
 };
 
 struct RecordedFile {

@@ -95,6 +95,9 @@ void SinkCourse(Course& c) {
   c.Set("max-files", "2");
   c.Begin(kRecordedCaps);
   for (GstClockTime ms = 0; ms < 900; ms += 100) c.Push("in a second run", Cloud(ms));
+  c.End();
+  c.Flush();
+  c.Push("behind the end", Cloud(900));
   c.Push("of another size", Stamped(23, 0, 900));
   c.SetCaps("text/x-raw,format=utf8");
   c.Stop();
