@@ -119,6 +119,7 @@ void Ros2SrcCourse(Course& c) {
   dense.header.frame_id = "other";
   gives("of another frame", dense);
   c.Ask();
+  breaks();
   c.Stop();
   broken = 0;
   begin();
