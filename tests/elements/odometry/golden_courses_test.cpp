@@ -56,8 +56,9 @@ void OdometryCourse(Course& c) {
   c.Push("a slice", SliceOf(ScanAt(CornerFrom(9), 9 * kCornerPeriod), {10, 0, 2, 0}));
   c.Flush();
   c.Push("behind a flush", ScanAt(CornerFrom(9), 9 * kCornerPeriod));
-  for (unsigned i = 10; i < 13; ++i) c.Push("lost", ScanAt(FarWall(), i * kCornerPeriod));
-  c.Push("found", ScanAt(CornerFrom(13), 13 * kCornerPeriod));
+  for (unsigned i = 10; i < 12; ++i) c.Push("lost", ScanAt(FarWall(), i * kCornerPeriod));
+  c.Push("found", ScanAt(CornerFrom(12), 12 * kCornerPeriod));
+  c.Push("lost again", ScanAt(FarWall(), 13 * kCornerPeriod));
   c.Push("a slice", SliceOf(ScanAt(CornerFrom(14), 14 * kCornerPeriod), {15, 0, 2, 0}));
   c.SetCaps(std::string(kCornerCaps) + ",frame-id=os");
   c.Push("of other caps", ScanAt(CornerFrom(15), 15 * kCornerPeriod));

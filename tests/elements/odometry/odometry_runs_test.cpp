@@ -128,7 +128,8 @@ TEST(OdometryProperties, AreAllInTheTable) {
     EXPECT_EQ(tried.count(name), 1U) << name;
 }
 
-/// Leaves much behind: lost scans, new maps, a scan under way, and samples that no scan has taken.
+/// Leaves much behind: lost scans, new maps, a scan under way, and samples that no scan has taken
+/// and that would make the next run drop its first samples.
 void RunWithTroubles(OdometryRun* run) {
   run->BeginImu();
   for (unsigned i = 0; i < 9; ++i) {
@@ -139,7 +140,7 @@ void RunWithTroubles(OdometryRun* run) {
   run->Drive(90, 92);
   run->Push(ScanAt(gst::BufferPtr(gst_buffer_new_memdup("cut", 3)), 92 * kCornerPeriod));
   run->Push(ScanAt(FarWall(), 92 * kCornerPeriod));
-  run->SendStillness(93 * kCornerPeriod);
+  run->SendStillness(5 * kCornerPeriod);
   run->Push(SliceOf(ScanAt(CornerFrom(93), 93 * kCornerPeriod), {7, 0, 2, 0}));
 }
 
@@ -165,7 +166,7 @@ TEST(OdometrySecondRun, IsAsTheFirst) {
       EXPECT_EQ(lines, first);
       EXPECT_TRUE(HasLine(lines,
                           "scans=(guint64)26, scans-lost=(guint64)10, scans-degenerate=(guint64)0, "
-                          "scans-with-imu=(guint64)4, maps=(guint64)5, loops=(guint64)0, "
+                          "scans-with-imu=(guint64)3, maps=(guint64)5, loops=(guint64)0, "
                           "local-maps=(guint64)1, scans-not-in-local-maps=(guint64)0"))
           << lines[lines.size() - 2];
     }
