@@ -9,7 +9,6 @@
 #include "src/codec/cloud/pixel_part.h"
 #include "src/codec/effort_control.h"
 #include "src/codec/mixing/binary_coder.h"
-#include "src/codec/range_codec.h"
 #include "src/codec/varint.h"
 
 namespace lidar::codec::cloud {
@@ -103,7 +102,7 @@ std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::in
 
 /// Sets `decoded` and `grid` to what a decoder gets: the ranges of `image`, their grid.
 bool ComeBack(const RangeImage& image, const RangeSettings& settings,
-              const std::vector<std::uint8_t>& block, const SensorModel& model, RangeImage* decoded,
+              const std::vector<std::uint8_t>& block, const BeamTable& table, RangeImage* decoded,
               RangeGrid* grid) {
   if (settings.effort < EffortControl::kHighest) {
     *grid = settings.grid;
@@ -118,7 +117,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
     return true;
   }
   // The encoder may have chosen bins other than the nearest.
-  RangeDecoder decoder(model);
+  RangeDecoder decoder(ModelOf(table));
   IntensityScale scale;
   ByteReader reader(block.data(), block.size());
   if (!decoder.Decode(&reader, kMostPixels, decoded, &scale)) return false;
@@ -144,26 +143,34 @@ void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* 
 
 }  // namespace
 
-bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
-                       const RangeWay& way, PixelList* list, std::vector<std::uint8_t>* out) {
+RangeEncoder* BeamSectionEncoder::CoderOf(const BeamTable& table) {
+  if (coder_ == nullptr || table.rows() != rows_ || table.columns() != columns_) {
+    coder_ = std::make_unique<RangeEncoder>(ModelOf(table));
+    rows_ = table.rows();
+    columns_ = table.columns();
+  }
+  return coder_.get();
+}
+
+bool BeamSectionEncoder::Encode(BeamTable table, const PixelErrors& errors,
+                                const PointLevels& levels, const RangeWay& way, PixelList* list,
+                                std::vector<std::uint8_t>* out) {
   RangeImage& image = list->image;
   table.bends = errors.bend_um > 0;
-  const SensorModel model = ModelOf(table);
   if (levels.levels != nullptr) {
     image.intensity.assign(image.size(), 0);
     for (std::size_t i = 0; i < image.size(); ++i)
       if (image.ranges[i] != 0) image.intensity[i] = (*levels.levels)[list->points[i]];
   }
   std::vector<std::uint8_t> block;
-  RangeEncoder encoder(model);
   const RangeSettings settings = SettingsOf(errors, levels, way, image);
-  if (!encoder.Encode(image, settings, &block)) return false;
+  if (!CoderOf(table)->Encode(image, settings, &block)) return false;
   // The codes of the next parts depend on the decoded ranges.
   RangeImage decoded;
   RangeGrid grid;
   const bool has_extras = !list->extras.empty();
   if ((has_extras || errors.tangent_um > 0 || errors.bend_um > 0) &&
-      !ComeBack(image, settings, block, model, &decoded, &grid)) {
+      !ComeBack(image, settings, block, table, &decoded, &grid)) {
     return false;
   }
   std::vector<std::int32_t> bins;

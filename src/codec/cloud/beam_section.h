@@ -2,6 +2,7 @@
 // The part of a coded cloud that beams see: an image of ranges, and what the image lacks.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "src/base/byte_reader.h"
@@ -10,6 +11,7 @@
 #include "src/codec/cloud/pixel_list.h"
 #include "src/codec/cloud_io.h"
 #include "src/codec/intensity_scale.h"
+#include "src/codec/range_codec.h"
 #include "src/codec/range_header.h"
 
 namespace lidar::codec::cloud {
@@ -26,9 +28,20 @@ struct RangeWay {
   unsigned effort = 1;  // of kMixing
 };
 
-/// Appends the section. Returns false if the range coder refuses the image.
-bool EncodeBeamSection(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
-                       const RangeWay& way, PixelList* list, std::vector<std::uint8_t>* out);
+/// Keeps its buffers between sections.
+class BeamSectionEncoder {
+ public:
+  /// Appends the section. Returns false if the range coder refuses the image.
+  bool Encode(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
+              const RangeWay& way, PixelList* list, std::vector<std::uint8_t>* out);
+
+ private:
+  RangeEncoder* CoderOf(const BeamTable& table);
+
+  std::unique_ptr<RangeEncoder> coder_;  // of rows_ and columns_
+  std::uint32_t rows_ = 0;
+  std::uint32_t columns_ = 0;
+};
 
 /// Appends the points of the next section of `reader`: beam by beam, in the order of columns, the
 /// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with both

@@ -282,7 +282,7 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
   candidate->header.has_beams = true;
   const PointLevels levels{levels_.empty() ? nullptr : &levels_, candidate->header.intensity};
   if (pixels_.returns < near_.size() / 4 ||
-      !EncodeBeamSection(table, errors, levels, way, &pixels_, &candidate->beams)) {
+      !section_.Encode(table, errors, levels, way, &pixels_, &candidate->beams)) {
     return false;
   }
   EncodeCells(pixels_.rest, candidate);

@@ -104,6 +104,7 @@ class CloudEncoder {
   CoveredPoints covered_;
   CellTree tree_;
   PixelList pixels_;
+  BeamSectionEncoder section_;
 };
 
 }  // namespace lidar::codec::cloud

@@ -474,7 +474,7 @@ TEST(BeamSection, IsRefusedWithAnImageThatReachesPastItsTable) {
     list.image.ranges.assign(list.image.size(), 5'000);
     list.residuals.assign(list.image.size(), 0);
     std::vector<std::uint8_t> bytes;
-    EXPECT_TRUE(EncodeBeamSection(table, {0.02, 0.02, 0, 0}, {}, {}, &list, &bytes));
+    EXPECT_TRUE(BeamSectionEncoder().Encode(table, {0.02, 0.02, 0, 0}, {}, {}, &list, &bytes));
     ByteReader reader(bytes.data(), bytes.size());
     XyzCloud cloud;
     return DecodeBeamSection(&reader, 8, {}, &cloud);
