@@ -124,9 +124,9 @@ inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }
 
-/// Rounds like std::lround(), without a call.
+/// Rounds like std::lround(), without a call or a jump.
 inline std::int32_t ToNearest(double value) {
-  return static_cast<std::int32_t>(value < 0 ? value - 0.5 : value + 0.5);
+  return static_cast<std::int32_t>(value + std::copysign(0.5, value));
 }
 
 /// Azimuths of a table's pixels without a division for each.
