@@ -105,21 +105,52 @@ class PixelCheck {
   std::int32_t half_step_;
 };
 
+/// A point that fits a pixel.
+struct FittingPoint {
+  std::uint32_t point;
+  std::uint32_t beam;
+  std::uint32_t column;
+  std::uint32_t range_mm;
+};
+
+/// Points by whether they fit a pixel. The list is short, so that later passes need not read the
+/// placed points again.
+struct Fitting {
+  std::vector<FittingPoint> points;
+  std::uint32_t first_column = UINT32_MAX;
+  std::uint32_t last_column = 0;
+};
+
+Fitting FindFitting(const PlacedCloud& cloud, const PixelCheck& check, double nearest_m,
+                    std::vector<std::uint32_t>* rest) {
+  const std::vector<PlacedPoint>& placed = *cloud.placed;
+  Fitting fitting;
+  fitting.points.reserve(placed.size() / cloud.stride + 1);
+  for (std::size_t i = 0; i < placed.size(); i += cloud.stride) {
+    const auto point = static_cast<std::uint32_t>(i);
+    const PlacedPoint& p = placed[i];
+    const bool may_fit = (*cloud.points)[i].range_m >= nearest_m && check.Fits(i);
+    const std::uint32_t range_mm = may_fit ? PixelCheck::RangeMm(p) : 0;
+    if (range_mm == 0) {
+      rest->push_back(point);
+      continue;
+    }
+    fitting.first_column = std::min(fitting.first_column, p.column);
+    fitting.last_column = std::max(fitting.last_column, p.column);
+    fitting.points.push_back({point, p.beam, p.column, range_mm});
+  }
+  return fitting;
+}
+
 /// Sets the columns of the image, from the first with a point to the last. Returns false if the
 /// image is too large.
-bool PlaceImage(const BeamTable& table, const std::vector<PlacedPoint>& placed,
-                const std::vector<std::uint32_t>& fitting, const PixelErrors& errors,
+bool PlaceImage(const BeamTable& table, const Fitting& fitting, const PixelErrors& errors,
                 PixelList* list) {
-  std::uint32_t first = table.columns() - 1;
-  std::uint32_t last = 0;
-  for (const std::uint32_t i : fitting) {
-    first = std::min(first, placed[i].column);
-    last = std::max(last, placed[i].column);
-  }
   RangeImage& image = list->image;
+  const bool is_empty = fitting.points.empty();
   image.beams = table.rows();
-  image.columns = first <= last ? last - first + 1 : 1;
-  image.first_column = first <= last ? first : 0;
+  image.columns = is_empty ? 1 : fitting.last_column - fitting.first_column + 1;
+  image.first_column = is_empty ? 0 : fitting.first_column;
   if (image.size() > kMostPixels) return false;
   image.ranges.assign(image.size(), 0);
   list->points.assign(image.size(), 0);
@@ -161,32 +192,22 @@ bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double near
   list->rest.clear();
   list->returns = 0;
   const PixelCheck check(cloud, errors);
-  std::vector<std::uint32_t> fitting;
-  fitting.reserve(placed.size() / cloud.stride + 1);
-  for (std::size_t i = 0; i < placed.size(); i += cloud.stride) {
-    const bool fits = (*cloud.points)[i].range_m >= nearest_m && check.Fits(i) &&
-                      PixelCheck::RangeMm(placed[i]) > 0;
-    (fits ? fitting : list->rest).push_back(static_cast<std::uint32_t>(i));
-  }
-  if (!PlaceImage(*cloud.table, placed, fitting, errors, list)) return false;
+  const Fitting fitting = FindFitting(cloud, check, nearest_m, &list->rest);
+  if (!PlaceImage(*cloud.table, fitting, errors, list)) return false;
   RangeImage& image = list->image;
-  const auto pixel_of = [&](std::uint32_t point) {
-    const PlacedPoint& p = placed[point];
-    return p.beam * image.columns + p.column - image.first_column;
-  };
   std::vector<std::pair<std::uint32_t, std::uint32_t>> further;  // pixel, point
-  for (const std::uint32_t i : fitting) {
-    const std::uint32_t pixel = pixel_of(i);
+  for (const FittingPoint& p : fitting.points) {
+    const std::uint32_t pixel = p.beam * image.columns + p.column - image.first_column;
     if (image.ranges[pixel] != 0) {
-      further.emplace_back(pixel, i);
+      further.emplace_back(pixel, p.point);
       continue;
     }
-    image.ranges[pixel] = PixelCheck::RangeMm(placed[i]);
-    if (errors.tangent_um > 0) list->residuals[pixel] = placed[i].residual;
-    if (errors.bend_um > 0) list->bends[pixel] = placed[i].bend;
-    list->points[pixel] = i;
-    ++list->returns;
+    image.ranges[pixel] = p.range_mm;
+    if (errors.tangent_um > 0) list->residuals[pixel] = placed[p.point].residual;
+    if (errors.bend_um > 0) list->bends[pixel] = placed[p.point].bend;
+    list->points[pixel] = p.point;
   }
+  list->returns = fitting.points.size() - further.size();
   std::sort(further.begin(), further.end());
   for (const auto& [pixel, point] : further) {
     if (check.FitsWith(point, list->points[pixel])) {
