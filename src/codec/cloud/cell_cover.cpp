@@ -183,8 +183,9 @@ bool CellGrid::Reaches(double farthest_m) const {
 
 double CellGrid::SurelyHolds() const {
   // Floats round each coordinate of a cell's middle by up to half of its product with kRounding.
+  // The sum of these errors counts.
   constexpr double kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
-  return static_cast<double>(step_m) * kRoom / kRounding - static_cast<double>(step_m);
+  return 3 * (static_cast<double>(step_m) * kRoom / kRounding - static_cast<double>(step_m));
 }
 
 bool CellGrid::Holds(const Point& point) const {

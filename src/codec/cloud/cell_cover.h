@@ -40,7 +40,7 @@ struct CellGrid {
   bool Reaches(double farthest_m) const;
   /// Returns true if floats are fine enough for the error at `point`. A tree must reach the point.
   bool Holds(const Point& point) const;
-  /// Distance up to which floats are fine enough at all points.
+  /// Sum of a point's distances along the axes, up to which floats are fine enough.
   double SurelyHolds() const;
 };
 

@@ -175,33 +175,38 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
 
 /// Returns the largest coordinate of the other points.
 float CloudEncoder::SortOutFarPoints(const CellGrid& grid) {
-  near_.clear();
   float most = 0;
   const double surely = grid.SurelyHolds();
+  // Points that stay from the cloud before leave no zeros to write.
+  near_.resize(cloud_.size());
+  near_ids_.resize(cloud_.size());
+  std::size_t count = 0;
   for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
     const Point point = {cloud_.xyz[3 * i], cloud_.xyz[3 * i + 1], cloud_.xyz[3 * i + 2]};
-    float farthest = 0;
-    for (const float v : point) farthest = std::max(farthest, std::abs(v));
-    const auto farthest_m = static_cast<double>(farthest);
-    if (farthest_m > surely && (!grid.Reaches(farthest_m) || !grid.Holds(point))) {
+    const float x = std::abs(point[0]);
+    const float y = std::abs(point[1]);
+    const float z = std::abs(point[2]);
+    const float farthest = std::max({x, y, z});
+    const double sum = static_cast<double>(x) + static_cast<double>(y) + static_cast<double>(z);
+    if (sum > surely && (!grid.Reaches(static_cast<double>(farthest)) || !grid.Holds(point))) {
       far_ids_.push_back(i);
       continue;
     }
     most = std::max(most, farthest);
-    near_.push_back(point);
-    near_ids_.push_back(i);
+    near_[count] = point;
+    near_ids_[count++] = i;
   }
+  near_.resize(count);
+  near_ids_.resize(count);
   return most;
 }
 
 /// Separates points that the grid can hold from those too far away.
 void CloudEncoder::SortOut(CloudHeader* header) {
-  near_ids_.clear();
   far_ids_.clear();
-  near_ids_.reserve(cloud_.size());
   float most = FarthestOf(cloud_.xyz);
   const double surely = header->grid.SurelyHolds();
-  if (static_cast<double>(most) <= surely) {
+  if (3 * static_cast<double>(most) <= surely) {
     near_ids_.resize(cloud_.size());
     std::iota(near_ids_.begin(), near_ids_.end(), 0U);
     near_.resize(cloud_.size());
