@@ -37,21 +37,63 @@ std::vector<std::uint32_t> Sums(const std::vector<std::uint32_t>& counts) {
   return first;
 }
 
+/// The keys of the cells whose middles are within the error of a point.
+class NearCells {
+ public:
+  static constexpr std::size_t kMost = 8;
+
+  NearCells(const CellGrid& grid, unsigned depth)
+      : step_(static_cast<double>(grid.step_m)),
+        half_(CellGrid::HalfOf(depth)),
+        square_bound_(grid.error_m() * grid.error_m()) {}
+
+  /// Writes the key of the point's own cell, then those of its neighbours that are near enough.
+  /// Only neighbours on the point's side of its cell can be. Returns the end of the keys.
+  std::uint64_t* Write(const Point& point, std::uint64_t* keys) const {
+    constexpr std::array<std::uint64_t, 3> kSteps = {NodeMap::kStepX, NodeMap::kStepY,
+                                                     NodeMap::kStepZ};
+    std::array<std::array<double, 3>, 2> squares;  // of the distances along each axis
+    std::array<std::array<std::uint64_t, 3>, 2> steps{};
+    std::uint64_t own = 0;
+    for (unsigned k = 0; k < 3; ++k) {
+      const auto at = static_cast<double>(point[k]);
+      const double whole = Floor(at / step_);
+      const double off = at - MiddleAt(whole);
+      const double side = std::copysign(1.0, off);
+      const double beside = at - MiddleAt(whole + side);
+      squares[0][k] = off * off;
+      squares[1][k] = beside * beside;
+      own += static_cast<std::uint64_t>(static_cast<std::int64_t>(whole + half_) + 1) * kSteps[k];
+      steps[1][k] = off < 0 ? 0 - kSteps[k] : kSteps[k];
+    }
+    // A jump for each neighbour would often be mispredicted.
+    *keys++ = own;
+    for (unsigned i = 1; i < kMost; ++i) {
+      const unsigned x = i & 1;
+      const unsigned y = i >> 1 & 1;
+      const unsigned z = i >> 2;
+      *keys = own + steps[x][0] + steps[y][1] + steps[z][2];
+      keys += squares[x][0] + squares[y][1] + squares[z][2] > square_bound_ ? 0 : 1;
+    }
+    return keys;
+  }
+
+ private:
+  /// Does what CellGrid::Middle() does, for a cell `whole` cells from the middle of the grid.
+  double MiddleAt(double whole) const {
+    return static_cast<double>(static_cast<float>((whole + 0.5) * step_));
+  }
+
+  double step_;
+  double half_;
+  double square_bound_;  // of the distance from a cell's middle
+};
+
 /// Points and the cells that they may take.
 class Choices {
  public:
-  Choices(const std::vector<Point>& points, const CellGrid& grid, unsigned depth)
-      : square_bound_(grid.error_m() * grid.error_m()) {
-    map_.Reset(points.size());
-    first_of_point_.reserve(points.size() + 1);
-    cells_.reserve(kUsual * points.size());
-    positions_.reserve(kUsual * points.size());
-    left_.reserve(kUsual * points.size());
-    for (const Point& point : points) {
-      first_of_point_.push_back(static_cast<std::uint32_t>(cells_.size()));
-      AddPoint(point, grid, depth);
-    }
-    first_of_point_.push_back(static_cast<std::uint32_t>(cells_.size()));
+  Choices(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
+    FindCells(points, NearCells(grid, depth));
     first_of_cell_ = Sums(left_);
     points_.resize(cells_.size());
     std::vector<std::uint32_t> next(first_of_cell_.begin(), first_of_cell_.end() - 1);
@@ -61,8 +103,10 @@ class Choices {
     taken_.assign(points.size(), 0);
   }
 
-  std::uint32_t size() const { return static_cast<std::uint32_t>(positions_.size()); }
-  std::uint64_t CodeOf(std::uint32_t cell) const { return MortonCode(positions_[cell]); }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(keys_.size()); }
+  std::uint64_t CodeOf(std::uint32_t cell) const {
+    return MortonCode(NodeMap::PositionOf(keys_[cell]));
+  }
   /// Returns how many of the remaining points may take this cell.
   std::uint32_t left(std::uint32_t cell) const { return left_[cell]; }
   /// Gives the cell all its remaining points, and appends them to `order`.
@@ -78,47 +122,40 @@ class Choices {
   }
 
  private:
-  /// Adds the point's own cell and those of its neighbours that are near enough. Only neighbours on
-  /// the point's side of its cell can be.
-  void AddPoint(const Point& point, const CellGrid& grid, unsigned depth) {
-    const CellPosition own = OwnCell(point, grid, depth);
-    AddChoice(own);
-    CellPosition side = own;
-    std::array<std::array<double, 3>, 2> squares{};  // of the distances along each axis
-    for (unsigned k = 0; k < 3; ++k) {
-      const auto at = static_cast<double>(point[k]);
-      const double off = at - grid.Middle(own[k], depth);
-      side[k] = off < 0 ? own[k] - 1 : own[k] + 1;
-      const double beside = at - grid.Middle(side[k], depth);
-      squares[0][k] = off * off;
-      squares[1][k] = beside * beside;
-    }
-    for (unsigned i = 1; i < 8; ++i) {
-      const unsigned x = i & 1;
-      const unsigned y = i >> 1 & 1;
-      const unsigned z = i >> 2;
-      if (squares[x][0] + squares[y][1] + squares[z][2] > square_bound_) continue;
-      AddChoice({x != 0 ? side[0] : own[0], y != 0 ? side[1] : own[1], z != 0 ? side[2] : own[2]});
+  /// Fills the lists of cells and choices. A few points at once first get their keys, so that
+  /// look-ups do not wait for them.
+  void FindCells(const std::vector<Point>& points, const NearCells& near) {
+    constexpr std::size_t kAtOnce = 64;
+    constexpr std::size_t kUsual = 4;  // cells a point, at most
+    std::array<std::uint64_t, kAtOnce * NearCells::kMost> keys;
+    map_.Reset(points.size() / 2);
+    first_of_point_.reserve(points.size() + 1);
+    cells_.reserve(kUsual * points.size());
+    first_of_point_.push_back(0);
+    for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
+      const auto before = static_cast<std::uint32_t>(cells_.size());
+      std::uint64_t* end = keys.data();
+      for (std::size_t i = first; i < std::min(first + kAtOnce, points.size()); ++i) {
+        end = near.Write(points[i], end);
+        first_of_point_.push_back(before + static_cast<std::uint32_t>(end - keys.data()));
+      }
+      for (const std::uint64_t* key = keys.data(); key != end; ++key) AddChoice(*key);
     }
   }
-  void AddChoice(const CellPosition& cell) {
-    const std::uint64_t key = NodeMap::KeyOf(cell);
+  void AddChoice(std::uint64_t key) {
     std::uint32_t index = map_.Find(key);
     if (index == NodeMap::kAbsent) {
       index = size();
       map_.Add(key, index);
-      positions_.push_back(cell);
+      keys_.push_back(key);
       left_.push_back(0);
     }
     ++left_[index];
     cells_.push_back(index);
   }
 
-  static constexpr std::size_t kUsual = 4;  // cells a point, at most
-
-  double square_bound_;  // of the distance from a cell's middle
   NodeMap map_;
-  std::vector<CellPosition> positions_;  // of cells
+  std::vector<std::uint64_t> keys_;  // of cells
   std::vector<std::uint32_t> left_;
   std::vector<std::uint32_t> first_of_point_;
   std::vector<std::uint32_t> cells_;  // point by point

@@ -43,6 +43,12 @@ class NodeMap {
   static std::uint64_t KeyOf(const CellPosition& p) {
     return (p[0] + 1) * kStepX + (p[1] + 1) * kStepY + (p[2] + 1) * kStepZ;
   }
+  static CellPosition PositionOf(std::uint64_t key) {
+    constexpr std::uint64_t kField = kStepY - 1;
+    return {static_cast<std::uint32_t>(key / kStepX - 1),
+            static_cast<std::uint32_t>((key / kStepY & kField) - 1),
+            static_cast<std::uint32_t>((key & kField) - 1)};
+  }
 
  private:
   void Grow() {
