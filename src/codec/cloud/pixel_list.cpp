@@ -162,8 +162,8 @@ bool PlaceImage(const BeamTable& table, const Fitting& fitting, const PixelError
 }  // namespace
 
 void PixelList::DropFewExtras() {
-  constexpr std::size_t kFewest = 256;  // pixels to a further return
-  if (extras.size() * kFewest > returns) return;
+  constexpr std::size_t kPixelsToAnExtra = 256;  // pixels to a further return
+  if (extras.size() * kPixelsToAnExtra > returns) return;
   for (const ExtraReturn& extra : extras) rest.push_back(extra.point);
   extras.clear();
 }
