@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lidar::codec::cloud {
 
@@ -24,6 +25,48 @@ BeamLocator::BeamLocator(const BeamTable& table) {
       buckets_[next] = static_cast<std::uint16_t>(beam == 0 ? 0 : beam - 1);
   }
   for (; next < kBuckets; ++next) buckets_[next] = static_cast<std::uint16_t>(lines_.size() - 1);
+  for (std::uint32_t beam = 0; beam < lines_.size(); ++beam) far_m_.push_back(FarFrom(beam));
+}
+
+/// Returns a distance along the ground. Each point farther away that has this guess is nearer to
+/// line `guess` or to the next one than to other lines around them. The point's slope, as seen from
+/// the middle height, is between those of the two lines, or less by the width of a bucket.
+double BeamLocator::FarFrom(std::uint32_t guess) const {
+  const auto beams = static_cast<std::uint32_t>(lines_.size());
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  constexpr double kLeastCosine = 0.1;
+  // The slopes of points above the first beam or below the last one have no bound.
+  if (guess == 0 || guess + 1 >= beams) return kNever;
+  const std::uint32_t first = guess < around_ ? 0 : guess - around_;
+  const std::uint32_t end = std::min(guess + around_ + 2, beams);
+  for (std::uint32_t i = first; i < end; ++i)
+    if (lines_[i].cosine < kLeastCosine) return kNever;
+  const Line& upper = lines_[guess];
+  const Line& lower = lines_[guess + 1];
+  const double most = upper.sine / upper.cosine;
+  const double edge = lower.sine / lower.cosine;
+  const double width = 1.1 / (0.4999 * kBuckets) * (1 + std::abs(edge)) * (1 + std::abs(edge));
+  // Distances from a line through the middle height, for a point 1 m along the ground, and how much
+  // the line's own height changes them.
+  const auto away = [](const Line& line, double slope) { return slope * line.cosine - line.sine; };
+  const auto off_m = [&](const Line& line) {
+    return std::abs(line.height_m - middle_height_m_) * line.cosine;
+  };
+  double far_m = 0;
+  const auto exclude = [&](const Line& line, const Line& nearer, double farther) {
+    constexpr double kRoom = 1.01;
+    const double bound = kRoom * (off_m(line) + off_m(nearer)) + 1e-6;
+    far_m = farther > 1e-6 ? std::max(far_m, bound / farther) : kNever;
+  };
+  for (std::uint32_t i = first; i < guess && far_m < kNever; ++i)
+    exclude(lines_[i], upper,
+            std::min(away(upper, most) - away(lines_[i], most),
+                     away(upper, edge - width) - away(lines_[i], edge - width)));
+  for (std::uint32_t i = guess + 2; i < end && far_m < kNever; ++i)
+    exclude(lines_[i], lower,
+            std::min(away(lines_[i], most) - away(lower, most),
+                     away(lines_[i], edge - width) - width * lower.cosine));
+  return far_m;
 }
 
 }  // namespace lidar::codec::cloud

@@ -22,9 +22,11 @@ class BeamLocator {
   Found Find(const Sighting& s) const {
     const std::uint32_t guess =
         buckets_[BucketOf(s.z_m - middle_height_m_, std::max(s.rho_m, 1e-6))];
-    const std::uint32_t first = guess < around_ ? 0 : guess - around_;
+    const bool is_far = s.rho_m > far_m_[guess];
+    const std::uint32_t around = is_far ? 0 : around_;
+    const std::uint32_t first = guess < around ? 0 : guess - around;
     const std::uint32_t end =
-        std::min(guess + around_ + 2, static_cast<std::uint32_t>(lines_.size()));
+        std::min(guess + around + 2, static_cast<std::uint32_t>(lines_.size()));
     std::uint32_t best = first;
     double least = std::abs(AboveOf(first, s));
     // This form compiles without branches, which would often be mispredicted.
@@ -59,10 +61,13 @@ class BeamLocator {
     return static_cast<std::uint32_t>((1 - z / (rho + std::abs(z))) * (0.4999 * kBuckets));
   }
 
+  double FarFrom(std::uint32_t guess) const;
+
   std::vector<Line> lines_;
   double middle_height_m_ = 0;
   std::uint32_t around_ = 0;            // beams on each side of the guess that may be nearer
   std::vector<std::uint16_t> buckets_;  // the last beam above each bucket
+  std::vector<double> far_m_;  // of each guess: from here on, no beams around it are nearer
 };
 
 }  // namespace lidar::codec::cloud
