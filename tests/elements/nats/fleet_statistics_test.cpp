@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The statistics that the programs of a fleet publish.
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -138,6 +143,31 @@ TEST_F(FleetReporter, SendsTheNewestAsSoonAsThereIsAServer) {
   EXPECT_EQ(std::string(natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))),
             "new");
   EXPECT_EQ(natsMsg_GetSequence(raw), 1U) << "it alone";
+}
+
+TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {
+  const std::string path = ::testing::TempDir() + "reporter-" + std::to_string(getpid());
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  nats::ConnectionSettings settings;
+  settings.tls_ca_file = path;
+  testing::internal::CaptureStderr();
+  {
+    const fleet::Reporter reporter(settings);
+    for (const bool again : {true, false}) {
+      const tools::FileDescriptor certificate(open(path.c_str(), O_WRONLY));  // once it is read
+      unlink(path.c_str());
+      if (again) {
+        EXPECT_EQ(mkfifo(path.c_str(), 0600), 0);
+      } else {
+        std::ofstream(path) << "x";
+      }
+      EXPECT_EQ(write(certificate.get(), "x", 1), 1);
+    }
+  }
+  const std::string told = testing::internal::GetCapturedStderr();
+  EXPECT_NE(told.find("NATS gets no statistics"), std::string::npos);
+  EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
+  unlink(path.c_str());
 }
 
 }  // namespace

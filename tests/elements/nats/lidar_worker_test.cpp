@@ -24,6 +24,7 @@ struct Slowness {
   std::atomic<bool> hold{false};
   std::atomic<int> held{0};  // number of starts that wait, or did
   std::atomic<bool> gave_up{false};
+  std::atomic<bool> fails{false};  // once it need not wait any more
 } slowness;
 
 struct SlowDecoder {
@@ -42,11 +43,12 @@ void slow_decoder_class_init(SlowDecoderClass* klass) {
   for (const auto& [name, direction] : {std::pair{"src", GST_PAD_SRC}, {"sink", GST_PAD_SINK}})
     gst_element_class_add_pad_template(
         element, gst_pad_template_new(name, direction, GST_PAD_ALWAYS, GST_CAPS_ANY));
-  GST_BASE_TRANSFORM_CLASS(klass)->start = [](GstBaseTransform*) -> gboolean {
+  GST_BASE_TRANSFORM_CLASS(klass)->start = [](GstBaseTransform* self) -> gboolean {
     if (!slowness.hold) return TRUE;
     ++slowness.held;
     if (!Eventually([] { return !slowness.hold; })) slowness.gave_up = true;
-    return TRUE;
+    if (slowness.fails) GST_ELEMENT_ERROR(self, LIBRARY, INIT, ("It fails."), (nullptr));
+    return !slowness.fails;
   };
 }
 
@@ -350,7 +352,7 @@ class SlowRobots : public LidarWorker {
     settings.pipeline.decoder = "slowdecoder";
     worker_ = std::make_unique<worker::Worker>(settings);
     slowness.held = 0;
-    slowness.gave_up = false;
+    slowness.gave_up = slowness.fails = false;
     slowness.hold = true;
   }
   void TearDown() override {
@@ -391,6 +393,27 @@ TEST_F(SlowRobots, AreHandedOverThoughTheyDoNotStop) {
     const auto record = worker::ParseLeaseRecord(Newest(robot).text);
     EXPECT_TRUE(record && record->worker.empty()) << robot;
   }
+}
+
+TEST_F(SlowRobots, AreCountedAsTheyAreTakenAndFail) {
+  const auto figures = [this] {
+    fleet::Exposition exposition;
+    fleet::Reporter::Reports reports;
+    worker_->Tell(&exposition, &reports);
+    const std::string text = exposition.text();
+    std::string found;
+    for (const char* name : {"robots", "robots_taken", "robots_given_up", "failures"}) {
+      const std::string line = std::string("\nlidar_worker_") + name + " ";
+      const auto at = text.find(line);
+      found += at == text.npos ? '?' : text[at + line.size()];
+    }
+    return found;
+  };
+  ASSERT_TRUE(WorksUntil([] { return slowness.held == 2; }));
+  EXPECT_EQ(figures(), "2200");
+  slowness.fails = true;
+  slowness.hold = false;
+  EXPECT_TRUE(WorksUntil([&] { return figures() == "0222"; })) << figures();
 }
 
 TEST_F(LidarWorker, BeginsAnewWhereTheRecordIsDamaged) {

@@ -49,9 +49,10 @@ class Feeder {
     h_.reset();
     gst_element_set_bus(sink_.get(), nullptr);
   }
-  void Push(gsize bytes) {
-    EXPECT_EQ(gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, bytes, nullptr)),
-              GST_FLOW_OK);
+  void Push(gsize bytes, GstClockTime captured = GST_CLOCK_TIME_NONE) {
+    GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes, nullptr);
+    if (GST_CLOCK_TIME_IS_VALID(captured)) gst_lidar_buffer_set_capture_time(buffer, captured);
+    EXPECT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
   }
   /// Returns once the server has everything, or the wait for that is over.
   void End() { gst_harness_push_event(h_.get(), gst_event_new_eos()); }
@@ -367,6 +368,16 @@ TEST_F(NatsRuns, AServerThatGoesIsToldOfEachTime) {
   }
 }
 
+/// Returns the first answer of a natssrc that follows the subject.
+gst::HistoryAnswer Past(const std::string& where, const gst::HistoryQuestion& question) {
+  NatsPipeline receiver("natssrc name=n" + where + "! fakesink name=see");
+  receiver.Play();
+  const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
+  const gst::QueryPtr query = gst::NewHistoryQuery(question);
+  EXPECT_TRUE(Eventually([&] { return gst_pad_query(pad.get(), query.get()) != FALSE; }));
+  return gst::ParseHistoryAnswer(query.get());
+}
+
 TEST_F(NatsRuns, ThePastCountsWhatIsDamaged) {
   const std::string box = "subject=r1.front jetstream=box";
   PublishSlices(4, At(box));
@@ -374,18 +385,25 @@ TEST_F(NatsRuns, ThePastCountsWhatIsDamaged) {
   stranger.Publish("r1.front", "no natssink's");
   Publish(&stranger, "r1.front", "7 0");  // of caps that nobody has
   stranger.Flush();
-  NatsPipeline receiver("natssrc name=n" + At("subject=r1.front") + "! fakesink name=see");
-  receiver.Play();
-  const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
-  gst::HistoryAnswer answer;
-  ASSERT_TRUE(Eventually([&] {
-    const gst::QueryPtr query = gst::NewHistoryQuery({0, 0, 1'000'000});
-    if (!gst_pad_query(pad.get(), query.get())) return false;
-    answer = gst::ParseHistoryAnswer(query.get());
-    return answer.ended;
-  }));
+  const gst::HistoryAnswer answer = Past(At("subject=r1.front"), {0, 0, 1'000'000});
+  EXPECT_TRUE(answer.ended);
   EXPECT_EQ(answer.samples.size(), 4U);
   EXPECT_EQ(answer.damaged, 2U);
+}
+
+TEST_F(NatsRuns, ThePastIsFoundByTheClockOfARobotThatIsAhead) {
+  const auto captured = static_cast<GstClockTime>(g_get_real_time()) * 1'000 + 3'600 * GST_SECOND;
+  Feeder sink(At(kImuBox));
+  sink.Push(32, captured);
+  sink.End();
+  EXPECT_EQ(Past(At("subject=r1.imu"), {captured, 0, 1'000'000}).samples.size(), 1U);
+}
+
+TEST(NatsSource, AnswersWhatGStreamerAsks) {
+  const gst::ElementPtr source(gst_element_factory_make("natssrc", nullptr));
+  const gst::PadPtr pad(gst_element_get_static_pad(source.get(), "src"));
+  const gst::QueryPtr caps(gst_query_new_caps(nullptr));
+  EXPECT_TRUE(gst_pad_query(pad.get(), caps.get()));
 }
 
 }  // namespace
