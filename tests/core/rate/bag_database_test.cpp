@@ -204,6 +204,73 @@ TEST_F(BagDatabaseFile, ViewsThatComputeWithoutEndAreRefused) {
   EXPECT_NE(RefusalOf(path_).find("cannot be read"), std::string::npos) << RefusalOf(path_);
 }
 
+TEST_F(BagDatabaseFile, ColumnsThatAreComputedAreRefused) {
+  for (const char* kind : {"VIRTUAL", "STORED"}) {
+    Open(path_);
+    Run(kTables);
+    Run(kPointsTopic);
+    Run("DROP TABLE messages");
+    Run(std::string("CREATE TABLE messages(topic_id,timestamp,data AS (zeroblob(9)) ") + kind +
+        ")");
+    Run("INSERT INTO messages VALUES(1,1)");
+    Close();
+    EXPECT_NE(RefusalOf(path_).find("messages computes"), std::string::npos) << RefusalOf(path_);
+    std::filesystem::remove(path_);
+  }
+  Open(path_);
+  Run("CREATE TABLE topics(id,name,type AS ('sensor_msgs/msg/PointCloud2'),"
+      "serialization_format AS ('cdr'));"
+      "CREATE TABLE messages(id,topic_id,timestamp,data);"
+      "INSERT INTO topics VALUES(1,'/points')");
+  Add(1, milliseconds(1), CloudMessage(milliseconds(1)));
+  Close();
+  EXPECT_NE(RefusalOf(path_).find("topics computes"), std::string::npos) << RefusalOf(path_);
+}
+
+TEST_F(BagDatabaseFile, VirtualTablesAreRefused) {
+  Open(path_);
+  Run(kTables);
+  Run(kPointsTopic);
+  Run("DROP TABLE messages");
+  Run("CREATE VIRTUAL TABLE messages USING fts5(topic_id,timestamp,data)");
+  Close();
+  EXPECT_NE(RefusalOf(path_).find("no such module"), std::string::npos) << RefusalOf(path_);
+}
+
+/// Without a limit, the reader visits each of 60^16 paths through these pages.
+TEST_F(BagDatabaseFile, ASchemaWithoutEndIsRefused) {
+  constexpr std::size_t kPage = 512, kPaths = 60, kLevels = 16;
+  Open(path_);
+  Run("PRAGMA page_size=512");
+  Run(kTables);
+  Close();
+  std::string bytes = Content();
+  const auto put = [&bytes](std::size_t at, std::size_t value, int size) {
+    for (int shift = 8 * size; (shift -= 8) >= 0; ++at)
+      bytes[at] = static_cast<char>(value >> shift);
+  };
+  ASSERT_EQ(bytes[100], 5) << "the schema's root has children";
+  const auto leaf = static_cast<std::size_t>(bytes[111]);
+  for (std::size_t level = 0; level < kLevels; ++level) {
+    const std::size_t page = bytes.size();
+    const std::size_t child = level == 0 ? leaf : page / kPage;
+    bytes.append(kPage, '\0');
+    put(page, 5, 1);
+    put(page + 3, kPaths, 2);
+    put(page + 5, kPage - 5 * kPaths, 2);
+    put(page + 8, child, 4);
+    for (std::size_t path = 0; path < kPaths; ++path) {
+      const std::size_t cell = kPage - 5 * (path + 1);
+      put(page + 12 + 2 * path, cell, 2);
+      put(page + cell, child, 4);
+    }
+  }
+  put(28, bytes.size() / kPage, 4);
+  put(108, bytes.size() / kPage, 4);
+  Replace(bytes);
+  EXPECT_NE(RefusalOf(path_).find("malformed"), std::string::npos) << RefusalOf(path_);
+}
+
 TEST_F(BagDatabaseFile, PagesThatRepeatAreAnError) {
   WriteBag(path_, 200);
   std::string bytes = Content();
@@ -256,7 +323,7 @@ TEST_F(BagDatabaseFile, OtherFilesAreRefusedByName) {
     EXPECT_NE(refusal.find(path_), std::string::npos) << refusal;
     EXPECT_NE(refusal.find(text), std::string::npos) << refusal;
   };
-  refusal_has("no file");
+  refusal_has("is not a regular file");
   Replace("SQLite this is not, though it has a name that says so.");
   refusal_has("not a database");
   Replace("");

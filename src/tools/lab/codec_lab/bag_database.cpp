@@ -12,9 +12,13 @@
 namespace lidar::tools {
 namespace {
 
-constexpr int kMostBytes = 128 << 20;  // of a message
+constexpr int kMostBytes = 128 << 20;    // of a message
+constexpr int kMostBytesOfAName = 4096;  // or of a statement of the schema
 constexpr std::size_t kMostTopics = 10'000;
 constexpr std::size_t kLongestName = 1024;
+/// Instructions of SQLite for the schema or the topics. Pages of a damaged schema may repeat on
+/// each of 20 levels, so that it has nearly no end.
+constexpr int kMostInstructions = 500'000;
 
 struct Closer {
   void operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -26,18 +30,23 @@ class BagDatabase final : public MessageReader {
  public:
   explicit BagDatabase(const std::string& path) : path_(path) {
     // A pipe would wait for its writer.
-    if (!std::filesystem::is_regular_file(path)) Fail("it is no file");
-    file_size_ = std::filesystem::file_size(path);
+    if (!std::filesystem::is_regular_file(path)) Fail("is not a regular file");
+    size_ = std::filesystem::file_size(path);
     sqlite3* database = nullptr;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX;
     const int result = sqlite3_open_v2(path.c_str(), &database, flags, nullptr);
     database_.reset(database);
     if (result != SQLITE_OK) FailWithItsReason();
-    // A view may compute without end, and functions of the file's schema may do anything.
+    // Tables that compute their rows may do so without end.
     sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-    sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytes);
+    sqlite3_drop_modules(database, nullptr);
+    sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytesOfAName);
+    sqlite3_progress_handler(
+        database, kMostInstructions, [](void*) { return 1; }, nullptr);
+    RefuseGeneratedColumns("topics");
+    RefuseGeneratedColumns("messages");
     ReadTopics();
   }
 
@@ -48,6 +57,8 @@ class BagDatabase final : public MessageReader {
     std::string ids;
     for (std::size_t i = 0; i < topics_.size(); ++i)
       if (topics_[i].name == topic) ids += (ids.empty() ? "" : ",") + std::to_string(ids_[i]);
+    sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, kMostBytes);
+    sqlite3_progress_handler(database_.get(), 0, nullptr, nullptr);
     messages_.statement = Prepare(
         "SELECT _rowid_, CASE typeof(data) WHEN 'blob' THEN length(data) END, timestamp, "
         "CASE WHEN topic_id IN (" +
@@ -71,6 +82,16 @@ class BagDatabase final : public MessageReader {
   }
 
  private:
+  /// Values of a generated column are computed when they are read.
+  void RefuseGeneratedColumns(const std::string& table) {
+    const Statement columns = Prepare("PRAGMA table_xinfo(" + table + ")");
+    int result = SQLITE_ROW;
+    while ((result = sqlite3_step(columns.get())) == SQLITE_ROW)
+      if (sqlite3_column_int(columns.get(), 6) != 0)
+        Fail("the table " + table + " computes its values: this is no bag of ROS 2");
+    if (result != SQLITE_DONE) FailWithItsReason();
+  }
+
   /// Rows in the order of the file, which is that of recording. NOT INDEXED: a sort would keep all
   /// of them. Column 0 is the number of the row, column 1 the size of its values in bytes.
   struct Rows {
@@ -114,7 +135,7 @@ class BagDatabase final : public MessageReader {
     if (result != SQLITE_ROW) FailWithItsReason();
     const std::int64_t number = sqlite3_column_int64(row, 0);
     rows->bytes += static_cast<std::uint64_t>(sqlite3_column_int64(row, 1));
-    if (number <= rows->last_row || rows->bytes > file_size_)
+    if (number <= rows->last_row || rows->bytes > size_)
       Fail("the file is damaged: its rows repeat");
     rows->last_row = number;
     return true;
@@ -130,7 +151,7 @@ class BagDatabase final : public MessageReader {
   }
 
   std::string path_;
-  std::uint64_t file_size_ = 0;
+  std::uint64_t size_ = 0;
   std::unique_ptr<sqlite3, Closer> database_;
   std::vector<RecordedTopic> topics_;
   std::vector<std::int64_t> ids_;  // of each topic
