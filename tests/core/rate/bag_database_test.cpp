@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -79,6 +80,13 @@ class BagDatabaseFile : public ::testing::Test {
       Add(1, milliseconds(100 * i), CloudMessage(milliseconds(100 * i + 1)));
     Run("COMMIT");
     Close();
+  }
+  std::set<std::string> FilesBeside() const {
+    std::set<std::string> names;
+    const auto folder = std::filesystem::path(path_).parent_path();
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      names.insert(entry.path().filename().string());
+    return names;
   }
   std::string Content() const {
     std::ostringstream bytes;
@@ -269,6 +277,62 @@ TEST_F(BagDatabaseFile, ASchemaWithoutEndIsRefused) {
   put(108, bytes.size() / kPage, 4);
   Replace(bytes);
   EXPECT_NE(RefusalOf(path_).find("malformed"), std::string::npos) << RefusalOf(path_);
+}
+
+TEST_F(BagDatabaseFile, ReadingLeavesNoFilesBesideTheBag) {
+  WriteBag(path_, 3);
+  Open(path_);
+  Run("PRAGMA journal_mode=WAL");
+  Close();
+  EXPECT_EQ(LoadScans(path_, {}).scans.size(), 3U);
+  EXPECT_EQ(FilesBeside(), std::set<std::string>{"drive_0.db3"});
+}
+
+TEST_F(BagDatabaseFile, ABagIsReadWhateverItsFolderIsCalled) {
+  folder_ += "?mode=rw&a#b%41";
+  std::filesystem::create_directory(folder_);
+  path_ = folder_ + "/drive_0.db3";
+  WriteBag(path_, 3);
+  EXPECT_EQ(LoadScans(path_, {}).scans.size(), 3U);
+  EXPECT_EQ(FilesBeside(), std::set<std::string>{"drive_0.db3"});
+  std::filesystem::remove_all(folder_);
+  folder_.erase(folder_.find('?'));
+}
+
+TEST_F(BagDatabaseFile, RowsThatADeadWriterLeftInItsLogAreRead) {
+  WriteBag(path_, 1);
+  Open(path_);
+  Run("PRAGMA journal_mode=WAL");
+  for (int i = 1; i < 200; ++i)
+    Add(1, milliseconds(100 * i), CloudMessage(milliseconds(100 * i + 1)));
+  const std::string copy = folder_ + "/copy";
+  std::filesystem::create_directory(copy);
+  for (const char* end : {"", "-wal"})
+    std::filesystem::copy(path_ + end, copy + "/drive_0.db3" + end);
+  Close();
+  path_ = copy + "/drive_0.db3";
+  const std::string before = Content();
+  const auto log_size = std::filesystem::file_size(path_ + "-wal");
+  ASSERT_GT(log_size, before.size());
+  EXPECT_EQ(LoadScans(path_, {0}).scans.size(), 200U);
+  EXPECT_EQ(FilesBeside(), (std::set<std::string>{"drive_0.db3", "drive_0.db3-wal"}));
+  EXPECT_EQ(Content(), before);
+  EXPECT_EQ(std::filesystem::file_size(path_ + "-wal"), log_size);
+}
+
+TEST_F(BagDatabaseFile, AWriteThatDidNotEndIsRefusedWithAdvice) {
+  WriteBag(path_, 1);
+  Open(path_);
+  Run("PRAGMA synchronous=FULL;PRAGMA cache_size=1;PRAGMA cache_spill=1;BEGIN");
+  for (int i = 1; i < 200; ++i)
+    Add(1, milliseconds(100 * i), CloudMessage(milliseconds(100 * i + 1)));
+  const std::string copy = folder_ + "/copy";
+  std::filesystem::create_directory(copy);
+  for (const char* end : {"", "-journal"})
+    std::filesystem::copy(path_ + end, copy + "/drive_0.db3" + end);
+  Close();
+  path_ = copy + "/drive_0.db3";
+  EXPECT_NE(RefusalOf(path_).find(".tables"), std::string::npos) << RefusalOf(path_);
 }
 
 TEST_F(BagDatabaseFile, PagesThatRepeatAreAnError) {

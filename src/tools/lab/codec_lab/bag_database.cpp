@@ -31,12 +31,17 @@ class BagDatabase final : public MessageReader {
   explicit BagDatabase(const std::string& path) : path_(path) {
     // A pipe would wait for its writer.
     if (!std::filesystem::is_regular_file(path)) Fail("is not a regular file");
-    size_ = std::filesystem::file_size(path);
+    const std::uint64_t unfinished = SizeOf(path + "-wal") + SizeOf(path + "-journal");
+    size_ = std::filesystem::file_size(path) + unfinished;
+    // An immutable file needs no files beside it. Rows in -wal need an index of it, which is a file
+    // unless one process has the database for itself.
+    const std::string uri = UriOf(path) + (unfinished > 0 ? "?vfs=unix-none" : "?immutable=1");
     sqlite3* database = nullptr;
-    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX;
-    const int result = sqlite3_open_v2(path.c_str(), &database, flags, nullptr);
+    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI;
+    const int result = sqlite3_open_v2(uri.c_str(), &database, flags, nullptr);
     database_.reset(database);
     if (result != SQLITE_OK) FailWithItsReason();
+    sqlite3_db_config(database, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
     // Tables that compute their rows may do so without end.
     sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -45,6 +50,7 @@ class BagDatabase final : public MessageReader {
     sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kMostBytesOfAName);
     sqlite3_progress_handler(
         database, kMostInstructions, [](void*) { return 1; }, nullptr);
+    sqlite3_step(Prepare("PRAGMA locking_mode=EXCLUSIVE").get());
     RefuseGeneratedColumns("topics");
     RefuseGeneratedColumns("messages");
     ReadTopics();
@@ -82,6 +88,22 @@ class BagDatabase final : public MessageReader {
   }
 
  private:
+  static std::uint64_t SizeOf(const std::string& path) {
+    std::error_code none;
+    const std::uint64_t size = std::filesystem::file_size(path, none);
+    return none ? 0 : size;
+  }
+
+  static std::string UriOf(const std::string& path) {
+    std::string uri = "file:";
+    for (const char c : std::filesystem::absolute(path).string())
+      if (c == '%' || c == '?' || c == '#')
+        uri += c == '%' ? "%25" : c == '?' ? "%3f" : "%23";
+      else
+        uri += c;
+    return uri;
+  }
+
   /// Values of a generated column are computed when they are read.
   void RefuseGeneratedColumns(const std::string& table) {
     const Statement columns = Prepare("PRAGMA table_xinfo(" + table + ")");
@@ -145,13 +167,23 @@ class BagDatabase final : public MessageReader {
     throw std::runtime_error(path_ + ": " + why);
   }
   [[noreturn]] void FailWithItsReason() const {
-    const bool damaged = sqlite3_errcode(database_.get()) == SQLITE_CORRUPT;
+    std::string advice;
+    switch (sqlite3_errcode(database_.get())) {
+      case SQLITE_CORRUPT:
+        advice = "; save the rest: sqlite3 " + path_ + " .recover | sqlite3 saved.db3";
+        break;
+      case SQLITE_READONLY:
+        advice = "; its last write did not end; undo that: sqlite3 " + path_ + " .tables";
+        break;
+      default:
+        break;
+    }
     Fail(std::string("cannot be read as a bag of ROS 2: ") + sqlite3_errmsg(database_.get()) +
-         (damaged ? "; save the rest: sqlite3 " + path_ + " .recover | sqlite3 saved.db3" : ""));
+         advice);
   }
 
   std::string path_;
-  std::uint64_t size_ = 0;
+  std::uint64_t size_ = 0;  // with the files of an unfinished write
   std::unique_ptr<sqlite3, Closer> database_;
   std::vector<RecordedTopic> topics_;
   std::vector<std::int64_t> ids_;  // of each topic
