@@ -80,6 +80,12 @@ nlohmann::json AwaitStatus(Viewer* viewer, guint number) {
   return viewer->peer.recording;
 }
 
+/// Waits until the replay has read all of its recording.
+nlohmann::json DamagedAtEnd(Viewer* viewer, guint number) {
+  EXPECT_TRUE(WaitUntil([&] { return AwaitStatus(viewer, number)["end"].is_number(); }));
+  return viewer->peer.recording["damaged"];
+}
+
 TEST_F(Recordings, AreOfferedWithTheirTimes) {
   OpenEdge();
   Push(400);  // 10 s
@@ -159,8 +165,10 @@ TEST_F(Recordings, WhoseChunksAreDamagedPlayOnWithoutThem) {
     bytes.write("damage", 6);
   }
   Viewer viewer(&edge_->sink);
-  Replay(&viewer, 1, Seconds(kFirst_ns + 399 * kSlice_ns));
-  EXPECT_TRUE(WaitUntil([&] { return AwaitStatus(&viewer, 1)["damaged"] == 1; }));
+  for (guint replay = 1; replay <= 2; ++replay) {
+    Replay(&viewer, replay, Seconds(kFirst_ns + 399 * kSlice_ns));
+    EXPECT_EQ(DamagedAtEnd(&viewer, replay), 1);
+  }
   ASSERT_TRUE(WaitUntil([&] { return !viewer.peer.received.empty(); }));
 }
 
@@ -286,6 +294,11 @@ class KeptStream {
     buffers_.emplace_back(gst_sample_new(kept, caps.get(), nullptr, nullptr));
     gst_buffer_unref(kept);
   }
+  /// Makes the next answer count messages that it leaves out.
+  void LeaveOut(guint64 messages) {
+    const std::lock_guard lock(mutex_);
+    left_out_ = messages;
+  }
   /// Makes the server unreachable.
   void End() {
     const std::lock_guard lock(mutex_);
@@ -308,6 +321,7 @@ class KeptStream {
       return by_time ? TimeOf(sample) + GST_SECOND >= question.time
                      : GST_BUFFER_OFFSET(gst_sample_get_buffer(sample.get())) >= question.position;
     });
+    if (question.most_bytes > 0) answer.damaged = std::exchange(left_out_, 0);
     guint64 size = 0;
     auto next = first;
     for (; next != buffers_.end() && size < std::min<guint64>(question.most_bytes, 20'000);
@@ -324,6 +338,7 @@ class KeptStream {
   GstPad* const pad_;
   std::mutex mutex_;
   std::vector<gst::SamplePtr> buffers_;
+  guint64 left_out_ = 0;
   bool is_there_ = true;
 };
 
@@ -430,6 +445,18 @@ TEST_F(Histories, OfASourceAreRecordings) {
   }
   EXPECT_GE(viewer.poses.size(), 200 / kScanSlices);
   EXPECT_TRUE(WaitUntil([&] { return viewer.peer.recording["end"].is_number(); }));
+}
+
+TEST_F(Histories, CountWhatIsDamaged) {
+  const gst::BufferPtr empty(gst_buffer_new());
+  gst_lidar_buffer_set_capture_time(empty.get(), kFirst_ns);
+  kept_.Keep(empty.get(), edge_.robot.caps());
+  kept_.LeaveOut(2);
+  Push(200);
+  Viewer viewer(&edge_.sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns));
+  while (viewer.last.unix_ns < kFirst_ns + 199 * kSlice_ns) viewer.Draw();
+  EXPECT_EQ(DamagedAtEnd(&viewer, 1), 3);
 }
 
 TEST_F(Histories, WhoseServerIsGoneSaySo) {
