@@ -240,6 +240,35 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
   EXPECT_EQ(flood(5'201, 1), std::set<guint16>{5'201});
 }
 
+/// A handshake that is open answers another address of its hello, too.
+TEST_F(DtlsEnds, AServerForgetsTheOldestOfFiveHandshakes) {
+  const auto hello = HelloOfClient();
+  frozen_at = g_get_monotonic_time();
+  StartServer();
+  std::set<guint16> answered;
+  const auto answers = [&](guint16 first, std::size_t count) {
+    return test::Eventually([&] {
+      for (const Carried& d : down_.Take())
+        if (d.port >= first) answered.insert(d.port);
+      return answered.size() >= count;
+    });
+  };
+  const auto give = [&](guint16 port, guint16 number) {
+    Bytes first = hello.front();
+    first[kRandomOfHello] = static_cast<std::uint8_t>(number);
+    Give(*server_, {port, first});
+    for (std::size_t n = 1; n < hello.size(); ++n) Give(*server_, {port, hello[n]});
+  };
+  for (guint16 i = 1; i <= 5; ++i) {
+    give(static_cast<guint16>(5'000 + i), i);
+    ASSERT_TRUE(answers(5'001, i));
+  }
+  answered.clear();
+  for (guint16 i = 1; i <= 5; ++i) give(static_cast<guint16>(5'010 + i), i);
+  EXPECT_TRUE(answers(5'011, 4));
+  EXPECT_EQ(answered, (std::set<guint16>{5'012, 5'013, 5'014, 5'015}));
+}
+
 TEST_F(DtlsEnds, AClientThatWasStoppedWarnsOfNoSilence) {
   frozen_at = g_get_monotonic_time();
   StartClient();
