@@ -10,7 +10,7 @@
 
 namespace lidar::codec {
 
-/// Coder of one list: of bins or levels (docs/wire-format.md, "Blended coder").
+/// Coder of one list: of bins or levels (docs/wire-format.md, "Blended models").
 class BlendedChannel {
  public:
   /// Pieces of RansEncoder that a value may take.
@@ -46,7 +46,7 @@ class BlendedChannel {
     std::int32_t west2 = kUnknown;
     std::int32_t residual = 0;      // of the last value, -3 to 3
     std::int32_t other = kUnknown;  // surface that the last jump left
-    std::uint32_t next = 0;         // column behind the last value
+    std::uint32_t next = 0;         // column after the last value
   };
   /// What is known about a value before it is coded.
   struct View {

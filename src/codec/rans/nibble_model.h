@@ -111,7 +111,7 @@ class NibbleModel {
 #endif
   }
 
-  /// Each `kHaste` doubles the speed of learning.
+  /// Each unit of `kHaste` doubles the speed of learning.
   template <int kHaste = 0>
   void Update(unsigned symbol) {
     const int age = start_[kAge];
