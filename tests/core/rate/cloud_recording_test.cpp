@@ -109,6 +109,16 @@ TEST_F(CloudRecording, LogTimesCountWhereThereAreNoStamps) {
   EXPECT_EQ(OpenScans(Write(), {})->Next()->start, Time{} + milliseconds(700));
 }
 
+TEST_F(CloudRecording, StampsBefore1970AreLeftOut) {
+  const std::uint16_t points = AddTopic("/points");
+  const std::vector<TestPoint> one = {{1, 2, 3, 4}};
+  auto message = WritePointCloud2(CloudOf(one, 1));
+  std::memset(&message[4], 0xFF, 4);  // the seconds of the stamp
+  AddMessage(points, milliseconds(1), message);
+  AddCloud(points, milliseconds(2000));
+  EXPECT_EQ(OpenScans(Write(), {})->Next()->start, Time{} + milliseconds(2000));
+}
+
 TEST_F(CloudRecording, LogTimesThatAreNoTimesAreLeftOut) {
   const std::uint16_t points = AddTopic("/points");
   const std::vector<TestPoint> one = {{1, 2, 3, 4}};

@@ -103,6 +103,10 @@ class Recording final : public ScanStream {
       if (!cloud) continue;
       TimedScan timed;
       timed.start = cloud->header.stamp;
+      if (timed.start < Time{}) {
+        why_ = "a cloud is stamped before the year 1970";
+        continue;
+      }
       if (timed.start == Time{}) {
         if (message->log_time_ns > kLatest_ns) {
           why_ = "a cloud was logged after the year 2262";
