@@ -152,6 +152,17 @@ TEST_F(BagDatabaseFile, PartsFollowTheirNumbers) {
   EXPECT_NE(RefusalOf(folder_).find("name one"), std::string::npos);
 }
 
+TEST_F(BagDatabaseFile, AFolderWithABagAndACloudIsRefusedWithBothNames) {
+  WriteBag(path_, 1);
+  const std::string cloud = folder_ + "/map.pcd";
+  std::ofstream(cloud) << "";
+  for (const std::string& source : {folder_, folder_ + ",/points"}) {
+    EXPECT_NE(RefusalOf(source).find(path_), std::string::npos) << RefusalOf(source);
+    EXPECT_NE(RefusalOf(source).find(cloud), std::string::npos) << RefusalOf(source);
+    EXPECT_NE(RefusalOf(source).find("name one"), std::string::npos) << RefusalOf(source);
+  }
+}
+
 TEST_F(BagDatabaseFile, OneOfSeveralTopicsHasToBeNamed) {
   WriteBag(path_, 1);
   Open(path_);

@@ -246,13 +246,16 @@ class CloudFiles final : public ScanStream {
 
 std::unique_ptr<ScanStream> OpenFolder(const std::string& folder, const std::string& topic) {
   std::vector<std::string> files;
-  bool recording = false;
+  std::string recording;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (IsCloudFile(entry.path().string())) files.push_back(entry.path().string());
-    recording |= IsRecordingFile(entry.path().string());
+    if (IsRecordingFile(entry.path().string())) recording = entry.path().string();
   }
-  if (recording && files.empty()) return OpenRecording(folder, topic);
+  if (!recording.empty() && files.empty()) return OpenRecording(folder, topic);
   std::sort(files.begin(), files.end());
+  if (!recording.empty())
+    throw std::runtime_error(folder + ": holds recordings and clouds; name one, such as " +
+                             recording + " or " + files.front());
   if (files.empty())
     throw std::runtime_error(folder + ": no .bin, .pcd, .ply, .mcap or .db3 file in it");
   return std::make_unique<CloudFiles>(std::move(files));
