@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "src/cdr/messages.h"
 #include "src/tools/lab/codec_lab/scan_source.h"
@@ -205,11 +206,41 @@ TEST_F(BagDatabaseFile, TopicsHaveLimits) {
   Run(kAnyTables);
   Run("INSERT INTO topics VALUES(1,printf('/%.2000c','a'),'sensor_msgs/msg/PointCloud2','cdr')");
   EXPECT_NE(RefusalOf(path_).find("too long"), std::string::npos) << RefusalOf(path_);
-  Run("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i+1 FROM n LIMIT 10001)"
-      "INSERT INTO topics SELECT i,'/a','b','cdr' FROM n");
-  Run("DELETE FROM topics WHERE length(name) > 9");
-  Close();
-  EXPECT_NE(RefusalOf(path_).find("too many"), std::string::npos) << RefusalOf(path_);
+  Run("UPDATE topics SET name = '/a' || char(0) || name");
+  EXPECT_NE(RefusalOf(path_).find("too long"), std::string::npos) << RefusalOf(path_);
+  for (const char* format : {"cdr", "flat"}) {
+    Run("DELETE FROM topics");
+    Run("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i+1 FROM n LIMIT 10001)"
+        "INSERT INTO topics SELECT i,'/a','b','" +
+        std::string(format) + "' FROM n");
+    EXPECT_NE(RefusalOf(path_).find("too many"), std::string::npos) << RefusalOf(path_);
+  }
+}
+
+TEST_F(BagDatabaseFile, TextInPlaceOfNumbersIsNotLoaded) {
+  Open(path_);
+  Run(kAnyTables);
+  Run("INSERT INTO topics VALUES(1,'/points','sensor_msgs/msg/PointCloud2','cdr')");
+  for (const char* values : {"%,1,1,x'00'", "1,%,1,x'00'", "1,1,%,x'00'", "1,1,1,%"}) {
+    std::string row = values;
+    row.replace(row.find('%'), 1, "printf('%.20000c','t')");
+    Run("DELETE FROM messages");
+    Run("INSERT INTO messages VALUES(" + row + ")");
+    // Reading the text fails, because its pages lead nowhere.
+    std::string bytes = Content();
+    std::size_t pages = 0;
+    for (std::size_t at = 0; at < bytes.size(); at += 4096)
+      if (bytes.substr(at + 4, 4000) == std::string(4000, 't')) {
+        bytes.replace(at, 4, 4, '\xff');
+        ++pages;
+      }
+    ASSERT_GE(pages, 4U);
+    const std::string whole = std::exchange(path_, folder_ + "/changed.db3");
+    Replace(bytes);
+    EXPECT_NE(RefusalOf(path_).find("no cloud on /points"), std::string::npos)
+        << values << RefusalOf(path_);
+    path_ = whole;
+  }
 }
 
 TEST_F(BagDatabaseFile, ViewsThatComputeWithoutEndAreRefused) {
@@ -218,7 +249,7 @@ TEST_F(BagDatabaseFile, ViewsThatComputeWithoutEndAreRefused) {
   Run(kPointsTopic);
   Run("DROP TABLE messages");
   Run("CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT 1 FROM n) "
-      "SELECT i AS topic_id, i AS timestamp, zeroblob(9) AS data FROM n");
+      "SELECT i AS id, i AS topic_id, i AS timestamp, zeroblob(9) AS data FROM n");
   Close();
   EXPECT_NE(RefusalOf(path_).find("cannot be read"), std::string::npos) << RefusalOf(path_);
 }
@@ -229,11 +260,12 @@ TEST_F(BagDatabaseFile, ColumnsThatAreComputedAreRefused) {
     Run(kTables);
     Run(kPointsTopic);
     Run("DROP TABLE messages");
-    Run(std::string("CREATE TABLE messages(topic_id,timestamp,data AS (zeroblob(9)) ") + kind +
+    Run(std::string("CREATE TABLE messages(id,topic_id,timestamp,data AS (zeroblob(9)) ") + kind +
         ")");
-    Run("INSERT INTO messages VALUES(1,1)");
+    Run("INSERT INTO messages VALUES(1,1,1)");
     Close();
-    EXPECT_NE(RefusalOf(path_).find("messages computes"), std::string::npos) << RefusalOf(path_);
+    EXPECT_NE(RefusalOf(path_).find("messages computes data"), std::string::npos)
+        << RefusalOf(path_);
     std::filesystem::remove(path_);
   }
   Open(path_);
@@ -243,7 +275,21 @@ TEST_F(BagDatabaseFile, ColumnsThatAreComputedAreRefused) {
       "INSERT INTO topics VALUES(1,'/points')");
   Add(1, milliseconds(1), CloudMessage(milliseconds(1)));
   Close();
-  EXPECT_NE(RefusalOf(path_).find("topics computes"), std::string::npos) << RefusalOf(path_);
+  EXPECT_NE(RefusalOf(path_).find("topics computes type"), std::string::npos) << RefusalOf(path_);
+}
+
+TEST_F(BagDatabaseFile, OtherColumnsBeforeThoseOfABagAreRefused) {
+  for (const char* columns : {"note,id,topic_id,timestamp,data", "id,topic_id,timestamp,note,data",
+                              "id,topic_id,timestamp,data,_ROWID_"}) {
+    Open(path_);
+    Run(kTables);
+    Run(kPointsTopic);
+    Run("DROP TABLE messages");
+    Run(std::string("CREATE TABLE messages(") + columns + ")");
+    Close();
+    EXPECT_NE(RefusalOf(path_).find("its column"), std::string::npos) << RefusalOf(path_);
+    std::filesystem::remove(path_);
+  }
 }
 
 TEST_F(BagDatabaseFile, VirtualTablesAreRefused) {

@@ -3,6 +3,7 @@
 // `messages`. The file may hold any bytes and any schema.
 #include <sqlite3.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
@@ -51,8 +52,8 @@ class BagDatabase final : public MessageReader {
     sqlite3_progress_handler(
         database, kMostInstructions, [](void*) { return 1; }, nullptr);
     sqlite3_step(Prepare("PRAGMA locking_mode=EXCLUSIVE").get());
-    RefuseGeneratedColumns("topics");
-    RefuseGeneratedColumns("messages");
+    RequireColumns("topics", {"id", "name", "type", "serialization_format"});
+    RequireColumns("messages", {"id", "topic_id", "timestamp", "data"});
     ReadTopics();
   }
 
@@ -65,11 +66,16 @@ class BagDatabase final : public MessageReader {
       if (topics_[i].name == topic) ids += (ids.empty() ? "" : ",") + std::to_string(ids_[i]);
     sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, kMostBytes);
     sqlite3_progress_handler(database_.get(), 0, nullptr, nullptr);
+    // Text in place of numbers is neither loaded nor passed on the way to the data: the text of
+    // many rows may be the same pages.
+    const std::string numbers =
+        "typeof(id) IN ('integer', 'null') AND typeof(topic_id) = 'integer' AND "
+        "typeof(timestamp) = 'integer'";
     messages_.statement = Prepare(
-        "SELECT _rowid_, CASE typeof(data) WHEN 'blob' THEN length(data) END, timestamp, "
-        "CASE WHEN topic_id IN (" +
+        "SELECT _rowid_, CASE typeof(data) WHEN 'blob' THEN length(data) END, CASE WHEN " +
+        numbers + " THEN timestamp END, CASE WHEN " + numbers + " THEN CASE WHEN topic_id IN (" +
         ids + ") AND typeof(data) = 'blob' AND length(data) <= " + std::to_string(kMostBytes) +
-        " THEN data END FROM messages NOT INDEXED");
+        " THEN data END END FROM messages NOT INDEXED");
     messages_.last_row = INT64_MIN;
     messages_.bytes = 0;
   }
@@ -104,18 +110,24 @@ class BagDatabase final : public MessageReader {
     return uri;
   }
 
-  /// Values of a generated column are computed when they are read.
-  void RefuseGeneratedColumns(const std::string& table) {
+  /// Values of generated columns are computed when they are read, and those of other columns may
+  /// lie before the ones that are read.
+  void RequireColumns(const std::string& table, const std::array<const char*, 4>& names) {
     const Statement columns = Prepare("PRAGMA table_xinfo(" + table + ")");
     int result = SQLITE_ROW;
-    while ((result = sqlite3_step(columns.get())) == SQLITE_ROW)
+    for (std::size_t i = 0; (result = sqlite3_step(columns.get())) == SQLITE_ROW; ++i) {
+      const auto* chars = sqlite3_column_text(columns.get(), 1);
+      const std::string name(chars == nullptr ? "" : reinterpret_cast<const char*>(chars));
       if (sqlite3_column_int(columns.get(), 6) != 0)
-        Fail("the table " + table + " computes its values: this is no bag of ROS 2");
+        Fail("the table " + table + " computes " + name);
+      if (i < names.size() ? name != names[i] : sqlite3_stricmp(name.c_str(), "_rowid_") == 0)
+        Fail("the table " + table + " is not that of a bag of ROS 2: its column " + name);
+    }
     if (result != SQLITE_DONE) FailWithItsReason();
   }
 
   /// Rows in the order of the file, which is that of recording. NOT INDEXED: a sort would keep all
-  /// of them. Column 0 is the number of the row, column 1 the size of its values in bytes.
+  /// of them. Column 0 is the number of the row, column 1 the size of its data in bytes.
   struct Rows {
     Statement statement;
     std::int64_t last_row = INT64_MIN;
@@ -124,17 +136,17 @@ class BagDatabase final : public MessageReader {
 
   void ReadTopics() {
     Rows rows;
-    rows.statement = Prepare(
-        "SELECT _rowid_, length(name) + length(type), id, name, type, serialization_format "
-        "FROM topics NOT INDEXED");
+    rows.statement =
+        Prepare("SELECT _rowid_, 0, id, name, type, serialization_format FROM topics NOT INDEXED");
     const auto text = [&](int column) {
       const auto* chars = sqlite3_column_text(rows.statement.get(), column);
-      const std::string found(chars == nullptr ? "" : reinterpret_cast<const char*>(chars));
-      if (found.size() > kLongestName) Fail("a name of a topic is too long");
-      return found;
+      const auto size =
+          static_cast<std::size_t>(sqlite3_column_bytes(rows.statement.get(), column));
+      if (size > kLongestName) Fail("a name of a topic is too long");
+      return chars == nullptr ? "" : std::string(reinterpret_cast<const char*>(chars), size);
     };
-    while (Step(&rows)) {
-      if (topics_.size() == kMostTopics) Fail("too many topics");
+    for (std::size_t count = 0; Step(&rows); ++count) {
+      if (count == kMostTopics) Fail("too many topics");
       if (text(5) != "cdr") continue;
       topics_.push_back({text(3), text(4)});
       ids_.push_back(sqlite3_column_int64(rows.statement.get(), 2));
