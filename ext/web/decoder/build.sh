@@ -13,7 +13,7 @@ echo "${template/@TABLE@/$(<src/codec/mixing/start_table.txt)}" > "$objects/src/
 
 # Files with loops over bits and points; the others are compiled for size. *_encoder.cpp files are left out.
 fast=(src/cloud/range_projection src/codec/mixing/{binary_coder,mixing_codec,slice_coder}
-  src/codec/rans/{adaptive_coder,mask_coder,predictor,rans} src/codec/cloud/{beam_part,beam_section,cell_tree,level_tree,pixel_part})
+  src/codec/rans/{adaptive_coder,blended_coder,blended_mask,mask_coder,predictor,rans} src/codec/cloud/{beam_part,beam_section,cell_tree,level_tree,pixel_part})
 small=(src/cloud/{point_fields,sensor_model} ext/web/decoder/{crc,decoder})
 for file in src/codec/*.cpp src/codec/{rans,mixing,cloud}/*.cpp; do
   case " ${fast[*]} $file" in *" ${file%.cpp} "* | *_encoder.cpp) ;; *) small+=("${file%.cpp}") ;; esac

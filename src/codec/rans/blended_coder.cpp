@@ -44,7 +44,7 @@ void BlendedChannel::StartRow(std::uint32_t beam) {
   if (blind_) return;
   std::int32_t last = first->value;
   for (std::uint32_t i = 0; i < columns_ + 2; ++i) {
-    const std::int32_t value = known_[std::ptrdiff_t{i} - 1].value;
+    const std::int32_t value = known_[static_cast<std::ptrdiff_t>(i) - 1].value;
     last = value == kUnknown ? last : value;
     north_[i] = last;
   }
