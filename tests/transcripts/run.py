@@ -59,7 +59,7 @@ class Transcript:
             environment = {**os.environ, "PATH": ":".join(path), "work": work, "LC_ALL": "C", "LIDAR_SOURCE": str(HERE.parents[1])}
             script = "".join(RUN.format(command="\n".join(c[2:] for c in command), mark=MARK) for command, _ in self.steps)
             script += "kill $(jobs -p) 2>/dev/null; wait\n"
-            done = subprocess.run(["timeout", "100", "bash"], input=script, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            done = subprocess.run(["bash"], input=script, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                   errors="replace", cwd=folder, env=environment, check=False)
             outputs = [[]]
             for line in done.stdout.replace(folder, "FOLDER").replace(str(HERE.parents[1]), "SOURCE").splitlines():
