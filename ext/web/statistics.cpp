@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/web/statistics.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -58,7 +60,8 @@ struct Summary {
   const char* name;
   const char* from;
   const char* beside;
-  double scale = 1;
+  double scale = 1;      // of a number
+  std::size_t size = 0;  // of an array; 0: a number
 };
 constexpr double kMs = 1e-6;  // of ns
 // Reports of a sender in another pipeline count, too; later rows win.
@@ -83,7 +86,7 @@ constexpr std::array<Summary, 23> kSummaries = {{
     {"packets_ce", "packets_ce", "packets_ce"},
     {"slices_lost", "slices_lost", "slices_lost"},
     {"position_deviation", "position_deviation", "position_deviation"},
-    {"pose_covariance", "covariance", "scans_degenerate"},
+    {"pose_covariance", "covariance", "scans_degenerate", 1, 36},
     {"poses_degenerate", "scans_degenerate", "scans_degenerate"},
     {"poses_lost", "scans_lost", "scans_degenerate"},
 }};
@@ -92,13 +95,21 @@ bool IsSenders(const Summary& summary) {
   return std::string_view(summary.beside) == "sender_reports";
 }
 
+bool IsFinite(const json& value) { return value.is_number() && std::isfinite(value.get<double>()); }
+
+bool Fits(const Summary& summary, const json& value) {
+  if (summary.size == 0) return IsFinite(value);
+  return value.is_array() && value.size() == summary.size &&
+         std::all_of(value.begin(), value.end(), IsFinite);
+}
+
 void AddSummaries(const json& elements, json* message) {
   for (const Summary& summary : kSummaries) {
     for (const json& element : elements) {
       const auto value = element.find(summary.from);
       const auto beside = element.find(summary.beside);
       if (beside == element.end() || value == element.end()) continue;
-      if (!value->is_number() && !value->is_array()) continue;
+      if (!Fits(summary, *value)) continue;
       if (IsSenders(summary) && *beside == 0) continue;  // no report yet
       if (summary.scale < 1)
         (*message)[summary.name] = value->get<double>() * summary.scale;
