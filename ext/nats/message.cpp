@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "ext/nats/stream_format.h"
@@ -80,6 +81,12 @@ class HeaderWriter {
   natsStatus status_ = NATS_OK;
 };
 
+/// Returns the nearest finite number, and the largest for NaN: the variance is unknown.
+float ToFloat(double v) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return static_cast<float>(std::fmax(-kMost, std::fmin(v, kMost)));
+}
+
 void WriteMetas(GstBuffer* buffer, HeaderWriter* headers) {
   const GstClockTime capture_time = gst_lidar_buffer_get_capture_time(buffer);
   if (GST_CLOCK_TIME_IS_VALID(capture_time))
@@ -102,7 +109,7 @@ void WriteMetas(GstBuffer* buffer, HeaderWriter* headers) {
     w.Add(static_cast<guint>(pose.tracking));
     for (int row = 0; row < 6; ++row)
       for (int column = row; column < 6; ++column)
-        w.Add(static_cast<float>(pose.covariance[row * 6 + column]));
+        w.Add(ToFloat(pose.covariance[row * 6 + column]));
     headers->Set(kPose, w.text());
   }
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT)) headers->Set(kDiscont, "1");

@@ -93,6 +93,22 @@ TEST_F(NatsParts, TheLongestPoseComesBack) {
   EXPECT_EQ(back.covariance[35], kLongFloat);
 }
 
+TEST_F(NatsParts, ACovarianceBeyondFloatComesBackAsTheLargestFloat) {
+  const gst::BufferPtr buffer = Bytes(1);
+  constexpr double kMost = std::numeric_limits<float>::max();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  GstLidarPose pose{};
+  const double written[] = {1e300, -1e300, kInfinity, -kInfinity, std::nan(""), kMost};
+  std::copy(std::begin(written), std::end(written), pose.covariance);
+  gst_lidar_buffer_set_pose(buffer.get(), &pose);
+  const auto read = Read(WriteMessage("a", nullptr, kId, {1, 2}, buffer.get()).get());
+  ASSERT_TRUE(read);
+  GstLidarPose back{};
+  ASSERT_TRUE(gst_lidar_buffer_get_pose(read->buffer.get(), &back));
+  const double expected[] = {kMost, -kMost, kMost, -kMost, kMost, kMost};
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(back.covariance[i], expected[i]) << i;
+}
+
 TEST_F(NatsParts, ABareBufferComesBackBare) {
   const gst::BufferPtr buffer = Bytes(1);
   const auto read = Read(WriteMessage("a", nullptr, kId, {1, 2}, buffer.get()).get());
