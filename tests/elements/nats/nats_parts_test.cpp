@@ -139,18 +139,28 @@ INSTANTIATE_TEST_SUITE_P(
                       BadHeader{"Lidar-Slice", "1 2 3"}, BadHeader{"Lidar-Slice", "1 8 8 0"},
                       BadHeader{"Lidar-Slice", "1 0 0 0"}, BadHeader{"Lidar-Slice", "1 0 4097 0"},
                       BadHeader{"Lidar-Slice", "4294967296 0 1 0"},
-                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1"},
                       BadHeader{"Lidar-Pose", "nan 0 0 0 0 0 1 1" + kZeros},
                       BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 4" + kZeros},
-                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1e999 1" + kZeros},
-                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 1 0" + kZeros},
-                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 1 0.5 0.01"}));
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1e999 1" + kZeros}));
 
 TEST_F(NatsParts, APoseOfTheRightLengthIsRead) {
   const gst::BufferPtr buffer = Bytes(10);
   const MessagePtr message = WriteMessage("a", nullptr, kId, {1, 2}, buffer.get());
   natsMsgHeader_Set(message.get(), "Lidar-Pose", ("0 0 0 0 0 0 1 1" + kZeros).c_str());
   EXPECT_TRUE(Read(message.get()));
+}
+
+TEST_F(NatsParts, ABufferWithAPoseOfAnotherLengthHasNone) {
+  for (const std::string& pose : {std::string("0 0 0 0 0 0 1"), "0 0 0 0 0 0 1 1 0" + kZeros,
+                                  std::string("0 0 0 0 0 0 1 1 0.5 0.01")}) {
+    const gst::BufferPtr buffer = Bytes(10);
+    const MessagePtr message = WriteMessage("a", nullptr, kId, {1, 2}, buffer.get());
+    natsMsgHeader_Set(message.get(), "Lidar-Pose", pose.c_str());
+    const auto read = Read(message.get());
+    ASSERT_TRUE(read) << pose;
+    GstLidarPose back{};
+    EXPECT_FALSE(gst_lidar_buffer_get_pose(read->buffer.get(), &back)) << pose;
+  }
 }
 
 TEST_P(NatsBadHeader, IsRefused) {
