@@ -43,7 +43,8 @@ class NearCells {
   static constexpr std::size_t kMost = 8;
 
   NearCells(const CellGrid& grid, unsigned depth)
-      : step_(static_cast<double>(grid.step_m)),
+      : grid_(grid),
+        step_(static_cast<double>(grid.step_m)),
         half_(CellGrid::HalfOf(depth)),
         square_bound_(grid.error_m() * grid.error_m()) {}
 
@@ -58,9 +59,9 @@ class NearCells {
     for (unsigned k = 0; k < 3; ++k) {
       const auto at = static_cast<double>(point[k]);
       const double whole = Floor(at / step_);
-      const double off = at - MiddleAt(whole);
+      const double off = at - grid_.MiddleFromCentre(whole);
       const double side = std::copysign(1.0, off);
-      const double beside = at - MiddleAt(whole + side);
+      const double beside = at - grid_.MiddleFromCentre(whole + side);
       squares[0][k] = off * off;
       squares[1][k] = beside * beside;
       own += static_cast<std::uint64_t>(static_cast<std::int64_t>(whole + half_) + 1) * kSteps[k];
@@ -79,11 +80,7 @@ class NearCells {
   }
 
  private:
-  /// Does what CellGrid::Middle() does, for a cell `whole` cells from the middle of the grid.
-  double MiddleAt(double whole) const {
-    return static_cast<double>(static_cast<float>((whole + 0.5) * step_));
-  }
-
+  CellGrid grid_;
   double step_;
   double half_;
   double square_bound_;  // of the distance from a cell's middle

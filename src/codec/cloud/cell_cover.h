@@ -31,8 +31,11 @@ struct CellGrid {
   Point Middle(const CellPosition& cell, unsigned depth) const;
   /// Coordinate of the middle, a float.
   double Middle(std::uint32_t at, unsigned depth) const {
-    return static_cast<double>(static_cast<float>((static_cast<double>(at) - HalfOf(depth) + 0.5) *
-                                                  static_cast<double>(step_m)));
+    return MiddleFromCentre(static_cast<double>(at) - HalfOf(depth));
+  }
+  /// The same for a cell that begins `cells` cells from the centre of the grid.
+  double MiddleFromCentre(double cells) const {
+    return static_cast<double>(static_cast<float>((cells + 0.5) * static_cast<double>(step_m)));
   }
   /// Depth of a tree that holds all coordinates up to `farthest_m`; above kMostDepth: none does.
   unsigned DepthFor(double farthest_m) const;

@@ -55,16 +55,10 @@ void AdaptiveCoder::Reset(const BlockShape& shape) {
 template <class CodeRow>
 bool AdaptiveCoder::ForEachRow(const BlockShape& shape, CodeRow&& code_row) {
   Reset(shape);
-  columns_.resize(shape.columns + kListMargin);
-  const std::uint8_t* mask = shape.mask.data();
-  std::size_t first = 0;
-  for (std::uint32_t beam = 0; beam < shape.alignment.beams(); ++beam, mask += shape.columns) {
-    const std::size_t count = ListReturns(mask, shape.columns, columns_.data());
-    if (count == 0) continue;
-    if (!code_row(beam, RowReturns{columns_.data(), RowLanes(count)}, first)) return false;
-    first += count;
-  }
-  return true;
+  return ForEachRowOf(shape, &columns_,
+                      [&](std::uint32_t beam, std::size_t count, std::size_t first) {
+                        return code_row(beam, RowReturns{columns_.data(), RowLanes(count)}, first);
+                      });
 }
 
 void AdaptiveCoder::Encode(const BlockShape& shape, const IntegerLists& lists,

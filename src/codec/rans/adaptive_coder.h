@@ -25,6 +25,23 @@ struct BlockShape {
 std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns);
 constexpr std::size_t kListMargin = 8;
 
+/// Calls code_row(beam, count, first) for each row that has returns: `columns` holds those of its
+/// `count` returns, and `first` is the index of the first one. Ends with false if a call does.
+template <class CodeRow>
+bool ForEachRowOf(const BlockShape& shape, std::vector<std::uint16_t>* columns,
+                  CodeRow&& code_row) {
+  columns->resize(shape.columns + kListMargin);
+  const std::uint8_t* mask = shape.mask.data();
+  std::size_t first = 0;
+  for (std::uint32_t beam = 0; beam < shape.alignment.beams(); ++beam, mask += shape.columns) {
+    const std::size_t count = ListReturns(mask, shape.columns, columns->data());
+    if (count == 0) continue;
+    if (!code_row(beam, count, first)) return false;
+    first += count;
+  }
+  return true;
+}
+
 class AdaptiveCoder {
  public:
   /// Pieces of RansEncoder that a value may take.

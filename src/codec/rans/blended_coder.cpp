@@ -12,9 +12,6 @@ namespace {
 using mixing::OffsetClass;
 using mixing::PhaseClass;
 
-/// Models of this coder learn twice as fast as those of the adaptive one.
-constexpr int kHaste = 1;
-
 std::uint32_t OffsetOf(std::int32_t difference, std::int32_t mirror) {
   constexpr std::int32_t kMost = 16;
   return OffsetClass(std::clamp(difference, -kMost, kMost) * mixing::kStep * mirror);
@@ -96,10 +93,6 @@ void BlendedChannel::StartRow(std::uint32_t beam) {
   return v;
 }
 
-void BlendedChannel::Learn(const View& view, unsigned symbol) {
-  for (NibbleModel* model : view.models) model->Update<kHaste>(symbol);
-}
-
 [[gnu::always_inline]] inline void BlendedChannel::Keep(const View& view, std::int32_t value,
                                                         std::uint32_t column) {
   const std::int32_t difference = value - view.median;
@@ -136,14 +129,14 @@ void BlendedChannel::EncodeJump(const View& view, std::int32_t value, std::int32
     nearest = distance;
     chosen = k;
   }
-  if (behind != 0) writer->Put<kHaste>(lane, chosen, &choices_[behind]);
+  if (behind != 0) writer->Put<kBlendedHaste>(lane, chosen, &choices_[behind]);
   if (chosen == kCandidates) {
     longs_.Encode(static_cast<std::uint32_t>(rest), lane, writer);
     return;
   }
   const std::int32_t off = (value - view.candidates[chosen]) * sense;
   const ClassedResidual coded(static_cast<std::uint32_t>(nearest), off < 0);
-  writer->Put<kHaste>(lane, coded.symbol, &distances_[chosen], coded.low, coded.bits);
+  writer->Put<kBlendedHaste>(lane, coded.symbol, &distances_[chosen], coded.low, coded.bits);
   if (coded.is_long) longs_.Encode(coded.rest, lane, writer);
 }
 
@@ -152,14 +145,14 @@ std::int32_t BlendedChannel::DecodeJump(const View& view, std::int32_t sense, un
   const unsigned behind = Behind(view, sense);
   unsigned chosen = kCandidates;
   if (behind != 0) {
-    chosen = decoder->Get<kHaste>(lane, &choices_[behind]);
+    chosen = decoder->Get<kBlendedHaste>(lane, &choices_[behind]);
     decoder->GetBits(lane, 0);
   }
   if (chosen >= kCandidates) {
     const std::int32_t rest = longs_.Decode(lane, decoder);
     return view.median + sense * (static_cast<int>(kLongMagnitude) + rest);
   }
-  const unsigned symbol = decoder->Get<kHaste>(lane, &distances_[chosen]);
+  const unsigned symbol = decoder->Get<kBlendedHaste>(lane, &distances_[chosen]);
   const ResidualClass& c = kResidualClasses[symbol];
   std::int32_t off =
       c.base + static_cast<std::int32_t>(decoder->GetBits(lane, static_cast<unsigned>(c.bits)));
@@ -178,9 +171,7 @@ void BlendedChannel::EncodeRow(std::uint32_t beam, const std::uint16_t* columns,
     const std::int32_t value = values[i];
     const std::int32_t difference = (value - view.median) * view.mirror;
     const ClassedResidual coded(static_cast<std::uint32_t>(std::abs(difference)), difference < 0);
-    const Interval interval = NibbleModel::BlendedInterval(view.models, coded.symbol);
-    writer.Put(lane, interval, coded.low, coded.bits);
-    Learn(view, coded.symbol);
+    writer.Put(lane, coded.symbol, view.models, coded.low, coded.bits);
     if (coded.is_long)
       EncodeJump(view, value, difference < 0 ? -view.mirror : view.mirror, lane, &writer);
     Keep(view, value, columns[i]);
@@ -195,10 +186,7 @@ bool BlendedChannel::DecodeRow(std::uint32_t beam, const std::uint16_t* columns,
   for (std::size_t i = 0; i < count; ++i) {
     const unsigned lane = i % kRansLanes;
     const View view = Look(columns[i]);
-    const NibbleModel blend = NibbleModel::Blend(view.models);
-    const unsigned symbol = blend.Find(local.Slot(lane));
-    local.Take(lane, blend.IntervalOf(symbol));
-    Learn(view, symbol);
+    const unsigned symbol = local.Get(lane, view.models);
     const ResidualClass& c = kResidualClasses[symbol];
     const auto low =
         static_cast<std::int32_t>(local.GetBits(lane, static_cast<unsigned>(c.bits), c.mask));
@@ -218,32 +206,24 @@ bool BlendedChannel::DecodeRow(std::uint32_t beam, const std::uint16_t* columns,
 void BlendedCoder::Reset(const BlockShape& shape, bool with_levels) {
   values_.Reset(shape, InitialModelsOfValues());
   if (with_levels) levels_.Reset(shape, InitialModelsOfLevels());
-  columns_.resize(shape.columns + kListMargin);
 }
 
 void BlendedCoder::Encode(const BlockShape& shape, const IntegerLists& lists,
                           RansEncoder* encoder) {
   Reset(shape, !lists.levels.empty());
-  const std::uint8_t* mask = shape.mask.data();
-  std::size_t first = 0;
-  for (std::uint32_t beam = 0; beam < shape.alignment.beams(); ++beam, mask += shape.columns) {
-    const std::size_t count = ListReturns(mask, shape.columns, columns_.data());
-    if (count == 0) continue;
+  ForEachRowOf(shape, &columns_, [&](std::uint32_t beam, std::size_t count, std::size_t first) {
     values_.EncodeRow(beam, columns_.data(), count, &lists.values[first], encoder);
     if (!lists.levels.empty())
       levels_.EncodeRow(beam, columns_.data(), count, &lists.levels[first], encoder);
-    first += count;
-  }
+    return true;
+  });
 }
 
 bool BlendedCoder::Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
                           RangeImage* image) {
   Reset(shape, !image->intensity.empty());
   image->ranges.assign(image->size(), 0);
-  const std::uint8_t* mask = shape.mask.data();
-  for (std::uint32_t beam = 0; beam < shape.alignment.beams(); ++beam, mask += shape.columns) {
-    const std::size_t count = ListReturns(mask, shape.columns, columns_.data());
-    if (count == 0) continue;
+  return ForEachRowOf(shape, &columns_, [&](std::uint32_t beam, std::size_t count, std::size_t) {
     row_.resize(count);
     if (!values_.DecodeRow(beam, columns_.data(), count, row_.data(), decoder) ||
         !grid.ToRanges(&row_)) {
@@ -252,12 +232,12 @@ bool BlendedCoder::Decode(const BlockShape& shape, const RangeGrid& grid, RansDe
     const std::size_t first = std::size_t{beam} * shape.columns;
     for (std::size_t i = 0; i < count; ++i)
       image->ranges[first + columns_[i]] = static_cast<std::uint32_t>(row_[i]);
-    if (image->intensity.empty()) continue;
+    if (image->intensity.empty()) return true;
     if (!levels_.DecodeRow(beam, columns_.data(), count, row_.data(), decoder)) return false;
     for (std::size_t i = 0; i < count; ++i)
       image->intensity[first + columns_[i]] = static_cast<std::uint8_t>(row_[i]);
-  }
-  return true;
+    return true;
+  });
 }
 
 }  // namespace lidar::codec

@@ -29,12 +29,12 @@ class BlendedChannel {
 
  private:
   static constexpr std::int32_t kUnknown = -1;
-  static constexpr unsigned kBlended = 4;
+  static constexpr unsigned kBlended = std::tuple_size_v<BlendedModels>;
   static constexpr unsigned kCandidates = 3;
   /// Number of contexts of each kind.
   static constexpr std::array<std::uint32_t, kBlended> kSizes = {kContexts * 4, 7 * 7 * 7 * 4,
                                                                  11 * 11 * 11, 15 * 8 * 4 * 2};
-  /// What beams above had at an azimuth.
+  /// The last values of the beams above at an azimuth.
   struct Known {
     std::int32_t value = kUnknown;
     std::int32_t before = kUnknown;  // value above that
@@ -48,13 +48,13 @@ class BlendedChannel {
     std::int32_t other = kUnknown;  // surface that the last jump left
     std::uint32_t next = 0;         // column after the last value
   };
-  /// What is known about a value before it is coded.
+  /// The context of a value, from the values before it.
   struct View {
     std::int32_t median;
     std::int32_t mirror;  // 1 or -1
     std::int32_t west;
     std::array<std::int32_t, kCandidates> candidates;  // surfaces to which a jump may lead
-    std::array<NibbleModel*, kBlended> models;
+    BlendedModels models;
   };
   /// The candidates that lie behind a jump's first value: a bit for each.
   static unsigned Behind(const View& view, std::int32_t sense);
@@ -62,7 +62,6 @@ class BlendedChannel {
   View Look(std::uint32_t column);
   void Keep(const View& view, std::int32_t value, std::uint32_t column);
   void EndRow(std::uint32_t beam);
-  void Learn(const View& view, unsigned symbol);
   void EncodeJump(const View& view, std::int32_t value, std::int32_t sense, unsigned lane,
                   RansEncoder::Writer* writer);
   std::int32_t DecodeJump(const View& view, std::int32_t sense, unsigned lane,

@@ -19,7 +19,7 @@ std::uint32_t PackFour(std::uint32_t four) { return (four & kBytes) * 0x10204080
 /// Sum of four bytes of less than 64.
 std::uint32_t SumOf(std::uint32_t four) { return four * kBytes >> 24; }
 
-/// What the last pixels of a row say: bit 0 of `before` is the last one.
+/// Counts over the last pixels of a row; bit 0 of `before` is the last one.
 struct LeftTable {
   constexpr LeftTable() {
     for (unsigned before = 0; before < 256; ++before) {
@@ -53,12 +53,12 @@ void BlendedMask::Reset(const AzimuthAlignment& alignment, std::uint32_t columns
   models_[0].assign(first.begin(), first.end());
   for (unsigned k = 1; k < kBlended; ++k) models_[k].assign(kSizes[k], NibbleModel());
   above_.Reset(alignment, columns, 0xFF);
-  row_.assign((columns + kGroup - 1) / kGroup * kGroup, 0);
+  row_.assign(std::size_t{MaskCoder::Groups(columns)} * kGroup, 0);
 }
 
 /// `above` is that of the group's first pixel.
-[[gnu::always_inline]] inline BlendedMask::Models BlendedMask::ModelsOf(const std::uint8_t* above,
-                                                                        std::uint32_t before) {
+[[gnu::always_inline]] inline BlendedModels BlendedMask::ModelsOf(const std::uint8_t* above,
+                                                                  std::uint32_t before) {
   const std::uint32_t here = FourAt(above);
   const std::uint32_t up = PackFour(here);
   const std::uint32_t west = above[-1] & 1;
@@ -67,7 +67,7 @@ void BlendedMask::Reset(const AzimuthAlignment& alignment, std::uint32_t columns
   const std::uint32_t farther = SumOf((here >> 1 & kBytes) + (here >> 2 & kBytes));
   const std::uint32_t to_west = SumOf(FourAt(above - kGroup) & kBytes);
   const std::uint32_t to_east = SumOf(FourAt(above + kGroup) & kBytes);
-  const Models models = {
+  const BlendedModels models = {
       &models_[0][west | up << 1 | east << 5 | (before & 3) << 6],
       &models_[1][(before & 15) | up << 4 | east << 8 | (above[kGroup + 1] & 1U) << 9 | west << 10],
       &models_[2]
@@ -85,9 +85,8 @@ template <class CodeFour>
   std::uint32_t before = 0;
   for (std::ptrdiff_t i = 8; i > 0; --i) before = before << 1 | (above[-i] & 1U);
   for (std::uint32_t x = 0; x < columns; x += kGroup) {
-    const Models models = ModelsOf(above + x, before);
+    const BlendedModels models = ModelsOf(above + x, before);
     const unsigned four = code(x / kGroup % kRansLanes, models, &row_[x]);
-    for (NibbleModel* model : models) model->Update<1>(four);
     before = before << 4 | kLeft.reversed[four];
   }
   for (std::uint32_t i = 0; i < columns; ++i)
@@ -101,11 +100,12 @@ void BlendedMask::Encode(const Mask& mask, const AzimuthAlignment& alignment, st
   RansEncoder::Writer writer(encoder);
   for (std::uint32_t beam = 0; beam < alignment.beams(); ++beam) {
     std::copy_n(&mask[std::size_t{beam} * columns], columns, row_.data());
-    CodeRow(beam, columns, [&](unsigned lane, const Models& models, const std::uint8_t* pixels) {
-      const unsigned four = PackFour(FourAt(pixels));
-      writer.Put(lane, NibbleModel::BlendedInterval(models, four), 0, 0);
-      return four;
-    });
+    CodeRow(beam, columns,
+            [&](unsigned lane, const BlendedModels& models, const std::uint8_t* pixels) {
+              const unsigned four = PackFour(FourAt(pixels));
+              writer.Put(lane, four, models);
+              return four;
+            });
   }
 }
 
@@ -114,10 +114,8 @@ bool BlendedMask::Decode(const AzimuthAlignment& alignment, std::uint32_t column
   Reset(alignment, columns);
   RansDecoder local = *decoder;
   for (std::uint32_t beam = 0; beam < alignment.beams(); ++beam) {
-    CodeRow(beam, columns, [&](unsigned lane, const Models& models, std::uint8_t* pixels) {
-      const NibbleModel blend = NibbleModel::Blend(models);
-      const unsigned four = blend.Find(local.Slot(lane));
-      local.Take(lane, blend.IntervalOf(four));
+    CodeRow(beam, columns, [&](unsigned lane, const BlendedModels& models, std::uint8_t* pixels) {
+      const unsigned four = local.Get(lane, models);
       local.GetBits(lane, 0);
       for (unsigned i = 0; i < kGroup; ++i) pixels[i] = four >> i & 1;
       return four;

@@ -21,14 +21,14 @@ class BlendedMask {
               Mask* mask);
 
  private:
-  static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
-  static constexpr unsigned kBlended = 4;
+  static constexpr std::uint32_t kGroup = MaskCoder::kGroup;
+  static constexpr unsigned kBlended = std::tuple_size_v<BlendedModels>;
   /// Number of contexts of each kind.
-  static constexpr std::array<std::uint32_t, kBlended> kSizes = {256, 2'048, 4'050, 1'728};
-  using Models = std::array<NibbleModel*, kBlended>;
+  static constexpr std::array<std::uint32_t, kBlended> kSizes = {MaskCoder::kContexts, 2'048, 4'050,
+                                                                 1'728};
 
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
-  Models ModelsOf(const std::uint8_t* above, std::uint32_t before);
+  BlendedModels ModelsOf(const std::uint8_t* above, std::uint32_t before);
   template <class CodeFour>
   void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code);
 

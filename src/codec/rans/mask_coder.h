@@ -26,15 +26,14 @@ class MaskCoder {
   static std::size_t Pieces(std::uint32_t beams, std::uint32_t columns) {
     return std::size_t{beams} * Groups(columns);
   }
+  static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
+  static std::uint32_t Groups(std::uint32_t columns) { return (columns + kGroup - 1) / kGroup; }
   static constexpr unsigned kContexts = 256;
   /// The models before the first pixel. The bits of a context from bit 0: the pixel above to the
   /// left, the four above, the one to their right, and the two to the left.
   static const std::array<NibbleModel, kContexts>& InitialModels();
 
  private:
-  static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
-  static std::uint32_t Groups(std::uint32_t columns) { return (columns + kGroup - 1) / kGroup; }
-
   template <class CodeFour>
   void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code);
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);

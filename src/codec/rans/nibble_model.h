@@ -55,6 +55,12 @@ inline constexpr Rates kRates;
 
 }  // namespace detail
 
+class NibbleModel;
+/// Models whose mean predicts a symbol.
+using BlendedModels = std::array<NibbleModel*, 4>;
+/// Blended models learn twice as fast as single ones.
+constexpr int kBlendedHaste = 1;
+
 /// See F. Giesen, "Mixing discrete probability distributions" (2015): the cumulative
 /// distribution moves towards one that has nearly all of its mass on the symbol seen. Every symbol
 /// keeps a probability above zero, because both ends of each step are strictly increasing.
@@ -134,7 +140,7 @@ class NibbleModel {
 
   /// The mean of four distributions, rounded down after each of two steps. The starts of each rise,
   /// so those of the mean do, too.
-  static NibbleModel Blend(const std::array<NibbleModel*, 4>& models) {
+  static NibbleModel Blend(const BlendedModels& models) {
     NibbleModel blend{Unset()};
     for (unsigned i = 0; i < kNibbles; i += 8) {
       const auto load = [&](unsigned k) {
@@ -149,7 +155,7 @@ class NibbleModel {
     return blend;
   }
   /// Returns Blend(models).IntervalOf(symbol).
-  static Interval BlendedInterval(const std::array<NibbleModel*, 4>& models, unsigned symbol) {
+  static Interval BlendedInterval(const BlendedModels& models, unsigned symbol) {
     const auto mean = [&](unsigned at) {
       const auto start = [&](unsigned k) {
         return static_cast<std::uint16_t>(models[k]->start_[at]);

@@ -54,13 +54,14 @@ class RansEncoder {
     template <int kHaste = 0>
     [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, NibbleModel* model,
                                     std::uint32_t bits = 0, unsigned count = 0) {
-      Put(lane, model->IntervalOf(symbol), bits, count);
+      *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
       model->Update<kHaste>(symbol);
     }
-    /// Adds a symbol of another model.
-    [[gnu::always_inline]] void Put(unsigned lane, const Interval& interval, std::uint32_t bits,
-                                    unsigned count) {
-      *next_++ = {interval, bits << 8 | count << 2 | lane};
+    /// The same by the mean of `models`.
+    [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, const BlendedModels& models,
+                                    std::uint32_t bits = 0, unsigned count = 0) {
+      *next_++ = {NibbleModel::BlendedInterval(models, symbol), bits << 8 | count << 2 | lane};
+      for (NibbleModel* model : models) model->Update<kBlendedHaste>(symbol);
     }
     /// Adds the low `count` <= kMaxPlainBits of `bits`, whose other bits are 0.
     void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
@@ -91,19 +92,15 @@ class RansDecoder {
   /// The next call must be GetBits() of the same lane, with a count of 0 if no bits follow.
   template <int kHaste = 0>
   unsigned Get(unsigned lane, NibbleModel* model) {
-    const unsigned symbol = model->Find(Slot(lane));
-    Take(lane, model->IntervalOf(symbol));
+    const unsigned symbol = Take(lane, *model);
     model->Update<kHaste>(symbol);
     return symbol;
   }
-  /// Get() in two steps, for a symbol of another model: its place in the model's intervals, and
-  /// then the interval that holds it.
-  std::uint32_t Slot(unsigned lane) const {
-    return static_cast<std::uint32_t>(states_[lane] & (kProbabilityOne - 1));
-  }
-  void Take(unsigned lane, const Interval& i) {
-    const std::uint64_t x = states_[lane];
-    states_[lane] = i.size * (x >> kProbabilityBits) + (x & (kProbabilityOne - 1)) - i.start;
+  /// The same by the mean of `models`.
+  [[gnu::always_inline]] unsigned Get(unsigned lane, const BlendedModels& models) {
+    const unsigned symbol = Take(lane, NibbleModel::Blend(models));
+    for (NibbleModel* model : models) model->Update<kBlendedHaste>(symbol);
+    return symbol;
   }
   std::uint32_t GetBits(unsigned lane, unsigned count) {
     return GetBits(lane, count, (1U << count) - 1);
@@ -125,6 +122,14 @@ class RansDecoder {
 
  private:
   void ReadStates();
+  [[gnu::always_inline]] unsigned Take(unsigned lane, const NibbleModel& model) {
+    const std::uint64_t x = states_[lane];
+    const auto slot = static_cast<std::uint32_t>(x & (kProbabilityOne - 1));
+    const unsigned symbol = model.Find(slot);
+    const Interval i = model.IntervalOf(symbol);
+    states_[lane] = i.size * (x >> kProbabilityBits) + slot - i.start;
+    return symbol;
+  }
   std::uint64_t LoadWord() const {
     return std::uint64_t{position_[0]} | std::uint64_t{position_[1]} << 8 |
            std::uint64_t{position_[2]} << 16 | std::uint64_t{position_[3]} << 24;
