@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What becomes of each packet of a fixed load, and what a sender that knows the link delivers.
+// The fate of each packet of a fixed load, and what a sender that knows the link delivers.
 #include <cmath>
 
 #include "src/link/bottleneck.h"

@@ -21,7 +21,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// As rosbag2_storage_sqlite3 makes them.
+/// The tables that rosbag2_storage_sqlite3 makes.
 constexpr const char* kTables =
     "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,"
     "serialization_format TEXT NOT NULL,offered_qos_profiles TEXT NOT NULL);"
@@ -54,6 +54,15 @@ class BagDatabaseFile : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
+  /// Sets the path to a copy of the open bag with its file `end`, and closes the bag.
+  void LeaveAsADeadWriter(const std::string& end) {
+    const std::string copy = folder_ + "/copy";
+    std::filesystem::create_directory(copy);
+    for (const std::string& file : {std::string(), end})
+      std::filesystem::copy(path_ + file, copy + "/drive_0.db3" + file);
+    Close();
+    path_ = copy + "/drive_0.db3";
+  }
   void Open(const std::string& path) {
     ASSERT_EQ(sqlite3_open(path.c_str(), &database_), SQLITE_OK);
     Run("PRAGMA synchronous=OFF");
@@ -362,12 +371,7 @@ TEST_F(BagDatabaseFile, RowsThatADeadWriterLeftInItsLogAreRead) {
   Run("PRAGMA journal_mode=WAL");
   for (int i = 1; i < 200; ++i)
     Add(1, milliseconds(100 * i), CloudMessage(milliseconds(100 * i + 1)));
-  const std::string copy = folder_ + "/copy";
-  std::filesystem::create_directory(copy);
-  for (const char* end : {"", "-wal"})
-    std::filesystem::copy(path_ + end, copy + "/drive_0.db3" + end);
-  Close();
-  path_ = copy + "/drive_0.db3";
+  LeaveAsADeadWriter("-wal");
   const std::string before = Content();
   const auto log_size = std::filesystem::file_size(path_ + "-wal");
   ASSERT_GT(log_size, before.size());
@@ -383,12 +387,7 @@ TEST_F(BagDatabaseFile, AWriteThatDidNotEndIsRefusedWithAdvice) {
   Run("PRAGMA synchronous=FULL;PRAGMA cache_size=1;PRAGMA cache_spill=1;BEGIN");
   for (int i = 1; i < 200; ++i)
     Add(1, milliseconds(100 * i), CloudMessage(milliseconds(100 * i + 1)));
-  const std::string copy = folder_ + "/copy";
-  std::filesystem::create_directory(copy);
-  for (const char* end : {"", "-journal"})
-    std::filesystem::copy(path_ + end, copy + "/drive_0.db3" + end);
-  Close();
-  path_ = copy + "/drive_0.db3";
+  LeaveAsADeadWriter("-journal");
   EXPECT_NE(RefusalOf(path_).find(".tables"), std::string::npos) << RefusalOf(path_);
 }
 

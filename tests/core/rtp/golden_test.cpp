@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a receiver gives out and counts for packets that are lost, late, repeated and damaged.
+// The slices and counts of a receiver for lost, late, repeated and damaged packets.
 #include "src/rtp/delivery.h"
 #include "src/rtp/unit_check.h"
 #include "tests/core/rtp/stream.h"

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "gst/common/imu_caps.h"
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/base/byte_writer.h"
@@ -56,6 +57,17 @@ inline gst::BufferPtr FarWall() {
     for (int b = -10; b < 10; ++b)
       for (const int value : {80, a, b, 0}) w.LeF32(static_cast<float>(value));
   return gst::BufferPtr(gst_buffer_new_memdup(bytes.data(), bytes.size()));
+}
+
+/// Begins a stream of samples on `pad`, in the axes of the sensor.
+inline void BeginImu(GstPad* pad) {
+  gst_pad_send_event(pad, gst_event_new_stream_start("imu"));
+  gst_pad_send_event(
+      pad,
+      gst_event_new_caps(gst::ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_send_event(pad, gst_event_new_segment(&segment));
 }
 
 /// Ten samples, every 10 ms.

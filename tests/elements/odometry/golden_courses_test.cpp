@@ -2,7 +2,6 @@
 // All that lidarodometry puts out, sends and says in scripted runs is as it was.
 #include "tests/support/golden_course.h"
 
-#include "gst/common/imu_caps.h"
 #include "tests/elements/odometry/corner_drive.h"
 
 namespace lidar::test {
@@ -17,15 +16,6 @@ struct SidePads {
     c->trace()->Watch(poses->sinkpad);
     c->trace()->Watch(map->sinkpad);
   }
-  void BeginImu() const {
-    gst_pad_send_event(imu.get(), gst_event_new_stream_start("imu"));
-    gst_pad_send_event(
-        imu.get(),
-        gst_event_new_caps(gst::ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_send_event(imu.get(), gst_event_new_segment(&segment));
-  }
 
   Harness poses, map;
   gst::PadPtr imu;
@@ -36,7 +26,7 @@ void OdometryCourse(Course& c) {
   c.Ask();
   c.Tag();
   c.Begin(kCornerCaps);
-  pads.BeginImu();
+  BeginImu(pads.imu.get());
   for (unsigned i = 0; i < 4; ++i) {
     gst_pad_chain(pads.imu.get(), StillnessAt(i * kCornerPeriod).release());
     c.Push("with samples", ScanAt(CornerFrom(i), i * kCornerPeriod));

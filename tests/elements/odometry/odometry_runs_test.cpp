@@ -11,7 +11,6 @@
 #include <set>
 
 #include "ext/odometry/imu_input.h"
-#include "gst/common/imu_caps.h"
 #include "tests/elements/odometry/corner_drive.h"
 #include "tests/support/own_properties.h"
 #include "tests/support/run_trace.h"
@@ -46,15 +45,7 @@ class OdometryRun {
   void Drive(unsigned from, unsigned to) {
     for (unsigned i = from; i < to; ++i) Push(ScanAt(CornerFrom(i), i * kCornerPeriod));
   }
-  void BeginImu() {
-    gst_pad_send_event(imu_.get(), gst_event_new_stream_start("imu"));
-    gst_pad_send_event(
-        imu_.get(),
-        gst_event_new_caps(gst::ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_send_event(imu_.get(), gst_event_new_segment(&segment));
-  }
+  void BeginImu() { test::BeginImu(imu_.get()); }
   void SendStillness(GstClockTime from) { gst_pad_chain(imu_.get(), StillnessAt(from).release()); }
   void End() { gst_pad_push_event(h_->srcpad, gst_event_new_eos()); }
   void Stop() {

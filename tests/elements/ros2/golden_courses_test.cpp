@@ -80,7 +80,7 @@ void Ros2SrcCourse(Course& c) {
   damaged.bytes[0] = damaged.bytes[2] = damaged.bytes[3] = 0;  // CDR, little-endian
   damaged.bytes[1] = 1;
   std::size_t broken = 0;
-  // What this says is noted with the next cloud: a warning follows the count.
+  // A warning follows the count, so the course notes it with the next cloud.
   const auto breaks = [&] {
     EXPECT_TRUE(bad->Publish(damaged));
     AwaitStat(c, "messages-damaged", ++broken);
