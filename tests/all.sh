@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs everything that tests the tree, one step after another, and ends with a table of them. Takes hours.
+# Runs everything that tests the tree, and ends with a table of its steps. Takes hours.
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
 
-# Name, what it needs beyond tests/packages.txt, and the command from the tree's root.
+# Name, what it needs beyond tests/packages.txt, and the command from the tree's root. One step
+# follows another, but the soak runs beside all of them: it mostly waits.
 steps=(
+  "soak|root|env BUILD_DIR=build-soak tests/system/soak/run.sh --minutes SOAK"
   "run|-|tests/run.sh"
   "faults|root|tests/run.sh --no-install --suite faults"
   "peers|npm|tests/run.sh --no-install --suite peers"
@@ -19,7 +21,6 @@ steps=(
   "hardship|root|tests/system/hardship/run.sh"
   "leaks|-|tests/leaks.sh"
   "memory|-|tests/system/soak/memory.sh MINUTES"
-  "soak|root|tests/system/soak/run.sh --minutes SOAK"
   "interop|root, the reference|tests/system/interop/reference.sh"
   "experiments|-|tests/experiments/run.sh --quick"
   "mutants|-|tests/mutate.sh --quick"
@@ -88,29 +89,32 @@ lacks() {
   done < <(tr ',' '\n' <<<"$1" | sed 's/^ //') | head -1
 }
 
-table=("$(printf '%-13s %-8s %8s  %s' step result seconds 'last line')")
-failed=0
-row() { # STEP RESULT SECONDS LAST_LINE
-  table+=("$(printf '%-13s %-8s %8s  %s' "$@")")
-  echo "${table[-1]}"
+rows=$output/table
+printf '%-13s %-8s %8s  %s\n' step result seconds 'last line' >"$rows"
+row() { printf '%-13s %-8s %8s  %s\n' "$@" | tee -a "$rows"; } # STEP RESULT SECONDS LAST_LINE
+# take NAME COMMAND: runs a step and adds its row.
+take() {
+  local began=$SECONDS result=ok
+  # shellcheck disable=SC2086
+  (cd "$root" && exec $(sed "s/MINUTES/$minutes/; s/SOAK/$soak/" <<<"$2")) >"$output/$1.log" 2>&1 </dev/null || result=FAILED
+  row "$1" "$result" $((SECONDS - began)) "$(grep -v '^[[:space:]]*$' "$output/$1.log" | tail -1 | cut -c -100)"
 }
 for step in "${steps[@]}"; do
   IFS='|' read -r name needs command <<<"$step"
   wanted "$name" || continue
   lacking=$(lacks "$needs")
-  [ -z "$lacking" ] || { row "$name" skipped 0 "needs $lacking"; continue; }
-  began=$SECONDS
-  # shellcheck disable=SC2086
-  if (cd "$root" && exec $(sed "s/MINUTES/$minutes/; s/SOAK/$soak/" <<<"$command")) >"$output/$name.log" 2>&1 </dev/null; then
-    result=ok
+  if [ -n "$lacking" ]; then
+    row "$name" skipped 0 "needs $lacking"
+  elif [ "$name" = soak ]; then
+    take "$name" "$command" &
   else
-    result=FAILED
-    failed=$((failed + 1))
+    take "$name" "$command"
   fi
-  row "$name" $result $((SECONDS - began)) "$(grep -v '^[[:space:]]*$' "$output/$name.log" | tail -1 | cut -c -100)"
 done
+wait
 
 echo
-printf '%s\n' "${table[@]}"
-echo "logs: $output; $failed of $((${#table[@]} - 1)) failed"
+cat "$rows"
+failed=$(grep -c '^[^ ]* *FAILED ' "$rows")
+echo "logs: $output; $failed of $(($(wc -l <"$rows") - 1)) failed"
 [ "$failed" = 0 ]

@@ -4,7 +4,7 @@
 # what must hold, and prints a line.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
-build=${BUILD_DIR:-$root/build}
+build=$(realpath -m "${BUILD_DIR:-$root/build}")
 
 minutes=0
 seed=$RANDOM
