@@ -91,7 +91,21 @@ void DtlsKeys::Process(GstBuffer* datagram) {
   } else {
     session = SessionOf(HelloIn(BufferMap(datagram, GST_MAP_READ).view()), from);
   }
-  if (session != nullptr) session->handshake->Take(datagram);
+  if (session == nullptr) return;
+  // A server's last datagram waits in Send() until the key is in use: the client's media follow it.
+  const std::lock_guard lock(session->route->mutex);
+  session->handshake->Take(datagram);
+  TakeKey(session);
+}
+
+void DtlsKeys::TakeKey(Session* session) {
+  if (session->has_key || session->handshake->state() != DtlsHandshake::State::kDone) return;
+  session->has_key = true;
+  ++handshakes_;
+  told_of_stranger_ = told_of_silence_ = false;
+  calls_.on_key(session->handshake->key());
+  heard_at_ = MonotonicTime();
+  seen_ = calls_.traffic();
 }
 
 /// Another address that brings the same hello to a server is another link of the same peer.
@@ -157,7 +171,7 @@ void DtlsKeys::Settle(Time now) {
     session = GoesOn(now, &*session) ? std::next(session) : sessions_.erase(session);
 }
 
-/// Takes the session's key. Returns false once the session is over.
+/// Returns false once the session is over.
 bool DtlsKeys::GoesOn(Time now, Session* session) {
   using State = DtlsHandshake::State;
   const State state = session->handshake->state();
@@ -167,12 +181,6 @@ bool DtlsKeys::GoesOn(Time now, Session* session) {
     WarnOnce(&told_of_stranger_,
              "The other end has another certificate than the one to trust, and is refused.",
              "dtls-peer-certificate names the one to trust");
-  } else if (state == State::kDone && !std::exchange(session->has_key, true)) {
-    ++handshakes_;
-    told_of_stranger_ = told_of_silence_ = false;
-    calls_.on_key(session->handshake->key());
-    heard_at_ = now;
-    seen_ = calls_.traffic();
   } else if (state == State::kOpen && is_client_ && is_old) {
     WarnOnce(&told_of_silence_,
              "The other end does not answer the DTLS handshake; it is tried again.",

@@ -89,6 +89,7 @@ class DtlsKeys {
 
   void Run();
   void Process(GstBuffer* datagram);
+  void TakeKey(Session* session);
   Session* SessionOf(const std::string& hello, GSocketAddress* from);
   Session* Begin(Time now, std::string hello);
   void Send(Route* route, GstBuffer* datagram);

@@ -70,6 +70,7 @@ class DtlsEnds : public ::testing::Test {
     };
     calls.on_key = [this, is_client, keys](const SrtpKey& key) {
       (is_client ? client_key_ : server_key_) = key;
+      if (!is_client) g_usleep(server_key_takes_);
       ++*keys;
     };
     calls.traffic = [this] { return SrtpTraffic{sent_, passed_}; };
@@ -117,6 +118,7 @@ class DtlsEnds : public ::testing::Test {
 
   Wire up_, down_;
   SrtpKey server_key_, client_key_;
+  gulong server_key_takes_ = 0;  // microseconds until the server uses its key
   std::atomic<unsigned> server_keys_{0}, client_keys_{0};
   std::atomic<unsigned> warnings_{0};
   std::atomic<std::uint64_t> sent_{0}, passed_{0};
@@ -138,6 +140,18 @@ TEST_F(DtlsEnds, AgreeWhereEachOfTwoLinksLosesEveryThirdDatagram) {
   }));
   EXPECT_EQ(client_key_, server_key_);
   EXPECT_EQ(client_key_.size(), 30U);
+}
+
+TEST_F(DtlsEnds, TheServerUsesTheKeyBeforeTheClientHasIt) {
+  server_key_takes_ = 200'000;
+  StartServer();
+  StartClient();
+  EXPECT_TRUE(test::Eventually([&] {
+    for (const Carried& d : up_.Take()) Give(*server_, {5'001, d.bytes});
+    for (const Carried& d : down_.Take()) Give(*client_, d);
+    return client_keys_ == 1;
+  }));
+  EXPECT_EQ(server_keys_, 1U) << "the client's first packets would be refused";
 }
 
 /// The clock stands still, so that this handshake is the only one.
