@@ -92,13 +92,8 @@ def run(command, folder, first_port):
         process.kill()
         return "does not stop on SIGINT"
     output = output.decode(errors="replace")
-    bad = [
-        l
-        for l in output.splitlines()
-        if re.search(r"ERROR|CRITICAL|WARNING: erroneous|could not link|construction is invalid", l)
-    ]
-    if bad:
-        return "\n".join(bad[:5])
+    if re.search(r"ERROR|CRITICAL|WARNING: erroneous|could not link|construction is invalid", output):
+        return "\n".join(output.splitlines()[-15:])
     if never_played:
         return f"does not play within {PATIENCE} s\n" + "\n".join(output.splitlines()[-5:])
     if process.returncode not in (0, -signal.SIGINT):
