@@ -3,8 +3,8 @@
 // and a recorder that fails harms no other branch.
 #include "src/tools/apps/edge/pipeline.h"
 #include "src/tools/apps/edge/shared_port.h"
-#include "tests/elements/nats/free_ports.h"
 #include "tests/elements/nats/nats_server.h"
+#include "tests/support/free_ports.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -84,7 +84,7 @@ TEST(EdgePipeline, GivesEachSettingToItsElement) {
 }
 
 TEST(SharedPort, ASocketThatIsOpenedHasNothingFromBefore) {
-  const auto number = static_cast<std::uint16_t>(FreePort());
+  const auto number = FreePort();
   const edge::SharedPort port("127.0.0.1", number, {{7, 7}});
   GSocket* socket = port.socket(0);
   g_socket_set_blocking(socket, FALSE);

@@ -6,7 +6,7 @@
 
 #include "src/tools/apps/edge/session.h"
 #include "src/tools/apps/edge/shared_port.h"
-#include "tests/elements/nats/free_ports.h"
+#include "tests/support/free_ports.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -26,7 +26,7 @@ class EdgeSession : public ::testing::Test {
     config_.address = "127.0.0.1";
     robot_.name = "r1";
     robot_.sensor = "top";
-    robot_.port = static_cast<std::uint16_t>(FreePort());
+    robot_.port = FreePort();
   }
   void Make(GSocket* socket = nullptr) {
     session_ = std::make_unique<edge::Session>(config_, robot_, socket);

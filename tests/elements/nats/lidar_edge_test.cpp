@@ -9,9 +9,9 @@
 
 #include "ext/nats/nats_ptr.h"
 #include "src/tools/common/child_process.h"
-#include "tests/elements/nats/free_ports.h"
 #include "tests/elements/nats/http_get.h"
 #include "tests/elements/nats/nats_pipeline.h"
+#include "tests/support/free_ports.h"
 #include "tests/support/test_certificates.h"
 
 namespace lidar::test {

@@ -7,8 +7,8 @@
 
 #include "ext/nats/connection.h"
 #include "ext/nats/jetstream.h"
-#include "tests/elements/nats/free_ports.h"
 #include "tests/elements/nats/nats_server.h"
+#include "tests/support/free_ports.h"
 
 namespace lidar::test {
 

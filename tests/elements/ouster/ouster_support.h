@@ -18,6 +18,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/ouster/metadata.h"
 #include "src/ouster/pcap_reader.h"
+#include "tests/support/free_ports.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -87,22 +88,6 @@ class UdpSender {
   GSocket* socket_;
   GSocketAddress* to_;
 };
-
-/// Returns a port that was free a moment ago.
-inline guint16 FreePort() {
-  GSocket* socket =
-      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
-  GInetAddress* any = g_inet_address_new_any(G_SOCKET_FAMILY_IPV4);
-  GSocketAddress* address = g_inet_socket_address_new(any, 0);
-  EXPECT_TRUE(g_socket_bind(socket, address, FALSE, nullptr));
-  g_object_unref(address);
-  g_object_unref(any);
-  address = g_socket_get_local_address(socket, nullptr);
-  const guint16 port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
-  g_object_unref(address);
-  g_object_unref(socket);
-  return port;
-}
 
 inline guint64 Stat(GstElement* element, const char* name) {
   GstStructure* stats = nullptr;

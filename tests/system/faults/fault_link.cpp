@@ -59,12 +59,6 @@ std::uint32_t Ssrc(const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-std::uint16_t FreePort() {
-  std::uint16_t port = 0;
-  close(Open(&port));
-  return port;
-}
-
 FaultLink::FaultLink(std::uint16_t receiver_port, unsigned seed)
     : receiver_port_(receiver_port), random_(seed) {
   in_ = Open(&port_);

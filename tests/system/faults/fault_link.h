@@ -19,6 +19,7 @@
 
 #include "src/link/bottleneck.h"
 #include "src/rtp/payload_header.h"
+#include "tests/support/free_ports.h"
 
 namespace lidar::test {
 
@@ -120,8 +121,5 @@ class FaultLink {
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
-
-/// A UDP port of 127.0.0.1 that was free a moment ago.
-std::uint16_t FreePort();
 
 }  // namespace lidar::test
