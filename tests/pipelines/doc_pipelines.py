@@ -3,8 +3,8 @@
 """Runs every gst-launch-1.0 command of the README and the docs, or of the pages named, as it is printed.
 
 A command passes if it ends with exit code 0, or still runs without an error a moment after it plays. With -q it does
-not print when it plays: then it passes if it runs for some seconds without an error. A command that ends by itself
-and writes a file may take longer, because the next ones may read it.
+not print when it plays: then it passes if it runs for some seconds without an error. A command that writes a
+file and ends by itself may take longer, because the next ones may read the file.
 Windows become fakesinks, and each page has ports and a folder of its own: several pages run at a time, with low
 priority.
 docs/examples are left out: they have their own elements and test.
@@ -22,7 +22,7 @@ import tempfile
 import time
 
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
-QUIET_SECONDS, PLAY_SECONDS, WRITE_SECONDS = 4, 1.5, 30
+QUIET_SECONDS, PLAY_SECONDS = 4, 1.5
 PATIENCE = 180  # seconds, on a busy machine
 AT_A_TIME = 4
 FIRST_PORT, PORTS = 21000, 100  # first port of the first page; ports of each page
@@ -82,9 +82,9 @@ def run(command, folder, first_port):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
     )
-    writes = re.search(r"num-buffers=.*sink location=", shown)
+    writes = re.search(r"num-buffers=.*sink [^!]*location=", shown)
     output, never_played = output_for_a_while(
-        process, quiet=" -q " in shown, play_seconds=WRITE_SECONDS if writes else PLAY_SECONDS
+        process, quiet=" -q " in shown, play_seconds=PATIENCE if writes else PLAY_SECONDS
     )
     try:
         output += process.communicate(timeout=PATIENCE)[0]
