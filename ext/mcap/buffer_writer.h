@@ -21,8 +21,8 @@ struct NewMessage {
 
 class BufferWriter {
  public:
-  /// Returns a writer for buffers of `caps`. Returns NULL if those cannot be recorded; `why` then
-  /// has the reason for a user.
+  /// Returns a writer for buffers of `caps`. Returns NULL if the caps cannot be recorded; `why`
+  /// then has the reason for a user.
   static std::unique_ptr<BufferWriter> Make(const GstCaps* caps, const std::string& frame_id,
                                             std::string* why);
   virtual ~BufferWriter() = default;

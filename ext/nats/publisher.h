@@ -38,7 +38,7 @@ struct PublisherCounters {
   std::uint64_t dropped = 0;    // dropped for lack of room or at stop
   std::uint64_t too_large = 0;  // for the server
   std::uint64_t waiting = 0;    // to be sent or acknowledged
-  std::uint64_t buffered = 0;   // bytes in those
+  std::uint64_t buffered = 0;   // bytes in the waiting messages
   std::uint64_t server_errors = 0;
   std::uint64_t refusals = 0;  // by the server, with keep_trying
   unsigned reconnects = 0;
@@ -114,7 +114,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   const std::uint64_t run_;
   const std::optional<AnswerSubjects> answers_;  // missing if memory is short; then nothing starts
   // The publisher's thread owns these while it runs.
-  std::unique_ptr<Connection> connection_;  // null before the first, and after a refusal
+  std::unique_ptr<Connection> connection_;  // null before the first connection, and after a refusal
   JetStreamPtr js_;
   SubscriptionPtr asks_;
   SubscriptionPtr acks_;

@@ -20,7 +20,7 @@ class PcapFeed {
 
   struct Packet {
     std::vector<std::uint8_t> payload;
-    Duration due{};  // since the first packet, with loops joined
+    Duration due{};  // since the first packet of the first round
     Time captured;   // since the Unix epoch
     ouster::Sender sender{};
     bool starts_over = false;  // first packet of another round

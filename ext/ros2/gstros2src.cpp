@@ -116,7 +116,7 @@ static std::shared_ptr<Reader> ReaderOf(gpointer self) {
   return state.reader;
 }
 
-/// Returns the counters, with those that DDS keeps.
+/// Returns the counters, including the counters of DDS.
 static Counters CountersNow(GObject* object) {
   State& state = StateOf(object);
   const auto reader = ReaderOf(object);

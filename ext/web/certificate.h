@@ -17,7 +17,7 @@ class Certificate {
       : file_(std::move(file)), key_file_(std::move(key_file)) {}
 
   bool is_wanted() const { return !file_.empty(); }
-  /// Returns false and sets `why` if the files are no certificate and its key.
+  /// Returns false and sets `why` if the files do not hold a certificate and its key.
   bool Load(std::string* why);
   /// Reads the files if they have changed. If they are bad it keeps the old ones, returns false and
   /// sets `why`, once.

@@ -9,7 +9,7 @@
 namespace lidar::web {
 namespace {
 
-/// Long enough for the page over a poor link.
+/// Longest time for a request. The page takes less, even over a poor link.
 constexpr gint64 kLongest_us = 60 * gint64{G_USEC_PER_SEC};
 constexpr int kBacklog = 128;
 /// Limit of unsent data in the kernel, which become old there and cannot be dropped.

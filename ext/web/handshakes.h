@@ -41,7 +41,7 @@ class Handshakes {
     Handshakes* owner = nullptr;  // null: it has gone
     ObjectPtr<GSocketConnection> connection;
     ObjectPtr<GTlsCertificate> certificate;
-    ObjectPtr<GIOStream> secure;  // once it runs
+    ObjectPtr<GIOStream> secure;  // null until the handshake starts
     ObjectPtr<GCancellable> cancel;
     SourcePtr readable;
     Counts::iterator address;

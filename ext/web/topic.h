@@ -47,7 +47,7 @@ class Recording;
 
 class Topic {
  public:
-  /// `recording` is that of slices; null: there is none.
+  /// `recording` has the slices; null: no recording.
   explicit Topic(foxglove::Channel channel, std::shared_ptr<Recording> recording = {})
       : channel_(std::move(channel)), recording_(std::move(recording)) {}
   const foxglove::Channel& channel() const { return channel_; }

@@ -145,8 +145,8 @@ static const std::array<Property<Settings>, 2> kProperties = {{
      Stats},
 }};
 
-/// Counts a packet of a wrong payload type. Returns true after many of them and none of the right
-/// one.
+/// Counts a packet of a wrong payload type. Returns true after many of them without a packet of the
+/// right type.
 static bool CountWrongType(State& state) {
   std::lock_guard lock(state.mutex);
   return ++state.wrong_payload_type >= kWrongTypePackets &&

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 /// Packets that a regression remembers, and the fewest that it needs.
 constexpr double kMemory = 512;
 constexpr double kFewest = 20;
-/// A regression has no result if the other terms explain all of a term except for this part.
+/// A regression has no result if the earlier terms leave at most this part of a term unexplained.
 constexpr double kNothing = 1e-6;
 /// Least variance of the residuals [ms^2]: arrival times are rounded to 1/1024 s.
 constexpr double kLeastVariance = 0.01;
@@ -99,8 +99,8 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   const double sent_ms = Milliseconds(arrival.sent - last->sent);
   const auto ticks = static_cast<std::int32_t>(arrival.report_timestamp - last->report_timestamp);
   const double arrived_ms = ticks / 65.536 - Milliseconds(arrival.age - last->age);
-  // Whether a packet counts must not depend on its own arrival, so the packet before it shows the
-  // queue.
+  // The packet before shows the queue, because whether a packet counts must not depend on its
+  // arrival.
   const bool busy = l.queue_ms > sent_ms + kMarginMs;
   l.Measure(arrival.sent, arrived_ms - sent_ms);
   for (std::size_t other = 0; other < kMaxLinks; ++other)

@@ -16,9 +16,9 @@ namespace lidar::bonding {
 /// entered between them take to leave. Packets of another link add to that time only if they pass
 /// the same FIFO. So the spacing of arrivals is regressed on what the other link sent in between,
 /// what the link itself sent, and the spacing of departures, which stands for the flows of others.
-/// RFC 8382 compares delays instead. Copies fill two queues alike, so that it would take them for
-/// one queue; but packets in one queue do not change the spacing in the other. In addition, links
-/// that share a FIFO must see equally long queues at the same time.
+/// RFC 8382 compares delays instead, and would take two queues for one if copies fill them alike;
+/// but packets in one queue do not change the spacing in the other. In addition, links that share a
+/// FIFO must see equally long queues at the same time.
 class SharedQueues {
  public:
   /// A packet of a report.
@@ -43,7 +43,8 @@ class SharedQueues {
     using Terms = std::array<double, kTerms>;
 
     void Add(const Terms& x, double y);
-    /// The last term's slope over its standard error; 0: too little is known.
+    /// Returns the slope of the last term over its standard error, or 0 if the samples do not show
+    /// the slope.
     double Significance() const;
 
    private:
@@ -54,13 +55,14 @@ class SharedQueues {
   };
   struct Pair {
     Regression spacing;  // of the first link's packets, by what the second sent
-    // Means over packets that left together, in the pair whose first index is lower.
+    // Mean difference of the two queues, and mean of the longer one, when packets left together.
+    // Only pairs_[a][b] with a < b has these means.
     double apart_ms = 0, longer_ms = 0;
     bool shared = false;
   };
   struct Sent {
     Time at{};
-    double before_kb = 0;  // sent before it
+    double before_kb = 0;  // size of all earlier packets
   };
   struct Link {
     std::deque<Sent> sent;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans a file without a summary: it broke off, or its writer wrote none.
+// Scans a file without a summary: the file broke off, or its writer writes no summary.
 #include <algorithm>
 #include <optional>
 #include <utility>

@@ -64,7 +64,8 @@ void Confidence::Predict(const Pose& motion, Duration gap, bool turn_measured) {
   Joint step = Joint::Identity();
   step.block<6, 6>(kMap, kMap) = step.block<6, 6>(kPose, kPose) = Adjoint(motion.Inverse());
   step.block<6, 6>(kPose, kVelocity) = t * Matrix6::Identity();
-  // A new pose measures the mean velocity since the last pose, so its error enters the velocity's.
+  // The state has the mean velocity since the last pose, so the acceleration enters before the
+  // step.
   joint_.diagonal().segment<6>(kVelocity) +=
       Spread(kAcceleration, turn_measured ? kTurnDrift : kTurnAcceleration) * (t * t);
   joint_ = step * joint_ * step.transpose();

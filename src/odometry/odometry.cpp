@@ -38,7 +38,7 @@ constexpr int kPhases = 1024;
 /// A turn counts as steady within a step of this length.
 constexpr Duration kTurnStep = milliseconds(100);
 constexpr int kLostForGood = 10;  // number of lost scans after which a new map begins
-/// A map with fewer fitting scans may have a wrong first motion: it is replaced soon.
+/// A map with fewer fitting scans may have begun with a wrong motion: the first lost scan ends it.
 constexpr int kTrustedMap = 3;
 /// Deviation for the search without a known motion [m].
 constexpr double kWidestSigma = 2;
@@ -249,7 +249,8 @@ Pose Odometry::GuessFirstMotion(const Points& points) const {
       .pose;
 }
 
-/// Straightens the first scan again: skewed by an unknown motion it would bend the map for ever.
+/// Straightens the first scan by the motion to the second one. A skewed first scan would bend the
+/// map for ever.
 void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle) {
   const Duration gap = middle - *last_time_;
   Pose found = GuessFirstMotion(SelectPoints(second, StateAt(middle), middle, duration).points);

@@ -108,7 +108,7 @@ class Odometry {
   Estimate Match(Time middle, const Moving& predicted, const TimedPoints& scan,
                  const Surface& fine);
   Alignment AlignFrom(const Pose& guess, const TimedPoints& scan, const Surface& fine);
-  /// Returns the part of the view that the last scan in the map shows, too: 0 to 1.
+  /// Returns how much of the view at `pose` the last scan in the map also shows: 0 to 1.
   double KnownView(const Pose& pose) const;
   bool ShowsThePlace(const Alignment& found, const Pose& guess) const;
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;

@@ -13,22 +13,24 @@ constexpr Duration kLongestStep = std::chrono::milliseconds(50);
 constexpr Duration kNewClock = std::chrono::seconds(1);
 constexpr double kMostRate = 50;  // [rad/s]: vehicles turn slower
 constexpr double kMostBias = 0.2;
-/// Least weight of a scan's error in the bias. The first scans weigh more: the guess that there is
-/// no offset counts as much as kOffsetScans scans.
+/// Least weight of a scan's error in the bias. The first scans weigh more. The initial bias of zero
+/// counts as much as kOffsetScans scans.
 constexpr double kBiasShare = 0.05;
 constexpr int kOffsetScans = 3;
 constexpr double kMemory = 0.9;
-/// Error of an alignment itself [rad].
+/// Error of the rotation that an alignment finds [rad].
 constexpr double kNoise = 0.003;
 constexpr int kLeastTaught = 5;  // scans
-/// Least part of a scan's error that enters the force at rest. Its first estimate is the mean.
+/// Least weight of a scan in the force at rest. The first scans weigh more: their mean is the first
+/// estimate.
 constexpr double kRestShare = 0.02;
 constexpr int kLeastForcesTaught = 10;  // scans
 /// Greatest squared error of trusted forces, relative to that of the mean velocity. A scan that was
-/// straightened without forces has an error of its own; forces of reversed axes have four times the
-/// error.
+/// straightened without forces has an error of its own. Forces along reversed axes have four times
+/// the error.
 constexpr double kMostForceError = 2;
-/// Half of gravity [m/s^2]: a unit without an accelerometer, or in other units, feels less at rest.
+/// Half of gravity [m/s^2]. An IMU without an accelerometer, or with other units, shows less at
+/// rest.
 constexpr double kLeastRest = 5;
 constexpr double kMostForce = 1000;  // [m/s^2]: that of a crash
 

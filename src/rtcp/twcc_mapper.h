@@ -19,7 +19,7 @@ constexpr const char* kTwccUri =
     "http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01";
 /// Period of arrival times, 12 days.
 constexpr Duration kTwccPeriod = std::chrono::milliseconds(64) * (1 << 24);
-/// Number of packets that can be told apart: half of the numbers.
+/// Number of packets that can be distinguished: half of the numbers.
 constexpr std::size_t kMaxTwccPackets = 1 << 14;
 
 struct TwccFeedback {

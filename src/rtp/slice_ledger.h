@@ -127,8 +127,8 @@ class SliceLedger {
   SlicePosition origin_;         // the first slice
   std::uint32_t origin_count_ = 1;
   std::set<SlicePosition> skipped_before_origin_;
-  // The end of the earlier stream that this one continues, if any. Slices after it are lost, and so
-  // are those of lost_before_end_.
+  // The end of the earlier stream that this one continues, if any. Slices after it and the slices
+  // in lost_before_end_ are lost.
   std::optional<SlicePosition> previous_end_;
   std::set<SlicePosition> lost_before_end_;  // lost slices among its last ones
   std::optional<SlicePosition> frontier_;

@@ -16,7 +16,7 @@ constexpr Duration kHousekeeping = 50ms;
 /// A caller that is this much late has stood still, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// For this long after a sign of congestion the window is about what the link carries.
+/// The window is about what the link carries for this long after a sign of congestion.
 constexpr Duration kCongestedLately = 300ms;
 /// Longest silence that may be a gap of the link.
 constexpr Duration kLongestSilence = 2s;
@@ -168,7 +168,7 @@ bool Controller::RespondToDrop(Time now) {
 
 void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   const CongestionSignals signals = Signals(now, acks);
-  // A backlog behind recent congestion must leave first.
+  // Growth waits until the backlog of recent congestion has left.
   if (streams_.media_qdelay(now) <= streams_.frame_period() || !CongestedLately())
     fast_increase_.Update(now, path_.Round(streams_.frame_period()));
   const RateReason reason = window_.Update(now, signals);
@@ -297,7 +297,8 @@ Duration Controller::WaitBehindGap(Time now) const {
   return path_.max_in_flight().lately() / *rate;
 }
 
-/// Starts no frame on a link that stands still: its packets could not be dropped there.
+/// Returns true if the stream must wait: too many packets are unsettled, or the link stands still,
+/// where packets of a new frame could not be dropped.
 bool Controller::Holds(const Stream& stream, Time now) const {
   const bool stalled = p_.extensions.gaps && started_ && Overdue(now) && Stalled(now);
   return history_.full() || (stalled && stream.at_start());
@@ -307,8 +308,8 @@ bool Controller::CongestedLately() const {
   return now_ - window_.last_congestion_detected_time() < kCongestedLately;
 }
 
-/// Returns the highest rate at which a stream's queue may leave. The window says nothing about the
-/// link's capacity without a queue in the network, or in a gap.
+/// Returns the highest rate at which a stream's queue may leave. The window does not show the
+/// link's capacity in a gap, or without a queue in the network.
 DataRate Controller::QueueRate(const Stream& stream) const {
   if (gap_recovery_.in_gap() || outage_.active() || !CongestedLately()) return DataRate::Infinite();
   const DataRate known =

@@ -72,7 +72,7 @@ class Controller {
   void OnDropped(Time now, StreamId stream, std::size_t packets);
   /// The packet at the head of the queue was not sent, as another path delivered it.
   void OnUnneeded(Time now, StreamId stream);
-  /// Takes parsed feedback of the peer. The caller has checked its source address.
+  /// Takes parsed feedback of the peer, whose source address the caller has checked.
   FeedbackResult OnFeedback(Time now, const rtcp::CongestionFeedback& feedback);
   /// Call it at NextTimer() or later; more calls do no harm.
   void OnTimer(Time now);

@@ -37,7 +37,7 @@ class Pacer {
   }
   /// Call it when a packet enters an empty queue. The idle time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
-  /// Call it after a gap. The next packet does not wait at the gap's rate.
+  /// Call it after a gap. The next packet does not wait as long as the rate in the gap required.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
   /// The next packet is timed from when this one was due, not from a late wake-up, within a bound.
   void OnSent(Time now, DataSize size) {
@@ -54,7 +54,7 @@ class Pacer {
   DataRate pace_bitrate() const { return pace_bitrate_; }
 
  private:
-  /// Returns true for one gap of each two, in an order without a period (Thue and Morse).
+  /// Returns true for one gap of each pair, in an order without a period (Thue and Morse).
   bool LongerGap() {
     bool odd = false;
     for (std::uint32_t bits = gaps_++; bits != 0; bits &= bits - 1) odd = !odd;

@@ -97,8 +97,8 @@ struct Parameters {
   double fast_increase_slope = 3;
   /// The capacity has fallen if the target is above this part of its measured value.
   double drop_threshold = 0.9;
-  /// The same part after a measurement over less than a frame period and VIRTUAL_RTT, with fewer
-  /// than half of the packets marked, or shortly after another reaction.
+  /// drop_threshold for an unsure measurement: over less than a frame period and VIRTUAL_RTT, with
+  /// fewer than half of the packets marked, or shortly after another reaction.
   double drop_threshold_unsure = 1.5;
   /// The queue delay on a path with marks must also have grown by this many packet gaps.
   double drop_growth = 3;
@@ -155,7 +155,8 @@ struct Parameters {
   Duration max_queue_delay = 200ms;
   /// Packets are dropped at once if they would be late even on a link this many times as fast.
   double link_may_be_faster = 1.5;
-  /// Longest interval of a healthy receiver's reports. Above 0 it reports at the end of frames.
+  /// Longest interval of a healthy receiver's reports. Above 0 the receiver reports at the end of
+  /// frames.
   Duration feedback_interval{0};
 
   Extensions extensions;

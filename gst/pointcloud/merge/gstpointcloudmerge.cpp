@@ -173,7 +173,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
     const BufferPtr buffer(gst_aggregator_pad_peek_buffer(pad));
     if (!buffer) continue;
-    // The newest scan itself, with a duration of 0, would count as one of an earlier turn.
+    // A duration of 0 would make even the newest scan count as a scan of an earlier turn.
     const GstClockTime duration = GST_BUFFER_DURATION(buffer.get());
     const bool known = GST_CLOCK_TIME_IS_VALID(duration) && duration > 0;
     heads.push_back({GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()),

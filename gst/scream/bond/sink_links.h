@@ -76,8 +76,8 @@ class SinkLinks {
   void AddLink(const OpenLink& link);
   /// Looks for links that vanished or came back.
   void Watch();
-  /// Returns true if packets failed and none was sent, since the last call or within the last
-  /// second.
+  /// Returns true if the link failed to send packets and sent no other, since the last call or
+  /// within the last second.
   bool Fails(std::size_t link);
   void Change(std::size_t link, const std::string& trouble);
 

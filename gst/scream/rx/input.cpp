@@ -132,7 +132,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
 
 enum class Fate { kPass, kDrop, kEnd };
 
-/// Returns true if a stream continues. A restarted sender says no goodbye for its earlier SSRC.
+/// Returns true if a stream continues. A restarted sender sends no goodbye for its earlier SSRC.
 bool AnyAlive(const RxState& state, Time now) {
   return std::any_of(state.ssrcs.begin(), state.ssrcs.end(),
                      [now](const auto& s) { return now - s.second < kSsrcTimeout; });

@@ -54,7 +54,7 @@ class DtlsKeys {
     std::function<void(GstBuffer*, const Addresses&)> send;
     std::function<void(const SrtpKey&)> on_key;
     std::function<SrtpTraffic()> traffic;
-    /// Says what is wrong, and what to do about it.
+    /// Posts a warning: what is wrong, and what to do about it.
     std::function<void(const char* what, const char* to_do)> warn;
   };
 

@@ -153,8 +153,8 @@ BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   return nullptr;
 }
 
-/// RTP does not carry its rollover counter. If no other stranger asks, many values are tried for
-/// one packet, because a sender without feedback sends few. Half of the trials are kept for the
+/// RTP does not carry its rollover counter. Without other strangers, many values are tried for one
+/// packet, because a sender without feedback sends few packets. Half of the trials are kept for the
 /// first values of other packets.
 BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   const Time now = MonotonicTime();

@@ -32,13 +32,13 @@ struct SrtpPlaces {
   GstElement* bin;
   bool sends_media;
   std::vector<SrtpPlace> links;
-  /// As DtlsKeys::Calls says; any thread calls it.
+  /// Sends a datagram as DtlsKeys::Calls::send does. Any thread calls it.
   std::function<void(GstBuffer*, const DtlsKeys::Addresses&)> send_dtls;
 };
 
 /// Lives from READY to NULL of its bin. All SSRCs use the same key. The layer protects packets that
-/// leave by `out`, none before it has a key; RTP over several links is protected once for all
-/// links, by Protect(). The input of each link has its own replay windows.
+/// leave by `out`, and drops them until it has a key. Protect() protects RTP over several links
+/// once for all links. The input of each link has its own replay windows.
 class SrtpLayer {
  public:
   /// Returns null and sets `error` if the key, the cipher or the srtp plugin is unusable.

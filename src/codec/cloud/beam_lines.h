@@ -34,7 +34,7 @@ struct FoundBeams {
 FoundBeams FindMeetingBeams(const std::vector<Sighting>& points);
 /// Finds beams that pass the origin at a distance of up to 0.5 m.
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points);
-/// Finds beams that meet in the origin and bend: peaks of the elevations.
+/// Finds beams that meet in the origin and bend, by the peaks of the histogram of elevations.
 FoundBeams FindBendingBeams(const std::vector<Sighting>& points);
 
 }  // namespace lidar::codec::cloud

@@ -27,7 +27,7 @@ class FieldGuess {
     if (way < kLast) return last_[way];
     return way == kLast ? 2 * last_[0] - last_[1] : mean_ / kMeanParts;
   }
-  /// `value` is an angle modulo `turn`; 0: no angle.
+  /// `value` is an angle modulo `turn`, or no angle if `turn` is 0.
   void See(std::int32_t value, std::int32_t turn) {
     for (unsigned way = 0; way < kWays; ++way) {
       std::int32_t off = std::abs(value - By(way));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beams on a path: those of sensors whose scans do not repeat. Each turns on curves of its own.
+// Beams of sensors whose scans do not repeat. Each beam follows curves of its own.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -100,7 +100,7 @@ std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::in
   return extras;
 }
 
-/// Sets `decoded` and `grid` to what a decoder gets: the ranges of `image`, their grid.
+/// Sets `decoded` and `grid` to the ranges that a decoder gets for `image`, and to their grid.
 bool ComeBack(const RangeImage& image, const RangeSettings& settings,
               const std::vector<std::uint8_t>& block, const BeamTable& table, RangeImage* decoded,
               RangeGrid* grid) {

@@ -11,7 +11,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Margin for the rounding of floats, by which grids are finer and errors count as larger.
+/// Margin for the rounding of floats: grids are finer by this part, and errors count as larger.
 constexpr double kRoom = 1e-4;
 
 /// Does what std::floor() does, without a call.
@@ -48,8 +48,9 @@ class NearCells {
         half_(CellGrid::HalfOf(depth)),
         square_bound_(grid.error_m() * grid.error_m()) {}
 
-  /// Writes the key of the point's own cell, then those of its neighbours that are near enough.
-  /// Only neighbours on the point's side of its cell can be. Returns the end of the keys.
+  /// Writes the key of the point's own cell, then the keys of the neighbours that are near enough.
+  /// Only neighbours on the point's side of its cell can be near enough. Returns the end of the
+  /// keys.
   std::uint64_t* Write(const Point& point, std::uint64_t* keys) const {
     constexpr std::array<std::uint64_t, 3> kSteps = {NodeMap::kStepX, NodeMap::kStepY,
                                                      NodeMap::kStepZ};
@@ -119,8 +120,8 @@ class Choices {
   }
 
  private:
-  /// Fills the lists of cells and choices. A few points at once first get their keys, so that
-  /// look-ups do not wait for them.
+  /// Fills the lists of cells and choices. The keys of several points are computed before the first
+  /// of them is looked up, so that no look-up waits for its key.
   void FindCells(const std::vector<Point>& points, const NearCells& near) {
     constexpr std::size_t kAtOnce = 64;
     constexpr std::size_t kUsual = 4;  // cells a point, at most

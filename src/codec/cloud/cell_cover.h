@@ -37,7 +37,8 @@ struct CellGrid {
   double MiddleFromCentre(double cells) const {
     return static_cast<double>(static_cast<float>((cells + 0.5) * static_cast<double>(step_m)));
   }
-  /// Depth of a tree that holds all coordinates up to `farthest_m`; above kMostDepth: none does.
+  /// Depth of a tree that holds all coordinates up to `farthest_m`; above kMostDepth if no tree
+  /// does.
   unsigned DepthFor(double farthest_m) const;
   /// Returns true if a depth holds all coordinates up to `farthest_m`.
   bool Reaches(double farthest_m) const;

@@ -177,7 +177,7 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
 float CloudEncoder::SortOutFarPoints(const CellGrid& grid) {
   float most = 0;
   const double surely = grid.SurelyHolds();
-  // Points that stay from the cloud before leave no zeros to write.
+  // The lists still have the points of the previous cloud, so resize() writes few zeros.
   near_.resize(cloud_.size());
   near_ids_.resize(cloud_.size());
   std::size_t count = 0;

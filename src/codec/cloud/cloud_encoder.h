@@ -51,8 +51,8 @@ class CloudEncoder {
 
   /// Encodes the loaded points; may be called again.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
-  /// Returns true if `decoded`, of the last slice, has the exact fields and the order of the loaded
-  /// points.
+  /// Returns true if `decoded`, a decoding of the last slice, has the exact fields and the order of
+  /// the loaded points.
   bool HasComeBack(const ExactPart& decoded) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Columns of the next cloud from those of the last one.
+// Finds the columns of the next cloud from the columns of the last cloud.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

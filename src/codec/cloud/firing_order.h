@@ -35,7 +35,8 @@ struct FiringOrder {
   bool descends = false;    // columns fall with time
   std::vector<Slot> slots;  // of the beams
 
-  /// Counts the firings from the first one to that of a point that is not loose.
+  /// Returns how many firings after the first one a point was measured. The point must not be
+  /// loose.
   std::uint32_t FiringOf(const PointPlace& place, std::uint32_t columns) const {
     const std::uint32_t firing = (place.column + slots[place.beam].delay) % columns;
     return (descends ? first + columns - firing : firing + columns - first) % columns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points by the pixels of a sensor's image, and those that fit none.
+// Points by the pixels of a sensor's image, and points that fit no pixel.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -34,7 +34,7 @@ struct PixelList {
   std::vector<std::uint32_t> rest;  // indices of the points that fit no pixel
   std::size_t returns = 0;          // number of pixels with a return
 
-  /// Leaves further returns to the rest if there are so few that asking each pixel costs more.
+  /// Moves further returns to `rest` if they are so few that a flag for each pixel would cost more.
   void DropFewExtras();
 };
 

@@ -220,7 +220,7 @@ class ExtraCoder {
     constexpr std::uint32_t kNearNode = 4;
     constexpr std::uint32_t kNear = Model::kValues / 2;  // the first context of near returns
     const std::uint32_t far = FarthestClass();
-    // A pulse at an edge sees both sides.
+    // A pulse at an edge hits both surfaces, so a further return is often near a neighbour's range.
     const bool near =
         by_four_ && farthest_ != 0 &&
         counts_->CodeBit(

@@ -8,7 +8,8 @@ namespace {
 
 /// Weight of an input without training.
 constexpr std::int16_t kNewWeight = 800;
-// A start state counts as at most 4 bits seen, that of a further candidate as at most 8.
+// Counters adapt at first at least as fast as after 4 bits, and in further candidates as after 8
+// bits.
 constexpr std::uint16_t kLeastBinRate = RateAfter(4);
 constexpr std::uint16_t kLeastFurtherRate = RateAfter(8);
 
@@ -55,7 +56,7 @@ void Model::Refine() {
   Repeat(weights.jump, &r.gaps);
   r.mask.fill({});
   r.maps.fill({});
-  // Each further candidate begins as one of a similar kind.
+  // Each further candidate begins with the counters of a similar candidate.
   constexpr std::array<unsigned, Refinement::kFurther> kLike = {kCandidates - 1, kCandidates - 2,
                                                                 kCandidates - 2};
   constexpr unsigned kEach = kJumpNodes * kPlaces;

@@ -25,8 +25,9 @@ struct BlockShape {
 std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns);
 constexpr std::size_t kListMargin = 8;
 
-/// Calls code_row(beam, count, first) for each row that has returns: `columns` holds those of its
-/// `count` returns, and `first` is the index of the first one. Ends with false if a call does.
+/// Calls code_row(beam, count, first) for each row that has returns. `columns` holds the columns of
+/// its `count` returns, and `first` is the index of the first one. Stops, and returns false, if a
+/// call returns false.
 template <class CodeRow>
 bool ForEachRowOf(const BlockShape& shape, std::vector<std::uint16_t>* columns,
                   CodeRow&& code_row) {

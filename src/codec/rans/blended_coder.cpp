@@ -109,7 +109,7 @@ void BlendedChannel::StartRow(std::uint32_t beam) {
 void BlendedChannel::EndRow(std::uint32_t beam) { above_.CloseTurn(beam); }
 
 unsigned BlendedChannel::Behind(const View& view, std::int32_t sense) {
-  // Values a little before a jump's first one may be as near to it as those behind.
+  // A value just before a jump's first value may be as near to it as a value behind it.
   constexpr std::int32_t kNearest = 28;
   unsigned behind = 0;
   for (unsigned k = 0; k < kCandidates; ++k)

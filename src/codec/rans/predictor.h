@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Predicts the returns of a row from those around them that the decoder knows already.
+// Predicts the returns of a row from the returns around them that are already decoded.
 #pragma once
 #include <algorithm>
 #include <cstdint>

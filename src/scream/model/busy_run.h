@@ -73,7 +73,7 @@ class BusyRun {
     return hole;
   }
   void Reset() { *this = BusyRun(); }
-  /// The time before the next packet is unknown. A hole still shows.
+  /// Ends the run: the time before the next packet is unknown. A hole is still detected.
   void EndRun() {
     spacing_ = BusySpacing();
     packets_ = marked_ = 0;

@@ -29,8 +29,8 @@ class CrossTraffic {
       Skip(packet.sent);
       return;
     }
-    // Which packets count must not depend on their own arrival, so the packet before shows the
-    // queue.
+    // The packet before shows the queue, because whether a packet counts must not depend on its
+    // arrival.
     const double waited_ms = std::min(lately_waited_ms_, waited_ms_);
     waited_ms_ = Ms(qdelay);
     lately_waited_ms_ += (waited_ms_ - lately_waited_ms_) / 4;
@@ -58,8 +58,8 @@ class CrossTraffic {
     if (sent_sent_ < kEvidence) return std::nullopt;
     return sent_arrived_ / sent_sent_;
   }
-  /// Returns true after a long queue of unknown origin: other flows fill it while our packets are
-  /// too far apart to show them, or reports are too coarse.
+  /// Returns true after a long queue of unknown origin. Other flows may fill it, but our packets
+  /// are too far apart, or reports too coarse, to show them.
   bool unseen() const { return unseen_ >= kDecisionWeight; }
   /// Capacity of the link for all flows; unset while share() is.
   std::optional<DataRate> link_rate() const {
@@ -133,8 +133,8 @@ class CrossTraffic {
   static constexpr double kShareToFind = 0.2;
   std::optional<Packet> last_;
   Time counted_{};
-  double waited_ms_ = 0;         // wait of the packet before,
-  double lately_waited_ms_ = 0;  // and mean wait of some packets before it
+  double waited_ms_ = 0;         // wait of the last packet
+  double lately_waited_ms_ = 0;  // mean wait of some packets before it
   double spacing_ms_ = 0;
   double counted_packets_ = 0;
   Average sent_, arrived_, bytes_;

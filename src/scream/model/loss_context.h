@@ -34,8 +34,8 @@ class LossContext {
   Duration LongerOfPair(std::size_t second) const {
     return std::max(recent_[second - 1].qdelay, recent_[second].qdelay);
   }
-  /// Returns the longer of two delays: those of the packets just before and just after the loss. If
-  /// there are none on one side, it takes the two nearest packets.
+  /// Returns the longer delay of the two packets just before and just after the loss, or of the two
+  /// nearest packets if one side has no packet.
   Duration QdelayAround(Time sent) const {
     const auto after = std::find_if(recent_.begin(), recent_.end(),
                                     [sent](const Packet& p) { return p.sent >= sent; });

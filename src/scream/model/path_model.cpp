@@ -18,9 +18,9 @@ constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
 constexpr double kOnsetFall = 1.0 / 32;
 constexpr double kOnsetRise = 1.0 / 128;
-/// Number of packets in a row behind a queue that are no accident.
+/// Number of packets in a row behind a queue that cannot be chance.
 constexpr int kQueueingPackets = 3;
-/// Least time of the clock-drift remedy, which lasts five round trips.
+/// Least duration of the clock-drift remedy, which otherwise lasts five round trips.
 constexpr Duration kShortestHalfRate = 200ms;
 
 }  // namespace

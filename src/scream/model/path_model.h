@@ -62,9 +62,9 @@ class PathModel {
   const CrossTraffic& cross_traffic() const { return cross_traffic_; }
   const EcnMonitor& ecn() const { return ecn_; }
   const BusyRun& busy_run() const { return busy_run_; }
-  /// Queue delay at which the bottleneck starts to mark: a low quantile of those of marked packets.
-  /// Arrival times of reports are coarse and the base delay is their minimum, so its resolution is
-  /// about a millisecond.
+  /// Queue delay at which the bottleneck starts to mark: a low quantile of the queue delays of
+  /// marked packets. Its resolution is about a millisecond, because arrival times of reports are
+  /// coarse and the base delay is their minimum.
   Duration marking_onset() const { return marking_onset_; }
   /// The link's capacity, measured by the spacing of packets that it held back; 0 while unknown.
   DataRate measured_capacity() const { return measured_capacity_; }

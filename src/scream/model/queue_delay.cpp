@@ -35,7 +35,7 @@ void QueueDelay::ForgetBase() {
   min_this_rtt_ = Duration::max();
 }
 
-/// A queue lengthens only one way. A clock that is set makes one way shorter than its minimum.
+/// A queue only lengthens delays. A clock that is set makes one direction shorter than its minimum.
 bool QueueDelay::Jumped(Time now, Duration owd, Duration way_back) {
   if (!p_.extensions.evidence) return false;
   const bool way_back_jumped = shortest_back_.Add(now, way_back) > kJump;

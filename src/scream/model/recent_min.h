@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Minimum of durations over the last one to two windows, so that an old minimum is forgotten.
+// Minimum of durations over the present window and the one before, so that an old minimum is
+// forgotten.
 #pragma once
 #include <algorithm>
 #include <utility>

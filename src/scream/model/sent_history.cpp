@@ -11,15 +11,16 @@ using namespace std::chrono_literals;
 
 /// Limit of packets per SSRC: extended sequence numbers are unique within half of their range.
 constexpr std::size_t kMaxPackets = 32000;
-/// Settled packets are kept so that repeated reports are recognised, and late packets are told from
-/// lost ones. Beyond this number only those younger than kKeepSettled are kept.
+/// Settled packets are kept so that repeated reports are recognised, and late packets are
+/// distinguished from lost ones. Beyond this number only packets younger than kKeepSettled are
+/// kept.
 constexpr std::size_t kMaxSettled = 1024;
 constexpr Duration kKeepSettled = 1s;
-/// Greatest distance of a packet that was overtaken before it was sent.
+/// Greatest number of packets that overtake a packet before it is sent.
 constexpr std::int64_t kOvertaken = 64;
-/// Numbers further back start a new count after this many unknown numbers, or this many known ones,
-/// in a row. Receivers see smaller distances as reordering and do not count the packets until their
-/// numbers are new again.
+/// Numbers further back than kFarBehind start a new count once this many unknown ones, or this many
+/// known ones, come in a row. Receivers take a smaller distance for reordering, and do not count
+/// the packets until their numbers are new again.
 constexpr std::int64_t kFarBehind = 3000;
 constexpr int kUnknownBehind = 2;
 constexpr int kKnownBehind = 64;
@@ -50,7 +51,7 @@ void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord
   Insert(&source, packet);
 }
 
-/// A number sent before (a repeated packet) counts once: feedback cannot tell the copies apart.
+/// A repeated packet counts once, because feedback cannot distinguish the copies.
 void SentHistory::Insert(Source* source, const Packet& packet) {
   auto& packets = source->packets;
   if (packets.empty() || packets.back().seq < packet.seq) {

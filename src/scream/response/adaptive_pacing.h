@@ -17,7 +17,7 @@ inline Duration PacingReserve(const Parameters& p, const PathModel& path, Time n
 }
 
 /// Returns PACKET_PACING_HEADROOM, or the headroom with which a frame leaves `reserve` before its
-/// period ends: on a full link as much queue comes and goes with each frame.
+/// period ends. On a full link a queue as long as `reserve` comes and goes with each frame.
 inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duration reserve) {
   if (!p.extensions.capacity) return p.packet_pacing_headroom;
   const double longest = std::min(1.0, Seconds(frame_period) / Seconds(p.long_frame_period));

@@ -15,7 +15,7 @@ inline bool SureOfDrop(Time now, const Parameters& p, const PathModel& path,
                        const ReferenceWindow& present, Duration frame_period) {
   // While frames of another flow alternate with ours, the measurement shows only our share.
   if (path.busy_run().span() < std::min(frame_period, p.virtual_rtt)) return false;
-  // A few marks may be those of a well used link.
+  // A well used link marks a few packets, too.
   if (path.L4sWorks(now) && 2 * path.busy_run().marked() < path.busy_run().packets()) return false;
   // The last reaction may be enough.
   return now - present.last_reaction_to_congestion_time() >= path.ReactionInterval();

@@ -45,7 +45,7 @@ class GapRecovery {
     last_restart_ = now;
     return restart;
   }
-  /// No acknowledgement comes back.
+  /// Call it while no acknowledgement comes back.
   void OnSilence(Time now) { NoteSign(now); }
   /// Forgets the state before the gap, after another route or an unknown time.
   void Reset() {
@@ -102,8 +102,8 @@ class GapRecovery {
   static constexpr double kGapPart = 0.25;
   /// The state from before a gap is forgotten this long after the last sign of the gap.
   static constexpr Duration kLongestMemory = 3s;
-  /// A gap of this length also makes it forget that state: the rate in the gap is then the link's
-  /// new capacity.
+  /// A gap of this length also ends that memory: the rate in the gap is then the link's new
+  /// capacity.
   static constexpr Duration kLongestGap = 10s;
   /// Part of the missing window that is restored each round trip while nothing measures the link.
   static constexpr double kUnprovenPart = 0.5;

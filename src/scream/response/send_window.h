@@ -25,7 +25,7 @@ class SendWindow {
     }
     return std::max(ref_wnd * overhead, 2 * p_.mss);
   }
-  /// Returns when a packet of `size` may leave. A closed window passes one at RATE_PACE_MIN, so
+  /// Returns when a packet of `size` may leave. A closed window passes packets at RATE_PACE_MIN, so
   /// that lost feedback cannot stop the sender.
   Time Opens(DataSize size, DataSize in_flight, DataSize max) const {
     const bool fits = in_flight.bytes() == 0 || in_flight + size <= max;

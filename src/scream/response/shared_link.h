@@ -35,8 +35,8 @@ inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
 
 /// Returns a value from -1, clearly less than half of the link, to 1, clearly more.
 inline double AboveHalf(DataRate own, DataRate link) {
-  // It is below one half, so that two of our flows with half each both give way early, and because
-  // a flow's bursts make the link look faster than it is.
+  // The constant is below one half, so that two of our flows with half each both give way early,
+  // and because a flow's bursts make the link look faster than it is.
   constexpr double kHalf = 0.46;
   // If this ramp were a step, two of our flows would have a queue of 5.2 ms instead of 3.9 ms at
   // p99, and Jain's index beside Prague at 4 Mbit/s would be 0.946 instead of 0.955.
@@ -45,8 +45,8 @@ inline double AboveHalf(DataRate own, DataRate link) {
 }
 
 /// Half of the link is enough beside other flows. A flow with less, or with an unknown share, is
-/// about as bold as Prague or Cubic; a flow with more gives way like the gentlest, the draft. So
-/// neither the kind nor the number of the others must be known.
+/// about as bold as Prague or Cubic. A flow with more gives way as early as the draft, the gentlest
+/// of them. So the kind and the number of the other flows need not be known.
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
   constexpr double kGrowthOfLess = 1.3;  // above Prague's, as whole scans leave pauses
   constexpr double kGrowthOfMore = 1.0 / 3;

@@ -135,7 +135,7 @@ TEST_F(Tree, AClockThatWentBackIsSeenHoweverRareThePosesAre) {
   const Time again = kStart - seconds(100);
   for (int i = 0; i < kAgain; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", again + seconds(2 * i), At(i), false), i == kAgain - 1) << i;
-  // The history is as long as if the old time had never been.
+  // Poses at the old time do not shorten the history.
   ExpectNear(Place(tree_.Find("map", "odom", again + seconds(9)), {0, 0, 0}), {4.5, 0, 0});
   EXPECT_FALSE(tree_.Find("map", "odom", again + seconds(7)).transform);
   // Later poses may be any time apart.

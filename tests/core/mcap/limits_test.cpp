@@ -316,7 +316,7 @@ TEST(Mcap, AChunkHoldsTheTimesOfItsMessagesWhateverTheirOrder) {
   FileMaker maker(WriterSettings{});
   const auto a = maker.AddChannel("a");
   for (const std::uint64_t time : {500U, 300U, 400U}) maker.Add(a, 10 * kSecond + time, "x");
-  EXPECT_EQ(maker.writer().chunks(), 0U);  // a message of the past makes no chunk old
+  EXPECT_EQ(maker.writer().chunks(), 0U);  // an earlier message does not end the chunk
   ASSERT_TRUE(maker.writer().Flush());
   maker.Add(a, kSecond, "x");
   ASSERT_TRUE(maker.writer().Finish());

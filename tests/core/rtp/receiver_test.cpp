@@ -104,7 +104,7 @@ TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
     const auto a = receiver.accounts();
     EXPECT_EQ(a.slices.slices_lost, scans * 4) << cut;
     EXPECT_EQ(a.slices.slices_received, 40U) << cut;
-    // A cut within a scan leaves two scans incomplete and loses one less.
+    // A cut within a scan leaves two scans incomplete, so one scan less is lost as a whole.
     EXPECT_EQ(a.slices.scans_incomplete, cut == 0 ? 0U : 2U) << cut;
     EXPECT_EQ(a.slices.scans_lost, cut == 0 ? scans : scans - 1) << cut;
     EXPECT_EQ(a.slices.scans_complete, cut == 0 ? 10U : 9U) << cut;

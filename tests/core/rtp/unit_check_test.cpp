@@ -107,7 +107,7 @@ TEST(UnitCheck, KeepsNoMoreThanASliceMayHold) {
   unit.length = 10;
   std::vector<std::uint8_t> first;
   WriteHeader(unit, &first);
-  first.insert(first.end(), 50, 0);  // more than it said
+  first.insert(first.end(), 50, 0);  // more bytes than unit.length
   EXPECT_FALSE(check.Push(0, View(first)));
   EXPECT_FALSE(check.Push(1, View(Fragments(2)[1])));
 }

@@ -269,7 +269,7 @@ TEST_F(LossContextTest, KnowsRandomLossFromIt) {
   }
 }
 
-/// If delays scatter, the longer of two is above most others.
+/// The longer of two scattered delays exceeds most single delays, so ranks are among pairs.
 TEST_F(LossContextTest, KnowsRandomLossWhereDelaysScatter) {
   link::Random random(1);
   for (int i = 0; i < 5000; ++i, now_ += 1ms) {

@@ -35,7 +35,7 @@ TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarke
   for (int i = 0; i < 1000; ++i) alpha.Update(kStart + i * 10ms, 10, i % 8 == 0, 20ms, 40ms);
   EXPECT_NEAR(alpha.value(), 0.1 / 8, 0.005);
   const double before = alpha.value();
-  alpha.Update(kStart + 11s, 0, 0, 20ms, 40ms);  // what was still to be counted
+  alpha.Update(kStart + 11s, 0, 0, 20ms, 40ms);  // ends the round of the last packets
   alpha.Update(kStart + 12s, 10, 10, 20ms, 40ms);
   EXPECT_NEAR(alpha.value(), before + (1 - before) / 32, 0.01) << "one round may be a step's";
   const double once = alpha.value();

@@ -34,8 +34,7 @@ struct CoderCase {
 };
 inline void PrintTo(const CoderCase& c, std::ostream* out) { *out << c.name; }
 
-// The efforts are fixed, because those of effort=auto, and so the sizes, depend on the machine's
-// load.
+// The efforts are fixed, because effort=auto, and so the sizes, depend on the machine's load.
 constexpr CoderCase kLidar{"lidar", "lidarenc effort=1", "lidardec"};
 constexpr CoderCase kLidarXyz{"lidar_xyz", "lidarenc effort=0 geometry=xyz", "lidardec", true};
 constexpr CoderCase kDraco{"draco", "dracoenc", "dracodec"};

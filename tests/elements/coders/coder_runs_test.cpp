@@ -45,10 +45,10 @@ void EncodeMuch(GstHarness* h) {
   PushScans(h, 6);
 }
 
-/// Leaves much state in a decoder: slices of which later ones could be made, counts, a damage.
+/// Leaves much state in a decoder: references for later slices, counts, and a damaged slice.
 void DecodeMuch(GstHarness* h, const std::vector<BufferPtr>& slices) {
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    if (i % 7 == 5) continue;  // is lost, with what refers to it
+    if (i % 7 == 5) continue;  // the slice is lost, with the slices that refer to it
     BufferPtr slice(gst_buffer_copy_deep(slices[i].get()));
     if (i == 3) gst_buffer_resize(slice.get(), 0, 20);
     gst_pad_push(h->srcpad, slice.release());

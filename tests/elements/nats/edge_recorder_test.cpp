@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: each setting reaches its element, a session begins with nothing of the one before,
-// and a recorder that fails harms no other branch.
+// lidar-edge: each setting reaches its element, a session keeps nothing of the last session, and a
+// recorder that fails harms no other branch.
 #include "src/tools/apps/edge/pipeline.h"
 #include "src/tools/apps/edge/shared_port.h"
 #include "tests/elements/nats/nats_server.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: the sessions of a robot at invented times: their pauses, and what they tell.
+// lidar-edge: the sessions of a robot at invented times: their pauses and reports.
 #include <gio/gio.h>
 
 #include <nlohmann/json.hpp>

@@ -131,8 +131,7 @@ class Bookkeeper {
     run.missing += *missing;
   }
 
-  /// Books a gap at whose end another session began: the edge was killed, or it is the first
-  /// session.
+  /// Books a gap that ends with another session: the first one, or one after the edge was killed.
   void BookBetween(const StoredSlice* before, const std::vector<const SentSlice*>& gap,
                    const StoredSlice& after, Missing* missing) {
     Run& run = runs_[after.run];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Books of a fleet distinguish losses by their cause, and notice those that no part counted.
+// Books of a fleet list losses by their cause, and list losses that no part counted.
 #include "tests/elements/nats/fleet_books.h"
 
 #include <gtest/gtest.h>

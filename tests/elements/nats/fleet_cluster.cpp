@@ -209,7 +209,7 @@ void FleetCluster::CountAll() {
     const auto sent = robot->sender().buffers();
     EXPECT_EQ(robot->sender().stat("messages-dropped"), 0U);
     EXPECT_EQ(robot->sender().stat("messages-acknowledged"), sent.size());
-    // A restarted server replays what it has, which may be incomplete yet.
+    // A restarted server replays the messages that it has, which may be incomplete at first.
     std::vector<Kept> stored;
     EXPECT_TRUE(WaitFor([&] {
       stored = robot->Replay("fleet", "lidar");

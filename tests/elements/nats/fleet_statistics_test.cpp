@@ -154,7 +154,8 @@ TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {
   {
     const fleet::Reporter reporter(settings);
     for (const bool again : {true, false}) {
-      const tools::FileDescriptor certificate(open(path.c_str(), O_WRONLY));  // once it is read
+      // The call to open() waits for the reader.
+      const tools::FileDescriptor certificate(open(path.c_str(), O_WRONLY));
       unlink(path.c_str());
       if (again) {
         EXPECT_EQ(mkfifo(path.c_str(), 0600), 0);

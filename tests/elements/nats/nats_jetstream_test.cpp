@@ -280,8 +280,8 @@ TEST_F(NatsJetStream, ManyThatBeginAtOnceShareABox) {
     EXPECT_EQ(sender->stat("messages-acknowledged"), 16U);
     EXPECT_EQ(sender->stat("messages-dropped"), 0U);
   }
-  // A sink that adds its subject may remove the subject that another has just added. Messages that
-  // the stream then refuses are sent again, after those that it took.
+  // A sink that adds its subject may remove the subject that another sink has just added. Messages
+  // that the stream then refuses are sent again, after the messages that it took.
   std::vector<Kept> played = Replay(0);
   std::stable_sort(played.begin(), played.end(), [](const Kept& a, const Kept& b) {
     return std::pair(a.slice.scan_id, a.slice.slice_index) <

@@ -95,7 +95,7 @@ class NatsRuns : public NatsTest {
     imu_ = nats::StreamFormat::FromCaps(caps.get(), &why);
     ASSERT_TRUE(imu_) << why;
   }
-  /// A message of a natssink, by somebody else.
+  /// Publishes a message like those of natssink.
   void Publish(Stranger* stranger, const char* subject, const std::string& place,
                std::size_t bytes = 32) const {
     stranger->Publish(subject, std::string(bytes, 'x'),

@@ -215,7 +215,7 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
                 {{"lidar_mode", "1024x10"}, {"udp_profile_lidar", "RNG19_RFL8_SIG16_NIR16_DUAL"}},
                 {false, true}, "127.0.0.1"),
             "");
-  // The caps of the pad may be newer than a buffer, whose size tells its geometry.
+  // The caps of the pad may be newer than a buffer, so the buffer's size shows its geometry.
   bool discont = false;
   ASSERT_TRUE(receiver.PullUntil([&](GstBuffer* buffer) {
     discont = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT);

@@ -211,7 +211,7 @@ TEST_F(BondedSink, CountsWhatStrangersSendToAnyLink) {
     EXPECT_EQ(Stats(sink_)["feedback-foreign-address"], foreign) << link;
     Bring(link, From(no_report, "127.0.0.1", other));
     Bring(link, From(no_report, "127.0.0.3", own));
-    Bring(link, BufferPtr(FromBytes(no_report)));  // from nobody
+    Bring(link, BufferPtr(FromBytes(no_report)));  // without an address
     GstBufferList* list = gst_buffer_list_new();
     for (const guint port : {own, other, own, other})
       gst_buffer_list_add(list, From(no_report, "127.0.0.1", port).release());
@@ -307,7 +307,7 @@ TEST_F(BondedSink, WaitsAtTheEndForWhatMayStillArrive) {
   Send(1);
   const GstClockTime made = time_.now();
   std::thread end([this] { gst_harness_push_event(h_.get(), gst_event_new_eos()); });
-  g_usleep(50'000);  // longer than it takes to end at once
+  g_usleep(50'000);  // an end that does not wait is over by now
   Advance(150 * GST_MSECOND);
   g_usleep(50'000);
   Advance(51 * GST_MSECOND);

@@ -228,7 +228,7 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
   frozen_at = g_get_monotonic_time();
   StartServer();
   // Returns the ports that get answers. A flood has ports of its own, because the server repeats
-  // answers that nobody acknowledges.
+  // answers until they are acknowledged.
   const auto flood = [&](guint16 first, std::size_t expected) {
     std::set<guint16> answered;
     const auto take = [&] {

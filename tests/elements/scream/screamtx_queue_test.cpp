@@ -37,7 +37,7 @@ TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
   Collect();
   std::map<guint32, int> packets;
   for (const Rtp& r : sent) ++packets[r.timestamp];
-  EXPECT_EQ(packets[0], 30);  // its first packet had left
+  EXPECT_EQ(packets[0], 30);  // the frame's first packet had left
   EXPECT_EQ(packets[99999], 2);
   EXPECT_EQ(packets.size(), 2U);
   const Stats stats(element);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Replays a recording of the server: asks for its slices from a time on, and acknowledges those that
-// are shown, by which the server paces.
+// Replays a recording of the server: requests its slices from a time on, and acknowledges the
+// slices that are shown. The server paces by the acknowledgements.
 
 const AHEAD_S = 1; // slices are acknowledged this long before they are shown
 

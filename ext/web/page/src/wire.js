@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads those of Foxglove's protobuf messages that the server sends.
+// Reads the protobuf messages of Foxglove that the server sends.
 
 class Reader {
   constructor(bytes) {

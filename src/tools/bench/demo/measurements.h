@@ -60,7 +60,7 @@ struct Measurements {
     double min_bps = 0, max_bps = 0;
     double known_s = 0;  // how long bounds were known, for the means
   } bounds;
-  nlohmann::json sender_stats;  // the last of each
+  nlohmann::json sender_stats;  // the last record of each program
   nlohmann::json receiver_stats;
 
   /// The bounds hold until the next call, or until the stream ends.

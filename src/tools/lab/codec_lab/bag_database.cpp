@@ -34,8 +34,8 @@ class BagDatabase final : public MessageReader {
     if (!std::filesystem::is_regular_file(path)) Fail("is not a regular file");
     const std::uint64_t unfinished = SizeOf(path + "-wal") + SizeOf(path + "-journal");
     size_ = std::filesystem::file_size(path) + unfinished;
-    // An immutable file needs no files beside it. Rows in -wal need an index of it, which is a file
-    // unless one process has the database for itself.
+    // An immutable database needs no file beside it. Rows in -wal need an index, which is also a
+    // file unless a single process uses the database.
     const std::string uri = UriOf(path) + (unfinished > 0 ? "?vfs=unix-none" : "?immutable=1");
     sqlite3* database = nullptr;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI;
@@ -110,8 +110,8 @@ class BagDatabase final : public MessageReader {
     return uri;
   }
 
-  /// Values of generated columns are computed when they are read, and those of other columns may
-  /// lie before the ones that are read.
+  /// Refuses other columns: a generated column is computed when it is read, and any other column
+  /// may lie before the columns that are read.
   void RequireColumns(const std::string& table, const std::array<const char*, 4>& names) {
     const Statement columns = Prepare("PRAGMA table_xinfo(" + table + ")");
     int result = SQLITE_ROW;
@@ -126,8 +126,9 @@ class BagDatabase final : public MessageReader {
     if (result != SQLITE_DONE) FailWithItsReason();
   }
 
-  /// Rows in the order of the file, which is that of recording. NOT INDEXED: a sort would keep all
-  /// of them. Column 0 is the number of the row, column 1 the size of its data in bytes.
+  /// Rows in the order of the file, in which they were recorded. NOT INDEXED avoids a sort, which
+  /// would keep all rows. Column 0 is the number of the row, column 1 the size of its data in
+  /// bytes.
   struct Rows {
     Statement statement;
     std::int64_t last_row = INT64_MIN;
