@@ -117,6 +117,10 @@ void EncoderCourse(Course& c) {
   c.Push("acknowledged", CourseSlice(3, 2));
   c.PushUpstream("key unit", KeyUnit());
   c.Push("behind a request", CourseSlice(3, 3));
+  // From here on no slice is coded by another: with one receiver that would last for 2 s of real
+  // time.
+  GstLidarSlicesReceived other_received{6, 0, {}};
+  c.PushUpstream("second receiver", gst_lidar_event_new_slices_received(&other_received));
   c.Set("max-error", "0.2");
   PushScan(c, "coarser", 4);
   c.Set("quantization-step", "0.05");
