@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gst/common/buffer_map.h"
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/pose_covariance.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
@@ -24,6 +25,15 @@ cdr::Header HeaderOf(GstClockTime time, const std::string& frame_id) {
 GstClockTime CaptureTime(GstBuffer* buffer, GstClockTime otherwise) {
   const GstClockTime time = gst_lidar_buffer_get_capture_time(buffer);
   return GST_CLOCK_TIME_IS_VALID(time) ? time : otherwise;
+}
+
+/// Returns the first text that is not empty: a frame that is asked for, that of the caps, the usual
+/// one.
+std::string FrameOf(const GstCaps* caps, const std::string& wanted, const char* field,
+                    const char* usual) {
+  if (!wanted.empty()) return wanted;
+  const gchar* frame = gst_structure_get_string(gst_caps_get_structure(caps, 0), field);
+  return frame != nullptr && *frame != '\0' ? frame : usual;
 }
 
 class SliceWriter : public BufferWriter {
@@ -94,8 +104,9 @@ class ImuWriter : public BufferWriter {
 
 class OdometryWriter : public BufferWriter {
  public:
-  explicit OdometryWriter(const std::string& frame_id)
-      : BufferWriter(MessageType::kOdometry, frame_id) {}
+  OdometryWriter(const std::string& frame_id, std::string child_frame_id)
+      : BufferWriter(MessageType::kOdometry, frame_id),
+        child_frame_id_(std::move(child_frame_id)) {}
 
   bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) override {
     const BufferMap map(buffer, GST_MAP_READ);
@@ -103,18 +114,22 @@ class OdometryWriter : public BufferWriter {
     auto odometry = map ? cdr::ReadPose(map.view(), &tracking) : std::nullopt;
     if (!odometry) return false;
     const GstClockTime stamp = CaptureTime(buffer, log_time);
-    odometry->header = HeaderOf(stamp, "odom");
-    odometry->child_frame_id = frame_id_;
+    odometry->header = HeaderOf(stamp, frame_id_);
+    odometry->child_frame_id = child_frame_id_;
     odometry->pose_covariance = CovarianceOf(tracking, odometry->pose_covariance);
     odometry->twist_covariance = NoVelocity();
     out->push_back({0, stamp, cdr::WriteOdometry(*odometry)});
     return true;
   }
+
+ private:
+  const std::string child_frame_id_;
 };
 
 }  // namespace
 
-std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps, const std::string& frame_id,
+std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps,
+                                                 const std::string& sensor_frame,
                                                  std::string* why) {
   const auto type = TypeOf(caps);
   if (!type) {
@@ -122,13 +137,16 @@ std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps, const std:
            gst_structure_get_name(gst_caps_get_structure(caps, 0));
     return nullptr;
   }
+  const std::string frame_id = FrameOf(caps, sensor_frame, GST_LIDAR_FRAME_ID, kCloudFrame);
   switch (*type) {
     case MessageType::kImu:
       if (IsOurImu(caps)) return std::make_unique<ImuWriter>(frame_id);
       *why = std::string("the samples of the IMU are not ") + kImuFields;
       return nullptr;
     case MessageType::kOdometry:
-      return std::make_unique<OdometryWriter>(frame_id);
+      return std::make_unique<OdometryWriter>(
+          FrameOf(caps, "", GST_LIDAR_FRAME_ID, kOdometryFrame),
+          FrameOf(caps, sensor_frame, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame));
     case MessageType::kSlice:
       return std::make_unique<SliceWriter>(frame_id);
     case MessageType::kCloud:

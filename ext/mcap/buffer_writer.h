@@ -21,9 +21,9 @@ struct NewMessage {
 
 class BufferWriter {
  public:
-  /// Returns a writer for buffers of `caps`. Returns NULL if the caps cannot be recorded; `why`
-  /// then has the reason for a user.
-  static std::unique_ptr<BufferWriter> Make(const GstCaps* caps, const std::string& frame_id,
+  /// Returns a writer for buffers of `caps`. An empty `sensor_frame` leaves the frames to the caps.
+  /// Returns NULL if the caps cannot be recorded; `why` then has the reason for a user.
+  static std::unique_ptr<BufferWriter> Make(const GstCaps* caps, const std::string& sensor_frame,
                                             std::string* why);
   virtual ~BufferWriter() = default;
 

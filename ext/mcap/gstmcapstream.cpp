@@ -16,13 +16,14 @@ using namespace lidar::gst;
 
 struct StreamSettings {
   std::string topic;
-  std::string frame_id = "lidar";
+  std::string frame_id;
 };
 
 const std::array<Property<StreamSettings>, 2> kProperties = {{
     {"topic", "Where its messages go; NULL: /points, /slices, /imu or /odometry",
      &StreamSettings::topic},
-    {"frame-id", "The sensor's frame, as messages name it", &StreamSettings::frame_id},
+    {"frame-id", "The sensor's frame, as messages name it; NULL: as the caps say, else lidar",
+     &StreamSettings::frame_id},
 }};
 
 struct State {

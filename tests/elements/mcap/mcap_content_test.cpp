@@ -65,16 +65,25 @@ guint64 CountedBy(GstElement* element, const char* field) {
 
 class McapContent : public Recording {
  protected:
-  /// Returns the messages that `buffers` of `caps` become, in the frame "front".
+  /// Returns the messages that `buffers` of `caps` become, in the frame `sensor_frame_`.
   std::vector<Logged> Write(const char* caps, const std::vector<GstBuffer*>& buffers) {
     const Harness h = RecordingTo(Path("a.mcap"));
-    gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::frame-id", "front", nullptr);
+    gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::frame-id", sensor_frame_, nullptr);
     gst_harness_set_src_caps_str(h.get(), caps);
     gst_harness_play(h.get());
     for (GstBuffer* buffer : buffers) EXPECT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
     End(h.get());
     return MessagesOf(Path("a.mcap"));
   }
+  std::vector<Logged> WriteZeros(const std::string& caps, gsize size) {
+    GstBuffer* zeros = gst_buffer_new_allocate(nullptr, size, nullptr);
+    gst_buffer_memset(zeros, 0, 0, size);
+    GST_BUFFER_PTS(zeros) = 0;
+    gst_lidar_buffer_set_capture_time(zeros, kCapture);
+    return Write(caps.c_str(), {zeros});
+  }
+
+  const char* sensor_frame_ = "front";
 };
 
 TEST_F(McapContent, SlicesHaveRunningTimesAsLogTimesAndCaptureTimesAsTheirOwn) {
@@ -126,29 +135,41 @@ TEST_F(McapContent, BuffersOfNoKnownTimeAreOfNow) {
 }
 
 TEST_F(McapContent, OdometrySaysWhatMovesInWhat) {
-  GstBuffer* pose = gst_buffer_new_allocate(nullptr, 64, nullptr);
-  gst_buffer_memset(pose, 0, 0, 64);
-  GST_BUFFER_PTS(pose) = 0;
-  gst_lidar_buffer_set_capture_time(pose, kCapture);
-  const auto messages = Write("application/x-odometry", {pose});
+  const auto messages = WriteZeros("application/x-odometry,frame-id=map,child-frame-id=os", 64);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0].topic, "/odometry");
   const auto odometry = cdr::ReadOdometry(ViewOf(messages[0]));
   ASSERT_TRUE(odometry);
-  EXPECT_EQ(odometry->header.frame_id, "odom");
+  EXPECT_EQ(odometry->header.frame_id, "map");
   EXPECT_EQ(odometry->child_frame_id, "front");
   EXPECT_EQ(StampOf(odometry->header), kCapture);
   EXPECT_EQ(odometry->twist_covariance[0], 1e6);
 }
 
 TEST_F(McapContent, SamplesOfAnImuNameTheirFrame) {
-  GstBuffer* sample = gst_buffer_new_allocate(nullptr, 32, nullptr);
-  gst_buffer_memset(sample, 0, 0, 32);
-  GST_BUFFER_PTS(sample) = 0;
-  const auto messages = Write(kImu, {sample});
+  const auto messages = WriteZeros(kImu, 32);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0].topic, "/imu");
   EXPECT_EQ(cdr::ReadImu(ViewOf(messages[0]))->header.frame_id, "front");
+}
+
+TEST_F(McapContent, FramesAreThoseOfTheCapsUnlessOneIsSet) {
+  sensor_frame_ = nullptr;
+  const auto frames = [](const cdr::Odometry& o) {
+    return o.header.frame_id + " " + o.child_frame_id;
+  };
+  auto messages = WriteZeros("application/x-odometry,frame-id=map,child-frame-id=odom", 64);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(frames(*cdr::ReadOdometry(ViewOf(messages[0]))), "map odom");
+  messages = WriteZeros("application/x-odometry", 64);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(frames(*cdr::ReadOdometry(ViewOf(messages[0]))), "odom lidar");
+  messages = WriteZeros(std::string(kImu) + ",frame-id=os_imu", 32);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(cdr::ReadImu(ViewOf(messages[0]))->header.frame_id, "os_imu");
+  messages = WriteZeros(std::string(kSlices) + ",frame-id=os", 10);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(cdr::ReadCodedSlice(ViewOf(messages[0]))->header.frame_id, "os");
 }
 
 TEST_F(McapContent, CloudsSayWhetherTheyAreDense) {
@@ -158,11 +179,7 @@ TEST_F(McapContent, CloudsSayWhetherTheyAreDense) {
             "application/x-pointcloud2,width=2,height=1,point-step=12,framerate=10/1,"
             "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",is-dense=") +
         dense;
-    GstBuffer* cloud = gst_buffer_new_allocate(nullptr, 24, nullptr);
-    gst_buffer_memset(cloud, 0, 0, 24);
-    GST_BUFFER_PTS(cloud) = 0;
-    gst_lidar_buffer_set_capture_time(cloud, kCapture);
-    const auto messages = Write(caps.c_str(), {cloud});
+    const auto messages = WriteZeros(caps, 24);
     ASSERT_EQ(messages.size(), 1U);
     const auto message = cdr::ReadPointCloud2(ViewOf(messages[0]));
     ASSERT_TRUE(message);
