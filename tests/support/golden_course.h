@@ -69,7 +69,28 @@ class Course {
     EXPECT_TRUE(Eventually([&] { return trace_->Count(line) >= count; })) << what;
     Note(what);
   }
+  guint64 Stat(const char* name) {
+    GstStructure* raw = nullptr;
+    g_object_get(element(), "stats", &raw, nullptr);
+    const gst::StructurePtr stats(raw);
+    guint64 value = 0;
+    guint small = 0;
+    gboolean flag = FALSE;
+    if (gst_structure_get_uint64(raw, name, &value)) return value;
+    if (gst_structure_get_uint(raw, name, &small)) return small;
+    EXPECT_TRUE(gst_structure_get_boolean(raw, name, &flag)) << name;
+    return flag ? 1 : 0;
+  }
+  /// The statistic `name` is `wanted` once the element has done its work.
+  void AwaitStat(const char* name, guint64 wanted) {
+    EXPECT_TRUE(Eventually([&] { return Stat(name) == wanted; }))
+        << name << " is " << Stat(name) << " instead of " << wanted;
+  }
   void AddLine(const std::string& line) { lines_.push_back(line); }
+  /// Writes `word` in place of what differs between runs, such as ports. Leaves out empty lines.
+  void Hide(const std::string& pattern, const std::string& word) {
+    hidden_.emplace_back(std::regex(pattern), word);
+  }
   void SetCaps(const std::string& caps) {
     trace_->PushCaps(caps);
     Note("caps");
@@ -149,13 +170,7 @@ class Course {
     }
     Note("asked");
   }
-  void Expect(const std::string& path) { ExpectGoldenLines(lines_, path); }
-
- private:
-  bool Answers(GstQuery* query) {
-    return (h_->sinkpad != nullptr ? gst_pad_peer_query(h_->sinkpad, query)
-                                   : gst_element_query(element(), query)) != FALSE;
-  }
+  /// Notes a step with all that it has caused.
   void Note(const std::string& step) {
     lines_.push_back("- " + step);
     for (std::string& line : trace_->Take()) {
@@ -176,6 +191,18 @@ class Course {
       }
       lines_.push_back(std::move(line));
     }
+  }
+  void Expect(const std::string& path) {
+    for (std::string& line : lines_)
+      for (const auto& [pattern, word] : hidden_) line = std::regex_replace(line, pattern, word);
+    lines_.erase(std::remove(lines_.begin(), lines_.end(), ""), lines_.end());
+    ExpectGoldenLines(lines_, path);
+  }
+
+ private:
+  bool Answers(GstQuery* query) {
+    return (h_->sinkpad != nullptr ? gst_pad_peer_query(h_->sinkpad, query)
+                                   : gst_element_query(element(), query)) != FALSE;
   }
   /// Leaves out how long something took if it took any time, arrays of doubles, and digits of
   /// doubles that differ between machines: a number halfway between two of three digits is the
@@ -230,6 +257,7 @@ class Course {
   std::optional<RunTrace> trace_;
   Lines lines_;
   Lines stats_;  // the fields that were noted last
+  std::vector<std::pair<std::regex, std::string>> hidden_;
 };
 
 /// A course of a name, which its file has, too.

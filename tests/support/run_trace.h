@@ -48,9 +48,11 @@ class RunTrace {
   }
   /// Returns how many lines since the last Take() begin so.
   std::size_t Count(const std::string& begin) {
+    while (const gst::MessagePtr message{gst_bus_pop(bus_)}) AddMessage(message.get(), &messages_);
+    const auto begins_so = [&](const auto& line) { return line.rfind(begin, 0) == 0; };
     const std::lock_guard lock(mutex_);
-    return static_cast<std::size_t>(std::count_if(
-        lines_.begin(), lines_.end(), [&](const auto& line) { return line.rfind(begin, 0) == 0; }));
+    return static_cast<std::size_t>(std::count_if(lines_.begin(), lines_.end(), begins_so) +
+                                    std::count_if(messages_.begin(), messages_.end(), begins_so));
   }
   /// Adds the events that a pad of the harness gets from the element.
   void WatchUpstream(GstPad* pad) {
@@ -90,6 +92,8 @@ class RunTrace {
       taken.swap(lines_);
       first_capture_ = GST_CLOCK_TIME_NONE;
     }
+    taken.insert(taken.end(), messages_.begin(), messages_.end());
+    messages_.clear();
     while (const gst::MessagePtr message{gst_bus_pop(bus_)}) AddMessage(message.get(), &taken);
     while (GstBuffer* buffer = gst_harness_try_pull(h_)) gst_buffer_unref(buffer);
     if (g_object_class_find_property(G_OBJECT_GET_CLASS(h_->element), "stats") == nullptr)
@@ -237,6 +241,7 @@ class RunTrace {
   const bool with_bytes_;
   GstBus* const bus_;
   gulong added_ = 0;
+  Lines messages_;    // of the bus, since the last Take()
   std::mutex mutex_;  // guards all below
   std::vector<std::pair<gst::PadPtr, gulong>> probes_;
   Lines lines_;

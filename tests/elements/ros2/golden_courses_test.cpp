@@ -10,19 +10,6 @@ namespace {
 
 using PeerQos = FastPeer::Qos;
 
-void AwaitStat(Course& c, const char* name, guint64 wanted) {
-  EXPECT_TRUE(Eventually([&] {
-    GstStructure* raw = nullptr;
-    g_object_get(c.element(), "stats", &raw, nullptr);
-    const gst::StructurePtr stats(raw);
-    guint64 value = 0;
-    guint small = 0;
-    if (gst_structure_get_uint(raw, name, &small)) value = small;
-    gst_structure_get_uint64(raw, name, &value);
-    return value == wanted;
-  })) << name;
-}
-
 std::string CapsTextOf(const PeerCloud& cloud, const char* extra = "") {
   const gst::StringPtr text(gst_caps_to_string(CloudCaps(cloud, extra).get()));
   return text.get();
@@ -49,7 +36,7 @@ void Ros2SinkCourse(Course& c) {
   const auto subscribe = [&] {
     peer = std::make_unique<FastPeer>(TestDomain());
     peer->Subscribe<PeerCloud>("rt/points", kCloudType, PeerQos::kReliable);
-    AwaitStat(c, "subscribers", 1);
+    c.AwaitStat("subscribers", 1);
   };
   subscribe();
   const auto push = [&](const char* what, gst::BufferPtr buffer) {
@@ -88,7 +75,7 @@ void Ros2SrcCourse(Course& c) {
   // A warning follows the count, so the course notes it with the next cloud.
   const auto breaks = [&] {
     EXPECT_TRUE(bad->Publish(damaged));
-    AwaitStat(c, "messages-damaged", ++broken);
+    c.AwaitStat("messages-damaged", ++broken);
   };
   const auto gives = [&](const char* what, const PeerCloud& cloud) {
     EXPECT_TRUE(good->Publish(cloud));
@@ -103,7 +90,7 @@ void Ros2SrcCourse(Course& c) {
     good->Advertise<PeerCloud>("rt/points", kCloudType, PeerQos::kReliable);
     bad->Advertise<PeerBytes>("rt/points", kCloudType, PeerQos::kReliable);
     EXPECT_TRUE(good->WaitForMatch(kPatience) && bad->WaitForMatch(kPatience));
-    AwaitStat(c, "publishers", 2);
+    c.AwaitStat("publishers", 2);
     c.Await("publishers are found", "event stream-start");
   };
   c.Ask();
@@ -117,7 +104,7 @@ void Ros2SrcCourse(Course& c) {
   breaks();
   gives("behind two of them", TestCloud(5, 2, 5));
   EXPECT_TRUE(good->Publish(TestCloud(0, 0, 5)));
-  AwaitStat(c, "messages-empty", 1);
+  c.AwaitStat("messages-empty", 1);
   PeerCloud dense = TestCloud(5, 2, 6);
   dense.is_dense = true;
   gives("dense, behind an empty one", dense);
