@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// All that a live ouster_src puts out and says in a scripted run is as it was.
+#include <cstring>
+
+#include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/golden_course.h"
+
+namespace lidar::test {
+namespace {
+
+/// A sensor of 32 beams: 64 packets of 16 columns a scan.
+class PacketSensor {
+ public:
+  using Packet = std::vector<std::uint8_t>;
+  static constexpr const char* kName = "OS-0-32-U1_v2.2.0_1024x10";
+
+  PacketSensor(Course* course, guint16 port, guint16 imu_port)
+      : course_(*course), lidar_(port), imu_(imu_port) {
+    std::string error;
+    const std::string capture = kName + std::string(".pcap");
+    auto reader = ouster::PcapReader::Open(DataPath(capture), &error);
+    while (auto captured = reader->Next())
+      if (captured->datagram.payload.size() != metadata_.format.packet_size())
+        imu_packets_.push_back(std::move(captured->datagram.payload));
+    packets_ = LoadPackets(capture, metadata_);
+  }
+
+  /// Returns a packet as the sensor sends it `scan` scans later.
+  Packet PacketOf(std::size_t number, guint scan) const {
+    constexpr std::size_t kColumns = 16, kHeader = 32, kPeriodNs = 100'000'000;
+    Packet packet = packets_[number];
+    packet[kFrame] = static_cast<std::uint8_t>(packet[kFrame] + scan);
+    packet[kStart] = static_cast<std::uint8_t>(packet[kStart] ^ starts_);
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      std::uint8_t* column = &packet[kHeader + c * (packet.size() - 2 * kHeader) / kColumns];
+      guint64 t = 0;
+      std::memcpy(&t, column, sizeof t);
+      t += scan * kPeriodNs;
+      std::memcpy(column, &t, sizeof t);
+    }
+    return packet;
+  }
+  /// Sends packets of a scan, but not those from `lost` up to `found`. Waits now and then, so that
+  /// the socket's buffer suffices.
+  void Send(guint scan, std::size_t from, std::size_t to, std::size_t lost = 0,
+            std::size_t found = 0) {
+    for (std::size_t i = from; i < to; ++i) {
+      if (i < lost || i >= found) SendCounted(PacketOf(i, scan));
+      if (i % kOfSlice == kOfSlice - 1) course_.AwaitStat("packets", sent_);
+    }
+  }
+  void SendScan(const char* what, guint scan, std::size_t lost = 0, std::size_t found = 0) {
+    Send(scan, 0, packets_.size(), lost, found);
+    Note(what);
+  }
+  void Note(const char* what) { course_.Await(what, "buffer", packets_.size() / kOfSlice); }
+  void SendCounted(const Packet& packet) {
+    lidar_.Send(packet);
+    ++sent_;
+  }
+  void SendOther(const Packet& packet) { lidar_.Send(packet); }
+  void SendImu() { imu_.Send(imu_packets_.front()); }
+  void BeginAnew() { sent_ = 0; }
+  void Restart() { ++starts_; }
+
+  static constexpr std::size_t kOfSlice = 8, kFrame = 2, kStart = 4, kSerial = 7;
+
+ private:
+  Course& course_;
+  UdpSender lidar_;
+  UdpSender imu_;
+  const ouster::Metadata metadata_ = LoadMetadata(kName + std::string(".json"));
+  std::vector<Packet> packets_;
+  std::vector<Packet> imu_packets_;
+  std::uint8_t starts_ = 0;
+  std::size_t sent_ = 0;
+};
+
+void LiveCourse(Course& c) {
+  guint port = 0;
+  guint imu_port = 0;
+  g_object_get(c.element(), "lidar-port", &port, "imu-port", &imu_port, nullptr);
+  gst_harness_use_systemclock(c.harness());
+  // Times are those of arrival.
+  c.Hide("buffer at [0-9]+", "buffer");
+  c.Hide("message latency ", "");  // which comes from another thread than events
+  c.Hide("position [0-9]+", "position");
+  c.Hide(", clock-jumps=.guint64.[0-9]+", "");
+  c.Hide("captured (at )?-?[0-9]+", "captured");
+  c.Hide("receive-buffer=.uint.[0-9]+", "receive-buffer");
+  c.Hide("UDP port [0-9]+", "its UDP port");
+  c.Hide("[0-9]+ ms", "some ms");
+  c.trace()->TakeAddedPads();
+  PacketSensor sensor(&c, static_cast<guint16>(port), static_cast<guint16>(imu_port));
+  const auto play = [&](const char* what) {
+    gst_element_set_state(c.element(), GST_STATE_PLAYING);
+    sensor.BeginAnew();
+    c.Await(what, "event stream-start");
+  };
+  c.Ask();
+  play("play");
+  sensor.SendScan("a scan", 0);
+  sensor.SendImu();
+  c.AwaitStat("packets-imu", 1);
+  c.Await("a packet of the IMU", "buffer");
+  sensor.SendScan("with a slice that lacks two packets", 1, 9, 11);
+  sensor.Send(2, 0, 8);
+  sensor.SendCounted(sensor.PacketOf(7, 2));
+  PacketSensor::Packet other = sensor.PacketOf(8, 2);
+  other[PacketSensor::kFrame + 1] ^= 0x40;
+  sensor.SendCounted(other);
+  other = sensor.PacketOf(8, 2);
+  other[PacketSensor::kSerial] ^= 1;
+  sensor.SendOther(other);
+  for (int i = 0; i < 5; ++i) sensor.SendOther(PacketSensor::Packet(1'000));
+  c.AwaitStat("packets-wrong-size", 5);
+  sensor.Send(2, 8, 64);
+  sensor.Note("with packets that belong to none");
+  c.Ask();
+  c.Await("silence", "message warning No packets");
+  sensor.SendScan("behind the silence", 3);
+  sensor.Restart();
+  sensor.SendScan("behind a restart", 4);
+  c.Stop();
+  play("play again");
+  sensor.SendScan("a scan", 7);
+  sensor.Restart();
+  sensor.SendScan("behind a restart", 8);
+  c.Await("silence", "message warning No packets");
+  c.Stop();
+  c.Set("reconnect", "false");
+  play("play once more");
+  sensor.SendScan("a scan", 9);
+  c.Await("silence", "message error");
+}
+
+const std::size_t kOusterCourses = AddGoldenCourses(
+    "OusterGoldenCourses",
+    {{"live",
+      "ouster_src metadata=" + DataPath("OS-0-32-U1_v2.2.0_1024x10.json") +
+          " lidar-port=" + std::to_string(FreePort()) + " imu-port=" + std::to_string(FreePort()),
+      LiveCourse,
+      {nullptr, "src"}}},
+    GOLDEN_COURSES_FOLDER, false);
+
+}  // namespace
+}  // namespace lidar::test
