@@ -149,9 +149,9 @@ bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, const std::vect
 }
 
 const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
-                                   const std::vector<Pulse>& pulses,
+                                   const std::vector<Pulse>& pulses, const std::vector<Point>& all,
                                    std::vector<PlacedPoint>* placed) {
-  if (points.size() > kMostPoints) return nullptr;
+  if (all.size() > kMostPoints) return nullptr;
   if (table_ && PlaceByOld(points, pulses, placed)) {
     fails_ = 0;
     return &*table_;
@@ -162,7 +162,9 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0)
     return table_ ? &*table_ : nullptr;
   if (PlaceOnNewPath(points, pulses, placed)) return &*table_;
-  table_ = FindBeams(points);
+  std::vector<Sighting> sightings;
+  SightAll(all, all.size(), &sightings);
+  table_ = FindBeams(sightings);
   if (!table_) return nullptr;
   fit_ = Placer(points, *table_, placed).Place();
   return &*table_;

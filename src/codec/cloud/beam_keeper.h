@@ -31,11 +31,14 @@ class BeamKeeper {
   /// Larger clouds exceed the pixels of an image, and a search in them takes seconds.
   static constexpr std::size_t kMostPoints = 1U << 20;
 
-  /// Places a cloud's points in beams of earlier clouds if they fit, else in new ones. Returns null
-  /// if there are no beams. After failures it searches more rarely. `pulses`: one for each point;
-  /// if empty, beams on a path are not found.
+  /// Places `points`, a part of the points of a cloud, in beams of earlier clouds if they fit, else
+  /// in new ones, found in `all` points. Returns null if there are no beams. After failures it
+  /// searches more rarely. `pulses`: one for each of `points`; if empty, beams on a path are not
+  /// found.
   const BeamTable* Place(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
-                         std::vector<PlacedPoint>* placed);
+                         const std::vector<Point>& all, std::vector<PlacedPoint>* placed);
+  /// The beams of the last cloud, or null.
+  const BeamTable* table() const { return table_ ? &*table_ : nullptr; }
 
  private:
   bool PlaceByOld(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,

@@ -120,9 +120,10 @@ Sighting::Sighting(const Point& point) {
   azimuth = ToNearest(AngleOf(y, x) / kRadians) & (kTurn - 1);
 }
 
-void SightAll(const std::vector<Point>& points, std::vector<Sighting>* sightings) {
-  sightings->resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) (*sightings)[i] = Sighting(points[i]);
+void SightAll(const std::vector<Point>& points, std::size_t count,
+              std::vector<Sighting>* sightings) {
+  sightings->resize(count);
+  for (std::size_t i = 0; i < count; ++i) (*sightings)[i] = Sighting(points[i]);
 }
 
 bool BeamTable::has_offsets() const {

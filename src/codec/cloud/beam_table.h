@@ -29,7 +29,9 @@ struct Sighting {
   double z_m = 0;
   std::int32_t azimuth = 0;  // counter-clockwise, below kTurn
 };
-void SightAll(const std::vector<Point>& points, std::vector<Sighting>* sightings);
+/// Takes the first `count` points.
+void SightAll(const std::vector<Point>& points, std::size_t count,
+              std::vector<Sighting>* sightings);
 
 /// Returns what std::atan2(y, x) does, in a quarter of its time.
 double AngleOf(double y, double x);

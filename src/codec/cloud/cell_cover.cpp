@@ -37,10 +37,17 @@ std::vector<std::uint32_t> Sums(const std::vector<std::uint32_t>& counts) {
   return first;
 }
 
-/// The keys of the cells whose middles are within the error of a point.
+/// The cells whose middles are within the error of a point.
 class NearCells {
  public:
   static constexpr std::size_t kMost = 8;
+  /// Cells around a cell: the cell x, y and z steps away is cell 13 + x + 3 y + 9 z.
+  static constexpr unsigned kAround = 27;
+  /// The key of a point's own cell, and a bit for each cell around it that is near enough.
+  struct Found {
+    std::uint64_t key;
+    std::uint32_t around;
+  };
 
   NearCells(const CellGrid& grid, unsigned depth)
       : grid_(grid),
@@ -48,43 +55,156 @@ class NearCells {
         half_(CellGrid::HalfOf(depth)),
         square_bound_(grid.error_m() * grid.error_m()) {}
 
-  /// Writes the key of the point's own cell, then the keys of the neighbours that are near enough.
-  /// Only neighbours on the point's side of its cell can be near enough. Returns the end of the
-  /// keys.
+  /// Writes the key of the point's own cell, then those of its neighbours that are near enough.
+  /// Returns the end of the keys.
   std::uint64_t* Write(const Point& point, std::uint64_t* keys) const {
-    constexpr std::array<std::uint64_t, 3> kSteps = {NodeMap::kStepX, NodeMap::kStepY,
-                                                     NodeMap::kStepZ};
-    std::array<std::array<double, 3>, 2> squares;  // of the distances along each axis
-    std::array<std::array<std::uint64_t, 3>, 2> steps{};
+    const Sides sides = SidesOf(point);
+    *keys++ = sides.own;
+    // A jump for each neighbour would often be mispredicted.
+    for (unsigned i = 1; i < kMost; ++i) {
+      std::uint64_t key = sides.own;
+      for (unsigned k = 0; k < 3; ++k) {
+        const std::uint64_t step = sides.is_below[k] ? 0 - kSteps[k] : kSteps[k];
+        key += (i >> k & 1) != 0 ? step : 0;
+      }
+      *keys = key;
+      keys += IsNear(sides, i) ? 1 : 0;
+    }
+    return keys;
+  }
+  Found Find(const Point& point) const {
+    constexpr std::array<int, 3> kPlaces = {1, 3, 9};
+    const Sides sides = SidesOf(point);
+    std::uint32_t around = 0;
+    for (unsigned i = 1; i < kMost; ++i) {
+      int place = kAround / 2;
+      for (unsigned k = 0; k < 3; ++k) {
+        const int step = sides.is_below[k] ? -kPlaces[k] : kPlaces[k];
+        place += (i >> k & 1) != 0 ? step : 0;
+      }
+      around |= (IsNear(sides, i) ? 1U : 0U) << place;
+    }
+    return {sides.own, around};
+  }
+  /// Returns the key of one of the cells around the cell of `key`.
+  static std::uint64_t KeyAround(std::uint64_t key, unsigned place) {
+    return key - kSteps[0] - kSteps[1] - kSteps[2] + place % 3 * kSteps[0] +
+           place / 3 % 3 * kSteps[1] + place / 9 * kSteps[2];
+  }
+
+ private:
+  static constexpr std::array<std::uint64_t, 3> kSteps = {NodeMap::kStepX, NodeMap::kStepY,
+                                                          NodeMap::kStepZ};
+  /// A point's cell, and along each axis the neighbour on the point's side; no others can be near.
+  struct Sides {
     std::uint64_t own = 0;
+    std::array<std::array<double, 3>, 2> squares;  // of the distances from the middles
+    std::array<bool, 3> is_below;                  // is the neighbour below the cell?
+  };
+
+  Sides SidesOf(const Point& point) const {
+    Sides sides;
     for (unsigned k = 0; k < 3; ++k) {
       const auto at = static_cast<double>(point[k]);
       const double whole = Floor(at / step_);
       const double off = at - grid_.MiddleFromCentre(whole);
-      const double side = std::copysign(1.0, off);
-      const double beside = at - grid_.MiddleFromCentre(whole + side);
-      squares[0][k] = off * off;
-      squares[1][k] = beside * beside;
-      own += static_cast<std::uint64_t>(static_cast<std::int64_t>(whole + half_) + 1) * kSteps[k];
-      steps[1][k] = off < 0 ? 0 - kSteps[k] : kSteps[k];
+      const double beside = at - grid_.MiddleFromCentre(whole + std::copysign(1.0, off));
+      sides.squares[0][k] = off * off;
+      sides.squares[1][k] = beside * beside;
+      sides.is_below[k] = off < 0;
+      sides.own +=
+          static_cast<std::uint64_t>(static_cast<std::int64_t>(whole + half_) + 1) * kSteps[k];
     }
-    // A jump for each neighbour would often be mispredicted.
-    *keys++ = own;
-    for (unsigned i = 1; i < kMost; ++i) {
-      const unsigned x = i & 1;
-      const unsigned y = i >> 1 & 1;
-      const unsigned z = i >> 2;
-      *keys = own + steps[x][0] + steps[y][1] + steps[z][2];
-      keys += squares[x][0] + squares[y][1] + squares[z][2] > square_bound_ ? 0 : 1;
-    }
-    return keys;
+    return sides;
+  }
+  /// Bits of `i` say along which axes the cell is the neighbour.
+  bool IsNear(const Sides& sides, unsigned i) const {
+    return !(sides.squares[i & 1][0] + sides.squares[i >> 1 & 1][1] + sides.squares[i >> 2][2] >
+             square_bound_);
   }
 
- private:
   CellGrid grid_;
   double step_;
   double half_;
   double square_bound_;  // of the distance from a cell's middle
+};
+
+/// Points by their own cells, which may merge.
+class OwnCells {
+ public:
+  OwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
+    constexpr std::size_t kUsual = 8;  // points a cell
+    const NearCells near(grid, depth);
+    map_.Reset(points.size() / kUsual);
+    cell_of_point_.reserve(points.size());
+    for (const Point& point : points) {
+      const NearCells::Found found = near.Find(point);
+      const std::uint32_t cell = IndexOf(found.key);
+      ++cells_[cell].count;
+      cells_[cell].around &= found.around;
+      cell_of_point_.push_back(cell);
+    }
+  }
+  /// Gives a cell's points to the neighbour with the most points, if all are near enough to it.
+  void Merge() {
+    for (std::uint32_t i = 0; i < cells_.size(); ++i) {
+      std::uint32_t best = i;
+      std::uint32_t most = 0;
+      for (std::uint32_t around = cells_[i].around; around != 0; around &= around - 1) {
+        const auto place = static_cast<unsigned>(__builtin_ctz(around));
+        const std::uint32_t other = map_.Find(NearCells::KeyAround(cells_[i].key, place));
+        if (other == NodeMap::kAbsent || cells_[other].count <= most) continue;
+        most = cells_[other].count;
+        best = other;
+      }
+      if (best == i) continue;
+      cells_[best].count += cells_[i].count;
+      cells_[best].around = 0;
+      cells_[i].count = 0;
+      cells_[i].into = best;
+    }
+  }
+  void List(unsigned depth, CoveredPoints* covered) const {
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;  // code, index
+    for (std::uint32_t i = 0; i < cells_.size(); ++i)
+      if (cells_[i].count > 0)
+        sorted.emplace_back(MortonCode(NodeMap::PositionOf(cells_[i].key)), i);
+    std::sort(sorted.begin(), sorted.end());
+    covered->cells.Clear();
+    covered->cells.depth = depth;
+    std::vector<std::uint32_t> next(cells_.size());  // place of a cell's next point
+    std::uint32_t sum = 0;
+    for (const auto& [code, i] : sorted) {
+      covered->cells.codes.push_back(code);
+      covered->cells.counts.push_back(cells_[i].count);
+      next[i] = sum;
+      sum += cells_[i].count;
+    }
+    covered->order.resize(cell_of_point_.size());
+    for (std::uint32_t point = 0; point < cell_of_point_.size(); ++point)
+      covered->order[next[cells_[cell_of_point_[point]].into]++] = point;
+  }
+
+ private:
+  struct Cell {
+    std::uint64_t key;
+    std::uint32_t count;
+    std::uint32_t around;  // cells around it that are near enough to all of its points
+    std::uint32_t into;    // the cell that has its points
+  };
+
+  std::uint32_t IndexOf(std::uint64_t key) {
+    std::uint32_t index = map_.Find(key);
+    if (index != NodeMap::kAbsent) return index;
+    index = static_cast<std::uint32_t>(cells_.size());
+    map_.Add(key, index);
+    cells_.push_back({key, 0, UINT32_MAX, index});
+    return index;
+  }
+
+  NodeMap map_;
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> cell_of_point_;
 };
 
 /// Points and the cells that they may take.
@@ -235,18 +355,14 @@ bool CellGrid::Holds(const Point& point) const {
 
 void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
-  sorted.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    sorted.emplace_back(MortonCode(OwnCell(points[i], grid, depth)), i);
-  std::sort(sorted.begin(), sorted.end());
-  covered->cells.Clear();
-  covered->cells.depth = depth;
-  covered->order.clear();
-  for (const auto& [code, point] : sorted) {
-    covered->order.push_back(point);
-    covered->cells.AddPoint(code);
-  }
+  OwnCells(points, grid, depth).List(depth, covered);
+}
+
+void CoverByMergedCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
+                        CoveredPoints* covered) {
+  OwnCells cells(points, grid, depth);
+  cells.Merge();
+  cells.List(depth, covered);
 }
 
 void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,

@@ -57,6 +57,10 @@ struct CoveredPoints {
 /// Gives each point its own cell. A tree of `depth` must hold all points.
 void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered);
+/// Does the same, but then gives cells to a neighbour whose middle is within the error of all their
+/// points. Fast, and nearly as good as CoverByFewCells().
+void CoverByMergedCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
+                        CoveredPoints* covered);
 /// Gives all points to few cells. Most points are within the error of several middles; the cell
 /// with the most remaining points takes all of them.
 void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,

@@ -98,10 +98,20 @@ RangeWay WayOf(unsigned effort) {
   return {kCoders[effort], effort};
 }
 
-/// Distance from the sensor, in multiples of the error, up to which cells are cheaper than ranges,
-/// because points are closer together than cells.
-constexpr double kUsualReach = 50;
-constexpr std::array<double, 8> kReaches = {0, 15, 25, 35, kUsualReach, 70, 100, 150};
+/// Returns the distance from the sensor, in multiples of the error, up to which cells are cheaper
+/// than ranges: neighbours are closer together than half the error. Many cells cost more time than
+/// ranges.
+double UsualReach(const BeamTable& table) {
+  constexpr double kMost = 70;
+  constexpr double kCloseTogether = 0.45;
+  if (table.has_path()) return kMost;
+  const double column = table.step();
+  const double all = table.beams.front().elevation - table.beams.back().elevation;
+  const double beam = std::max(all / std::max(table.rows() - 1, 1U), column);
+  return std::min(kCloseTogether / (kRadians * std::sqrt(column * beam)), kMost);
+}
+/// Other reaches to try, in multiples of the usual one.
+constexpr std::array<double, 8> kReaches = {0, 0.3, 0.5, 0.7, 1, 1.4, 2, 3};
 
 }  // namespace
 
@@ -222,6 +232,31 @@ void CloudEncoder::SortOut(CloudHeader* header) {
   header->far_points = static_cast<std::uint32_t>(far_ids_.size());
 }
 
+/// Moves points nearer than `nearest_m` behind the others, which are the seen ones.
+void CloudEncoder::PutNearestLast(double nearest_m) {
+  seen_ = near_.size();
+  if (nearest_m <= 0) return;
+  const auto square = static_cast<float>(nearest_m * nearest_m);
+  std::vector<std::uint32_t> nearest;
+  std::vector<std::uint32_t> others;
+  others.reserve(near_.size());
+  for (std::uint32_t i = 0; i < near_.size(); ++i) {
+    const Point& p = near_[i];
+    const bool is_near = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < square;
+    (is_near ? nearest : others).push_back(i);
+  }
+  seen_ = others.size();
+  others.insert(others.end(), nearest.begin(), nearest.end());
+  const auto reorder = [&](auto* values) {
+    auto sorted = *values;
+    for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = (*values)[others[i]];
+    values->swap(sorted);
+  };
+  reorder(&near_);
+  reorder(&near_ids_);
+  reorder(&levels_);
+}
+
 void CloudEncoder::WriteFarPoints(const IntensityScale& scale,
                                   std::vector<std::uint8_t>* out) const {
   ByteWriter writer(out);
@@ -232,10 +267,10 @@ void CloudEncoder::WriteFarPoints(const IntensityScale& scale,
 }
 
 void CloudEncoder::CodeCells(const std::vector<Point>& points,
-                             const std::vector<std::uint32_t>& ids, bool few,
+                             const std::vector<std::uint32_t>& ids, Cover cover,
                              Candidate* candidate) {
   const CloudHeader& header = candidate->header;
-  (few ? CoverByFewCells : CoverByOwnCells)(points, header.grid, header.depth, &covered_);
+  cover(points, header.grid, header.depth, &covered_);
   candidate->cells.clear();
   mixing::BinaryEncoder encoder(&candidate->cells);
   tree_.Code(&covered_.cells, {points.size(), SIZE_MAX}, &encoder);
@@ -267,26 +302,30 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
   std::vector<Point> points;
   points.reserve(ids.size());
   for (const std::uint32_t i : ids) points.push_back(near_[i]);
-  const bool few = effort_ > 0 && points.size() <= kMostToChoose;
-  CodeCells(points, ids, few, candidate);
-  if (!few || effort_ < EffortControl::kHighest) return;
+  constexpr std::array<Cover, EffortControl::kHighest + 1> kCovers = {
+      CoverByOwnCells, CoverByMergedCells, CoverByFewCells, CoverByFewCells};
+  const bool is_large = points.size() > kMostToChoose;
+  CodeCells(points, ids, is_large ? CoverByOwnCells : kCovers[effort_], candidate);
+  if (is_large || effort_ < EffortControl::kHighest) return;
   Candidate other;
   other.header = candidate->header;
-  CodeCells(points, ids, false, &other);
+  CodeCells(points, ids, CoverByOwnCells, &other);
   if (other.cells.size() >= candidate->cells.size()) return;
   candidate->cells.swap(other.cells);
   candidate->cell_points.swap(other.cell_points);
   candidate->nodes = other.nodes;
 }
 
-/// Returns false if most points lie in no pixel.
+/// Returns false if most points that are far enough lie in no pixel.
 bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                                const RangeWay& way, Candidate* candidate) {
   if (!FillPixels({&sightings_, &placed_, &table}, errors, nearest_m, &pixels_)) return false;
   if (way.coder != RangeCoder::kMixing) pixels_.DropFewExtras();
   candidate->header.has_beams = true;
   const PointLevels levels{levels_.empty() ? nullptr : &levels_, candidate->header.intensity};
-  if (pixels_.returns < near_.size() / 4 ||
+  for (std::size_t i = seen_; i < near_.size(); ++i)
+    pixels_.rest.push_back(static_cast<std::uint32_t>(i));
+  if (pixels_.returns < pixels_.asked / 4 ||
       !section_.Encode(table, errors, levels, way, &pixels_, &candidate->beams)) {
     return false;
   }
@@ -296,7 +335,9 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
 }
 
 /// Returns 0 with exact fields: these cost more for points in cells than the cells save.
-double CloudEncoder::LargestReach() const { return choice_.empty() ? kReaches.back() : 0; }
+double CloudEncoder::ReachOf(const BeamTable& table) const {
+  return choice_.empty() ? UsualReach(table) : 0;
+}
 
 /// Codes the exact fields of all points: of those in pixels_, by `table`, and of the others.
 void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) const {
@@ -346,7 +387,7 @@ bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelError
   const auto attempt = [&](unsigned lower, double reach) {
     Candidate candidate;
     candidate.header = header;
-    effort_ = lower;
+    effort_ = std::max(lower, 2U);  // so that cells do not merge, which is larger
     const bool coded = EncodeBeams(table, errors, reach * errors.error_m,
                                    {RangeCoder::kMixing, lower}, &candidate);
     effort_ = effort;
@@ -355,9 +396,11 @@ bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelError
     found = true;
     return true;
   };
-  double cheapest = std::min(kUsualReach, LargestReach());
-  for (const double reach : kReaches)
-    if (reach <= LargestReach() && attempt(1, reach)) cheapest = reach;
+  double cheapest = ReachOf(table);
+  for (const double part : kReaches) {
+    const double reach = part * ReachOf(table);
+    if ((part <= 0 || reach > 0) && attempt(1, reach)) cheapest = reach;
+  }
   for (unsigned lower = 2; lower <= effort; ++lower) attempt(lower, cheapest);
   return found;
 }
@@ -367,18 +410,19 @@ CloudEncoder::Candidate CloudEncoder::EncodeSmallest(const CloudHeader& header, 
   best.header = header;
   bool found = false;
   const BeamTable* table = nullptr;
-  if (near_.size() <= BeamKeeper::kMostPoints) {
-    SightAll(near_, &sightings_);
+  const BeamTable* const last = effort_ < EffortControl::kHighest ? keeper_.table() : nullptr;
+  PutNearestLast(last == nullptr ? 0 : ReachOf(*last) * error_m);
+  if (near_.size() <= BeamKeeper::kMostPoints && seen_ > 0) {
+    SightAll(near_, seen_, &sightings_);
     sighted_.clear();
-    for (std::size_t i = 0; i < near_ids_.size() && !pulses_.empty(); ++i)
+    for (std::size_t i = 0; i < seen_ && !pulses_.empty(); ++i)
       sighted_.push_back(pulses_[near_ids_[i]]);
-    table = keeper_.Place(sightings_, sighted_, &placed_);
+    table = keeper_.Place(sightings_, sighted_, near_, &placed_);
   }
   if (table != nullptr) {
     const PixelErrors errors = CheapestErrors({&sightings_, &placed_, table}, error_m);
     found = effort_ < EffortControl::kHighest
-                ? EncodeBeams(*table, errors, std::min(kUsualReach, LargestReach()) * error_m,
-                              WayOf(effort_), &best)
+                ? EncodeBeams(*table, errors, ReachOf(*table) * error_m, WayOf(effort_), &best)
                 : EncodeBeamsInAllWays(*table, errors, &best);
   }
   if (found && effort_ < EffortControl::kHighest) return best;

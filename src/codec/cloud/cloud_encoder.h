@@ -43,8 +43,8 @@ class CloudEncoder {
   bool has_intensity() const { return !cloud_.intensity.empty(); }
   /// Names the coder for statistics and predictors.
   std::string Mode() const { return "xyz-cloud" + std::to_string(effort_); }
-  /// Effort: at 0 a point without a beam has its own cell, from 1 on points share few cells, and at
-  /// EffortControl::kHighest all ways are tried.
+  /// Effort: at 0 a point without a beam has its own cell, at 1 such cells merge, from 2 on points
+  /// share few cells, and at EffortControl::kHighest all ways are tried.
   void set_effort(unsigned effort) { effort_ = effort; }
   /// Keeps `kept` of the loaded points.
   void Thin(const std::vector<bool>& kept);
@@ -73,14 +73,17 @@ class CloudEncoder {
   };
   void LoadPulses(ByteView raw, const std::vector<std::uint32_t>& rows);
   void SortOut(CloudHeader* header);
+  void PutNearestLast(double nearest_m);
   float SortOutFarPoints(const CellGrid& grid);
+  /// Chooses the cells of points.
+  using Cover = decltype(&CoverByOwnCells);
   void EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate);
-  void CodeCells(const std::vector<Point>& points, const std::vector<std::uint32_t>& ids, bool few,
-                 Candidate* candidate);
+  void CodeCells(const std::vector<Point>& points, const std::vector<std::uint32_t>& ids,
+                 Cover cover, Candidate* candidate);
   bool EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                    const RangeWay& way, Candidate* candidate);
   bool EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors, Candidate* best);
-  double LargestReach() const;
+  double ReachOf(const BeamTable& table) const;
   void EncodeExact(const BeamTable* table, Candidate* candidate) const;
   Candidate EncodeSmallest(const CloudHeader& header, double error_m);
   void Write(const Candidate& candidate, EncodedSlice* slice) const;
@@ -97,9 +100,10 @@ class CloudEncoder {
   std::vector<std::uint8_t> levels_;     // of near_, at full resolution; empty: geometry only
   std::vector<std::uint32_t> near_ids_;  // of cloud_
   std::vector<std::uint32_t> far_ids_;
-  std::vector<Sighting> sightings_;  // of near_
-  std::vector<Pulse> sighted_;       // pulses of near_, or none
-  std::vector<PlacedPoint> placed_;  // of near_
+  std::size_t seen_ = 0;             // points of near_, first to last, that may be in pixels
+  std::vector<Sighting> sightings_;  // of the seen points
+  std::vector<Pulse> sighted_;       // their pulses, or none
+  std::vector<PlacedPoint> placed_;  // of the seen points
   BeamKeeper keeper_;
   CoveredPoints covered_;
   CellTree tree_;

@@ -119,6 +119,7 @@ struct Fitting {
   std::vector<FittingPoint> points;
   std::uint32_t first_column = UINT32_MAX;
   std::uint32_t last_column = 0;
+  std::size_t asked = 0;  // number of points from `nearest_m` on
 };
 
 Fitting FindFitting(const PlacedCloud& cloud, const PixelCheck& check, double nearest_m,
@@ -129,8 +130,9 @@ Fitting FindFitting(const PlacedCloud& cloud, const PixelCheck& check, double ne
   for (std::size_t i = 0; i < placed.size(); i += cloud.stride) {
     const auto point = static_cast<std::uint32_t>(i);
     const PlacedPoint& p = placed[i];
-    const bool may_fit = (*cloud.points)[i].range_m >= nearest_m && check.Fits(i);
-    const std::uint32_t range_mm = may_fit ? PixelCheck::RangeMm(p) : 0;
+    const bool is_asked = (*cloud.points)[i].range_m >= nearest_m;
+    fitting.asked += is_asked ? 1 : 0;
+    const std::uint32_t range_mm = is_asked && check.Fits(i) ? PixelCheck::RangeMm(p) : 0;
     if (range_mm == 0) {
       rest->push_back(point);
       continue;
@@ -208,6 +210,7 @@ bool FillPixels(const PlacedCloud& cloud, const PixelErrors& errors, double near
     list->points[pixel] = p.point;
   }
   list->returns = fitting.points.size() - further.size();
+  list->asked = fitting.asked;
   std::sort(further.begin(), further.end());
   for (const auto& [pixel, point] : further) {
     if (check.FitsWith(point, list->points[pixel])) {

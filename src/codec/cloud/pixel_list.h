@@ -33,6 +33,7 @@ struct PixelList {
   std::vector<ExtraReturn> extras;
   std::vector<std::uint32_t> rest;  // indices of the points that fit no pixel
   std::size_t returns = 0;          // number of pixels with a return
+  std::size_t asked = 0;            // number of points that are not too near for a pixel
 
   /// Moves further returns to `rest` if they are so few that a flag for each pixel would cost more.
   void DropFewExtras();

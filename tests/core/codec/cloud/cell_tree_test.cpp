@@ -97,7 +97,9 @@ TEST_P(Cover, DistinguishesAllCellsOfTheDeepestTree) {
     ExpectAllWithinTheError({near, far}, GetParam());
   }
 }
-INSTANTIATE_TEST_SUITE_P(All, Cover, ::testing::Values(&CoverByOwnCells, &CoverByFewCells));
+INSTANTIATE_TEST_SUITE_P(All, Cover,
+                         ::testing::Values(&CoverByOwnCells, &CoverByMergedCells,
+                                           &CoverByFewCells));
 
 TEST(Cover, TakesFewerCellsWhereItMayChoose) {
   const auto points = FloorAndWall(30'000);
@@ -105,7 +107,10 @@ TEST(Cover, TakesFewerCellsWhereItMayChoose) {
   CoveredPoints own;
   CoveredPoints few;
   CoverByOwnCells(points, grid, grid.DepthFor(5), &own);
+  CoveredPoints merged;
   CoverByFewCells(points, grid, grid.DepthFor(5), &few);
+  CoverByMergedCells(points, grid, grid.DepthFor(5), &merged);
+  EXPECT_LT(merged.cells.codes.size(), 0.85 * static_cast<double>(own.cells.codes.size()));
   EXPECT_LT(few.cells.codes.size(), 0.8 * static_cast<double>(own.cells.codes.size()));
 }
 
