@@ -143,8 +143,11 @@ ColumnAngles::ColumnAngles(const BeamTable& table) : table_(table), angles_(tabl
 ColumnFinder::ColumnFinder(const BeamTable& table) : table_(table), angles_(table) {
   for (const BeamTable::Beam& beam : table.beams)
     swings_.push_back(table.period > 1 && beam.Swings());
-  if (table.places.empty()) return;
   const std::vector<std::int32_t>& angles = angles_.firings();
+  around_.push_back(angles.back());
+  around_.insert(around_.end(), angles.begin(), angles.end());
+  around_.insert(around_.end(), {angles.front(), angles[angles.size() > 1 ? 1 : 0]});
+  if (table.places.empty()) return;
   buckets_.reserve(1U << (kTurnBits - kShift));
   std::uint32_t place = 0;
   for (std::int32_t i = 0; i < 1 << (kTurnBits - kShift); ++i) {
@@ -170,17 +173,15 @@ ColumnFinder::Found ColumnFinder::Find(std::uint32_t beam, std::int32_t azimuth)
   const std::uint32_t first = buckets_.empty()
                                   ? static_cast<std::uint32_t>(parts >> (kTurnBits + 8))
                                   : buckets_[place >> kShift];
-  const bool swings = swings_[beam];
-  const std::uint32_t around = swings ? 2 : 1;
-  std::uint32_t firing = first + 2 * columns - around;
+  if (!swings_[beam]) return NearestOf(b, first, away);
+  constexpr std::uint32_t kAround = 2;
+  std::uint32_t firing = first + 2 * columns - kAround;
   while (firing >= columns) firing -= columns;
-  std::uint32_t phase = swings ? firing % table_.period : 0;
+  std::uint32_t phase = firing % table_.period;
   std::uint32_t best = 0;
   std::int32_t residual = kTurn;
-  for (std::uint32_t step = 0; step <= 2 * around; ++step) {
-    std::int32_t at = angles[firing];
-    if (swings) at += b.swings[phase];
-    const std::int32_t off = Wrapped(away - at);
+  for (std::uint32_t step = 0; step <= 2 * kAround; ++step) {
+    const std::int32_t off = Wrapped(away - angles[firing] - b.swings[phase]);
     if (std::abs(off) < std::abs(residual)) {
       residual = off;
       best = firing;
@@ -188,7 +189,23 @@ ColumnFinder::Found ColumnFinder::Find(std::uint32_t beam, std::int32_t azimuth)
     if (++phase >= table_.period) phase = 0;
     if (++firing == columns) firing = phase = 0;
   }
-  return {best >= b.delay ? best - b.delay : best + columns - b.delay, residual};
+  return {table_.ColumnOf(b, best), residual};
+}
+
+/// Looks at the firing `first` and the two beside it, without jumps, which would be mispredicted.
+ColumnFinder::Found ColumnFinder::NearestOf(const BeamTable::Beam& beam, std::uint32_t first,
+                                            std::int32_t away) const {
+  const std::int32_t* const at = &around_[first];
+  std::uint32_t best = first + table_.columns() - 1;
+  std::int32_t residual = Wrapped(away - at[0]);
+  for (std::uint32_t k = 1; k < 3; ++k) {
+    const std::int32_t off = Wrapped(away - at[k]);
+    const bool is_nearer = std::abs(off) < std::abs(residual);
+    best = is_nearer ? first + table_.columns() - 1 + k : best;
+    residual = is_nearer ? off : residual;
+  }
+  while (best >= table_.columns()) best -= table_.columns();
+  return {table_.ColumnOf(beam, best), residual};
 }
 
 Point BeamTable::At(std::uint32_t beam, std::int32_t azimuth, const Slope& slope,

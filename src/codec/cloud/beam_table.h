@@ -90,6 +90,10 @@ struct BeamTable {
     column += beams[beam].delay;
     return column >= columns() ? column - columns() : column;
   }
+  /// Column in which a beam sees a firing.
+  std::uint32_t ColumnOf(const Beam& beam, std::uint32_t firing) const {
+    return firing >= beam.delay ? firing - beam.delay : firing + columns() - beam.delay;
+  }
   /// Returns the azimuth without wrapping, if there is no path.
   std::int32_t AzimuthOf(std::uint32_t beam, std::uint32_t column) const {
     column = FiringOf(beam, column);
@@ -162,9 +166,12 @@ class ColumnFinder {
   Found Find(std::uint32_t beam, std::int32_t azimuth) const;
 
  private:
+  Found NearestOf(const BeamTable::Beam& beam, std::uint32_t first, std::int32_t away) const;
+
   static constexpr unsigned kShift = kTurnBits - 14;  // to buckets
   const BeamTable& table_;
   ColumnAngles angles_;
+  std::vector<std::int32_t> around_;    // angles from that of the last column on to the second
   std::vector<std::uint16_t> buckets_;  // first place from each bucket on; empty: even columns
   std::vector<bool> swings_;            // has the beam swings?
 };

@@ -245,6 +245,7 @@ void CloudEncoder::PutNearestLast(double nearest_m) {
     const bool is_near = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < square;
     (is_near ? nearest : others).push_back(i);
   }
+  if (nearest.empty()) return;
   seen_ = others.size();
   others.insert(others.end(), nearest.begin(), nearest.end());
   const auto reorder = [&](auto* values) {
