@@ -3,6 +3,7 @@
 // fault, and each run begins anew.
 #include <gst/check/gstharness.h>
 
+#include <algorithm>
 #include <set>
 #include <thread>
 
@@ -209,7 +210,14 @@ TEST_F(NatsRuns, ASinkTellsOnceOfBuffersThatAreTooLargeUntilOneIsTaken) {
       sink.Push(32);
       ASSERT_TRUE(Eventually(
           [&] { return sink.stat("messages") == round && sink.stat("messages-waiting") == 0; }));
-      EXPECT_EQ(sink.Warnings().size(), 1U) << round;
+      // A server that has just started may still refuse to make a box, which is told of, too.
+      const auto texts = sink.Warnings();
+      EXPECT_EQ(std::count_if(texts.begin(), texts.end(),
+                              [](const std::string& text) {
+                                return text.find("max_payload") != std::string::npos;
+                              }),
+                1)
+          << round;
     }
   }
 }
