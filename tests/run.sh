@@ -278,7 +278,8 @@ if [ "$tsan" = yes ]; then
     # A first run makes the registry, so that no test is blamed for races in plugins of others.
     meson test -C "$root/build-tsan" --no-rebuild common >/dev/null 2>&1
     for suite in core elements; do
-      run "$root/build-tsan" "$suite" "${without_dear[@]}"
+      # ThreadSanitizer makes a coder twenty times slower.
+      run "$root/build-tsan" "$suite" "${without_dear[@]}" --timeout-multiplier 200
     done
   else
     count 1
