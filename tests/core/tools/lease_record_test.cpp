@@ -91,6 +91,20 @@ TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
   EXPECT_FALSE(VelocityBetween(before, after)) << "157 rad/s";
 }
 
+TEST(LeaseRecord, IsBounded) {
+  const auto reads = [](std::size_t name, int lease_ms, std::size_t blanks = 0) {
+    return ParseLeaseRecord(R"({"worker":")" + std::string(name, 'a') + R"(","lease-ms":)" +
+                            std::to_string(lease_ms) + "}" + std::string(blanks, ' '))
+        .has_value();
+  };
+  EXPECT_TRUE(reads(200, 60'000));
+  EXPECT_FALSE(reads(201, 60'000));
+  EXPECT_FALSE(reads(200, 60'001));
+  const std::size_t size = std::string(R"({"worker":"a","lease-ms":1})").size();
+  EXPECT_TRUE(reads(1, 1, 4'096 - size));
+  EXPECT_FALSE(reads(1, 1, 4'097 - size));
+}
+
 TEST(LeaseRecord, IsDamagedWhereItSaysWhatCannotBe) {
   const std::string begin = R"({"worker":"a","lease-ms":1000)";
   const std::string rest = R"(,"time":1,"stream":4,"scan":5,"from":3})";

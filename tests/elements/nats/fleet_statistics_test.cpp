@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "ext/nats/jetstream.h"
@@ -23,24 +24,34 @@ namespace lidar::test {
 namespace {
 
 TEST(FleetExposition, HasNumbersByTheirNames) {
-  const gst::StructurePtr stats(
-      gst_structure_new("s", "packets-lost", G_TYPE_UINT64, guint64{7}, "connected", G_TYPE_BOOLEAN,
-                        TRUE, "age", G_TYPE_UINT64, G_MAXUINT64, "reason", G_TYPE_STRING, "x",
-                        "rate", G_TYPE_DOUBLE, 0.5, nullptr));
+  GstStructure* inner = gst_structure_new("inner", "n", G_TYPE_UINT, 2U, nullptr);
+  const gst::StructurePtr owner(inner);
+  const gst::StructurePtr stats(gst_structure_new(
+      "s", "packets-lost", G_TYPE_UINT64, guint64{7}, "connected", G_TYPE_BOOLEAN, TRUE, "drained",
+      G_TYPE_BOOLEAN, FALSE, "age", G_TYPE_UINT64, G_MAXUINT64, "reason", G_TYPE_STRING, "x", "no",
+      G_TYPE_STRING, nullptr, "rate", G_TYPE_DOUBLE, 0.5, "int", G_TYPE_INT, -3, "int64",
+      G_TYPE_INT64, gint64{-4}, "uint", G_TYPE_UINT, 5U, "inner", GST_TYPE_STRUCTURE, inner,
+      nullptr));
   fleet::Exposition exposition;
   exposition.Add("natssink", "{robot=\"a\"}", stats.get());
   exposition.Add("lidar_edge_x", "", 1);
   using Limits = std::numeric_limits<double>;
   for (const double none : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()})
     exposition.Add("lidar_edge_y", "", none);
-  EXPECT_EQ(
-      exposition.text(),
-      "# TYPE lidar_edge_x untyped\nlidar_edge_x 1\n"
-      "# TYPE lidar_natssink_connected untyped\nlidar_natssink_connected{robot=\"a\"} 1\n"
-      "# TYPE lidar_natssink_packets_lost untyped\nlidar_natssink_packets_lost{robot=\"a\"} 7\n"
-      "# TYPE lidar_natssink_rate untyped\nlidar_natssink_rate{robot=\"a\"} 0.5\n");
+  std::string expected = "# TYPE lidar_edge_x untyped\nlidar_edge_x 1\n";
+  for (const auto& [name, value] : std::map<std::string, std::string>{{"connected", "1"},
+                                                                      {"drained", "0"},
+                                                                      {"int", "-3"},
+                                                                      {"int64", "-4"},
+                                                                      {"rate", "0.5"},
+                                                                      {"uint", "5"},
+                                                                      {"packets_lost", "7"}})
+    expected += "# TYPE lidar_natssink_" + name + " untyped\nlidar_natssink_" + name +
+                "{robot=\"a\"} " + value + "\n";
+  EXPECT_EQ(exposition.text(), expected);
   EXPECT_EQ(fleet::ToJson(stats.get()).dump(),
-            R"({"connected":true,"packets-lost":7,"rate":0.5,"reason":"x"})");
+            R"({"connected":true,"drained":false,"inner":{"n":2},"int":-3,"int64":-4,)"
+            R"("packets-lost":7,"rate":0.5,"reason":"x","uint":5})");
 }
 
 TEST(Printable, IsALineThatGivesATerminalNoOrders) {

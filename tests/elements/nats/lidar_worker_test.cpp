@@ -279,7 +279,7 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   worker::Progress begin;
   begin.pose = {0, 0, 0, 0, 0, 0, 1};
   begin.stream = CreationOf("fleet");
-  begin.scan = begin.from = 1;
+  begin.scan = begin.from = 2;  // behind the caps
   worker::RobotPipeline pipeline(settings, "r1.front", begin.stream, begin);
   pipeline.SetEnd(Time::max());
   pipeline.Play();
@@ -289,6 +289,9 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   }));
   EXPECT_LT(pipeline.progress()->from, before) << "0.3 s before the scan, by the sensor's clock";
   EXPECT_GT(pipeline.progress()->from, before / 2);
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(pipeline.Poll(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "it has the scan of the record";
 }
 
 TEST_F(LidarWorker, PrintsNoControlCharactersOfARecord) {
@@ -315,6 +318,7 @@ TEST_F(LidarWorker, TellsOfItsRobots) {
     const nats::MessagePtr message(raw_report);
     EXPECT_STREQ(natsMsg_GetSubject(raw_report), "fleet.r1.worker.front");
     const auto report = nlohmann::json::parse(natsMsg_GetData(raw_report));
+    EXPECT_GT(report["time"], gint64{1'600'000'000} * 1'000'000'000) << "[ns]";
     return report["robot"] == "r1" && report["natssink"]["messages"] > 3;
   };
   EXPECT_TRUE(Eventually(counts_poses));
@@ -366,6 +370,20 @@ class SlowRobots : public LidarWorker {
       return holds();
     });
   }
+  /// Returns how many robots it has, has taken and has given up, and how many failures.
+  std::string Figures() const {
+    fleet::Exposition exposition;
+    fleet::Reporter::Reports reports;
+    worker_->Tell(&exposition, &reports);
+    const std::string text = exposition.text();
+    std::string found;
+    for (const char* name : {"robots", "robots_taken", "robots_given_up", "failures"}) {
+      const std::string line = std::string("\nlidar_worker_") + name + " ";
+      const auto at = text.find(line);
+      found += at == text.npos ? '?' : text[at + line.size()];
+    }
+    return found;
+  }
 
   std::unique_ptr<worker::Worker> worker_;
 };
@@ -396,24 +414,20 @@ TEST_F(SlowRobots, AreHandedOverThoughTheyDoNotStop) {
 }
 
 TEST_F(SlowRobots, AreCountedAsTheyAreTakenAndFail) {
-  const auto figures = [this] {
-    fleet::Exposition exposition;
-    fleet::Reporter::Reports reports;
-    worker_->Tell(&exposition, &reports);
-    const std::string text = exposition.text();
-    std::string found;
-    for (const char* name : {"robots", "robots_taken", "robots_given_up", "failures"}) {
-      const std::string line = std::string("\nlidar_worker_") + name + " ";
-      const auto at = text.find(line);
-      found += at == text.npos ? '?' : text[at + line.size()];
-    }
-    return found;
-  };
   ASSERT_TRUE(WorksUntil([] { return slowness.held == 2; }));
-  EXPECT_EQ(figures(), "2200");
+  EXPECT_EQ(Figures(), "2200");
   slowness.fails = true;
   slowness.hold = false;
-  EXPECT_TRUE(WorksUntil([&] { return figures() == "0222"; })) << figures();
+  EXPECT_TRUE(WorksUntil([&] { return Figures() == "0222"; })) << Figures();
+}
+
+TEST_F(SlowRobots, WhosePipelinesCannotBeMadeAreGivenUp) {
+  GstRegistry* registry = gst_registry_get();
+  GstPluginFeature* decoder = gst_registry_lookup_feature(registry, "slowdecoder");
+  gst_registry_remove_feature(registry, decoder);
+  EXPECT_TRUE(WorksUntil([&] { return Figures() == "0222"; })) << Figures();
+  gst_registry_add_feature(registry, decoder);
+  gst_object_unref(decoder);
 }
 
 TEST_F(LidarWorker, BeginsAnewWhereTheRecordIsDamaged) {
