@@ -132,6 +132,12 @@ void CloudsCourse(Course& c) {
                            R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":999}]})",
                            R"({"op":"unsubscribe","subscriptionIds":[999]})"})
     web.viewer().Say(text);
+  for (const char* value : {"true", "false"}) {
+    c.Set("sync", value);
+    gboolean sync = FALSE;
+    g_object_get(GST_BIN_CHILDREN(c.element())->data, "sync", &sync, nullptr);
+    c.AddLine(sync != FALSE ? "renders by the clock" : "renders at once");
+  }
   c.Flush();
   web.Push("behind a flush", BytesAt(8, 128));
   c.Gap(0, GST_MSECOND);
@@ -180,12 +186,33 @@ void KindsCourse(Course& c) {
   web.Stop();
 }
 
+void PosesCourse(Course& c) {
+  WebScript web(&c);
+  web.Begin(CloudCapsOf(4));
+  web.viewer().Subscribe("/pose", 1);
+  web.Push("a cloud in the place of poses", CloudWithPose(1, 64));
+  gst_child_proxy_set(GST_CHILD_PROXY(c.element()), "sink_0::topic", "/front", nullptr);
+  c.SetCaps("application/x-draco,geometry=xyz,alignment=slice");
+  web.Push("elsewhere", CloudWithPose(2, 5));
+  web.viewer().Subscribe("/front", 2);
+  web.viewer().Subscribe("/pose", 3);
+  web.viewer().Subscribe("/tf", 4);
+  web.Push("with its pose", CloudWithPose(3, 5));
+  web.viewer().Unsubscribe(4);
+  web.Push("without a viewer of transforms", CloudWithPose(4, 5));
+  web.Stop();
+}
+
 const std::size_t kWebCourses = AddGoldenCourses(
     "FoxgloveGoldenCourses",
     {{"clouds", "foxglovesink port=0 sync=false", CloudsCourse, {"sink_0", nullptr}},
      {"kinds",
       "foxglovesink port=0 sync=false max-points=3 sink_0::topic=/front sink_0::frame-id=front",
       KindsCourse,
+      {"sink_0", nullptr}},
+     {"poses",
+      "foxglovesink port=0 sync=false sink_0::topic=/pose",
+      PosesCourse,
       {"sink_0", nullptr}}},
     GOLDEN_COURSES_FOLDER);
 
