@@ -245,6 +245,7 @@ void SinkCourse(Course& c) {
   sink.Push("behind it", Sample(7));
   c.End();
   c.Stop();
+  c.Set("buffer-size", "65536");
   sink.Begin(kSampleCaps);
   sink.Push("in a second run", Sample(8));
   sink.PushOfAnotherSize();
@@ -368,15 +369,17 @@ void SourceCourse(Course& c) {
   c.AwaitStat("messages-without-caps", 1);
   source.Give("behind one without caps", "2 14", 24);
   c.Ask();
+  source.GiveDamaged("2 15", 33);
+  c.Await("damaged at the end", "message warning A message");
   fleet.Kill();
   fleet.Restart("reconnects", 1);
   c.Send("end", gst_event_new_eos(), "event eos");
   c.Stop();
   source.Play("play again");
   source.SetFormat(FormatOf(kSampleCaps));
-  source.Give("in a second run", "2 9");
-  source.GiveDamaged("2 10", 33);
-  source.Give("behind a damaged one", "2 11");
+  source.GiveDamaged("2 9", 33);
+  source.Give("behind a damaged one", "2 9");
+  source.Give("in a second run", "2 11");
   c.Stop();
   c.Set("subject", "r1..imu");
   gst_element_set_state(c.element(), GST_STATE_PLAYING);
