@@ -211,6 +211,9 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
   ASSERT_TRUE(first);
   const gsize size = gst_buffer_get_size(first.get());
   EXPECT_EQ(receiver.Info().sensor_model->columns_per_scan, 512U);
+  const auto slices = [&] { return Stat(receiver.source(), "slices"); };
+  constexpr guint64 kBefore = 20;
+  ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) { return slices() > kBefore; }));
   ASSERT_EQ(sensor.state().SetConfig(
                 {{"lidar_mode", "1024x10"}, {"udp_profile_lidar", "RNG19_RFL8_SIG16_NIR16_DUAL"}},
                 {false, true}, "127.0.0.1"),
@@ -222,6 +225,7 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
     return gst_buffer_get_size(buffer) != size;
   }));
   EXPECT_TRUE(discont);
+  EXPECT_GT(slices(), kBefore) << "of both geometries";
   EXPECT_EQ(receiver.Info().sensor_model->columns_per_scan, 1024U);
   EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
 }
