@@ -26,7 +26,7 @@ class StaticSensor : public ::testing::Test {
   }
 
   /// Sends one scan. Packets for which `loses` is true never arrive; the others can be
-  /// acknowledged.
+  /// acknowledged, after each slice: references end 2 s of real time after the last report.
   void Scan(const std::function<bool(guint packet)>& loses = nullptr) {
     for (guint i = 0; i < kSlices; ++i) {
       const GstLidarSlice slice{scan_, i, kSlices, 64 * i};
@@ -34,9 +34,9 @@ class StaticSensor : public ::testing::Test {
       AddNoise(input);
       ASSERT_EQ(gst_harness_push(sender_.get(), input), GST_FLOW_OK);
       while (BufferPtr packet{gst_harness_try_pull(sender_.get())}) Carry(std::move(packet), loses);
+      if (acknowledges_) Acknowledge();
     }
     ++scan_;
-    if (acknowledges_) Acknowledge();
   }
   void Scans(int count) {
     for (int i = 0; i < count; ++i) Scan();
