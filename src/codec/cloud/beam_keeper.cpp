@@ -159,9 +159,14 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   ++fails_;
   constexpr unsigned kAtFirst = 4;
   const bool is_power = (fails_ & (fails_ - 1)) == 0;
-  if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0)
-    return table_ ? &*table_ : nullptr;
-  if (PlaceOnNewPath(points, pulses, placed)) return &*table_;
+  if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0) {
+    // A search that found no path has placed no point.
+    return table_ && !table_->has_path() ? &*table_ : nullptr;
+  }
+  if (PlaceOnNewPath(points, pulses, placed)) {
+    fails_ = 0;
+    return &*table_;
+  }
   std::vector<Sighting> sightings;
   SightAll(all, all.size(), &sightings);
   table_ = FindBeams(sightings);

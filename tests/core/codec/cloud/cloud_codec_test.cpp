@@ -299,6 +299,26 @@ TEST(CloudCodec, CodesHowPointsLeaveTheirPath) {
   EXPECT_LE(BitsOf(EncodePaths({cloud})[0]), 0.7 * in_cells);
 }
 
+/// Points in all directions, whose times say nothing.
+PathCloud Noise(unsigned seed, std::size_t points) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> side(-30, 30);
+  PathCloud noise(points);
+  for (PathPoint& p : noise) p = {side(random), side(random), side(random), 0, 0, 0};
+  return noise;
+}
+
+// The path is found when the search for beams already makes pauses.
+TEST(CloudCodec, LosesAPathBetweenCloudsWithoutOne) {
+  for (const std::size_t after : {4'000U, 3'000U}) {
+    std::vector<PathCloud> clouds;
+    for (unsigned i = 0; i < 7; ++i) clouds.push_back(Noise(i, 4'000));
+    clouds.push_back(PathScan(0));
+    for (unsigned i = 7; i < 10; ++i) clouds.push_back(Noise(i, after));
+    EncodePaths(clouds);
+  }
+}
+
 TEST(CloudCodec, TakesCloudsWhoseLinesAndTimesSayNothing) {
   std::vector<PathCloud> clouds(4, PathScan(0));
   for (std::size_t i = 0; i < clouds[0].size(); ++i) {
