@@ -9,7 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// An open hash table that is never more than half full: it grows.
+/// An open hash table that is never more than half full: it grows. The hash depends on where the
+/// table lies, because a cloud could be made whose cells all collide by a known one.
 class NodeMap {
  public:
   static constexpr std::uint32_t kAbsent = UINT32_MAX;
@@ -20,6 +21,8 @@ class NodeMap {
     shift_ = 64 - bits;
     slots_.assign(std::size_t{1} << bits, {0, kAbsent});
     room_ = slots_.size() / 2;
+    const std::uint64_t address = reinterpret_cast<std::uintptr_t>(slots_.data());
+    salt_ = address * kMultiplier;
   }
   void Add(std::uint64_t key, std::uint32_t index) {
     if (room_ == 0) Grow();
@@ -63,9 +66,12 @@ class NodeMap {
     std::uint32_t index;
   };
   std::size_t SlotOf(std::uint64_t key) const {
-    return static_cast<std::size_t>(key * 0x9E3779B97F4A7C15U >> shift_);
+    return static_cast<std::size_t>((key ^ salt_) * kMultiplier >> shift_);
   }
 
+  static constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15U;
+
+  std::uint64_t salt_ = 0;
   std::vector<Slot> slots_;
   std::size_t room_ = 0;
   unsigned shift_ = 60;
