@@ -129,7 +129,7 @@ class NearCells {
   double square_bound_;  // of the distance from a cell's middle
 };
 
-/// Points by their own cells, which may merge.
+/// Points by their own cells, which merge.
 class OwnCells {
  public:
   OwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
@@ -355,7 +355,18 @@ bool CellGrid::Holds(const Point& point) const {
 
 void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered) {
-  OwnCells(points, grid, depth).List(depth, covered);
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;  // code, index
+  sorted.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    sorted.emplace_back(MortonCode(OwnCell(points[i], grid, depth)), i);
+  std::sort(sorted.begin(), sorted.end());
+  covered->cells.Clear();
+  covered->cells.depth = depth;
+  covered->order.clear();
+  for (const auto& [code, point] : sorted) {
+    covered->order.push_back(point);
+    covered->cells.AddPoint(code);
+  }
 }
 
 void CoverByMergedCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
