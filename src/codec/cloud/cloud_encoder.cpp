@@ -99,8 +99,8 @@ RangeWay WayOf(unsigned effort) {
 }
 
 /// Returns the distance from the sensor, in multiples of the error, up to which cells are cheaper
-/// than ranges: neighbours are closer together than half the error. Many cells cost more time than
-/// ranges.
+/// than ranges: the mean step between pixels is below kCloseTogether of the error. Many cells cost
+/// more time than ranges.
 double UsualReach(const BeamTable& table) {
   constexpr double kMost = 70;
   constexpr double kCloseTogether = 0.45;
@@ -110,7 +110,7 @@ double UsualReach(const BeamTable& table) {
   const double beam = std::max(all / std::max(table.rows() - 1, 1U), column);
   return std::min(kCloseTogether / (kRadians * std::sqrt(column * beam)), kMost);
 }
-/// Other reaches to try, in multiples of the usual one.
+/// Reaches to try, in multiples of the usual one.
 constexpr std::array<double, 8> kReaches = {0, 0.3, 0.5, 0.7, 1, 1.4, 2, 3};
 
 }  // namespace

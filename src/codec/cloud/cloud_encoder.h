@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Encodes clouds without a sensor model, with points in any order.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "src/codec/cloud/cloud_header.h"
 #include "src/codec/cloud/exact_part.h"
 #include "src/codec/cloud_io.h"
+#include "src/codec/effort_control.h"
 #include "src/codec/slice_encoder.h"
 
 namespace lidar::codec::cloud {
@@ -45,7 +47,7 @@ class CloudEncoder {
   std::string Mode() const { return "xyz-cloud" + std::to_string(effort_); }
   /// Effort: at 0 a point without a beam has its own cell, at 1 such cells merge, from 2 on points
   /// share few cells, and at EffortControl::kHighest all ways are tried.
-  void set_effort(unsigned effort) { effort_ = effort; }
+  void set_effort(unsigned effort) { effort_ = std::min(effort, EffortControl::kHighest); }
   /// Keeps `kept` of the loaded points.
   void Thin(const std::vector<bool>& kept);
 
