@@ -27,8 +27,7 @@ GstClockTime CaptureTime(GstBuffer* buffer, GstClockTime otherwise) {
   return GST_CLOCK_TIME_IS_VALID(time) ? time : otherwise;
 }
 
-/// Returns the first text that is not empty: a frame that is asked for, that of the caps, the usual
-/// one.
+/// Returns `wanted`, else the frame in `field` of the caps, else `usual`.
 std::string FrameOf(const GstCaps* caps, const std::string& wanted, const char* field,
                     const char* usual) {
   if (!wanted.empty()) return wanted;
@@ -137,7 +136,8 @@ std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps,
            gst_structure_get_name(gst_caps_get_structure(caps, 0));
     return nullptr;
   }
-  const std::string frame_id = FrameOf(caps, sensor_frame, GST_LIDAR_FRAME_ID, kCloudFrame);
+  const std::string frame_id = FrameOf(caps, sensor_frame, GST_LIDAR_FRAME_ID,
+                                       *type == MessageType::kImu ? kImuFrame : kCloudFrame);
   switch (*type) {
     case MessageType::kImu:
       if (IsOurImu(caps)) return std::make_unique<ImuWriter>(frame_id);

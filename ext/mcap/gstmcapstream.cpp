@@ -22,7 +22,8 @@ struct StreamSettings {
 const std::array<Property<StreamSettings>, 2> kProperties = {{
     {"topic", "Where its messages go; NULL: /points, /slices, /imu or /odometry",
      &StreamSettings::topic},
-    {"frame-id", "The sensor's frame, as messages name it; NULL: as the caps say, else lidar",
+    {"frame-id",
+     "The sensor's frame, as messages name it; NULL: as the caps say, else lidar, or imu",
      &StreamSettings::frame_id},
 }};
 

@@ -164,6 +164,9 @@ TEST_F(McapContent, FramesAreThoseOfTheCapsUnlessOneIsSet) {
   messages = WriteZeros("application/x-odometry", 64);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(frames(*cdr::ReadOdometry(ViewOf(messages[0]))), "odom lidar");
+  messages = WriteZeros(kImu, 32);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(cdr::ReadImu(ViewOf(messages[0]))->header.frame_id, "imu");
   messages = WriteZeros(std::string(kImu) + ",frame-id=os_imu", 32);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(cdr::ReadImu(ViewOf(messages[0]))->header.frame_id, "os_imu");
