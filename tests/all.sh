@@ -106,12 +106,19 @@ for step in "${steps[@]}"; do
   if [ -n "$lacking" ]; then
     row "$name" skipped 0 "needs $lacking"
   elif [ "$name" = soak ]; then
+    # A process group of its own ends with the script, also after Ctrl-C, which jobs ignore.
+    set -m
     take "$name" "$command" &
+    soak_group=$!
+    set +m
+    trap '[ -z "$soak_group" ] || kill -- -"$soak_group" 2>/dev/null' EXIT
+    trap 'exit 130' INT TERM
   else
     take "$name" "$command"
   fi
 done
 wait
+soak_group=
 
 echo
 cat "$rows"
