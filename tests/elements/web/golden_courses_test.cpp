@@ -42,8 +42,10 @@ class NotedViewer {
     EXPECT_TRUE(WaitUntil([&] { return peer_.statuses.back() == last; }));
     course_.AddLine("answer " + nlohmann::json(peer_.statuses).dump());
   }
-  /// Notes the messages that come before the answer to a request.
-  void NoteReceived() {
+  /// Waits for so many messages, and notes all that come before the answer to a request. Answers
+  /// go before messages that wait.
+  void NoteReceived(std::size_t messages) {
+    EXPECT_TRUE(WaitUntil([&] { return peer_.received.size() >= messages; }));
     peer_.Sync();
     for (; !peer_.received.empty(); peer_.received.pop_front()) {
       const Received& r = peer_.received.front();
@@ -96,9 +98,10 @@ class WebScript {
     viewer_.emplace(&c_, c_.Stat("port"));
   }
   NotedViewer& viewer() { return *viewer_; }
-  void Push(const char* what, gst::BufferPtr buffer) {
+  /// Pushes a buffer that becomes so many messages.
+  void Push(const char* what, gst::BufferPtr buffer, std::size_t messages = 1) {
     const GstFlowReturn flow = gst_pad_push(c_.harness()->srcpad, buffer.release());
-    viewer_->NoteReceived();
+    viewer_->NoteReceived(messages);
     c_.Note(std::string(what) + ": " + gst_flow_get_name(flow));
   }
   void Stop() {
@@ -119,15 +122,15 @@ void CloudsCourse(Course& c) {
   c.Push("nobody wants", BytesAt(1, 64));
   web.viewer().Subscribe("/points", 42);
   web.Push("a cloud", BytesAt(2, 64));
-  for (const gsize size : {63U, 0U}) web.Push("of another size", BytesAt(3, size));
+  for (const gsize size : {63U, 0U}) web.Push("of another size", BytesAt(3, size), 0);
   c.SetCaps(CloudCapsOf(8));
   web.Push("wider", BytesAt(4, 128));
   web.Push("with a pose", CloudWithPose(5, 128));
   web.viewer().Subscribe("/pose", 43);
   web.viewer().Subscribe("/tf", 44);
-  web.Push("with a pose", CloudWithPose(6, 128));
+  web.Push("with a pose", CloudWithPose(6, 128), 3);
   web.viewer().Unsubscribe(43);
-  web.Push("without a viewer of poses", CloudWithPose(7, 128));
+  web.Push("without a viewer of poses", CloudWithPose(7, 128), 2);
   for (const char* text : {"{", R"({"op":"subscribe"})",
                            R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":999}]})",
                            R"({"op":"unsubscribe","subscriptionIds":[999]})"})
@@ -145,7 +148,7 @@ void CloudsCourse(Course& c) {
     c.SetCaps(
         "application/x-pointcloud2,fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",point-step=24,"
         "height=1,width=1,is-bigendian=false,is-dense=false");
-  web.Push("of caps that are refused", BytesAt(9, 24));
+  web.Push("of caps that are refused", BytesAt(9, 24), 0);
   c.SetCaps(CloudCapsOf(4));
   web.Push("of the first caps", BytesAt(10, 64));
   web.Stop();
@@ -169,14 +172,14 @@ void KindsCourse(Course& c) {
   c.SetCaps("application/x-odometry,frame-id=odom,child-frame-id=os");
   web.viewer().Subscribe("/front", 3);
   web.viewer().Subscribe("/tf", 4);
-  web.Push("a pose", BytesAt(3, 64));
-  web.Push("that is short", BytesAt(4, 40));
+  web.Push("a pose", BytesAt(3, 64), 2);
+  web.Push("that is short", BytesAt(4, 40), 0);
   for (const char* caps : {"video/x-h264,stream-format=byte-stream,alignment=au", "video/x-vp8"}) {
     c.SetCaps(caps);
     web.viewer().Subscribe("/front", 5);
     gst::BufferPtr delta = BytesAt(5, 6);
     GST_BUFFER_FLAG_SET(delta.get(), GST_BUFFER_FLAG_DELTA_UNIT);
-    web.Push("no key frame", std::move(delta));
+    web.Push("no key frame", std::move(delta), 0);
     web.Push("a key frame", BytesAt(6, 7));
     delta = BytesAt(7, 8);
     GST_BUFFER_FLAG_SET(delta.get(), GST_BUFFER_FLAG_DELTA_UNIT);
@@ -193,13 +196,13 @@ void PosesCourse(Course& c) {
   web.Push("a cloud in the place of poses", CloudWithPose(1, 64));
   gst_child_proxy_set(GST_CHILD_PROXY(c.element()), "sink_0::topic", "/front", nullptr);
   c.SetCaps("application/x-draco,geometry=xyz,alignment=slice");
-  web.Push("elsewhere", CloudWithPose(2, 5));
+  web.Push("elsewhere", CloudWithPose(2, 5), 0);
   web.viewer().Subscribe("/front", 2);
   web.viewer().Subscribe("/pose", 3);
   web.viewer().Subscribe("/tf", 4);
-  web.Push("with its pose", CloudWithPose(3, 5));
+  web.Push("with its pose", CloudWithPose(3, 5), 3);
   web.viewer().Unsubscribe(4);
-  web.Push("without a viewer of transforms", CloudWithPose(4, 5));
+  web.Push("without a viewer of transforms", CloudWithPose(4, 5), 2);
   web.Stop();
 }
 
