@@ -31,8 +31,8 @@ GstClockTime CaptureTime(GstBuffer* buffer, GstClockTime otherwise) {
 std::string FrameOf(const GstCaps* caps, const std::string& wanted, const char* field,
                     const char* usual) {
   if (!wanted.empty()) return wanted;
-  const gchar* frame = gst_structure_get_string(gst_caps_get_structure(caps, 0), field);
-  return frame != nullptr && *frame != '\0' ? frame : usual;
+  const std::string frame = FrameIn(gst_caps_get_structure(caps, 0), field);
+  return frame.empty() ? usual : frame;
 }
 
 class SliceWriter : public BufferWriter {

@@ -10,11 +10,6 @@
 namespace lidar::gst {
 namespace {
 
-std::string TextOf(const GstStructure* s, const char* field) {
-  const gchar* text = gst_structure_get_string(s, field);
-  return text != nullptr ? text : "";
-}
-
 const char* MediaTypeOf(cdr::RosType type) {
   switch (type) {
     case cdr::RosType::kPointCloud2:
@@ -44,7 +39,7 @@ bool MessageWriter::SetCaps(const GstCaps* caps) {
     why_ = std::string(cdr::InfoOf(type_).name) + " is made of " + MediaTypeOf(type_);
     return false;
   }
-  from_caps_ = {TextOf(s, GST_LIDAR_FRAME_ID), TextOf(s, GST_LIDAR_CHILD_FRAME_ID)};
+  from_caps_ = {FrameIn(s, GST_LIDAR_FRAME_ID), FrameIn(s, GST_LIDAR_CHILD_FRAME_ID)};
   if (type_ == cdr::RosType::kImu) {
     const gchar* fields = gst_structure_get_string(s, "fields");
     why_ = std::string("samples must have the fields ") + kImuFields;

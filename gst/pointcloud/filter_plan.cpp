@@ -95,8 +95,7 @@ std::optional<Transform> PoseOf(GstBuffer* buffer) {
 /// Returns the frame of the clouds from the settings or the caps.
 std::string FrameOf(const FilterSettings& settings, const GstCaps* caps) {
   if (!settings.frame_id.empty()) return settings.frame_id;
-  const gchar* text = gst_structure_get_string(gst_caps_get_structure(caps, 0), GST_LIDAR_FRAME_ID);
-  return text != nullptr ? text : "";
+  return FrameIn(gst_caps_get_structure(caps, 0), GST_LIDAR_FRAME_ID);
 }
 
 /// Removes the pose of moved points, so that the next element does not move them again.

@@ -17,11 +17,6 @@ TransformInbox& InboxOf(GstPad* pad) {
   return *static_cast<TransformInbox*>(gst_pad_get_element_private(pad));
 }
 
-std::string TextOf(const GstStructure* s, const char* field, const char* usual) {
-  const gchar* text = gst_structure_get_string(s, field);
-  return text != nullptr ? text : usual;
-}
-
 }  // namespace
 
 std::optional<Time> CaptureTimeOf(GstBuffer* buffer) {
@@ -100,8 +95,8 @@ void TransformInbox::TakePose(const GstStructure* caps, GstBuffer* buffer) {
   const auto read = map ? cdr::ReadPose(map.view(), &tracking) : std::nullopt;
   if (!read || !at) return Refuse();
   const FramePose pose{read->position, read->orientation};
-  Note(TextOf(caps, GST_LIDAR_FRAME_ID, kOdometryFrame),
-       TextOf(caps, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame), *at, pose, false);
+  Note(FrameIn(caps, GST_LIDAR_FRAME_ID, kOdometryFrame),
+       FrameIn(caps, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame), *at, pose, false);
 }
 
 void TransformInbox::Note(const std::string& parent, const std::string& child, Time at,
