@@ -66,6 +66,11 @@ class NotedViewer {
   std::map<std::string, std::uint32_t> noted_;  // the last channel of each topic
 };
 
+/// Caps that the element refuses.
+constexpr const char* kCapsOfDoubles =
+    "application/x-pointcloud2,fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",point-step=24,height=1,"
+    "width=1,is-bigendian=false,is-dense=false";
+
 std::string CloudCapsOf(int width) {
   return "application/x-pointcloud2,fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12\","
          "point-step=16,height=1,is-bigendian=false,is-dense=false,framerate=10/1,width=" +
@@ -144,10 +149,7 @@ void CloudsCourse(Course& c) {
   c.Flush();
   web.Push("behind a flush", BytesAt(8, 128));
   c.Gap(0, GST_MSECOND);
-  for (int i = 0; i < 2; ++i)
-    c.SetCaps(
-        "application/x-pointcloud2,fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",point-step=24,"
-        "height=1,width=1,is-bigendian=false,is-dense=false");
+  for (int i = 0; i < 2; ++i) c.SetCaps(kCapsOfDoubles);
   web.Push("of caps that are refused", BytesAt(9, 24), 0);
   c.SetCaps(CloudCapsOf(4));
   web.Push("of the first caps", BytesAt(10, 64));
@@ -155,9 +157,7 @@ void CloudsCourse(Course& c) {
   web.Begin(CloudCapsOf(4));
   web.viewer().Subscribe("/points", 1);
   web.Push("in a second run", CloudWithPose(11, 64));
-  c.SetCaps(
-      "application/x-pointcloud2,fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",point-step=24,"
-      "height=1,width=1,is-bigendian=false,is-dense=false");
+  c.SetCaps(kCapsOfDoubles);
   c.End();
 }
 
