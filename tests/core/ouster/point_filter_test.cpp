@@ -2,6 +2,7 @@
 // Which pixels become points: limits of the range, for each return, and masks.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "src/base/byte_writer.h"
@@ -60,6 +61,28 @@ TEST_F(RangeLimits, HoldForEachReturnByItself) {
   EXPECT_EQ(Filter({5000, 1000}), (Ranges{5000, 0}));
   EXPECT_EQ(Filter({5000, 11'000}), (Ranges{5000, 0}));
   EXPECT_EQ(Filter({1000, 5000}), (Ranges{0, 5000}));
+}
+
+TEST(MissingPoints, AreZeroesButForCoordinatesThatAreNoNumbers) {
+  const Metadata m = test::LoadMetadata("OS-1-128_v2.3.0_1024x10.json");
+  for (const Invalid invalid : {Invalid::kZero, Invalid::kNan}) {
+    PointOptions options;
+    options.invalid = invalid;
+    std::string error;
+    const auto writer = PointWriter::Create(m, options, &error);
+    ASSERT_TRUE(writer) << error;
+    const std::uint32_t step = writer->point_step();
+    std::vector<std::uint8_t> points(std::size_t{3} * step, 0x55);
+    writer->FillMissing(&points);
+    for (std::size_t i = 0; i < points.size(); i += 4) {
+      float value = 0;
+      std::memcpy(&value, &points[i], sizeof value);
+      if (invalid == Invalid::kNan && i % step < 12)
+        EXPECT_TRUE(std::isnan(value)) << i;
+      else
+        EXPECT_EQ(value, 0) << i;
+    }
+  }
 }
 
 TEST(MaskImage, PixelsAreShiftedAsTheBeamsAre) {

@@ -58,7 +58,9 @@ std::uint32_t ValueOf(const ChannelBits& bits, std::uint32_t beam, std::uint32_t
   return static_cast<std::uint32_t>((random() & mask) << bits.scale_shift);
 }
 
-std::vector<std::vector<std::uint8_t>> WriteScan(const Metadata& m, std::uint32_t frame_id) {
+/// Each pixel has all of its bits set before if `again`.
+std::vector<std::vector<std::uint8_t>> WriteScan(const Metadata& m, std::uint32_t frame_id,
+                                                 bool again = false) {
   PacketWriter writer(m.format, {m.init_id, m.serial});
   std::vector<std::vector<std::uint8_t>> packets;
   for (std::uint32_t first = 0; first < m.model.columns_per_scan;
@@ -68,6 +70,9 @@ std::vector<std::vector<std::uint8_t>> WriteScan(const Metadata& m, std::uint32_
       const std::uint32_t column = first + i;
       writer.SetColumn(i, {1'000'000'000ULL + column * 195'312ULL,
                            static_cast<std::uint16_t>(column), column < m.model.columns_per_scan});
+      for (std::uint32_t beam = 0; again && beam < m.format.beams; ++beam)
+        for (const ChannelBits& bits : LayoutOf(m.format.profile))
+          writer.SetPixel({i, beam}, bits.channel, 0xFFFF'FFFFU);
       for (std::uint32_t beam = 0; beam < m.format.beams; ++beam)
         for (const ChannelBits& bits : LayoutOf(m.format.profile))
           writer.SetPixel({i, beam}, bits.channel, ValueOf(bits, beam, column));
@@ -106,6 +111,11 @@ TEST_P(Profiles, EveryChannelSurvivesWritingAndParsing) {
       }
     }
   }
+}
+
+TEST_P(Profiles, APixelThatIsSetAgainHasItsNewValue) {
+  const Metadata m = MakeMetadata(GetParam());
+  EXPECT_EQ(WriteScan(m, 1, true), WriteScan(m, 1));
 }
 
 TEST_P(Profiles, TheBatcherPutsRangesWhereTheyBelong) {

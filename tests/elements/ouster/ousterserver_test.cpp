@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/elements/ouster/hostile_server.h"
 #include "tests/elements/ouster/live_receiver.h"
@@ -122,6 +124,30 @@ INSTANTIATE_TEST_SUITE_P(All, OusterServer, ::testing::ValuesIn(kAttacks),
                          [](const ::testing::TestParamInfo<Attack>& attack) {
                            return std::string(attack.param.name);
                          });
+
+/// A sensor is asked again after a second at the earliest, whatever comes to the port of its
+/// packets.
+TEST(OusterQuestions, AreAsFewAsSeconds) {
+  const Receiver::Ports ports{FreePort(), FreePort()};
+  std::ifstream file(DataPath("OS-1-128_v2.3.0_1024x10.json"));
+  auto answer = nlohmann::json::parse(file);
+  answer["udp_port_lidar"] = ports.lidar;
+  answer["udp_port_imu"] = ports.imu;
+  const std::string text = answer.dump();
+  const HostileServer server([&text](const Exchange& e) { e.Answer(text); });
+  Receiver receiver(server.host(), "", ports);
+  ASSERT_TRUE(receiver.Await("ouster-metadata-changed"));
+  const int of_a_question = server.requests();
+  const gint64 begin = g_get_monotonic_time();
+  UdpSender sender(ports.lidar);
+  for (guint64 i = 1; i <= 100; ++i) {
+    sender.Send(std::vector<std::uint8_t>(1'000));
+    ASSERT_TRUE(Eventually([&] { return Stat(receiver.source(), "packets-wrong-size") == i; }));
+  }
+  const gint64 seconds = (g_get_monotonic_time() - begin) / G_USEC_PER_SEC + 1;
+  EXPECT_GT(server.requests(), of_a_question);
+  EXPECT_LE(server.requests(), of_a_question * (1 + seconds));
+}
 
 /// Returns the error of ouster_src if it cannot start; `scarcity` is created before it tries.
 template <class Scarcity>
