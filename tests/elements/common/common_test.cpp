@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string>
 
 #include "gst/common/latency.h"
 #include "gst/common/refs.h"
@@ -55,6 +58,60 @@ TEST(Metas, ABufferWithoutOneIsAScanOfOneSlice) {
   EXPECT_EQ(slice.slice_count, 1U);
   EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()), GST_CLOCK_TIME_NONE);
   EXPECT_FALSE(gst_lidar_buffer_get_ecn(buffer.get(), nullptr, nullptr));
+}
+
+GstStructure* FieldsOfMeta(GstBuffer* buffer, const char* meta) {
+  return gst_custom_meta_get_structure(gst_buffer_get_custom_meta(buffer, meta));
+}
+
+TEST(Metas, ThatLackAFieldAreNone) {
+  const BufferPtr whole(gst_buffer_new());
+  const GstLidarSlice slice{7, 3, 8, 384};
+  const GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
+  gst_lidar_buffer_set_slice(whole.get(), &slice);
+  gst_lidar_buffer_set_pose(whole.get(), &pose);
+  gst_lidar_buffer_set_ecn(whole.get(), GST_LIDAR_ECN_CE, 123);
+  const auto each = [&](const char* meta, const std::function<void(GstBuffer*)>& check) {
+    for (gint i = 0; i < gst_structure_n_fields(FieldsOfMeta(whole.get(), meta)); ++i) {
+      const BufferPtr copy(gst_buffer_copy_deep(whole.get()));
+      GstStructure* fields = FieldsOfMeta(copy.get(), meta);
+      const std::string name = gst_structure_nth_field_name(fields, static_cast<guint>(i));
+      SCOPED_TRACE(name);
+      gst_structure_remove_field(fields, name.c_str());
+      check(copy.get());
+    }
+  };
+  each(GST_LIDAR_SLICE_META_NAME, [](GstBuffer* buffer) {
+    GstLidarSlice read{9, 9, 9, 9};
+    EXPECT_FALSE(gst_lidar_buffer_get_slice(buffer, &read));
+    EXPECT_EQ(read.scan_id + read.slice_index + read.first_column, 0U);
+    EXPECT_EQ(read.slice_count, 1U);
+  });
+  each(GST_LIDAR_POSE_META_NAME, [](GstBuffer* buffer) {
+    GstLidarPose read{};
+    EXPECT_FALSE(gst_lidar_buffer_get_pose(buffer, &read));
+  });
+  each(GST_LIDAR_ECN_META_NAME, [](GstBuffer* buffer) {
+    GstLidarEcn ecn{};
+    GstClockTime arrival = 0;
+    // Only the time may be missing.
+    if (gst_lidar_buffer_get_ecn(buffer, &ecn, &arrival)) {
+      EXPECT_EQ(ecn, GST_LIDAR_ECN_CE);
+      EXPECT_EQ(arrival, GST_CLOCK_TIME_NONE);
+    }
+  });
+}
+
+TEST(Metas, OfAnUnknownTrackingAreLost) {
+  const BufferPtr buffer(gst_buffer_new());
+  for (const guint tracking : {0U, 1U, 2U, 3U, 4U, G_MAXUINT}) {
+    GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
+    gst_lidar_buffer_set_pose(buffer.get(), &pose);
+    gst_structure_set(FieldsOfMeta(buffer.get(), GST_LIDAR_POSE_META_NAME), "tracking", G_TYPE_UINT,
+                      tracking, nullptr);
+    ASSERT_TRUE(gst_lidar_buffer_get_pose(buffer.get(), &pose));
+    EXPECT_EQ(pose.tracking, std::min<guint>(tracking, GST_LIDAR_TRACKING_LOST));
+  }
 }
 
 TEST(Events, CarryTheTargetAndTheBounds) {
@@ -138,6 +195,21 @@ INSTANTIATE_TEST_SUITE_P(
         BadCaps{CLOUD "fields=(string)\"x:F32\"", "has no offset"},
         BadCaps{CLOUD "fields=(string)\"x:F32:4000000000\"", "past the 1024 bytes"},
         BadCaps{CLOUD "fields=(string)\"x:F32:0,x:F32:4\"", "two fields x"}));
+
+TEST(CloudInfo, MayHaveAGibibyteAndNoMore) {
+  constexpr guint kGibibyte = 1U << 30;
+  for (const guint step : {4U, 12U, 16U, 1'024U})
+    for (const guint height : {1U, 3U, 128U}) {
+      CloudInfo info;
+      info.fields = *PointFields::Parse("x:F32:0");
+      info.point_step = step;
+      info.height = height;
+      info.width = kGibibyte / step / height;
+      EXPECT_TRUE(CloudInfo::FromCaps(CapsPtr(info.ToCaps()).get())) << step << " " << height;
+      ++info.width;
+      EXPECT_FALSE(CloudInfo::FromCaps(CapsPtr(info.ToCaps()).get())) << step << " " << height;
+    }
+}
 
 TEST(CloudInfo, OfFramesNeedsAWidth) {
   const CapsPtr caps(gst_caps_from_string(CLOUD "fields=(string)\"x:F32:0\""));
