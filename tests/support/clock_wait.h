@@ -8,6 +8,16 @@
 
 namespace lidar::test {
 
+/// The test clock's time at running time 0. It is not 0, so that neither is taken for the other.
+inline constexpr GstClockTime kClockStart = 7 * GST_SECOND;
+
+/// Call it before the harness plays.
+inline void UseTestClock(GstHarness* h) {
+  gst_harness_use_testclock(h);
+  gst_harness_set_time(h, kClockStart);
+  gst_element_set_base_time(h->element, kClockStart);
+}
+
 /// Returns true once the element waits for `time` on the test clock, and false after kPatience.
 inline bool AwaitClockWait(GstHarness* h, GstClockTime time) {
   auto* clock = GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element));

@@ -11,6 +11,7 @@
 #include "gst/lidar/cloud_info.h"
 #include "src/base/imu_sample.h"
 #include "src/cloud/range_projection.h"
+#include "tests/support/clock_wait.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -152,12 +153,12 @@ TEST(LidarTestSrc, EndsAfterNumBuffersAndStartsAgainWithTheFirstScan) {
 
 TEST(LidarTestSrc, ALiveSliceLeavesWhenItsLastColumnIsSampled) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
-  gst_harness_use_testclock(h.get());
+  test::UseTestClock(h.get());
   gst_harness_play(h.get());
   for (guint i = 1; i <= 10; ++i) {
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
     EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))),
-              i * 12'500'000);
+              test::kClockStart + i * 12'500'000);
     EXPECT_EQ(gst_harness_buffers_in_queue(h.get()), 0U);
     ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
     const BufferPtr buffer = Pull(h);
@@ -167,7 +168,7 @@ TEST(LidarTestSrc, ALiveSliceLeavesWhenItsLastColumnIsSampled) {
 
 TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
   const Harness h = Launch("is-live=true model=os1-32 mode=1024x10");
-  gst_harness_use_testclock(h.get());
+  test::UseTestClock(h.get());
   gst_harness_play(h.get());
   const QueryPtr query(gst_query_new_latency());
   ASSERT_TRUE(gst_pad_peer_query(h->sinkpad, query.get()));
@@ -182,10 +183,10 @@ TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
 
 TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
-  gst_harness_use_testclock(h.get());
+  test::UseTestClock(h.get());
   gst_harness_play(h.get());
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
-  gst_harness_set_time(h.get(), 1'030 * GST_MSECOND);
+  gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   // The test clock holds a waiter whose time has passed until it is processed.
   const auto release = [&] {
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
@@ -205,7 +206,7 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
 TEST(LidarTestSrc, ALiveSourceStopsWhileItWaits) {
   for (int run = 0; run < 3; ++run) {
     const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
-    gst_harness_use_testclock(h.get());
+    test::UseTestClock(h.get());
     gst_harness_play(h.get());
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   }
@@ -422,7 +423,7 @@ TEST(LidarTestSrc, ALiveImuHasTheClockOfTheClouds) {
   gst_util_set_object_arg(G_OBJECT(h->element), "mode", "512x10");
   g_object_set(h->element, "imu", TRUE, "is-live", TRUE, nullptr);
   g_signal_connect(h->element, "pad-added", G_CALLBACK(KeepOffsets), &offsets);
-  gst_harness_use_testclock(h.get());
+  test::UseTestClock(h.get());
   gst_harness_play(h.get());
   for (std::size_t i = 1; i <= 10; ++i) {
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
