@@ -45,9 +45,10 @@ std::optional<RangeCheck::Contradiction> RangeCheck::Find(ByteView raw,
         static_cast<std::uint32_t>((first_column + i % columns) % projection_.columns());
     const auto found = PositionAt(raw.data + i * point_step_ + xyz_offset_);
     const auto expected = projection_.Point(beam, column, range_mm);
-    const double distance = std::hypot(static_cast<double>(found[0] - expected[0]),
-                                       static_cast<double>(found[1] - expected[1]),
-                                       static_cast<double>(found[2] - expected[2]));
+    // libstdc++'s hypot() of three numbers is 0 where two are 0 and one is NaN.
+    const double across = std::hypot(static_cast<double>(found[0] - expected[0]),
+                                     static_cast<double>(found[1] - expected[1]));
+    const double distance = std::hypot(across, static_cast<double>(found[2] - expected[2]));
     // NaN counts as a contradiction, too.
     if (!(distance <= 1e-3 * unit_mm_ + kFloatRounding * 1e-3 * range_mm))
       return Contradiction{beam, column, distance};
