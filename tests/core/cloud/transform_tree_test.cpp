@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace lidar {
 namespace {
@@ -69,6 +71,34 @@ TEST_F(Tree, BetweenTwoPosesItInterpolatesByTheShorterTurn) {
   still.Set("a", "b", kStart, kNowhere, false);
   still.Set("a", "b", kStart + milliseconds(10), At(1), false);
   ExpectNear(Place(still.Find("a", "b", kStart + milliseconds(5)), {0, 0, 1}), {0.5, 0, 1});
+}
+
+TEST_F(Tree, GoesBackAndByWayOfOthersAsItGoesThere) {
+  FramePose turned = TurnedLeft(20);
+  turned.orientation = {0.5, 0.5, 0.5, 0.5};
+  ASSERT_TRUE(tree_.Set("map", "odom", kStart + milliseconds(100), At(102, 1), false));
+  ASSERT_TRUE(tree_.Set("odom", "base", kStart + milliseconds(100), turned, false));
+  const auto frames = {"map", "odom", "base", "lidar", "camera"};
+  const std::array<double, 3> point = {1, 2, 3};
+  for (const int ms : {-100, 0, 30, 100, 200})
+    for (const char* a : frames)
+      for (const char* b : frames) {
+        const Time time = kStart + milliseconds(ms);
+        const auto there = tree_.Find(a, b, time);
+        const auto back = tree_.Find(b, a, time);
+        SCOPED_TRACE(std::string(a) + " " + b + " " + std::to_string(ms));
+        ASSERT_EQ(there.transform.has_value(), back.transform.has_value());
+        EXPECT_EQ(there.why, back.why);
+        EXPECT_EQ(there.may_come, back.may_come);
+        if (!there.transform) continue;
+        const auto placed = Place(there, point);
+        ExpectNear(Place(back, placed), point);
+        for (const char* c : frames) {
+          const auto from = tree_.Find(c, b, time);
+          const auto on = tree_.Find(a, c, time);
+          if (from.transform && on.transform) ExpectNear(Place(on, Place(from, point)), placed);
+        }
+      }
 }
 
 TEST_F(Tree, WithoutATimeTheNewestCounts) {
