@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace lidar::odometry {
@@ -75,6 +76,58 @@ TEST(Confidence, FallsLessWhereTheVelocityIsKnown) {
   known.SetVelocityKnown();
   for (Confidence* confidence : {&unknown, &known}) confidence->Predict({}, kPeriod);
   EXPECT_LT(Variance(known, 0), Variance(unknown, 0) / 10);
+}
+
+/// Drives a bend on which some directions are seen better than others.
+Confidence AfterABend(int scans) {
+  const Pose step{Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.1, 0.2, 1))),
+                  {1, 0.3, -0.1}};
+  Eigen::Matrix3d along = Eigen::Matrix3d::Zero();
+  along(0, 0) = 1;
+  Matrix6 information = 1e4 * Matrix6::Identity();
+  information(0, 4) = information(4, 0) = 3e3;
+  Confidence confidence;
+  for (int i = 0; i < scans; ++i) {
+    confidence.Predict(step, kPeriod, i % 2 == 0);
+    confidence.Observe(information, i % 3 == 0 ? along : kNothing, Twist::Constant(0.01));
+    if (i % 4 == 0) confidence.EnterMap();
+  }
+  return confidence;
+}
+
+TEST(Confidence, OfAVelocityThatIsForgottenIsThatAtTheStart) {
+  Confidence fresh;
+  fresh.Predict({}, kPeriod);
+  for (const int scans : {1, 2, 5, 9}) {
+    Confidence confidence = AfterABend(scans);
+    const Matrix6 before = confidence.covariance();
+    confidence.ForgetVelocity();
+    EXPECT_TRUE(confidence.covariance().isApprox(before, 1e-9)) << "the pose is where it was";
+    confidence.Predict({}, kPeriod);
+    EXPECT_TRUE((confidence.covariance() - before).isApprox(fresh.covariance(), 1e-9)) << scans;
+  }
+}
+
+TEST(Confidence, IsTheSameInBothDirections) {
+  for (const int scans : {1, 2, 5, 9}) {
+    Confidence confidence = AfterABend(scans);
+    const auto check = [&] {
+      const Matrix6 covariance = confidence.covariance();
+      EXPECT_LT((covariance - covariance.transpose()).norm(), 1e-9 * covariance.norm());
+      const Matrix6 information = confidence.PoseInformation();
+      EXPECT_LT((information - information.transpose()).norm(), 1e-6 * information.norm());
+    };
+    check();
+    confidence.ForgetVelocity();
+    check();
+    confidence.Predict(Ahead(1), kPeriod);
+    check();
+    confidence.SetVelocityKnown();
+    confidence.Predict(Ahead(1), kPeriod);
+    check();
+    confidence.EnterMap();
+    check();
+  }
 }
 
 TEST(Confidence, FallsWithoutScans) {
