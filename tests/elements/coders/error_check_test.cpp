@@ -128,6 +128,38 @@ INSTANTIATE_TEST_SUITE_P(All, XyzLevels,
                          ::testing::Values("compression-level=0", "compression-level=7"));
 #endif
 
+/// The points are closer to each other than the error, so the nearest one is rarely the same one.
+void ExpectPointwiseErrors(const CoderCase& coder, const std::string& properties) {
+  std::vector<float> before;
+  for (unsigned i = 0; i < 500; ++i) {
+    const auto f = static_cast<float>(i);
+    before.insert(before.end(),
+                  {5 + 0.004F * f, 3 - 0.003F * f, 0.02F * static_cast<float>(i % 7)});
+  }
+  CheckedCodec codec(coder, "error-check=1 max-error=0.05 " + properties);
+  CloudInfo info;
+  info.width = 500;
+  info.point_step = 12;
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+  info.framerate_n = 10;
+  codec.SetCaps(info);
+  const BufferPtr output =
+      codec.Push(gst_buffer_new_memdup(before.data(), before.size() * sizeof(float)));
+  ASSERT_TRUE(output);
+  const auto after = PointsOf(output.get(), gst_buffer_get_size(output.get()) / 500);
+  ASSERT_EQ(after.size(), before.size());
+  const StructurePtr check = codec.PopCheck();
+  ASSERT_TRUE(check);
+  ExpectErrors(check.get(), Distances(before, after));
+}
+
+TEST(KeptOrder, IsThatOfTheCheckedPoints) {
+  ExpectPointwiseErrors(kLidarXyz, "keep-order=true");
+#ifdef HAVE_DRACO
+  ExpectPointwiseErrors(kDracoXyz, "compression-level=0");
+#endif
+}
+
 TEST_P(EitherCoder, LooksAtEveryNthSliceOnly) {
   const SensorModel model = test::RoomSensor();
   CheckedCodec codec(GetParam(), "error-check=3");
