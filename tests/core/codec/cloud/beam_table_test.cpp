@@ -168,6 +168,30 @@ TEST(BeamTable, FindsThePathOfBeamsAndWritesIt) {
   EXPECT_EQ(again->rows(), 4U);
 }
 
+/// Most steps of time are 2 % too short, some too long, and nothing is seen for 400 columns.
+TEST(BeamTable, CountsColumnsOfAPathByTheirMeanTimeOverAGap) {
+  constexpr double kBegin = 1.7e18;
+  constexpr double kFiringNs = 25'000;
+  constexpr double kEarlyNs[] = {0, -2'000, -4'000, -6'000, -3'000};
+  PathCloud cloud;
+  std::vector<std::uint32_t> columns;
+  for (PathPoint p : PathScan(0)) {
+    const auto firing = static_cast<std::uint32_t>((p.timestamp - kBegin) / kFiringNs + 0.5);
+    const std::uint32_t column = firing / 4;
+    if (column >= 300 && column < 700) continue;
+    p.timestamp = kBegin + kFiringNs * firing + kEarlyNs[column % 5];
+    cloud.push_back(p);
+    columns.push_back(column);
+  }
+  const PathSightings seen(cloud);
+  std::vector<PlacedPoint> placed;
+  const auto table = FindPath(seen.points, seen.pulses, &placed);
+  ASSERT_TRUE(table);
+  ASSERT_EQ(placed.size(), columns.size());
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    ASSERT_EQ(placed[i].column, columns[i] - columns.front()) << i;
+}
+
 TEST(BeamTable, RefusesAPathThatDoesNotTurnOrHasTooManyBeams) {
   // The bytes are columns, beams, flags and rate.
   const auto read = [](std::uint8_t beams, std::uint8_t rate) {
