@@ -392,7 +392,7 @@ class LiveAssembler : public Assembler {
     // The harness answers the element's latency query as a live source with the latency of a slice.
     gst_harness_set_live(h_.get(), TRUE);
     gst_harness_set_upstream_latency(h_.get(), kSweep);
-    gst_harness_use_testclock(h_.get());
+    test::UseTestClock(h_.get());
   }
 };
 
@@ -401,7 +401,7 @@ TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
   // The deadline is one scan, the latency of the source and max-wait after the first column.
   EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h_->element))),
-            (100 + 25 + 20) * GST_MSECOND);
+            test::kClockStart + (100 + 25 + 20) * GST_MSECOND);
   EXPECT_EQ(Waiting(), 0U);
   ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));
   const BufferPtr scan = Pull();
@@ -416,7 +416,7 @@ TEST_F(LiveAssembler, AScanOfASenderThatStartedAgainHasItsOwnDeadline) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
   Push(Slice(0, 0));
   EXPECT_EQ(MetaOf(Pull()).scan_id, 40U);
-  EXPECT_TRUE(test::AwaitClockWait(h_.get(), (100 + 25 + 20) * GST_MSECOND));
+  EXPECT_TRUE(test::AwaitClockWait(h_.get(), test::kClockStart + (100 + 25 + 20) * GST_MSECOND));
   ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));
   EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
 }
