@@ -2,6 +2,7 @@
 // Sockets that an application gives to ecnudpsink and ecnudpsrc.
 #include <gtest/gtest.h>
 
+#include "gst/net/datagram.h"
 #include "tests/elements/ecnudp/ecnudp_support.h"
 
 namespace lidar::gst {
@@ -17,6 +18,13 @@ Object<GSocket> Bound() {
   const Object<GSocketAddress> local(g_inet_socket_address_new(any.get(), 0));
   EXPECT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
   return socket;
+}
+
+TEST(EcnUdpSockets, TheReceiveBufferHasTheSizeThatTheKernelGrants) {
+  const auto socket = Bound();
+  for (const unsigned bytes : {8'192U, 65'536U, 131'072U})
+    EXPECT_EQ(lidar::net::SetReceiveBuffer(g_socket_get_fd(socket.get()), bytes), bytes);
+  EXPECT_EQ(lidar::net::SetReceiveBuffer(-1, 8'192), 0U);
 }
 
 TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {

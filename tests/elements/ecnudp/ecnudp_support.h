@@ -2,6 +2,7 @@
 // ecnudpsink and ecnudpsrc, each alone.
 #pragma once
 #include <gio/gio.h>
+#include <gtest/gtest.h>
 
 #include <memory>
 #include <string>
@@ -37,8 +38,10 @@ inline guint64 Stat(GstHarness* h, const char* field) {
   g_object_get(h->element, "stats", &stats, nullptr);
   const StructurePtr owner(stats);
   guint64 value = 0;
-  gst_structure_get_uint64(stats, field, &value);
-  return value;
+  guint small = 0;
+  if (gst_structure_get_uint64(stats, field, &value)) return value;
+  EXPECT_TRUE(gst_structure_get_uint(stats, field, &small)) << field;
+  return small;
 }
 
 inline GstBuffer* Payload(const std::string& text) {

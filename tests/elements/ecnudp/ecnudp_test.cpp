@@ -8,6 +8,7 @@
 
 #include <array>
 #include <atomic>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -85,14 +86,7 @@ TEST(EcnUdp, BatchesLargerThanOneSystemCallArriveWholeAndInOrder) {
 TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
   const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "buffer-size", 4'096, nullptr);
-  const auto drops = [&] {
-    GstStructure* stats = nullptr;
-    g_object_get(src->element, "stats", &stats, nullptr);
-    const StructurePtr owner(stats);
-    guint n = 0;
-    EXPECT_TRUE(gst_structure_get_uint(stats, "dropped-by-kernel", &n));
-    return n;
-  };
+  const auto drops = [&] { return Stat(src.get(), "dropped-by-kernel"); };
   gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read
   Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
   for (int i = 0; i < 50; ++i) gst_harness_push(sink.get(), Payload(std::string(1'000, 'x')));
@@ -125,6 +119,79 @@ TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
   EXPECT_EQ(Text(got.get()), "new");
   EXPECT_EQ(Stat(src.get(), "packets-received"), 1U);
   EXPECT_EQ(drops(), 0U);
+}
+
+/// Each datagram arrives or is counted as dropped, once.
+TEST(EcnUdp, WhatArrivesAndWhatTheKernelDropsIsWhatWasSent) {
+  const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "buffer-size", 4'096, nullptr);
+  gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  guint64 sent = 0;
+  const auto send = [&] {
+    gst_harness_push(sink.get(), Payload(std::string(1'000, 'x')));
+    ++sent;
+  };
+  const auto received = [&] { return Stat(src.get(), "packets-received"); };
+  const auto dropped = [&] { return Stat(src.get(), "dropped-by-kernel"); };
+  while (sent < 50) send();
+  gst_harness_play(src.get());
+  // The kernel tells of drops with the next datagram that it does not drop.
+  int looks = 0;
+  ASSERT_TRUE(test::Eventually([&] {
+    if (looks++ % 50 == 0) send();
+    return received() + dropped() == sent;
+  }));
+  const guint64 before = dropped();
+  EXPECT_GT(before, 0U);
+  for (int i = 0; i < 3; ++i) {
+    send();
+    EXPECT_TRUE(test::Eventually([&] { return received() + before == sent; }));
+    EXPECT_EQ(dropped(), before);
+  }
+}
+
+TEST(EcnUdp, ADatagramThatCannotGoCostsNoOther) {
+  const Harness src = NewSource();
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  GstBufferList* list = gst_buffer_list_new();
+  for (const std::string& text :
+       {std::string("first"), std::string(70'000, 'x'), std::string("second"),
+        std::string(70'000, 'x'), std::string("third")})
+    gst_buffer_list_add(list, Payload(text));
+  EXPECT_EQ(gst_pad_push_list(sink->srcpad, list), GST_FLOW_OK);
+  EXPECT_EQ(Stat(sink.get(), "packets-sent"), 3U);
+  EXPECT_EQ(Stat(sink.get(), "send-errors"), 2U);
+  for (const char* text : {"first", "second", "third"}) {
+    const BufferPtr got(gst_harness_pull(src.get()));
+    ASSERT_TRUE(got);
+    EXPECT_EQ(Text(got.get()), text);
+  }
+}
+
+TEST(EcnUdp, APauseOrAFlushEndsNothing) {
+  const Harness src = NewSource();
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  const std::array<std::function<void()>, 3> interruptions = {
+      [] {},
+      [&] {
+        gst_element_set_state(src->element, GST_STATE_PAUSED);
+        gst_element_set_state(src->element, GST_STATE_PLAYING);
+      },
+      [&] {
+        EXPECT_TRUE(gst_element_send_event(src->element, gst_event_new_flush_start()));
+        EXPECT_TRUE(gst_element_send_event(src->element, gst_event_new_flush_stop(FALSE)));
+      }};
+  for (const auto& interrupt : interruptions) {
+    interrupt();
+    // The source waits for each datagram alone.
+    for (int i = 0; i < 3; ++i) {
+      gst_harness_push(sink.get(), Payload(std::to_string(i)));
+      const BufferPtr got(gst_harness_pull(src.get()));
+      ASSERT_TRUE(got) << i;
+      EXPECT_EQ(Text(got.get()), std::to_string(i));
+    }
+  }
 }
 
 TEST(EcnUdp, TellsOnceOfAnErrorUntilDatagramsLeaveAgain) {
