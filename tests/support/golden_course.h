@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -41,6 +42,7 @@ class Course {
   ~Course() {
     trace_.reset();
     h_.reset();
+    EXPECT_EQ(buffers_, 0) << "that were pushed outlive the element";
   }
   Course(const Course&) = delete;
   Course& operator=(const Course&) = delete;
@@ -100,12 +102,14 @@ class Course {
     Note(std::string("set ") + property + "=" + value);
   }
   void Push(const std::string& what, gst::BufferPtr buffer) {
+    CountWhileItLives(buffer.get());
     const GstFlowReturn flow = gst_pad_push(h_->srcpad, buffer.release());
     Note(what + ": " + gst_flow_get_name(flow));
   }
   /// The element has done its work once `count` lines begin with `line`.
   void PushUntil(const std::string& what, gst::BufferPtr buffer, const char* line,
                  std::size_t count = 1) {
+    CountWhileItLives(buffer.get());
     EXPECT_EQ(gst_pad_push(h_->srcpad, buffer.release()), GST_FLOW_OK) << what;
     Await(what, line, count);
   }
@@ -199,6 +203,13 @@ class Course {
   }
 
  private:
+  void CountWhileItLives(GstBuffer* buffer) {
+    ++buffers_;
+    gst_mini_object_weak_ref(
+        GST_MINI_OBJECT_CAST(buffer),
+        [](gpointer count, GstMiniObject*) { --*static_cast<std::atomic<int>*>(count); },
+        &buffers_);
+  }
   std::string Shown(std::string line) const {
     for (const auto& [pattern, word] : hidden_) line = std::regex_replace(line, pattern, word);
     return line;
@@ -256,6 +267,7 @@ class Course {
     return line;
   }
 
+  std::atomic<int> buffers_{0};  // that were pushed and live
   Harness h_;
   std::optional<RunTrace> trace_;
   Lines lines_;
