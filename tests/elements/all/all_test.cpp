@@ -2,6 +2,7 @@
 // Every plugin of the set in one process: what holds for each element.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <set>
@@ -111,6 +112,24 @@ TEST_P(EveryElement, GoesUpAndDownAgainAndAgain) {
   }
 }
 
+/// Bytes of the heap that are in use; constant with an allocator that is not glibc's.
+std::size_t HeapInUse() { return mallinfo2().uordblks; }
+
+/// Expects that `make_and_free` leaves nothing on the heap.
+template <class MakeAndFree>
+void ExpectNothingLeft(MakeAndFree make_and_free) {
+  constexpr std::size_t kTimes = 60;
+  constexpr std::size_t kLeast = 64;  // the smallest state of an element is larger
+  for (std::size_t i = 0; i < kTimes; ++i) make_and_free();  // fills the caches of libraries
+  const std::size_t before = HeapInUse();
+  for (std::size_t i = 0; i < kTimes; ++i) make_and_free();
+  EXPECT_LT(HeapInUse(), before + kTimes * kLeast);
+}
+
+TEST_P(EveryElement, LeavesNothingOnTheHeap) {
+  ExpectNothingLeft([this] { EXPECT_TRUE(Make(GetParam())); });
+}
+
 TEST_P(EveryElement, GivesItsRequestPadsAndTakesThemBack) {
   const ElementPtr element = Make(GetParam());
   auto* klass = GST_ELEMENT_GET_CLASS(element.get());
@@ -148,6 +167,22 @@ std::vector<std::string> Built() {
   return OurElements();
 }
 INSTANTIATE_TEST_SUITE_P(All, EveryElement, ::testing::ValuesIn(Built()), NameOf);
+
+class EveryBin : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(
+    All, EveryBin,
+    ::testing::Values(
+        "screamsink bind-port=0", "screamsrc port=0", "screamaux",
+        "screamsink bonding-addresses=127.0.0.1:5004@127.0.0.1,127.0.0.1:5006@127.0.0.2"));
+
+TEST_P(EveryBin, LeavesNothingOfTheElementsThatItMade) {
+  ExpectNothingLeft([] {
+    const ElementPtr bin(gst_parse_launch(GetParam(), nullptr));
+    ASSERT_TRUE(bin);
+    EXPECT_EQ(gst_element_set_state(bin.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    EXPECT_EQ(gst_element_set_state(bin.get(), GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+  });
+}
 
 TEST(AllPlugins, LoadIntoOneProcessAndHoldTheseElements) {
   const auto built = OurElements();
