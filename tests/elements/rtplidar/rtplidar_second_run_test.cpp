@@ -120,6 +120,19 @@ TEST_F(DepaySecondRun, CountsWhatWasUnderWayAtTheStop) {
   EXPECT_EQ(Stat(h_.get(), "scans-incomplete"), incomplete + 1);
 }
 
+TEST_F(DepaySecondRun, TakesNothingBeforeItsCaps) {
+  for (int run = 0; run < 2; ++run) {
+    for (const bool active : {false, true}) gst_pad_set_active(h_->srcpad, active);
+    gst_harness_play(h_.get());
+    gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("run"));
+    trace_.PushSegment();
+    GstBuffer* of_other_type = gst_buffer_copy_deep(wrong_type_[0].get());
+    EXPECT_EQ(gst_pad_push(h_->srcpad, of_other_type), GST_FLOW_NOT_NEGOTIATED) << run;
+    trace_.PushCaps(kRtpCaps);
+    trace_.Stop();
+  }
+}
+
 TEST_F(DepaySecondRun, CountsEachPacketThatIsNoRtp) {
   trace_.Begin(kRtpCaps);
   for (int i = 0; i < 3; ++i) Give(h_.get(), gst_buffer_new_memdup("x", 1));
