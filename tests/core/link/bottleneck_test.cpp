@@ -90,6 +90,16 @@ TEST(Bottleneck, AQueueLimitInBytesDropsTheTail) {
   EXPECT_EQ(out[0].fate, Fate::kQueueFull);
 }
 
+TEST(Bottleneck, AnEmptyQueueTakesAPacketAboveItsLimit) {
+  auto config = Simple();
+  config.limit.bytes = DataSize::Bytes(500);
+  Bottleneck link(config);
+  // The first packet is being sent, the second waits.
+  for (std::uint64_t i = 0; i < 3; ++i) link.Enqueue(kStart, Sized(1000, i));
+  EXPECT_EQ(link.stats().queue_full, 1U);
+  EXPECT_EQ(link.queued(), DataSize::Bytes(1000));
+}
+
 TEST(Bottleneck, AQueueLimitInTimeFollowsTheCapacity) {
   auto config = Simple();
   config.capacity = Capacity::Steps({Mbps(8), Mbps(80)}, 1s);

@@ -6,6 +6,7 @@
 
 #include "src/scream/model/evidence.h"
 #include "src/scream/response/adaptive_pacing.h"
+#include "src/scream/response/fast_increase.h"
 #include "src/scream/response/gap_recovery.h"
 #include "src/scream/response/isolated_loss.h"
 #include "src/scream/response/outage.h"
@@ -158,6 +159,40 @@ TEST_F(GapRecoveryTest, TakesWhatLastsForMoreThanTenSecondsForWhatTheLinkIs) {
   path_.Arrive(8, 1ms, 900ms, Ecn::kCe);
   EXPECT_FALSE(Update(DataSize::Bytes(3000)));
   EXPECT_FALSE(gaps_.in_gap());
+}
+
+/// Growth by the frame period, the rounds without congestion, the queue and whether marks work.
+TEST(FastIncrease, GrowsByTheRoundsAndLessBehindAQueue) {
+  const Parameters p;
+  Path unmarked(p);
+  Path marked(p);
+  marked.Arrive(1, 1ms, 3ms, Ecn::kCe);
+  marked.Arrive(200, 1ms, 0ms, Ecn::kEct1);
+  Path queued(p);
+  queued.Arrive(200, 1ms, p.busy_qdelay / 2, Ecn::kEct1);
+  const double max = p.fast_increase_max;
+  FastIncrease increase(p);
+  const auto growth = [&](const Path& path, Duration period) {
+    return increase.growth(path.now, path.model, period) / max;
+  };
+  EXPECT_DOUBLE_EQ(growth(unmarked, p.long_frame_period / 2), 1);
+  EXPECT_DOUBLE_EQ(growth(unmarked, p.long_frame_period), 1);
+  EXPECT_NEAR(growth(unmarked, p.long_frame_period * 5 / 4), 0.8, 1e-6);
+  EXPECT_DOUBLE_EQ(growth(unmarked, p.long_frame_period * 4), 0.5);
+  EXPECT_NEAR(growth(queued, 1ms), 0.5, 0.05);
+  increase.OnCongestion(kStart);
+  EXPECT_EQ(growth(unmarked, 1ms), 0);
+  for (int round = 1; round <= p.fast_increase_rounds + 3; ++round) {
+    increase.Update(kStart + round * kRtt, kRtt);
+    increase.Update(kStart + round * kRtt + 1ms, kRtt);  // still this round
+    const int bold = std::max(0, round - p.fast_increase_rounds);
+    EXPECT_DOUBLE_EQ(growth(unmarked, 1ms) * max,
+                     std::min(max, bold * p.fast_increase_step_unmarked));
+    EXPECT_DOUBLE_EQ(growth(marked, 1ms) * max, std::min(max, bold * p.fast_increase_step));
+  }
+  increase.Restart();
+  EXPECT_DOUBLE_EQ(growth(unmarked, 1ms), 1);
+  EXPECT_EQ(FastIncrease(Parameters::Draft()).growth(unmarked.now, unmarked.model, 1ms), 0);
 }
 
 class SendWindowTest : public ::testing::Test {

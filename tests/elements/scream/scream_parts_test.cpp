@@ -404,6 +404,10 @@ TEST(Tuning, SetsWhatItNamesAndNothingElse) {
   }
 }
 
+TEST(Tuning, TakesNamesWithUnderscores) {
+  EXPECT_EQ(ToParameters(Tuned("tuning,beta_loss=0.6")).beta_loss, 0.6);
+}
+
 TEST(Tuning, TakesNumbersAndSwitchesAsUsersWriteThem) {
   const auto p = ToParameters(Tuned("tuning,beta-loss=0.6,mss=1200,capacity=false"));
   EXPECT_EQ(p.beta_loss, 0.6);
