@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -301,7 +302,22 @@ TEST_F(BondedSink, TellsThatNobodyAnswersWhereNoLinkIsHeard) {
     for (const std::size_t link : Send(seq)) ASSERT_TRUE(HasLeft(link));
     Advance(500 * GST_MSECOND);
   }
-  EXPECT_TRUE(Eventually([&] { return Warnings("No feedback") > 0; }));
+  EXPECT_TRUE(Eventually([&] { return Warnings("No feedback from 127.0.0.1:500") > 0; }));
+}
+
+TEST_F(BondedSink, TellsThatTheOnlyLinkThatWasHeardIsSilent) {
+  Start();
+  std::optional<std::size_t> heard;
+  for (guint16 seq = 1; seq <= 20; ++seq) {
+    for (const std::size_t link : Send(seq)) {
+      ASSERT_TRUE(HasLeft(link));
+      if (!heard) Report(link, seq);
+      heard = heard.value_or(link);
+    }
+    Advance(500 * GST_MSECOND);
+  }
+  const std::string text = "No feedback from 127.0.0.1:" + std::to_string(kPorts[*heard]);
+  EXPECT_TRUE(Eventually([&] { return Warnings(text.c_str()) > 0; }));
 }
 
 TEST_F(BondedSink, WaitsAtTheEndForWhatMayStillArrive) {

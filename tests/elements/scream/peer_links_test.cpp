@@ -72,6 +72,20 @@ TEST_F(PeerLinks, CopiesMakeAnAddressALink) {
   EXPECT_EQ(Send(second, seq), Verdict::kAccepted);
 }
 
+TEST_F(PeerLinks, PacketsAreComparedWhileAnotherAddressSendsOrMay) {
+  const auto wanted = [this] {
+    return std::pair(latch.WantsDigest(first.get()), latch.WantsDigest(second.get()));
+  };
+  EXPECT_EQ(wanted(), std::pair(true, true)) << "nobody is the peer";
+  Send(first, seq++);
+  EXPECT_EQ(wanted(), std::pair(false, true)) << "of the peer alone";
+  Send(second, seq);
+  EXPECT_EQ(wanted(), std::pair(true, true)) << "beside a stranger";
+  SendBoth(first, second, PeerLatch::kCopies);
+  EXPECT_EQ(latch.links(), 2U);
+  EXPECT_EQ(wanted(), std::pair(true, true)) << "of a link";
+}
+
 TEST_F(PeerLinks, CopiesThatComeBeforeTheirOriginalsCountToo) {
   Send(first, seq++);
   SendBoth(second, first, PeerLatch::kCopies);

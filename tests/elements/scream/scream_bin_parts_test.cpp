@@ -34,6 +34,23 @@ class ScreamBin : public ::testing::Test {
     g_object_get(element, property, &value, nullptr);
     return value;
   }
+  /// Returns the first element of the factory in the bin.
+  ElementPtr OfFactory(const char* name) {
+    GstIterator* all = gst_bin_iterate_all_by_element_factory_name(GST_BIN(bin_.get()), name);
+    GValue value = G_VALUE_INIT;
+    ElementPtr found;
+    if (gst_iterator_next(all, &value) == GST_ITERATOR_OK)
+      found.reset(GST_ELEMENT(g_value_dup_object(&value)));
+    if (G_IS_VALUE(&value)) g_value_unset(&value);
+    gst_iterator_free(all);
+    return found;
+  }
+  std::string NickOf(GstElement* element, const char* property) {
+    const GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), property);
+    const GEnumValue* value =
+        g_enum_get_value(G_PARAM_SPEC_ENUM(spec)->enum_class, Of<gint>(element, property));
+    return value->value_nick;
+  }
   OwnedSocket SocketOf(GstElement* element, const char* property = "socket") {
     return OwnedSocket(Of<GSocket*>(element, property));
   }
@@ -74,6 +91,14 @@ TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
     ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS) << kind.cipher;
     EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28 + kind.tag)
         << kind.cipher << " " << kind.auth;
+    // An encoder with other reports than the peer's decoder would be refused.
+    const bool authenticates = std::string(kind.cipher).find("gcm") != std::string::npos;
+    const ElementPtr encoder = OfFactory("srtpenc");
+    ASSERT_TRUE(encoder);
+    for (const char* cipher : {"rtp-cipher", "rtcp-cipher"})
+      EXPECT_EQ(NickOf(encoder.get(), cipher), kind.cipher);
+    EXPECT_EQ(NickOf(encoder.get(), "rtp-auth"), authenticates ? "null" : kind.auth);
+    EXPECT_EQ(NickOf(encoder.get(), "rtcp-auth"), authenticates ? "null" : "hmac-sha1-80");
     To(GST_STATE_NULL);
   }
 }
