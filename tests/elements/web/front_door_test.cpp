@@ -3,13 +3,19 @@
 #include "ext/web/front_door.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <vector>
 
+#include "ext/web/archive.h"
+#include "ext/web/client.h"
 #include "ext/web/handshakes.h"
+#include "ext/web/recording.h"
 #include "ext/web/server.h"
 #include "ext/web/slice_service.h"
 #include "tests/elements/web/web_peer.h"
@@ -56,7 +62,7 @@ TEST(FrontDoor, EndsAfterAMinuteWhatAsksForNothing) {
 }
 
 /// Peers that begin a handshake and stop.
-class TwoAddresses : public ::testing::Test {
+class SomeAddresses : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = (std::filesystem::temp_directory_path() / "web-handshakes-XXXXXX").string();
@@ -85,6 +91,10 @@ class TwoAddresses : public ::testing::Test {
   std::size_t Ended() const {
     return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), HasEnded));
   }
+  /// Waiting handshakes are noticed.
+  static void Notice() {
+    for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
+  }
   /// Makes all running handshakes take too long.
   void EndThoseThatRun() { handshakes_.Tick(g_get_monotonic_time() + 11 * kSecond_us); }
 
@@ -96,11 +106,10 @@ class TwoAddresses : public ::testing::Test {
   std::vector<ObjectPtr<GSocketConnection>> peers_;
 };
 
-TEST_F(TwoAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
+TEST_F(SomeAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
   for (int i = 0; i < 9; ++i) Begin("127.0.0.2");
   Begin("127.0.0.1");
-  // Handshakes that wait are noticed before a round of running ones ends.
-  for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
+  Notice();  // before a round of running ones ends
   EndThoseThatRun();
   EXPECT_TRUE(test::WaitUntil([this] { return HasEnded(peers_.back()); }))
       << "three of the other address run, and this one";
@@ -109,6 +118,19 @@ TEST_F(TwoAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
     EndThoseThatRun();
     return Ended() == peers_.size();
   }));
+}
+
+TEST_F(SomeAddresses, TheOneWithTheFewestHandshakesIsNext) {
+  for (const char* from : {"127.0.0.2", "127.0.0.3", "127.0.0.4"})
+    for (int i = 0; i < 3; ++i) Begin(from);
+  Notice();  // eight run, and one of the third address waits
+  Begin("127.0.0.1");
+  Notice();
+  g_socket_shutdown(g_socket_connection_get_socket(peers_[0].get()), FALSE, TRUE, nullptr);
+  ASSERT_TRUE(test::WaitUntil([this] { return HasEnded(peers_[0]); }));
+  EndThoseThatRun();
+  EXPECT_TRUE(test::WaitUntil([this] { return Ended() >= 9; }));
+  EXPECT_TRUE(HasEnded(peers_.back())) << "it came last, and is alone of its address";
 }
 
 TEST(Server, SharesATopicOfOneSchemaExceptOneOfSlices) {
@@ -132,6 +154,51 @@ TEST(Server, SharesATopicOfOneSchemaExceptOneOfSlices) {
     EXPECT_FALSE(server->Open("/a", other)) << "it is open still";
     server->Close(topic);
   }
+}
+
+class EmptyArchive final : public Archive {
+ public:
+  std::optional<Times> Look(std::string*) override { return {}; }
+  void Seek(std::uint64_t) override {}
+  void GoOn(std::uint64_t) override {}
+  std::optional<Item> Next() override { return {}; }
+  void Rest() override {}
+  std::uint64_t damaged() const override { return 0; }
+};
+
+TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+  const ObjectPtr<GSocket> socket(g_socket_new_from_fd(ends[0], nullptr));
+  Client client(ObjectPtr<GIOStream>(
+                    G_IO_STREAM(g_socket_connection_factory_create_connection(socket.get()))),
+                {[](Client*, const auto&) {}, [](Client*) {}, [](Client*) {}});
+  foxglove::Channel channel;
+  channel.id = 7;
+  const auto topic = std::make_shared<Topic>(
+      channel, std::make_shared<Recording>(std::make_unique<EmptyArchive>()));
+  SliceService service{DataRate()};
+  service.Subscribe(&client, topic, 1);
+  const auto deliver = [&](std::uint32_t scan) {
+    auto slice = std::make_shared<SliceMessage>();
+    slice->id.scan = scan;
+    slice->blocks = {{scan, scan - 1}};  // refers to one that the viewer lacks
+    service.Deliver(7, std::move(slice));
+    return topic->wants_recoded();
+  };
+  using Kind = foxglove::Request::Kind;
+  foxglove::Request request;
+  request.subscription = 1;
+  request.number = 1;
+  EXPECT_TRUE(deliver(10));
+  request.kind = Kind::kReplay;
+  service.OnRequest(&client, request);
+  EXPECT_FALSE(deliver(20));
+  request.kind = Kind::kLive;
+  service.OnRequest(&client, request);
+  EXPECT_TRUE(deliver(30));
+  service.Forget(&client);
+  close(ends[1]);
 }
 
 TEST(SliceService, WantsNothingRecodedOnceTheLastViewerLeft) {
