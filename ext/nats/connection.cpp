@@ -214,11 +214,11 @@ ConnectionState Connection::state() const {
   return shared_->state;
 }
 
-std::uint64_t Connection::reconnects() const {
+bool Connection::TakeReconnect() {
   std::uint64_t reconnects = 0;
   if (natsConnection_GetStats(nc_, statistics_.get()) == NATS_OK)
     natsStatistics_GetCounts(statistics_.get(), nullptr, nullptr, nullptr, nullptr, &reconnects);
-  return reconnects;
+  return reconnects != std::exchange(reconnects_, reconnects);
 }
 
 }  // namespace lidar::nats

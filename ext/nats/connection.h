@@ -52,8 +52,9 @@ class Connection {
   natsConnection* get() const { return nc_; }
   /// Never waits for the network.
   ConnectionState state() const;
-  /// Counts reconnects; the count changes before the new connection can send. For one thread.
-  std::uint64_t reconnects() const;
+  /// Returns true if there was a reconnect since the last call. The new connection cannot send
+  /// before that. For one thread.
+  bool TakeReconnect();
 
   static constexpr std::int64_t kConnectTimeoutMs = 1'000;
   static constexpr std::int64_t kWriteTimeoutMs = 1'000;
@@ -65,7 +66,8 @@ class Connection {
   natsStatus Connect(natsOptions* options);
 
   const SharedPtr shared_;    // shared with callbacks, which may outlive this object
-  StatisticsPtr statistics_;  // kept, because reconnects() reads it for each message
+  StatisticsPtr statistics_;  // kept, because TakeReconnect() reads it for each message
+  std::uint64_t reconnects_ = 0;
   natsConnection* nc_ = nullptr;
 };
 

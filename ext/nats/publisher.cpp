@@ -239,10 +239,9 @@ void Publisher::NoteConnection(const ConnectionState& state) {
 /// Sends messages in flight again before waiting ones, so that all are stored in order.
 void Publisher::RetryAfterReconnect(Lock* lock) {
   lock->unlock();
-  const std::uint64_t reconnects = connection_->reconnects();  // may wait for a write
+  const bool again = connection_->TakeReconnect();  // may wait for a write
   lock->lock();
-  if (reconnects == std::exchange(reconnects_, reconnects)) return;
-  SendAllAgain();
+  if (again) SendAllAgain();
 }
 
 /// libnats gives up a connection that the server has refused twice. Creates another one.
@@ -264,7 +263,6 @@ void Publisher::OpenAgain(Lock* lock) {
   if (!open) Close();
   lock->lock();
   open_at_ = Clock::now() + refusals_.Next();
-  reconnects_ = 0;
   SendAllAgain();
   if (!open) Tell(lock, "NATS cannot be used: " + why);
 }

@@ -137,9 +137,8 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
   unsigned connections_before_ = 0;  // of earlier Connection objects
   std::uint64_t errors_before_ = 0;
-  unsigned connections_ = 0;      // of the present Connection, as handled
-  std::uint64_t reconnects_ = 0;  // of the present Connection, as handled
-  std::string told_;              // last trouble that was reported
+  unsigned connections_ = 0;  // of the present Connection, as handled
+  std::string told_;          // last trouble that was reported
   bool asked_ = false;
   bool config_unanswered_ = false;
   bool stream_ready_ = false;
