@@ -215,6 +215,23 @@ TEST_F(NatsErrors, AnAddressWithTlsMeansTls) {
   }
 }
 
+TEST_F(NatsErrors, CertificatesMeanTls) {
+  const std::string own = server_.folder() + "/own";
+  if (!MakeCertificate(server_.folder(), "own")) GTEST_SKIP() << "openssl is not installed";
+  server_.Start();
+  // A connection in the clear would succeed.
+  for (const std::string& files :
+       {"tls-ca-file=" + own + ".pem",
+        "tls-cert-file=" + own + ".pem tls-key-file=" + own + "-key.pem"}) {
+    NatsPipeline wary("natssrc name=n url=" + server_.url() + " " + files +
+                      " ! fakesink name=see sync=false");
+    wary.Play();
+    PublishSlices(8, At());
+    EXPECT_EQ(wary.stat("connected"), 0U) << files;
+    EXPECT_TRUE(wary.buffers().empty()) << files;
+  }
+}
+
 TEST_F(NatsErrors, AnAddressWithTlsTrustsWhomTheSystemTrusts) {
   const std::string f = server_.folder();
   if (!MakeCertificate(f, "cert")) GTEST_SKIP() << "openssl is not installed";

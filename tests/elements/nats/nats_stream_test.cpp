@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Buffers go into natssink and come out of natssrc, while both run.
+#include <thread>
+
+#include "ext/nats/subscriber.h"
 #include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {
@@ -55,6 +58,43 @@ TEST_F(NatsStream, ALateJoinerHasItsCapsWithTheFirstMessage) {
   EXPECT_EQ(receiver.caps(), sender.caps());
   EXPECT_EQ(receiver.stat("messages-without-caps"), 0U);
   EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+}
+
+/// The sender answers the third question.
+TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
+  std::string why;
+  const gst::CapsPtr caps(gst_caps_from_string("application/x-imu,sample-size=(int)32"));
+  const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
+  ASSERT_TRUE(format) << why;
+  natsConnection* sender = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&sender, server_.url().c_str()), NATS_OK);
+  natsSubscription* raw = nullptr;
+  ASSERT_EQ(natsConnection_SubscribeSync(&raw, sender, "r1.imu.get-config"), NATS_OK);
+  {
+    const nats::SubscriptionPtr questions(raw);
+    nats::SubscriberSettings settings;
+    settings.connection.url = server_.url();
+    settings.subject = "r1.imu";
+    const auto subscriber = nats::Subscriber::Open(
+        settings, [](const auto&) {}, &why);
+    ASSERT_TRUE(subscriber) << why;
+    std::thread answers([&] {
+      for (int question = 1; question <= 3; ++question) {
+        natsMsg* asked = nullptr;
+        EXPECT_EQ(natsSubscription_NextMsg(&asked, raw, kPatience / std::chrono::milliseconds(1)),
+                  NATS_OK)
+            << question;
+        natsMsg_Destroy(asked);
+      }
+      natsConnection_PublishString(sender, ("r1.imu.config." + format->id()).c_str(),
+                                   format->text().c_str());
+    });
+    const auto found = subscriber->Format(format->id(), kPatience);
+    answers.join();
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->text(), format->text());
+  }
+  natsConnection_Destroy(sender);
 }
 
 TEST_F(NatsStream, CapsThatChangeArriveBeforeTheirBuffers) {
