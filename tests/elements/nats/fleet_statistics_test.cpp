@@ -2,6 +2,7 @@
 // The statistics that the programs of a fleet publish.
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <netdb.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -119,6 +120,23 @@ TEST(FleetMetrics, AreAtTheirPathWithAndWithoutAQuery) {
     const auto client = Clients(server.port(), 1, std::string(line) + "\r\nHost: x\r\n\r\n");
     EXPECT_EQ(Received(client[0].get()).substr(9, 3), status) << line;
   }
+}
+
+/// Many services have a name and a port that any program may use, such as http-alt.
+TEST(FleetMetrics, KnowTheirPortThoughItHasAName) {
+  bool is_taken = true;
+  setservent(1);
+  for (const servent* s = getservent(); s != nullptr && is_taken; s = getservent()) {
+    const int port = ntohs(static_cast<std::uint16_t>(s->s_port));
+    if (port < 1'024 || std::string(s->s_proto) != "tcp") continue;
+    try {
+      EXPECT_EQ(fleet::MetricsServer("127.0.0.1", port).port(), port) << s->s_name;
+      is_taken = false;
+    } catch (const std::runtime_error&) {  // another program has it
+    }
+  }
+  endservent();
+  if (is_taken) GTEST_SKIP() << "no such port is free";
 }
 
 TEST(FleetMetrics, ALargeTextArrivesWhole) {

@@ -2,6 +2,7 @@
 // lidar-worker: robots pass from worker to worker.
 #include <gst/base/gstbasetransform.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -428,6 +429,31 @@ TEST_F(SlowRobots, WhosePipelinesCannotBeMadeAreGivenUp) {
   EXPECT_TRUE(WorksUntil([&] { return Figures() == "0222"; })) << Figures();
   gst_registry_add_feature(registry, decoder);
   gst_object_unref(decoder);
+}
+
+/// A consumer that is made anew numbers its entries from 1 again.
+TEST_F(LidarWorker, SeesAllRecordsAgainWhereItAsksForThem) {
+  std::string why;
+  nats::ConnectionSettings settings;
+  settings.url = server_.url();
+  const auto connection = nats::Connection::Open(settings, nullptr, &why);
+  ASSERT_TRUE(connection) << why;
+  worker::FleetSettings fleet;
+  fleet.patterns = {"r*"};
+  worker::FleetWatch watch(connection.get(), fleet);
+  const auto sees = [&](const std::string& text) {
+    return Eventually([&] {
+      const auto entries = watch.Take().entries;
+      return std::any_of(entries.begin(), entries.end(),
+                         [&](const auto& e) { return e.robot == "r1.front" && e.text == text; });
+    });
+  };
+  for (const std::string text : {"first", "second", "third"}) {
+    PutRecord(text);
+    EXPECT_TRUE(sees(text));
+    watch.Renew();
+    EXPECT_TRUE(sees(text)) << "again";
+  }
 }
 
 TEST_F(LidarWorker, BeginsAnewWhereTheRecordIsDamaged) {
