@@ -46,6 +46,15 @@ std::uint32_t RunClass(std::uint32_t before) {
   return (before & 0x7FFF) == all ? 5 : 4;
 }
 
+/// Returns true if no pixel that chooses a group's models has a return. `above` is that of the
+/// group's first pixel.
+bool IsAmongEmpty(const std::uint8_t* above, std::uint32_t before) {
+  constexpr std::uint32_t kThreeBeams = 7 * kBytes;
+  const std::uint32_t beside =
+      FourAt(above - MaskCoder::kGroup) | FourAt(above + MaskCoder::kGroup);
+  return ((FourAt(above) & kThreeBeams) | (beside & kBytes) | (before & 0x7FFF)) == 0;
+}
+
 }  // namespace
 
 void BlendedMask::Reset(const AzimuthAlignment& alignment, std::uint32_t columns) {
@@ -77,14 +86,33 @@ void BlendedMask::Reset(const AzimuthAlignment& alignment, std::uint32_t columns
   return models;
 }
 
-/// Calls code(lane, models, pixels) for all groups of a row; `code` returns the bits of the group.
-template <class CodeFour>
+/// Returns the models of a group among empty pixels.
+BlendedModels BlendedMask::EmptyModels() {
+  const std::array<std::uint8_t, 3 * kGroup> above{};
+  return ModelsOf(&above[kGroup], 0);
+}
+
+/// Calls code(lane, models, pixels) for the groups of a row; `code` returns the bits of the group.
+/// Among empty pixels, which may be most, code_empty(lane, interval, pixels) comes first: it codes
+/// the group, and returns true, if the group has no return.
+template <class CodeFour, class CodeEmpty>
 [[gnu::always_inline]] inline void BlendedMask::CodeRow(std::uint32_t beam, std::uint32_t columns,
-                                                        CodeFour&& code) {
+                                                        CodeFour&& code, CodeEmpty&& code_empty) {
   std::uint8_t* above = above_.At(beam);
   std::uint32_t before = 0;
   for (std::ptrdiff_t i = 8; i > 0; --i) before = before << 1 | (above[-i] & 1U);
+  const BlendedModels empty = EmptyModels();
   for (std::uint32_t x = 0; x < columns; x += kGroup) {
+    if (IsAmongEmpty(above + x, before) && NibbleModel::ZeroRun::IsReady(empty)) {
+      NibbleModel::ZeroRun run(empty);
+      while (x < columns && IsAmongEmpty(above + x, before) &&
+             code_empty(x / kGroup % kRansLanes, run.interval(), &row_[x])) {
+        run.Update();
+        x += kGroup;
+      }
+      run.Store(empty);
+      if (x >= columns) break;
+    }
     const BlendedModels models = ModelsOf(above + x, before);
     const unsigned four = code(x / kGroup % kRansLanes, models, &row_[x]);
     before = before << 4 | kLeft.reversed[four];
@@ -100,12 +128,18 @@ void BlendedMask::Encode(const Mask& mask, const AzimuthAlignment& alignment, st
   RansEncoder::Writer writer(encoder);
   for (std::uint32_t beam = 0; beam < alignment.beams(); ++beam) {
     std::copy_n(&mask[std::size_t{beam} * columns], columns, row_.data());
-    CodeRow(beam, columns,
-            [&](unsigned lane, const BlendedModels& models, const std::uint8_t* pixels) {
-              const unsigned four = PackFour(FourAt(pixels));
-              writer.Put(lane, four, models);
-              return four;
-            });
+    CodeRow(
+        beam, columns,
+        [&](unsigned lane, const BlendedModels& models, const std::uint8_t* pixels) {
+          const unsigned four = PackFour(FourAt(pixels));
+          writer.Put(lane, four, models);
+          return four;
+        },
+        [&](unsigned lane, Interval interval, const std::uint8_t* pixels) {
+          if (FourAt(pixels) != 0) return false;
+          writer.Put(lane, interval);
+          return true;
+        });
   }
 }
 
@@ -114,12 +148,19 @@ bool BlendedMask::Decode(const AzimuthAlignment& alignment, std::uint32_t column
   Reset(alignment, columns);
   RansDecoder local = *decoder;
   for (std::uint32_t beam = 0; beam < alignment.beams(); ++beam) {
-    CodeRow(beam, columns, [&](unsigned lane, const BlendedModels& models, std::uint8_t* pixels) {
-      const unsigned four = local.Get(lane, models);
-      local.GetBits(lane, 0);
-      for (unsigned i = 0; i < kGroup; ++i) pixels[i] = four >> i & 1;
-      return four;
-    });
+    CodeRow(
+        beam, columns,
+        [&](unsigned lane, const BlendedModels& models, std::uint8_t* pixels) {
+          const unsigned four = local.Get(lane, models);
+          local.GetBits(lane, 0);
+          for (unsigned i = 0; i < kGroup; ++i) pixels[i] = four >> i & 1;
+          return four;
+        },
+        [&](unsigned lane, Interval interval, std::uint8_t* pixels) {
+          if (!local.GetZero(lane, interval)) return false;
+          for (unsigned i = 0; i < kGroup; ++i) pixels[i] = 0;
+          return true;
+        });
     std::copy_n(row_.data(), columns, &(*mask)[std::size_t{beam} * columns]);
     if (local.overran()) return false;
   }

@@ -29,8 +29,9 @@ class BlendedMask {
 
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
   BlendedModels ModelsOf(const std::uint8_t* above, std::uint32_t before);
-  template <class CodeFour>
-  void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code);
+  BlendedModels EmptyModels();
+  template <class CodeFour, class CodeEmpty>
+  void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code, CodeEmpty&& code_empty);
 
   std::array<std::vector<NibbleModel>, kBlended> models_;
   AlignedRow<std::uint8_t> above_;  // a bit for each beam above, the nearest in bit 0; 1: a return

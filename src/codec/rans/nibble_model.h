@@ -138,6 +138,8 @@ class NibbleModel {
     if (start_[kAge] == 0) std::copy_n(other.start_.begin(), kNibbles, start_.begin());
   }
 
+  class ZeroRun;
+
   /// The mean of four distributions, rounded down after each of two steps. The starts of each rise,
   /// so those of the mean do, too.
   static NibbleModel Blend(const BlendedModels& models) {
@@ -184,6 +186,48 @@ class NibbleModel {
 
   // [0] is 0 for ever, [16] is kProbabilityOne (read unsigned), [17] the number of updates so far.
   alignas(64) std::array<std::int16_t, 32> start_{};
+};
+
+/// Blends four different models as long as symbol 0 follows. They stay in registers, so Store()
+/// must come at the end.
+class NibbleModel::ZeroRun {
+ public:
+  /// Returns true if the models learn at their last rate, which a run needs.
+  static bool IsReady(const BlendedModels& models) {
+    return std::all_of(models.begin(), models.end(), [](const NibbleModel* model) {
+      return model->start_[kAge] == detail::Rates::kOldest;
+    });
+  }
+  explicit ZeroRun(const BlendedModels& models) {
+    for (unsigned k = 0; k < models.size(); ++k)
+      for (unsigned half = 0; half < 2; ++half)
+        std::memcpy(&starts_[k][half], &models[k]->start_[half * kLanes], sizeof(Vector));
+  }
+  void Store(const BlendedModels& models) const {
+    for (unsigned k = 0; k < models.size(); ++k)
+      for (unsigned half = 0; half < 2; ++half)
+        std::memcpy(&models[k]->start_[half * kLanes], &starts_[k][half], sizeof(Vector));
+  }
+  /// The blended interval of symbol 0.
+  Interval interval() const {
+    const auto start = [&](unsigned k) { return static_cast<std::uint32_t>(starts_[k][0][1]); };
+    return {0, static_cast<std::uint16_t>(
+                   (((start(0) + start(1)) >> 1) + ((start(2) + start(3)) >> 1)) >> 1)};
+  }
+  /// Learns a symbol 0, as Update<kBlendedHaste>() does.
+  void Update() {
+    constexpr auto kRate =
+        static_cast<std::int16_t>(detail::kRates.rates[detail::Rates::kOldest] - kBlendedHaste);
+    for (unsigned half = 0; half < 2; ++half) {
+      Vector target;
+      std::memcpy(&target, &detail::kTargets.starts[0][half * kLanes], sizeof target);
+      for (auto& start : starts_) start[half] += (target - start[half]) >> kRate;
+    }
+  }
+
+ private:
+  static constexpr unsigned kLanes = 8;
+  std::array<std::array<Vector, 2>, std::tuple_size_v<BlendedModels>> starts_;
 };
 
 }  // namespace lidar::codec

@@ -63,6 +63,8 @@ class RansEncoder {
       *next_++ = {NibbleModel::BlendedInterval(models, symbol), bits << 8 | count << 2 | lane};
       for (NibbleModel* model : models) model->Update<kBlendedHaste>(symbol);
     }
+    /// Adds the symbol of an interval.
+    void Put(unsigned lane, Interval interval) { *next_++ = {interval, lane}; }
     /// Adds the low `count` <= kMaxPlainBits of `bits`, whose other bits are 0.
     void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
       *next_++ = {{0, kProbabilityOne}, bits << 8 | count << 2 | lane};
@@ -101,6 +103,16 @@ class RansDecoder {
     const unsigned symbol = Take(lane, NibbleModel::Blend(models));
     for (NibbleModel* model : models) model->Update<kBlendedHaste>(symbol);
     return symbol;
+  }
+  /// Takes symbol 0, of this interval, and no bits. Returns false, with nothing taken, if another
+  /// symbol follows.
+  [[gnu::always_inline]] bool GetZero(unsigned lane, Interval zero) {
+    const std::uint64_t x = states_[lane];
+    const auto slot = static_cast<std::uint32_t>(x & (kProbabilityOne - 1));
+    if (slot >= zero.size) return false;
+    states_[lane] = zero.size * (x >> kProbabilityBits) + slot;
+    GetBits(lane, 0);
+    return true;
   }
   std::uint32_t GetBits(unsigned lane, unsigned count) {
     return GetBits(lane, count, (1U << count) - 1);

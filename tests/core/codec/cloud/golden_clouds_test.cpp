@@ -45,7 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
                       GoldenCloud{"extras", 2000, 2000, {11693.06, 10103.61, -42.61}},
                       GoldenCloud{"near", 700, 700, {841.18, 773.62, 169.34}},
                       GoldenCloud{"path", 8000, 0, {1590.64, -1672.08, -28151.94}},
-                      GoldenCloud{"refined", 2665, 0, {-63.65, -120.89, -13.62}}),
+                      GoldenCloud{"refined", 2665, 0, {-63.65, -120.89, -13.62}},
+                      GoldenCloud{"sparse", 2743, 0, {51495.50, 13097.82, -529.16}}),
     [](const auto& golden) { return std::string(golden.param.name); });
 
 }  // namespace
