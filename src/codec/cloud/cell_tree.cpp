@@ -105,6 +105,42 @@ constexpr std::array<Neighbour, 27> FindNeighbours() {
 }
 constexpr std::array<Neighbour, 27> kNeighbours = FindNeighbours();
 
+/// The place of a node among the 27 around it.
+constexpr unsigned kOwnPlace = 13;
+
+/// A parent whose children may be neighbours of a node.
+struct ParentBeside {
+  unsigned parent = 0;                   // place among the 27 around the node's parent
+  unsigned near = 0;                     // the children that are
+  std::array<std::uint8_t, 8> places{};  // of each of them, among the 27 around the node
+};
+/// Returns those of each child of a parent.
+constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {
+  std::array<std::array<ParentBeside, 8>, 8> all{};
+  for (unsigned child = 0; child < 8; ++child)
+    for (unsigned i = 0; i < 27; ++i) {
+      const std::array<unsigned, 3> steps = {i % 3, i / 3 % 3, i / 9};
+      unsigned parent = 0;
+      unsigned beside = 0;  // bit k: the parent differs along axis k
+      unsigned there = 0;
+      unsigned scale = 1;
+      for (unsigned k = 0; k < 3; ++k) {
+        const unsigned at = 1 + (child >> k & 1) + steps[k];  // 2 more than from the own parent
+        parent += at / 2 * scale;
+        beside |= (at / 2 != 1 ? 1U : 0U) << k;
+        there |= at % 2 << k;
+        scale *= 3;
+      }
+      if (i == kOwnPlace) continue;
+      ParentBeside& found = all[child][beside];
+      found.parent = parent;
+      found.near |= 1U << there;
+      found.places[there] = static_cast<std::uint8_t>(i);
+    }
+  return all;
+}
+constexpr auto kParentsBeside = FindParentsBeside();
+
 /// Bits read as the digits of a number in base 3, from the lowest bit or from the highest.
 template <unsigned kDigits>
 constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
@@ -167,18 +203,24 @@ struct Tally {
 }  // namespace
 
 struct CellTree::Model {
-  Model() {
-    for (auto* set : {&first, &second, &count_weights}) {
-      for (Weights& w : *set) {
-        w.values.fill(mixing::kWeightOne / 4);
-      }
-    }
+  void Reset() {
+    for (auto& table : counters) table.fill({});
+    for (auto& table : counts) table.fill({});
+    Weights equal;
+    equal.values.fill(mixing::kWeightOne / 4);
+    for (auto* set : {&first, &second, &count_weights}) set->fill(equal);
   }
-  std::array<std::array<Counter, kTable>, kContexts> counters{};
+  std::array<std::array<Counter, kTable>, kContexts> counters;
   std::array<Weights, 1024> first;
   std::array<Weights, 1024> second;
-  std::array<std::array<Counter, kTable>, 3> counts{};
+  std::array<std::array<Counter, kTable>, 3> counts;
   std::array<Weights, 1024> count_weights;
+};
+
+/// A parent and the 26 nodes around it.
+struct CellTree::Family {
+  std::array<std::uint8_t, 27> occupancy{};
+  std::array<std::uint32_t, 27> first_children{};  // indices
 };
 
 struct CellTree::Surroundings {
@@ -208,34 +250,61 @@ void CellTree::FillLevels(const CellList& cells) {
   }
 }
 
-/// Sets the occupied cells of coded neighbours; all cells of the others are unknown.
-void CellTree::Look(const Place& place, Surroundings* around) const {
+/// Makes the parents ready to be found, and counts their children.
+void CellTree::ListParents(const Level& parents) {
+  map_.Reset(parents.codes.size());
+  first_children_.resize(parents.codes.size());
+  std::uint32_t first = 0;
+  for (std::uint32_t i = 0; i < parents.codes.size(); ++i) {
+    map_.Add(NodeMap::KeyOf(PositionOf(parents.codes[i])), i);
+    first_children_[i] = first;
+    first += Ones(parents.occupancy[i]);
+  }
+}
+
+CellTree::Family CellTree::FamilyOf(const Level& parents, std::uint32_t parent) const {
   constexpr std::uint64_t kOneEach = NodeMap::kStepX + NodeMap::kStepY + NodeMap::kStepZ;
-  const std::uint64_t corner = NodeMap::KeyOf(place.position) - kOneEach;
+  const std::uint64_t corner = NodeMap::KeyOf(PositionOf(parents.codes[parent])) - kOneEach;
+  Family family;
+  for (unsigned i = 0; i < 27; ++i) {
+    const std::uint32_t index =
+        i == kOwnPlace ? parent
+                       : map_.Find(corner + i % 3 * NodeMap::kStepX + i / 3 % 3 * NodeMap::kStepY +
+                                   i / 9 * NodeMap::kStepZ);
+    if (index == NodeMap::kAbsent) continue;
+    family.occupancy[i] = parents.occupancy[index];
+    family.first_children[i] = first_children_[index];
+  }
+  return family;
+}
+
+/// Sets the occupied cells of coded neighbours; all cells of the others are unknown.
+void CellTree::Look(const Place& place, const Family& family, Surroundings* around) const {
   const auto& occupancy = levels_[place.depth - 1].occupancy;
   *around = {};
-  for (unsigned i = 0; i < 27; ++i) {
-    const unsigned dx = i % 3;
-    const unsigned dy = i / 3 % 3;
-    const unsigned dz = i / 9;
-    if (i == 13) continue;
-    const std::uint32_t index =
-        map_.Find(corner + dx * NodeMap::kStepX + dy * NodeMap::kStepY + dz * NodeMap::kStepZ);
-    if (index == NodeMap::kAbsent) continue;
-    around->nodes |= 1U << i;
-    const bool known = index < place.node;
-    const unsigned children = (known ? occupancy[index] : 0xFFU) & kNeighbours[i].inside;
-    const int shift = kNeighbours[i].shift;
-    const CellBits bits = shift < 0 ? kSpread[children] >> -shift : kSpread[children] << shift;
-    (known ? around->occupied : around->unknown) |= bits;
+  for (const ParentBeside& beside : kParentsBeside[place.child]) {
+    const unsigned nodes = family.occupancy[beside.parent];
+    for (unsigned left = nodes & beside.near; left != 0; left &= left - 1) {
+      const auto child = static_cast<unsigned>(__builtin_ctz(left));
+      const unsigned i = beside.places[child];
+      const std::uint32_t index =
+          family.first_children[beside.parent] + Ones(nodes & ((1U << child) - 1));
+      around->nodes |= 1U << i;
+      const bool known = index < place.node;
+      const unsigned children = (known ? occupancy[index] : 0xFFU) & kNeighbours[i].inside;
+      const int shift = kNeighbours[i].shift;
+      const CellBits bits = shift < 0 ? kSpread[children] >> -shift : kSpread[children] << shift;
+      (known ? around->occupied : around->unknown) |= bits;
+    }
   }
   around->unknown |= kSpread[0xFF] << kChildAt[0];
 }
 
 template <class Coder>
-std::uint8_t CellTree::CodeNode(std::uint8_t occupancy, const Place& place, Coder* coder) {
+std::uint8_t CellTree::CodeNode(std::uint8_t occupancy, const Place& place, const Family& family,
+                                Coder* coder) {
   Surroundings around;
-  Look(place, &around);
+  Look(place, family, &around);
   const unsigned level = std::min(place.to_leaves, 7U);
   unsigned coded = 0;
   unsigned ones = 0;
@@ -267,7 +336,7 @@ std::uint8_t CellTree::CodeNode(std::uint8_t occupancy, const Place& place, Code
         Hash((std::uint64_t{tally.mask} * 2 + (level == 0 ? 1 : 0)) * 4 + some),
         Hash((tangent * 64 + range) * 4 + some),
         (range * 4 + some) * 64 + tally.faces_on * 8 + std::min(tally.edges_on, 7U),
-        Hash(((std::uint64_t{place.parent} * 8 + child) * 256 + coded) * 8 + level),
+        Hash(((std::uint64_t{family.occupancy[kOwnPlace]} * 8 + child) * 256 + coded) * 8 + level),
         Hash(((std::uint64_t{around.nodes} & kNodesBy[child]) * 8 + child) * 4 + some),
         Hash((std::uint64_t{tally.layer} * 2 + (level == 0 ? 1 : 0)) * 4 + some)};
     BitMixer<kContexts, 0> mixer;
@@ -290,25 +359,22 @@ bool CellTree::CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& 
                          Coder* coder) {
   Level& level = levels_[depth];
   Level& next = levels_[depth + 1];
-  map_.Reset(level.codes.size());
-  for (std::uint32_t i = 0; i < level.codes.size(); ++i)
-    map_.Add(NodeMap::KeyOf(PositionOf(level.codes[i])), i);
   nodes_ += level.codes.size();
   if (nodes_ > limits.nodes) return false;
+  if (depth > 0) ListParents(levels_[depth - 1]);
   if constexpr (Coder::kDecodes) {
     level.occupancy.resize(level.codes.size());
     next.codes.clear();
   }
-  std::size_t parent = 0;
+  Family family;
+  std::uint32_t next_parent = 0;
   for (std::uint32_t i = 0; i < level.codes.size(); ++i) {
     const std::uint64_t code = level.codes[i];
-    Place place{PositionOf(code), i, depth + 1, leaf_depth - depth - 1, 0};
-    if (depth > 0) {
-      const Level& above = levels_[depth - 1];
-      while (above.codes[parent] != code >> 3) ++parent;
-      place.parent = above.occupancy[parent];
-    }
-    const std::uint8_t coded = CodeNode(level.occupancy[i], place, coder);
+    if (depth > 0 && (i == 0 || code >> 3 != level.codes[i - 1] >> 3))
+      family = FamilyOf(levels_[depth - 1], next_parent++);
+    const Place place{PositionOf(code), i, depth + 1, leaf_depth - depth - 1,
+                      static_cast<unsigned>(code & 7)};
+    const std::uint8_t coded = CodeNode(level.occupancy[i], place, family, coder);
     if constexpr (!Coder::kDecodes) continue;
     level.occupancy[i] = coded;
     for (unsigned child = 0; child < 8; ++child)
@@ -389,7 +455,8 @@ bool CellTree::CodeCounts(CellList* cells, const CellLimits& limits, Coder* code
 
 template <class Coder>
 bool CellTree::Code(CellList* cells, const CellLimits& limits, Coder* coder) {
-  model_ = std::make_unique<Model>();
+  if (model_ == nullptr) model_ = std::make_unique<Model>();
+  model_->Reset();
   nodes_ = 0;
   levels_[0].codes.assign(1, 0);
   if constexpr (!Coder::kDecodes) FillLevels(*cells);

@@ -37,14 +37,15 @@ class CellTree {
   static constexpr unsigned kContexts = 9;
   struct Model;
   struct Surroundings;
+  struct Family;
   struct CountContext;
   /// A node and its place.
   struct Place {
     CellPosition position;
-    std::uint32_t node = 0;   // index in its level
-    unsigned depth = 0;       // depth of its children
-    unsigned to_leaves = 0;   // levels from its children to the leaves
-    std::uint8_t parent = 0;  // occupancy of its parent
+    std::uint32_t node = 0;  // index in its level
+    unsigned depth = 0;      // depth of its children
+    unsigned to_leaves = 0;  // levels from its children to the leaves
+    unsigned child = 0;      // which child of its parent
   };
   struct Level {
     std::vector<std::uint64_t> codes;
@@ -55,16 +56,20 @@ class CellTree {
   template <class Coder>
   bool CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& limits, Coder* coder);
   template <class Coder>
-  std::uint8_t CodeNode(std::uint8_t occupancy, const Place& place, Coder* coder);
+  std::uint8_t CodeNode(std::uint8_t occupancy, const Place& place, const Family& family,
+                        Coder* coder);
   template <class Coder>
   bool CodeCounts(CellList* cells, const CellLimits& limits, Coder* coder);
   template <class Coder>
   std::uint32_t CodeCount(std::uint32_t count, const CountContext& context, Coder* coder);
-  void Look(const Place& place, Surroundings* around) const;
+  void ListParents(const Level& parents);
+  Family FamilyOf(const Level& parents, std::uint32_t parent) const;
+  void Look(const Place& place, const Family& family, Surroundings* around) const;
 
   std::unique_ptr<Model> model_;
   std::array<Level, kMostDepth + 1> levels_;
   NodeMap map_;
+  std::vector<std::uint32_t> first_children_;  // of the parents: index of each one's first child
   std::size_t nodes_ = 0;
 };
 
