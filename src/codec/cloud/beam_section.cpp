@@ -240,21 +240,24 @@ bool DecodeResiduals(const RangeImage& image, const ResidualSettings& settings,
   return CodeResiduals(image, settings, residuals, bits);
 }
 
-bool DecodeImage(ByteReader* reader, DecodedSection* section) {
+bool DecodeTable(ByteReader* reader, DecodedSection* section) {
   auto table = BeamTable::Read(reader);
   if (!table || !ReadSettings(reader, &section->azimuths, kByFourFlag, &section->by_four) ||
       (table->bends && !ReadSettings(reader, &section->elevations, 0, nullptr))) {
     return false;
   }
   section->table = *std::move(table);
-  RangeDecoder decoder(ModelOf(section->table));
+  return true;
+}
+
+bool DecodeImage(ByteReader* reader, RangeDecoder* decoder, DecodedSection* section) {
   BlockStore nothing;
   RangeImage& image = section->image;
-  if (!decoder.Decode(reader, kMostPixels, &image, &section->scale, &nothing) ||
+  if (!decoder->Decode(reader, kMostPixels, &image, &section->scale, &nothing) ||
       image.first_column + image.columns > section->table.columns()) {
     return false;
   }
-  section->grid = decoder.header().grid;
+  section->grid = decoder->header().grid;
   section->returns = image.size() - static_cast<std::size_t>(
                                         std::count(image.ranges.begin(), image.ranges.end(), 0U));
   return true;
@@ -326,10 +329,17 @@ class PixelWriter {
 
 }  // namespace
 
-bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
-                       XyzCloud* cloud, PointPlaces* places) {
+bool BeamSectionDecoder::Decode(ByteReader* reader, std::size_t max_points,
+                                const IntensityScale& scale, XyzCloud* cloud, PointPlaces* places) {
   DecodedSection section;
-  if (!DecodeImage(reader, &section) || section.scale.bits() != scale.bits() ||
+  if (!DecodeTable(reader, &section)) return false;
+  const BeamTable& table = section.table;
+  if (decoder_ == nullptr || table.rows() != rows_ || table.columns() != columns_) {
+    decoder_ = std::make_unique<RangeDecoder>(ModelOf(table));
+    rows_ = table.rows();
+    columns_ = table.columns();
+  }
+  if (!DecodeImage(reader, decoder_.get(), &section) || section.scale.bits() != scale.bits() ||
       section.scale.full() != scale.full() || !DecodeRest(reader, max_points, &section)) {
     return false;
   }

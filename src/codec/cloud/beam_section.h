@@ -43,10 +43,19 @@ class BeamSectionEncoder {
   std::uint32_t columns_ = 0;
 };
 
-/// Appends the points of the next section of `reader`: beam by beam, in the order of columns, the
-/// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with both
-/// undefined, for a section that is damaged or of more than `max_points`.
-bool DecodeBeamSection(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
-                       XyzCloud* cloud, PointPlaces* places = nullptr);
+/// Keeps its buffers between sections.
+class BeamSectionDecoder {
+ public:
+  /// Appends the points of the next section of `reader`: beam by beam, in the order of columns, the
+  /// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with both
+  /// undefined, for a section that is damaged or of more than `max_points`.
+  bool Decode(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
+              XyzCloud* cloud, PointPlaces* places = nullptr);
+
+ private:
+  std::unique_ptr<RangeDecoder> decoder_;
+  std::uint32_t rows_ = 0;  // of decoder_
+  std::uint32_t columns_ = 0;
+};
 
 }  // namespace lidar::codec::cloud

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/level_tree.h"
 #include "src/codec/mixing/binary_coder.h"
 #include "src/codec/varint.h"
@@ -24,9 +23,8 @@ bool CloudDecoder::Decode(ByteView stream) {
   if (far_size > reader.remaining()) return false;
   ByteReader far(reader.Bytes(far_size));
   const std::size_t others = std::size_t{header_.points} + header_.far_points;
-  if (header_.has_beams &&
-      !DecodeBeamSection(&reader, max_points_ - others, header_.intensity, &cloud_,
-                         header_.has_exact_part ? &places_ : nullptr)) {
+  if (header_.has_beams && !section_.Decode(&reader, max_points_ - others, header_.intensity,
+                                            &cloud_, header_.has_exact_part ? &places_ : nullptr)) {
     return false;
   }
   const ByteView cells = reader.Bytes(header_.stream_size);

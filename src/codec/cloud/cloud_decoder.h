@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/base/byte_reader.h"
+#include "src/codec/cloud/beam_section.h"
 #include "src/codec/cloud/cell_tree.h"
 #include "src/codec/cloud/cloud_header.h"
 #include "src/codec/cloud/firing_order.h"
@@ -37,6 +38,7 @@ class CloudDecoder {
 
   std::uint32_t max_points_;
   CloudHeader header_;
+  BeamSectionDecoder section_;
   CellTree tree_;
   CellList cells_;
   XyzCloud cloud_;

@@ -518,7 +518,7 @@ TEST(BeamSection, IsRefusedWithAnImageThatReachesPastItsTable) {
     EXPECT_TRUE(BeamSectionEncoder().Encode(table, {0.02, 0.02, 0, 0}, {}, {}, &list, &bytes));
     ByteReader reader(bytes.data(), bytes.size());
     XyzCloud cloud;
-    return DecodeBeamSection(&reader, 8, {}, &cloud);
+    return BeamSectionDecoder().Decode(&reader, 8, {}, &cloud);
   };
   EXPECT_TRUE(decodes(0));
   EXPECT_TRUE(decodes(4));
