@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "src/base/byte_writer.h"
 #include "src/base/crc.h"
@@ -209,13 +210,24 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
   const RangeGrid& grid = settings.grid;
   const double per_mm = RangeGrid::kParts / (1.0 * grid.parts() * grid.unit_mm());
   const double half_part = 0.5 / grid.parts();
+  const std::size_t size = image.size();
+  const std::uint32_t* const ranges = image.ranges.data();
+  std::uint8_t* const mask = mask_.data();
+  for (std::size_t i = 0; i < size; ++i) mask[i] = ranges[i] != 0 ? 1 : 0;
+  std::int32_t* const values = lists_.values.data();
   std::size_t count = 0;
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    const std::uint32_t range = std::min(image.ranges[i], RangeGrid::kMaxRangeMm);
-    mask_[i] = range != 0 ? 1 : 0;
-    lists_.values[count] =
-        static_cast<std::int32_t>(static_cast<std::int32_t>(range) * per_mm + half_part);
-    count += mask_[i];
+  // Most pixels are empty in a cloud whose near points are in cells.
+  constexpr std::size_t kAtOnce = 8;
+  for (std::size_t first = 0; first < size; first += kAtOnce) {
+    const std::size_t end = std::min(first + kAtOnce, size);
+    std::uint64_t returns = 0;
+    std::memcpy(&returns, mask + first, end - first);
+    if (returns == 0) continue;
+    for (std::size_t i = first; i < end; ++i) {
+      const auto range = static_cast<std::int32_t>(std::min(ranges[i], RangeGrid::kMaxRangeMm));
+      values[count] = static_cast<std::int32_t>(range * per_mm + half_part);
+      count += mask[i];
+    }
   }
   lists_.values.resize(count);
   has_gaps_ = count < mask_.size();

@@ -165,16 +165,18 @@ bool BeamSectionEncoder::Encode(BeamTable table, const PixelErrors& errors,
   std::vector<std::uint8_t> block;
   const RangeSettings settings = SettingsOf(errors, levels, way, image);
   if (!CoderOf(table)->Encode(image, settings, &block)) return false;
-  // The codes of the next parts depend on the decoded ranges.
+  // The codes of the next parts depend on the decoded ranges, or on their bins alone.
   RangeImage decoded;
-  RangeGrid grid;
+  RangeGrid grid = settings.grid;
   const bool has_extras = !list->extras.empty();
-  if ((has_extras || errors.tangent_um > 0 || errors.bend_um > 0) &&
+  const bool has_residuals = errors.tangent_um > 0 || errors.bend_um > 0;
+  const bool bins_suffice = !has_residuals && settings.effort < EffortControl::kHighest;
+  if ((has_extras || has_residuals) && !bins_suffice &&
       !ComeBack(image, settings, block, table, &decoded, &grid)) {
     return false;
   }
   std::vector<std::int32_t> bins;
-  if (has_extras) bins = BinsOf(decoded, grid);
+  if (has_extras) bins = BinsOf(bins_suffice ? image : decoded, grid);
   auto extras = ExtraBins(*list, bins, grid, levels);
 
   ResidualSettings azimuths{errors.tangent_um, ResidualGuess::kNone};
