@@ -16,6 +16,7 @@ void ClockMapper::Observe(std::uint64_t sensor_ns, Time arrival) {
   if (!offset_ || WouldJump(sensor_ns, arrival)) {
     offset_ = minimum_ = last_minimum_ = seen;
     window_start_ = last_arrival_ = arrival;
+    last_sensor_ = SinceSensorEpoch(sensor_ns);
     return;
   }
   if (mode_ == Mode::kHold) return;
@@ -26,11 +27,14 @@ void ClockMapper::Observe(std::uint64_t sensor_ns, Time arrival) {
   }
   minimum_ = std::min(minimum_, seen);
   const Duration target = std::min(minimum_, last_minimum_);
-  // The offset falls at once to that of a faster packet, and rises at most as fast as clocks drift.
+  // The offset rises at most as fast as clocks drift, and falls to that of a faster packet at half
+  // the sensor's pace, so that mapped times do not step back.
   const Duration elapsed = std::max(Duration{0}, arrival - last_arrival_);
-  const Duration step = elapsed * kMaxSlewPpm / 1'000'000;
-  offset_ = std::min(target, *offset_ + step);
+  const Duration sampled = std::max(Duration{0}, SinceSensorEpoch(sensor_ns) - last_sensor_);
+  offset_ =
+      std::clamp(target, *offset_ - sampled / 2, *offset_ + elapsed * kMaxSlewPpm / 1'000'000);
   last_arrival_ = std::max(last_arrival_, arrival);
+  last_sensor_ = std::max(last_sensor_, SinceSensorEpoch(sensor_ns));
 }
 
 Time ClockMapper::Map(std::uint64_t sensor_ns) const {

@@ -49,6 +49,7 @@ class ClockMapper {
   Duration last_minimum_{};         // of the last window
   Time window_start_{};
   Time last_arrival_{};
+  Duration last_sensor_{};
 };
 
 }  // namespace lidar::ouster
