@@ -62,6 +62,22 @@ class HugeInput : public Input {
   std::size_t most_ = 0;
 };
 
+TEST(McapLimits, ARunOfMessagesIsNoLongerThanAChunk) {
+  HugeInput input(0);
+  ChunkPlace run{};
+  run.offset = kMagic.size();
+  run.is_run = true;
+  Bytes records;
+  for (const std::uint64_t size : {kMaxChunk + 1, std::uint64_t{1} << 40}) {
+    run.size = size;
+    EXPECT_FALSE(ReadChunk(&input, run, &records)) << size;
+  }
+  EXPECT_EQ(input.most(), 0U);
+  run.size = 1'000;
+  EXPECT_TRUE(ReadChunk(&input, run, &records));
+  EXPECT_EQ(records.size(), 1'000U);
+}
+
 TEST(McapLimits, ASummaryOfAPetabyteIsNotRead) {
   HugeInput input(8);
   EXPECT_TRUE(ReadFileIndex(&input).chunks.empty());

@@ -4,6 +4,9 @@
 #include <condition_variable>
 #include <limits>
 #include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "ext/mcap/seeking.h"
 #include "gst/common/seek_range.h"
@@ -93,6 +96,83 @@ TEST_F(McapSeek, ASegmentSeekEndsWithItsMessage) {
                                0, GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   EXPECT_EQ(p.outcome().buffers.at("see").size(), 48U);
+}
+
+/// Keeps type and number of events that a seek causes.
+class EventNumbers {
+ public:
+  using Entry = std::pair<std::string, guint32>;
+
+  void Watch(GstElement* sink) {
+    const gst::PadPtr pad(gst_element_get_static_pad(sink, "sink"));
+    const auto keep = [](GstPad*, GstPadProbeInfo* info, gpointer self) {
+      static_cast<EventNumbers*>(self)->Keep(GST_PAD_PROBE_INFO_EVENT(info));
+      return GST_PAD_PROBE_OK;
+    };
+    gst_pad_add_probe(pad.get(),
+                      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM |
+                                                   GST_PAD_PROBE_TYPE_EVENT_FLUSH),
+                      keep, this, nullptr);
+  }
+  /// Returns the events once there are `count`.
+  std::vector<Entry> Await(std::size_t count) {
+    EXPECT_TRUE(Eventually([&] {
+      const std::lock_guard lock(mutex_);
+      return entries_.size() >= count;
+    }));
+    return Take();
+  }
+  std::vector<Entry> Take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(entries_, {});
+  }
+
+ private:
+  void Keep(GstEvent* event) {
+    switch (GST_EVENT_TYPE(event)) {
+      case GST_EVENT_FLUSH_START:
+      case GST_EVENT_FLUSH_STOP:
+      case GST_EVENT_SEGMENT:
+      case GST_EVENT_SEGMENT_DONE:
+      case GST_EVENT_EOS: {
+        const std::lock_guard lock(mutex_);
+        entries_.emplace_back(GST_EVENT_TYPE_NAME(event), gst_event_get_seqnum(event));
+        break;
+      }
+      default:
+        break;
+    }
+  }
+
+  std::mutex mutex_;
+  std::vector<Entry> entries_;
+};
+
+TEST_F(McapSeek, TheEventsOfASeekHaveItsNumber) {
+  Record(10, "", "a.mcap");
+  EventNumbers numbers;
+  Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
+  numbers.Watch(p.Find("see").get());
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  const auto seek = [&](int flags, GstMessageType end) {
+    p.Forget();
+    numbers.Take();
+    GstEvent* event = gst_event_new_seek(
+        1, GST_FORMAT_TIME, static_cast<GstSeekFlags>(GST_SEEK_FLAG_FLUSH | flags),
+        GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_SET, 300 * GST_MSECOND);
+    const guint32 number = gst_event_get_seqnum(event);
+    EXPECT_TRUE(gst_element_send_event(p.get(), event));
+    EXPECT_TRUE(p.Wait(end));
+    return number;
+  };
+  using Entries = std::vector<EventNumbers::Entry>;
+  guint32 n = seek(0, GST_MESSAGE_EOS);
+  EXPECT_EQ(numbers.Await(4),
+            (Entries{{"flush-start", n}, {"flush-stop", n}, {"segment", n}, {"eos", n}}));
+  n = seek(GST_SEEK_FLAG_SEGMENT, GST_MESSAGE_SEGMENT_DONE);
+  EXPECT_EQ(numbers.Await(4),
+            (Entries{{"flush-start", n}, {"flush-stop", n}, {"segment", n}, {"segment-done", n}}));
 }
 
 TEST_F(McapSeek, SaysHowFarOneMaySeekAndWhatIsPlayed) {
