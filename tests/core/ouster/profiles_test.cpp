@@ -113,6 +113,22 @@ TEST_P(Profiles, EveryChannelSurvivesWritingAndParsing) {
   }
 }
 
+TEST_P(Profiles, APacketThatIsCutHasNoHeaderOrNoColumns) {
+  const Metadata m = MakeMetadata(GetParam());
+  const auto packet = WriteScan(m, 5).front();
+  const std::size_t header_size = m.format.packet_header_size();
+  for (std::size_t size = 0; size < packet.size(); size += size < header_size ? 1 : 97) {
+    const ByteView cut{packet.data(), size};
+    const auto header = PeekHeader(cut, m.format);
+    EXPECT_EQ(header.has_value(), !m.format.is_legacy() && size >= header_size) << size;
+    EXPECT_FALSE(LidarPacket::Parse(cut, m.format)) << size;
+    if (!header) continue;
+    EXPECT_EQ(header->frame_id, 5U);
+    EXPECT_EQ(header->init_id, m.init_id);
+    EXPECT_EQ(header->serial, m.serial);
+  }
+}
+
 TEST_P(Profiles, APixelThatIsSetAgainHasItsNewValue) {
   const Metadata m = MakeMetadata(GetParam());
   EXPECT_EQ(WriteScan(m, 1, true), WriteScan(m, 1));
