@@ -24,6 +24,8 @@ INSTANTIATE_TEST_SUITE_P(All, RangeCoders,
                                            test::CodingCase{RangeCoder::kResidual, 1, 8},
                                            test::CodingCase{RangeCoder::kDraco, 2.75, 0}));
 
+TEST(CoderOfIntegers, IsOneForAll) { EXPECT_EQ(DracoIntegers::Shared(), DracoIntegers::Shared()); }
+
 TEST(RangeSlices, OfDracosCodersAreRefusedWhereDracoIsNot) {
   const auto raw = test::SmallSlice();
   auto encoder = *SliceEncoder::Create(test::RoomFormat(), Geometry::kRange, RangeCoder::kResidual);
