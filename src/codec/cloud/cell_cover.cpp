@@ -43,10 +43,10 @@ class NearCells {
   static constexpr std::size_t kMost = 8;
   /// Cells around a cell: the cell x, y and z steps away is cell 13 + x + 3 y + 9 z.
   static constexpr unsigned kAround = 27;
-  /// The key of a point's own cell, and a bit for each cell around it that is near enough.
-  struct Found {
-    std::uint64_t key;
-    std::uint32_t around;
+  /// A point's own cell.
+  struct Own {
+    std::array<double, 3> cell;  // in steps from the middle of the grid
+    std::uint64_t key = 0;
   };
 
   NearCells(const CellGrid& grid, unsigned depth)
@@ -58,11 +58,12 @@ class NearCells {
   /// Writes the key of the point's own cell, then those of its neighbours that are near enough.
   /// Returns the end of the keys.
   std::uint64_t* Write(const Point& point, std::uint64_t* keys) const {
-    const Sides sides = SidesOf(point);
-    *keys++ = sides.own;
+    const Own own = OwnOf(point);
+    const Sides sides = SidesOf(point, own);
+    *keys++ = own.key;
     // A jump for each neighbour would often be mispredicted.
     for (unsigned i = 1; i < kMost; ++i) {
-      std::uint64_t key = sides.own;
+      std::uint64_t key = own.key;
       for (unsigned k = 0; k < 3; ++k) {
         const std::uint64_t step = sides.is_below[k] ? 0 - kSteps[k] : kSteps[k];
         key += (i >> k & 1) != 0 ? step : 0;
@@ -72,9 +73,19 @@ class NearCells {
     }
     return keys;
   }
-  Found Find(const Point& point) const {
+  Own OwnOf(const Point& point) const {
+    Own own;
+    for (unsigned k = 0; k < 3; ++k) {
+      own.cell[k] = Floor(static_cast<double>(point[k]) / step_);
+      own.key += static_cast<std::uint64_t>(static_cast<std::int64_t>(own.cell[k] + half_) + 1) *
+                 kSteps[k];
+    }
+    return own;
+  }
+  /// Returns a bit for each cell around the point's own cell that is near enough.
+  std::uint32_t AroundOf(const Point& point, const Own& own) const {
     constexpr std::array<int, 3> kPlaces = {1, 3, 9};
-    const Sides sides = SidesOf(point);
+    const Sides sides = SidesOf(point, own);
     std::uint32_t around = 0;
     for (unsigned i = 1; i < kMost; ++i) {
       int place = kAround / 2;
@@ -84,7 +95,7 @@ class NearCells {
       }
       around |= (IsNear(sides, i) ? 1U : 0U) << place;
     }
-    return {sides.own, around};
+    return around;
   }
   /// Returns the key of one of the cells around the cell of `key`.
   static std::uint64_t KeyAround(std::uint64_t key, unsigned place) {
@@ -95,25 +106,21 @@ class NearCells {
  private:
   static constexpr std::array<std::uint64_t, 3> kSteps = {NodeMap::kStepX, NodeMap::kStepY,
                                                           NodeMap::kStepZ};
-  /// A point's cell, and along each axis the neighbour on the point's side; no others can be near.
+  /// Along each axis the own cell, and the neighbour on the point's side; no others can be near.
   struct Sides {
-    std::uint64_t own = 0;
     std::array<std::array<double, 3>, 2> squares;  // of the distances from the middles
     std::array<bool, 3> is_below;                  // is the neighbour below the cell?
   };
 
-  Sides SidesOf(const Point& point) const {
+  Sides SidesOf(const Point& point, const Own& own) const {
     Sides sides;
     for (unsigned k = 0; k < 3; ++k) {
       const auto at = static_cast<double>(point[k]);
-      const double whole = Floor(at / step_);
-      const double off = at - grid_.MiddleFromCentre(whole);
-      const double beside = at - grid_.MiddleFromCentre(whole + std::copysign(1.0, off));
+      const double off = at - grid_.MiddleFromCentre(own.cell[k]);
+      const double beside = at - grid_.MiddleFromCentre(own.cell[k] + std::copysign(1.0, off));
       sides.squares[0][k] = off * off;
       sides.squares[1][k] = beside * beside;
       sides.is_below[k] = off < 0;
-      sides.own +=
-          static_cast<std::uint64_t>(static_cast<std::int64_t>(whole + half_) + 1) * kSteps[k];
     }
     return sides;
   }
@@ -138,11 +145,13 @@ class OwnCells {
     map_.Reset(points.size() / kUsual);
     cell_of_point_.reserve(points.size());
     for (const Point& point : points) {
-      const NearCells::Found found = near.Find(point);
-      const std::uint32_t cell = IndexOf(found.key);
-      ++cells_[cell].count;
-      cells_[cell].around &= found.around;
-      cell_of_point_.push_back(cell);
+      const NearCells::Own own = near.OwnOf(point);
+      const std::uint32_t index = IndexOf(own.key);
+      Cell& cell = cells_[index];
+      ++cell.count;
+      // Most cells have points on all sides, so that soon no other cell is near to all of them.
+      if (cell.around != 0) cell.around &= near.AroundOf(point, own);
+      cell_of_point_.push_back(index);
     }
   }
   /// Gives a cell's points to the neighbour with the most points, if all are near enough to it.
