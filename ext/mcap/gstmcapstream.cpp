@@ -4,6 +4,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "gst/common/caps_text.h"
 #include "gst/common/element_class.h"
@@ -54,15 +55,16 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   State& state = StateOf(base);
   const StreamSettings settings = Snapshot(state);
   std::string why;
-  state.writer = BufferWriter::Make(caps, settings.frame_id, &why);
-  const auto scalar = state.writer ? ToScalarCaps(caps, &why) : std::nullopt;
+  auto writer = BufferWriter::Make(caps, settings.frame_id, &why);
+  const auto scalar = writer ? ToScalarCaps(caps, &why) : std::nullopt;
   if (!scalar) {
-    state.writer.reset();
     if (state.refused.Note(caps))
       GST_ELEMENT_ERROR(state.sink, STREAM, WRONG_TYPE, ("Cannot be recorded: %s.", why.c_str()),
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
+  // The base class sends no caps again that it had before refused ones.
+  state.writer = std::move(writer);
   if (state.topic.empty()) {
     const std::string usual(TopicOf(state.writer->type()));
     state.topic = settings.topic.empty() ? McapSinkFreeTopic(state.sink, usual) : settings.topic;

@@ -219,8 +219,11 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   auto* self = GST_LIDAR_NATS_SINK(base);
   State& state = StateOf(self);
   std::string why;
-  state.format = StreamFormat::FromCaps(caps, &why);
-  if (state.format) return TRUE;
+  // The base class sends no caps again that it had before the refused ones.
+  if (auto format = StreamFormat::FromCaps(caps, &why)) {
+    state.format = std::move(format);
+    return TRUE;
+  }
   if (state.refused_caps.Note(caps))
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This cannot be published: %s.", why.c_str()),
                       ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));

@@ -99,7 +99,8 @@ void SinkCourse(Course& c) {
   c.Flush();
   c.Push("behind the end", Cloud(900));
   c.Push("of another size", Stamped(23, 0, 900));
-  c.SetCaps("text/x-raw,format=utf8");
+  for (const char* caps : {"text/x-raw,format=utf8", kRecordedCaps}) c.SetCaps(caps);
+  c.Push("of the caps before", Cloud(900));
   c.Stop();
   std::vector<std::string> files;
   for (const auto& file : std::filesystem::directory_iterator("."))
