@@ -162,16 +162,20 @@ TEST_F(FleetReporter, SendsTheNewestAsSoonAsThereIsAServer) {
   server_.Kill();
   fleet::Reporter reporter(settings);
   reporter.Publish({{"told.r1", "old"}, {"told.r2", "old"}});
-  reporter.Publish({{"told.r1", "new"}});
+  reporter.Publish({{"told.r1", "new"}, {"told.r2", "new"}});
   server_.Restart();
-  natsMsg* raw = nullptr;
-  ASSERT_TRUE(Eventually([&] {
-    return js_GetLastMsg(&raw, js.get(), "told", "told.r1", nullptr, nullptr) == NATS_OK;
-  }));
-  const nats::MessagePtr last(raw);
-  EXPECT_EQ(std::string(natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))),
-            "new");
-  EXPECT_EQ(natsMsg_GetSequence(raw), 1U) << "it alone";
+  std::uint64_t number = 0;
+  for (const char* subject : {"told.r1", "told.r2"}) {
+    natsMsg* raw = nullptr;
+    ASSERT_TRUE(Eventually([&] {
+      return js_GetLastMsg(&raw, js.get(), "told", subject, nullptr, nullptr) == NATS_OK;
+    })) << subject;
+    const nats::MessagePtr last(raw);
+    EXPECT_EQ(
+        std::string(natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))),
+        "new");
+    EXPECT_EQ(natsMsg_GetSequence(raw), ++number) << "nothing else came";
+  }
 }
 
 TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {
