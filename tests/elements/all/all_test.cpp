@@ -179,8 +179,10 @@ TEST_P(EveryBin, LeavesNothingOfTheElementsThatItMade) {
   ExpectNothingLeft([] {
     const ElementPtr bin(gst_parse_launch(GetParam(), nullptr));
     ASSERT_TRUE(bin);
-    EXPECT_EQ(gst_element_set_state(bin.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
-    EXPECT_EQ(gst_element_set_state(bin.get(), GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+    const PadPtr pad(gst_element_request_pad_simple(bin.get(), "sink_%u"));
+    for (const GstState state : {GST_STATE_READY, GST_STATE_NULL})
+      EXPECT_EQ(gst_element_set_state(bin.get(), state), GST_STATE_CHANGE_SUCCESS);
+    if (pad) gst_element_release_request_pad(bin.get(), pad.get());
   });
 }
 
