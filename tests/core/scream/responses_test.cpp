@@ -119,8 +119,10 @@ TEST_F(GapRecoveryTest, BelievesLessOnceAStepBackMeetsASlowLink) {
   FallIntoAGap();
   path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
   ASSERT_TRUE(Update(DataSize::Bytes(3000)));  // 26500
+  const DataRate before = gaps_.rate_before().value();
   path_.Arrive(8, 10ms, 100ms, Ecn::kCe);
   EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  EXPECT_NEAR(*gaps_.rate_before() / before, 26'500 / (kWindow / DataSize::Bytes(1)), 0.001);
   path_.Arrive(2, 100ms, 0ms, Ecn::kEct1);
   const auto restart = Update(DataSize::Bytes(3000));
   ASSERT_TRUE(restart);
