@@ -428,14 +428,18 @@ TEST(EcnUdpSrc, EosFromTheApplicationEndsTheStream) {
 
 TEST(EcnUdpSrc, SilenceIsReportedAfterTheTimeout) {
   Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
-  g_object_set(src->element, "port", 0, "timeout", guint64{10 * GST_MSECOND}, nullptr);
+  constexpr guint64 kTimeout = 200 * GST_MSECOND;
+  g_object_set(src->element, "port", 0, "timeout", kTimeout, nullptr);
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(src->element, bus);
+  const gint64 begin_us = g_get_monotonic_time();
   gst_harness_play(src.get());
   const MessagePtr message(
       gst_bus_timed_pop_filtered(bus, test::kPatience_ns, GST_MESSAGE_ELEMENT));
   ASSERT_TRUE(message);
   EXPECT_TRUE(gst_message_has_name(message.get(), "GstEcnUdpSrcTimeout"));
+  EXPECT_GE(static_cast<guint64>(g_get_monotonic_time() - begin_us) * GST_USECOND, kTimeout)
+      << "and no sooner";
   gst_element_set_state(src->element, GST_STATE_NULL);
   gst_element_set_bus(src->element, nullptr);
   gst_object_unref(bus);
