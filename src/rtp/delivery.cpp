@@ -5,7 +5,6 @@ namespace lidar::rtp {
 
 void Delivery::Forget() {
   packets_.clear();
-  first_slice_ += slices_.size();
   slices_.clear();
 }
 
