@@ -2,7 +2,6 @@
 #include "ext/web/client_service.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "ext/web/page_files.h"
 

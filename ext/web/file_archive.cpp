@@ -2,7 +2,6 @@
 #include "ext/web/file_archive.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "ext/web/poses.h"
 #include "gst/common/caps_text.h"

@@ -4,7 +4,6 @@
 #include <net/if.h>
 #include <sys/ioctl.h>
 
-#include <cerrno>
 #include <cstring>
 #include <ctime>
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <memory>
 #include <sstream>
 
 #include "src/link/gaps.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Test cases of RFC 8869, which uses system simulators for radios. Here a cell is a capacity over
 // time, and Wi-Fi is a channel that both directions share, with packets in aggregates.
-#include <cmath>
 
 #include "src/link/random.h"
 #include "src/link/trace_maker.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/srtp/handshake.h"
 
-#include <string>
 #include <utility>
 
 namespace lidar::gst {

@@ -11,7 +11,6 @@
 #include <functional>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "tests/elements/ecnudp/ecnudp_support.h"
 #include "tests/support/ipv6.h"

@@ -2,7 +2,6 @@
 // Workers and servers of a fleet are killed, one after another: a cluster of three nats-servers,
 // robots that drive, and workers that follow them. Run by hand: it takes minutes
 // (docs/results/fleet.md).
-#include <cmath>
 #include <future>
 #include <map>
 #include <tuple>

@@ -2,11 +2,9 @@
 // A whole fleet for minutes while its parts are killed: robots with SCReAM, lidar-edge, a cluster
 // of three nats-servers and workers; and books of every slice. Run by hand, by fleet_endurance.sh.
 #include <array>
-#include <cmath>
 #include <functional>
 #include <random>
 #include <set>
-#include <string_view>
 
 #include "ext/nats/message.h"
 #include "tests/elements/nats/fleet_processes.h"

@@ -3,7 +3,6 @@
 #include <gst/base/gstbasetransform.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "ext/nats/connection.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // ouster_src on sockets.
-#include <algorithm>
 
 #include "tests/elements/ouster/ouster_support.h"
 #include "tests/support/patience.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"

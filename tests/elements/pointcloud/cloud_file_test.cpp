@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <sstream>
 
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"

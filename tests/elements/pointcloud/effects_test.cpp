@@ -2,7 +2,6 @@
 // Each property has an effect, and each counter counts.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 
 #include "src/base/byte_writer.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/apps/edge/session.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>

@@ -2,7 +2,6 @@
 #include "src/tools/bench/ouster_replay/synth_stream.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include "src/base/byte_writer.h"

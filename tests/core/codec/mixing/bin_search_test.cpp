@@ -2,7 +2,6 @@
 // A choice between bins: what it saves, and what it must keep.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 #include <memory>
 
