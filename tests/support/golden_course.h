@@ -71,18 +71,7 @@ class Course {
     EXPECT_TRUE(Eventually([&] { return trace_->Count(line) >= count; })) << what;
     Note(what);
   }
-  guint64 Stat(const char* name) {
-    GstStructure* raw = nullptr;
-    g_object_get(element(), "stats", &raw, nullptr);
-    const gst::StructurePtr stats(raw);
-    guint64 value = 0;
-    guint small = 0;
-    gboolean flag = FALSE;
-    if (gst_structure_get_uint64(raw, name, &value)) return value;
-    if (gst_structure_get_uint(raw, name, &small)) return small;
-    EXPECT_TRUE(gst_structure_get_boolean(raw, name, &flag)) << name;
-    return flag ? 1 : 0;
-  }
+  guint64 Stat(const char* name) { return StatOf(element(), name); }
   /// The statistic `name` is `wanted` once the element has done its work.
   void AwaitStat(const char* name, guint64 wanted) {
     EXPECT_TRUE(Eventually([&] { return Stat(name) == wanted; }))

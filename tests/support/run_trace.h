@@ -10,6 +10,8 @@
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/base/crc.h"
+#include "tests/support/element_bus.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/golden_lines.h"
 #include "tests/support/harness.h"
 
@@ -20,15 +22,12 @@ class RunTrace {
   /// Watches the element of `h`, which must outlive this object. The bytes of its buffers count
   /// only `with_bytes`: some elements number their streams at random.
   explicit RunTrace(GstHarness* h, bool with_bytes = true)
-      : h_(h), with_bytes_(with_bytes), bus_(gst_bus_new()) {
-    gst_element_set_bus(h->element, bus_);
+      : h_(h), with_bytes_(with_bytes), bus_(h->element) {
     if (h->sinkpad != nullptr) Watch(h->sinkpad);
   }
   ~RunTrace() {
     if (added_ != 0) g_signal_handler_disconnect(h_->element, added_);
     for (const auto& [pad, probe] : probes_) gst_pad_remove_probe(pad.get(), probe);
-    gst_element_set_bus(h_->element, nullptr);
-    gst_object_unref(bus_);
   }
   RunTrace(const RunTrace&) = delete;
   RunTrace& operator=(const RunTrace&) = delete;
@@ -48,7 +47,7 @@ class RunTrace {
   }
   /// Returns how many lines since the last Take() begin so.
   std::size_t Count(const std::string& begin) {
-    while (const gst::MessagePtr message{gst_bus_pop(bus_)}) AddMessage(message.get(), &messages_);
+    while (const gst::MessagePtr message = bus_.Pop()) AddMessage(message.get(), &messages_);
     const auto begins_so = [&](const auto& line) { return line.rfind(begin, 0) == 0; };
     const std::lock_guard lock(mutex_);
     return static_cast<std::size_t>(std::count_if(lines_.begin(), lines_.end(), begins_so) +
@@ -94,14 +93,11 @@ class RunTrace {
     }
     taken.insert(taken.end(), messages_.begin(), messages_.end());
     messages_.clear();
-    while (const gst::MessagePtr message{gst_bus_pop(bus_)}) AddMessage(message.get(), &taken);
+    while (const gst::MessagePtr message = bus_.Pop()) AddMessage(message.get(), &taken);
     while (GstBuffer* buffer = gst_harness_try_pull(h_)) gst_buffer_unref(buffer);
     if (g_object_class_find_property(G_OBJECT_GET_CLASS(h_->element), "stats") == nullptr)
       return taken;
-    GstStructure* stats = nullptr;
-    g_object_get(h_->element, "stats", &stats, nullptr);
-    const gst::StructurePtr owner(stats);
-    const gst::StringPtr text(gst_structure_to_string(stats));
+    const gst::StringPtr text(gst_structure_to_string(StatsOf(h_->element).get()));
     taken.push_back(std::string("stats ") + text.get());
     return taken;
   }
@@ -239,7 +235,7 @@ class RunTrace {
 
   GstHarness* const h_;
   const bool with_bytes_;
-  GstBus* const bus_;
+  const ElementBus bus_;
   gulong added_ = 0;
   Lines messages_;    // of the bus, since the last Take()
   std::mutex mutex_;  // guards all below

@@ -11,6 +11,7 @@
 
 #include "gst/common/refs.h"
 
+#include "tests/support/element_bus.h"
 #include "tests/support/patience.h"
 
 namespace lidar::gst {
@@ -225,7 +226,7 @@ TEST_P(TypicalPipelines, PlayFourTimesInARow) {
   GError* error = nullptr;
   const ElementPtr pipeline(gst_parse_launch(GetParam(), &error));
   ASSERT_EQ(error, nullptr) << error->message;
-  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const test::ElementBus bus(pipeline.get());
   for (int cycle = 0; cycle < 4; ++cycle) {
     ASSERT_NE(gst_element_set_state(pipeline.get(), GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
     // Every other time the pipeline is torn down on its way up.
@@ -234,10 +235,9 @@ TEST_P(TypicalPipelines, PlayFourTimesInARow) {
                 GST_STATE_CHANGE_SUCCESS);
     }
     EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
-    const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+    const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
     EXPECT_FALSE(message);
   }
-  gst_object_unref(bus);
 }
 
 }  // namespace

@@ -137,25 +137,15 @@ std::string ErrorWithModelFile(const std::string& text, const CoderCase& coder) 
   const StringPtr owned(name);
   g_file_set_contents(name, text.c_str(), static_cast<gssize>(text.size()), nullptr);
   const Harness h = Encoder(coder, "model-location=" + std::string(name));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const test::ElementBus bus(h->element);
   gst_harness_play(h.get());
   gst_harness_push_event(h.get(), gst_event_new_stream_start("model"));
   const CapsPtr caps(OrganisedInfo(test::RoomSensor(), kColumns).ToCaps());
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
-  std::string result;
-  if (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)}) {
-    GError* error = nullptr;
-    gchar* debug = nullptr;
-    gst_message_parse_error(message.get(), &error, &debug);
-    const ErrorPtr owned_error(error);
-    const StringPtr owned_debug(debug);
-    result = std::string(error->message) + " " + (debug != nullptr ? debug : "");
-  }
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
   g_remove(name);
-  return result;
+  const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
+  return message ? test::MessageText(message.get()) + " " + test::MessageDetails(message.get())
+                 : "";
 }
 
 TEST_P(AnyCoder, RefusesAModelFileThatIsTruncatedForeignOrFromTheFuture) {

@@ -2,10 +2,10 @@
 // An encoder, then its decoder, and their messages on the bus.
 #pragma once
 #include <deque>
-#include <memory>
 #include <string>
 
 #include "tests/elements/coders/coder_harness.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::gst {
 
@@ -13,12 +13,7 @@ namespace lidar::gst {
 class CheckedCodec {
  public:
   explicit CheckedCodec(const CoderCase& coder, const std::string& properties = "")
-      : harness_(Codec(coder, properties)) {
-    gst_element_set_bus(harness_->element, bus_.get());
-  }
-  ~CheckedCodec() { gst_element_set_bus(harness_->element, nullptr); }
-  CheckedCodec(const CheckedCodec&) = delete;
-  CheckedCodec& operator=(const CheckedCodec&) = delete;
+      : harness_(Codec(coder, properties)) {}
 
   void SetCaps(const CloudInfo& info) { gst::SetCaps(harness_.get(), info); }
   GstHarness* harness() const { return harness_.get(); }
@@ -46,12 +41,12 @@ class CheckedCodec {
   }
   StructurePtr Stats() const {
     const ElementPtr enc(gst_bin_get_by_name(GST_BIN(harness_->element), "enc"));
-    return StructurePtr(StatsOf(enc.get()));
+    return StatsOf(enc.get());
   }
 
  private:
   void Drain() {
-    while (const MessagePtr message{gst_bus_pop(bus_.get())}) {
+    while (const MessagePtr message = bus_.Pop()) {
       const GstStructure* s = gst_message_get_structure(message.get());
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) ++errors_;
@@ -60,11 +55,8 @@ class CheckedCodec {
     }
   }
 
-  struct UnrefBus {
-    void operator()(GstBus* bus) const { gst_object_unref(bus); }
-  };
-  std::unique_ptr<GstBus, UnrefBus> bus_{gst_bus_new()};
   Harness harness_;
+  const test::ElementBus bus_{harness_->element};
   std::deque<StructurePtr> checks_;
   unsigned warnings_ = 0;
   unsigned errors_ = 0;

@@ -16,6 +16,7 @@
 #include "gst/lidar/cloud_info.h"
 #include "tests/core/codec/test_clouds.h"
 #include "tests/elements/coders/example_coder.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -82,18 +83,7 @@ inline std::vector<float> PointsOf(GstBuffer* buffer, gsize step) {
   return points;
 }
 
-inline GstStructure* StatsOf(GstElement* element) {
-  GstStructure* stats = nullptr;
-  g_object_get(element, "stats", &stats, nullptr);
-  return stats;
-}
-
-inline guint64 Counter(GstElement* element, const char* name) {
-  const StructurePtr stats(StatsOf(element));
-  guint64 value = G_MAXUINT64;
-  EXPECT_TRUE(gst_structure_get_uint64(stats.get(), name, &value)) << name;
-  return value;
-}
+using test::StatsOf;
 
 inline CloudInfo OrganisedInfo(const SensorModel& model, guint columns) {
   CloudInfo info;

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "tests/elements/coders/coder_harness.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/patience.h"
 
 namespace lidar::gst {
@@ -100,7 +101,7 @@ TEST_P(EitherCoder, DropsAndCountsADamagedSliceAndGoesOn) {
   EXPECT_EQ(gst_harness_push(dec.get(), damaged.release()), GST_FLOW_OK);
   EXPECT_EQ(gst_harness_push(dec.get(), slices[2].release()), GST_FLOW_OK);
   EXPECT_EQ(gst_harness_buffers_received(dec.get()), 2U);
-  EXPECT_EQ(Counter(dec->element, "slices-dropped"), 1U);
+  EXPECT_EQ(test::StatOf(dec->element, "slices-dropped"), 1U);
   gst_buffer_unref(gst_harness_pull(dec.get()));
   const BufferPtr after(gst_harness_pull(dec.get()));
   EXPECT_TRUE(GST_BUFFER_IS_DISCONT(after.get()));
@@ -161,8 +162,7 @@ TEST_P(EitherCoder, GivesTheSameCloudWithMoreThreads) {
 TEST_P(AnyCoder, DropsWhatTakesMoreProcessorTimeThanAllowed) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Codec(GetParam());
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const test::ElementBus bus(h->element);
   SetCaps(h.get(), OrganisedInfo(model, 64));
   const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
   const auto push = [&](guint scan) {
@@ -170,21 +170,19 @@ TEST_P(AnyCoder, DropsWhatTakesMoreProcessorTimeThanAllowed) {
       gst_harness_push(h.get(), OrganisedBuffer(model, 64, {scan, i, 8, 64 * i}));
   };
   push(0);
-  EXPECT_EQ(Counter(dec.get(), "slices-over-load"), 0U);
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-over-load"), 0U);
   g_object_set(dec.get(), "max-decode-load", 1e-6, nullptr);
   push(1);
   push(2);
-  EXPECT_GE(Counter(dec.get(), "slices-over-load"), 15U) << "a microsecond a second";
-  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), Counter(dec.get(), "slices-over-load"));
+  EXPECT_GE(test::StatOf(dec.get(), "slices-over-load"), 15U) << "a microsecond a second";
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-dropped"), test::StatOf(dec.get(), "slices-over-load"));
   unsigned warnings = 0;
-  while (const MessagePtr message{gst_bus_pop(bus)})
+  while (const MessagePtr message = bus.Pop())
     warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
   EXPECT_EQ(warnings, 1U);
   g_object_set(dec.get(), "max-decode-load", 0.0, nullptr);
   push(3);
-  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), Counter(dec.get(), "slices-over-load"));
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-dropped"), test::StatOf(dec.get(), "slices-over-load"));
 }
 
 TEST_P(AnyCoder, SurvivesFlushEosAndStateCycles) {
@@ -217,27 +215,26 @@ TEST_P(AnyCoder, ScansBeforeAndAfterAFlushAreTwo) {
   const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
   for (guint i = 0; i < 2; ++i)
     gst_harness_push(h.get(), OrganisedBuffer(model, 64, {7, i, 8, 64 * i}));
-  EXPECT_EQ(Counter(enc.get(), "scans-in"), 1U);
+  EXPECT_EQ(test::StatOf(enc.get(), "scans-in"), 1U);
   gst_harness_push_event(h.get(), gst_event_new_flush_start());
   gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
   gst_harness_push(h.get(), OrganisedBuffer(model, 64, {7, 2, 8, 128}));
-  EXPECT_EQ(Counter(enc.get(), "scans-in"), 2U);
+  EXPECT_EQ(test::StatOf(enc.get(), "scans-in"), 2U);
 }
 
 class RefusedCaps : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 TEST_P(RefusedCaps, GiveOneErrorThatSaysWhatIsMissing) {
   const auto [launch, text] = GetParam();
   const Harness h(gst_harness_new_parse(launch));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const test::ElementBus bus(h->element);
   gst_harness_play(h.get());
   gst_harness_push_event(h.get(), gst_event_new_stream_start("refused"));
   const CapsPtr caps(gst_caps_from_string(text));
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
-  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
   ASSERT_TRUE(message);
   GError* error = nullptr;
   gst_message_parse_error(message.get(), &error, nullptr);
@@ -245,9 +242,7 @@ TEST_P(RefusedCaps, GiveOneErrorThatSaysWhatIsMissing) {
   g_error_free(error);
   // GStreamer offers the caps again with each buffer.
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
-  EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));
 }
 INSTANTIATE_TEST_SUITE_P(
     Lidar, RefusedCaps,
@@ -287,7 +282,7 @@ TEST_P(EitherCoder, RefusesASliceOfMorePointsThanItMayHave) {
   EXPECT_EQ(gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, 0, 8, 0})), GST_FLOW_OK);
   EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U);
   const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
-  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), 1U);
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-dropped"), 1U);
 }
 
 TEST_P(EitherCoder, HoldsTagsBackThroughAFlushUntilTheFirstSliceButNoGaps) {
@@ -319,20 +314,17 @@ TEST_P(AnyCoder, PostsItsStatsAsOftenAsAsked) {
     const Harness h = Codec(GetParam(), asked ? "stats-interval=1" : "");
     const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
     g_object_set(dec.get(), "stats-interval", guint64{asked}, nullptr);
-    GstBus* bus = gst_bus_new();
-    gst_element_set_bus(h->element, bus);
+    const test::ElementBus bus(h->element);
     SetCaps(h.get(), OrganisedInfo(model, 64));
     for (guint i = 0; i < 4; ++i)
       gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
     std::map<std::string, guint64> slices;
-    while (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT)}) {
+    while (const MessagePtr message = bus.Pop(GST_MESSAGE_ELEMENT)) {
       const GstStructure* s = gst_message_get_structure(message.get());
       EXPECT_TRUE(gst_structure_get_uint64(s, "slices", &slices[gst_structure_get_name(s)]));
     }
     EXPECT_EQ(slices.size(), asked ? 2U : 0U);
     for (const auto& [name, count] : slices) EXPECT_GE(count, 3U) << name;
-    gst_element_set_bus(h->element, nullptr);
-    gst_object_unref(bus);
   }
 }
 

@@ -31,7 +31,7 @@ TEST_P(AnyCoder, TakesACloudWithoutItsPlaceForAScan) {
     gst_buffer_unref(gst_harness_push_and_pull(h.get(), buffer));
   }
   const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
-  EXPECT_EQ(Counter(enc.get(), "scans-in"), 3U);
+  EXPECT_EQ(test::StatOf(enc.get(), "scans-in"), 3U);
 }
 
 TEST(LidarEnc, NumbersScansWithoutAPlaceAlsoWhereItLeavesSomeOut) {
@@ -107,20 +107,20 @@ TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
   const ElementPtr enc = Find(h.get(), "enc");
   const ElementPtr depay = Find(h.get(), "depay");
   const ElementPtr dec = Find(h.get(), "dec");
-  const guint64 skipped = Counter(enc.get(), "scans-skipped");
+  const guint64 skipped = test::StatOf(enc.get(), "scans-skipped");
   EXPECT_EQ(skipped > kScans / 10, preference.skips);
   // The receiver cannot count scans skipped after the last scan that arrived.
-  EXPECT_NEAR(static_cast<double>(Counter(depay.get(), "scans-skipped")),
+  EXPECT_NEAR(static_cast<double>(test::StatOf(depay.get(), "scans-skipped")),
               static_cast<double>(skipped), preference.skips ? 3 : 0);
-  EXPECT_EQ(Counter(depay.get(), "slices-lost"), 0U);
-  EXPECT_EQ(Counter(dec.get(), "slices"), 8 * (kScans - skipped));
-  EXPECT_EQ(Counter(dec.get(), "slices-thinned") > Counter(dec.get(), "slices") / 2,
+  EXPECT_EQ(test::StatOf(depay.get(), "slices-lost"), 0U);
+  EXPECT_EQ(test::StatOf(dec.get(), "slices"), 8 * (kScans - skipped));
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-thinned") > test::StatOf(dec.get(), "slices") / 2,
             preference.thins);
   // All slices are whole at once when the target is above the minimum again.
   SetTarget(h.get(), 2 * needed);
-  const guint64 thinned = Counter(dec.get(), "slices-thinned");
+  const guint64 thinned = test::StatOf(dec.get(), "slices-thinned");
   EXPECT_EQ(Play(h.get(), kScans, 5), 40U);
-  EXPECT_EQ(Counter(dec.get(), "slices-thinned"), thinned);
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-thinned"), thinned);
 }
 INSTANTIATE_TEST_SUITE_P(
     All, BelowTheMinimum,

@@ -215,7 +215,7 @@ TEST_P(EitherCoder, TellsHowGoodASliceIs) {
   codec.SetCaps(OrganisedInfo(model, 64));
   const auto decoder = [&](const char* name) {
     const ElementPtr dec(gst_bin_get_by_name(GST_BIN(codec.harness()->element), "dec"));
-    return Number(StructurePtr(StatsOf(dec.get())).get(), name);
+    return Number(StatsOf(dec.get()).get(), name);
   };
   for (guint i = 0; i < 80; ++i) {
     codec.Push(OrganisedBuffer(model, 64, {i / 8, i % 8, 8, 64 * (i % 8)}));

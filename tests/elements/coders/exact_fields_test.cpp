@@ -170,7 +170,7 @@ TEST(ExactFields, OfOtherTypesThanTheCapsSayAreDropped) {
     EXPECT_EQ(gst_harness_push(dec.get(), gst_buffer_ref(slice.get())), GST_FLOW_OK);
     EXPECT_EQ(gst_harness_buffers_received(dec.get()), good ? 1U : 0U) << fields;
     const ElementPtr element(gst_bin_get_by_name(GST_BIN(dec->element), "dec"));
-    EXPECT_EQ(Counter(element.get(), "slices-dropped"), good ? 0U : 1U) << fields;
+    EXPECT_EQ(test::StatOf(element.get(), "slices-dropped"), good ? 0U : 1U) << fields;
   }
 }
 

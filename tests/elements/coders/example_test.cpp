@@ -121,7 +121,7 @@ TEST_F(ExampleCoder, HasItsDamagedSlicesDropped) {
     EXPECT_EQ(gst_harness_push(dec.get(), cut), GST_FLOW_OK);
   }
   EXPECT_EQ(gst_harness_buffers_received(dec.get()), 0U);
-  EXPECT_EQ(Counter(decoder.get(), "slices-dropped"), dropped);
+  EXPECT_EQ(test::StatOf(decoder.get(), "slices-dropped"), dropped);
   EXPECT_EQ(gst_harness_push(dec.get(), gst_buffer_ref(good.get())), GST_FLOW_OK);
   EXPECT_EQ(gst_harness_buffers_received(dec.get()), 1U);
 }
@@ -151,7 +151,7 @@ TEST_F(ExampleCoder, MayGiveAsManyPointsAsAreAllowedAndNoMore) {
   EXPECT_EQ(gst_harness_buffers_received(h.get()), 1U);
   klass->decode = decode;
   klass->write = write;
-  EXPECT_EQ(Counter(dec.get(), "slices-dropped"), 1U);
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-dropped"), 1U);
 }
 
 TEST_F(ExampleCoder, ThinsPointsWhereTheFrameRateMattersMore) {

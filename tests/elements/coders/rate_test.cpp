@@ -49,10 +49,7 @@ TEST_P(EitherCoder, KeepsToATargetBitrateThatComesFromDownstream) {
 
 guint StatOf(GstHarness* h, const char* name) {
   const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
-  const StructurePtr stats(StatsOf(enc.get()));
-  guint value = 0;
-  EXPECT_TRUE(gst_structure_get_uint(stats.get(), name, &value)) << name;
-  return value;
+  return static_cast<guint>(test::StatOf(enc.get(), name));
 }
 
 void SetTarget(GstHarness* h, guint bps) {
@@ -169,7 +166,7 @@ TEST_P(EitherCoder, ThinsScansInsteadWhereTheFrameRateMattersMore) {
   EXPECT_NEAR(late, static_cast<double>(needed) / 2, 0.1 * static_cast<double>(needed));
   // The encoder counts the room's returns without the beams that were left out.
   const ElementPtr enc(gst_bin_get_by_name(GST_BIN(tight->element), "enc"));
-  EXPECT_LT(Counter(enc.get(), "returns"), 20 * 32 * 512 * 3 / 4);
+  EXPECT_LT(test::StatOf(enc.get(), "returns"), 20 * 32 * 512 * 3 / 4);
 }
 
 }  // namespace

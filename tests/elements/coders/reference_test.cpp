@@ -68,8 +68,8 @@ class StaticSensor : public ::testing::Test {
     const StructurePtr stats(StatsOf(Get("enc", sender_).get()));
     return gst_structure_get_string(stats.get(), "mode");
   }
-  guint64 Encoded(const char* name) { return Counter(Get("enc", sender_).get(), name); }
-  guint64 Decoded(const char* name) { return Counter(Get("dec", receiver_).get(), name); }
+  guint64 Encoded(const char* name) { return test::StatOf(Get("enc", sender_).get(), name); }
+  guint64 Decoded(const char* name) { return test::StatOf(Get("dec", receiver_).get(), name); }
   static ElementPtr Get(const char* name, const Harness& harness) {
     return ElementPtr(gst_bin_get_by_name(GST_BIN(harness->element), name));
   }

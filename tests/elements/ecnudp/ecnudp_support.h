@@ -9,6 +9,7 @@
 
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -33,16 +34,7 @@ inline guint LocalPort(GstHarness* h) {
   return g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address.get()));
 }
 
-inline guint64 Stat(GstHarness* h, const char* field) {
-  GstStructure* stats = nullptr;
-  g_object_get(h->element, "stats", &stats, nullptr);
-  const StructurePtr owner(stats);
-  guint64 value = 0;
-  guint small = 0;
-  if (gst_structure_get_uint64(stats, field, &value)) return value;
-  EXPECT_TRUE(gst_structure_get_uint(stats, field, &small)) << field;
-  return small;
-}
+inline guint64 Stat(GstHarness* h, const char* field) { return test::StatOf(h->element, field); }
 
 inline GstBuffer* Payload(const std::string& text) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, text.size(), nullptr);

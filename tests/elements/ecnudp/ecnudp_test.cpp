@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "tests/elements/ecnudp/ecnudp_support.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/ipv6.h"
 #include "tests/support/patience.h"
 
@@ -196,17 +197,15 @@ TEST(EcnUdp, APauseOrAFlushEndsNothing) {
 TEST(EcnUdp, TellsOnceOfAnErrorUntilDatagramsLeaveAgain) {
   const Harness src = NewSource();
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
-  const std::unique_ptr<GstBus, Unref> bus(gst_bus_new());
-  gst_element_set_bus(sink->element, bus.get());
+  const test::ElementBus bus(sink->element);
   for (guint outage = 1; outage <= 2; ++outage) {
     for (int i = 0; i < 3; ++i) gst_harness_push(sink.get(), Payload(std::string(70'000, 'x')));
-    EXPECT_TRUE(MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING))) << outage;
-    EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING))) << outage;
+    EXPECT_TRUE(bus.Pop(GST_MESSAGE_WARNING)) << outage;
+    EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING)) << outage;
     EXPECT_EQ(Stat(sink.get(), "send-errors"), 3 * outage);
     gst_harness_push(sink.get(), Payload("fits"));
     EXPECT_EQ(Stat(sink.get(), "packets-sent"), outage);
   }
-  gst_element_set_bus(sink->element, nullptr);
 }
 
 TEST(EcnUdp, BuffersOfManyMemoriesAreOneDatagram) {
@@ -341,20 +340,12 @@ TEST(EcnUdpSink, AnUnknownHostIsAnElementErrorThatNamesIt) {
   const ElementPtr sink(gst_element_factory_make("ecnudpsink", nullptr));
   gst_object_ref_sink(sink.get());
   g_object_set(sink.get(), "host", "no-such-host.invalid", nullptr);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(sink.get(), bus);
+  const test::ElementBus bus(sink.get());
   EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
   ASSERT_TRUE(message);
-  GError* error = nullptr;
-  gchar* debug = nullptr;
-  gst_message_parse_error(message.get(), &error, &debug);
-  EXPECT_NE(std::string(debug).find("no-such-host.invalid"), std::string::npos);
-  g_error_free(error);
-  g_free(debug);
+  EXPECT_NE(test::MessageDetails(message.get()).find("no-such-host.invalid"), std::string::npos);
   gst_element_set_state(sink.get(), GST_STATE_NULL);
-  gst_element_set_bus(sink.get(), nullptr);
-  gst_object_unref(bus);
 }
 
 TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
@@ -362,10 +353,9 @@ TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
   const ElementPtr second(gst_element_factory_make("ecnudpsrc", nullptr));
   gst_object_ref_sink(second.get());
   g_object_set(second.get(), "address", "127.0.0.1", "port", LocalPort(first.get()), nullptr);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(second.get(), bus);
+  const test::ElementBus bus(second.get());
   EXPECT_EQ(gst_element_set_state(second.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
   ASSERT_TRUE(message);
   GError* error = nullptr;
   gst_message_parse_error(message.get(), &error, nullptr);
@@ -374,8 +364,6 @@ TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
             std::string::npos);
   g_error_free(error);
   gst_element_set_state(second.get(), GST_STATE_NULL);
-  gst_element_set_bus(second.get(), nullptr);
-  gst_object_unref(bus);
 }
 
 struct Peer {
@@ -429,19 +417,15 @@ TEST(EcnUdpSrc, SilenceIsReportedAfterTheTimeout) {
   Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   constexpr guint64 kTimeout = 200 * GST_MSECOND;
   g_object_set(src->element, "port", 0, "timeout", kTimeout, nullptr);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(src->element, bus);
+  const test::ElementBus bus(src->element);
   const gint64 begin_us = g_get_monotonic_time();
   gst_harness_play(src.get());
-  const MessagePtr message(
-      gst_bus_timed_pop_filtered(bus, test::kPatience_ns, GST_MESSAGE_ELEMENT));
+  const MessagePtr message = bus.Wait(GST_MESSAGE_ELEMENT);
   ASSERT_TRUE(message);
   EXPECT_TRUE(gst_message_has_name(message.get(), "GstEcnUdpSrcTimeout"));
   EXPECT_GE(static_cast<guint64>(g_get_monotonic_time() - begin_us) * GST_USECOND, kTimeout)
       << "and no sooner";
   gst_element_set_state(src->element, GST_STATE_NULL);
-  gst_element_set_bus(src->element, nullptr);
-  gst_object_unref(bus);
 }
 
 TEST(EcnUdp, WorksAgainAfterEveryStateCycle) {

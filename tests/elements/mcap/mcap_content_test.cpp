@@ -54,15 +54,6 @@ void Begin(GstHarness* h, const char* caps) {
 
 void End(GstHarness* h) { gst_harness_push_event(h, gst_event_new_eos()); }
 
-guint64 CountedBy(GstElement* element, const char* field) {
-  GstStructure* raw = nullptr;
-  g_object_get(element, "stats", &raw, nullptr);
-  const gst::StructurePtr stats(raw);
-  guint64 value = 0;
-  gst_structure_get_uint64(raw, field, &value);
-  return value;
-}
-
 class McapContent : public Recording {
  protected:
   /// Returns the messages that `buffers` of `caps` become, in the frame `sensor_frame_`.
@@ -233,7 +224,7 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
       // An end of the other stream in the first recording does not count in the second.
       if (!first && i == 0) End(other.get());
     }
-    EXPECT_EQ(CountedBy(h->element, "messages"), 3U);
+    EXPECT_EQ(StatOf(h->element, "messages"), 3U);
     if (first) End(h.get());
     gst_element_set_state(h->element, GST_STATE_READY);
     gst_element_set_state(h->element, GST_STATE_PLAYING);

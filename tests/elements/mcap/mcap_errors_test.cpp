@@ -174,19 +174,11 @@ TEST_F(McapErrors, APlayerSaysWhatTheNextElementDoesNotTake) {
 
 TEST_F(McapErrors, CapsThatCouldNotBePlayedAreNotRecorded) {
   const Harness h = RecordingTo(Path("a.mcap"));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   gst_harness_set_src_caps_str(h.get(), "application/x-voxels,alignment=slice,levels=(int)<1,2>");
-  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
-  ASSERT_TRUE(message);
-  GError* raw = nullptr;
-  gst_message_parse_error(message.get(), &raw, nullptr);
-  const gst::ErrorPtr error(raw);
-  EXPECT_STREQ(error->message,
-               "Cannot be recorded: the field levels is no string, number, fraction, flag, "
-               "buffer or array of doubles.");
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
+            "Cannot be recorded: the field levels is no string, number, fraction, flag, "
+            "buffer or array of doubles.");
 }
 
 TEST_F(McapErrors, APipelineThatIsStoppedLeavesACompleteFile) {

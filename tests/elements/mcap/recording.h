@@ -15,6 +15,8 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
+#include "tests/support/element_bus.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -135,10 +137,10 @@ class Pipeline {
   }
   /// Returns false at an error, or if no message comes.
   bool Wait(GstMessageType until) {
-    GstBus* bus = gst_element_get_bus(pipeline_.get());
+    const ElementBus bus(pipeline_.get());
     bool good = false;
     for (bool ended = false; !ended;) {
-      const gst::MessagePtr message(gst_bus_timed_pop(bus, kPatience_ns));
+      const gst::MessagePtr message = bus.Wait();
       if (!message) {
         ADD_FAILURE() << "nothing happens";
         break;
@@ -147,7 +149,6 @@ class Pipeline {
       good = (GST_MESSAGE_TYPE(message.get()) & until) != 0;
       ended = good || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR;
     }
-    gst_object_unref(bus);
     return good;
   }
   Outcome outcome() const {
@@ -202,15 +203,10 @@ class Pipeline {
     return GST_PAD_PROBE_OK;
   }
   void Note(GstMessage* message) {
-    GError* raw = nullptr;
     if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
-      gst_message_parse_error(message, &raw, nullptr);
-      if (outcome_.error.empty()) outcome_.error = raw->message;
-      g_error_free(raw);
+      if (outcome_.error.empty()) outcome_.error = MessageText(message);
     } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING) {
-      gst_message_parse_warning(message, &raw, nullptr);
-      outcome_.warning = raw->message;
-      g_error_free(raw);
+      outcome_.warning = MessageText(message);
     } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT) {
       const GstStructure* s = gst_message_get_structure(message);
       if (gst_structure_has_name(s, "mcap-file-complete")) NoteComplete(s);
@@ -232,12 +228,10 @@ class Pipeline {
     if (!element ||
         g_object_class_find_property(G_OBJECT_GET_CLASS(element.get()), "stats") == nullptr)
       return;
-    GstStructure* raw = nullptr;
-    g_object_get(element.get(), "stats", &raw, nullptr);
-    const gst::StructurePtr stats(raw);
-    for (gint i = 0; i < gst_structure_n_fields(raw); ++i) {
-      const gchar* name = gst_structure_nth_field_name(raw, static_cast<guint>(i));
-      gst_structure_get_uint64(raw, name, &outcome_.stats[name]);
+    const gst::StructurePtr stats = StatsOf(element.get());
+    for (gint i = 0; i < gst_structure_n_fields(stats.get()); ++i) {
+      const gchar* name = gst_structure_nth_field_name(stats.get(), static_cast<guint>(i));
+      gst_structure_get_uint64(stats.get(), name, &outcome_.stats[name]);
     }
   }
 

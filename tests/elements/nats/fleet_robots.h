@@ -65,12 +65,8 @@ class Robots {
     guint64 lost = 0;
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const gst::ElementPtr net(ElementOf("net", i));
-      GstStructure* raw = nullptr;
-      g_object_get(net.get(), "stats", &raw, nullptr);
-      const gst::StructurePtr stats(raw);
-      guint64 value = 0;
-      if (gst_structure_get_uint64(raw, "packets-dropped", &value)) dropped += value;
-      if (gst_structure_get_uint64(raw, "packets-lost", &value)) lost += value;
+      dropped += StatOf(net.get(), "packets-dropped");
+      lost += StatOf(net.get(), "packets-lost");
     }
     return "the robots' SCReAM dropped " + std::to_string(dropped) + " packets and counted " +
            std::to_string(lost) + " as lost";

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include "tests/elements/mcap/recording.h"
 #include "tests/elements/nats/nats_server.h"
@@ -19,16 +20,13 @@ class NatsPipeline {
     pipeline_.reset(gst_parse_launch(description.c_str(), &raw));
     const gst::ErrorPtr error(raw);
     EXPECT_EQ(error ? error->message : std::string(), "") << description;
-    bus_ = gst_element_get_bus(pipeline_.get());
+    bus_.emplace(pipeline_.get());
     nats_.reset(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "n"));
     const gst::ElementPtr see(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "see"));
     const gst::PadPtr pad(gst_element_get_static_pad(see.get(), "sink"));
     gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_BUFFER, OnBuffer, this, nullptr);
   }
-  ~NatsPipeline() {
-    Stop();
-    gst_object_unref(bus_);
-  }
+  ~NatsPipeline() { Stop(); }
 
   void Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
   void Stop() {
@@ -46,25 +44,19 @@ class NatsPipeline {
   void SendEos() { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); }
   /// Returns the text of the error; empty at EOS.
   std::string WaitForEnd() {
-    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-        bus_, kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+    const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
     if (!message) return "nothing happens";
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
-    return Text(message.get(), gst_message_parse_error);
+    return MessageText(message.get());
   }
   /// Returns the text of the next warning.
   std::string WaitForWarning() {
-    const gst::MessagePtr message(
-        gst_bus_timed_pop_filtered(bus_, kPatience_ns, GST_MESSAGE_WARNING));
-    return message ? Text(message.get(), gst_message_parse_warning) : "";
+    const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING);
+    return message ? MessageText(message.get()) : "";
   }
 
   /// How many warnings have come since they were last looked for.
-  std::size_t Warnings() {
-    std::size_t count = 0;
-    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) ++count;
-    return count;
-  }
+  std::size_t Warnings() { return bus_->Texts(GST_MESSAGE_WARNING).size(); }
 
   std::vector<Kept> buffers() const {
     const std::lock_guard lock(mutex_);
@@ -85,27 +77,10 @@ class NatsPipeline {
     return text ? text.get() : "";
   }
   /// Returns a counter or a flag of `n`.
-  guint64 stat(const char* name) const {
-    GstStructure* raw = nullptr;
-    g_object_get(nats_.get(), "stats", &raw, nullptr);
-    const gst::StructurePtr stats(raw);
-    guint64 big = 0;
-    guint small = 0;
-    gboolean flag = FALSE;
-    if (gst_structure_get_uint64(raw, name, &big)) return big;
-    if (gst_structure_get_uint(raw, name, &small)) return small;
-    EXPECT_TRUE(gst_structure_get_boolean(raw, name, &flag)) << name;
-    return flag ? 1 : 0;
-  }
+  guint64 stat(const char* name) const { return StatOf(nats_.get(), name); }
   GstElement* nats() const { return nats_.get(); }
 
  private:
-  static std::string Text(GstMessage* message, void (*parse)(GstMessage*, GError**, gchar**)) {
-    GError* raw = nullptr;
-    parse(message, &raw, nullptr);
-    const gst::ErrorPtr error(raw);
-    return error->message;
-  }
   static GstPadProbeReturn OnBuffer(GstPad*, GstPadProbeInfo* info, gpointer data) {
     auto* self = static_cast<NatsPipeline*>(data);
     const Kept kept = Keep(GST_PAD_PROBE_INFO_BUFFER(info));
@@ -119,7 +94,7 @@ class NatsPipeline {
 
   gst::ElementPtr pipeline_;
   gst::ElementPtr nats_;
-  GstBus* bus_ = nullptr;
+  std::optional<ElementBus> bus_;
   std::atomic<bool> held_{false};
   std::atomic<std::size_t> hold_from_{SIZE_MAX};
   mutable std::mutex mutex_;

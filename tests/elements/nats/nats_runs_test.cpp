@@ -21,20 +21,8 @@ constexpr const char* kImuCaps = "application/x-imu, sample-size=(int)32";
 const std::string kImuBox = "subject=r1.imu jetstream=box";
 
 std::string StatsText(GstElement* element) {
-  GstStructure* raw = nullptr;
-  g_object_get(element, "stats", &raw, nullptr);
-  const gst::StructurePtr stats(raw);
-  const gst::StringPtr text(gst_structure_to_string(raw));
+  const gst::StringPtr text(gst_structure_to_string(StatsOf(element).get()));
   return text.get();
-}
-
-guint64 StatOf(GstElement* element, const char* name) {
-  GstStructure* raw = nullptr;
-  g_object_get(element, "stats", &raw, nullptr);
-  const gst::StructurePtr stats(raw);
-  guint64 value = 0;
-  EXPECT_TRUE(gst_structure_get_uint64(raw, name, &value)) << name;
-  return value;
 }
 
 /// A natssink that the test gives samples of an IMU.
@@ -42,13 +30,8 @@ class Feeder {
  public:
   explicit Feeder(const std::string& properties)
       : sink_(gst_parse_launch(("natssink sync=false " + properties).c_str(), nullptr)) {
-    gst_element_set_bus(sink_.get(), bus_.get());
     h_.reset(gst_harness_new_with_element(sink_.get(), "sink", nullptr));
     gst_harness_set_src_caps_str(h_.get(), kImuCaps);
-  }
-  ~Feeder() {
-    h_.reset();
-    gst_element_set_bus(sink_.get(), nullptr);
   }
   void Push(gsize bytes, GstClockTime captured = GST_CLOCK_TIME_NONE) {
     GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes, nullptr);
@@ -68,20 +51,11 @@ class Feeder {
   guint64 stat(const char* name) const { return StatOf(sink_.get(), name); }
   std::string stats() const { return StatsText(sink_.get()); }
   /// The texts of all warnings since the last call.
-  std::vector<std::string> Warnings() {
-    std::vector<std::string> texts;
-    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_WARNING)}) {
-      GError* raw = nullptr;
-      gst_message_parse_warning(message.get(), &raw, nullptr);
-      const gst::ErrorPtr error(raw);
-      texts.emplace_back(error->message);
-    }
-    return texts;
-  }
+  std::vector<std::string> Warnings() { return bus_.Texts(GST_MESSAGE_WARNING); }
 
  private:
-  std::unique_ptr<GstBus, gst::Unref> bus_{gst_bus_new()};
   gst::ElementPtr sink_;
+  const ElementBus bus_{sink_.get()};
   Harness h_;
 };
 

@@ -10,6 +10,8 @@
 #include "gst/common/imu_caps.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
+#include "tests/support/element_bus.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -76,12 +78,7 @@ class ImuPad : public ::testing::Test {
       EXPECT_EQ(Send(start, rate), GST_FLOW_OK);
       EXPECT_EQ(gst_harness_push(h_.get(), Corner(start)), GST_FLOW_OK);
     }
-    GstStructure* stats = nullptr;
-    g_object_get(h_->element, "stats", &stats, nullptr);
-    guint64 count = 0;
-    gst_structure_get_uint64(stats, "scans-with-imu", &count);
-    gst_structure_free(stats);
-    return count;
+    return test::StatOf(h_->element, "scans-with-imu");
   }
 
   Harness h_;
@@ -161,21 +158,12 @@ class ImuOfADrive : public ::testing::Test {
   void TearDown() override { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
   void Run() {
     gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
-    const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline_.get()));
-    const MessagePtr end(gst_bus_timed_pop_filtered(
-        bus.get(), test::kPatience_ns,
-        static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+    const test::ElementBus bus(pipeline_.get());
+    const MessagePtr end = bus.Wait(GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
     ASSERT_TRUE(end);
     ASSERT_EQ(GST_MESSAGE_TYPE(end.get()), GST_MESSAGE_EOS);
   }
-  guint64 Count(const char* name) {
-    GstStructure* stats = nullptr;
-    g_object_get(odometry_.get(), "stats", &stats, nullptr);
-    guint64 count = 0;
-    gst_structure_get_uint64(stats, name, &count);
-    gst_structure_free(stats);
-    return count;
-  }
+  guint64 Count(const char* name) { return test::StatOf(odometry_.get(), name); }
 
   ElementPtr pipeline_;
   ElementPtr odometry_;

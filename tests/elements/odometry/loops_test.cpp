@@ -12,6 +12,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 #include "tests/support/block_drive.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -71,10 +72,7 @@ class MapPad : public ::testing::Test {
       gst_sample_unref(sample);
     }
     const ElementPtr odometry(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "o"));
-    GstStructure* stats = nullptr;
-    g_object_get(odometry.get(), "stats", &stats, nullptr);
-    gst_structure_get_uint64(stats, "local-maps", &local_maps_);
-    gst_structure_free(stats);
+    local_maps_ = test::StatOf(odometry.get(), "local-maps");
   }
   void TearDown() override {
     if (pipeline_) gst_element_set_state(pipeline_.get(), GST_STATE_NULL);

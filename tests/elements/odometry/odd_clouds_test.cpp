@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gst/lidar/gstlidar.h"
+#include "tests/support/element_bus.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -18,13 +21,8 @@ class OddClouds : public ::testing::Test {
  protected:
   void Start(const char* caps) {
     h_.reset(gst_harness_new("lidarodometry"));
-    bus_ = gst_bus_new();
-    gst_element_set_bus(h_->element, bus_);
+    bus_.emplace(h_->element);
     gst_harness_set_src_caps_str(h_.get(), caps);
-  }
-  void TearDown() override {
-    h_.reset();
-    gst_object_unref(bus_);
   }
   static GstBuffer* Points(const std::vector<float>& points, GstClockTime pts) {
     GstBuffer* buffer = gst_buffer_new_allocate(nullptr, points.size() * sizeof(float), nullptr);
@@ -35,36 +33,22 @@ class OddClouds : public ::testing::Test {
   GstFlowReturn Push(const std::vector<float>& points, GstClockTime pts) {
     return gst_harness_push(h_.get(), Points(points, pts));
   }
-  guint64 Count(const char* name) {
-    GstStructure* stats = nullptr;
-    g_object_get(h_->element, "stats", &stats, nullptr);
-    const StructurePtr owned(stats);
-    guint64 value = G_MAXUINT64;
-    gst_structure_get_uint64(stats, name, &value);
-    return value;
-  }
+  guint64 Count(const char* name) { return test::StatOf(h_->element, name); }
   /// Returns the number of warnings since the last call.
-  int CountWarnings() {
-    int count = 0;
-    while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) ++count;
-    return count;
-  }
+  std::size_t CountWarnings() { return bus_->Texts(GST_MESSAGE_WARNING).size(); }
   /// Returns the time of the last pose message; none without a message.
   GstClockTime TimeOfMessage() {
     GstClockTime time = GST_CLOCK_TIME_NONE;
-    while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_ELEMENT)})
+    while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT))
       gst_structure_get_uint64(gst_message_get_structure(message.get()), "timestamp", &time);
     return time;
   }
-  bool HasError() {
-    const MessagePtr message(gst_bus_pop_filtered(bus_, GST_MESSAGE_ERROR));
-    return message != nullptr;
-  }
+  bool HasError() { return bus_->Pop(GST_MESSAGE_ERROR) != nullptr; }
   static constexpr const char* kXyz =
       "application/x-pointcloud2,width=0,height=1,point-step=12,"
       "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1";
   Harness h_;
-  GstBus* bus_ = nullptr;
+  std::optional<test::ElementBus> bus_;
 };
 
 TEST_F(OddClouds, MayBeEmptyOrNotFinite) {
@@ -145,7 +129,7 @@ TEST_F(OddClouds, ThatFitNothingAreLostUntilAnotherMapBegins) {
   for (int i = 0; i < 9; ++i) push(elsewhere);
   EXPECT_EQ(Count("scans-lost"), 9U);
   EXPECT_EQ(Count("maps"), 1U);
-  EXPECT_EQ(CountWarnings(), 1);
+  EXPECT_EQ(CountWarnings(), 1U);
   push(elsewhere);
   EXPECT_EQ(Count("scans-lost"), 10U);
   EXPECT_EQ(Count("maps"), 2U);
@@ -154,7 +138,7 @@ TEST_F(OddClouds, ThatFitNothingAreLostUntilAnotherMapBegins) {
   push(corner);
   EXPECT_EQ(Count("maps"), 3U) << "a map that one scan has fitted is not held on to";
   EXPECT_EQ(Count("scans-lost"), 10U);
-  EXPECT_EQ(CountWarnings(), 0);
+  EXPECT_EQ(CountWarnings(), 0U);
 }
 
 TEST_F(OddClouds, OfOnePlaneDoNotShowTheMotionAlongIt) {
@@ -173,11 +157,10 @@ TEST_F(OddClouds, GoOnWhereTheTrajectoryCannotBeWritten) {
   g_object_set(h_->element, "trajectory", "/dev/full", nullptr);
   gst_element_set_state(h_->element, GST_STATE_READY);
   gst_element_set_state(h_->element, GST_STATE_PLAYING);
-  bus_ = gst_bus_new();
-  gst_element_set_bus(h_->element, bus_);
+  bus_.emplace(h_->element);
   gst_harness_set_src_caps_str(h_.get(), kXyz);
   for (guint64 i = 0; i < 5; ++i) EXPECT_EQ(Push({1, 2, 3}, i * 100 * GST_MSECOND), GST_FLOW_OK);
-  EXPECT_EQ(CountWarnings(), 1);
+  EXPECT_EQ(CountWarnings(), 1U);
 }
 
 TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {

@@ -8,12 +8,15 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gst/common/buffer_map.h"
 #include "gst/common/pose_covariance.h"
 #include "gst/lidar/gstlidar.h"
+#include "tests/support/element_bus.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -41,30 +44,16 @@ class Odometry : public ::testing::Test {
     const std::string line =
         Format(kDrive, slices, slices * scans) + " ! lidarodometry name=o " + properties;
     h_.reset(gst_harness_new_parse(line.c_str()));
-    bus_ = gst_bus_new();
-    gst_element_set_bus(h_->element, bus_);
+    bus_.emplace(h_->element);
     element_.reset(gst_bin_get_by_name(GST_BIN(h_->element), "o"));
-  }
-  void TearDown() override {
-    element_.reset();
-    h_.reset();
-    if (bus_ != nullptr) gst_object_unref(bus_);
   }
   std::vector<BufferPtr> PullAll(unsigned count) {
     std::vector<BufferPtr> buffers;
     for (unsigned i = 0; i < count; ++i) buffers.emplace_back(gst_harness_pull(h_.get()));
     return buffers;
   }
-  StructurePtr Stats() {
-    GstStructure* stats = nullptr;
-    g_object_get(element_.get(), "stats", &stats, nullptr);
-    return StructurePtr(stats);
-  }
-  guint64 Count(const char* name) {
-    guint64 value = 0;
-    gst_structure_get_uint64(Stats().get(), name, &value);
-    return value;
-  }
+  StructurePtr Stats() { return test::StatsOf(element_.get()); }
+  guint64 Count(const char* name) { return test::StatOf(element_.get(), name); }
   /// Waits until lidarodometry has ended.
   void WaitForEnd() {
     for (bool ended = false; !ended;) {
@@ -79,7 +68,7 @@ class Odometry : public ::testing::Test {
   /// Returns what the message of each scan says.
   std::vector<Told> TakeMessages() {
     std::vector<Told> all;
-    while (const MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_ELEMENT)}) {
+    while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT)) {
       double x = 0;
       double y = 0;
       double z = 0;
@@ -93,16 +82,14 @@ class Odometry : public ::testing::Test {
   }
   unsigned CountMessages(const char* name) {
     unsigned count = 0;
-    while (GstMessage* raw = gst_bus_pop_filtered(bus_, GST_MESSAGE_ELEMENT)) {
-      const MessagePtr message(raw);
-      if (gst_structure_has_name(gst_message_get_structure(raw), name)) ++count;
-    }
+    while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT))
+      if (gst_message_has_name(message.get(), name)) ++count;
     return count;
   }
 
   Harness h_;
   std::unique_ptr<GstElement, Unref> element_;
-  GstBus* bus_ = nullptr;
+  std::optional<test::ElementBus> bus_;
 };
 
 double Distance(const GstLidarPose& pose) {
@@ -289,7 +276,7 @@ TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
       &raw));
   ASSERT_EQ(raw, nullptr);
   const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline.get()), "poses"));
-  const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline.get()));
+  const test::ElementBus bus(pipeline.get());
   const std::unique_ptr<GstElement, Stop> playing(pipeline.get());
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   unsigned count = 0;
@@ -300,7 +287,7 @@ TEST(OdometryPads, GiveThePoseOfEachScanThatItsMessageTells) {
     const BufferMap map(buffer, GST_MAP_READ);
     ASSERT_EQ(map.size(), 44 * 8U);
     MessagePtr message;
-    do message.reset(gst_bus_timed_pop_filtered(bus.get(), GST_SECOND, GST_MESSAGE_ELEMENT));
+    do message = bus.Wait(GST_MESSAGE_ELEMENT, GST_SECOND);
     while (message && !gst_message_has_name(message.get(), "odometry"));
     ASSERT_TRUE(message);
     const GstStructure* told = gst_message_get_structure(message.get());

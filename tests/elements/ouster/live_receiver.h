@@ -2,6 +2,7 @@
 // ouster_src on a sensor of this machine, with its buffers and messages.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "tests/elements/ouster/ouster_support.h"
@@ -25,18 +26,10 @@ class Receiver {
                                " lidar-port=" + std::to_string(port_) + " " + properties;
     harness_.reset(gst_harness_new_parse(launch.c_str()));
     source_.reset(gst_bin_get_by_name(GST_BIN(harness_->element), "src"));
-    bus_ = gst_bus_new();
-    gst_element_set_bus(harness_->element, bus_);
+    bus_.emplace(harness_->element);
     gst_harness_use_systemclock(harness_.get());
     gst_harness_play(harness_.get());
   }
-  ~Receiver() {
-    gst_element_set_bus(harness_->element, nullptr);
-    harness_.reset();
-    gst_object_unref(bus_);
-  }
-  Receiver(const Receiver&) = delete;
-  Receiver& operator=(const Receiver&) = delete;
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
   /// Returns the next buffer, or none.
@@ -60,9 +53,7 @@ class Receiver {
   /// Returns the next element message of that name.
   gst::MessagePtr Await(const char* name) {
     for (;;) {
-      gst::MessagePtr message(gst_bus_timed_pop_filtered(
-          bus_, kPatience_ns,
-          static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR)));
+      gst::MessagePtr message = bus_->Wait(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR);
       if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR) return nullptr;
       if (gst_message_has_name(message.get(), name)) return message;
     }
@@ -77,13 +68,8 @@ class Receiver {
     return true;
   }
   std::string AwaitError() {
-    const gst::MessagePtr message(
-        gst_bus_timed_pop_filtered(bus_, kPatience_ns, GST_MESSAGE_ERROR));
-    if (!message) return "no error";
-    GError* raw = nullptr;
-    gst_message_parse_error(message.get(), &raw, nullptr);
-    const gst::ErrorPtr error(raw);
-    return error->message;
+    const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_ERROR);
+    return message ? MessageText(message.get()) : "no error";
   }
   GstElement* source() { return source_.get(); }
   guint16 port() const { return port_; }
@@ -100,7 +86,7 @@ class Receiver {
   guint16 port_;
   Harness harness_;
   gst::ElementPtr source_;
-  GstBus* bus_ = nullptr;
+  std::optional<ElementBus> bus_;
 };
 
 }  // namespace lidar::test

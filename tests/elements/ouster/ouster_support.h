@@ -18,6 +18,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/ouster/metadata.h"
 #include "src/ouster/pcap_reader.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/free_ports.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
@@ -89,15 +90,6 @@ class UdpSender {
   GSocketAddress* to_;
 };
 
-inline guint64 Stat(GstElement* element, const char* name) {
-  GstStructure* stats = nullptr;
-  g_object_get(element, "stats", &stats, nullptr);
-  guint64 value = 0;
-  EXPECT_TRUE(gst_structure_get_uint64(stats, name, &value)) << name;
-  gst_structure_free(stats);
-  return value;
-}
-
 struct Ending {
   std::string error;     // with its details; "" after EOS
   std::string warnings;  // all warnings in one text
@@ -105,16 +97,7 @@ struct Ending {
 
 /// Returns text and details of an error or a warning.
 inline std::string TextOf(GstMessage* message) {
-  GError* raw = nullptr;
-  gchar* debug = nullptr;
-  if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR)
-    gst_message_parse_error(message, &raw, &debug);
-  else
-    gst_message_parse_warning(message, &raw, &debug);
-  const gst::ErrorPtr problem(raw);
-  const std::string text = std::string(problem->message) + "\n" + (debug != nullptr ? debug : "");
-  g_free(debug);
-  return text;
+  return MessageText(message) + "\n" + MessageDetails(message);
 }
 
 /// Runs a pipeline to its end.
@@ -124,12 +107,11 @@ inline Ending Run(const std::string& description) {
   const gst::ErrorPtr parse_error(raw);
   if (parse_error) return {parse_error->message, {}};
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
+  const ElementBus bus(pipeline.get());
   Ending ending{"no end", {}};
   for (bool ended = false; !ended;) {
-    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, kPatience_ns,
-        static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING | GST_MESSAGE_EOS)));
+    const gst::MessagePtr message =
+        bus.Wait(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING | GST_MESSAGE_EOS);
     ended = !message || GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_WARNING;
     if (!message) break;
     if (!ended)
@@ -138,7 +120,6 @@ inline Ending Run(const std::string& description) {
       ending.error =
           GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ERROR ? TextOf(message.get()) : "";
   }
-  gst_object_unref(bus);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   return ending;
 }

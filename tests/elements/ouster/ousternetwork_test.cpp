@@ -13,6 +13,7 @@
 #include "gst/net/udp_socket.h"
 #include "tests/elements/ouster/live_receiver.h"
 #include "tests/elements/ouster/software_sensor.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/ipv6.h"
 
 namespace lidar::test {
@@ -146,7 +147,7 @@ void ExpectWholeScans(Receiver* receiver, int buffers) {
     ASSERT_TRUE(buffer) << i;
     gaps += i > 0 && GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT) ? 1 : 0;
   }
-  const auto stat = [&](const char* name) { return Stat(receiver->source(), name); };
+  const auto stat = [&](const char* name) { return StatOf(receiver->source(), name); };
   EXPECT_LE(stat("packets-lost"), stat("dropped-by-kernel"));
   const guint64 reasons = stat("dropped-by-kernel") + stat("packets-late") + stat("clock-jumps");
   EXPECT_TRUE(gaps == 0 || reasons > 0) << gaps;
@@ -162,9 +163,9 @@ TEST_F(OusterOnePort, EachSourceTakesItsOwnSensor) {
   EXPECT_EQ(SerialOf(of_b.Await("ouster-metadata-changed")), b.serial());
   ExpectWholeScans(&of_a, 40);
   ExpectWholeScans(&of_b, 40);
-  EXPECT_GT(Stat(of_a.source(), "packets-foreign"), 20U);
-  EXPECT_GT(Stat(of_b.source(), "packets-foreign"), 20U);
-  EXPECT_EQ(Stat(of_a.source(), "restarts"), 0U);
+  EXPECT_GT(StatOf(of_a.source(), "packets-foreign"), 20U);
+  EXPECT_GT(StatOf(of_b.source(), "packets-foreign"), 20U);
+  EXPECT_EQ(StatOf(of_a.source(), "restarts"), 0U);
 }
 
 TEST_F(OusterOnePort, SensorsMayDifferInModeAndOneMayLeave) {
@@ -178,7 +179,7 @@ TEST_F(OusterOnePort, SensorsMayDifferInModeAndOneMayLeave) {
   }
   ExpectWholeScans(&of_a, 40);
   EXPECT_EQ(of_a.Info().sensor_model->columns_per_scan, 512U);
-  EXPECT_EQ(Stat(of_a.source(), "packets-wrong-size"), 0U);
+  EXPECT_EQ(StatOf(of_a.source(), "packets-wrong-size"), 0U);
 }
 
 TEST_F(OusterOnePort, TwoSourcesMayHaveTheSameSensor) {
@@ -188,7 +189,7 @@ TEST_F(OusterOnePort, TwoSourcesMayHaveTheSameSensor) {
   Receiver second(sensor.host(), "udp-dest=@auto", ports_);
   ExpectWholeScans(&second, 40);
   ExpectWholeScans(&first, 40);
-  EXPECT_EQ(Stat(first.source(), "packets-foreign"), 0U);
+  EXPECT_EQ(StatOf(first.source(), "packets-foreign"), 0U);
 }
 
 TEST_F(OusterOnePort, TheRestartOfOneDoesNotDisturbTheOther) {
@@ -204,7 +205,7 @@ TEST_F(OusterOnePort, TheRestartOfOneDoesNotDisturbTheOther) {
   const auto before = init_id();
   b.state().Restart();
   ASSERT_TRUE(of_b.PullUntil(
-      [&](GstBuffer*) { return init_id() != before && Stat(of_b.source(), "packets") > 50; }));
+      [&](GstBuffer*) { return init_id() != before && StatOf(of_b.source(), "packets") > 50; }));
   ExpectWholeScans(&of_a, 40);
 }
 

@@ -287,10 +287,8 @@ class OusterLiveEffects : public ::testing::Test {
     const gst::ElementPtr pipeline(
         gst_parse_launch(("ouster_src " + properties + " ! fakesink").c_str(), nullptr));
     gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-    GstBus* bus = gst_element_get_bus(pipeline.get());
-    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING)));
-    gst_object_unref(bus);
+    const ElementBus bus(pipeline.get());
+    const gst::MessagePtr message = bus.Wait(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING);
     gst_element_set_state(pipeline.get(), GST_STATE_NULL);
     if (!message) return "nothing";
     return GST_MESSAGE_TYPE_NAME(message.get()) + (": " + TextOf(message.get()));
@@ -340,14 +338,8 @@ TEST_F(OusterLiveEffects, TheReceiveBufferIsThatOfItsSocket) {
                          nullptr));
     const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(pipeline.get()), "s"));
     gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-    EXPECT_TRUE(Eventually([&] {
-      GstStructure* stats = nullptr;
-      g_object_get(source.get(), "stats", &stats, nullptr);
-      const gst::StructurePtr owned(stats);
-      guint granted = 0;
-      gst_structure_get_uint(stats, "receive-buffer", &granted);
-      return granted == bytes;
-    })) << bytes;
+    EXPECT_TRUE(Eventually([&] { return StatOf(source.get(), "receive-buffer") == bytes; }))
+        << bytes;
     gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   }
 }

@@ -244,10 +244,8 @@ void WatchSink(GstElement* pipeline, const char* name, Seen* seen) {
 }
 
 void AwaitEnd(GstElement* pipeline) {
-  GstBus* bus = gst_element_get_bus(pipeline);
-  const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-      bus, kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
-  gst_object_unref(bus);
+  const ElementBus bus(pipeline);
+  const gst::MessagePtr message = bus.Wait(GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
   ASSERT_TRUE(message);
   ASSERT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_EOS);
 }

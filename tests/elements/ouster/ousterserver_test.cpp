@@ -9,6 +9,7 @@
 
 #include "tests/elements/ouster/hostile_server.h"
 #include "tests/elements/ouster/live_receiver.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/scarce_threads.h"
 
 namespace lidar::test {
@@ -146,7 +147,7 @@ TEST(OusterQuestions, AreAsFewAsSeconds) {
       sender.Send(std::vector<std::uint8_t>(1'000));
       ++sent;
       EXPECT_TRUE(
-          Eventually([&] { return Stat(receiver.source(), "packets-wrong-size") == sent; }));
+          Eventually([&] { return StatOf(receiver.source(), "packets-wrong-size") == sent; }));
     }
   };
   send(10);
@@ -162,17 +163,14 @@ std::string ErrorAmid() {
   const gst::ElementPtr source(
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("ouster_src", nullptr))));
   g_object_set(source.get(), "hostname", "127.0.0.1:1", nullptr);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(source.get(), bus);
+  const ElementBus bus(source.get());
   {
     const Scarcity scarce;
     EXPECT_EQ(gst_element_set_state(source.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
   }
-  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  const gst::MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
   const std::string text = message ? TextOf(message.get()) : "no error";
   gst_element_set_state(source.get(), GST_STATE_NULL);
-  gst_element_set_bus(source.get(), nullptr);
-  gst_object_unref(bus);
   return text;
 }
 

@@ -2,6 +2,7 @@
 // ouster_src on sockets.
 
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -64,10 +65,10 @@ TEST_F(OusterUdp, CountsWhatDoesNotFitAndGoesOn) {
   ASSERT_TRUE(buffer);
   for (std::size_t i = 8; i < 16; ++i) sender_->Send(packets_[i]);
   const BufferPtr next(gst_harness_pull(h.get()));
-  EXPECT_EQ(Stat(source, "packets-foreign"), 1U);
-  EXPECT_EQ(Stat(source, "packets-wrong-size"), 2U);
-  EXPECT_GE(Stat(source, "packets"), 8U);
-  EXPECT_EQ(Stat(source, "packets-lost"), 0U);
+  EXPECT_EQ(StatOf(source, "packets-foreign"), 1U);
+  EXPECT_EQ(StatOf(source, "packets-wrong-size"), 2U);
+  EXPECT_GE(StatOf(source, "packets"), 8U);
+  EXPECT_EQ(StatOf(source, "packets-lost"), 0U);
 }
 
 TEST_F(OusterUdp, GoesOnWithASensorThatRestarted) {
@@ -92,10 +93,9 @@ TEST_F(OusterUdp, GoesOnWithASensorThatRestarted) {
 TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
   const Harness h = Play(kJson);
   const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(h->element), "src"));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   for (int i = 0; i < 6; ++i) sender_->Send(std::vector<std::uint8_t>(6464));
-  const gst::MessagePtr warning(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_WARNING));
+  const gst::MessagePtr warning = bus.Wait(GST_MESSAGE_WARNING);
   ASSERT_TRUE(warning);
   const std::string text = TextOf(warning.get());
   EXPECT_NE(text.find("Packets of 6464 bytes come where the metadata asks for"), std::string::npos)
@@ -104,9 +104,7 @@ TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
   for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[i]);
   const BufferPtr buffer(gst_harness_pull(h.get()));
   EXPECT_TRUE(buffer);
-  EXPECT_EQ(Stat(source.get(), "packets-wrong-size"), 6U);
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_EQ(StatOf(source.get(), "packets-wrong-size"), 6U);
 }
 
 TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
@@ -116,9 +114,8 @@ TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
       " imu=false metadata=" + DataPath(kJson) + " ! fakesink";
   const gst::ElementPtr pipeline(gst_parse_launch(launch.c_str(), nullptr));
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
-  const gst::MessagePtr warning(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_WARNING));
-  gst_object_unref(bus);
+  const ElementBus bus(pipeline.get());
+  const gst::MessagePtr warning = bus.Wait(GST_MESSAGE_WARNING);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   ASSERT_TRUE(warning);
   const std::string text = TextOf(warning.get());

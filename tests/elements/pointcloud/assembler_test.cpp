@@ -6,6 +6,8 @@
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"
 #include "tests/support/clock_wait.h"
+#include "tests/support/element_bus.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -70,14 +72,8 @@ class Assembler : public ::testing::Test {
   guint Waiting() { return gst_harness_buffers_in_queue(h_.get()); }
   BufferPtr Pull() { return BufferPtr(gst_harness_pull(h_.get())); }
   guint64 Stat(const char* name) {
-    GstStructure* stats = nullptr;
-    GstElement* element = gst_harness_find_element(h_.get(), "scanassembler");
-    g_object_get(element, "stats", &stats, nullptr);
-    gst_object_unref(element);
-    const StructurePtr owner(stats);
-    guint64 value = G_MAXUINT64;
-    gst_structure_get_uint64(stats, name, &value);
-    return value;
+    const ElementPtr element(gst_harness_find_element(h_.get(), "scanassembler"));
+    return test::StatOf(element.get(), name);
   }
   CloudInfo OutInfo() {
     const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
@@ -251,21 +247,13 @@ TEST_F(Assembler, PassesWholeScansAsTheyAre) {
 }
 
 TEST_F(Assembler, WarnsOnceOfSlicesThatLostTheirMeta) {
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h_->element, bus);
+  const test::ElementBus bus(h_->element);
   for (int i = 0; i < 3; ++i) {
     Push(BufferPtr(gst_buffer_new_allocate(nullptr, SliceInfo().FrameSize(), nullptr)));
     EXPECT_TRUE(Pull());
   }
-  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
-  ASSERT_TRUE(message);
-  GError* raw = nullptr;
-  gst_message_parse_warning(message.get(), &raw, nullptr);
-  EXPECT_NE(std::string(ErrorPtr(raw)->message).find("8 of the sensor's 32 columns"),
-            std::string::npos);
-  EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
-  gst_element_set_bus(h_->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_NE(bus.Text(GST_MESSAGE_WARNING).find("8 of the sensor's 32 columns"), std::string::npos);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING));
 }
 
 TEST_F(Assembler, StringsUnorganisedPointsTogether) {
@@ -506,14 +494,11 @@ TEST_F(Assembler, AnOpenScanLeavesInTheSegmentThatItBeganIn) {
 }
 
 TEST_F(Assembler, EachRunWarnsOnceOfSlicesWithoutTheirMeta) {
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h_->element, bus);
+  const test::ElementBus bus(h_->element);
   for (int run = 0; run < 2; ++run) {
     for (int i = 0; i < 2; ++i)
       Push(BufferPtr(gst_buffer_new_allocate(nullptr, SliceInfo().FrameSize(), nullptr)));
-    int warnings = 0;
-    while (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) ++warnings;
-    EXPECT_EQ(warnings, 1) << run;
+    EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING).size(), 1U) << run;
     gst_element_set_state(h_->element, GST_STATE_NULL);
     gst_element_set_state(h_->element, GST_STATE_PLAYING);
     gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("again"));
@@ -522,8 +507,6 @@ TEST_F(Assembler, EachRunWarnsOnceOfSlicesWithoutTheirMeta) {
     gst_segment_init(&segment, GST_FORMAT_TIME);
     gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
   }
-  gst_element_set_bus(h_->element, nullptr);
-  gst_object_unref(bus);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -20,20 +21,15 @@ INSTANTIATE_TEST_SUITE_P(All, RefusedCapsOf,
 /// Pushes three buffers. Returns the errors that the element posts.
 std::vector<std::string> ErrorsOf(const char* element, const std::string& caps) {
   const test::Harness h(gst_harness_new(element));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const test::ElementBus bus(h->element);
   gst_harness_set_src_caps_str(h.get(), caps.c_str());
   for (int i = 0; i < 3; ++i)
     EXPECT_NE(gst_harness_push(h.get(), gst_buffer_new_allocate(nullptr, 160, nullptr)),
               GST_FLOW_OK);
   std::vector<std::string> texts;
-  while (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)}) {
-    GError* raw = nullptr;
-    gst_message_parse_error(message.get(), &raw, nullptr);
-    texts.emplace_back(ErrorPtr(raw)->message);
+  while (const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR)) {
+    texts.emplace_back(test::MessageText(message.get()));
   }
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
   return texts;
 }
 

@@ -7,6 +7,7 @@
 
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -150,8 +151,7 @@ TEST_P(CloudFileManners, RefusesACloudOfAnotherSizeThanItsCaps) {
 
 TEST_P(CloudFileManners, WarnsOnceWhereSlicesComeInsteadOfScans) {
   const Harness h(gst_harness_new(GetParam()));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const test::ElementBus bus(h->element);
   gst_harness_set_src_caps(h.get(), Info(3, 1).ToCaps());
   guint warnings = 0;
   for (const guint slices : {1U, 8U, 8U}) {
@@ -159,17 +159,13 @@ TEST_P(CloudFileManners, WarnsOnceWhereSlicesComeInsteadOfScans) {
     const GstLidarSlice slice{7, 0, slices, 0};
     gst_lidar_buffer_set_slice(in, &slice);
     EXPECT_EQ(gst_harness_push(h.get(), in), GST_FLOW_OK);
-    while (const MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) {
-      GError* raw = nullptr;
-      gst_message_parse_warning(message.get(), &raw, nullptr);
-      EXPECT_NE(std::string(ErrorPtr(raw)->message).find("8 files"), std::string::npos);
+    while (const MessagePtr message = bus.Pop(GST_MESSAGE_WARNING)) {
+      EXPECT_NE(test::MessageText(message.get()).find("8 files"), std::string::npos);
       EXPECT_EQ(slices, 8U);
       ++warnings;
     }
   }
   EXPECT_EQ(warnings, 1U);
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
 }
 
 TEST_P(CloudFileManners, RefusesCapsWithoutAWidth) {

@@ -9,6 +9,7 @@
 
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -19,21 +20,10 @@ class Filter : public ::testing::Test {
   void Start(const std::string& properties, const std::string& caps) {
     const ElementPtr filter(gst_parse_launch(("pointcloudfilter " + properties).c_str(), nullptr));
     h_.reset(gst_harness_new_with_element(filter.get(), "sink", "src"));
-    GstBus* bus = gst_bus_new();
-    gst_element_set_bus(h_->element, bus);
-    gst_object_unref(bus);
+    bus_.emplace(h_->element);
     gst_harness_set_src_caps_str(h_.get(), caps.c_str());
   }
-  std::string Error() {
-    GstBus* bus = gst_element_get_bus(h_->element);
-    const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
-    gst_object_unref(bus);
-    if (!message) return "";
-    GError* raw = nullptr;
-    gst_message_parse_error(message.get(), &raw, nullptr);
-    const ErrorPtr error(raw);
-    return error->message;
-  }
+  std::string Error() { return bus_->Text(GST_MESSAGE_ERROR); }
   GstFlowReturn Push(const std::vector<std::uint8_t>& bytes, guint first_column = 0) {
     GstBuffer* buffer = gst_buffer_new_memdup(bytes.data(), bytes.size());
     GST_BUFFER_PTS(buffer) = 0;
@@ -49,6 +39,7 @@ class Filter : public ::testing::Test {
   }
 
   test::Harness h_;
+  std::optional<test::ElementBus> bus_;
 };
 
 inline std::string CloudCaps(const std::string& fields, int step, int width, int height,

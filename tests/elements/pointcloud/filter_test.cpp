@@ -4,6 +4,7 @@
 #include "gst/common/buffer_map.h"
 #include "src/base/byte_writer.h"
 #include "tests/elements/pointcloud/filter_fixture.h"
+#include "tests/support/element_stats.h"
 
 namespace lidar::gst {
 namespace {
@@ -102,12 +103,7 @@ TEST_F(Filter, CountsOnThroughAChangeOfItsSettings) {
     g_object_set(h_->element, "max-range", range, nullptr);
     ASSERT_EQ(Push(far_away), GST_FLOW_OK);
   }
-  GstStructure* raw = nullptr;
-  g_object_get(h_->element, "stats", &raw, nullptr);
-  const StructurePtr stats(raw);
-  guint64 removed = 0;
-  gst_structure_get_uint64(raw, "points-removed", &removed);
-  EXPECT_EQ(removed, 6U);
+  EXPECT_EQ(test::StatOf(h_->element, "points-removed"), 6U);
 }
 
 TEST_F(Filter, SendsCapsOnceWhileTheyStayTheSame) {
@@ -143,12 +139,7 @@ TEST_F(Filter, ACloudOfWhichNothingIsLeftIsAGap) {
   while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
     gaps += GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP ? 1 : 0;
   EXPECT_EQ(gaps, 1);
-  GstStructure* raw = nullptr;
-  g_object_get(h_->element, "stats", &raw, nullptr);
-  const StructurePtr stats(raw);
-  guint64 removed = 0;
-  gst_structure_get_uint64(raw, "points-removed", &removed);
-  EXPECT_EQ(removed, 3U);
+  EXPECT_EQ(test::StatOf(h_->element, "points-removed"), 3U);
 }
 
 TEST_F(Filter, ASliceBetweenTheColumnsThatStayIsAGap) {
@@ -176,12 +167,7 @@ TEST_F(Filter, PutsCloudsWhereTheirPoseSays) {
   EXPECT_EQ(moved, (std::array<float, 6>{9, 18, 133, 0, 0, 0}));
   GstLidarPose left{};
   EXPECT_FALSE(gst_lidar_buffer_get_pose(out.get(), &left));
-  GstStructure* raw = nullptr;
-  g_object_get(h_->element, "stats", &raw, nullptr);
-  const StructurePtr stats(raw);
-  guint64 without = 0;
-  gst_structure_get_uint64(raw, "clouds-without-pose", &without);
-  EXPECT_EQ(without, 1U);
+  EXPECT_EQ(test::StatOf(h_->element, "clouds-without-pose"), 1U);
 }
 
 TEST_F(Filter, NoGapComesBeforeTheCaps) {

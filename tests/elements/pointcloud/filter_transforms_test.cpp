@@ -11,6 +11,7 @@
 #include "src/base/byte_writer.h"
 #include "src/cdr/messages.h"
 #include "tests/elements/pointcloud/filter_fixture.h"
+#include "tests/support/element_stats.h"
 
 namespace lidar::gst {
 namespace {
@@ -77,24 +78,8 @@ class FilterByTransforms : public Filter {
     gst_buffer_extract(out.get(), 0, &x, sizeof x);
     return x;
   }
-  guint64 Stat(const char* name) {
-    GstStructure* raw = nullptr;
-    g_object_get(h_->element, "stats", &raw, nullptr);
-    const StructurePtr stats(raw);
-    guint64 value = 0;
-    gst_structure_get_uint64(raw, name, &value);
-    return value;
-  }
-  std::string Warning() {
-    GstBus* bus = gst_element_get_bus(h_->element);
-    const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
-    gst_object_unref(bus);
-    if (!message) return "";
-    GError* raw = nullptr;
-    gst_message_parse_warning(message.get(), &raw, nullptr);
-    const ErrorPtr error(raw);
-    return error->message;
-  }
+  guint64 Stat(const char* name) { return test::StatOf(h_->element, name); }
+  std::string Warning() { return bus_->Text(GST_MESSAGE_WARNING); }
   std::string FrameOut() {
     const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
     const gchar* text = gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "frame-id");
@@ -168,8 +153,8 @@ TEST_F(FilterByTransforms, ALivePipelineKnowsHowLongCloudsWait) {
   Start("target-frame=map tf-timeout=150000000");
   gst_harness_set_upstream_latency(h_.get(), 20 * GST_MSECOND);
   EXPECT_EQ(gst_harness_query_latency(h_.get()), 170 * GST_MSECOND);
-  GstBus* bus = gst_element_get_bus(h_->element);
-  const auto told = [bus] { return MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_LATENCY)); };
+  const test::ElementBus bus(h_->element);
+  const auto told = [&bus] { return bus.Pop(GST_MESSAGE_LATENCY); };
   while (told()) continue;
   g_object_set(h_->element, "tf-timeout", guint64{50 * GST_MSECOND}, nullptr);
   EXPECT_TRUE(told());
@@ -180,7 +165,6 @@ TEST_F(FilterByTransforms, ALivePipelineKnowsHowLongCloudsWait) {
   g_object_set(h_->element, "max-range", 5.0, nullptr);
   EXPECT_FALSE(told());
   g_object_set(h_->element, "target-frame", "map", nullptr);
-  gst_object_unref(bus);
   gst_harness_set_live(h_.get(), FALSE);
   const QueryPtr query(gst_query_new_latency());
   ASSERT_TRUE(gst_pad_peer_query(h_->sinkpad, query.get()));

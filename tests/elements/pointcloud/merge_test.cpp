@@ -267,8 +267,7 @@ TEST_F(MergedByHand, APadThatGoesIsToldOf) {
 }
 
 TEST_F(MergedByHand, WarnsOfSlicesOnce) {
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element_.get(), bus);
+  const ElementBus bus(element_.get());
   for (guint i = 0; i < 3; ++i) {
     const float xyz[3] = {1, 1, 0};
     GstBuffer* buffer = gst_buffer_new_memdup(xyz, sizeof xyz);
@@ -280,11 +279,7 @@ TEST_F(MergedByHand, WarnsOfSlicesOnce) {
     Push(second_, 2, i * 100);
     gst_buffer_unref(gst_harness_pull(first_.get()));
   }
-  int warnings = 0;
-  while (const gst::MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) ++warnings;
-  EXPECT_EQ(warnings, 1);
-  gst_element_set_bus(element_.get(), nullptr);
-  gst_object_unref(bus);
+  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING).size(), 1U);
 }
 
 TEST_F(MergedByHand, PadsAreChildrenByTheirOrder) {

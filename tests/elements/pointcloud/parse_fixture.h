@@ -3,9 +3,11 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 
 #include "gst/lidar/cloud_info.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -42,26 +44,11 @@ class Parse : public ::testing::Test {
     const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
     return CloudInfo::FromCaps(caps.get())->width;
   }
-  std::string ErrorText(GstMessageType type) {
-    GstBus* bus = gst_element_get_bus(h_->element);
-    const MessagePtr message(bus == nullptr ? nullptr : gst_bus_pop_filtered(bus, type));
-    if (bus != nullptr) gst_object_unref(bus);
-    if (!message) return "";
-    GError* raw = nullptr;
-    if (type == GST_MESSAGE_ERROR)
-      gst_message_parse_error(message.get(), &raw, nullptr);
-    else
-      gst_message_parse_warning(message.get(), &raw, nullptr);
-    const ErrorPtr error(raw);
-    return error->message;
-  }
-  void WatchMessages() {
-    GstBus* bus = gst_bus_new();
-    gst_element_set_bus(h_->element, bus);
-    gst_object_unref(bus);
-  }
+  std::string ErrorText(GstMessageType type) { return test::ElementBus(h_->element).Text(type); }
+  void WatchMessages() { bus_.emplace(h_->element); }
 
   test::Harness h_;
+  std::optional<test::ElementBus> bus_;
 };
 
 }  // namespace lidar::gst

@@ -250,10 +250,8 @@ class ParseSeek : public ::testing::Test {
     clouds_.clear();
     times_.clear();
     gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
-    GstBus* bus = gst_element_get_bus(pipeline_.get());
-    const MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, test::kPatience_ns, static_cast<GstMessageType>(type | GST_MESSAGE_ERROR)));
-    gst_object_unref(bus);
+    const test::ElementBus bus(pipeline_.get());
+    const MessagePtr message = bus.Wait(type | GST_MESSAGE_ERROR);
     EXPECT_TRUE(message && GST_MESSAGE_TYPE(message.get()) == type);
     gst_element_set_state(pipeline_.get(), GST_STATE_PAUSED);
     return clouds_;

@@ -185,18 +185,13 @@ TEST(ParseFile, AFileThatIsTooLargeForOneCloudIsAnErrorAtOnce) {
       ("filesrc location=" + path + " ! " + kKitti + " ! pointcloudparse ! fakesink").c_str(),
       nullptr));
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
-  const gst::MessagePtr message(
-      gst_bus_timed_pop_filtered(bus, test::kPatience_ns, GST_MESSAGE_ERROR));
-  gst_object_unref(bus);
+  const test::ElementBus bus(pipeline.get());
+  const gst::MessagePtr message = bus.Wait(GST_MESSAGE_ERROR);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
   std::remove(path.c_str());
   ASSERT_TRUE(message);
-  GError* raw = nullptr;
-  gst_message_parse_error(message.get(), &raw, nullptr);
-  const gst::ErrorPtr error(raw);
-  EXPECT_NE(std::string(error->message).find("too large for one cloud"), std::string::npos)
-      << error->message;
+  const std::string text = test::MessageText(message.get());
+  EXPECT_NE(text.find("too large for one cloud"), std::string::npos) << text;
 }
 
 TEST(ParseFile, EachFileOfASeriesIsACloud) {
@@ -291,10 +286,8 @@ TEST(ParseFile, ASecondFileIsTakenWholeAfterAFirst) {
   for (const std::size_t points : {1'000U, 3'000U, 500U}) {
     std::ofstream(path, std::ios::binary) << std::string(16 * points, 'a');
     gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-    GstBus* bus = gst_element_get_bus(pipeline.get());
-    const MessagePtr message(gst_bus_timed_pop_filtered(
-        bus, test::kPatience_ns, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS)));
-    gst_object_unref(bus);
+    const test::ElementBus bus(pipeline.get());
+    const MessagePtr message = bus.Wait(GST_MESSAGE_ERROR | GST_MESSAGE_EOS);
     ASSERT_TRUE(message);
     GstSample* raw = nullptr;
     g_object_get(sink.get(), "last-sample", &raw, nullptr);

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "tests/elements/ros2/fast_peer.h"
+#include "tests/support/element_bus.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -98,16 +101,10 @@ class Ros2Test : public ::testing::Test {
         element + " name=ros domain-id=" + std::to_string(TestDomain()) + " " + properties + behind;
     h_.reset(gst_harness_new_parse(line.c_str()));
     ASSERT_NE(h_, nullptr);
-    bus_ = gst_bus_new();
-    gst_element_set_bus(h_->element, bus_);
+    bus_.emplace(h_->element);
     ros_.reset(GST_IS_BIN(h_->element) ? gst_bin_get_by_name(GST_BIN(h_->element), "ros")
                                        : GST_ELEMENT(gst_object_ref(h_->element)));
     gst_harness_play(h_.get());
-  }
-  void TearDown() override {
-    ros_.reset();
-    h_.reset();
-    if (bus_ != nullptr) gst_object_unref(bus_);
   }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
   /// Returns a field of the received caps, as text.
@@ -119,16 +116,7 @@ class Ros2Test : public ::testing::Test {
                                                           : gst_value_serialize(value));
     return text.get();
   }
-  guint64 Stat(const char* name) {
-    GstStructure* raw = nullptr;
-    g_object_get(ros_.get(), "stats", &raw, nullptr);
-    const gst::StructurePtr stats(raw);
-    guint64 value = 0;
-    guint small = 0;
-    if (!gst_structure_get_uint64(raw, name, &value) && gst_structure_get_uint(raw, name, &small))
-      value = small;
-    return value;
-  }
+  guint64 Stat(const char* name) { return StatOf(ros_.get(), name); }
   /// Returns false if it takes too long.
   bool WaitForStat(const char* name, guint64 least) {
     return Eventually([&] { return Stat(name) >= least; });
@@ -138,16 +126,8 @@ class Ros2Test : public ::testing::Test {
   }
   /// Returns the text of the next warning or error, or nothing.
   std::string NextComplaint(GstClockTime timeout = kPatience_ns) {
-    const gst::MessagePtr message(gst_bus_timed_pop_filtered(
-        bus_, timeout, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)));
-    if (!message) return "";
-    GError* raw = nullptr;
-    if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING)
-      gst_message_parse_warning(message.get(), &raw, nullptr);
-    else
-      gst_message_parse_error(message.get(), &raw, nullptr);
-    const gst::ErrorPtr error(raw);
-    return error->message;
+    const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR, timeout);
+    return message ? MessageText(message.get()) : "";
   }
   /// Returns NextComplaint(), without warnings about the machine's settings.
   std::string NextOwnComplaint() {
@@ -158,7 +138,7 @@ class Ros2Test : public ::testing::Test {
 
   Harness h_;
   std::unique_ptr<GstElement, gst::Unref> ros_;
-  GstBus* bus_ = nullptr;
+  std::optional<ElementBus> bus_;
 };
 
 }  // namespace lidar::test

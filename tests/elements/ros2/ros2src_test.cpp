@@ -365,17 +365,11 @@ TEST_P(Ros2Settings, ThatRosDoesNotTakeAreNamed) {
   const BadSetting& bad = GetParam();
   const std::unique_ptr<GstElement, gst::Unref> element(
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make(bad.element, nullptr))));
-  const std::unique_ptr<GstBus, gst::Unref> bus(gst_bus_new());
-  gst_element_set_bus(element.get(), bus.get());
+  const ElementBus bus(element.get());
   g_object_set(element.get(), bad.property, bad.value, nullptr);
   EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-  const gst::MessagePtr message(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_ERROR));
-  ASSERT_TRUE(message);
-  GError* raw = nullptr;
-  gst_message_parse_error(message.get(), &raw, nullptr);
-  const gst::ErrorPtr error(raw);
-  EXPECT_NE(std::string(error->message).find(bad.complaint), std::string::npos) << error->message;
-  gst_element_set_bus(element.get(), nullptr);
+  const std::string text = bus.Text(GST_MESSAGE_ERROR);
+  EXPECT_NE(text.find(bad.complaint), std::string::npos) << text;
   gst_element_set_state(element.get(), GST_STATE_NULL);
 }
 

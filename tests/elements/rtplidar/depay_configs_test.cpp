@@ -7,6 +7,7 @@
 #include "src/rtp/packetizer.h"
 #include "src/rtp/stream_config.h"
 #include "tests/elements/rtplidar/slices.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::test {
 namespace {
@@ -130,8 +131,7 @@ TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
   const Harness h(gst_harness_new("rtplidardepay"));
   gst_harness_set_sink_caps_str(h.get(), GST_LIDAR_SLICE_MEDIA_TYPE);
   gst_harness_set_src_caps_str(h.get(), kRtpCaps);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   guint scan = 0;
   for (const char* type : {GST_LIDAR_DRACO_MEDIA_TYPE, GST_LIDAR_SLICE_MEDIA_TYPE,
                            GST_LIDAR_DRACO_MEDIA_TYPE, GST_LIDAR_SLICE_MEDIA_TYPE}) {
@@ -143,11 +143,9 @@ TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
   }
   EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 2 * kSlices);
   unsigned warnings = 0;
-  while (const gst::MessagePtr message{gst_bus_pop(bus)})
+  while (const gst::MessagePtr message = bus.Pop())
     warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
   EXPECT_EQ(warnings, 1U);
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
 }
 
 constexpr const char* kVoxels =
@@ -185,39 +183,20 @@ TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
   const Harness h(gst_harness_new("rtplidardepay"));
   gst_harness_set_sink_caps_str(h.get(), GST_LIDAR_SLICE_MEDIA_TYPE);
   gst_harness_set_src_caps_str(h.get(), kRtpCaps);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   Push(h.get(), PacketsOfVoxels(3));
   EXPECT_TRUE(Pull(h.get()).empty());
   EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 3 * kSlices);
-  std::vector<std::string> warnings;
-  while (const gst::MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}) {
-    GError* raw = nullptr;
-    gst_message_parse_warning(message.get(), &raw, nullptr);
-    const gst::ErrorPtr warning(raw);
-    warnings.emplace_back(warning->message);
-  }
-  EXPECT_EQ(warnings, std::vector<std::string>{
-                          "The slices of this stream are for a decoder of application/x-voxels, "
-                          "and the next element does not take them. They are dropped."});
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING),
+            std::vector<std::string>{
+                "The slices of this stream are for a decoder of application/x-voxels, "
+                "and the next element does not take them. They are dropped."});
 }
 
 /// Warnings of a depayloader, from packets that cause them again and again.
 class OneWarning : public ::testing::Test {
  protected:
-  OneWarning() { gst_element_set_bus(h_->element, bus_); }
-  ~OneWarning() override {
-    gst_element_set_bus(h_->element, nullptr);
-    gst_object_unref(bus_);
-  }
-  unsigned Warnings() {
-    unsigned warnings = 0;
-    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)})
-      ++warnings;
-    return warnings;
-  }
+  std::size_t Warnings() { return bus_.Texts(GST_MESSAGE_WARNING).size(); }
   void Restart() {
     gst_element_set_state(h_->element, GST_STATE_NULL);
     gst_element_set_state(h_->element, GST_STATE_PLAYING);
@@ -234,7 +213,7 @@ class OneWarning : public ::testing::Test {
   }
 
   Harness h_ = Depay();
-  GstBus* const bus_ = gst_bus_new();
+  const ElementBus bus_{h_->element};
   std::uint16_t sequence_ = 0;
 };
 
@@ -278,8 +257,7 @@ TEST_F(OneWarning, OfPacketsThatCannotBeRead) {
 
 TEST(RtpLidarDepay, SaysOnceThatNothingCanBeRead) {
   const Harness h = Depay();
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   for (std::uint16_t i = 0; i < 60; ++i) {  // packets of pseudo-random bytes
     std::vector<std::uint8_t> bytes(200);
     for (std::size_t k = 0; k < bytes.size(); ++k)
@@ -288,12 +266,10 @@ TEST(RtpLidarDepay, SaysOnceThatNothingCanBeRead) {
     gst_harness_push(h.get(), RtpOf(bytes, 7, i));
   }
   unsigned warnings = 0;
-  while (const gst::MessagePtr message{gst_bus_pop(bus)})
+  while (const gst::MessagePtr message = bus.Pop())
     warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
   EXPECT_EQ(warnings, 1U);
   EXPECT_EQ(Stat(h.get(), "packets-invalid"), 60U);
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
 }
 
 class UndecodableConfigs : public ::testing::TestWithParam<const char*> {};

@@ -23,15 +23,11 @@ gst::BufferPtr Bare(gst::BufferPtr slice) {
 
 /// Reports the packets from the `first` newest one to the `last` newest one.
 void Tell(Course& c, guint receiver, guint first, guint last) {
-  guint ssrc = 0;
   guint newest = 0;
-  GstStructure* stats = nullptr;
-  g_object_get(c.element(), "stats", &stats, "seqnum", &newest, nullptr);
-  const gst::StructurePtr owner(stats);
-  gst_structure_get_uint(stats, "ssrc", &ssrc);
+  g_object_get(c.element(), "seqnum", &newest, nullptr);
   GstLidarPacketsReceived received{};
   received.receiver = receiver;
-  received.ssrc = ssrc;
+  received.ssrc = static_cast<guint>(c.Stat("ssrc"));
   received.count = 1;
   received.ranges[0] = {static_cast<guint16>(newest - first), static_cast<guint16>(newest - last)};
   c.PushUpstream("packets received", gst_lidar_event_new_packets_received(&received));

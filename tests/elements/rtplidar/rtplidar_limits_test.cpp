@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::test {
 namespace {
@@ -164,13 +165,11 @@ TEST_F(PayLimits, TellsTheEncoderOfEachSliceThatAReceiverHasUpToTheMostOfAnEvent
 TEST_F(PayLimits, SaysThatAggregatesChangeTheLatency) {
   const gst::ElementPtr pay(gst_element_factory_make("rtplidarpay", nullptr));
   gst_object_ref_sink(pay.get());
-  const std::unique_ptr<GstBus, gst::Unref> bus(gst_bus_new());
-  gst_element_set_bus(pay.get(), bus.get());
+  const ElementBus bus(pay.get());
   g_object_set(pay.get(), "config-interval", 3, nullptr);
-  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_LATENCY)));
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_LATENCY));
   g_object_set(pay.get(), "aggregate", TRUE, nullptr);
-  EXPECT_TRUE(gst::MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_LATENCY)));
-  gst_element_set_bus(pay.get(), nullptr);
+  EXPECT_TRUE(bus.Pop(GST_MESSAGE_LATENCY));
 }
 
 TEST_F(PayLimits, AFlushForgetsWhatWasCollected) {
@@ -252,13 +251,12 @@ TEST_F(DepayLimits, TimeMayBeginAnewAfterAFlush) {
 
 TEST_F(DepayLimits, WarnsAtTheTwentiethPacketOfAnotherTypeAndAgainAfterARestart) {
   const auto packets = Packets(8);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h_->element, bus);
+  const ElementBus bus(h_->element);
   SetCaps(",payload=97");
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = 0; i < 22; ++i) {
       Push(packets.at(i), 0);
-      const gst::MessagePtr warning(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+      const gst::MessagePtr warning = bus.Pop(GST_MESSAGE_WARNING);
       EXPECT_EQ(warning != nullptr, i == 19) << i;
     }
     EXPECT_EQ(Stat(h_.get(), "packets-wrong-payload-type"), 22U);
@@ -268,8 +266,6 @@ TEST_F(DepayLimits, WarnsAtTheTwentiethPacketOfAnotherTypeAndAgainAfterARestart)
     gst_harness_push_event(h_.get(), gst_event_new_stream_start("again"));
     SetCaps(",payload=97");
   }
-  gst_element_set_bus(h_->element, nullptr);
-  gst_object_unref(bus);
 }
 
 }  // namespace

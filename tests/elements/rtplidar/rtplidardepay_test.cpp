@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "tests/elements/rtplidar/slices.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::test {
 namespace {
@@ -120,9 +121,7 @@ TEST(RtpLidarDepay, TakesBufferListsAndReorderedPackets) {
 
 TEST(RtpLidarDepay, DropsWhatIsNotItsPayloadTypeOrNotRtpWithoutAMessage) {
   const Harness h = Depay();
-  const gst::ElementPtr bus_owner(GST_ELEMENT(gst_object_ref(h->element)));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   for (const auto& p : Packets(1)) {
     GstBuffer* foreign = gst_buffer_copy_deep(p.get());
     GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
@@ -137,43 +136,10 @@ TEST(RtpLidarDepay, DropsWhatIsNotItsPayloadTypeOrNotRtpWithoutAMessage) {
   EXPECT_EQ(Pull(h.get()).size(), 0U);
   EXPECT_EQ(Stat(h.get(), "packets-wrong-payload-type"), 13U);
   EXPECT_EQ(Stat(h.get(), "packets-invalid"), 26U);
-  EXPECT_EQ(gst_bus_pop_filtered(
-                bus, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)),
-            nullptr);
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR));
   Push(h.get(), Packets(1));
   EXPECT_EQ(Pull(h.get()).size(), 4U);
 }
-
-/// Warnings that an element posts during the lifetime of this object.
-class Warnings {
- public:
-  explicit Warnings(GstElement* element) : element_(GST_ELEMENT(gst_object_ref(element))) {
-    gst_element_set_bus(element, bus_);
-  }
-  ~Warnings() {
-    gst_element_set_bus(element_, nullptr);
-    gst_object_unref(element_);
-    gst_object_unref(bus_);
-  }
-  Warnings(const Warnings&) = delete;
-  Warnings& operator=(const Warnings&) = delete;
-  /// Returns the warnings since the last call.
-  std::vector<std::string> Take() {
-    std::vector<std::string> texts;
-    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) {
-      GError* error = nullptr;
-      gst_message_parse_warning(message.get(), &error, nullptr);
-      texts.emplace_back(gst::ErrorPtr(error)->message);
-    }
-    return texts;
-  }
-
- private:
-  GstElement* element_;
-  GstBus* bus_ = gst_bus_new();
-};
 
 TEST(RtpLidarDepay, WarnsOnceWhereOnlyAnotherPayloadTypeComes) {
   const Harness h(gst_harness_new("rtplidardepay"));
@@ -181,16 +147,16 @@ TEST(RtpLidarDepay, WarnsOnceWhereOnlyAnotherPayloadTypeComes) {
       h.get(),
       "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,"
       "payload=97");
-  Warnings warnings(h->element);
+  const ElementBus bus(h->element);
   Push(h.get(), Packets(6));
-  const auto texts = warnings.Take();
+  const auto texts = bus.Texts(GST_MESSAGE_WARNING);
   ASSERT_EQ(texts.size(), 1U);
   EXPECT_NE(texts[0].find("payload type 96, not 97"), std::string::npos) << texts[0];
 }
 
 TEST(RtpLidarDepay, WarnsOnceOfASecondStreamThatIsDropped) {
   const Harness h = Depay();
-  Warnings warnings(h->element);
+  const ElementBus bus(h->element);
   const auto first = Packets(20);
   const auto second = Packets(20);  // another SSRC, at the same time
   ASSERT_EQ(first.size(), second.size());
@@ -198,7 +164,7 @@ TEST(RtpLidarDepay, WarnsOnceOfASecondStreamThatIsDropped) {
     for (const auto* packets : {&first, &second})
       gst_harness_push(h.get(), gst_buffer_copy_deep((*packets)[i].get()));
   EXPECT_EQ(Pull(h.get()).size(), 80U);
-  const auto texts = warnings.Take();
+  const auto texts = bus.Texts(GST_MESSAGE_WARNING);
   ASSERT_EQ(texts.size(), 1U);
   EXPECT_NE(texts[0].find("Two streams"), std::string::npos) << texts[0];
 }
@@ -301,24 +267,16 @@ TEST(RtpLidarDepay, StartsAnewAfterAFlush) {
 TEST(RtpLidarDepay, KeepsTheBaseClassStatistics) {
   const Harness h = Depay();
   Push(h.get(), Packets(1));
-  GstStructure* stats = nullptr;
-  g_object_get(h->element, "stats", &stats, nullptr);
-  const gst::StructurePtr owner(stats);
-  guint clock_rate = 0;
-  EXPECT_TRUE(gst_structure_get_uint(stats, "clock_rate", &clock_rate));
-  EXPECT_EQ(clock_rate, 90'000U);
+  EXPECT_EQ(Stat(h.get(), "clock_rate"), 90'000U);
 }
 
 TEST(RtpLidarDepay, WarnsOfNoOtherTypeBesideItsOwn) {
   const Harness h = Depay();
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   Push(h.get(), Packets(2));
   Push(h.get(), WithType(Packets(20), 111));
   EXPECT_GT(Stat(h.get(), "packets-wrong-payload-type"), 20U);
-  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING));
 }
 
 TEST(RtpLidarDepay, WaitsForLatePacketsAsLongAsItWasSetBeforeTheStart) {

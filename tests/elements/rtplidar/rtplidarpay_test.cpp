@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::test {
 namespace {
@@ -238,8 +239,7 @@ TEST(RtpLidarPay, AddsItsHeadersToTheBoundsOfTheEncoder) {
 class CapsThatNoReceiverCouldUse : public ::testing::TestWithParam<const char*> {};
 TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   const Harness h(gst_harness_new("rtplidarpay"));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   gst_harness_push_event(h.get(), gst_event_new_stream_start("test"));
   const gst::CapsPtr caps(gst_caps_from_string(GetParam()));
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
@@ -247,10 +247,8 @@ TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
-  EXPECT_TRUE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));
-  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)));  // no second one
-  gst_element_set_bus(h->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR));
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));  // no second one
 }
 INSTANTIATE_TEST_SUITE_P(
     All, CapsThatNoReceiverCouldUse,
@@ -313,17 +311,10 @@ TEST(RtpLidarPay, RepeatsTheConfigWhereTimeGoesBack) {
 
 TEST(RtpLidarPay, SaysThatASliceIsTooLarge) {
   const Harness h = Pay();
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h->element, bus);
+  const ElementBus bus(h->element);
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0, gsize{4} << 20)), GST_FLOW_OK);
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 1, (gsize{4} << 20) + 1)), GST_FLOW_ERROR);
-  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
-  gst_object_unref(bus);
-  ASSERT_TRUE(message);
-  GError* raw = nullptr;
-  gst_message_parse_error(message.get(), &raw, nullptr);
-  const gst::ErrorPtr error(raw);
-  EXPECT_STREQ(error->message, "A slice of 4194305 bytes cannot be sent.");
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), "A slice of 4194305 bytes cannot be sent.");
 }
 
 TEST(RtpLidarPay, RefusesASensorModelThatIsNone) {

@@ -12,6 +12,7 @@
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/cloud/sensor_model.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::test {
@@ -73,14 +74,7 @@ inline std::vector<Rtp> PullAll(GstHarness* h) {
   return packets;
 }
 
-inline guint64 Stat(GstHarness* h, const char* name) {
-  GstStructure* stats = nullptr;
-  g_object_get(h->element, "stats", &stats, nullptr);
-  const gst::StructurePtr owner(stats);
-  guint64 value = G_MAXUINT64;
-  gst_structure_get_uint64(stats, name, &value);
-  return value;
-}
+inline guint64 Stat(GstHarness* h, const char* name) { return StatOf(h->element, name); }
 
 inline constexpr const char* kRtpCaps =
     "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96";

@@ -60,9 +60,7 @@ inline std::string Bonded(const std::string& addresses, const std::string& more 
 
 /// Returns a field of each element of the array `links` in `stats`.
 inline std::vector<guint64> OfLinks(GstElement* element, const char* field) {
-  GstStructure* raw = nullptr;
-  g_object_get(element, "stats", &raw, nullptr);
-  const gst::StructurePtr stats(raw);
+  const gst::StructurePtr stats = StatsOf(element);
   std::vector<guint64> values;
   const GValue* links = gst_structure_get_value(stats.get(), "links");
   for (guint i = 0; links != nullptr && i < gst_value_array_get_size(links); ++i) {

@@ -28,11 +28,10 @@ class BondedSink : public ::testing::Test {
   BondedSink() {
     g_object_set(sink_, "bonding-addresses", "127.0.0.1:5004@127.0.0.1,127.0.0.1:5006@127.0.0.2",
                  "bonding-method", 2, nullptr);  // backup: few copies
-    gst_element_set_bus(sink_, bus_.get());
   }
   ~BondedSink() override {
     h_.reset();
-    gst_element_set_bus(sink_, nullptr);
+    bus_.reset();
     gst_object_unref(sink_);
   }
   void Start() {
@@ -112,19 +111,15 @@ class BondedSink : public ::testing::Test {
   guint64 OfLink(const char* field, std::size_t link) { return OfLinks(sink_, field)[link]; }
   int Warnings(const char* text) {
     int count = 0;
-    while (const MessagePtr message{gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_WARNING)}) {
-      GError* raw = nullptr;
-      gst_message_parse_warning(message.get(), &raw, nullptr);
-      const gst::ErrorPtr error(raw);
-      count += std::string(error->message).find(text) != std::string::npos;
-    }
+    for (const std::string& warning : bus_->Texts(GST_MESSAGE_WARNING))
+      count += warning.find(text) != std::string::npos;
     return count;
   }
 
   FakeTime time_;
-  std::unique_ptr<GstBus, gst::Unref> bus_{gst_bus_new()};
   GstElement* sink_ =
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamsink", nullptr)));
+  std::optional<ElementBus> bus_{sink_};
   Harness h_;
   std::array<std::atomic<int>, 2> packets_{};  // that the bond gave each link
   std::atomic<GstClockTime> ended_at_{0};      // when the bond passed EOS on

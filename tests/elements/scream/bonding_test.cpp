@@ -12,16 +12,11 @@ namespace {
 using gst::ParseBondAddresses;
 
 bool Warns(Pipeline& pipeline, const char* text) {
-  const auto types =
-      static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR | GST_MESSAGE_EOS);
-  const MessagePtr message = pipeline.Wait(types);
+  const MessagePtr message =
+      pipeline.Wait(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR | GST_MESSAGE_EOS);
   if (!message || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return false;
-  GError* error = nullptr;
-  GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING
-      ? gst_message_parse_warning(message.get(), &error, nullptr)
-      : gst_message_parse_error(message.get(), &error, nullptr);
-  const ErrorPtr owner(error);
-  EXPECT_NE(std::string(error->message).find(text), std::string::npos) << error->message;
+  const std::string words = MessageText(message.get());
+  EXPECT_NE(words.find(text), std::string::npos) << words;
   return true;
 }
 

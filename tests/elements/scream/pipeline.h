@@ -8,8 +8,7 @@
 #include <string>
 
 #include "gst/common/refs.h"
-
-#include "tests/support/patience.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::test {
 
@@ -36,21 +35,12 @@ class Pipeline {
     return ElementPtr(gst_bin_get_by_name(GST_BIN(element_.get()), name));
   }
   void SendEos() { gst_element_send_event(element_.get(), gst_event_new_eos()); }
-  MessagePtr Wait(GstMessageType types) {
-    GstBus* bus = gst_element_get_bus(element_.get());
-    MessagePtr message(gst_bus_timed_pop_filtered(bus, kPatience_ns, types));
-    gst_object_unref(bus);
-    return message;
-  }
+  MessagePtr Wait(int types) { return ElementBus(element_.get()).Wait(types); }
   ::testing::AssertionResult Ends() {
-    const MessagePtr message =
-        Wait(static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+    const MessagePtr message = Wait(GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
     if (!message) return ::testing::AssertionFailure() << "no EOS";
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return ::testing::AssertionSuccess();
-    GError* error = nullptr;
-    gst_message_parse_error(message.get(), &error, nullptr);
-    const ErrorPtr owner(error);
-    return ::testing::AssertionFailure() << error->message;
+    return ::testing::AssertionFailure() << MessageText(message.get());
   }
 
  private:

@@ -15,6 +15,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/rtcp/ccfb.h"
 #include "src/rtp/payload_header.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
 namespace lidar::test {
@@ -108,11 +109,7 @@ inline void SetSource(GstBuffer* buffer, const char* host, guint port) {
 /// The property `stats` of an element.
 class Stats {
  public:
-  explicit Stats(GstElement* element) {
-    GstStructure* s = nullptr;
-    g_object_get(element, "stats", &s, nullptr);
-    stats_.reset(s);
-  }
+  explicit Stats(GstElement* element) : stats_(StatsOf(element)) {}
   explicit Stats(const GstStructure* stats) : stats_(gst_structure_copy(stats)) {}
   /// Returns member `index` of the array `name`.
   Stats Of(const char* name, guint index) const {

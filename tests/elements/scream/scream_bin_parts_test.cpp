@@ -127,12 +127,9 @@ TEST_F(ScreamBin, AKeyThatWasInUseIsRefusedAndSoIsAThirdThatWaits) {
   const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
   if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
   const auto refuses = [this](char digit) {
-    GstBus* bus = gst_bus_new();
-    gst_element_set_bus(bin_.get(), bus);
+    const ElementBus bus(bin_.get());
     g_object_set(bin_.get(), "srtp-key", std::string(60, digit).c_str(), nullptr);
-    const MessagePtr warning(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
-    gst_element_set_bus(bin_.get(), nullptr);
-    gst_object_unref(bus);
+    const MessagePtr warning = bus.Pop(GST_MESSAGE_WARNING);
     return warning != nullptr;
   };
   for (const char* factory : {"screamsink", "screamsrc"}) {

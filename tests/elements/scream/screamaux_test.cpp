@@ -184,15 +184,12 @@ TEST_F(ScreamAux, FindsTheExtensionByItsUriHoweverCapsHaveIt) {
 }
 
 TEST_F(ScreamAux, WarnsOnceOfStreamsThatPassBesideIt) {
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element, bus);
+  const ElementBus bus(element);
   Push();
   ASSERT_EQ(Leave(), 1);
   for (int i = 0; i < 3; ++i) Tell({{0, 1200}});
-  EXPECT_TRUE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
-  EXPECT_FALSE(gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)));
-  gst_element_set_bus(element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_TRUE(bus.Pop(GST_MESSAGE_WARNING));
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING));
 }
 
 TEST(ScreamAuxSettings, FitASessionWithTransportWideFeedback) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The streams of a screamrx: how they end, their sender's reports, and the pad of each.
 #include "tests/elements/scream/screamrx_fixture.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::test {
 namespace {
@@ -193,8 +194,7 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
   SetPtMap(
       "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
       "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"");
-  const std::unique_ptr<GstBus, gst::Unref> bus(gst_bus_new());
-  gst_element_set_bus(element, bus.get());
+  const ElementBus bus(element);
   Start();
   for (int round = 0; round < 2; ++round) {
     Rtp camera;
@@ -207,18 +207,12 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     EXPECT_EQ(Passed(), 2 * static_cast<guint>(round) + 2);  // `src` takes the first stream, too
     EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 1'024);      // rtcp_src and `src` among them
     EXPECT_EQ(Stats(element)["packets-foreign"], 77U);
-    int told = 0;
-    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING)}) {
-      GError* error = nullptr;
-      gst_message_parse_warning(message.get(), &error, nullptr);
-      told += gst::ErrorPtr(error)->message == std::string("More than 1024 streams.");
-    }
-    EXPECT_EQ(told, 1) << "once a run";
+    const auto told = bus.Texts(GST_MESSAGE_WARNING);
+    EXPECT_EQ(std::count(told.begin(), told.end(), "More than 1024 streams."), 1) << "once a run";
     gst_element_set_state(element, GST_STATE_NULL);
     EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 2);
     gst_harness_play(rtp.get());
   }
-  gst_element_set_bus(element, nullptr);
 }
 
 TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
@@ -226,22 +220,17 @@ TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
       "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
       "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
       "98=(string)\"application/x-rtp,clock-rate=[1,2]\",200=(int)7,lidar=(int)96");
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element, bus);
+  const ElementBus bus(element);
   Start();
   std::string texts;
   const auto warnings = [&] {
-    int n = 0;
-    for (; const gst::MessagePtr message{gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)}; ++n) {
-      GError* error = nullptr;
-      gst_message_parse_warning(message.get(), &error, nullptr);
-      texts += gst::ErrorPtr(error)->message + std::string("\n");
-    }
-    return n;
+    const auto told = bus.Texts(GST_MESSAGE_WARNING);
+    for (const std::string& text : told) texts += text + "\n";
+    return told.size();
   };
   gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
   for (int run = 0; run < 2; ++run) {
-    EXPECT_EQ(warnings(), 4) << run;
+    EXPECT_EQ(warnings(), 4U) << run;
     EXPECT_NE(texts.find("72 is RTCP"), std::string::npos) << texts;
     texts.clear();
     for (guint16 seq = 0; seq < 4; ++seq) {
@@ -251,13 +240,11 @@ TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
       camera.seq = seq;
       EXPECT_EQ(Push(camera), GST_FLOW_OK);
     }
-    EXPECT_EQ(warnings(), 1) << run;
+    EXPECT_EQ(warnings(), 1U) << run;
     EXPECT_NE(texts.find("payload type 97"), std::string::npos) << texts;
     gst_element_set_state(element, GST_STATE_NULL);
     gst_harness_play(rtp.get());
   }
-  gst_element_set_bus(element, nullptr);
-  gst_object_unref(bus);
 }
 
 }  // namespace

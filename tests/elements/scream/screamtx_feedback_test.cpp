@@ -5,10 +5,12 @@
 #include <time.h>
 
 #include <atomic>
+#include <optional>
 
 #include "gst/scream/key_request.h"
 #include "src/rtcp/sender_report.h"
 #include "tests/elements/scream/screamtx_fixture.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -390,8 +392,7 @@ TEST_F(ScreamTx, IgnoresFeedbackOfPacketsThatItNeverSent) {
 }
 
 TEST_F(ScreamTx, TakesLiesForNoSignOfAReceiver) {
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element, bus);
+  const ElementBus bus(element);
   Start();
   CongestionFeedback lie;
   lie.blocks.push_back({0x1234, 30000, {{true, Ecn::kCe, Duration{0}}}});
@@ -400,10 +401,8 @@ TEST_F(ScreamTx, TakesLiesForNoSignOfAReceiver) {
     Feed(lie);
     time.Advance(50 * GST_MSECOND);
   }
-  EXPECT_TRUE(gst::MessagePtr(gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_WARNING)));
+  EXPECT_TRUE(bus.Wait(GST_MESSAGE_WARNING));
   gst_element_set_state(element, GST_STATE_NULL);
-  gst_element_set_bus(element, nullptr);
-  gst_object_unref(bus);
 }
 
 TEST_F(ScreamTx, IsNotMovedByAFloodOfTheSameReport) {
@@ -424,8 +423,7 @@ TEST_F(ScreamTx, IsNotMovedByAFloodOfTheSameReport) {
 }
 
 TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element, bus);
+  const ElementBus bus(element);
   Start();
   std::string state = Stats(element).Text("ecn-state");
   for (guint32 i = 0; i < 100; ++i) {
@@ -438,8 +436,7 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
   EXPECT_EQ(ecns.back(), GST_LIDAR_ECN_NOT_ECT);
   EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
   while (state != "bleached") {
-    const gst::MessagePtr message(
-        gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_ELEMENT));
+    const gst::MessagePtr message = bus.Wait(GST_MESSAGE_ELEMENT);
     ASSERT_TRUE(message);
     EXPECT_TRUE(gst_message_has_name(message.get(), "scream-ecn-state-changed"));
     const GstStructure* told = gst_message_get_structure(message.get());
@@ -448,13 +445,10 @@ TEST_F(ScreamTx, FallsBackAndSaysSoWhereThePathBleachesEcn) {
     state = gst_structure_get_string(told, "state");
   }
   gst_element_set_state(element, GST_STATE_NULL);
-  gst_element_set_bus(element, nullptr);
-  gst_object_unref(bus);
 }
 
 TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element, bus);
+  const ElementBus bus(element);
   Start();
   const auto run = [&](int frames, bool answer) {
     for (int i = 0; i < frames; ++i) {
@@ -464,9 +458,9 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
     }
   };
   const auto next = [&]() -> gst::MessagePtr {
-    const auto types = static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_WARNING);
     for (;;) {
-      gst::MessagePtr message(gst_bus_timed_pop_filtered(bus, 300 * GST_MSECOND, types));
+      gst::MessagePtr message =
+          bus.Wait(GST_MESSAGE_ELEMENT | GST_MESSAGE_WARNING, 300 * GST_MSECOND);
       if (!message || !gst_message_has_name(message.get(), "scream-ecn-state-changed"))
         return message;
     }
@@ -501,18 +495,14 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   ASSERT_TRUE(message);
   EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
   gst_element_set_state(element, GST_STATE_NULL);
-  gst_element_set_bus(element, nullptr);
-  gst_object_unref(bus);
 }
 
 /// A stream that ends after some time, and whether a warning says that no receiver answered.
 class ScreamTxEnds : public ScreamTx {
  protected:
-  ScreamTxEnds() { gst_element_set_bus(element, bus_); }
   void TearDown() override {
     gst_element_set_state(element, GST_STATE_NULL);
-    gst_element_set_bus(element, nullptr);
-    gst_object_unref(bus_);
+    bus_.reset();
     ScreamTx::TearDown();
   }
   /// Returns the number of warnings before the end.
@@ -538,22 +528,16 @@ class ScreamTxEnds : public ScreamTx {
     return warnings_;
   }
   void CountWarnings() {
-    while (const gst::MessagePtr message{gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)}) {
-      GError* raw = nullptr;
-      gchar* advice = nullptr;
-      gst_message_parse_warning(message.get(), &raw, &advice);
-      const gst::ErrorPtr error(raw);
-      const gst::StringPtr text(advice);
+    while (const gst::MessagePtr message = bus_->Pop(GST_MESSAGE_WARNING)) {
+      const std::string text = MessageText(message.get());
       ++warnings_;
-      EXPECT_NE(std::string(error->message).find("No feedback until the stream ended"),
-                std::string::npos)
-          << error->message;
-      EXPECT_NE(std::string(text.get()).find("Check host and port"), std::string::npos);
+      EXPECT_NE(text.find("No feedback until the stream ended"), std::string::npos) << text;
+      EXPECT_NE(MessageDetails(message.get()).find("Check host and port"), std::string::npos);
     }
     ended_ = true;
   }
 
-  GstBus* const bus_ = gst_bus_new();
+  std::optional<ElementBus> bus_{element};
   std::atomic<bool> ended_{false};
   int warnings_ = 0;
 };

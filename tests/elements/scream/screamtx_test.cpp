@@ -4,6 +4,7 @@
 
 #include "src/rtcp/sender_report.h"
 #include "tests/elements/scream/screamtx_fixture.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -201,24 +202,20 @@ TEST_F(ScreamTxReports, AreNotSentUnlessAskedForNorMoreOftenThanTenASecond) {
 
 TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
   g_object_set(element, "stats-interval", guint64{100 * GST_MSECOND}, nullptr);
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element, bus);
+  const ElementBus bus(element);
   Start();
   PushFrame(0, 1);
   for (int i = 0; i < 5; ++i) {
     time.Advance(100 * GST_MSECOND);
-    const gst::MessagePtr message(
-        gst_bus_timed_pop_filtered(bus, kPatience_ns, GST_MESSAGE_ELEMENT));
+    const gst::MessagePtr message = bus.Wait(GST_MESSAGE_ELEMENT);
     ASSERT_TRUE(message);
     EXPECT_TRUE(gst_message_has_name(message.get(), "application/x-screamtx-stats"));
   }
   g_usleep(20'000);
   int more = 0;
-  while (gst::MessagePtr(gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT))) ++more;
+  while (bus.Pop(GST_MESSAGE_ELEMENT)) ++more;
   EXPECT_LE(more, 1);  // the first came with the start
   gst_element_set_state(element, GST_STATE_NULL);
-  gst_element_set_bus(element, nullptr);
-  gst_object_unref(bus);
 }
 
 }  // namespace

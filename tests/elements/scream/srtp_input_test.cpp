@@ -12,6 +12,7 @@
 #include "gst/scream/srtp/input.h"
 #include "tests/elements/scream/frozen_clock.h"
 #include "tests/elements/scream/srtp_protector.h"
+#include "tests/support/element_bus.h"
 
 using lidar::test::frozen_at;
 
@@ -41,11 +42,9 @@ class SrtpIn : public ::testing::Test {
  protected:
   SrtpIn()
       : bin_(GST_ELEMENT(gst_object_ref_sink(gst_bin_new(nullptr)))),
-        bus_(gst_bus_new()),
         socket_(gst_pad_new("socket", GST_PAD_SRC)),
         target_(gst_pad_new("target", GST_PAD_SINK)) {
     frozen_at = 1'000 * G_USEC_PER_SEC;
-    gst_element_set_bus(bin_.get(), bus_);
     gst_element_set_state(bin_.get(), GST_STATE_PLAYING);
     for (GstPad* pad : {socket_, target_}) gst_object_ref_sink(pad);
     gst_pad_set_element_private(target_, this);
@@ -73,8 +72,6 @@ class SrtpIn : public ::testing::Test {
     gst_pad_set_active(target_, FALSE);
     for (GstPad* pad : {socket_, target_}) gst_object_unref(pad);
     gst_element_set_state(bin_.get(), GST_STATE_NULL);
-    gst_element_set_bus(bin_.get(), nullptr);
-    gst_object_unref(bus_);
   }
 
   /// Returns true if the datagram came out.
@@ -90,17 +87,10 @@ class SrtpIn : public ::testing::Test {
   static void Wait(double seconds) {
     frozen_at += static_cast<gint64>(seconds * static_cast<double>(G_USEC_PER_SEC));
   }
-  unsigned Warnings() {
-    unsigned n = 0;
-    while (GstMessage* message = gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING)) {
-      gst_message_unref(message);
-      ++n;
-    }
-    return n;
-  }
+  std::size_t Warnings() { return bus_.Texts(GST_MESSAGE_WARNING).size(); }
 
   ElementPtr bin_;
-  GstBus* bus_;
+  const test::ElementBus bus_{bin_.get()};
   GstPad* socket_;
   GstPad* target_;
   std::unique_ptr<SrtpInput> input_;

@@ -11,6 +11,7 @@
 #include "src/base/imu_sample.h"
 #include "src/cloud/range_projection.h"
 #include "tests/support/clock_wait.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -262,9 +263,8 @@ TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
 ErrorPtr ErrorOfStart(const char* launch) {
   const ElementPtr pipeline(gst_parse_launch(launch, nullptr));
   EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
-  const MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
-  gst_object_unref(bus);
+  const test::ElementBus bus(pipeline.get());
+  const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
   GError* raw = nullptr;
   if (message) gst_message_parse_error(message.get(), &raw, nullptr);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
@@ -295,9 +295,8 @@ TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {
   const ElementPtr pipeline(
       gst_parse_launch("lidartestsrc ! application/x-pointcloud2,height=7 ! fakesink", nullptr));
   gst_element_set_state(pipeline.get(), GST_STATE_PAUSED);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
-  const MessagePtr message(gst_bus_timed_pop_filtered(bus, test::kPatience_ns, GST_MESSAGE_ERROR));
-  gst_object_unref(bus);
+  const test::ElementBus bus(pipeline.get());
+  const MessagePtr message = bus.Wait(GST_MESSAGE_ERROR);
   EXPECT_TRUE(message);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
@@ -309,8 +308,8 @@ TEST(LidarTestSrc, AStopBeforeItsFirstCapsIsNoError) {
   gst_element_set_state(pipeline.get(), GST_STATE_PAUSED);
   g_usleep(50'000);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
-  const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline.get()));
-  EXPECT_FALSE(MessagePtr(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_ERROR)));
+  const test::ElementBus bus(pipeline.get());
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));
 }
 
 /// What a source pushes from its pads, until its end.
@@ -334,10 +333,8 @@ Played PlayWithImu(GstElement* pipeline) {
   const ElementPtr clouds = collect("clouds", &run.clouds);
   const ElementPtr samples = collect("samples", &run.samples);
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
-  const std::unique_ptr<GstBus, Unref> bus(gst_element_get_bus(pipeline));
-  const MessagePtr end(
-      gst_bus_timed_pop_filtered(bus.get(), test::kPatience_ns,
-                                 static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR)));
+  const test::ElementBus bus(pipeline);
+  const MessagePtr end = bus.Wait(GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
   EXPECT_TRUE(end && GST_MESSAGE_TYPE(end.get()) == GST_MESSAGE_EOS);
   const PadPtr pad(gst_element_get_static_pad(samples.get(), "sink"));
   run.caps.reset(gst_pad_get_current_caps(pad.get()));

@@ -10,6 +10,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/view/trail_map.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -218,21 +219,13 @@ TEST_F(View, TheWholeWayIsInThePictureOfTheMap) {
 
 TEST_F(View, WithoutPosesThereIsNoMapAndAWarning) {
   Start("map=true view=top extent=100 point-size=1", Info(1));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(h_->element, bus);
+  const test::ElementBus bus(h_->element);
   for (guint scan = 0; scan < 3; ++scan) {
     PushSlice({{25, 0, 0, 1}}, {scan, 0, 1, 0});
     Pull();
     EXPECT_TRUE(IsPoint(150, 50));
   }
-  int warnings = 0;
-  while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {
-    ++warnings;
-    gst_message_unref(message);
-  }
-  EXPECT_EQ(warnings, 1);
-  gst_element_set_bus(h_->element, nullptr);
-  gst_object_unref(bus);
+  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING).size(), 1U);
 }
 
 TEST_F(View, TakesPosesThatMakeNoSense) {

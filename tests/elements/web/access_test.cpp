@@ -4,6 +4,7 @@
 
 #include "ext/web/admission.h"
 #include "tests/elements/web/web_peer.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/ipv6.h"
 
 namespace lidar::test {
@@ -57,22 +58,12 @@ TEST(FoxgloveSink, AdmitsNoMoreThanMaxClientsAtATime) {
 /// Returns the error of a start with these properties.
 std::string ErrorOf(const std::string& properties) {
   const gst::ElementPtr element(gst_parse_launch(("foxglovesink " + properties).c_str(), nullptr));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element.get(), bus);
+  const ElementBus bus(element.get());
   const bool failed =
       gst_element_set_state(element.get(), GST_STATE_READY) == GST_STATE_CHANGE_FAILURE;
-  std::string text;
-  if (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
-    GError* error = nullptr;
-    gst_message_parse_error(message, &error, nullptr);
-    text = error->message;
-    g_error_free(error);
-    gst_message_unref(message);
-  }
+  const std::string text = bus.Text(GST_MESSAGE_ERROR);
   EXPECT_EQ(failed, !text.empty());
   gst_element_set_state(element.get(), GST_STATE_NULL);
-  gst_element_set_bus(element.get(), nullptr);
-  gst_object_unref(bus);
   return text;
 }
 

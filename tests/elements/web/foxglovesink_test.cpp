@@ -6,6 +6,7 @@
 #include "gst/common/latency.h"
 #include "src/rtcp/sender_report.h"
 #include "tests/elements/web/web_peer.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/proto_reader.h"
 
 namespace lidar::test {
@@ -204,12 +205,7 @@ TEST(FoxgloveSink, SendsThePosesThatOdometryPutOnClouds) {
 }
 
 std::string UrlOf(GstElement* web) {
-  GstStructure* raw = nullptr;
-  g_object_get(web, "stats", &raw, nullptr);
-  const gst::StructurePtr stats(raw);
-  guint port = 0;
-  gst_structure_get_uint(stats.get(), "port", &port);
-  return "ws://127.0.0.1:" + std::to_string(port);
+  return "ws://127.0.0.1:" + std::to_string(StatOf(web, "port"));
 }
 
 TEST(FoxgloveSink, TellsTheStatisticsOfThePipelineAroundIt) {
@@ -306,8 +302,8 @@ TEST(FoxgloveSink, AsksASourceWithoutBufferForNone) {
   const gst::QueryPtr query(gst_query_new_latency());
   EXPECT_TRUE(gst_element_query(pipeline.get(), query.get()));
   EXPECT_EQ(gst::ReadLatency(query.get()).min, 0U);
-  const std::unique_ptr<GstBus, gst::Unref> bus(gst_element_get_bus(pipeline.get()));
-  const gst::MessagePtr warning(gst_bus_pop_filtered(bus.get(), GST_MESSAGE_WARNING));
+  const ElementBus bus(pipeline.get());
+  const gst::MessagePtr warning = bus.Pop(GST_MESSAGE_WARNING);
   EXPECT_EQ(warning, nullptr);
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }

@@ -11,6 +11,7 @@
 #include "ext/web/upstream_archive.h"
 #include "gst/common/history_query.h"
 #include "tests/elements/web/slice_viewer.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::test {
 namespace {
@@ -221,9 +222,7 @@ TEST_F(Recordings, CostOtherViewersNothing) {
 void RunToTheEnd(const std::string& description) {
   const gst::ElementPtr pipeline(gst_parse_launch(description.c_str(), nullptr));
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  GstBus* bus = gst_element_get_bus(pipeline.get());
-  gst_message_unref(gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS));
-  gst_object_unref(bus);
+  EXPECT_TRUE(ElementBus(pipeline.get()).Wait(GST_MESSAGE_EOS));
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 

@@ -9,6 +9,7 @@
 #include "ext/web/certificate.h"
 #include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -95,36 +96,21 @@ TEST_F(Tls, TakesARenewedCertificateForNewConnections) {
 
 TEST_F(Tls, KeepsACertificateWhoseRenewalIsDamaged) {
   Sink sink(Properties());
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(sink.element(), bus);
+  const ElementBus bus(sink.element());
   ASSERT_EQ(std::system(("echo damaged > " + (folder_ / "cert.pem").string()).c_str()), 0);
-  gst::MessagePtr warning;
-  EXPECT_TRUE(WaitUntil([&] {
-    warning.reset(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
-    return warning != nullptr;
-  }));
+  EXPECT_TRUE(WaitUntil([&] { return bus.Pop(GST_MESSAGE_WARNING) != nullptr; }));
   EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
-  gst_element_set_bus(sink.element(), nullptr);
-  gst_object_unref(bus);
 }
 
 TEST_F(Tls, NamesTheDateOnWhichItsCertificateRanOut) {
   ASSERT_TRUE(MakeOld());
   const gst::ElementPtr element(
       gst_parse_launch(("foxglovesink port=0 " + Properties()).c_str(), nullptr));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element.get(), bus);
+  const ElementBus bus(element.get());
   EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
-  const gst::MessagePtr warning(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
-  ASSERT_TRUE(warning);
-  GError* error = nullptr;
-  gst_message_parse_warning(warning.get(), &error, nullptr);
-  EXPECT_NE(std::string(error->message).find("ran out on 2020-01-31 12:00 UTC"), std::string::npos)
-      << error->message;
-  g_error_free(error);
+  const std::string text = bus.Text(GST_MESSAGE_WARNING);
+  EXPECT_NE(text.find("ran out on 2020-01-31 12:00 UTC"), std::string::npos) << text;
   gst_element_set_state(element.get(), GST_STATE_NULL);
-  gst_element_set_bus(element.get(), nullptr);
-  gst_object_unref(bus);
 }
 
 TEST_F(Tls, SaysOnceThatACertificateRunsOutMeanwhile) {
@@ -197,18 +183,13 @@ TEST_F(Tls, SaysWhatIsWrongWithItsFiles) {
                               " tls-private-key=" + (folder_ / "key.pem").string();
   const gst::ElementPtr element(
       gst_parse_launch(("foxglovesink port=0 " + missing).c_str(), nullptr));
-  GstBus* bus = gst_bus_new();
-  gst_element_set_bus(element.get(), bus);
+  const ElementBus bus(element.get());
   EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
-  const gst::MessagePtr message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+  const gst::MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
   ASSERT_TRUE(message);
-  gchar* debug = nullptr;
-  gst_message_parse_error(message.get(), nullptr, &debug);
-  EXPECT_NE(std::string(debug).find("none.pem"), std::string::npos) << debug;
-  g_free(debug);
+  const std::string details = MessageDetails(message.get());
+  EXPECT_NE(details.find("none.pem"), std::string::npos) << details;
   gst_element_set_state(element.get(), GST_STATE_NULL);
-  gst_element_set_bus(element.get(), nullptr);
-  gst_object_unref(bus);
 }
 
 }  // namespace

@@ -127,12 +127,7 @@ TEST_P(StockCoder, IsShown) {
   const gst::ElementPtr web(gst_bin_get_by_name(GST_BIN(pipeline.get()), "web"));
   gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
   {
-    GstStructure* raw = nullptr;
-    g_object_get(web.get(), "stats", &raw, nullptr);
-    const gst::StructurePtr stats(raw);
-    guint port = 0;
-    gst_structure_get_uint(stats.get(), "port", &port);
-    Peer peer("ws://127.0.0.1:" + std::to_string(port), {"foxglove.sdk.v1"});
+    Peer peer("ws://127.0.0.1:" + std::to_string(StatOf(web.get(), "port")), {"foxglove.sdk.v1"});
     peer.Subscribe("/camera", 4);
     std::uint64_t before = 0;
     for (int i = 0; i < 5; ++i) {

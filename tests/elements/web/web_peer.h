@@ -13,6 +13,7 @@
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "src/base/byte_reader.h"
+#include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -37,13 +38,7 @@ class Sink {
 
   GstElement* element() { return element_; }
   GstHarness* harness() { return harness_.get(); }
-  guint64 Stat(const char* name) {
-    GstStructure* raw = nullptr;
-    g_object_get(element_, "stats", &raw, nullptr);
-    const gst::StructurePtr stats(raw);
-    const GValue* value = gst_structure_get_value(stats.get(), name);
-    return G_VALUE_HOLDS_UINT(value) ? g_value_get_uint(value) : g_value_get_uint64(value);
-  }
+  guint64 Stat(const char* name) { return StatOf(element_, name); }
   std::string Url(const char* scheme, const std::string& path = "/") {
     return std::string(scheme) + "://127.0.0.1:" + std::to_string(Stat("port")) + path;
   }
