@@ -2,10 +2,11 @@
 #include "src/mcap/file_names.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include "tests/support/files.h"
 
 namespace lidar::mcap {
 namespace {
@@ -34,10 +35,8 @@ TEST(FileNames, SayWhatIsWrongWithALocation) {
             "the number must be in the name of the file, not of a folder");
 }
 
-class ExistingFiles : public ::testing::Test {
+class ExistingFiles : public lidar::test::FolderTest {
  protected:
-  ExistingFiles() { fs::create_directories(folder_); }
-  ~ExistingFiles() override { fs::remove_all(folder_); }
   std::vector<std::uint32_t> Numbers(const std::string& name) const {
     std::string why;
     std::error_code failed;
@@ -51,8 +50,6 @@ class ExistingFiles : public ::testing::Test {
     return numbers;
   }
   void Touch(const std::string& name) const { std::ofstream(folder_ + "/" + name) << "x"; }
-
-  const std::string folder_ = ::testing::TempDir() + "file-names-" + std::to_string(getpid());
 };
 
 TEST_F(ExistingFiles, AreThoseWhoseWholeNameHasTheForm) {

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "tests/core/mcap/memory_file.h"
+#include "tests/support/files.h"
 
 namespace lidar::mcap {
 namespace {
@@ -29,14 +30,8 @@ class CountedInput : public test::MemoryInput {
   std::size_t* const reads_;
 };
 
-class Growing : public ::testing::Test {
+class Growing : public lidar::test::FolderTest {
  protected:
-  Growing() : folder_(::testing::TempDir() + "playback-" + std::to_string(getpid())) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Growing() override { fs::remove_all(folder_); }
-
   /// Records a message a second, each in a chunk of its own.
   void Record(int from, int to) {
     for (int i = from; i < to; ++i) {
@@ -57,7 +52,6 @@ class Growing : public ::testing::Test {
     return n;
   }
 
-  const std::string folder_;
   FileMaker maker_{WriterSettings{}};
   const std::uint16_t channel_ = maker_.AddChannel("points");
   const std::atomic<bool> cancelled_{false};

@@ -3,23 +3,17 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "src/ouster/metadata.h"
 #include "src/ouster/pcap_reader.h"
+#include "tests/support/files.h"
 
 namespace lidar::test {
 
 inline std::string DataPath(const std::string& name) {
   return std::string(LIDAR_TEST_DATA) + "/ouster/" + name;
-}
-
-inline std::string ReadFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 inline ouster::Metadata LoadMetadata(const std::string& name) {

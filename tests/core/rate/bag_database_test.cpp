@@ -15,6 +15,7 @@
 #include "src/cdr/messages.h"
 #include "src/tools/lab/codec_lab/scan_source.h"
 #include "tests/core/rate/test_clouds.h"
+#include "tests/support/files.h"
 
 namespace lidar::tools {
 namespace {
@@ -42,17 +43,9 @@ std::vector<std::uint8_t> CloudMessage(milliseconds stamp, float x = 1) {
   return WritePointCloud2(cloud);
 }
 
-class BagDatabaseFile : public ::testing::Test {
+class BagDatabaseFile : public test::FolderTest {
  protected:
-  BagDatabaseFile() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lidar-eval-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    path_ = folder_ + "/drive_0.db3";
-  }
-  ~BagDatabaseFile() override {
-    Close();
-    std::filesystem::remove_all(folder_);
-  }
+  ~BagDatabaseFile() override { Close(); }
 
   /// Sets the path to a copy of the open bag with its file `end`, and closes the bag.
   void LeaveAsADeadWriter(const std::string& end) {
@@ -98,11 +91,7 @@ class BagDatabaseFile : public ::testing::Test {
       names.insert(entry.path().filename().string());
     return names;
   }
-  std::string Content() const {
-    std::ostringstream bytes;
-    bytes << std::ifstream(path_, std::ios::binary).rdbuf();
-    return bytes.str();
-  }
+  std::string Content() const { return test::ReadFile(path_); }
   void Replace(const std::string& bytes) const {
     std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
   }
@@ -116,8 +105,7 @@ class BagDatabaseFile : public ::testing::Test {
     return "";
   }
 
-  std::string folder_;
-  std::string path_;
+  std::string path_ = folder_ + "/drive_0.db3";
   sqlite3* database_ = nullptr;
 };
 
@@ -355,14 +343,12 @@ TEST_F(BagDatabaseFile, ReadingLeavesNoFilesBesideTheBag) {
 }
 
 TEST_F(BagDatabaseFile, ABagIsReadWhateverItsFolderIsCalled) {
-  folder_ += "?mode=rw&a#b%41";
-  std::filesystem::create_directory(folder_);
-  path_ = folder_ + "/drive_0.db3";
+  const std::string folder = folder_ + "/a?mode=rw&a#b%41";
+  std::filesystem::create_directory(folder);
+  path_ = folder + "/drive_0.db3";
   WriteBag(path_, 3);
   EXPECT_EQ(LoadScans(path_, {}).scans.size(), 3U);
   EXPECT_EQ(FilesBeside(), std::set<std::string>{"drive_0.db3"});
-  std::filesystem::remove_all(folder_);
-  folder_.erase(folder_.find('?'));
 }
 
 TEST_F(BagDatabaseFile, RowsThatADeadWriterLeftInItsLogAreRead) {

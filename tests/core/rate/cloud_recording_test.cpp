@@ -14,6 +14,7 @@
 #include "src/mcap/writer.h"
 #include "src/tools/lab/codec_lab/scan_source.h"
 #include "tests/core/rate/test_clouds.h"
+#include "tests/support/files.h"
 
 namespace lidar::tools {
 namespace {
@@ -23,15 +24,8 @@ using std::chrono::milliseconds;
 constexpr const char* kClouds = "sensor_msgs/msg/PointCloud2";
 constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
-class CloudRecording : public ::testing::Test {
+class CloudRecording : public test::FolderTest {
  protected:
-  CloudRecording() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lidar-eval-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    path_ = folder_ + "/drive.mcap";
-  }
-  ~CloudRecording() override { std::filesystem::remove_all(folder_); }
-
   std::uint16_t AddTopic(const std::string& topic, const std::string& schema = kClouds) {
     const std::uint16_t id = catalogue_.AddSchema({0, schema, "ros2msg", "of no use here"});
     return catalogue_.AddChannel({0, id, topic, "cdr", {}});
@@ -62,8 +56,7 @@ class CloudRecording : public ::testing::Test {
     return "";
   }
 
-  std::string folder_;
-  std::string path_;
+  const std::string path_ = folder_ + "/drive.mcap";
   std::string file_;
   mcap::Catalogue catalogue_;
   mcap::Writer writer_{{}, &catalogue_, [this](ByteView bytes) {

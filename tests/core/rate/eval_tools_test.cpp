@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
@@ -16,18 +15,13 @@
 #include "src/tools/lab/codec_lab/model_option.h"
 #include "src/tools/lab/codec_lab/scan_source.h"
 #include "src/tools/lab/codec_lab/tracking.h"
+#include "tests/support/files.h"
 
 namespace lidar::tools {
 namespace {
 
-class Files : public ::testing::Test {
+class Files : public test::FolderTest {
  protected:
-  Files() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lidar-eval-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~Files() override { std::filesystem::remove_all(folder_); }
-
   std::string Write(const std::string& name, const std::string& content) const {
     std::ofstream(folder_ + "/" + name, std::ios::binary) << content;
     return folder_ + "/" + name;
@@ -38,7 +32,6 @@ class Files : public ::testing::Test {
     std::memcpy(bytes.data(), values.data(), bytes.size());
     return bytes;
   }
-  std::string folder_;
 };
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/elements/coders/plain_clouds.h"
+#include "tests/support/files.h"
 
 namespace lidar::gst {
 namespace {
@@ -36,9 +37,9 @@ TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {
   SetCaps(h.get(), XyzInfo(500));
   const BufferPtr encoded(gst_harness_push_and_pull(h.get(), PlainBuffer(random)));
   const BufferMap map(encoded.get(), GST_MAP_READ);
-  const StringPtr folder(g_dir_make_tmp("draco-XXXXXX", nullptr));
-  const std::string file = std::string(folder.get()) + "/slice.drc";
-  const std::string text = std::string(folder.get()) + "/slice.obj";
+  const test::TempFolder folder;
+  const std::string file = folder.path() + "/slice.drc";
+  const std::string text = folder.path() + "/slice.obj";
   ASSERT_TRUE(g_file_set_contents(file.c_str(), reinterpret_cast<const gchar*>(map.data()),
                                   static_cast<gssize>(map.size()), nullptr));
   const std::string command = "draco_decoder -i " + file + " -o " + text;
@@ -54,9 +55,6 @@ TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {
   ASSERT_EQ(points.size(), random.size());
   // The text has six digits after the point.
   EXPECT_LE(LargestGap(random, points), 0.02 + 1e-5);
-  g_remove(file.c_str());
-  g_remove(text.c_str());
-  g_rmdir(folder.get());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "tests/elements/coders/coder_harness.h"
 #include "tests/elements/scream/pipeline.h"
+#include "tests/support/files.h"
 #include "tests/support/patience.h"
 
 namespace lidar::gst {
@@ -40,8 +41,8 @@ INSTANTIATE_TEST_SUITE_P(Coders, Transport, ::testing::ValuesIn(OurCoders()),
                          [](const auto& c) { return c.param.name; });
 
 TEST_P(Transport, RecordsAndPlaysThroughAFile) {
-  const StringPtr folder(g_dir_make_tmp("recording-XXXXXX", nullptr));
-  const std::string file = std::string(folder.get()) + "/drive.gdp";
+  const test::TempFolder folder;
+  const std::string file = folder.path() + "/drive.gdp";
   test::Pipeline recorder(Sender("num-buffers=24") + " ! gdppay ! filesink location=" + file);
   recorder.Play();
   EXPECT_TRUE(recorder.Ends());
@@ -50,8 +51,6 @@ TEST_P(Transport, RecordsAndPlaysThroughAFile) {
   EXPECT_TRUE(player.Ends());
   EXPECT_EQ(test::StatOf(player.Get("dec").get(), "slices"), 24U);
   EXPECT_EQ(test::StatOf(player.Get("depay").get(), "scans-complete"), 3U);
-  g_remove(file.c_str());
-  g_rmdir(folder.get());
 }
 
 TEST_P(Transport, GoesThroughSrtpUnderCongestionControl) {

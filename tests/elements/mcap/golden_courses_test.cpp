@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // All that mcapsink and mcapsrc put out, send and say in scripted runs is as it was.
+#include "tests/support/files.h"
 #include "tests/support/golden_course.h"
 
 #include <filesystem>
@@ -18,21 +19,14 @@ constexpr const char* kPoseCaps = "application/x-odometry,frame-id=odom,child-fr
 /// A working folder of its own: messages name files as the property location does.
 class WorkingFolder {
  public:
-  WorkingFolder() : before_(std::filesystem::current_path()) {
-    const gst::StringPtr name(g_dir_make_tmp("mcap-course-XXXXXX", nullptr));
-    folder_ = name.get();
-    std::filesystem::current_path(folder_);
-  }
-  ~WorkingFolder() {
-    std::filesystem::current_path(before_);
-    std::filesystem::remove_all(folder_);
-  }
+  WorkingFolder() { std::filesystem::current_path(folder_.path()); }
+  ~WorkingFolder() { std::filesystem::current_path(before_); }
   WorkingFolder(const WorkingFolder&) = delete;
   WorkingFolder& operator=(const WorkingFolder&) = delete;
 
  private:
-  const std::filesystem::path before_;
-  std::filesystem::path folder_;
+  const std::filesystem::path before_ = std::filesystem::current_path();
+  const TempFolder folder_;
 };
 
 gst::BufferPtr Stamped(gsize size, guint8 value, GstClockTime ms) {

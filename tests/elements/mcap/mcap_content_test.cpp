@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The content of a recording, message by message.
-#include <fstream>
 
 #include "ext/mcap/timeline.h"
 #include "src/cdr/coded_slice.h"
@@ -24,8 +23,8 @@ struct Logged {
 };
 
 std::vector<Logged> MessagesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const auto reader = mcap::test::Open({std::istreambuf_iterator<char>(file), {}});
+  const std::string bytes = ReadFile(path);
+  const auto reader = mcap::test::Open({bytes.begin(), bytes.end()});
   std::vector<Logged> all;
   while (const auto message = reader ? reader->Next() : std::nullopt)
     all.push_back({reader->index().channels.at(message->header.channel_id).topic,
@@ -107,8 +106,8 @@ TEST_F(McapContent, AStreamThatTakesTurnsBetweenItsCapsHasAChannelForEach) {
     EXPECT_EQ(gst_harness_push(h.get(), Slice(i, i, kCapture)), GST_FLOW_OK);
   }
   End(h.get());
-  std::ifstream file(Path("a.mcap"), std::ios::binary);
-  const auto reader = mcap::test::Open({std::istreambuf_iterator<char>(file), {}});
+  const std::string bytes = ReadFile(Path("a.mcap"));
+  const auto reader = mcap::test::Open({bytes.begin(), bytes.end()});
   ASSERT_TRUE(reader);
   EXPECT_EQ(reader->index().channels.size(), 2U);
   std::map<std::uint16_t, int> messages;

@@ -76,8 +76,7 @@ TEST_F(McapErrors, WhatDoesNotFitIsTakenBackAndTheFileGoesOn) {
     EXPECT_TRUE(file.Append(view(std::string(10, 'd'))));
   }
   EXPECT_TRUE(file.Close());
-  std::ifstream read(Path("a"), std::ios::binary);
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(read), {}),
+  EXPECT_EQ(ReadFile(Path("a")),
             std::string(40, 'a') + std::string(40, 'b') + std::string(10, 'd'));
 }
 

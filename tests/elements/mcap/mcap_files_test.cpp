@@ -15,10 +15,7 @@ namespace {
 
 class McapFiles : public Recording {
  protected:
-  std::string ReadFile(const std::string& name) const {
-    std::ifstream file(Path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string ReadFile(const std::string& name) const { return test::ReadFile(Path(name)); }
   void WriteFile(const std::string& name, const std::string& bytes) const {
     std::ofstream(Path(name), std::ios::binary) << bytes;
   }

@@ -296,8 +296,7 @@ TEST_F(Mcap, CloudsOfAnyWidthHaveOneChannel) {
   const auto recorded = Play(
       kSensor + " num-buffers=24 ! pointcloudfilter invalid=remove ! mcapsink" + At("clouds.mcap"));
   EXPECT_EQ(recorded.error, "");
-  std::ifstream file(Path("clouds.mcap"), std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  const std::string bytes = ReadFile(Path("clouds.mcap"));
   std::size_t channels =
       0;  // the topic stands in each channel record: in its chunk, and in the summary
   for (std::size_t at = 0; (at = bytes.find("application/x-pointcloud2", at)) != std::string::npos;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Where one file of a recording ends and the next begins, and which files stay.
 #include "ext/mcap/recorder.h"
+#include "tests/support/files.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -31,14 +31,8 @@ class NoDescriptors {
   rlimit before_{};
 };
 
-class Pieces : public ::testing::Test {
+class Pieces : public test::FolderTest {
  protected:
-  Pieces() : folder_(::testing::TempDir() + "pieces-" + std::to_string(getpid())) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Pieces() override { fs::remove_all(folder_); }
-
   std::unique_ptr<Recorder> Make(const RecorderSettings& settings,
                                  const std::string& name = "r%02d.mcap") {
     std::string why;
@@ -69,7 +63,6 @@ class Pieces : public ::testing::Test {
     return counts;
   }
 
-  const std::string folder_;
   std::uint16_t channel_ = 0;
 };
 

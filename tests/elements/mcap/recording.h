@@ -17,6 +17,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "tests/support/element_bus.h"
 #include "tests/support/element_stats.h"
+#include "tests/support/files.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
@@ -242,14 +243,8 @@ class Pipeline {
 
 inline Outcome Play(const std::string& description) { return Pipeline(description).Run(); }
 
-/// A folder of the test's own.
-class Recording : public ::testing::Test {
+class Recording : public FolderTest {
  protected:
-  void SetUp() override {
-    const gst::StringPtr name(g_dir_make_tmp("mcap-test-XXXXXX", nullptr));
-    folder_ = name.get();
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::string Path(const std::string& name) const { return folder_ + "/" + name; }
   std::string At(const std::string& name) const { return " location=" + Path(name) + " "; }
   std::vector<std::string> Files() const {
@@ -271,7 +266,6 @@ class Recording : public ::testing::Test {
   }
 
   const std::string kSensor = "lidartestsrc model=os1-32 mode=512x10";
-  std::string folder_;
   std::string caps_;  // of what Record() wrote
   std::vector<CompleteFile> files_;
 };

@@ -11,14 +11,13 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "gst/common/refs.h"
-
+#include "tests/support/files.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -35,15 +34,8 @@ class NatsServer {
     return program;
   }
 
-  NatsServer() {
-    const gst::StringPtr name(g_dir_make_tmp("nats-test-XXXXXX", nullptr));
-    folder_ = name.get();
-  }
-  ~NatsServer() {
-    Kill();
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
+  NatsServer() = default;
+  ~NatsServer() { Kill(); }
   NatsServer(const NatsServer&) = delete;
   NatsServer& operator=(const NatsServer&) = delete;
 
@@ -73,8 +65,7 @@ class NatsServer {
   const std::string& folder() const { return folder_; }
   /// Returns how often `text` is in the server's log.
   std::size_t Logged(const std::string& text) const {
-    std::ifstream in(folder_ + "/log");
-    const std::string log{std::istreambuf_iterator<char>(in), {}};
+    const std::string log = ReadFile(folder_ + "/log");
     std::size_t count = 0;
     for (auto at = log.find(text); at != log.npos; at = log.find(text, at + 1)) ++count;
     return count;
@@ -121,8 +112,7 @@ class NatsServer {
     const std::string path = folder_ + "/nats-server_" + std::to_string(pid_) + ".ports";
     std::string text;
     const bool there = Eventually([&] {
-      std::ifstream in(path);
-      text.assign(std::istreambuf_iterator<char>(in), {});
+      text = ReadFile(path);
       return text.find('}') != text.npos || waitpid(pid_, nullptr, WNOHANG) == pid_;
     });
     const auto at = text.find("127.0.0.1:");
@@ -132,7 +122,8 @@ class NatsServer {
     return true;
   }
 
-  std::string folder_;
+  const TempFolder owner_;
+  const std::string& folder_ = owner_.path();
   std::string port_ = "-1";  // any
   std::vector<std::string> options_;
   pid_t pid_ = -1;

@@ -2,7 +2,6 @@
 // lidarodometry's pad for an IMU.
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 

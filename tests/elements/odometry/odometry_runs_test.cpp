@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
 
 #include "ext/odometry/imu_input.h"
 #include "tests/elements/odometry/corner_drive.h"
+#include "tests/support/files.h"
 #include "tests/support/own_properties.h"
 #include "tests/support/run_trace.h"
 
@@ -69,8 +68,7 @@ class OdometryRun {
 
 /// Reads and removes a file. Returns nothing if there is none.
 std::string TakeFile(const std::string& path) {
-  std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = test::ReadFile(path);
   std::remove(path.c_str());
   return text;
 }

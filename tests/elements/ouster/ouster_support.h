@@ -6,8 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,8 +14,7 @@
 #include "gst/common/refs.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
-#include "src/ouster/metadata.h"
-#include "src/ouster/pcap_reader.h"
+#include "tests/core/ouster/captures.h"
 #include "tests/support/element_bus.h"
 #include "tests/support/free_ports.h"
 #include "tests/support/harness.h"
@@ -28,31 +25,6 @@ namespace lidar::test {
 // A capture of three scans.
 inline constexpr const char* kThreeScans = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 inline constexpr const char* kThreeScansMetadata = "OS-1-128_v2.3.0_1024x10.json";
-
-inline std::string DataPath(const std::string& name) {
-  return std::string(LIDAR_TEST_DATA) + "/ouster/" + name;
-}
-
-inline ouster::Metadata LoadMetadata(const std::string& name) {
-  std::ifstream file(DataPath(name), std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::string error;
-  auto metadata = ouster::ParseMetadata(text, &error);
-  EXPECT_TRUE(metadata) << name << ": " << error;
-  return metadata.value_or(ouster::Metadata{});
-}
-
-inline std::vector<std::vector<std::uint8_t>> LoadPackets(const std::string& name,
-                                                          const ouster::Metadata& metadata) {
-  std::string error;
-  auto reader = ouster::PcapReader::Open(DataPath(name), &error);
-  EXPECT_TRUE(reader) << error;
-  std::vector<std::vector<std::uint8_t>> packets;
-  while (auto captured = reader->Next())
-    if (captured->datagram.payload.size() == metadata.format.packet_size())
-      packets.push_back(std::move(captured->datagram.payload));
-  return packets;
-}
 
 /// When the datagrams of a capture were captured, from the first on.
 inline std::vector<Time> TimesOf(const std::string& name) {

@@ -12,11 +12,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string ReadFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// A file of the test's own.
 class TempFile {
  public:

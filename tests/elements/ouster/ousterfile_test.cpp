@@ -282,8 +282,7 @@ TEST(OusterFile, GivesImuSamplesOnAPadOfTheirOwn) {
                      "async=false location=" +
                      path),
             "");
-  std::ifstream in(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string bytes = ReadFile(path);
   ASSERT_EQ(bytes.size() % 32, 0U);
   ASSERT_GE(bytes.size() / 32, 28U);
   std::uint64_t last = 0;

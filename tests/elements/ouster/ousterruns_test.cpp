@@ -29,8 +29,7 @@ struct CaptureFile {
   static constexpr std::size_t kColumns = kPayload + 32;
 
   explicit CaptureFile(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::string bytes = ReadFile(path);
     head = bytes.substr(0, 24);
     for (std::size_t at = 24; at + 16 <= bytes.size();) {
       guint32 words[3];
@@ -88,14 +87,9 @@ class RunFiles : public ::testing::Environment {
 };
 const auto* const kRemoval = ::testing::AddGlobalTestEnvironment(new RunFiles);
 
-std::string TextOfFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Writes metadata in which `from` is replaced. Returns its path.
 std::string ChangedMetadata(const char* name, const std::string& from, const std::string& to) {
-  std::string text = TextOfFile(DataPath(kDual + ".json"));
+  std::string text = ReadFile(DataPath(kDual + ".json"));
   text.replace(text.find(from), from.size(), to);
   const std::string path = kRunFiles + name;
   std::ofstream(path) << text;

@@ -76,8 +76,7 @@ std::vector<Played> After(const std::vector<Played>& all, std::size_t n) {
 
 /// Writes the frames of the pcap file as pcapng, with a clock of microseconds or of nanoseconds.
 std::string WritePcapNg(const std::string& pcap) {
-  std::ifstream in(pcap, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string bytes = ReadFile(pcap);
   const auto at = [&](std::size_t i) {
     guint32 value = 0;
     std::memcpy(&value, bytes.data() + i, sizeof value);

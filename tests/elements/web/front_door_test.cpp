@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdlib>
-#include <filesystem>
 #include <set>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "ext/web/server.h"
 #include "ext/web/slice_service.h"
 #include "tests/elements/web/web_peer.h"
+#include "tests/support/files.h"
 
 namespace lidar::web {
 namespace {
@@ -62,11 +62,9 @@ TEST(FrontDoor, EndsAfterAMinuteWhatAsksForNothing) {
 }
 
 /// Peers that begin a handshake and stop.
-class SomeAddresses : public ::testing::Test {
+class SomeAddresses : public test::FolderTest {
  protected:
   void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "web-handshakes-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
     const std::string make = "cd " + folder_ +
                              " && openssl req -x509 -newkey ec -pkeyopt "
                              "ec_paramgen_curve:prime256v1 -nodes -keyout key.pem -out cert.pem "
@@ -77,7 +75,6 @@ class SomeAddresses : public ::testing::Test {
     listener_.reset(g_socket_listener_new());
     port_ = g_socket_listener_add_any_inet_port(listener_.get(), nullptr, nullptr);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   void Begin(const char* from) {
     peers_.push_back(Connect(port_, from));
@@ -98,7 +95,6 @@ class SomeAddresses : public ::testing::Test {
   /// Makes all running handshakes take too long.
   void EndThoseThatRun() { handshakes_.Tick(g_get_monotonic_time() + 11 * kSecond_us); }
 
-  std::string folder_;
   ObjectPtr<GTlsCertificate> certificate_;
   ObjectPtr<GSocketListener> listener_;
   guint16 port_ = 0;

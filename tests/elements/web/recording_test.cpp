@@ -12,6 +12,7 @@
 #include "gst/common/history_query.h"
 #include "tests/elements/web/slice_viewer.h"
 #include "tests/support/element_bus.h"
+#include "tests/support/files.h"
 
 namespace lidar::test {
 namespace {
@@ -25,17 +26,8 @@ constexpr std::uint64_t kSlice_ns = 25'000'000;
 double Seconds(std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 /// An edge that records what it serves.
-class Recordings : public ::testing::Test {
+class Recordings : public FolderTest {
  protected:
-  Recordings() : folder_(::testing::TempDir() + "replays-" + std::to_string(getpid())) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Recordings() override {
-    recorder_.reset();
-    fs::remove_all(folder_);
-  }
-
   std::string path() const { return folder_ + "/r%d.mcap"; }
   std::string file() const { return folder_ + "/r0.mcap"; }
   void OpenEdge() { edge_.emplace("sink_0::recording=" + path()); }
@@ -60,7 +52,6 @@ class Recordings : public ::testing::Test {
   /// Completes the file.
   void EndRecording() { recorder_.reset(); }
 
-  const std::string folder_;
   std::optional<Edge> edge_;
   Harness recorder_;
   std::uint64_t pushed_ = 0;

@@ -10,6 +10,7 @@
 #include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/element_bus.h"
+#include "tests/support/files.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -17,19 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Tls : public ::testing::Test {
+class Tls : public FolderTest {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "web-tls-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
     if (!Make("robot")) GTEST_SKIP() << "openssl is not installed";
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// Makes a certificate for `name`, which replaces the one before.
   bool Make(const std::string& name, const char* days = "2") {
     const std::string make =
-        "cd " + folder_.string() +
+        "cd " + folder_ +
         " && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes "
         "-keyout new-key.pem -out new.pem -subj /CN=" +
         name + " -days " + days + " 2>/dev/null && mv new-key.pem key.pem && mv new.pem cert.pem";
@@ -38,7 +36,7 @@ class Tls : public ::testing::Test {
   /// Makes a certificate that was valid in January 2020.
   bool MakeOld() {
     const std::string make =
-        "cd " + folder_.string() +
+        "cd " + folder_ +
         " && touch index && echo 01 > serial && printf "
         "'[ca]\\ndefault_ca=d\\n[d]\\ndatabase=index\\n"
         "serial=serial\\nnew_certs_dir=.\\npolicy=p\\ndefault_md=sha256\\n[p]\\n"
@@ -49,11 +47,8 @@ class Tls : public ::testing::Test {
     return std::system(make.c_str()) == 0;
   }
   std::string Properties() {
-    return "tls-certificate=" + (folder_ / "cert.pem").string() +
-           " tls-private-key=" + (folder_ / "key.pem").string();
+    return "tls-certificate=" + folder_ + "/cert.pem" + " tls-private-key=" + folder_ + "/key.pem";
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Tls, ServesThePageAndItsSockets) {
@@ -97,7 +92,7 @@ TEST_F(Tls, TakesARenewedCertificateForNewConnections) {
 TEST_F(Tls, KeepsACertificateWhoseRenewalIsDamaged) {
   Sink sink(Properties());
   const ElementBus bus(sink.element());
-  ASSERT_EQ(std::system(("echo damaged > " + (folder_ / "cert.pem").string()).c_str()), 0);
+  ASSERT_EQ(std::system(("echo damaged > " + folder_ + "/cert.pem").c_str()), 0);
   EXPECT_TRUE(WaitUntil([&] { return bus.Pop(GST_MESSAGE_WARNING) != nullptr; }));
   EXPECT_EQ(HttpGet(sink.Url("https")).status, 200U);
 }
@@ -114,7 +109,7 @@ TEST_F(Tls, NamesTheDateOnWhichItsCertificateRanOut) {
 }
 
 TEST_F(Tls, SaysOnceThatACertificateRunsOutMeanwhile) {
-  web::Certificate certificate((folder_ / "cert.pem").string(), (folder_ / "key.pem").string());
+  web::Certificate certificate(folder_ + "/cert.pem", folder_ + "/key.pem");
   std::string why;
   ASSERT_TRUE(certificate.Load(&why)) << why;
   const gint64 now_s = g_get_real_time() / G_USEC_PER_SEC;
@@ -179,8 +174,8 @@ TEST_F(Tls, LetsSilentConnectionsHoldUpNobody) {
 }
 
 TEST_F(Tls, SaysWhatIsWrongWithItsFiles) {
-  const std::string missing = "tls-certificate=" + (folder_ / "none.pem").string() +
-                              " tls-private-key=" + (folder_ / "key.pem").string();
+  const std::string missing =
+      "tls-certificate=" + folder_ + "/none.pem" + " tls-private-key=" + folder_ + "/key.pem";
   const gst::ElementPtr element(
       gst_parse_launch(("foxglovesink port=0 " + missing).c_str(), nullptr));
   const ElementBus bus(element.get());

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Files of tests, and folders for them.
+#pragma once
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace lidar::test {
+
+/// Returns the bytes of a file; none if it cannot be read.
+inline std::string ReadFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A new folder, which goes with this object.
+class TempFolder {
+ public:
+  TempFolder() : path_(std::filesystem::temp_directory_path() / "lidar-test-XXXXXX") {
+    if (mkdtemp(path_.data()) == nullptr) ADD_FAILURE() << "no folder " << path_;
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// A test with a folder of its own.
+class FolderTest : public ::testing::Test {
+ private:
+  const TempFolder owner_;
+
+ protected:
+  const std::string& folder_ = owner_.path();
+};
+
+}  // namespace lidar::test
