@@ -14,4 +14,11 @@ struct HarnessFree {
 };
 using Harness = std::unique_ptr<GstHarness, HarnessFree>;
 
+/// The event of a segment that begins at 0.
+inline GstEvent* NewSegment(GstFormat format = GST_FORMAT_TIME) {
+  GstSegment segment;
+  gst_segment_init(&segment, format);
+  return gst_event_new_segment(&segment);
+}
+
 }  // namespace lidar::test

@@ -71,11 +71,7 @@ class RunTrace {
     const gst::CapsPtr caps(gst_caps_from_string(text.c_str()));
     gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
   }
-  void PushSegment() {
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
-  }
+  void PushSegment() { gst_pad_push_event(h_->srcpad, NewSegment()); }
   void Flush() {
     gst_pad_push_event(h_->srcpad, gst_event_new_flush_start());
     gst_pad_push_event(h_->srcpad, gst_event_new_flush_stop(TRUE));

@@ -195,9 +195,7 @@ TEST_P(AnyCoder, SurvivesFlushEosAndStateCycles) {
     ASSERT_TRUE(first);
     ASSERT_TRUE(gst_harness_push_event(h.get(), gst_event_new_flush_start()));
     ASSERT_TRUE(gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE)));
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    ASSERT_TRUE(gst_harness_push_event(h.get(), gst_event_new_segment(&segment)));
+    ASSERT_TRUE(gst_harness_push_event(h.get(), test::NewSegment()));
     const BufferPtr second(
         gst_harness_push_and_pull(h.get(), OrganisedBuffer(model, 64, {1, 0, 8, 0})));
     EXPECT_TRUE(GST_BUFFER_IS_DISCONT(second.get()));
@@ -218,9 +216,7 @@ TEST_P(AnyCoder, ScansBeforeAndAfterAFlushAreTwo) {
   EXPECT_EQ(test::StatOf(enc.get(), "scans-in"), 1U);
   gst_harness_push_event(h.get(), gst_event_new_flush_start());
   gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h.get(), test::NewSegment());
   gst_harness_push(h.get(), OrganisedBuffer(model, 64, {7, 2, 8, 128}));
   EXPECT_EQ(test::StatOf(enc.get(), "scans-in"), 2U);
 }
@@ -296,9 +292,7 @@ TEST_P(EitherCoder, HoldsTagsBackThroughAFlushUntilTheFirstSliceButNoGaps) {
                                         GST_TAG_TITLE, title, static_cast<void*>(nullptr))));
   gst_harness_push_event(h.get(), gst_event_new_flush_start());
   gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h.get(), test::NewSegment());
   ASSERT_EQ(gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, 0, 8, 0})), GST_FLOW_OK);
   std::map<GstEventType, int> events;
   while (const EventPtr event{gst_harness_try_pull_event(h.get())})

@@ -104,9 +104,7 @@ TEST_P(EitherCoder, MarksTheFirstSliceBehindAFlush) {
   EXPECT_FALSE(next(1));
   gst_harness_push_event(h.get(), gst_event_new_flush_start());
   gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h.get(), test::NewSegment());
   EXPECT_TRUE(next(2));
   EXPECT_FALSE(next(3));
 }

@@ -48,9 +48,7 @@ class SecondStream {
   void Begin(const char* caps) const {
     gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("second"));
     gst_harness_set_src_caps_str(h_.get(), caps);
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+    gst_pad_push_event(h_->srcpad, NewSegment());
   }
   void Push(gst::BufferPtr buffer) const {
     EXPECT_EQ(gst_pad_push(h_->srcpad, buffer.release()), GST_FLOW_OK);

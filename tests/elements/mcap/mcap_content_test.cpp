@@ -245,9 +245,7 @@ TEST_F(McapContent, AFlushedStreamGoesOnWhereItWas) {
   End(h.get());
   gst_harness_push_event(h.get(), gst_event_new_flush_start());
   gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h.get(), NewSegment());
   End(other.get());  // the first stream continues
   for (guint i = 0; i < 2; ++i)
     EXPECT_EQ(gst_harness_push(h.get(), Slice(2, i * GST_SECOND, kCapture)), GST_FLOW_OK);

@@ -5,6 +5,7 @@
 #include "src/tools/apps/edge/shared_port.h"
 #include "tests/elements/nats/nats_server.h"
 #include "tests/support/free_ports.h"
+#include "tests/support/harness.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -193,10 +194,8 @@ TEST_F(EdgeRecorder, ThatRefusesWhatItGetsIsNotNoticedInFrontOfIt) {
         return GST_PAD_PROBE_HANDLED;
       },
       &refused, nullptr);
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_pad_send_event(entry.get(), gst_event_new_stream_start("s"));
-  gst_pad_send_event(entry.get(), gst_event_new_segment(&segment));
+  gst_pad_send_event(entry.get(), NewSegment());
   EXPECT_EQ(gst_pad_chain(entry.get(), gst_buffer_new()), GST_FLOW_OK);
   GstBufferList* list = gst_buffer_list_new();
   gst_buffer_list_add(list, gst_buffer_new());

@@ -9,6 +9,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/base/byte_writer.h"
 #include "src/cdr/motion_samples.h"
+#include "tests/support/harness.h"
 
 namespace lidar::test {
 
@@ -65,9 +66,7 @@ inline void BeginImu(GstPad* pad) {
   gst_pad_send_event(
       pad,
       gst_event_new_caps(gst::ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_pad_send_event(pad, gst_event_new_segment(&segment));
+  gst_pad_send_event(pad, NewSegment());
 }
 
 /// Ten samples, every 10 ms.

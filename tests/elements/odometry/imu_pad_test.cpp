@@ -55,9 +55,7 @@ class ImuPad : public ::testing::Test {
     const CapsPtr caps(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "sample-size", G_TYPE_INT, 32,
                                            "fields", G_TYPE_STRING, fields, nullptr));
     if (!gst_pad_send_event(imu_.get(), gst_event_new_caps(caps.get()))) return false;
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    return gst_pad_send_event(imu_.get(), gst_event_new_segment(&segment));
+    return gst_pad_send_event(imu_.get(), test::NewSegment());
   }
   /// Sends ten samples of a turn of `rate` about the vertical, over a scan that begins at `start`.
   GstFlowReturn Send(GstClockTime start, double rate) {

@@ -122,10 +122,8 @@ class Laps : public ::testing::Test {
   void FindLoops() {
     gst_harness_push_event(h_.get(), gst_event_new_eos());
     map_from_odometry_ = PullFrom(map_.get());
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
     gst_harness_push_event(h_.get(), gst_event_new_stream_start("laps"));
-    gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+    gst_harness_push_event(h_.get(), test::NewSegment());
   }
   void DriveOn() {
     const int scan = static_cast<int>(odometry_.size());

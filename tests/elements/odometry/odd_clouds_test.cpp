@@ -97,9 +97,7 @@ TEST_F(OddClouds, AScanThatIsCutOffEndsWithTheStreamOrItsCapsAndNotWithAFlush) {
   EXPECT_EQ(Count("scans"), 1U) << "the next one began";
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
   gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h_.get(), test::NewSegment());
   push(3, 0);
   EXPECT_EQ(Count("scans"), 1U) << "nobody wants the one before the flush";
   gst_harness_set_src_caps_str(h_.get(), (std::string(kXyz) + ",is-dense=true").c_str());

@@ -230,9 +230,7 @@ TEST_F(Assembler, ForgetsOnFlush) {
   Push(Slice(7, 0));
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
   gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h_.get(), test::NewSegment());
   for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
   EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
   EXPECT_EQ(Waiting(), 0U);
@@ -349,9 +347,7 @@ TEST_F(Assembler, NeverMixesColumnsAndPoints) {
       EXPECT_EQ(Waiting(), 0U);
       gst_harness_push_event(h_.get(), gst_event_new_flush_start());
       gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-      GstSegment segment;
-      gst_segment_init(&segment, GST_FORMAT_TIME);
-      gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+      gst_harness_push_event(h_.get(), test::NewSegment());
     }
   }
 }
@@ -503,9 +499,7 @@ TEST_F(Assembler, EachRunWarnsOnceOfSlicesWithoutTheirMeta) {
     gst_element_set_state(h_->element, GST_STATE_PLAYING);
     gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("again"));
     SetCaps(SliceInfo());
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+    gst_pad_push_event(h_->srcpad, test::NewSegment());
   }
 }
 

@@ -186,9 +186,7 @@ TEST_F(Filter, HoldsTagsBackThroughAFlushUntilTheFirstCloud) {
   gst_harness_push_event(h_.get(), gst_event_new_tag(gst_tag_list_new_empty()));
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
   gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h_.get(), test::NewSegment());
   ASSERT_EQ(Push(std::vector<std::uint8_t>(24)), GST_FLOW_OK);
   std::vector<std::string> names;
   while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
@@ -208,13 +206,11 @@ GstPadProbeReturn FlushAtTags(GstPad*, GstPadProbeInfo* info, gpointer harness) 
 TEST_F(Filter, MayBeFlushedByWhatItsEventsCause) {
   Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
   gst_harness_push_event(h_.get(), gst_event_new_tag(gst_tag_list_new_empty()));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h_.get(), test::NewSegment());
   gst_pad_add_probe(h_->sinkpad, GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, FlushAtTags, h_.get(),
                     nullptr);
   Push(std::vector<std::uint8_t>(24));
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h_.get(), test::NewSegment());
   EXPECT_EQ(Push(std::vector<std::uint8_t>(24)), GST_FLOW_OK);
 }
 

@@ -207,9 +207,7 @@ TEST_F(FilterByTransforms, CloudsWaitAgainBehindAFlush) {
   Start("target-frame=map tf-timeout=60000000000");
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
   gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h_.get(), test::NewSegment());
   {
     const Waiter cloud([this] { EXPECT_EQ(PushAt(100), GST_FLOW_OK); });
     EXPECT_TRUE(cloud.AwaitSleep());
@@ -220,8 +218,6 @@ TEST_F(FilterByTransforms, CloudsWaitAgainBehindAFlush) {
 
 TEST_F(FilterByTransforms, CloudsWaitForAStreamOfTransformsThatBeginsAgain) {
   Start("target-frame=map tf-timeout=60000000000");
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
   for (const bool flushed : {false, true}) {
     const int second = flushed ? 110 : 100;
     Tell(moving_.get(), "map", "os", second, 1);
@@ -233,7 +229,7 @@ TEST_F(FilterByTransforms, CloudsWaitForAStreamOfTransformsThatBeginsAgain) {
     } else {
       gst_harness_push_event(moving_.get(), gst_event_new_stream_start("again"));
     }
-    gst_harness_push_event(moving_.get(), gst_event_new_segment(&segment));
+    gst_harness_push_event(moving_.get(), test::NewSegment());
     {
       const Waiter cloud([&] { EXPECT_EQ(PushAt(second + 1), GST_FLOW_OK); });
       EXPECT_TRUE(cloud.AwaitSleep()) << flushed;

@@ -279,9 +279,7 @@ void MergeCourse(Course& c) {
   const auto begin = [&](const std::string& caps) {
     gst_pad_push_event(second->srcpad, gst_event_new_stream_start("second"));
     gst_harness_set_src_caps_str(second.get(), caps.c_str());
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_push_event(second->srcpad, gst_event_new_segment(&segment));
+    gst_pad_push_event(second->srcpad, NewSegment());
   };
   const auto both = [&](const std::string& what, gst::BufferPtr one, gst::BufferPtr other) {
     EXPECT_EQ(gst_pad_push(second->srcpad, other.release()), GST_FLOW_OK) << what;
@@ -317,9 +315,7 @@ void MergeCourse(Course& c) {
   for (GstHarness* h : {c.harness(), second.get()})
     gst_pad_push_event(h->srcpad, gst_event_new_flush_stop(TRUE));
   c.PushSegment(GST_FORMAT_TIME, 2 * GST_SECOND);
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_pad_push_event(second->srcpad, gst_event_new_segment(&segment));
+  gst_pad_push_event(second->srcpad, NewSegment());
   both("behind a flush", At(Row(2, 1), {2'000}), At(Floats({9, 1, 2, 3}), {10}));
   gst_pad_push_event(second->srcpad, gst_event_new_eos());
   c.PushUntil("alone", At(Row(2, 1), {2'100}), "buffer");

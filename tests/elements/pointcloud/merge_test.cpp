@@ -236,9 +236,7 @@ TEST_F(MergedByHand, ASecondRunBeginsWithItsCaps) {
     for (GstHarness* h : {first_.get(), second_.get()}) {
       gst_pad_push_event(h->srcpad, gst_event_new_stream_start("run"));
       gst_harness_set_src_caps_str(h, kCaps);
-      GstSegment segment;
-      gst_segment_init(&segment, GST_FORMAT_TIME);
-      gst_pad_push_event(h->srcpad, gst_event_new_segment(&segment));
+      gst_pad_push_event(h->srcpad, NewSegment());
     }
     Push(first_, 1, 100);
     Push(second_, 2, 100);

@@ -33,11 +33,7 @@ class Parse : public ::testing::Test {
     gst_pad_push_event(h_->srcpad, gst_event_new_caps(parsed.get()));
     PushSegment(GST_FORMAT_BYTES);
   }
-  void PushSegment(GstFormat format) {
-    GstSegment segment;
-    gst_segment_init(&segment, format);
-    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
-  }
+  void PushSegment(GstFormat format) { gst_pad_push_event(h_->srcpad, test::NewSegment(format)); }
   GstFlowReturn Push(BufferPtr buffer) { return gst_pad_push(h_->srcpad, buffer.release()); }
   BufferPtr Pull() { return BufferPtr(gst_harness_pull(h_.get())); }
   guint Width() {

@@ -193,9 +193,7 @@ class FileAfterAnother : public ::testing::Test {
     gst_harness_play(h_.get());
     gst_pad_push_event(h_->srcpad, gst_event_new_stream_start(which.name));
     if (which.caps != nullptr) trace_->PushCaps(which.caps);
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_BYTES);
-    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+    gst_pad_push_event(h_->srcpad, NewSegment(GST_FORMAT_BYTES));
     for (int i = 0; i < 2; ++i)
       Push(h_.get(), gst::BufferPtr(gst_buffer_new_memdup(which.file.data(), which.file.size())));
   }
@@ -272,9 +270,7 @@ class FileInBlocks : public FileAfterAnother {
     size_ = file.size();
     gst_harness_play(h_.get());
     gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("file"));
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_BYTES);
-    gst_pad_push_event(h_->srcpad, gst_event_new_segment(&segment));
+    gst_pad_push_event(h_->srcpad, NewSegment(GST_FORMAT_BYTES));
     for (std::size_t at = 0; at < file.size(); at += 500) {
       const std::string block = file.substr(at, 500);
       Push(h_.get(), gst::BufferPtr(gst_buffer_new_memdup(block.data(), block.size())));

@@ -12,9 +12,7 @@ namespace {
 void Flush(GstHarness* h) {
   gst_harness_push_event(h, gst_event_new_flush_start());
   gst_harness_push_event(h, gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h, gst_event_new_segment(&segment));
+  gst_harness_push_event(h, NewSegment());
 }
 
 class PayLimits : public ::testing::Test {

@@ -257,9 +257,7 @@ TEST(RtpLidarDepay, StartsAnewAfterAFlush) {
   EXPECT_EQ(Pull(h.get()).size(), 3U);
   gst_harness_push_event(h.get(), gst_event_new_flush_start());
   gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h.get(), NewSegment());
   Push(h.get(), Packets(2));
   EXPECT_EQ(Pull(h.get()).size(), 8U);
 }

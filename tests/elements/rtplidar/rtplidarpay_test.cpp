@@ -243,9 +243,7 @@ TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   gst_harness_push_event(h.get(), gst_event_new_stream_start("test"));
   const gst::CapsPtr caps(gst_caps_from_string(GetParam()));
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h.get(), NewSegment());
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
   EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR));
   EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));  // no second one

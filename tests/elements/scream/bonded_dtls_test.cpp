@@ -176,13 +176,11 @@ class WaitingSource {
     });
     gst_pad_set_active(src_.get(), TRUE);
     gst_pad_link(src_.get(), entry_.get());
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
     const gst::CapsPtr caps(gst_caps_from_string(
         "application/x-rtp,media=audio,clock-rate=44100,encoding-name=L16,payload=96"));
     gst_pad_push_event(src_.get(), gst_event_new_stream_start("source"));
     gst_pad_push_event(src_.get(), gst_event_new_caps(caps.get()));
-    gst_pad_push_event(src_.get(), gst_event_new_segment(&segment));
+    gst_pad_push_event(src_.get(), NewSegment());
   }
   /// Pushes a packet and calls `wake` while the push waits. Returns the result of the push.
   GstFlowReturn PushUntil(const std::function<void()>& wake) {
@@ -215,9 +213,7 @@ TEST(Dtls, AFlushAndAStopAndAReleasedPadEndTheWaitForTheKey) {
       source.PushUntil([&] { gst_pad_push_event(source.src(), gst_event_new_flush_start()); }),
       GST_FLOW_FLUSHING);
   gst_pad_push_event(source.src(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_pad_push_event(source.src(), gst_event_new_segment(&segment));
+  gst_pad_push_event(source.src(), NewSegment());
   EXPECT_EQ(source.PushUntil([&] { source.Release(); }), GST_FLOW_FLUSHING);
   WaitingSource next(out.get());
   EXPECT_EQ(next.PushUntil([&] { gst_element_set_state(out.get(), GST_STATE_NULL); }),

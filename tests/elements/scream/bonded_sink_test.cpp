@@ -127,14 +127,12 @@ class BondedSink : public ::testing::Test {
  private:
   /// Opens the segments of the feedback, because the links' own sources wait for their sockets.
   void Open() {
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
     for (std::size_t i = 0; i < 2; ++i) {
       const PadPtr pad = PadOf(NameOf("ecnudpsrc", i), "src");
       const gst::CapsPtr caps(gst_caps_new_empty_simple("application/x-rtcp"));
       gst_pad_push_event(pad.get(), gst_event_new_stream_start("feedback"));
       gst_pad_push_event(pad.get(), gst_event_new_caps(caps.get()));
-      gst_pad_push_event(pad.get(), gst_event_new_segment(&segment));
+      gst_pad_push_event(pad.get(), NewSegment());
     }
   }
   void Watch() {

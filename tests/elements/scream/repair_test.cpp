@@ -68,9 +68,7 @@ GstPadProbeReturn Back(GstPad*, GstPadProbeInfo* info, gpointer rtcp_sink) {
 
 void Open(GstPad* rtcp_sink) {
   gst_pad_send_event(rtcp_sink, gst_event_new_stream_start("feedback"));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_pad_send_event(rtcp_sink, gst_event_new_segment(&segment));
+  gst_pad_send_event(rtcp_sink, NewSegment());
 }
 
 class RepairTest : public ::testing::TestWithParam<std::tuple<Repair, bool>> {};

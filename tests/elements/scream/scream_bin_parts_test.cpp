@@ -310,9 +310,7 @@ class ScreamFeedbackFilter : public ScreamBin {
     gst_pad_push_event(pad_.get(), gst_event_new_stream_start("feedback"));
     const gst::CapsPtr caps(gst_caps_new_empty_simple("application/x-rtcp"));
     gst_pad_push_event(pad_.get(), gst_event_new_caps(caps.get()));
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_push_event(pad_.get(), gst_event_new_segment(&segment));
+    gst_pad_push_event(pad_.get(), NewSegment());
   }
   static GstBuffer* From(const char* address, guint port) {
     GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 12, nullptr);

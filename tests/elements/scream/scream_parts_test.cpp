@@ -70,10 +70,8 @@ TEST(KeyGate, CountsEachPacketThatItDropsAndPassesAllOnceItIsOpen) {
     return GST_FLOW_OK;
   });
   gst_pad_set_active(pad.get(), TRUE);
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_pad_send_event(pad.get(), gst_event_new_stream_start("media"));
-  gst_pad_send_event(pad.get(), gst_event_new_segment(&segment));
+  gst_pad_send_event(pad.get(), test::NewSegment());
   const auto send = [&] {
     GstBufferList* list = gst_buffer_list_new();
     for (int i = 0; i < 3; ++i) gst_buffer_list_add(list, test::NewRtp({}));

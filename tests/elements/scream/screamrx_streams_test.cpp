@@ -31,9 +31,7 @@ TEST_F(ScreamRx, GoesOnBehindAFlushAfterTheEnd) {
   ASSERT_EQ(PushBye({0x1234}), GST_FLOW_EOS);
   gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
   gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(rtp.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(rtp.get(), NewSegment());
   EXPECT_EQ(Push({}), GST_FLOW_OK);
 }
 

@@ -128,9 +128,7 @@ TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
   gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
   Collect();
   sent.clear();
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(rtp.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(rtp.get(), NewSegment());
   EXPECT_EQ(Stats(element)["queued-bytes"], 0U);
   acknowledged_ = 0;
   time.Advance(5 * GST_SECOND);
@@ -142,8 +140,6 @@ TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
 
 TEST_F(ScreamTx, AFlushAfterTheEndLetsAnotherStreamBeginAndEnd) {
   Start();
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
   for (int round = 0; round < 2; ++round) {
     PushFrame(static_cast<guint32>(round), 1);
     gst_harness_push_event(rtp.get(), gst_event_new_eos());
@@ -154,7 +150,7 @@ TEST_F(ScreamTx, AFlushAfterTheEndLetsAnotherStreamBeginAndEnd) {
     EXPECT_TRUE(HasEos()) << round;
     gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
     gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
-    ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_segment(&segment)));
+    ASSERT_TRUE(gst_harness_push_event(rtp.get(), NewSegment()));
   }
   EXPECT_EQ(sent.size(), 2U);
 }

@@ -60,10 +60,8 @@ class SrtpIn : public ::testing::Test {
     gst_pad_set_active(target_, TRUE);
     EXPECT_TRUE(input_->Link(socket_, target_));
     gst_pad_set_active(socket_, TRUE);
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
     gst_pad_push_event(socket_, gst_event_new_stream_start("socket"));
-    gst_pad_push_event(socket_, gst_event_new_segment(&segment));
+    gst_pad_push_event(socket_, test::NewSegment());
   }
   ~SrtpIn() override {
     frozen_at = 0;

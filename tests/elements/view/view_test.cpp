@@ -310,9 +310,7 @@ TEST_F(View, AFlushForgetsThePictureThatWasBegun) {
   PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
   gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
+  gst_harness_push_event(h_.get(), test::NewSegment());
   PushSlice({{0, 15, 0, 1}}, {1, 0, 1, 0});
   Pull();
   EXPECT_FALSE(IsPoint(150, 50));

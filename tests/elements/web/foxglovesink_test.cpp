@@ -325,9 +325,7 @@ TEST(FoxgloveSink, GoesOnAfterFlushesAndNewStarts) {
   sink.PushCloud(1);
   EXPECT_TRUE(gst_harness_push_event(sink.harness(), gst_event_new_flush_start()));
   EXPECT_TRUE(gst_harness_push_event(sink.harness(), gst_event_new_flush_stop(TRUE)));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(sink.harness(), gst_event_new_segment(&segment));
+  gst_harness_push_event(sink.harness(), NewSegment());
   EXPECT_EQ(sink.PushCloud(2), GST_FLOW_OK);
   Peer peer(&sink);
   EXPECT_TRUE(peer.connected());
