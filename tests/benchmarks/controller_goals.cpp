@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <string>
 #include <thread>
@@ -13,11 +12,14 @@
 
 #include "src/sim/figures.h"
 #include "src/sim/loop_figures.h"
-#include "src/sim/parameter_options.h"
+#include "src/tools/common/program.h"
+#include "tests/benchmarks/parameter_options.h"
 
 namespace {
 
 using lidar::scream::Parameters;
+using lidar::scream::Tunable;
+using lidar::scream::Tunables;
 using namespace lidar::scream::test;
 
 struct Options {
@@ -35,39 +37,22 @@ struct Case {
 };
 using Results = std::vector<std::vector<Figure>>;  // by case
 
-void PrintUsage() {
-  std::puts(
-      "usage: controller-goals [options] [CASE...]\n"
-      "Simulates all cases, or these, and prints each goal: the figure, the goal, met or missed.\n"
-      "  --group TEXT only cases whose names begin so: rfc, gap_, drive_, event_, ...\n"
-      "  --figures    prints every figure, with a goal or without\n"
-      "  --ablation   switches off each part of the controller, and the whole (draft), and prints\n"
-      "               where that is worse or better\n"
-      "  --starts N   runs over each trace with gaps, from other starts (12)");
-  std::puts(kParameterUsage);
-}
-
-bool Parse(int argc, char** argv, Options* options) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (const int taken = TakeParameterOption(argc, argv, i, &options->parameters)) {
-      if (taken < 0) return false;
-      i += taken - 1;
-    } else if (arg == "--figures") {
-      options->all_figures = true;
-    } else if (arg == "--ablation") {
-      options->ablation = true;
-    } else if (arg == "--group" && i + 1 < argc) {
-      options->group = argv[++i];
-    } else if (arg == "--starts" && i + 1 < argc) {
-      options->starts = std::atoi(argv[++i]);
-    } else if (arg[0] == '-') {
-      return false;
-    } else {
-      options->cases.push_back(arg);
-    }
-  }
-  return options->starts > 0;
+void Parse(int argc, char** argv, Options* options) {
+  CLI::App app{
+      "controller-goals: simulates all cases, or some, and prints each goal: the figure, the goal, "
+      "met or missed.",
+      "controller-goals"};
+  app.add_option("CASE", options->cases, "These only");
+  app.add_option("--group", options->group,
+                 "Only cases whose names begin so: rfc, gap_, drive_, event_, ...");
+  app.add_flag("--figures", options->all_figures, "Prints every figure, with a goal or without");
+  app.add_flag("--ablation", options->ablation,
+               "Switches off each part of the controller, and the whole (draft), and prints where "
+               "that is worse or better");
+  app.add_option("--starts", options->starts, "Runs over each trace with gaps, from other starts")
+      ->check(CLI::PositiveNumber);
+  AddParameterOptions(&app, &options->parameters);
+  lidar::tools::Parse(&app, argc, argv);
 }
 
 void AddMatrix(std::vector<Case>* cases) {
@@ -208,10 +193,10 @@ void PrintChanges(const std::string& name, const std::vector<Change>& changes) {
 
 void PrintAblation(const std::vector<Case>& cases, const Options& options) {
   const Results base = Run(cases, options.parameters);
-  for (const std::string& name : SwitchNames()) {
+  for (const Tunable& part : Tunables()) {
     Parameters p = options.parameters;
-    if (!Switch(name, false, &p)) continue;
-    PrintChanges("without " + name, Changes(cases, base, Run(cases, p)));
+    if (!Switch(part.name, false, &p)) continue;
+    PrintChanges(std::string("without ") + part.name, Changes(cases, base, Run(cases, p)));
   }
   PrintChanges("the draft alone", Changes(cases, base, Run(cases, Parameters::Draft())));
 }
@@ -220,10 +205,7 @@ void PrintAblation(const std::vector<Case>& cases, const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!Parse(argc, argv, &options)) {
-    PrintUsage();
-    return argc > 1 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
-  }
+  Parse(argc, argv, &options);
   const std::vector<Case> cases = Cases(options);
   if (cases.empty()) return 2;
   if (options.ablation) {

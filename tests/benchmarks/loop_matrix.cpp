@@ -4,20 +4,19 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "src/sim/late_sender.h"
 #include "src/sim/loop_goals.h"
-#include "src/sim/parameter_options.h"
+#include "src/tools/common/program.h"
+#include "tests/benchmarks/parameter_options.h"
 
 namespace {
 
 using lidar::Seconds;
 using lidar::rate::DegradationPreference;
-using lidar::scream::test::TakeParameterOption;
 using namespace lidar::loop;
 
 struct Variant {
@@ -47,83 +46,58 @@ struct Options {
   std::string samples;
 };
 
-void PrintUsage() {
-  std::puts(
-      "usage: loop-matrix [--trace FILE]... [--variant NAME]... [--seconds S] [--rtt "
-      "MS]\n"
-      "                   [--starts N] [--late SHARE] [--samples CSV] [TRACE...]\n"
-      "Simulates a LiDAR stream (1.4 to 10 Mbit/s) over traces with gaps, one line a run.\n"
-      "  TRACE          a built-in trace (all by default; a drive_N is generated)\n"
-      "  --trace FILE   lines of 'time_s rate_mbps'\n"
-      "  --variant NAME slices, scans (whole ones), framerate and balanced (what gives below the\n"
-      "                 minimum), intensity, camera (a video beside), fixed (no adaptation), "
-      "frames\n"
-      "                 (50/s, obeys exactly)\n"
-      "  --starts N     N runs for each line, each of another scene, that begin 7.33 s apart in "
-      "the\n"
-      "                 trace; prints means and, in brackets, the lowest and the highest\n"
-      "  --late SHARE   instead: a sender that knows what the link carries, one round trip late, "
-      "and\n"
-      "                 sends this share of it; beside one that always sends the lowest rate\n"
-      "  --samples CSV  writes the sender's state every 10 ms (of one run)\n"
+void TakeTraces(const std::vector<std::string>& names, const std::vector<std::string>& files,
+                Options* options) {
+  for (const std::string& file : files) {
+    std::string error;
+    const auto trace = ReadTrace(file, &error);
+    if (!trace) throw CLI::ValidationError("--trace", error);
+    options->traces.push_back(*trace);
+  }
+  const bool all = names.empty() && files.empty();
+  for (const NamedTrace& trace : BuiltInTraces())
+    if (all || std::find(names.begin(), names.end(), trace.name) != names.end())
+      options->traces.push_back(trace);
+  if (options->traces.empty()) throw CLI::ValidationError("TRACE", "no trace has such a name");
+}
+
+void Parse(int argc, char** argv, Options* options) {
+  CLI::App app{
+      "loop-matrix: simulates a LiDAR stream (1.4 to 10 Mbit/s) over traces with gaps, one line a "
+      "run.",
+      "loop-matrix"};
+  app.footer(
       "Columns: scans captured, left out by the encoder, complete, of these in time; complete over "
       "the oracle's;\n"
       "capture to cloud p50/p95/p99 and the oracle's p95 [ms]; utilisation of what link and "
       "source\n"
       "can do [%]; queue p50/p95/p99/max [ms]; back at 80 % after a gap, p50/p95/max [s].\n"
       "Goals that a run does not reach stand below its line.");
-  std::puts(lidar::scream::test::kParameterUsage);
-}
-
-bool IsVariant(const std::string& name) {
-  return std::any_of(kVariants.begin(), kVariants.end(),
-                     [&](const Variant& variant) { return name == variant.name; });
-}
-
-bool Parse(int argc, char** argv, Options* options) {
   std::vector<std::string> names;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (const int taken = TakeParameterOption(argc, argv, i, &options->parameters)) {
-      if (taken < 0) return false;
-      i += taken - 1;
-    } else if (arg[0] != '-') {
-      names.push_back(arg);
-    } else if (i + 1 >= argc) {
-      return false;
-    } else if (arg == "--trace") {
-      std::string error;
-      const auto trace = ReadTrace(argv[++i], &error);
-      if (!trace) std::fprintf(stderr, "loop-matrix: %s\n", error.c_str());
-      if (!trace) return false;
-      options->traces.push_back(*trace);
-    } else if (arg == "--variant") {
-      options->variants.push_back(argv[++i]);
-      if (!IsVariant(options->variants.back())) {
-        std::fprintf(stderr, "loop-matrix: no variant is called %s\n", argv[i]);
-        return false;
-      }
-    } else if (arg == "--seconds") {
-      options->seconds = std::atof(argv[++i]);
-    } else if (arg == "--rtt") {
-      options->rtt_ms = std::atof(argv[++i]);
-    } else if (arg == "--starts") {
-      options->starts = std::atoi(argv[++i]);
-    } else if (arg == "--late") {
-      options->late_share = std::atof(argv[++i]);
-    } else if (arg == "--samples") {
-      options->samples = argv[++i];
-    } else {
-      return false;
-    }
-  }
-  const bool all = names.empty() && options->traces.empty();
-  for (const NamedTrace& trace : BuiltInTraces()) {
-    bool wanted = all;
-    for (const std::string& name : names) wanted = wanted || name == trace.name;
-    if (wanted) options->traces.push_back(trace);
-  }
-  return options->seconds > 0 && options->starts > 0 && !options->traces.empty();
+  std::vector<std::string> files;
+  std::set<std::string> variants;
+  for (const Variant& variant : kVariants) variants.insert(variant.name);
+  app.add_option("TRACE", names, "A built-in trace (all by default; a drive_N is generated)");
+  app.add_option("--trace", files, "Lines of 'time_s rate_mbps'")->allow_extra_args(false);
+  app.add_option("--variant", options->variants,
+                 "slices, scans (whole ones), framerate and balanced (what gives below the "
+                 "minimum), intensity, camera (a video beside), fixed (no adaptation), frames "
+                 "(50/s, obeys exactly)")
+      ->check(CLI::IsMember(variants))
+      ->allow_extra_args(false);
+  app.add_option("--seconds", options->seconds, "Length of a run")->check(CLI::PositiveNumber);
+  app.add_option("--rtt", options->rtt_ms, "Of the path [ms]");
+  app.add_option("--starts", options->starts,
+                 "Runs for each line, each of another scene, that begin 7.33 s apart in the trace; "
+                 "prints means and, in brackets, the lowest and the highest")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--late", options->late_share,
+                 "Instead: a sender that knows what the link carries, one round trip late, and "
+                 "sends this share of it; beside one that always sends the lowest rate");
+  app.add_option("--samples", options->samples,
+                 "Writes the sender's state every 10 ms (of one run) as CSV");
+  lidar::scream::test::AddParameterOptions(&app, &options->parameters);
+  lidar::tools::Parse(&app, argc, argv, [&] { TakeTraces(names, files, options); });
 }
 
 bool WriteSamples(const std::string& path, const lidar::scream::test::SimulationResult& result) {
@@ -288,10 +262,7 @@ bool Wanted(const Options& options, const Variant& variant) {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!Parse(argc, argv, &options)) {
-    PrintUsage();
-    return argc > 1 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
-  }
+  Parse(argc, argv, &options);
   if (options.starts == 1 && options.late_share < 0) PrintHeader();
   for (const NamedTrace& trace : options.traces) {
     for (const Variant& variant : kVariants) {

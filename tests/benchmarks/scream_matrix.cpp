@@ -2,13 +2,12 @@
 // scream-matrix: runs the named scenarios in simulated time and prints the table.
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
-#include "src/sim/parameter_options.h"
 #include "src/sim/scenarios.h"
+#include "src/tools/common/program.h"
+#include "tests/benchmarks/parameter_options.h"
 
 namespace {
 
@@ -30,53 +29,29 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-void PrintUsage() {
-  std::puts(
-      "usage: scream-matrix [options] [SCENARIO...]\n"
-      "Simulates SCReAM v2 over the scenarios (all by default) and prints one line each.\n"
-      "  --seconds S    shorter (or longer) runs\n"
-      "  --frames-per-second N   of every flow of ours\n"
-      "  --frame-jitter PERCENT  frame sizes vary evenly by so much\n"
-      "  --wakeup-ms MS pacing wakes up late by up to so much\n"
-      "  --stall-ms MS  sender and receiver stop for up to so much, once a second\n"
-      "  --phase-ms MS  flows of ours start so much later\n"
-      "  --seed N       of all that is random: losses, jitter, frame sizes, late wake-ups (1)\n"
-      "  --samples CSV  writes the controller's state every 10 ms (of one scenario)");
-  std::puts(kParameterUsage);
-}
-
-bool Parse(int argc, char** argv, Options* options) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (const int taken = TakeParameterOption(argc, argv, i, &options->parameters)) {
-      if (taken < 0) return false;
-      i += taken - 1;
-    } else if (arg == "--samples" && i + 1 < argc) {
-      options->samples = argv[++i];
-    } else if (arg == "--frame-jitter" && i + 1 < argc) {
-      options->frame_jitter = std::atof(argv[++i]) / 100;
-    } else if (arg == "--frames-per-second" && i + 1 < argc) {
-      options->frames_per_second = std::atof(argv[++i]);
-    } else if (arg == "--stall-ms" && i + 1 < argc) {
-      options->stall_ms = std::atof(argv[++i]);
-    } else if (arg == "--phase-ms" && i + 1 < argc) {
-      options->phase_ms = std::atof(argv[++i]);
-    } else if (arg == "--wakeup-ms" && i + 1 < argc) {
-      options->wakeup_ms = std::atof(argv[++i]);
-    } else if (arg == "--seed" && i + 1 < argc) {
-      options->seed = std::strtoull(argv[++i], nullptr, 10);
-    } else if (arg == "--seconds" && i + 1 < argc) {
-      options->seconds = std::atof(argv[++i]);
-    } else if (arg[0] == '-') {
-      return false;
-    } else if (FindScenario(arg, options->parameters)) {
-      options->scenarios.push_back(arg);
-    } else {
-      std::fprintf(stderr, "scream-matrix: no scenario is called %s\n", arg.c_str());
-      return false;
-    }
-  }
-  return true;
+void Parse(int argc, char** argv, Options* options) {
+  CLI::App app{
+      "scream-matrix: simulates SCReAM v2 over the scenarios (all by default) and prints one line "
+      "each.",
+      "scream-matrix"};
+  app.add_option("SCENARIO", options->scenarios, "These only");
+  app.add_option("--seconds", options->seconds, "Shorter (or longer) runs");
+  app.add_option("--frames-per-second", options->frames_per_second, "Of every flow of ours");
+  app.add_option("--frame-jitter", options->frame_jitter, "Frame sizes vary evenly by so much [%]");
+  app.add_option("--wakeup-ms", options->wakeup_ms, "Pacing wakes up late by up to so much");
+  app.add_option("--stall-ms", options->stall_ms,
+                 "Sender and receiver stop for up to so much, once a second");
+  app.add_option("--phase-ms", options->phase_ms, "Flows of ours start so much later");
+  app.add_option("--seed", options->seed,
+                 "Of all that is random: losses, jitter, frame sizes, late wake-ups");
+  app.add_option("--samples", options->samples,
+                 "Writes the controller's state every 10 ms (of one scenario) as CSV");
+  AddParameterOptions(&app, &options->parameters);
+  lidar::tools::Parse(&app, argc, argv, [options] {
+    for (const std::string& name : options->scenarios)
+      if (!FindScenario(name, options->parameters))
+        throw CLI::ValidationError("SCENARIO", "no scenario is called " + name);
+  });
 }
 
 bool WriteSamples(const std::string& path, const SimulationResult& result) {
@@ -123,10 +98,7 @@ void PrintRow(const Scenario& s, const ScenarioMetrics& m) {
 
 int main(int argc, char** argv) {
   Options options;
-  if (!Parse(argc, argv, &options)) {
-    PrintUsage();
-    return argc > 1 && std::strcmp(argv[1], "--help") == 0 ? 0 : 2;
-  }
+  Parse(argc, argv, &options);
   std::printf("%-24s %5s  %-25s  %-27s  %5s  %5s  %-11s  %s\n", "scenario", "util%",
               "queue p50/p95/p99/max ms", "frame p50/p95/p99/max ms", "loss%", "Jain",
               "start s, ms", "dropped, feedback kbit/s");
@@ -137,7 +109,7 @@ int main(int argc, char** argv) {
     if (options.seconds > 0) s.config.duration = lidar::FromSeconds(options.seconds);
     s.config.forward.seed = options.seed;
     for (FlowConfig& flow : s.config.flows) {
-      if (options.frame_jitter >= 0) flow.sources[0].frame_jitter = options.frame_jitter;
+      if (options.frame_jitter >= 0) flow.sources[0].frame_jitter = options.frame_jitter / 100;
       if (options.frames_per_second > 0)
         flow.sources[0].frames_per_second = options.frames_per_second;
       flow.start += lidar::FromSeconds(options.phase_ms / 1e3);
