@@ -17,6 +17,11 @@
 
 namespace lidar::test {
 
+inline bool HasLine(const Lines& lines, const std::string& part) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const auto& line) { return line.find(part) != std::string::npos; });
+}
+
 class RunTrace {
  public:
   /// Watches the element of `h`, which must outlive this object. The bytes of its buffers count

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What only Draco's elements do: clouds of any kind, as files that other programs read.
-#include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Every coder's slices through their transports: files, and SRTP under congestion control.
-#include <gio/gio.h>
-#include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
 #include "tests/elements/coders/coder_harness.h"
@@ -11,20 +9,6 @@
 
 namespace lidar::gst {
 namespace {
-
-/// Returns the port that a screamsrc with port=0 has bound.
-guint PortOf(GstElement* source) {
-  gst_element_get_state(source, nullptr, nullptr, test::kPatience_ns);
-  GSocket* socket = nullptr;
-  g_object_get(source, "used-socket", &socket, nullptr);
-  EXPECT_NE(socket, nullptr);
-  if (socket == nullptr) return 0;
-  GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
-  const guint port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
-  g_object_unref(address);
-  g_object_unref(socket);
-  return port;
-}
 
 class Transport : public ::testing::TestWithParam<CoderCase> {
  protected:
@@ -60,7 +44,10 @@ TEST_P(Transport, GoesThroughSrtpUnderCongestionControl) {
   const std::string key = " srtp-key=env:LIDAR_TRANSPORT_KEY";
   test::Pipeline receiver("screamsrc name=in address=127.0.0.1 port=0" + key + " ! " + Receiver());
   receiver.Play();
-  const guint port = PortOf(receiver.Get("in").get());
+  const ElementPtr in = receiver.Get("in");
+  gst_element_get_state(in.get(), nullptr, nullptr, test::kPatience_ns);
+  const guint port = test::PortOf(in.get());
+  EXPECT_NE(port, 0U);
   // A source that is not live waits in the sender's queue, however busy the machine is.
   test::Pipeline sender(
       Sender("num-buffers=24") +

@@ -133,11 +133,6 @@ void RunWithTroubles(OdometryRun* run) {
   run->Push(SliceOf(ScanAt(CornerFrom(93), 93 * kCornerPeriod), {7, 0, 2, 0}));
 }
 
-bool HasLine(const Lines& lines, const std::string& part) {
-  return std::any_of(lines.begin(), lines.end(),
-                     [&](const auto& line) { return line.find(part) != std::string::npos; });
-}
-
 TEST(OdometrySecondRun, IsAsTheFirst) {
   OdometryRun run("local-maps=2 trajectory=" + kRunTrajectory);
   Lines first;

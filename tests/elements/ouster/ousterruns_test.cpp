@@ -3,7 +3,6 @@
 // behaves as a new one.
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <set>
@@ -73,19 +72,8 @@ struct CaptureFile {
 };
 
 const std::string kDual = "OS-0-32-U1_v2.2.0_1024x10";
-const std::string kRunFiles =
-    ::testing::TempDir() + "ouster_run_" + std::to_string(g_random_int()) + "_";
-
-/// Removes the files of these tests.
-class RunFiles : public ::testing::Environment {
- public:
-  void TearDown() override {
-    for (const char* name : {"beams.json", "ptp.json", "ptp.pcap", "half.pcap", "mask.pgm",
-                             "troubles.pcap", "damaged.pcap"})
-      std::remove((kRunFiles + name).c_str());
-  }
-};
-const auto* const kRemoval = ::testing::AddGlobalTestEnvironment(new RunFiles);
+const TempFolder kRunFolder;
+const std::string kRunFiles = kRunFolder.path() + "/";
 
 /// Writes metadata in which `from` is replaced. Returns its path.
 std::string ChangedMetadata(const char* name, const std::string& from, const std::string& to) {
@@ -418,11 +406,6 @@ std::string CaptureOfTroubles() {
   const std::string path = kRunFiles + "troubles.pcap";
   file.Write(path, 1000);
   return path;
-}
-
-bool HasLine(const Lines& lines, const std::string& part) {
-  return std::any_of(lines.begin(), lines.end(),
-                     [&](const auto& line) { return line.find(part) != std::string::npos; });
 }
 
 TEST(OusterSecondRun, IsAsTheFirst) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A pipeline from its launch line, with an owner and patience.
 #pragma once
+#include <gio/gio.h>
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 
@@ -13,8 +14,19 @@
 namespace lidar::test {
 
 using gst::ElementPtr;
-using gst::ErrorPtr;
 using gst::MessagePtr;
+
+/// Returns the port that a source with port=0 has bound; 0 without a socket.
+inline guint PortOf(GstElement* source) {
+  GSocket* socket = nullptr;
+  g_object_get(source, "used-socket", &socket, nullptr);
+  if (socket == nullptr) return 0;
+  GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
+  const guint port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
+  g_object_unref(address);
+  g_object_unref(socket);
+  return port;
+}
 
 class Pipeline {
  public:

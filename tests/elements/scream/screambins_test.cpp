@@ -12,21 +12,8 @@ namespace lidar::test {
 namespace {
 
 using gst::ElementPtr;
-using gst::ErrorPtr;
 using gst::MessagePtr;
 using gst::PadPtr;
-using gst::StringPtr;
-
-guint PortOf(GstElement* source) {
-  GSocket* socket = nullptr;
-  g_object_get(source, "used-socket", &socket, nullptr);
-  if (socket == nullptr) return 0;
-  GSocketAddress* address = g_socket_get_local_address(socket, nullptr);
-  const guint port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address));
-  g_object_unref(address);
-  g_object_unref(socket);
-  return port;
-}
 
 /// A receiver of raw audio that plays, and its port.
 struct Receiver {

@@ -3,7 +3,6 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -72,10 +71,6 @@ class ScreamRx : public ::testing::Test {
     ASSERT_EQ(Push(r), GST_FLOW_OK);
     Report();
     time.Settle();
-  }
-  static bool WaitFor(const std::function<bool()>& condition) {
-    for (int i = 0; i < 3'000 && !condition(); ++i) g_usleep(10'000);
-    return condition();
   }
   guint Passed() { return gst_harness_buffers_received(rtp.get()); }
 };

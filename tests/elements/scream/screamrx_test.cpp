@@ -6,6 +6,7 @@
 #include "gst/scream/key_request.h"
 #include "src/rtp/ntp_time.h"
 #include "tests/elements/scream/screamrx_fixture.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 namespace {
@@ -349,7 +350,7 @@ TEST_F(ScreamRx, ReportsAsOftenAsItIsToldToWhileItPlays) {
   time.Settle();
   Rtp r;
   for (r.seq = 1; r.seq <= 2; ++r.seq) ASSERT_EQ(Push(r), GST_FLOW_OK);
-  ASSERT_TRUE(WaitFor([&] { return gst_harness_buffers_received(rtcp.get()) == 2; }));
+  ASSERT_TRUE(Eventually([&] { return gst_harness_buffers_received(rtcp.get()) == 2; }));
 }
 
 TEST_F(ScreamRx, RefusesTheWishForAKeyUnitWhereNobodySends) {
