@@ -5,6 +5,7 @@
 
 #include "gst/common/latency.h"
 #include "src/rtcp/sender_report.h"
+#include "tests/elements/scream/pipeline.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/element_bus.h"
 #include "tests/support/proto_reader.h"
@@ -209,27 +210,21 @@ std::string UrlOf(GstElement* web) {
 }
 
 TEST(FoxgloveSink, TellsTheStatisticsOfThePipelineAroundIt) {
-  const gst::ElementPtr pipeline(
-      gst_parse_launch("lidartestsrc is-live=true mode=512x10 model=os0-32 ! tee name=t "
-                       "t. ! queue ! lidarenc name=enc ! fakesink "
-                       "t. ! queue ! foxglovesink name=web port=0",
-                       nullptr));
-  ASSERT_TRUE(pipeline);
-  const gst::ElementPtr web(gst_bin_get_by_name(GST_BIN(pipeline.get()), "web"));
-  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  {
-    Peer peer(UrlOf(web.get()), {"foxglove.sdk.v1"});
-    peer.Subscribe("/statistics", 3);
-    nlohmann::json message = nlohmann::json::object();
-    for (int i = 0; i < 20 && message.value("step", 0.0) <= 0; ++i)
-      message = nlohmann::json::parse(peer.Next().payload);
-    EXPECT_GT(message["step"], 0);
-    EXPECT_GT(message["timestamp"]["sec"], 0);
-    EXPECT_EQ(message["elements"]["enc"]["factory"], "lidarenc");
-    EXPECT_GT(message["elements"]["enc"]["slices"], 0);
-    EXPECT_EQ(message["elements"]["web"]["clients"], 1);
-  }
-  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  Pipeline pipeline(
+      "lidartestsrc is-live=true mode=512x10 model=os0-32 ! tee name=t "
+      "t. ! queue ! lidarenc name=enc ! fakesink "
+      "t. ! queue ! foxglovesink name=web port=0");
+  pipeline.Play();
+  Peer peer(UrlOf(pipeline.Get("web").get()), {"foxglove.sdk.v1"});
+  peer.Subscribe("/statistics", 3);
+  nlohmann::json message = nlohmann::json::object();
+  for (int i = 0; i < 20 && message.value("step", 0.0) <= 0; ++i)
+    message = nlohmann::json::parse(peer.Next().payload);
+  EXPECT_GT(message["step"], 0);
+  EXPECT_GT(message["timestamp"]["sec"], 0);
+  EXPECT_EQ(message["elements"]["enc"]["factory"], "lidarenc");
+  EXPECT_GT(message["elements"]["enc"]["slices"], 0);
+  EXPECT_EQ(message["elements"]["web"]["clients"], 1);
 }
 
 void PushTo(GstElement* source, const std::vector<std::uint8_t>& bytes) {
@@ -240,31 +235,25 @@ void PushTo(GstElement* source, const std::vector<std::uint8_t>& bytes) {
 }
 
 TEST(FoxgloveSink, TellsAtTheReceiverWhatTheSenderReports) {
-  const gst::ElementPtr pipeline(gst_parse_launch(
+  Pipeline pipeline(
       "appsrc name=in caps=application/x-rtp ! screamrx name=rx ! fakesink sync=false async=false "
-      "foxglovesink name=web port=0",
-      nullptr));
-  ASSERT_TRUE(pipeline);
-  const gst::ElementPtr web(gst_bin_get_by_name(GST_BIN(pipeline.get()), "web"));
-  const gst::ElementPtr in(gst_bin_get_by_name(GST_BIN(pipeline.get()), "in"));
-  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
+      "foxglovesink name=web port=0");
+  const gst::ElementPtr in = pipeline.Get("in");
+  pipeline.Play();
   rtcp::SenderReport report;
   report.ssrc = 7;
   report.target_bitrate = DataRate::BitsPerSecond(9e6);
   report.rtt = std::chrono::milliseconds(30);
   PushTo(in.get(), {0x80, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 1, 2, 3, 4});
   PushTo(in.get(), rtcp::BuildSenderReport(report));
-  {
-    Peer peer(UrlOf(web.get()), {"foxglove.sdk.v1"});
-    peer.Subscribe("/statistics", 3);
-    nlohmann::json message = nlohmann::json::object();
-    for (int i = 0; i < 20 && !message.contains("rtt"); ++i)
-      message = nlohmann::json::parse(peer.Next().payload);
-    EXPECT_EQ(message.value("target_bitrate", 0), 9'000'000);
-    EXPECT_EQ(message.value("rtt", 0.0), 30.0);
-    EXPECT_EQ(message["elements"]["rx"]["sender_reports"], 1);
-  }
-  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  Peer peer(UrlOf(pipeline.Get("web").get()), {"foxglove.sdk.v1"});
+  peer.Subscribe("/statistics", 3);
+  nlohmann::json message = nlohmann::json::object();
+  for (int i = 0; i < 20 && !message.contains("rtt"); ++i)
+    message = nlohmann::json::parse(peer.Next().payload);
+  EXPECT_EQ(message.value("target_bitrate", 0), 9'000'000);
+  EXPECT_EQ(message.value("rtt", 0.0), 30.0);
+  EXPECT_EQ(message["elements"]["rx"]["sender_reports"], 1);
 }
 
 TEST(FoxgloveSink, TellsClientsOfPadsThatComeAndGo) {

@@ -2,7 +2,6 @@
 // All that foxglovesink advertises, sends and says in a scripted run is as it was.
 #include "tests/support/golden_course.h"
 
-
 #include "src/base/crc.h"
 #include "tests/elements/web/web_peer.h"
 

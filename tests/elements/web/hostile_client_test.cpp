@@ -2,7 +2,6 @@
 // Clients that read nothing, say nothing or talk nonsense: the pipeline must not notice.
 #include <gtest/gtest.h>
 
-
 #include "src/foxglove/websocket.h"
 #include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"

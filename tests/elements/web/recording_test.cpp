@@ -10,8 +10,8 @@
 #include "ext/web/file_archive.h"
 #include "ext/web/upstream_archive.h"
 #include "gst/common/history_query.h"
+#include "tests/elements/scream/pipeline.h"
 #include "tests/elements/web/slice_viewer.h"
-#include "tests/support/element_bus.h"
 #include "tests/support/files.h"
 
 namespace lidar::test {
@@ -211,10 +211,9 @@ TEST_F(Recordings, CostOtherViewersNothing) {
 
 /// Runs a pipeline to its end.
 void RunToTheEnd(const std::string& description) {
-  const gst::ElementPtr pipeline(gst_parse_launch(description.c_str(), nullptr));
-  gst_element_set_state(pipeline.get(), GST_STATE_PLAYING);
-  EXPECT_TRUE(ElementBus(pipeline.get()).Wait(GST_MESSAGE_EOS));
-  gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+  Pipeline pipeline(description);
+  pipeline.Play();
+  EXPECT_TRUE(pipeline.Ends());
 }
 
 TEST_F(Recordings, HaveThePosesOfTheSensorBetweenTheSlices) {
