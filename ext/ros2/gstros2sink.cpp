@@ -175,7 +175,6 @@ static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosT
                       (nullptr));
     return false;
   }
-  state.messages = std::make_unique<MessageWriter>(type);
   std::unique_lock lock(state.mutex);
   std::swap(state.writer, writer);
   lock.unlock();  // the last writer ends without the lock
@@ -207,21 +206,26 @@ static gboolean Stop(GstBaseSink* base) {
   return TRUE;
 }
 
+/// GstBaseSink sends no caps again that it had before refused ones, so refused ones change nothing.
 static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   auto* self = GST_LIDAR_ROS2_SINK(base);
   State& state = StateOf(self);
   const Ros2SinkSettings settings = Snapshot(state);
-  if (settings.type == kAutoType) {
-    const auto type = MessageWriter::UsualType(caps);
-    if (!type) return FALSE;
-    const bool open = state.messages && state.messages->type() == *type;
-    if (!open && !OpenWriter(self, settings.ros, *type)) return FALSE;
+  const bool automatic = settings.type == kAutoType;
+  const auto type =
+      automatic ? MessageWriter::UsualType(caps) : static_cast<RosType>(settings.type);
+  if (!type) return FALSE;
+  std::string why;
+  auto messages = MessageWriter::Make(*type, caps, &why);
+  if (!messages) {
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This cannot be published: %s.", why.c_str()),
+                      ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
+    return FALSE;
   }
-  if (state.messages->SetCaps(caps)) return TRUE;
-  GST_ELEMENT_ERROR(self, STREAM, FORMAT,
-                    ("This cannot be published: %s.", state.messages->why().c_str()),
-                    ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
-  return FALSE;
+  const bool open = state.messages && state.messages->type() == *type;
+  if (automatic && !open && !OpenWriter(self, settings.ros, *type)) return FALSE;
+  state.messages = std::move(messages);
+  return TRUE;
 }
 
 /// Warns once until a message gets through: a subscriber that hangs would cause many warnings.

@@ -33,20 +33,27 @@ std::optional<cdr::RosType> MessageWriter::UsualType(const GstCaps* caps) {
   return std::nullopt;
 }
 
-bool MessageWriter::SetCaps(const GstCaps* caps) {
+std::unique_ptr<MessageWriter> MessageWriter::Make(cdr::RosType type, const GstCaps* caps,
+                                                   std::string* why) {
+  std::unique_ptr<MessageWriter> writer(new MessageWriter(type));
+  if (!writer->TakeCaps(caps, why)) return nullptr;
+  return writer;
+}
+
+bool MessageWriter::TakeCaps(const GstCaps* caps, std::string* why) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   if (!gst_structure_has_name(s, MediaTypeOf(type_))) {
-    why_ = std::string(cdr::InfoOf(type_).name) + " is made of " + MediaTypeOf(type_);
+    *why = std::string(cdr::InfoOf(type_).name) + " is made of " + MediaTypeOf(type_);
     return false;
   }
   from_caps_ = {FrameIn(s, GST_LIDAR_FRAME_ID), FrameIn(s, GST_LIDAR_CHILD_FRAME_ID)};
   if (type_ == cdr::RosType::kImu) {
     const gchar* fields = gst_structure_get_string(s, "fields");
-    why_ = std::string("samples must have the fields ") + kImuFields;
+    *why = std::string("samples must have the fields ") + kImuFields;
     return fields == nullptr || std::string_view(fields) == kImuFields;
   }
   if (!cdr::IsCloud(type_)) return true;
-  auto info = CloudInfo::FromCaps(caps, &why_);
+  auto info = CloudInfo::FromCaps(caps, why);
   if (!info) return false;
   info_ = *std::move(info);
   layout_ = cdr::ToRosLayout({info_.fields, info_.point_step}, info_.width, info_.height);

@@ -4,6 +4,7 @@
 #include <gst/gst.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,13 +36,12 @@ struct MessageSettings {
 /// Used by the streaming thread.
 class MessageWriter {
  public:
-  explicit MessageWriter(cdr::RosType type) : type_(type) {}
+  /// Returns null and sets `why` if buffers of `caps` cannot be messages of `type`.
+  static std::unique_ptr<MessageWriter> Make(cdr::RosType type, const GstCaps* caps,
+                                             std::string* why);
 
   /// The default type for buffers of `caps`.
   static std::optional<cdr::RosType> UsualType(const GstCaps* caps);
-
-  /// Returns false and sets why() if buffers of `caps` cannot be messages of the type.
-  bool SetCaps(const GstCaps* caps);
 
   /// Calls `publish` for each message of `buffer`, with pieces that are valid during the call.
   /// `now` is the time of buffers without a capture time. Returns false if the buffer contradicts
@@ -50,9 +50,10 @@ class MessageWriter {
   bool Write(GstBuffer* buffer, const MessageSettings& settings, Time now, const Publish& publish);
 
   cdr::RosType type() const { return type_; }
-  const std::string& why() const { return why_; }
 
  private:
+  explicit MessageWriter(cdr::RosType type) : type_(type) {}
+  bool TakeCaps(const GstCaps* caps, std::string* why);
   bool WriteCloud(ByteView points, const Publish& publish);
   bool PublishCloud(const cdr::PointCloud2& cloud, const Publish& publish) const;
   bool WriteImu(ByteView samples, const Publish& publish);
@@ -66,7 +67,6 @@ class MessageWriter {
   Frames from_caps_;
   MessageSettings wanted_;  // of the buffer at hand
   Time stamp_{};            // of the buffer at hand
-  std::string why_;
 };
 
 }  // namespace lidar::gst

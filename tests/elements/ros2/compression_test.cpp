@@ -141,21 +141,22 @@ TEST_P(CompressedClouds, MayHaveAsManyFieldsAsDracoTakes) {
 }
 
 TEST_P(CompressedClouds, AreWhatTheSinkPublishes) {
-  MessageWriter writer(cdr::RosType::kCompressedCloud);
   const CapsPtr caps(gst_caps_from_string(
       "application/x-pointcloud2,width=500,height=1,point-step=26,is-dense=true,"
       "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,ring:U16:16,timestamp:F64:18\""));
-  ASSERT_TRUE(writer.SetCaps(caps.get())) << writer.why();
+  std::string why;
+  const auto writer = MessageWriter::Make(cdr::RosType::kCompressedCloud, caps.get(), &why);
+  ASSERT_TRUE(writer) << why;
   const BufferPtr buffer(gst_buffer_new_memdup(points_.data(), points_.size()));
   MessageSettings settings;
   settings.compression = GetParam();
   settings.frames.frame_id = "lidar";
   Bytes message;
-  ASSERT_TRUE(writer.Write(buffer.get(), settings, cloud_.header.stamp,
-                           [&](const std::vector<ByteView>& pieces) {
-                             for (const ByteView& p : pieces)
-                               message.insert(message.end(), p.begin(), p.end());
-                           }));
+  ASSERT_TRUE(writer->Write(buffer.get(), settings, cloud_.header.stamp,
+                            [&](const std::vector<ByteView>& pieces) {
+                              for (const ByteView& p : pieces)
+                                message.insert(message.end(), p.begin(), p.end());
+                            }));
   EXPECT_EQ(message, Message());
 }
 

@@ -62,7 +62,10 @@ void Ros2SinkCourse(Course& c) {
   subscribe();
   push("in a second run", BufferOf(cloud));
   c.Push("of another size", gst::BufferPtr(gst_buffer_new_allocate(nullptr, 95, nullptr)));
-  c.SetCaps("application/x-imu,fields=(string)\"x:F32:0\"");
+  for (const std::string& caps :
+       {std::string("application/x-imu,fields=(string)\"x:F32:0\""), CapsTextOf(cloud)})
+    c.SetCaps(caps);
+  push("of the caps before", BufferOf(cloud));
 }
 
 void Ros2SrcCourse(Course& c) {

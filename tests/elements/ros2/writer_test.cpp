@@ -29,9 +29,9 @@ GstBuffer* Zeros(gsize size) {
 
 class WrittenMessages : public ::testing::Test {
  protected:
-  bool SetCaps(MessageWriter* writer, const std::string& text) {
+  std::unique_ptr<MessageWriter> Make(cdr::RosType type, const std::string& text) {
     const CapsPtr caps(gst_caps_from_string(text.c_str()));
-    return writer->SetCaps(caps.get());
+    return MessageWriter::Make(type, caps.get(), &why_);
   }
   bool Write(MessageWriter* writer, GstBuffer* buffer) {
     const BufferPtr owner(buffer);
@@ -50,6 +50,7 @@ class WrittenMessages : public ::testing::Test {
     return cdr::ReadOdometry(Whole(messages_.at(0))).value_or(cdr::Odometry());
   }
 
+  std::string why_;
   MessageSettings settings_;
   Time now_ = Time{} + Duration{77};
   std::vector<Message> messages_;
@@ -67,37 +68,37 @@ TEST_F(WrittenMessages, HaveTheTypeThatTheirCapsUsuallyBecome) {
 }
 
 TEST_F(WrittenMessages, OfAnImuNeedTheFieldsThatWeKnowOrNone) {
-  MessageWriter writer(cdr::RosType::kImu);
-  EXPECT_TRUE(SetCaps(&writer, "application/x-imu"));
-  EXPECT_TRUE(
-      SetCaps(&writer, std::string("application/x-imu,fields=(string)\"") + kImuFields + "\""));
-  EXPECT_FALSE(SetCaps(&writer, "application/x-imu,fields=(string)\"t:U64:0\""));
+  const auto imu = cdr::RosType::kImu;
+  EXPECT_TRUE(Make(imu, "application/x-imu"));
+  EXPECT_TRUE(Make(imu, std::string("application/x-imu,fields=(string)\"") + kImuFields + "\""));
+  EXPECT_FALSE(Make(imu, "application/x-imu,fields=(string)\"t:U64:0\""));
+  EXPECT_NE(why_.find("fields"), std::string::npos) << why_;
 }
 
 TEST_F(WrittenMessages, OfAnImuHaveTheTimesOfTheirSamples) {
-  MessageWriter writer(cdr::RosType::kImu);
-  ASSERT_TRUE(SetCaps(&writer, "application/x-imu"));
+  const auto writer = Make(cdr::RosType::kImu, "application/x-imu");
+  ASSERT_TRUE(writer);
   GstBuffer* samples = Zeros(64);
   const guint8 time = 5;
   gst_buffer_fill(samples, 32, &time, 1);
   gst_lidar_buffer_set_capture_time(samples, 1'000);
-  ASSERT_TRUE(Write(&writer, samples));
+  ASSERT_TRUE(Write(writer.get(), samples));
   ASSERT_EQ(messages_.size(), 2U);
   const auto second = cdr::ReadImu(Whole(messages_[1]));
   ASSERT_TRUE(second);
   EXPECT_EQ(second->header.stamp, Time{} + Duration{5});
   EXPECT_EQ(second->header.frame_id, "imu");
-  EXPECT_FALSE(Write(&writer, gst_buffer_new()));
+  EXPECT_FALSE(Write(writer.get(), gst_buffer_new()));
 }
 
 TEST_F(WrittenMessages, HaveTheTimeOfTheirBufferOrThePresent) {
-  MessageWriter writer(cdr::RosType::kPointCloud2);
-  ASSERT_TRUE(SetCaps(&writer, kCloud));
-  ASSERT_TRUE(Write(&writer, Zeros(24)));
+  const auto writer = Make(cdr::RosType::kPointCloud2, kCloud);
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(Write(writer.get(), Zeros(24)));
   EXPECT_EQ(cdr::ReadPointCloud2(Whole(messages_[0]))->header.stamp, now_);
   GstBuffer* timed = Zeros(24);
   gst_lidar_buffer_set_capture_time(timed, 55);
-  ASSERT_TRUE(Write(&writer, timed));
+  ASSERT_TRUE(Write(writer.get(), timed));
   const auto cloud = cdr::ReadPointCloud2(Whole(messages_[0]));
   ASSERT_TRUE(cloud);
   EXPECT_EQ(cloud->header.stamp, Time{} + Duration{55});
@@ -107,9 +108,8 @@ TEST_F(WrittenMessages, HaveTheTimeOfTheirBufferOrThePresent) {
 
 TEST_F(WrittenMessages, OfCloudsAreAsLargeAsTheirCapsSayOfOneRowAnySize) {
   const auto written = [&](const std::string& caps, gsize size) {
-    MessageWriter writer(cdr::RosType::kPointCloud2);
-    EXPECT_TRUE(SetCaps(&writer, caps));
-    return Write(&writer, Zeros(size));
+    const auto writer = Make(cdr::RosType::kPointCloud2, caps);
+    return writer && Write(writer.get(), Zeros(size));
   };
   const std::string row =
       "application/x-pointcloud2,width=2,height=1,point-step=12,"
@@ -135,34 +135,36 @@ TEST_F(WrittenMessages, OfCloudsAreAsLargeAsTheirCapsSayOfOneRowAnySize) {
 }
 
 TEST_F(WrittenMessages, OfOdometryNameFramesBySettingElseByCapsElseAsUsual) {
-  MessageWriter writer(cdr::RosType::kOdometry);
-  ASSERT_TRUE(SetCaps(&writer, "application/x-odometry"));
-  auto pose = WritePose(&writer, GST_LIDAR_TRACKING_OK);
+  const auto writer = Make(cdr::RosType::kOdometry, "application/x-odometry");
+  ASSERT_TRUE(writer);
+  auto pose = WritePose(writer.get(), GST_LIDAR_TRACKING_OK);
   EXPECT_EQ(pose.header.frame_id, "odom");
   EXPECT_EQ(pose.child_frame_id, "lidar");
-  ASSERT_TRUE(SetCaps(&writer, "application/x-odometry,frame-id=map,child-frame-id=base"));
-  pose = WritePose(&writer, GST_LIDAR_TRACKING_OK);
+  const auto named =
+      Make(cdr::RosType::kOdometry, "application/x-odometry,frame-id=map,child-frame-id=base");
+  ASSERT_TRUE(named);
+  pose = WritePose(named.get(), GST_LIDAR_TRACKING_OK);
   EXPECT_EQ(pose.header.frame_id, "map");
   EXPECT_EQ(pose.child_frame_id, "base");
   settings_.frames = {"earth", "os"};
-  pose = WritePose(&writer, GST_LIDAR_TRACKING_OK);
+  pose = WritePose(named.get(), GST_LIDAR_TRACKING_OK);
   EXPECT_EQ(pose.header.frame_id, "earth");
   EXPECT_EQ(pose.child_frame_id, "os");
 }
 
 TEST_F(WrittenMessages, OfPosesHaveTheVarianceOfTheSettingsWhereTheyAreTracked) {
-  MessageWriter writer(cdr::RosType::kOdometry);
-  ASSERT_TRUE(SetCaps(&writer, "application/x-odometry"));
+  const auto writer = Make(cdr::RosType::kOdometry, "application/x-odometry");
+  ASSERT_TRUE(writer);
   settings_.position_variance = 0.25;
   settings_.orientation_variance = 0.5;
   for (const auto tracking : {GST_LIDAR_TRACKING_STARTED, GST_LIDAR_TRACKING_OK}) {
-    const auto pose = WritePose(&writer, tracking);
+    const auto pose = WritePose(writer.get(), tracking);
     EXPECT_EQ(pose.pose_covariance[0], 0.25);
     EXPECT_EQ(pose.pose_covariance[35], 0.5);
     EXPECT_EQ(pose.twist_covariance[0], 1e6);
   }
-  EXPECT_EQ(WritePose(&writer, GST_LIDAR_TRACKING_DEGENERATE).pose_covariance[0], 1e3);
-  EXPECT_EQ(WritePose(&writer, GST_LIDAR_TRACKING_LOST).pose_covariance[35], 1e6);
+  EXPECT_EQ(WritePose(writer.get(), GST_LIDAR_TRACKING_DEGENERATE).pose_covariance[0], 1e3);
+  EXPECT_EQ(WritePose(writer.get(), GST_LIDAR_TRACKING_LOST).pose_covariance[35], 1e6);
 }
 
 class RosOptions : public ::testing::Test {
