@@ -128,7 +128,7 @@ void ExpectNothingLeft(MakeAndFree make_and_free) {
 }
 
 TEST_P(EveryElement, LeavesNothingOnTheHeap) {
-  ExpectNothingLeft([this] { EXPECT_TRUE(Make(GetParam())); });
+  ExpectNothingLeft([] { EXPECT_TRUE(Make(GetParam())); });
 }
 
 TEST_P(EveryElement, GivesItsRequestPadsAndTakesThemBack) {
