@@ -7,44 +7,56 @@
 
 namespace lidar::scream {
 
-/// Bleached: packets sent as ECT arrive as Not-ECT. Silent: no ECT packet was ever acknowledged.
-/// Both states last until Reset() after a change of route.
+/// Bleached: packets sent as ECT arrive as Not-ECT. Silent: Not-ECT packets are acknowledged, ECT
+/// ones are not. Both states last until Reset() after a change of route. Where nothing is
+/// acknowledged, the cause may be ECN or a receiver that is not there: packets then leave as ECT
+/// and Not-ECT by turns.
 class EcnMonitor {
  public:
   explicit EcnMonitor(Ecn wanted) : wanted_(wanted) { Reset(); }
   void Reset() {
     state_ = wanted_ == Ecn::kNotEct ? EcnState::kOff : EcnState::kTesting;
-    sent_ = bleached_ = 0;
+    sent_ = bleached_ = plain_acked_ = 0;
+    takes_turns_ = plain_next_ = false;
   }
 
   void OnSent(Time now, Ecn sent) {
+    plain_next_ = takes_turns_ && sent != Ecn::kNotEct;
     if (state_ != EcnState::kTesting || sent == Ecn::kNotEct) return;
     if (sent_++ == 0) first_sent_ = now;
   }
   void OnAcked(Ecn sent, Ecn arrived) {
-    if (sent == Ecn::kNotEct || codepoint() == Ecn::kNotEct) return;
+    if (state_ != EcnState::kTesting && state_ != EcnState::kCapable) return;
+    if (sent == Ecn::kNotEct) {
+      if (takes_turns_ && ++plain_acked_ >= kSilentPackets) state_ = EcnState::kSilent;
+      return;
+    }
     if (arrived != Ecn::kNotEct) {
       state_ = EcnState::kCapable;
       bleached_ = 0;
     } else if (++bleached_ >= kBleachedPackets) {
       state_ = EcnState::kBleached;
     }
-    sent_ = 0;  // an acknowledgement ends the silence
+    // An acknowledgement ends the silence.
+    sent_ = plain_acked_ = 0;
+    takes_turns_ = plain_next_ = false;
   }
   void OnTimer(Time now) {
     if (state_ == EcnState::kTesting && sent_ >= kSilentPackets && now - first_sent_ >= kSilence)
-      state_ = EcnState::kSilent;
+      takes_turns_ = true;
   }
 
   Ecn codepoint() const {
-    return state_ == EcnState::kTesting || state_ == EcnState::kCapable ? wanted_ : Ecn::kNotEct;
+    const bool wanted = state_ == EcnState::kTesting || state_ == EcnState::kCapable;
+    return wanted && !plain_next_ ? wanted_ : Ecn::kNotEct;
   }
   EcnState state() const { return state_; }
 
  private:
   /// Number of packets without their codepoint that cannot be chance.
   static constexpr int kBleachedPackets = 20;
-  /// Number of unacknowledged packets, and time, after which ECN may be the cause of silence.
+  /// Number of unacknowledged packets, and time, after which ECN may be the cause of silence. So
+  /// many acknowledged packets without a codepoint show that it is.
   static constexpr int kSilentPackets = 10;
   static constexpr Duration kSilence = 2s;
   Ecn wanted_;
@@ -52,6 +64,9 @@ class EcnMonitor {
   int sent_ = 0;
   Time first_sent_{};
   int bleached_ = 0;
+  int plain_acked_ = 0;
+  bool takes_turns_ = false;
+  bool plain_next_ = false;
 };
 
 }  // namespace lidar::scream

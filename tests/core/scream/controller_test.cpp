@@ -83,12 +83,24 @@ TEST(Controller, TellsAsOfTheLatestTimeThatItKnows) {
   EXPECT_EQ(c.statistics(kStart + 100ms).sent_bitrate, c.statistics(now - 50ms).sent_bitrate);
 }
 
-TEST(Controller, SendsWithoutEcnWhereNothingMarkedComesThrough) {
+TEST(Controller, SendsWithoutEcnWhereOnlyThatComesThrough) {
   Controller c{Parameters()};
-  const StreamId id = c.AddStream({});
-  for (std::uint16_t seq = 0; seq < 10; ++seq)
-    c.OnSent(kStart, id, {1, seq, DataSize::Bytes(1000), Ecn::kEct1});
-  for (Time now = kStart; now <= kStart + 2100ms; now += 50ms) c.OnTimer(now);
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
+  Time now = kStart;
+  for (std::uint16_t seq = 0; seq < 60; ++seq) {
+    c.OnQueued(now, id, {1, DataSize::Bytes(1000), true, 0});
+    const auto d = c.NextSend(now);
+    ASSERT_TRUE(d);
+    now = std::max(now, d->time);
+    c.OnTimer(now);
+    c.OnSent(now, id, {1, seq, DataSize::Bytes(1000), d->ecn});
+    now += 100ms;
+    if (d->ecn != Ecn::kNotEct) continue;
+    rtcp::CongestionFeedback f;
+    f.report_timestamp = rtcp::ReportClock::ToTimestamp(now - 50ms);
+    f.blocks.push_back({1, seq, {{true, Ecn::kNotEct, 0ms}}});
+    ASSERT_EQ(c.OnFeedback(now, f), FeedbackResult::kAccepted);
+  }
   EXPECT_EQ(c.ecn_state(), EcnState::kSilent);
 }
 

@@ -97,14 +97,53 @@ TEST(EcnMonitor, TakesAPathThatBleachesSomePacketsForCapable) {
   EXPECT_EQ(ecn.state(), EcnState::kCapable);
 }
 
-TEST(EcnMonitor, FallsBackWhenNothingMarkedComesThrough) {
+/// Sends a packet each 10 ms from `from` to `until`. Those that `arrives` lets through are
+/// acknowledged as they were sent.
+template <class Arrives>
+void Send(EcnMonitor* ecn, Duration from, Duration until, Arrives arrives) {
+  for (Duration t = from; t < until; t += 10ms) {
+    const Ecn sent = ecn->codepoint();
+    ecn->OnSent(kStart + t, sent);
+    if (arrives(sent)) ecn->OnAcked(sent, sent);
+    ecn->OnTimer(kStart + t);
+  }
+}
+constexpr auto kNone = [](Ecn) { return false; };
+constexpr auto kAll = [](Ecn) { return true; };
+constexpr auto kPlain = [](Ecn sent) { return sent == Ecn::kNotEct; };
+
+TEST(EcnMonitor, FallsBackWhereOnlyPacketsWithoutACodepointComeThrough) {
   EcnMonitor ecn(Ecn::kEct1);
-  for (int i = 0; i < 10; ++i) ecn.OnSent(kStart, Ecn::kEct1);
-  ecn.OnTimer(kStart + 1900ms);
+  Send(&ecn, 0s, 2s, kPlain);
   EXPECT_EQ(ecn.state(), EcnState::kTesting);
-  ecn.OnTimer(kStart + 2s);
+  // From then on every other packet has none; ten of them show it.
+  Send(&ecn, 2s, 2s + 180ms, kPlain);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  Send(&ecn, 2s + 180ms, 2s + 220ms, kPlain);
   EXPECT_EQ(ecn.state(), EcnState::kSilent);
   EXPECT_EQ(ecn.codepoint(), Ecn::kNotEct);
+  ecn.Reset();
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
+  Send(&ecn, 3s, 4s, kPlain);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting) << "another route has another chance";
+}
+
+TEST(EcnMonitor, IsCapableAlsoWhereTheReceiverCameLate) {
+  EcnMonitor ecn(Ecn::kEct1);
+  Send(&ecn, 0s, 60s, kNone);
+  EXPECT_EQ(ecn.state(), EcnState::kTesting);
+  Send(&ecn, 60s, 61s, kAll);
+  EXPECT_EQ(ecn.state(), EcnState::kCapable);
+  Send(&ecn, 61s, 70s, kNone);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1) << "a gap says nothing of codepoints";
+}
+
+TEST(EcnMonitor, IsNotCalledSilentForAFewPacketsAlone) {
+  EcnMonitor ecn(Ecn::kEct1);
+  for (int i = 0; i < 9; ++i) ecn.OnSent(kStart, Ecn::kEct1);
+  ecn.OnTimer(kStart + 1h);
+  ecn.OnSent(kStart + 1h, Ecn::kEct1);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
 }
 
 class ClassicEcnTest : public ::testing::Test {
