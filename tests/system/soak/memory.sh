@@ -15,7 +15,7 @@ trap 'kill ${demo:-} 2>/dev/null || true; rm -rf "$work"' EXIT
 demo=$!
 while kill -0 $demo 2>/dev/null; do
   for pid in $demo $(pgrep -P $demo || true); do
-    name=$(tr '\0' ' ' <"/proc/$pid/cmdline" 2>/dev/null | awk '{ n = split($1, path, "/"); print path[n] "-" $2 }' | sed 's/--.*//; s/-$//')
+    name=$(tr '\0' ' ' <"/proc/$pid/cmdline" 2>/dev/null | awk '{ n = split($1, path, "/"); print path[n] "-" $2 }' | sed 's/--.*//; s/-$//') || continue # it has ended
     memory=$(awk '/^RssAnon/ { print $2 }' "/proc/$pid/status" 2>/dev/null || true)
     [ -z "$memory" ] || echo "$name $SECONDS $memory"
   done
