@@ -196,6 +196,7 @@ class HonestSender(threading.Thread):
         self.room = mtu - 12
         self.interval = 1 / slices_per_second
         self.socket = udp_socket()
+        self._next_socket = None
         self.sequence = random.getrandbits(16)
         self.sent = 0
         self.packets = []  # all that was sent
@@ -212,6 +213,7 @@ class HonestSender(threading.Thread):
     def run(self):
         due = time.monotonic()
         while self.running:
+            self._take_next_socket()
             if not self._paused:
                 self._send_slice()
             while select.select([self.socket], [], [], 0)[0]:
@@ -253,9 +255,16 @@ class HonestSender(threading.Thread):
 
     def move(self):
         """Goes on from another port, as after NAT rebinding."""
-        old, self.socket = self.socket, udp_socket()
-        time.sleep(0.002)  # the thread may hold the old one
-        old.close()
+        self._next_socket = udp_socket()
+        while self._next_socket and self.is_alive():
+            time.sleep(0.001)
+        self._take_next_socket()
+
+    def _take_next_socket(self):
+        """Closes the old socket in the thread that uses it, if that runs."""
+        if self._next_socket:
+            self.socket.close()
+            self.socket, self._next_socket = self._next_socket, None
 
     def close(self):
         self.running = False
