@@ -96,15 +96,15 @@ static gboolean BondSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   }
   GstLidarTargetBitrate target{};
   if (!gst_lidar_event_parse_target_bitrate(event, &target))
-    return gst_pad_push_event(stream.sink, event);
+    return gst_pad_push_event(stream.sink.get(), event);
   const EventPtr owner(event);
   EventPtr due = shared.Combine(stream, pad, target);
-  return due ? gst_pad_push_event(stream.sink, due.release()) : TRUE;
+  return due ? gst_pad_push_event(stream.sink.get(), due.release()) : TRUE;
 }
 
 static GstIterator* BondLinksOf(GstPad* pad, GstObject*) {
   BondStream& stream = StreamOf(pad);
-  return LinkTo(pad == stream.sink ? stream.srcs.front() : stream.sink);
+  return LinkTo(pad == stream.sink.get() ? stream.srcs.front() : stream.sink.get());
 }
 
 static void TakeMisdirected(GstLidarScreamBond* self, const std::vector<Misdirected>& reports) {
@@ -225,10 +225,11 @@ GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_p
     gst_pad_set_iterate_internal_links_function(pad, BondLinksOf);
     return pad;
   };
-  stream->sink = add(&bond_sink_template, "sink_" + number);
-  GST_PAD_SET_PROXY_CAPS(stream->sink);
-  gst_pad_set_chain_function(stream->sink, BondChain);
-  gst_pad_set_event_function(stream->sink, BondSinkEvent);
+  GstPad* sink = add(&bond_sink_template, "sink_" + number);
+  stream->sink.reset(GST_PAD(gst_object_ref_sink(sink)));
+  GST_PAD_SET_PROXY_CAPS(sink);
+  gst_pad_set_chain_function(sink, BondChain);
+  gst_pad_set_event_function(sink, BondSinkEvent);
   for (std::size_t i = 0; i < tx_pads.size(); ++i) {
     GstPad* src = add(&bond_src_template, "src_" + number + "_" + std::to_string(i));
     gst_pad_set_event_function(src, BondSrcEvent);
@@ -247,9 +248,9 @@ GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_p
     gst_element_add_pad(GST_ELEMENT(bond), made->srcs[i]);
     gst_pad_link(made->srcs[i], tx_pads[i]);
   }
-  if (active) gst_pad_set_active(made->sink, TRUE);
-  gst_element_add_pad(GST_ELEMENT(bond), made->sink);
-  return made->sink;
+  if (active) gst_pad_set_active(sink, TRUE);
+  gst_element_add_pad(GST_ELEMENT(bond), sink);
+  return sink;
 }
 
 void BondRemoveStream(GstLidarScreamBond* bond, GstPad* sink) {

@@ -142,7 +142,8 @@ BondWork BondShared::TakeWorkLocked(const std::vector<std::unique_ptr<BondStream
   for (const auto& stream : streams)
     if (stream->told != 0)
       if (EventPtr due = DueTargetLocked(*stream))
-        work.targets.emplace_back(PadPtr(GST_PAD(gst_object_ref(stream->sink))), std::move(due));
+        work.targets.emplace_back(PadPtr(GST_PAD(gst_object_ref(stream->sink.get()))),
+                                  std::move(due));
   return work;
 }
 

@@ -22,7 +22,7 @@
 namespace lidar::gst {
 
 struct BondStream {
-  GstPad* sink = nullptr;
+  PadPtr sink;                                 // a link may pass an event to it while it is removed
   std::vector<GstPad*> srcs;                   // one per link
   std::vector<GstLidarTargetBitrate> targets;  // as the links report them
   std::vector<std::string> reasons;            // of `targets`
