@@ -92,11 +92,7 @@ bool LiveSession::Open() {
 bool LiveSession::OpenFeed() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
     auto metadata = LoadMetadata();
-    if (!metadata || !SetMetadata(*std::move(metadata)) || !OpenSockets(stream()->metadata()))
-      return false;
-    // Only packets can show that metadata from a file are wrong, so the wait for packets begins
-    // here.
-    last_packet_us_ = g_get_monotonic_time();
+    return metadata && SetMetadata(*std::move(metadata)) && OpenSockets(stream()->metadata());
   }
   return true;
 }
@@ -155,7 +151,7 @@ void LiveSession::UnlockStop() {
 /// Drops the datagrams that came into the sockets during the pause.
 void LiveSession::LeavePauseBehind() {
   constexpr int kMostBatches = 4096;
-  last_packet_us_ = g_get_monotonic_time();
+  last_packet_us_ = Now();
   if (!std::exchange(polled_, true)) return;
   for (int i = 0; i < kMostBatches; ++i)
     if (udp_.Receive(0, [](const ReceivedDatagram&) {}) != UdpFeed::Outcome::kPackets) break;
@@ -183,8 +179,14 @@ void LiveSession::SetConnected(bool connected, const std::string& reason) {
                             "reason", G_TYPE_STRING, reason.c_str(), nullptr)));
 }
 
+gint64 LiveSession::Now() const {
+  GstClock* own = gst_element_get_clock(gst_element());
+  const std::unique_ptr<GstClock, Unref> clock(own != nullptr ? own : gst_system_clock_obtain());
+  return static_cast<gint64>(GST_TIME_AS_USECONDS(gst_clock_get_time(clock.get())));
+}
+
 void LiveSession::Ask() {
-  const gint64 now = g_get_monotonic_time();
+  const gint64 now = Now();
   if (!link_ || link_->busy() || now - last_question_us_ < kQuestionIntervalUs) return;
   last_question_us_ = now;
   link_->Request();
@@ -246,7 +248,7 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
   if (!OpenSockets(metadata) || !SetMetadata(std::move(metadata))) return false;
   new_init_id_us_ = 0;
   wrong_sizes_in_a_row_ = 0;
-  if (first) last_packet_us_ = g_get_monotonic_time();
+  if (first) last_packet_us_ = Now();
   gst_element_post_message(
       gst_element(),
       gst_message_new_element(
@@ -260,7 +262,7 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
 /// The sensor restarted or was reconfigured. Its packets are dropped while new metadata may come,
 /// for kWaitForMetadataUs at most; then they are used with the old metadata.
 void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
-  const gint64 now = g_get_monotonic_time();
+  const gint64 now = Now();
   if (new_init_id_us_ == 0) new_init_id_us_ = now;
   // If our sensor has no serial number, the packet may be from another sensor, while ours
   // continues.
@@ -297,13 +299,13 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
   const ByteView payload{d.data, d.size};
   switch (Push(payload, arrival)) {
     case ouster::PacketVerdict::kLidar:
-      last_packet_us_ = g_get_monotonic_time();
+      last_packet_us_ = Now();
       wrong_sizes_in_a_row_ = 0;
       new_init_id_us_ = 0;
       if (!connected_) SetConnected(true, "packets arrive");
       break;
     case ouster::PacketVerdict::kNewInitId:
-      last_packet_us_ = g_get_monotonic_time();
+      last_packet_us_ = Now();
       HandleNewInitId(payload, arrival);
       break;
     case ouster::PacketVerdict::kWrongSize:
@@ -320,7 +322,7 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
 bool LiveSession::CheckSilence() {
   if (stream() == nullptr) return true;
   const bool never = stream()->batcher().stats().packets == 0 && !lost_once_;
-  const gint64 silence = g_get_monotonic_time() - last_packet_us_;
+  const gint64 silence = Now() - last_packet_us_;
   if (silence < (never ? kFirstSilenceUs : kSilenceUs)) return true;
   const std::string where =
       destination_.empty() ? std::string() : "; the sensor sends to " + destination_;

@@ -39,6 +39,8 @@ class LiveSession : public Session {
   void LeavePauseBehind();
   void SetConnected(bool connected, const std::string& reason);
   void Ask();
+  /// Microseconds by the pipeline's clock; without one, by the system's.
+  gint64 Now() const;
 
   std::unique_ptr<SensorLink> link_;  // null without hostname
   UdpFeed udp_;
@@ -51,7 +53,7 @@ class LiveSession : public Session {
   bool heard_ = false;  // a packet of the sensor has come
   guint reconnects_ = 0;
   std::string destination_;    // of the sensor's packets, by its configuration
-  gint64 last_packet_us_ = 0;  // g_get_monotonic_time()
+  gint64 last_packet_us_ = 0;  // by Now()
   gint64 new_init_id_us_ = 0;  // arrival of the first packet of an unknown init id
   gint64 last_question_us_ = 0;
   guint wrong_sizes_in_a_row_ = 0;
