@@ -372,7 +372,9 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
     gst_clear_buffer(out);  // drivers publish no empty cloud
   }
   const CapsPtr caps(info->ToCaps());
-  return SetSourceCaps(GST_BASE_SRC(push), caps.get());
+  const GstFlowReturn flow = SetSourceCaps(GST_BASE_SRC(push), caps.get());
+  if (flow != GST_FLOW_OK) gst_clear_buffer(out);  // the base class would ignore it
+  return flow;
 }
 
 static gboolean Unlock(GstBaseSrc* base) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Models whose clouds are those of their makers' ROS drivers.
+#include <gst/base/gstpushsrc.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -177,6 +178,20 @@ TEST(DriverModels, SlicesCoverTheScanOnce) {
     }
   }
   EXPECT_EQ(points[0], points[1]);
+}
+
+/// A stop may come between the making of a cloud and its caps. The base class then ignores a
+/// buffer.
+TEST(DriverModels, AStopBeforeTheCapsOfACloudLeavesNoBuffer) {
+  const ElementPtr source(gst_element_factory_make("lidartestsrc", nullptr));
+  gst_util_set_object_arg(G_OBJECT(source.get()), "model", "vlp-16");
+  auto* base = GST_BASE_SRC(source.get());
+  ASSERT_TRUE(GST_BASE_SRC_GET_CLASS(base)->start(base));
+  ASSERT_TRUE(GST_PAD_IS_FLUSHING(GST_BASE_SRC_PAD(base)));
+  GstBuffer* out = nullptr;
+  EXPECT_EQ(GST_PUSH_SRC_GET_CLASS(base)->create(GST_PUSH_SRC(base), &out), GST_FLOW_FLUSHING);
+  EXPECT_EQ(out, nullptr);
+  EXPECT_TRUE(GST_BASE_SRC_GET_CLASS(base)->stop(base));
 }
 
 }  // namespace
