@@ -22,6 +22,7 @@ import tempfile
 import time
 
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
+ENDS = b"Got EOS from"  # what it prints before it ends by itself, except with -q
 QUIET_SECONDS, PLAY_SECONDS = 4, 1.5
 PATIENCE = 180  # seconds, on a busy machine
 AT_A_TIME = 4
@@ -66,6 +67,8 @@ def output_for_a_while(process, quiet, play_seconds):
         if not plays and PLAYING in output:
             plays = True
             until = time.monotonic() + play_seconds
+        if ENDS in output:  # gst-launch-1.0 drops its handler of SIGINT before it has freed all
+            until = time.monotonic() + PATIENCE
         if time.monotonic() > until:
             break
     process.send_signal(signal.SIGINT)
