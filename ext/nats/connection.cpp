@@ -206,7 +206,9 @@ Connection::~Connection() {
   if (nc_ == nullptr) return;
   natsConnection_Destroy(nc_);
   std::unique_lock lock(shared_->mutex);
-  shared_->ended.wait_for(lock, kCloseTimeout, [this] { return shared_->over; });
+  if (!shared_->ended.wait_for(lock, kCloseTimeout, [this] { return shared_->over; })) return;
+  lock.unlock();
+  shared_->changed = nullptr;  // the thread of the last callback may hold `shared_` a moment longer
 }
 
 ConnectionState Connection::state() const {
