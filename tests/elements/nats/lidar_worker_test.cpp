@@ -191,14 +191,18 @@ TEST_F(LidarWorker, GivesUpWithoutAServerAndGoesOnWithIt) {
 
 TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
   const auto robot = Robot();
-  auto worker = Worker();
-  ASSERT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
-  server_.Freeze();
-  const Time begin = tools::Now();
-  EXPECT_EQ(worker->Stop(), 0);
-  // A busy machine may take another second to let the worker run.
-  EXPECT_LT(Seconds(tools::Now() - begin), 2);
-  server_.Thaw();
+  // The shortest of three times counts: a busy machine may not let the worker run.
+  double shortest_s = 1e9;
+  for (int i = 0; i < 3 && shortest_s >= 1; ++i) {
+    auto worker = Worker();
+    ASSERT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
+    server_.Freeze();
+    const Time begin = tools::Now();
+    EXPECT_EQ(worker->Stop(), 0);
+    shortest_s = std::min(shortest_s, Seconds(tools::Now() - begin));
+    server_.Thaw();
+  }
+  EXPECT_LT(shortest_s, 1);
 }
 
 TEST_F(LidarWorker, GoesOnFromThePoseAloneInAnotherStream) {

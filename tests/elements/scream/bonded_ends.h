@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <utility>
@@ -70,6 +72,40 @@ inline std::vector<guint64> OfLinks(GstElement* element, const char* field) {
     values.push_back(value);
   }
   return values;
+}
+
+/// Returns the sum of a field of all links.
+inline guint64 OfAllLinks(GstElement* element, const char* field) {
+  const auto values = OfLinks(element, field);
+  return std::accumulate(values.begin(), values.end(), guint64{0});
+}
+/// Returns how many packets the bonded `sink` was to send.
+inline guint64 PacketsOf(GstElement* sink) { return OfAllLinks(sink, "packets-first"); }
+
+/// Returns true once both links have had more than ten reports.
+inline bool BothHear(GstElement* sink) {
+  const auto accepted = OfLinks(sink, "feedback-accepted");
+  return accepted.size() == 2 && accepted[0] > 10 && accepted[1] > 10;
+}
+
+/// Plays until `enough` holds, then ends both pipelines.
+inline void Stream(Pipeline& sender, BondReceiver& receiver, const std::function<bool()>& enough) {
+  g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
+  sender.Play();
+  EXPECT_TRUE(Eventually(enough));
+  sender.SendEos();
+  EXPECT_TRUE(sender.Ends());
+  EXPECT_TRUE(receiver.pipeline.Ends());
+}
+
+/// Returns how many packets no link sent in time, because the machine stood still.
+inline guint64 TooOld(GstElement* sink) {
+  return OfAllLinks(sink, "packets-dropped") - OfAllLinks(sink, "copies-cancelled");
+}
+/// Expects all of `count` packets to have come, but those that were too old.
+inline void ExpectAllPassed(const BondReceiver& receiver, Pipeline& sender, guint64 count) {
+  EXPECT_LE(receiver.passed, count);
+  EXPECT_GE(receiver.passed + TooOld(sender.Get("out").get()), count);
 }
 
 /// A router between the links of a sender and one receiver. Each link has a port of its own here,

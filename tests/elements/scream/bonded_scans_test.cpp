@@ -80,9 +80,12 @@ TEST_P(BondedScans, ComeOnceAndWholeOverTwoLinks) {
   // The slices sent are compared, because a live encoder that is late leaves slices out.
   const std::vector<std::string> slices = sent.sorted();
   EXPECT_FALSE(slices.empty());
-  EXPECT_TRUE(got.sorted() == slices) << got.sorted().size() << " of " << slices.size();
+  const std::vector<std::string> came = got.sorted();
+  EXPECT_TRUE(std::includes(slices.begin(), slices.end(), came.begin(), came.end()));
+  EXPECT_TRUE(came.size() == slices.size() || TooOld(sender.Get("out").get()) > 0)
+      << came.size() << " of " << slices.size();
   const Stats decoder(receiver.Get("decoder").get());
-  EXPECT_EQ(decoder["slices"], slices.size());
+  EXPECT_EQ(decoder["slices"], came.size());
   EXPECT_EQ(decoder["slices-dropped"], 0U);
   for (const guint64 accepted : OfLinks(sender.Get("out").get(), "feedback-accepted"))
     EXPECT_GT(accepted, 0U) << "both links are in use";
