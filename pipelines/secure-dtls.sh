@@ -48,7 +48,7 @@ receive() {
 }
 # send CERTIFICATE. packet-overhead: 28 bytes of UDP and IP, 10 of SRTP.
 send() {
-  exec timeout --foreground --signal=INT $((seconds + 60)) "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
+  exec timeout --foreground --signal=INT $((seconds + 600)) "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
     --duration "$seconds" \
     lidartestsrc is-live=true model=os0-32 mode=512x10 ! lidarenc max-error=0.05 ! rtplidarpay ! \
     screamtx name=tx packet-overhead=38 ! \
