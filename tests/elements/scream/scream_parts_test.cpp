@@ -125,6 +125,12 @@ TEST(Bye, CutOffAnywhereGivesNoFalseGoodbye) {
   for (std::size_t n = 0; n < bye.size(); ++n) EXPECT_TRUE(ParseBye({bye.data(), n}).empty()) << n;
 }
 
+TEST(Bye, HasNoSourceInItsReason) {  // RFC 3550, section 6.6
+  const std::vector<std::uint8_t> bye{0x81, 203, 0,   3,   0,   0,   0, 7,
+                                      5,    'd', 'o', 'n', 'e', '.', 0, 0};
+  EXPECT_EQ(ParseBye({bye.data(), bye.size()}), std::vector<guint32>{7});
+}
+
 TEST(Bye, NamesNoMoreSourcesThanItsCountCanSay) {
   const auto bye = BuildBye(std::vector<guint32>(100, 7));
   EXPECT_EQ(ParseBye({bye.data(), bye.size()}).size(), 31U);
