@@ -187,6 +187,50 @@ TEST_P(EveryBin, LeavesNothingOfTheElementsThatItMade) {
   });
 }
 
+/// Pads of an element of several, and those to which events and queries of a pad go.
+struct PadLinks {
+  const char* factory;
+  const char* pad;
+  std::vector<std::string> others;
+};
+
+class LinkedPads : public ::testing::TestWithParam<PadLinks> {};
+INSTANTIATE_TEST_SUITE_P(All, LinkedPads,
+                         ::testing::Values(PadLinks{"screamrx", "sink", {"src"}},
+                                           PadLinks{"screamrx", "src", {"sink"}},
+                                           PadLinks{"screamrx", "rtcp_src", {}},
+                                           PadLinks{"screamtx", "sink_0", {"src"}},
+                                           PadLinks{"screamtx", "sink_1", {"src"}},
+                                           PadLinks{"screamtx", "src", {"sink_0", "sink_1"}},
+                                           PadLinks{"screamtx", "rtcp_sink", {"rtcp_src"}},
+                                           PadLinks{"screamtx", "rtcp_src", {"rtcp_sink"}},
+                                           PadLinks{"pointcloudfilter", "sink", {"src"}},
+                                           PadLinks{"pointcloudfilter", "src", {"sink"}}));
+
+TEST_P(LinkedPads, LeadToThePadsOfTheSameData) {
+  const ElementPtr element = Make(GetParam().factory);
+  ASSERT_TRUE(element);
+  const bool merges = GetParam().factory == std::string("screamtx");
+  const PadPtr first(merges ? gst_element_request_pad_simple(element.get(), "sink_0") : nullptr);
+  const PadPtr second(merges ? gst_element_request_pad_simple(element.get(), "sink_1") : nullptr);
+  const PadPtr pad(gst_element_get_static_pad(element.get(), GetParam().pad));
+  ASSERT_TRUE(pad);
+  std::vector<std::string> others;
+  GstIterator* links = gst_pad_iterate_internal_links(pad.get());
+  ASSERT_EQ(links == nullptr, GetParam().others.empty());
+  if (links == nullptr) return;
+  gst_iterator_foreach(
+      links,
+      [](const GValue* link, gpointer names) {
+        static_cast<std::vector<std::string>*>(names)->emplace_back(
+            GST_OBJECT_NAME(g_value_get_object(link)));
+      },
+      &others);
+  gst_iterator_free(links);
+  std::sort(others.begin(), others.end());
+  EXPECT_EQ(others, GetParam().others);
+}
+
 TEST(AllPlugins, LoadIntoOneProcessAndHoldTheseElements) {
   const auto built = OurElements();
   ASSERT_GE(built.size(), 14U);  // what needs an external library may be switched off
