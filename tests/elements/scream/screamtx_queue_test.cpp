@@ -228,6 +228,18 @@ TEST_F(ScreamTxOf, AFileWaitsForRoomAndLosesNothing) {
   EXPECT_EQ(Stats(element)["packets-dropped"], 0U);
 }
 
+TEST_F(ScreamTxOf, AFileWaitsBehindItsFirstPacketWhileItIsPaused) {
+  StartLive(false);
+  PushFrame(0, 30);
+  PushFrame(900, 30);
+  gst_element_set_state(element, GST_STATE_PAUSED);
+  auto pushed = PushAt(60, GST_CLOCK_TIME_NONE);
+  EXPECT_FALSE(IsIn(pushed, std::chrono::milliseconds(50)));
+  gst_element_set_state(element, GST_STATE_PLAYING);
+  EXPECT_TRUE(IsIn(pushed, kPatience));
+  EXPECT_EQ(pushed.get(), GST_FLOW_OK);
+}
+
 TEST_F(ScreamTxOf, AFileHasNoLatency) {
   StartLive(false);
   const gst::QueryPtr query(gst_query_new_latency());
