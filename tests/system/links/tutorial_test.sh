@@ -8,7 +8,7 @@ edge=lidar-edge$$
 folder=$(mktemp -d)
 finish() {
   local status=$?
-  for job in $(jobs -p); do kill -KILL "$job" 2>/dev/null || true; done
+  for end in "$robot" "$edge"; do ip netns pids "$end" 2>/dev/null | xargs -r kill -KILL || true; done
   ip netns del "$robot" 2>/dev/null || true
   ip netns del "$edge" 2>/dev/null || true
   [ "$status" = 0 ] || [ "$status" = 77 ] || tail -n 20 "$folder"/*.log >&2
