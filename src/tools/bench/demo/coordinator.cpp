@@ -31,8 +31,7 @@ using namespace std::chrono_literals;
 using tools::ChildProcess;
 using tools::Now;
 
-constexpr auto kStartLimit = 60s;
-constexpr auto kStopLimit = 60s;  // the receiver may still compare clouds
+constexpr auto kPhaseLimit = 60s;  // at the end the receiver may still compare clouds
 constexpr auto kTick = 100ms;
 constexpr int kPoorStream = 3;  // exit code
 constexpr auto kArrivalLimit = 3s;
@@ -289,8 +288,7 @@ void Coordinator::Enter(Phase phase) {
 }
 
 void Coordinator::CheckLimit() {
-  const Duration limit = phase_ < Phase::kStreaming ? kStartLimit : kStopLimit;
-  if (phase_ == Phase::kStreaming || Now() - phase_since_ < limit) return;
+  if (phase_ == Phase::kStreaming || Now() - phase_since_ < kPhaseLimit) return;
   static constexpr const char* kWaitingFor[] = {"the receiver to play",   "the link to listen",
                                                 "the first packet",       "",
                                                 "the sender to drain",    "",
