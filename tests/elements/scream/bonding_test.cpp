@@ -115,7 +115,7 @@ TEST(Bonding, GoesOnWhereTheAddressOfALinkChangesEachSecond) {
   Pipeline sender(Bonded(router.Addresses()));
   const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
   Stream(sender, receiver, [&] { return router.moves >= 4 && receiver.passed >= 450; });
-  // What waits in a socket of the router when it moves may be lost.
+  // A move of the router loses what waits in its socket.
   EXPECT_GE(receiver.passed, PacketsOf(out.get()) * 9 / 10);
   EXPECT_EQ(OfLinks(out.get(), "packets-sent").size(), 2U);
   EXPECT_LE(OfLinks(in.get(), "packets-received").size(), 4U);
