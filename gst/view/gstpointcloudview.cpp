@@ -122,6 +122,7 @@ struct State {
   bool drawing = false;  // a picture is begun
   guint scan_id = 0;
   GstClockTime pts = GST_CLOCK_TIME_NONE;  // of that scan
+  GstClockTime capture_time = GST_CLOCK_TIME_NONE;
 };
 
 ViewSettings ToView(const Settings& s) {
@@ -287,6 +288,7 @@ static void BeginPicture(State* state, const GstLidarSlice& slice, GstBuffer* in
   state->drawing = true;
   state->scan_id = slice.scan_id;
   state->pts = GST_BUFFER_PTS(in);
+  state->capture_time = gst_lidar_buffer_get_capture_time(in);
 }
 
 static GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
@@ -300,6 +302,9 @@ static GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
   gst_video_frame_unmap(&frame);
   GST_BUFFER_PTS(out) = state.pts;
   GST_BUFFER_DURATION(out) = state.info->ScanDuration();
+  // The base class has copied the time of the last slice, or of the next scan.
+  if (GST_CLOCK_TIME_IS_VALID(state.capture_time))
+    gst_lidar_buffer_set_capture_time(out, state.capture_time);
   state.drawing = false;
   return GST_FLOW_OK;
 }
