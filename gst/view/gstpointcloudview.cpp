@@ -188,8 +188,9 @@ static GstCaps* FixateCaps(GstBaseTransform* base, GstPadDirection direction, Gs
 
 static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   State& state = StateOf(base);
-  std::string why = "x, y and z are not F32 side by side";
+  std::string why;
   state.info = CloudInfo::FromFrameCaps(in, &why);
+  if (state.info) why = "x, y and z are not F32 side by side";
   if (!state.info || !state.info->fields.HasPackedXyz()) {
     if (state.refused.Note(in))
       GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a cloud to draw: %s.", why.c_str()),
