@@ -253,6 +253,17 @@ TEST(TrailMap, IsBoundedHoweverLongTheWay) {
   EXPECT_GT(map.way().back()[0], 39'990);
 }
 
+TEST(TrailMap, CountsTheScansThatSawAPlaceNotTheirPoints) {
+  TrailMap map(1000);
+  map.MoveTo({{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 0);
+  for (std::uint16_t scan = 1; scan <= 2; ++scan) {
+    for (int i = 0; i < 5; ++i) map.Add({3.1F, 0.1F, 0.1F}, 0);
+    map.EndScan();
+    ASSERT_EQ(map.points().size(), 1U);
+    EXPECT_EQ(map.points()[0].scans, scan);
+  }
+}
+
 TEST(TrailMap, FollowsTheVelocityWithinAScan) {
   TrailMap map(1000);
   const double half = std::sqrt(0.5);
