@@ -387,6 +387,11 @@ static gboolean UnlockStop(GstBaseSrc* base) {
   return TRUE;
 }
 
+static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING) StateOf(element).pacer.MeasureUnixOffset();
+  return GST_ELEMENT_CLASS(gst_lidar_test_src_parent_class)->change_state(element, transition);
+}
+
 static void ApplyLive(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::unique_lock lock(state.mutex);
@@ -417,4 +422,5 @@ static void gst_lidar_test_src_class_init(GstLidarTestSrcClass* klass) {
   base->unlock = Unlock;
   base->unlock_stop = UnlockStop;
   GST_PUSH_SRC_CLASS(klass)->create = Create;
+  GST_ELEMENT_CLASS(klass)->change_state = ChangeState;
 }

@@ -20,12 +20,11 @@ std::optional<GstClockTime> RunningTime(GstElement* element) {
 
 void LivePacer::Start() {
   start_ = RunningTime(GST_ELEMENT(source_)).value_or(0);
-  MeasureUnixOffset();
   started_ = true;
 }
 
 void LivePacer::MeasureUnixOffset() {
-  const auto now = RunningTime(GST_ELEMENT(source_)).value_or(start_);
+  const auto now = RunningTime(GST_ELEMENT(source_)).value_or(0);
   unix_offset_ =
       g_get_real_time() * static_cast<gint64>(GST_USECOND) - static_cast<GstClockTimeDiff>(now);
 }
@@ -48,8 +47,6 @@ GstFlowReturn LivePacer::WaitUntil(Duration t) {
   while (Wait(ToRunningTime(t)) == GST_CLOCK_UNSCHEDULED) {
     const GstFlowReturn flow = gst_base_src_wait_playing(source_);
     if (flow != GST_FLOW_OK) return flow;
-    // The running time stood still while the pipeline was paused; UTC did not.
-    MeasureUnixOffset();
   }
   return GST_FLOW_OK;
 }

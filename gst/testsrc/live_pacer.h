@@ -3,6 +3,7 @@
 #pragma once
 #include <gst/base/gstbasesrc.h>
 
+#include <atomic>
 #include <mutex>
 #include <optional>
 
@@ -10,8 +11,8 @@
 
 namespace lidar::gst {
 
-/// Each source has a pacer, and must outlive it. Only SetFlushing() may be called by other threads
-/// than the streaming thread.
+/// Each source has a pacer, and must outlive it. Only SetFlushing() and MeasureUnixOffset() may be
+/// called by other threads than the streaming thread.
 class LivePacer {
  public:
   explicit LivePacer(GstBaseSrc* source) : source_(source) {}
@@ -29,15 +30,18 @@ class LivePacer {
   /// Called by unlock and unlock_stop. Any thread may call it.
   void SetFlushing(bool flushing);
 
- private:
+  /// Called whenever the pipeline begins to play: the running time stands still in a pause; UTC
+  /// does not.
   void MeasureUnixOffset();
+
+ private:
   GstClockReturn Wait(GstClockTime running_time);
 
   GstBaseSrc* source_;
   bool started_ = false;
-  GstClockTime start_ = 0;            // running time of stream time zero
-  GstClockTimeDiff unix_offset_ = 0;  // UTC less running time
-  std::mutex mutex_;                  // guards what follows; not held while waiting
+  GstClockTime start_ = 0;                        // running time of stream time zero
+  std::atomic<GstClockTimeDiff> unix_offset_{0};  // UTC less running time
+  std::mutex mutex_;                              // guards what follows; not held while waiting
   bool flushing_ = false;
   GstClockID wait_ = nullptr;
 };

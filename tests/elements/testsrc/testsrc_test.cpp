@@ -203,6 +203,22 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   EXPECT_EQ(GST_BUFFER_PTS(next.get()), GST_SECOND);
 }
 
+TEST(LidarTestSrc, CaptureTimesAfterAPauseAreThoseOfTheDay) {
+  const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
+  test::UseTestClock(h.get());
+  gst_harness_play(h.get());
+  // The running time stands still, as it does in a pipeline that pauses.
+  ASSERT_TRUE(test::AwaitClockWait(h.get(), test::kClockStart + 12'500'000));
+  gst_element_set_state(h->element, GST_STATE_PAUSED);
+  const auto resumed = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+  gst_element_set_state(h->element, GST_STATE_PLAYING);
+  ASSERT_TRUE(test::AwaitClockWait(h.get(), test::kClockStart + 12'500'000));
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+  const BufferPtr first = Pull(h);
+  EXPECT_EQ(GST_BUFFER_PTS(first.get()), 0U);
+  EXPECT_GE(gst_lidar_buffer_get_capture_time(first.get()), resumed);
+}
+
 TEST(LidarTestSrc, ALiveSourceStopsWhileItWaits) {
   for (int run = 0; run < 3; ++run) {
     const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
