@@ -181,21 +181,22 @@ TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
   EXPECT_EQ(max, GST_CLOCK_TIME_NONE);
 }
 
+/// Lets a waiter go whose time has passed: the test clock holds it until then.
+void ReleaseWaiter(const Harness& h) {
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+  gst_clock_id_unref(
+      gst_test_clock_process_next_clock_id(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))));
+}
+
 TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
   gst_harness_play(h.get());
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
-  // The test clock holds a waiter whose time has passed until it is processed.
-  const auto release = [&] {
-    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
-    gst_clock_id_unref(
-        gst_test_clock_process_next_clock_id(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))));
-  };
-  release();
+  ReleaseWaiter(h);
   EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // it was under way
-  release();
+  ReleaseWaiter(h);
   const BufferPtr next = Pull(h);
   EXPECT_EQ(SliceOf(next).scan_id, 10U);
   EXPECT_EQ(SliceOf(next).slice_index, 0U);
@@ -416,36 +417,63 @@ TEST(LidarTestSrc, ItsImuGivesTheSameSamplesAgain) {
     EXPECT_EQ(BytesOf(first.samples[i]), BytesOf(again.samples[i]));
 }
 
-using Offsets = std::vector<GstClockTime>;  // capture times minus PTS
-void KeepOffsets(GstElement*, GstPad* pad, Offsets* offsets) {
-  gst_pad_add_probe(
-      pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo* info, gpointer kept) {
-        GstBuffer* buffer = GST_PAD_PROBE_INFO_BUFFER(info);
-        static_cast<Offsets*>(kept)->push_back(gst_lidar_buffer_get_capture_time(buffer) -
-                                               GST_BUFFER_PTS(buffer));
-        return GST_PAD_PROBE_OK;
-      },
-      offsets, nullptr);
+/// lidartestsrc with its IMU, on a test clock. Keeps what leaves the pad imu.
+class LiveImu {
+ public:
+  LiveImu() {
+    gst_util_set_object_arg(G_OBJECT(h_->element), "mode", "512x10");
+    g_object_set(h_->element, "imu", TRUE, "is-live", TRUE, nullptr);
+    g_signal_connect(h_->element, "pad-added", G_CALLBACK(OnPad), &samples_);
+    test::UseTestClock(h_.get());
+    gst_harness_play(h_.get());
+  }
+  const Harness& harness() const { return h_; }
+  const std::vector<BufferPtr>& samples() const { return samples_; }
+
+ private:
+  static void OnPad(GstElement*, GstPad* pad, std::vector<BufferPtr>* samples) {
+    gst_pad_add_probe(
+        pad, GST_PAD_PROBE_TYPE_BUFFER,
+        [](GstPad*, GstPadProbeInfo* info, gpointer kept) {
+          static_cast<std::vector<BufferPtr>*>(kept)->emplace_back(
+              gst_buffer_ref(GST_PAD_PROBE_INFO_BUFFER(info)));
+          return GST_PAD_PROBE_OK;
+        },
+        samples, nullptr);
+  }
+  std::vector<BufferPtr> samples_;
+  Harness h_{gst_harness_new_with_padnames("lidartestsrc", nullptr, "src")};
+};
+
+GstClockTime OffsetOf(const BufferPtr& buffer) {
+  return gst_lidar_buffer_get_capture_time(buffer.get()) - GST_BUFFER_PTS(buffer.get());
 }
 
 TEST(LidarTestSrc, ALiveImuHasTheClockOfTheClouds) {
-  Offsets offsets;
-  const Harness h(gst_harness_new_with_padnames("lidartestsrc", nullptr, "src"));
-  gst_util_set_object_arg(G_OBJECT(h->element), "mode", "512x10");
-  g_object_set(h->element, "imu", TRUE, "is-live", TRUE, nullptr);
-  g_signal_connect(h->element, "pad-added", G_CALLBACK(KeepOffsets), &offsets);
-  test::UseTestClock(h.get());
-  gst_harness_play(h.get());
+  const LiveImu live;
+  const Harness& h = live.harness();
   for (std::size_t i = 1; i <= 10; ++i) {
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
-    EXPECT_EQ(offsets.size(), i - 1) << "samples leave with the slice in which they were taken";
+    EXPECT_EQ(live.samples().size(), i - 1) << "samples leave with the slice of their sweep";
     ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
     const BufferPtr cloud = Pull(h);
-    ASSERT_EQ(offsets.size(), i);
-    EXPECT_EQ(offsets.back(),
-              gst_lidar_buffer_get_capture_time(cloud.get()) - GST_BUFFER_PTS(cloud.get()));
+    ASSERT_EQ(live.samples().size(), i);
+    EXPECT_EQ(OffsetOf(live.samples().back()), OffsetOf(cloud));
   }
+}
+
+TEST(LidarTestSrc, AnImuSkipsWithTheClouds) {
+  const LiveImu live;
+  const Harness& h = live.harness();
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+  gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
+  ReleaseWaiter(h);
+  Pull(h);  // it was under way
+  ReleaseWaiter(h);
+  EXPECT_EQ(GST_BUFFER_PTS(Pull(h).get()), GST_SECOND);
+  ASSERT_EQ(live.samples().size(), 2U);
+  EXPECT_GE(GST_BUFFER_PTS(live.samples().back().get()), GST_SECOND);
+  EXPECT_EQ(SamplesIn(live.samples().back()).size(), 2U);
 }
 
 TEST(LidarTestSrc, HasNoImuUnlessItIsWanted) {
