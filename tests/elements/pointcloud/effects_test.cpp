@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kCaps =
     "application/x-pointcloud2,width=4,height=2,point-step=13,"
-    "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:U8:12\",framerate=10/1";
+    "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:U8:12\",framerate=10/1,frame-id=lidar";
 
 struct Effect {
   const char* element;  // with the properties that the effect needs

@@ -190,6 +190,8 @@ void ParseBytesCourse(Course& c) {
   c.PushSegment(GST_FORMAT_BYTES, 72);
   c.Push("a fourth", Row(2, 7));
   c.PushEvent("segment done", gst_event_new_segment_done(GST_FORMAT_BYTES, 96));
+  c.SetCaps(CapsText(2, 1, false, "z:F32:0,y:F32:4,x:F32:8"));
+  c.Push("of other fields", Row(2, 8));
   c.Push("cut short", Row(1, 9));
   c.End();
   c.Stop();
