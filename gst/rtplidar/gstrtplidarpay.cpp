@@ -47,6 +47,7 @@ const std::array<Stat<Counters>, 7> kStats = {{
 
 struct State : PayState {
   Receipts receipts;
+  GstClockTime scan_time = 0;  // of the caps; 0: not known; guarded by mutex
   RefusedCaps refused;
   GstPadQueryFunction base_src_query = nullptr;
 };
@@ -102,6 +103,26 @@ static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   return any || gst_caps_can_intersect(allowed.get(), usual.get()) ? "application" : "video";
 }
 
+static void PostLatencyChange(gpointer element) {
+  gst_element_post_message(GST_ELEMENT(element), gst_message_new_latency(GST_OBJECT(element)));
+}
+
+/// Notes how long a scan takes, and posts that the latency changes if it depends on that.
+static void SetScanTime(GstRTPBasePayload* base, State& state) {
+  const auto& config = *state.config;
+  const GstClockTime scan_time =
+      config.framerate_n > 0
+          ? gst_util_uint64_scale(GST_SECOND, config.framerate_d, config.framerate_n)
+          : 0;
+  bool changed = false;
+  {
+    std::lock_guard lock(state.mutex);
+    changed = state.settings.aggregate && scan_time != state.scan_time;
+    state.scan_time = scan_time;
+  }
+  if (changed) PostLatencyChange(base);
+}
+
 static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   std::string why;
@@ -124,6 +145,7 @@ static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
     std::lock_guard lock(state.mutex);
     state.config_due = true;
   }
+  SetScanTime(base, state);
   gst_rtp_base_payload_set_options(base, MediaDownstream(base), TRUE, "X-LIDAR-DRACO", kClockRate);
   return gst_rtp_base_payload_set_outcaps(base, nullptr);
 }
@@ -197,24 +219,16 @@ static gboolean SrcEvent(GstRTPBasePayload* base, GstEvent* event) {
 /// Returns the longest delay of an aggregate; 0 without aggregation.
 static GstClockTime HoldTime(GstRTPBasePayload* base) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
-  const CapsPtr caps(gst_pad_get_current_caps(GST_RTP_BASE_PAYLOAD_SINKPAD(base)));
   std::lock_guard lock(state.mutex);
-  gint n = 0;
-  gint d = 1;
-  if (!state.settings.aggregate || !caps ||
-      !gst_structure_get_fraction(gst_caps_get_structure(caps.get(), 0), "framerate", &n, &d) ||
-      n <= 0) {
-    return 0;
-  }
-  const GstClockTime scan = gst_util_uint64_scale_int(GST_SECOND, d, n);
-  return base->max_ptime >= 0 ? MIN(scan, static_cast<GstClockTime>(base->max_ptime)) : scan;
+  if (!state.settings.aggregate) return 0;
+  return base->max_ptime >= 0 ? MIN(state.scan_time, static_cast<GstClockTime>(base->max_ptime))
+                              : state.scan_time;
 }
 
-/// Posts that the latency changes with the properties that `HoldTime` reads; the base class has
-/// max-ptime.
+/// `HoldTime` reads these properties; the base class has max-ptime.
 static void NotifyChange(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "aggregate") == 0 || g_strcmp0(spec->name, "max-ptime") == 0)
-    gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
+    PostLatencyChange(object);
 }
 
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
@@ -232,6 +246,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
     state.recent_slice_bytes = state.recent_payload_bytes = 0;
     state.config_due = true;
     state.config.reset();
+    state.scan_time = 0;
     state.refused.Reset();
     state.config_sent_at = GST_CLOCK_TIME_NONE;
     state.scans = lidar::rtp::ScanCounter(g_random_int());

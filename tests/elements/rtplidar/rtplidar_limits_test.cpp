@@ -170,6 +170,20 @@ TEST_F(PayLimits, SaysThatAggregatesChangeTheLatency) {
   EXPECT_TRUE(bus.Pop(GST_MESSAGE_LATENCY));
 }
 
+TEST_F(PayLimits, SaysThatAnotherFrameRateOfAggregatesChangesTheLatency) {
+  const ElementBus bus(h_->element);
+  gst_harness_set_src_caps_str(h_.get(), EncodedCaps("range", 20).c_str());
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_LATENCY)) << "without aggregates";
+  g_object_set(h_->element, "aggregate", TRUE, nullptr);
+  EXPECT_TRUE(bus.Pop(GST_MESSAGE_LATENCY));
+  EXPECT_EQ(gst_harness_query_latency(h_.get()), 50 * GST_MSECOND);
+  gst_harness_set_src_caps_str(h_.get(), EncodedCaps("xyz", 20).c_str());
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_LATENCY)) << "the same frame rate";
+  gst_harness_set_src_caps_str(h_.get(), EncodedCaps("xyz", 5).c_str());
+  EXPECT_TRUE(bus.Pop(GST_MESSAGE_LATENCY));
+  EXPECT_EQ(gst_harness_query_latency(h_.get()), 200 * GST_MSECOND);
+}
+
 TEST_F(PayLimits, AFlushForgetsWhatWasCollected) {
   g_object_set(h_->element, "aggregate", TRUE, "config-interval", 0, nullptr);
   Push(0, 0);

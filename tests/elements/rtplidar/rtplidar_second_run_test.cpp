@@ -11,8 +11,7 @@ namespace {
 void Give(GstHarness* h, GstBuffer* buffer) { gst_pad_push(h->srcpad, buffer); }
 
 /// Pushes some slices, one of them empty, and bounds. An aggregate is under way at the end.
-void PayRun(GstHarness* h, bool aggregate) {
-  g_object_set(h->element, "aggregate", aggregate, nullptr);
+void PayRun(GstHarness* h) {
   const GstLidarBitrateBounds bounds{1'000, 2'000, 3'000};
   gst_pad_push_event(h->srcpad, gst_lidar_event_new_bitrate_bounds(&bounds));
   for (guint scan = 0; scan < 12; ++scan)
@@ -23,6 +22,11 @@ void PayRun(GstHarness* h, bool aggregate) {
 
 class PaySecondRun : public ::testing::TestWithParam<bool> {
  protected:
+  PaySecondRun() {
+    g_object_set(h_->element, "aggregate", GetParam(), nullptr);
+    trace_.Take();
+  }
+
   Harness h_{gst_harness_new("rtplidarpay")};
   RunTrace trace_{h_.get(), false};  // numbers begin at random
 };
@@ -31,7 +35,7 @@ TEST_P(PaySecondRun, IsAsTheFirst) {
   Lines first;
   for (int run = 0; run < 2; ++run) {
     trace_.Begin(EncodedCaps());
-    PayRun(h_.get(), GetParam());
+    PayRun(h_.get());
     Lines lines = trace_.Take();
     // The stats and the SSRC of every payloader are random.
     if (lines.back().rfind("stats", 0) == 0) lines.pop_back();
@@ -51,7 +55,7 @@ TEST_P(PaySecondRun, IsAsTheFirst) {
 
 TEST_P(PaySecondRun, BeginsWithTheConfigBehindAFlush) {
   trace_.Begin(EncodedCaps());
-  PayRun(h_.get(), GetParam());
+  PayRun(h_.get());
   trace_.Flush();
   PullAll(h_.get());
   Give(h_.get(), EncodedSlice(14, kSlices - 1, 200));
