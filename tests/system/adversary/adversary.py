@@ -28,6 +28,7 @@ class Context:
     random: random.Random
     seconds: float  # of each attack
     sanitized: bool
+    memory_factor: int  # of the bounds, for a sanitizer takes memory too
 
 
 def run(attack, context):
@@ -70,23 +71,26 @@ def main():
     parser.add_argument("--victim", required=True, help="the program `victim` of this folder")
     parser.add_argument("--minutes", type=float, default=0, help="rounds for so long; 0 for one short round")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--sanitized", action="store_true", help="the victim is slow, and takes more memory")
+    parser.add_argument("--sanitizers", default="none", help="meson's b_sanitize of the victim")
     parser.add_argument("--only", help="attacks whose name contains this")
     options = parser.parse_args()
     ends.Victim.program = options.victim
+    sanitized = options.sanitizers != "none"
+    # Shadow memory of ThreadSanitizer: five to ten times the program's.
+    memory_factor = 10 if "thread" in options.sanitizers else 3 if sanitized else 1
     rng = random.Random(options.seed)
     random.seed(options.seed)
     print(f"seed {options.seed}")
     recording, other = ends.record(1, 8), ends.record(2, 8)
     chosen = [a for a in ATTACKS if not options.only or options.only in a.__name__.replace("_", " ")]
-    seconds = 8 if options.minutes else 0.5 if options.sanitized else 1
+    seconds = 8 if options.minutes else 0.5 if sanitized else 1
     until = time.monotonic() + 60 * options.minutes
     results = []
     while not results or time.monotonic() < until:
         rng.shuffle(chosen)
-        at_once = AT_ONCE_SANITIZED if options.sanitized else AT_ONCE
+        at_once = AT_ONCE_SANITIZED if sanitized else AT_ONCE
         results += one_round(chosen, at_once, lambda: Context(recording, other, random.Random(rng.random()), seconds,
-                                                              options.sanitized))
+                                                              sanitized, memory_factor))
     return 1 if table(results) else 0
 
 

@@ -67,7 +67,7 @@ class Bench:
 
     def expect_bounded(self):
         grown = self.receiver.ask()["rss_kb"] - self.before["rss_kb"]
-        most = MOST_GROWTH_KB * (3 if self.context.sanitized else 1)
+        most = MOST_GROWTH_KB * self.context.memory_factor
         assert grown < most, f"memory grew by {grown} kB"
         more = self.receiver.last["threads"] - self.before["threads"]
         assert more <= 2, f"{more} threads were added"

@@ -48,7 +48,7 @@ class SenderBench:
                 f"the target stays at {net['target-bitrate'] / 1e6:.2f} of {self.target / 1e6:.2f} Mbit/s"
             time.sleep(0.1)
         grown = self.sender.last["rss_kb"] - self.rss
-        assert grown < MOST_GROWTH_KB * (3 if context.sanitized else 1), f"memory grew by {grown} kB"
+        assert grown < MOST_GROWTH_KB * context.memory_factor, f"memory grew by {grown} kB"
         assert not self.sender.last["error"], self.sender.last["error"]
         self.sender.close()
         self.receiver.close()

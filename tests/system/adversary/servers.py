@@ -111,7 +111,7 @@ def bad_server(name):
         time.sleep(min(1.0, context.seconds))
         report = victim.ask()
         grown = report["rss_kb"] - rss
-        assert grown < LIMIT_KB * (3 if context.sanitized else 1), f"memory grew by {grown} kB"
+        assert grown < LIMIT_KB * context.memory_factor, f"memory grew by {grown} kB"
         took = victim.ask("null")["took"]
         limit = 3000 if context.sanitized else 1000
         assert took < limit, f"stopping took {took} ms"

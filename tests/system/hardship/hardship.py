@@ -74,7 +74,7 @@ class Stream:
 
 def tenth_of_a_processor(options):
     """Either end gets 10 % of a processor for some seconds."""
-    if options.sanitized:
+    if options.sanitizers != "none":
         raise Skip("a sanitizer needs more than that")
     seen = []
     with cpu_group(10) as procs:
@@ -161,7 +161,7 @@ def pads_that_come_and_go(_options):
 
 def many_receivers(options):
     """200 receivers in one process: a thread or two each, and all end."""
-    count = 50 if options.sanitized else 200
+    count = 200 if options.sanitizers == "none" else 50
     victim = ends.Victim("fakesrc num-buffers=1 ! fakesink async=false")
     few = victim.ask()["threads"]
     victim.close()
@@ -360,7 +360,7 @@ def main():
     parser.add_argument("--tools", default="", help="the folder of the command-line programs")
     parser.add_argument("--seconds", type=float, default=2, help="of each hardship")
     parser.add_argument("--stop-seconds", type=float, default=2, help="for which a process is stopped")
-    parser.add_argument("--sanitized", action="store_true")
+    parser.add_argument("--sanitizers", default="none", help="meson's b_sanitize of the victim")
     parser.add_argument("--only", help="hardships whose name contains this")
     options = parser.parse_args()
     ends.Victim.program = options.victim
