@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/tx/entry_gate.h"
 
+#include <utility>
+
 namespace lidar::gst {
 namespace {
 
 /// Shifts `entry` after a flush.
 GstClockTime Shifted(EntryShift* s, GstClockTime entry, GstClockTime base_time, GstClockTime now) {
-  if (s->due) *s = {false, base_time, now > entry ? now - entry : 0};
+  if (s->due) *s = {false, false, base_time, now > entry ? now - entry : 0};
+  if (std::exchange(s->moved, false)) s->base_time = base_time;
   return s->base_time == base_time ? entry + s->shift : entry;
 }
 
@@ -37,8 +40,10 @@ void EntryGate::Close(const TxStreams& streams) {
 void EntryGate::set_playing(const TxStreams& streams, bool playing) {
   playing_ = playing;
   changed_.notify_all();
-  if (playing) return;
-  for (const auto& stream : streams) Release(*stream);
+  for (const auto& stream : streams) {
+    stream->entry_shift.moved = playing;
+    if (!playing) Release(*stream);
+  }
 }
 
 void EntryGate::Release(TxStream& stream) {

@@ -51,9 +51,10 @@ struct StreamCounters {
 };
 
 /// A flush restarts the running time, but without a preroll the base time stays. Entry times are
-/// shifted until the pipeline has a new base time.
+/// shifted until a preroll gives the pipeline a new base time; a pause only moves it.
 struct EntryShift {
-  bool due = false;  // measure the shift with the next buffer
+  bool due = false;    // measure the shift with the next buffer
+  bool moved = false;  // take the base time of the next buffer
   GstClockTime base_time = GST_CLOCK_TIME_NONE;
   GstClockTime shift = 0;
 };

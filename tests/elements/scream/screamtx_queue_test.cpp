@@ -183,6 +183,18 @@ class ScreamTxOf : public ScreamTx {
   static bool IsIn(const std::future<GstFlowReturn>& pushed, std::chrono::milliseconds patience) {
     return pushed.wait_for(patience) == std::future_status::ready;
   }
+  /// Returns the time for which a packet waits, and lets it enter then.
+  GstClockTime EntryOf(guint16 seq, GstClockTime pts) {
+    auto pushed = PushAt(seq, pts);
+    GstTestClock* clock = gst_harness_get_testclock(rtp.get());
+    EXPECT_TRUE(gst_test_clock_timed_wait_for_multiple_pending_ids(
+        clock, 1, static_cast<guint>(kPatience / std::chrono::milliseconds(1)), nullptr));
+    const GstClockTime entry = gst_test_clock_get_next_entry_time(clock);
+    gst_object_unref(clock);
+    gst_harness_crank_single_clock_wait(rtp.get());
+    EXPECT_EQ(pushed.get(), GST_FLOW_OK);
+    return entry;
+  }
   static inline bool live_ = true;
 };
 
@@ -200,16 +212,24 @@ TEST_F(ScreamTxOf, ALiveStreamThatFollowsOneThatIsNotEntersAtOnce) {
 TEST_F(ScreamTxOf, AFileEntersAtItsTimeOnTheClock) {
   StartLive(false);
   gst_element_set_base_time(element, 5 * GST_SECOND);
-  auto pushed = PushAt(0, GST_SECOND);
-  GstTestClock* clock = gst_harness_get_testclock(rtp.get());
-  GstClockID id = nullptr;
-  gst_test_clock_wait_for_next_pending_id(clock, &id);
-  EXPECT_EQ(gst_clock_id_get_time(id), 6 * GST_SECOND);
-  gst_clock_id_unref(id);
-  gst_object_unref(clock);
-  EXPECT_FALSE(IsIn(pushed, std::chrono::milliseconds(0)));
-  gst_harness_crank_single_clock_wait(rtp.get());
-  EXPECT_EQ(pushed.get(), GST_FLOW_OK);
+  EXPECT_EQ(EntryOf(0, GST_SECOND), 6 * GST_SECOND);
+}
+
+TEST_F(ScreamTxOf, AFileKeepsItsTimeBehindAFlushThroughAPauseButNotThroughAPreroll) {
+  StartLive(false);
+  EXPECT_EQ(EntryOf(0, 10 * GST_SECOND), 10 * GST_SECOND);
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  ASSERT_TRUE(gst_harness_push_event(rtp.get(), NewSegment()));
+  EXPECT_EQ(EntryOf(1, 0), 10 * GST_SECOND);
+  EXPECT_EQ(EntryOf(2, GST_SECOND), 11 * GST_SECOND);
+  gst_element_set_state(element, GST_STATE_PAUSED);
+  gst_harness_set_time(rtp.get(), 16 * GST_SECOND);
+  gst_element_set_base_time(element, 5 * GST_SECOND);
+  gst_element_set_state(element, GST_STATE_PLAYING);
+  EXPECT_EQ(EntryOf(3, 2 * GST_SECOND), 17 * GST_SECOND);
+  gst_element_set_base_time(element, 17 * GST_SECOND);  // of a preroll elsewhere
+  EXPECT_EQ(EntryOf(4, 3 * GST_SECOND), 20 * GST_SECOND);
 }
 
 TEST_F(ScreamTxOf, AFileWaitsForRoomAndLosesNothing) {
