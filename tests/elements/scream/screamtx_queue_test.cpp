@@ -40,6 +40,7 @@ TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
   EXPECT_EQ(packets[0], 30);  // the frame's first packet had left
   EXPECT_EQ(packets[99999], 2);
   EXPECT_EQ(packets.size(), 2U);
+  const gst::PadPtr another(gst_element_request_pad_simple(element, "sink_%u"));
   const Stats stats(element);
   EXPECT_EQ(stats["frames-dropped"], 4U);
   EXPECT_EQ(stats["packets-dropped"], 120U);

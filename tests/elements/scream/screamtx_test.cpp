@@ -113,6 +113,7 @@ TEST_F(ScreamTx, TellsTheEncoderItsOwnBoundsAndStartsWithinThem) {
   EXPECT_NEAR(told.min_bitrate, 3'000'000, 10'000);
   EXPECT_NEAR(told.max_bitrate, 8'000'000, 10'000);
   EXPECT_GE(told.bitrate, 2'990'000U);
+  EXPECT_GE(Stats(element)["pace-bitrate"], 3'000'000U);
 }
 
 TEST_F(ScreamTx, StartsAfreshAfterEveryStateCycle) {
