@@ -146,7 +146,7 @@ Decision RateController::NextSlice(const SliceFeatures& slice) {
 }
 
 void RateController::Settle(double bytes) {
-  ledger_ -= bytes;
+  if (target_) ledger_ -= bytes;
   pending_ = false;
   bounds_due_ = bounds_due_ || slice_.slice_index + 1 == slice_.slice_count;
   stats_.saved_bytes = saved_ + repay_ + ledger_;

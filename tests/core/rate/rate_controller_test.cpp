@@ -373,6 +373,28 @@ TEST(RateController, PaysBackHalfOfADebtWithEachScan) {
   EXPECT_NEAR(static_cast<double>(next.budget->bytes()), share - 0.5 * owed, 0.02 * share);
 }
 
+TEST(RateController, OwesNothingBehindScansWithoutATarget) {
+  SyntheticCodec::Parameters p;
+  p.slices = 1;
+  p.noise = p.drift = 0;
+  Stream run(p);
+  run.Many(5, [](auto) { return 4e6; });
+  const double share = 4e6 / 8 / p.scans_per_second;
+  EncodedSize encoded;
+  encoded.step_m = run.controller.NextSlice(run.codec.Features(5, 0)).settings.step_m;
+  encoded.size = DataSize::Bytes(static_cast<std::int64_t>(1.2 * share));
+  if (run.controller.OnEncoded(encoded)) run.controller.OnEncoded(encoded);
+  run.controller.SetTarget(std::nullopt);
+  for (std::uint32_t scan = 6; scan < 8; ++scan) {
+    const SliceFeatures f = run.codec.Features(scan, 0);
+    run.controller.OnEncoded(run.codec.Encode(f, run.controller.NextSlice(f).settings));
+  }
+  run.controller.SetTarget(DataRate::BitsPerSecond(4e6));
+  const Decision decision = run.controller.NextSlice(run.codec.Features(8, 0));
+  ASSERT_TRUE(decision.budget);
+  EXPECT_NEAR(static_cast<double>(decision.budget->bytes()) / share, 1, 0.02);
+}
+
 INSTANTIATE_TEST_SUITE_P(Slices, Tracking, ::testing::Values(1U, 2U, 8U, 16U));
 
 }  // namespace
