@@ -146,6 +146,12 @@ TEST_F(SrtpIn, WarnsOnceOfPacketsThatDoNotFit) {
   EXPECT_EQ(Warnings(), 1U);
 }
 
+TEST_F(SrtpIn, TakesAStreamThatBeginsBehindAForgery) {
+  Forge(1);
+  Protector sender(Key(5));
+  EXPECT_TRUE(Passes(sender.Protect(1)));
+}
+
 TEST_F(SrtpIn, JoinsAStreamThatHasWrapped) {
   Protector sender(Key(5));
   sender.Protect(5);
