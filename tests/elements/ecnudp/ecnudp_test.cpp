@@ -211,7 +211,7 @@ TEST(EcnUdp, TellsOnceOfAnErrorUntilDatagramsLeaveAgain) {
 TEST(EcnUdp, BuffersOfManyMemoriesAreOneDatagram) {
   const Harness src = NewSource();
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
-  for (guint pieces : {2U, 4U, 7U}) {
+  for (guint pieces : {2U, 4U, 7U, 2U}) {
     GstBuffer* buffer = gst_buffer_new();
     std::string whole;
     for (guint i = 0; i < pieces; ++i) {
@@ -364,6 +364,19 @@ TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
             std::string::npos);
   g_error_free(error);
   gst_element_set_state(second.get(), GST_STATE_NULL);
+}
+
+TEST(EcnUdpSrc, AnInterfaceThatIsNotThereIsAnElementErrorThatNamesIt) {
+  const ElementPtr src(gst_element_factory_make("ecnudpsrc", nullptr));
+  gst_object_ref_sink(src.get());
+  g_object_set(src.get(), "port", 0, "multicast-group", "239.201.7.1", "multicast-iface", "nosuch0",
+               nullptr);
+  const test::ElementBus bus(src.get());
+  EXPECT_EQ(gst_element_set_state(src.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(message);
+  EXPECT_NE(test::MessageText(message.get()).find("nosuch0"), std::string::npos);
+  gst_element_set_state(src.get(), GST_STATE_NULL);
 }
 
 struct Peer {
