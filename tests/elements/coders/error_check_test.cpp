@@ -254,6 +254,12 @@ TEST_P(EitherCoder, WarnsOnceWhereACloudWasMovedAfterTheSensor) {
   codec.SetCaps(OrganisedInfo(model, 64));
   for (guint i = 0; i < 8; ++i) codec.Push(OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
   EXPECT_EQ(codec.Warnings(), 0U);
+  CloudInfo unknown = OrganisedInfo(model, 64);
+  unknown.sensor_model.reset();
+  codec.SetCaps(unknown);
+  codec.Push(MovedBuffer(model, {1, 0, 8, 0}));
+  EXPECT_EQ(codec.Warnings(), 0U) << "of a cloud without a sensor";
+  codec.SetCaps(OrganisedInfo(model, 64));
   for (guint i = 0; i < 8; ++i) codec.Push(MovedBuffer(model, {1, i, 8, 64 * i}));
   EXPECT_EQ(codec.Warnings(), 1U);
 }
