@@ -63,6 +63,11 @@ TEST_P(EitherCoder, ReportsTheDistancesThatATestMeasuresInRangeGeometry) {
   EXPECT_NEAR(Number(codec.Stats().get(), "mean-error"),
               std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size()), 1e-9);
   EXPECT_GT(largest, 0.019);
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(codec.harness()->element), "enc"));
+  g_object_set(enc.get(), "max-error", 0.01, nullptr);
+  codec.Push(OrganisedBuffer(model, 64, {4, 0, 8, 0}));
+  EXPECT_LE(Number(codec.PopCheck().get(), "largest-error"), 0.011);
+  EXPECT_EQ(Number(codec.Stats().get(), "largest-error"), largest);
   EXPECT_EQ(codec.Warnings(), 0U);
 }
 
