@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What `ouster-replay --synthesize` sends in every profile is what its scanner saw.
+// `ouster-replay` sends what its scanner saw, in every profile, or what a capture holds.
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <map>
 
+#include "src/base/byte_reader.h"
+#include "src/base/crc.h"
+#include "src/ouster/imu_packet.h"
+#include "src/ouster/lidar_packet.h"
+#include "src/ouster/pcap_writer.h"
 #include "src/ouster/sensor_stream.h"
+#include "src/tools/bench/ouster_replay/pcap_stream.h"
 #include "src/tools/bench/ouster_replay/synth_stream.h"
+#include "tests/support/files.h"
 
 namespace lidar::tools {
 namespace {
@@ -123,6 +130,94 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{Profile::kRng19Rfl8Sig16Nir16Dual, kStandard, "4096x5"},
                       Case{Profile::kRng19Rfl8Sig16Nir16, kStandard, "512x20", 8},
                       Case{Profile::kRng15Rfl8Nir8Dual, kStandard, "1024x5", 64}));
+
+/// A capture of two scans.
+class Capture : public test::FolderTest {
+ protected:
+  void SetUp() override {
+    SynthOptions options;
+    options.model = kModel;
+    SynthFormat format;
+    format.mode = "512x10";
+    metadata_ = MakeSynthMetadata(options, format);
+    SynthStream sensor(options, metadata_);
+    std::string error;
+    const auto writer = ouster::PcapWriter::Open(path(), &error);
+    ASSERT_TRUE(writer) << error;
+    for (int lidar = 0; lidar < kRound;) {
+      const auto packet = sensor.Next();
+      lidar += packet->imu ? 0 : 1;
+      ASSERT_TRUE(
+          writer->Write(Time{packet->due}, 7502, {packet->bytes.data(), packet->bytes.size()}));
+    }
+    ASSERT_TRUE(writer->Close());
+  }
+  std::string path() const { return folder_ + "/a.pcap"; }
+
+  struct Sent {
+    ouster::PacketHeader header;
+    std::uint64_t time_ns = 0;
+    Duration due{};
+  };
+  /// Returns the next lidar packet, with a right CRC.
+  Sent Next(PcapStream* stream) {
+    auto packet = stream->Next();
+    for (; packet->imu; packet = stream->Next()) {
+      const ByteView imu{packet->bytes.data(), packet->bytes.size()};
+      imu_times_ns_.push_back(ouster::ParseImuPacket(imu, metadata_)->front().timestamp);
+    }
+    const ByteView bytes{packet->bytes.data(), packet->bytes.size()};
+    ByteReader crc(bytes.data + bytes.size - 8, 8);
+    EXPECT_EQ(crc.Le64(), Crc64({bytes.data, bytes.size - 8}));
+    const auto lidar = ouster::LidarPacket::Parse(bytes, metadata_.format);
+    return {lidar->header(), lidar->Column(0).timestamp, packet->due};
+  }
+
+  static constexpr int kRound = 64;  // packets
+  ouster::Metadata metadata_;
+  std::vector<std::uint64_t> imu_times_ns_;
+};
+
+TEST_F(Capture, GoesOnInEachRoundAsOneSensor) {
+  PcapStream::Options options;
+  options.speed = 2;
+  options.serial = 9;
+  PcapStream stream(path(), metadata_, options);
+  stream.Restart({7, 1'000'000});
+  const auto step = static_cast<std::uint64_t>(metadata_.packet_interval().count() / 2);
+  std::vector<Sent> sent;
+  for (unsigned i = 0; i < 3 * kRound; ++i) {
+    sent.push_back(Next(&stream));
+    EXPECT_EQ(sent[i].header.frame_id, i / (kRound / 2));
+    EXPECT_EQ(sent[i].header.init_id, 7U);
+    EXPECT_EQ(sent[i].header.serial, 9U);
+    EXPECT_EQ(sent[i].time_ns, 1'000'000 + i * step);
+    if (i >= kRound) {
+      EXPECT_EQ(sent[i].due - sent[i - kRound].due, metadata_.scan_period());
+    }
+  }
+  ASSERT_EQ(imu_times_ns_.size(), 60U);
+  for (std::size_t i = 0; i < 60; ++i) EXPECT_EQ(imu_times_ns_[i], 1'000'000 + i * 5'000'000);
+}
+
+TEST_F(Capture, BeginsAnewAfterARestartAndEndsOnceIfAsked) {
+  PcapStream::Options options;
+  PcapStream endless(path(), metadata_, options);
+  options.loop = false;
+  PcapStream once(path(), metadata_, options);
+  const Duration first = Next(&endless).due;
+  for (int i = 0; i < kRound; ++i) Next(&endless);
+  while (once.Next()) continue;
+  for (PcapStream* stream : {&endless, &once}) {
+    stream->Restart({8, 5});
+    const Sent sent = Next(stream);
+    EXPECT_EQ(sent.header.frame_id, 0U);
+    EXPECT_EQ(sent.header.init_id, 8U);
+    EXPECT_EQ(sent.header.serial, metadata_.serial);
+    EXPECT_EQ(sent.time_ns, 5U);
+    EXPECT_EQ(sent.due, first);
+  }
+}
 
 }  // namespace
 }  // namespace lidar::tools

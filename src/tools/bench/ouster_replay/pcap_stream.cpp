@@ -36,12 +36,19 @@ void Put(std::uint8_t* at, std::uint64_t v, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<std::uint8_t>(v >> (8 * i));
 }
 
-/// `packet` must have `format`. A right CRC stays right.
-void ApplyPatch(const PacketPatch& patch, const ouster::PacketFormat& format,
-                std::vector<std::uint8_t>* packet) {
-  std::uint8_t* bytes = packet->data();
-  const std::size_t body = packet->size() - kCrcSize;
-  const bool had_crc = !format.is_legacy() && Crc64({bytes, body}) == Get(bytes + body, kCrcSize);
+/// Writes the new time in place of a recorded one.
+void PutTime(const PacketPatch& patch, std::uint8_t* at) {
+  const double since_first =
+      static_cast<double>(static_cast<std::int64_t>(Get(at, 8) - patch.first_time_ns));
+  Put(at,
+      patch.new_time_ns +
+          static_cast<std::uint64_t>(static_cast<std::int64_t>(since_first / patch.speed)),
+      8);
+}
+
+/// `bytes` must have `format`.
+void ApplyToLidar(const PacketPatch& patch, const ouster::PacketFormat& format,
+                  std::uint8_t* bytes) {
   if (!format.is_legacy()) {
     const auto& at = format.is_fusa() ? ouster::kFusaHeader : ouster::kStandardHeader;
     if (patch.init_id != 0) Put(bytes + at.init_id, patch.init_id, 3);
@@ -51,15 +58,30 @@ void ApplyPatch(const PacketPatch& patch, const ouster::PacketFormat& format,
   }
   for (std::uint32_t i = 0; i < format.columns_per_packet; ++i) {
     std::uint8_t* column = bytes + format.packet_header_size() + i * format.column_size();
-    const double since_first =
-        static_cast<double>(static_cast<std::int64_t>(Get(column, 8) - patch.first_time_ns));
-    Put(column,
-        patch.new_time_ns +
-            static_cast<std::uint64_t>(static_cast<std::int64_t>(since_first / patch.speed)),
-        8);
+    PutTime(patch, column);
     if (format.is_legacy())
       Put(column + kLegacyFrameId, Get(column + kLegacyFrameId, 2) + patch.add_frames, 2);
   }
+}
+
+/// Returns the places of the times in an IMU packet.
+std::vector<std::size_t> TimesOfImu(const ouster::Metadata& metadata) {
+  if (metadata.imu_profile == ouster::ImuProfile::kLegacy) return {0, 8, 16};
+  constexpr std::size_t kHeaderAndNmea = 132;
+  constexpr std::size_t kMeasurement = 36;
+  std::vector<std::size_t> times;
+  for (std::uint32_t i = 0; i < metadata.imu_measurements_per_packet; ++i)
+    times.push_back(kHeaderAndNmea + i * kMeasurement);
+  return times;
+}
+
+/// Calls change(). A right CRC stays right.
+template <class Change>
+void KeepCrc(std::vector<std::uint8_t>* packet, const Change& change) {
+  std::uint8_t* bytes = packet->data();
+  const std::size_t body = packet->size() - kCrcSize;
+  const bool had_crc = Crc64({bytes, body}) == Get(bytes + body, kCrcSize);
+  change(bytes);
   if (had_crc) Put(bytes + body, Crc64({bytes, body}), kCrcSize);
 }
 
@@ -67,7 +89,7 @@ void ApplyPatch(const PacketPatch& patch, const ouster::PacketFormat& format,
 
 PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata,
                        const Options& options)
-    : format_(metadata.format), options_(options) {
+    : format_(metadata.format), imu_times_(TimesOfImu(metadata)), options_(options) {
   std::string error;
   const auto reader = ouster::PcapReader::Open(path, &error);
   if (!reader) throw std::runtime_error("cannot read " + path + ": " + error);
@@ -114,7 +136,6 @@ std::optional<OutPacket> PcapStream::Next() {
     return Duration(static_cast<std::int64_t>(static_cast<double>(d.count()) / options_.speed));
   };
   packet.due = at_speed(packet.due + offset);
-  if (packet.imu) return packet;
   PacketPatch patch;
   patch.init_id = start_.init_id;
   patch.serial = options_.serial;
@@ -122,7 +143,10 @@ std::optional<OutPacket> PcapStream::Next() {
   patch.first_time_ns = first_time_ns_;
   patch.new_time_ns = start_.sensor_time_ns + static_cast<std::uint64_t>(at_speed(offset).count());
   patch.speed = options_.speed;
-  ApplyPatch(patch, format_, &packet.bytes);
+  KeepCrc(&packet.bytes, [&](std::uint8_t* bytes) {
+    if (!packet.imu) return ApplyToLidar(patch, format_, bytes);
+    for (const std::size_t at : imu_times_) PutTime(patch, bytes + at);
+  });
   return packet;
 }
 

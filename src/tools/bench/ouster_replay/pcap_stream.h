@@ -2,6 +2,7 @@
 // A capture as a stream of packets, endless or not.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "src/tools/bench/ouster_replay/packet_stream.h"
 
@@ -23,6 +24,7 @@ class PcapStream : public PacketStream {
  private:
   std::vector<OutPacket> packets_;
   ouster::PacketFormat format_;
+  std::vector<std::size_t> imu_times_;  // places in an IMU packet
   Options options_;
   Duration round_{};  // duration of the capture's scans
   std::uint32_t scans_ = 0;
