@@ -154,6 +154,15 @@ TEST(Video, CarriesTheFrameAsItIs) {
   EXPECT_EQ(video.Text(4), "h264");
 }
 
+TEST(Video, CarriesFramesOfAnySize) {
+  for (const std::size_t size : {0U, 1U, 127U, 128U, 129U, 16'383U, 16'384U}) {
+    const std::vector<std::uint8_t> frame(size, 7);
+    const ProtoMessage video = Parse(EncodeVideo({}, {frame.data(), size}, "vp8"));
+    EXPECT_EQ(video.Text(3), std::string(size, 7)) << size;
+    EXPECT_EQ(video.Text(4), "vp8") << size;
+  }
+}
+
 TEST(DracoCloud, CarriesTheFileAsItIs) {
   const std::vector<std::uint8_t> file = {'D', 'R', 'A', 'C', 'O'};
   const ProtoMessage cloud =

@@ -145,6 +145,9 @@ TEST_F(Growing, CountsTheDamageOfAllItsFilesAlsoBehindASeek) {
   EXPECT_EQ(playback->damaged_chunks(), 2U);
   playback->Seek(0);
   EXPECT_EQ(playback->damaged_chunks(), 2U);
+  EXPECT_TRUE(playback->Next());
+  playback->Seek(0);
+  EXPECT_EQ(playback->damaged_chunks(), 3U) << "and of the file that was open";
 }
 
 TEST_F(Growing, PassesOverMessagesWithoutASchema) {

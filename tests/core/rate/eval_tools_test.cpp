@@ -8,11 +8,13 @@
 #include <fstream>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "src/tools/lab/codec_lab/cloud_file.h"
 #include "src/tools/lab/codec_lab/kitti_sequence.h"
 #include "src/tools/lab/codec_lab/measure.h"
 #include "src/tools/lab/codec_lab/model_option.h"
+#include "src/tools/lab/codec_lab/scan_faults.h"
 #include "src/tools/lab/codec_lab/scan_source.h"
 #include "src/tools/lab/codec_lab/tracking.h"
 #include "tests/support/files.h"
@@ -161,6 +163,91 @@ TEST(MakeTargets, StaysInItsRangeAndMovesAsItsNameSays) {
   EXPECT_NEAR(std::sqrt(square), 0.08, 0.01);
   const auto jump = MakeTargets(TargetProfile::kJump, 100, options);
   for (std::size_t i = 1; i < jump.size(); ++i) EXPECT_EQ(jump[i] == jump[i - 1], i % 10 != 0) << i;
+}
+
+/// Copies of a scan, ten a second; the intensity of the first point has the number of the scan.
+class Copies final : public ScanStream {
+ public:
+  explicit Copies(Scan scan, int count = 400)
+      : ScanStream(10), scan_(std::move(scan)), count_(count) {}
+  std::optional<TimedScan> Next() override {
+    if (next_ == count_) return std::nullopt;
+    scan_.intensity[0] = static_cast<float>(next_);
+    return TimedScan{scan_, Time{} + next_++ * period(), period(), {}};
+  }
+
+ private:
+  Scan scan_;
+  int count_;
+  int next_ = 0;
+};
+
+Scan CloudOfFiveBeams() {
+  Scan cloud;
+  cloud.rings = {4, 3, 2, 1, 0};
+  cloud.phases = {0, 0.2F, 0.4F, 0.6F, 0.8F};
+  cloud.intensity = {0, 1, 2, 3, 4};
+  for (int i = 0; i < 15; ++i) cloud.xyz.push_back(static_cast<float>(i));
+  return cloud;
+}
+
+std::vector<int> NumbersOf(ScanStream* scans) {
+  std::vector<int> numbers;
+  while (const auto timed = scans->Next())
+    numbers.push_back(static_cast<int>(timed->scan.intensity[0]));
+  return numbers;
+}
+
+std::unique_ptr<ScanStream> FaultyCopies(const ScanFaults& faults) {
+  return WithFaults(std::make_unique<Copies>(CloudOfFiveBeams()), faults);
+}
+
+TEST(ScanFaults, KeepOfACloudAllThatItsOtherBeamsHave) {
+  ScanFaults faults;
+  faults.every_beam = 2;
+  const auto kept = FaultyCopies(faults)->Next();
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->scan.rings, (std::vector<std::uint16_t>{4, 2, 0}));
+  EXPECT_EQ(kept->scan.phases, (std::vector<float>{0, 0.4F, 0.8F}));
+  EXPECT_EQ(kept->scan.intensity, (std::vector<float>{0, 2, 4}));
+  EXPECT_EQ(kept->scan.xyz, (std::vector<float>{0, 1, 2, 6, 7, 8, 12, 13, 14}));
+}
+
+TEST(ScanFaults, SilenceWholeBeamsOfAnOrganisedScan) {
+  SensorModel model;
+  model.columns_per_scan = 4;
+  model.beams.resize(3);
+  Scan scan;
+  scan.geometry = std::make_shared<const ScanGeometry>(model);
+  scan.ranges.assign(12, 7);
+  scan.intensity.assign(12, 1);
+  ScanFaults faults;
+  faults.every_beam = 2;
+  const auto kept = WithFaults(std::make_unique<Copies>(scan), faults)->Next();
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->scan.ranges, (std::vector<std::uint32_t>{7, 7, 7, 7, 0, 0, 0, 0, 7, 7, 7, 7}));
+}
+
+TEST(ScanFaults, LeaveOutScansAndAGapTenSecondsAfterTheFirst) {
+  ScanFaults faults;
+  faults.every_scan = 4;
+  faults.gap_s = 2;
+  const auto numbers = NumbersOf(FaultyCopies(faults).get());
+  std::vector<int> left;
+  for (int i = 0; i < 400; i += 4)
+    if (i < 100 || i >= 120) left.push_back(i);
+  EXPECT_EQ(numbers, left);
+}
+
+TEST(ScanFaults, LoseTheirShareThreeAtATimeButNeverTheFirst) {
+  ScanFaults faults;
+  faults.lost_share = 0.2;
+  const auto scans = WithFaults(std::make_unique<Copies>(CloudOfFiveBeams(), 30'000), faults);
+  const auto numbers = NumbersOf(scans.get());
+  EXPECT_EQ(numbers.front(), 0);
+  EXPECT_NEAR(static_cast<double>(numbers.size()) / 30'000, 0.8, 0.01);
+  for (std::size_t i = 1; i < numbers.size(); ++i)
+    EXPECT_EQ((numbers[i] - numbers[i - 1] - 1) % 3, 0) << numbers[i];
 }
 
 TEST(Measure, FindsErrorsBelowTheBoundAndCloseToIt) {

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "src/tools/common/async_writer.h"
@@ -106,6 +108,24 @@ TEST(AsyncWriter, DropsAndCountsWhatASlowReaderLeavesNoRoomFor) {
   }
   pipe.write = FileDescriptor();
   EXPECT_EQ(received + pipe.Read(1), std::string(more, 'a') + std::string(1'000, 'b'));
+}
+
+TEST(AsyncWriter, WritesTheRestAtItsEnd) {
+  Pipe pipe;
+  const std::size_t size = pipe.capacity();
+  std::string text;
+  auto writer = std::make_unique<AsyncWriter>(pipe.write.get(), 100 * size);
+  for (int i = 0; i < 100; ++i) {
+    const std::string part(size, static_cast<char>('a' + i % 26));
+    EXPECT_TRUE(writer->Write(part));
+    text += part;
+  }
+  std::thread end([&] {
+    writer.reset();
+    pipe.write = FileDescriptor();
+  });
+  EXPECT_EQ(pipe.Read(text.size() + 1), text);
+  end.join();
 }
 
 }  // namespace
