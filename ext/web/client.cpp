@@ -24,11 +24,12 @@ ByteView ViewOf(const std::vector<std::uint8_t>& bytes) { return {bytes.data(), 
 
 }  // namespace
 
-Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers)
+Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers, gint64 (*clock_us)())
     : stream_(std::move(stream)),
       handlers_(std::move(handlers)),
+      clock_us_(clock_us),
       reader_(kMaxClientMessage),
-      heard_us_(g_get_monotonic_time()),
+      heard_us_(clock_us()),
       progress_us_(heard_us_) {
   auto* input = G_POLLABLE_INPUT_STREAM(g_io_stream_get_input_stream(stream_.get()));
   readable_.reset(g_pollable_input_stream_create_source(input, nullptr));
@@ -72,7 +73,7 @@ void Client::Read() {
   const GErrorPtr owner(error);
   if (size < 0 && g_error_matches(error, G_IO_ERROR, G_IO_ERROR_WOULD_BLOCK)) return;
   if (size <= 0) return End();
-  heard_us_ = g_get_monotonic_time();
+  heard_us_ = clock_us_();
   asked_us_ = 0;
   reader_.Append({buffer.data(), static_cast<std::size_t>(size)});
   while (!closed_) {
@@ -149,8 +150,9 @@ void Client::End() {
   handlers_.on_closed(this);
 }
 
-void Client::Tick(gint64 now_us) {
+void Client::Tick() {
   if (closed_) return;
+  const gint64 now_us = clock_us_();
   const bool stalled = current_ && now_us - progress_us_ > kStalled_us;
   // A client can neither receive a ping nor answer while it takes a long frame.
   if (current_ && progress_us_ > heard_us_) heard_us_ = progress_us_;
@@ -237,7 +239,7 @@ void Client::Write() {
     const std::size_t written = WriteSome(*current_);
     if (closed_) return;
     if (written == 0) return WaitForRoom();
-    progress_us_ = g_get_monotonic_time();
+    progress_us_ = clock_us_();
     counters_.bytes += written;
     current_->sent += written;
     if (current_->sent < current_->Size()) continue;

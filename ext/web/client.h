@@ -26,7 +26,8 @@ class Client {
     std::uint64_t bytes = 0;  // handed to the system
   };
 
-  Client(ObjectPtr<GIOStream> stream, Handlers handlers);
+  Client(ObjectPtr<GIOStream> stream, Handlers handlers,
+         gint64 (*clock_us)() = g_get_monotonic_time);
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -50,7 +51,7 @@ class Client {
 
   /// Call it once a second: sends a ping, and closes the connection after too long without an
   /// answer or progress.
-  void Tick(gint64 now_us);
+  void Tick();
 
   /// The grant of its token; kept by the owner.
   Grant grant;
@@ -91,6 +92,7 @@ class Client {
 
   const ObjectPtr<GIOStream> stream_;
   const Handlers handlers_;
+  gint64 (*const clock_us_)();
   SourcePtr readable_;
   SourcePtr writable_;
   foxglove::MessageReader reader_;

@@ -349,13 +349,12 @@ void ClientService::WarnOfEnd() {
 }
 
 void ClientService::Tick() {
-  const gint64 now_us = g_get_monotonic_time();
-  door_.Tick(now_us);
+  door_.Tick(g_get_monotonic_time());
   counters_.connections_evicted = door_.evicted();
   RenewCertificate();
   const gint64 now_s = g_get_real_time() / G_USEC_PER_SEC;
   for (const auto& client : clients_) {
-    client->Tick(now_us);
+    client->Tick();
     if (client->grant.IsOver(now_s)) client->Close(CloseCode::kTokenOver);
   }
   CountSent();

@@ -10,11 +10,10 @@
 namespace lidar::web {
 namespace {
 
-constexpr gint64 kTick_us = G_USEC_PER_SEC;
-
 class Connection : public ::testing::Test {
  protected:
   void SetUp() override {
+    now_us_ = 0;
     std::array<int, 2> ends{};
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
     peer_ = ends[1];
@@ -26,13 +25,16 @@ class Connection : public ::testing::Test {
     client_ = std::make_unique<Client>(
         ObjectPtr<GIOStream>(
             G_IO_STREAM(g_socket_connection_factory_create_connection(socket.get()))),
-        std::move(handlers));
+        std::move(handlers), [] { return now_us_; });
   }
   void TearDown() override {
     client_.reset();
     close(peer_);
   }
-  void TickAt(gint64 seconds) { client_->Tick(start_us_ + seconds * kTick_us); }
+  void TickAt(gint64 seconds) {
+    now_us_ = seconds * G_USEC_PER_SEC;
+    client_->Tick();
+  }
   std::string Read() {
     std::array<char, 64> bytes{};
     const ssize_t size = recv(peer_, bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -45,7 +47,7 @@ class Connection : public ::testing::Test {
     return message;
   }
 
-  const gint64 start_us_ = g_get_monotonic_time();
+  static inline gint64 now_us_ = 0;
   int peer_ = -1;
   int closed_ = 0;
   std::unique_ptr<Client> client_;
@@ -63,13 +65,32 @@ TEST_F(Connection, ThatSaysNothingIsAskedAndEnds) {
 }
 
 TEST_F(Connection, ThatAnswersPingsLives) {
-  for (const gint64 seconds : {11, 20, 29}) {
+  for (const gint64 seconds : {11, 22, 33, 44}) {
     TickAt(seconds);
     EXPECT_EQ(Read(), std::string("\x89\0", 2));
     ASSERT_EQ(write(peer_, "\x8a\x80\0\0\0\0", 6), 6);
     while (g_main_context_iteration(nullptr, FALSE)) continue;
   }
   EXPECT_EQ(closed_, 0);
+}
+
+/// A peer neither gets a ping nor answers within a frame.
+TEST_F(Connection, ThatTakesALongFrameSlowlyLivesWhileItTakesSome) {
+  client_->Send({1, 1, Large()}, 1);
+  std::array<char, 1 << 16> part{};
+  for (const gint64 seconds : {20, 40, 60, 80}) {
+    now_us_ = seconds * G_USEC_PER_SEC;
+    for (int i = 0; i < 8; ++i) {
+      ASSERT_GT(recv(peer_, part.data(), part.size(), MSG_DONTWAIT), 0);
+      while (g_main_context_iteration(nullptr, FALSE)) continue;
+    }
+    TickAt(seconds);
+    ASSERT_EQ(closed_, 0);
+  }
+  TickAt(109);
+  EXPECT_EQ(closed_, 0);
+  TickAt(111);
+  EXPECT_EQ(closed_, 1);
 }
 
 TEST_F(Connection, ThatReadsNothingEnds) {

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "ext/web/file_archive.h"
+#include "ext/web/recording.h"
 #include "ext/web/upstream_archive.h"
 #include "gst/common/history_query.h"
 #include "tests/elements/scream/pipeline.h"
@@ -76,6 +77,49 @@ nlohmann::json AwaitStatus(Viewer* viewer, guint number) {
 nlohmann::json DamagedAtEnd(Viewer* viewer, guint number) {
   EXPECT_TRUE(WaitUntil([&] { return AwaitStatus(viewer, number)["end"].is_number(); }));
   return viewer->peer.recording["damaged"];
+}
+
+/// Slices that refer to nothing.
+class LargeArchive final : public web::Archive {
+ public:
+  explicit LargeArchive(std::size_t size) : size_(size) {}
+  std::optional<Times> Look(std::string*) override { return Times{kFirst_ns, TimeOf(kCount - 1)}; }
+  void Seek(std::uint64_t time_ns) override {
+    next_ = 0;
+    while (TimeOf(next_) < time_ns) ++next_;
+  }
+  void GoOn(std::uint64_t position) override { next_ = position; }
+  std::optional<Item> Next() override {
+    if (next_ == kCount) return {};
+    auto slice = std::make_shared<web::SliceMessage>();
+    slice->id.scan = static_cast<std::uint32_t>(next_);
+    slice->unix_ns = TimeOf(next_);
+    slice->payload.resize(size_);
+    ++next_;
+    return Item{slice->unix_ns, next_, size_, slice, false};
+  }
+  void Rest() override {}
+  std::uint64_t damaged() const override { return 0; }
+
+  static std::uint64_t TimeOf(std::uint64_t i) { return kFirst_ns + i * kSlice_ns; }
+  static constexpr std::uint64_t kCount = 1'000;
+
+ private:
+  const std::size_t size_;
+  std::uint64_t next_ = 0;
+};
+
+/// What comes before a time is read for its references, and more of it than is kept.
+TEST(Recording, ThatIsLargeGivesWhatIsWanted) {
+  web::Recording recording(std::make_unique<LargeArchive>(100'000));
+  const std::uint64_t time = LargeArchive::TimeOf(600);
+  const auto piece = recording.Jump(time);
+  ASSERT_FALSE(piece.slices.empty());
+  EXPECT_EQ(piece.slices.front()->unix_ns, LargeArchive::TimeOf(590));
+  EXPECT_EQ(piece.slices.size(), 6U) << "of more than half a megabyte";
+  const auto more = recording.GoOn(piece.next);
+  ASSERT_EQ(more.slices.size(), 6U);
+  EXPECT_EQ(more.slices.front()->unix_ns, LargeArchive::TimeOf(596));
 }
 
 TEST_F(Recordings, AreOfferedWithTheirTimes) {
@@ -162,6 +206,28 @@ TEST_F(Recordings, WhoseChunksAreDamagedPlayOnWithoutThem) {
     EXPECT_EQ(DamagedAtEnd(&viewer, replay), 1);
   }
   ASSERT_TRUE(WaitUntil([&] { return !viewer.peer.received.empty(); }));
+}
+
+TEST_F(Recordings, CountTheDamageOfAllTheirPieces) {
+  OpenEdge();
+  for (int i = 0; i < 600; ++i) {
+    edge_->robot.AskForKey();  // large slices
+    Push(1);
+  }
+  EndRecording();
+  {
+    std::fstream bytes(file(), std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(fs::file_size(file()) / 8));
+    bytes.write("damage", 6);
+  }
+  ASSERT_GT(fs::file_size(file()), web::Recording::kPiece / 4 * 5);
+  Viewer viewer(&edge_->sink);
+  Replay(&viewer, 1, Seconds(kFirst_ns));
+  while (!AwaitStatus(&viewer, 1)["end"].is_number()) {
+    const SliceReader slice(viewer.peer.Next());
+    viewer.Acknowledge(slice.scan, slice.index);
+  }
+  EXPECT_EQ(viewer.peer.recording["damaged"], 1);
 }
 
 TEST_F(Recordings, ThatAreMissingOrNoRecordingsSaySo) {
