@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <vector>
+
 #include "src/link/random.h"
 #include "src/sim/simulated_time.h"
 
@@ -399,8 +402,9 @@ TEST(Scheduler, KeepsAllPacketsOfASliceTogether) {
 /// Links whose packets pass FIFOs of 8 Mbit/s each.
 class LinksOfFifos {
  public:
-  LinksOfFifos(std::vector<std::size_t> fifo_of_link, Method method)
-      : scheduler_(fifo_of_link.size(), method),
+  LinksOfFifos(std::vector<std::size_t> fifo_of_link, Method method,
+               TargetRule rule = TargetRule::kBetter)
+      : scheduler_(fifo_of_link.size(), method, rule),
         fifo_of_link_(std::move(fifo_of_link)),
         free_(fifo_of_link_.size(), kStart) {}
 
@@ -447,9 +451,11 @@ TEST(Scheduler, TellsWhichLinksPassOneQueue) {
   for (const auto& [fifos, expected] :
        {std::pair(Links{0, 1}, Links{0, 1}), std::pair(Links{0, 0}, Links{0, 0}),
         std::pair(Links{0, 1, 1}, Links{0, 1, 1}), std::pair(Links{0, 1, 0}, Links{0, 1, 0})}) {
-    LinksOfFifos links(fifos, Method::kBroadcast);
+    LinksOfFifos links(fifos, Method::kBroadcast, TargetRule::kSum);
     links.Burst();
     EXPECT_EQ(links.Bottlenecks(), expected);
+    const auto queues = static_cast<double>(std::set(expected.begin(), expected.end()).size());
+    EXPECT_EQ(links.scheduler_.Target(links.now_, std::vector(4, Mbps(1))), queues * Mbps(1));
   }
 }
 
