@@ -112,17 +112,22 @@ TEST(RtpLidarDepay, ChangesCapsNoMoreThanOnceASecondForAStreamThatTakesTurns) {
     gst_harness_push(h.get(), RtpOf(ConfigPayload(fields[i], &ids[i]), 7, sequence++));
   guint64 changes = 0;
   std::size_t pushed = 0;
+  std::size_t behind_dropped = 0;
   for (std::uint32_t scan = 0; scan < 100; ++scan) {  // 10 s
     GstBuffer* packet = RtpOf(TakingTurns(ids, scan, 32), 7, sequence++);
     GST_BUFFER_PTS(packet) = scan * 100 * GST_MSECOND;
     ASSERT_EQ(gst_harness_push(h.get(), packet), GST_FLOW_OK);
-    pushed += Pull(h.get()).size();
+    for (const auto& slice : Pull(h.get())) {
+      ++pushed;
+      behind_dropped += GST_BUFFER_IS_DISCONT(slice.get()) ? 1U : 0U;
+    }
     while (const gst::EventPtr event{gst_harness_try_pull_event(h.get())})
       changes += GST_EVENT_TYPE(event.get()) == GST_EVENT_CAPS ? 1U : 0U;
   }
   EXPECT_GE(changes, 8U);
   EXPECT_LE(changes, 18U) << "8 at once, then one a second";
   EXPECT_GE(pushed, 1'600U) << "the slices of one format pass";
+  EXPECT_GE(behind_dropped, 1'500U) << "each comes behind one of the other format";
   EXPECT_EQ(pushed + Stat(h.get(), "slices-changing-format"), 3'200U) << "each is counted";
 }
 
