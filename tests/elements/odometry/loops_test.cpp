@@ -46,6 +46,16 @@ TEST(LoopThread, MayEndWithScansThatWait) {
   for (const odometry::StampedPose& pose : block::Drive(300)) loops.AddScan(pose, world);
 }
 
+TEST(LoopThread, CountsTheScansThatItDrops) {
+  const block::Points world = block::MakeWorld();
+  const odometry::Trajectory way = block::Drive(300);
+  LoopThread loops({});
+  constexpr int kMostRounds = 100;  // far more than any machine keeps up with
+  for (int round = 0; round < kMostRounds && loops.progress().scans_dropped == 0; ++round)
+    for (const odometry::StampedPose& pose : way) loops.AddScan(pose, world);
+  EXPECT_GT(loops.progress().scans_dropped, 0U);
+}
+
 /// A drive through lidarodometry with a sink for the poses of its map.
 class MapPad : public ::testing::Test {
  protected:

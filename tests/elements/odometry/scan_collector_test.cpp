@@ -74,10 +74,10 @@ TEST_F(Collector, OfPointsInNoOrderOnlyTheSliceTellsTheTime) {
   EXPECT_TRUE(collector_.Take()->points.phases.empty());
 }
 
-/// Four points, 25 ms apart, with a time field.
+/// Points with a time field, after `missing` ones without a return. Returns the phases of returns.
 template <class T>
 std::vector<float> PhasesWith(const char* field, const std::vector<T>& times,
-                              const GstLidarSlice& slice = {7, 0, 1, 0}) {
+                              const GstLidarSlice& slice = {7, 0, 1, 0}, std::size_t missing = 0) {
   CloudInfo info;
   info.fields.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);
   const bool is_float = std::is_floating_point_v<T>;
@@ -90,7 +90,7 @@ std::vector<float> PhasesWith(const char* field, const std::vector<T>& times,
   EXPECT_TRUE(collector.SetInfo(info));
   std::vector<guint8> bytes(info.point_step * times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
-    const float x = 1;
+    const float x = i < missing ? 0 : 1;
     std::memcpy(bytes.data() + i * info.point_step, &x, sizeof x);
     std::memcpy(bytes.data() + i * info.point_step + 12, &times[i], sizeof times[i]);
   }
@@ -114,6 +114,12 @@ TEST(PointTimes, AreTakenAsTheDriversGiveThem) {
   ExpectQuarters(PhasesWith<double>(
       "timestamp", {1e9 * kNow, 1e9 * kNow + 25e6, 1e9 * kNow + 50e6, 1e9 * kNow + 75e6}));
   ExpectQuarters(PhasesWith<double>("timestamp", {4e6, 4e6 + 25e3, 4e6 + 50e3, 4e6 + 75e3}));
+}
+
+TEST(PointTimes, OfMissingReturnsDoNotCount) {
+  constexpr double kNow = 1'700'000'000;
+  ExpectQuarters(PhasesWith<double>("timestamp", {0, kNow, kNow + .025, kNow + .05, kNow + .075},
+                                    {7, 0, 1, 0}, 1));
 }
 
 TEST(PointTimes, CountWithinTheirSlice) {
