@@ -67,6 +67,15 @@ class Receiver {
     } while ((is != FALSE) != connected);
     return true;
   }
+  /// Returns true once the pipeline was asked to find its latency anew.
+  bool AwaitLatency() { return bus_->Wait(GST_MESSAGE_LATENCY) != nullptr; }
+  bool AwaitWarning(const std::string& part) {
+    for (;;) {
+      const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING);
+      if (!message) return false;
+      if (MessageText(message.get()).find(part) != std::string::npos) return true;
+    }
+  }
   std::string AwaitError() {
     const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_ERROR);
     return message ? MessageText(message.get()) : "no error";

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Captures and metadata that are wrong: they give a clear error, or are counted and skipped.
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "src/base/byte_writer.h"
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/files.h"
 
 namespace lidar::test {
 namespace {
@@ -128,6 +130,17 @@ TEST(OusterCapture, MayBePcapng) {
   const Ending ending = RunFile(file.path(), DataPath("crc_test.json"));
   EXPECT_EQ(ending.error, "");
   EXPECT_EQ(ending.warnings, "");
+}
+
+TEST(OusterCapture, HasItsMetadataBesideIt) {
+  const TempFolder folder;
+  const std::string dotted = folder.path() + "/run.2";
+  std::filesystem::create_directory(dotted);
+  std::filesystem::copy(DataPath("crc_test.json"), dotted + "/drive.json");
+  for (const char* name : {"/drive.pcap", "/drive"}) {
+    std::filesystem::copy(DataPath("crc_test.pcap"), dotted + name);
+    EXPECT_EQ(RunToEnd("ouster_src location=" + dotted + name + " ! fakesink"), "") << name;
+  }
 }
 
 TEST(OusterCapture, OfWhichTheEndIsMissingGivesWhatItHasAndWarns) {

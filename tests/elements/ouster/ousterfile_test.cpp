@@ -125,6 +125,7 @@ TEST(OusterFile, LivePlaybackWaitsForTheTimeOfEachPacket) {
                                    " metadata=" + DataPath(kThreeScansMetadata))
                                       .c_str()));
   UseTestClock(h.get());
+  const auto started = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
   gst_harness_play(h.get());
   // The capture's packets are about 1.6 ms apart; a slice has 8 of them.
   for (int i = 0; i < 7; ++i) {
@@ -138,6 +139,8 @@ TEST(OusterFile, LivePlaybackWaitsForTheTimeOfEachPacket) {
       gst_clock_get_time(GST_CLOCK(gst_harness_get_testclock(h.get()))) - kClockStart;
   EXPECT_LT(now, 20 * GST_MSECOND);
   EXPECT_LE(GST_BUFFER_PTS(buffer.get()), now);
+  EXPECT_GT(gst_lidar_buffer_get_capture_time(buffer.get()), started - 100 * GST_MSECOND)
+      << "as if sampled today, a packet before it came";
   EXPECT_EQ(gst_harness_query_latency(h.get()), 12500 * GST_USECOND);
 }
 

@@ -205,6 +205,7 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
   ASSERT_TRUE(first);
   const gsize size = gst_buffer_get_size(first.get());
   EXPECT_EQ(receiver.Info().sensor_model->columns_per_scan, 512U);
+  EXPECT_TRUE(receiver.AwaitLatency());
   const auto slices = [&] { return StatOf(receiver.source(), "slices"); };
   constexpr guint64 kBefore = 20;
   ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) { return slices() > kBefore; }));
@@ -219,6 +220,7 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
     return gst_buffer_get_size(buffer) != size;
   }));
   EXPECT_TRUE(discont);
+  EXPECT_TRUE(receiver.AwaitLatency()) << "slices are twice as long";
   EXPECT_GT(slices(), kBefore) << "of both geometries";
   EXPECT_EQ(receiver.Info().sensor_model->columns_per_scan, 1024U);
   EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
@@ -249,6 +251,24 @@ TEST(OusterLive, WhatTheKernelDroppedStaysCountedOnAnotherPort) {
   receiver.Drain();
   ASSERT_TRUE(receiver.Pull());
   EXPECT_GT(dropped(), 0U);
+}
+
+TEST(OusterLive, TheImuIsFollowedToAnotherPort) {
+  SoftwareSensor sensor({});
+  const auto send_to = [&](guint16 imu_port) {
+    EXPECT_EQ(sensor.state().SetConfig({{"udp_port_imu", imu_port}, {"udp_dest", "127.0.0.1"}},
+                                       {false, true}, "127.0.0.1"),
+              "");
+  };
+  send_to(FreePort());
+  Receiver receiver(sensor.host(), "", {FreePort(), 0});
+  const auto samples = [&] { return StatOf(receiver.source(), "packets-imu"); };
+  ASSERT_TRUE(receiver.Await("ouster-metadata-changed"));
+  ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) { return samples() > 0; }));
+  send_to(FreePort());
+  ASSERT_TRUE(receiver.Await("ouster-metadata-changed"));
+  const guint64 before = samples();
+  EXPECT_TRUE(receiver.PullUntil([&](GstBuffer*) { return samples() > before + 10; }));
 }
 
 TEST(OusterLive, APauseIsNoLossAndLeavesNothingOldBehind) {
@@ -302,6 +322,18 @@ TEST(OusterLive, WaitsForASensorWhoseApiFails) {
   ASSERT_TRUE(receiver.AwaitConnected(false));
   sensor.Fault({{"http_status", 0}});
   EXPECT_TRUE(receiver.AwaitConnected(true));
+}
+
+TEST(OusterLive, WarnsOfEachTimeThatTheApiFails) {
+  SoftwareSensor sensor({});
+  sensor.Fault({{"http_status", 500}});
+  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  for (int times = 0; times < 2; ++times) {
+    EXPECT_TRUE(receiver.AwaitWarning("Cannot talk to the sensor"));
+    sensor.Fault({{"http_status", 0}, {"silent", false}});
+    ASSERT_TRUE(receiver.AwaitConnected(true));
+    sensor.Fault({{"http_status", 500}, {"silent", true}});
+  }
 }
 
 TEST(OusterLive, WithoutReconnectAnApiThatFailsIsAnError) {

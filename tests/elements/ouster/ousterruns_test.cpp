@@ -326,6 +326,25 @@ TEST_F(OusterLiveEffects, TheReceiveBufferIsThatOfItsSocket) {
   }
 }
 
+TEST_F(OusterLiveEffects, TheReceiveBufferOfASharedSocketIsTheLargest) {
+  const std::string ports = Ports(FreePort(), FreePort());
+  std::vector<gst::ElementPtr> pipelines;
+  const auto granted_to = [&](guint bytes) {
+    pipelines.emplace_back(gst_parse_launch(
+        ("ouster_src name=s " + ports + "buffer-size=" + std::to_string(bytes) + " ! fakesink")
+            .c_str(),
+        nullptr));
+    const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(pipelines.back().get()), "s"));
+    gst_element_set_state(pipelines.back().get(), GST_STATE_PLAYING);
+    EXPECT_TRUE(Eventually([&] { return StatOf(source.get(), "receive-buffer") > 0; }));
+    return StatOf(source.get(), "receive-buffer");
+  };
+  EXPECT_EQ(granted_to(16384), 16384U);
+  EXPECT_EQ(granted_to(32768), 32768U);
+  EXPECT_EQ(granted_to(8192), 32768U);
+  for (const auto& pipeline : pipelines) gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
 const OusterEffect kSensorEffects[] = {
     {R"("udp_port_lidar":7)", "lidar-port", "7"},
     {R"("udp_port_imu":9)", "imu-port", "9"},
