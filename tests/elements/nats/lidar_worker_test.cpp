@@ -191,18 +191,25 @@ TEST_F(LidarWorker, GivesUpWithoutAServerAndGoesOnWithIt) {
 
 TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
   const auto robot = Robot();
-  // The shortest of three times counts: a busy machine may not let the worker run.
-  double shortest_s = 1e9;
-  for (int i = 0; i < 3 && shortest_s >= 1; ++i) {
+  const auto stop_s = [&](bool hangs) {
     auto worker = Worker();
-    ASSERT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
-    server_.Freeze();
+    EXPECT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
+    if (hangs) server_.Freeze();
     const Time begin = tools::Now();
     EXPECT_EQ(worker->Stop(), 0);
-    shortest_s = std::min(shortest_s, Seconds(tools::Now() - begin));
-    server_.Thaw();
+    const double took_s = Seconds(tools::Now() - begin);
+    if (hangs) server_.Thaw();
+    return took_s;
+  };
+  // A busy machine may not let the worker run: the shortest of three times counts, less the longest
+  // with a server that answers.
+  double shortest_s = 1e9;
+  double without_s = 0;
+  for (int i = 0; i < 3 && shortest_s >= 1 + without_s; ++i) {
+    shortest_s = std::min(shortest_s, stop_s(true));
+    if (shortest_s >= 1) without_s = std::max(without_s, stop_s(false));
   }
-  EXPECT_LT(shortest_s, 1);
+  EXPECT_LT(shortest_s, 1 + without_s);
 }
 
 TEST_F(LidarWorker, GoesOnFromThePoseAloneInAnotherStream) {
