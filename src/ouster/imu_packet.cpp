@@ -6,6 +6,7 @@ namespace {
 
 constexpr std::size_t kHeaderSize = 32;
 constexpr std::size_t kNmeaSize = 100;
+constexpr std::size_t kMeasurementSize = 36;
 constexpr float kGravity = 9.80665F;  // LEGACY counts in g and degrees
 constexpr float kRadiansPerSecond = 3.14159265F / 180;
 
@@ -47,6 +48,14 @@ std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metad
   if (bytes.empty() || bytes.size != metadata.imu_packet_size()) return std::nullopt;
   if (metadata.imu_profile == ImuProfile::kLegacy) return ReadLegacy(bytes);
   return ReadAccelGyro(bytes, metadata.imu_measurements_per_packet);
+}
+
+std::vector<std::size_t> ImuTimestamps(const Metadata& metadata) {
+  if (metadata.imu_profile == ImuProfile::kLegacy) return {0, 8, 16};
+  std::vector<std::size_t> places;
+  for (std::uint32_t i = 0; i < metadata.imu_measurements_per_packet; ++i)
+    places.push_back(kHeaderSize + kNmeaSize + i * kMeasurementSize);
+  return places;
 }
 
 }  // namespace lidar::ouster

@@ -22,4 +22,7 @@ struct ImuSample {
 /// invalid are left out.
 std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metadata& metadata);
 
+/// Returns where an IMU packet has its timestamps [byte].
+std::vector<std::size_t> ImuTimestamps(const Metadata& metadata);
+
 }  // namespace lidar::ouster

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/base/crc.h"
+#include "src/ouster/imu_packet.h"
 #include "src/ouster/lidar_packet.h"
 #include "src/ouster/packet_format.h"
 #include "src/ouster/pcap_reader.h"
@@ -64,21 +65,11 @@ void ApplyToLidar(const PacketPatch& patch, const ouster::PacketFormat& format,
   }
 }
 
-/// Returns the places of the times in an IMU packet.
-std::vector<std::size_t> TimesOfImu(const ouster::Metadata& metadata) {
-  if (metadata.imu_profile == ouster::ImuProfile::kLegacy) return {0, 8, 16};
-  constexpr std::size_t kHeaderAndNmea = 132;
-  constexpr std::size_t kMeasurement = 36;
-  std::vector<std::size_t> times;
-  for (std::uint32_t i = 0; i < metadata.imu_measurements_per_packet; ++i)
-    times.push_back(kHeaderAndNmea + i * kMeasurement);
-  return times;
-}
-
-/// Calls change(). A right CRC stays right.
+/// Calls change(). A right CRC stays right, unless the packets have none.
 template <class Change>
-void KeepCrc(std::vector<std::uint8_t>* packet, const Change& change) {
+void KeepCrc(bool has_crc, std::vector<std::uint8_t>* packet, const Change& change) {
   std::uint8_t* bytes = packet->data();
+  if (!has_crc) return change(bytes);
   const std::size_t body = packet->size() - kCrcSize;
   const bool had_crc = Crc64({bytes, body}) == Get(bytes + body, kCrcSize);
   change(bytes);
@@ -89,7 +80,7 @@ void KeepCrc(std::vector<std::uint8_t>* packet, const Change& change) {
 
 PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata,
                        const Options& options)
-    : format_(metadata.format), imu_times_(TimesOfImu(metadata)), options_(options) {
+    : format_(metadata.format), imu_times_(ouster::ImuTimestamps(metadata)), options_(options) {
   std::string error;
   const auto reader = ouster::PcapReader::Open(path, &error);
   if (!reader) throw std::runtime_error("cannot read " + path + ": " + error);
@@ -143,7 +134,7 @@ std::optional<OutPacket> PcapStream::Next() {
   patch.first_time_ns = first_time_ns_;
   patch.new_time_ns = start_.sensor_time_ns + static_cast<std::uint64_t>(at_speed(offset).count());
   patch.speed = options_.speed;
-  KeepCrc(&packet.bytes, [&](std::uint8_t* bytes) {
+  KeepCrc(packet.imu || !format_.is_legacy(), &packet.bytes, [&](std::uint8_t* bytes) {
     if (!packet.imu) return ApplyToLidar(patch, format_, bytes);
     for (const std::size_t at : imu_times_) PutTime(patch, bytes + at);
   });
