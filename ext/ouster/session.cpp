@@ -11,6 +11,7 @@
 #include "ext/ouster/file_session.h"
 #include "ext/ouster/live_session.h"
 #include "ext/ouster/slice_buffer.h"
+#include "gst/common/latency.h"
 #include "gst/common/refs.h"
 #include "gst/common/source_caps.h"
 #include "src/ouster/imu_packet.h"
@@ -133,8 +134,7 @@ bool Session::SetMetadata(ouster::Metadata metadata) {
   std::unique_lock lock(mutex_);
   const bool changed = std::exchange(slice_duration_, duration) != duration;
   lock.unlock();
-  if (changed)
-    gst_element_post_message(gst_element(), gst_message_new_latency(GST_OBJECT(element_)));
+  if (changed) PostNewLatency(element_);
   return true;
 }
 

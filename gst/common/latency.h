@@ -27,4 +27,9 @@ inline void AddLatency(GstQuery* query, GstClockTime own) {
       GST_CLOCK_TIME_IS_VALID(upstream.max) ? upstream.max + own : GST_CLOCK_TIME_NONE);
 }
 
+/// Has the pipeline ask for the latency anew.
+inline void PostNewLatency(gpointer element) {
+  gst_element_post_message(GST_ELEMENT(element), gst_message_new_latency(GST_OBJECT(element)));
+}
+
 }  // namespace lidar::gst

@@ -103,10 +103,6 @@ static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   return any || gst_caps_can_intersect(allowed.get(), usual.get()) ? "application" : "video";
 }
 
-static void PostLatencyChange(gpointer element) {
-  gst_element_post_message(GST_ELEMENT(element), gst_message_new_latency(GST_OBJECT(element)));
-}
-
 /// Notes how long a scan takes, and posts that the latency changes if it depends on that.
 static void SetScanTime(GstRTPBasePayload* base, State& state) {
   const auto& config = *state.config;
@@ -120,7 +116,7 @@ static void SetScanTime(GstRTPBasePayload* base, State& state) {
     changed = state.settings.aggregate && scan_time != state.scan_time;
     state.scan_time = scan_time;
   }
-  if (changed) PostLatencyChange(base);
+  if (changed) PostNewLatency(base);
 }
 
 static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
@@ -228,7 +224,7 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
 /// `HoldTime` reads these properties; the base class has max-ptime.
 static void NotifyChange(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "aggregate") == 0 || g_strcmp0(spec->name, "max-ptime") == 0)
-    PostLatencyChange(object);
+    PostNewLatency(object);
 }
 
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "gst/common/element_class.h"
+#include "gst/common/latency.h"
 #include "gst/common/properties.h"
 #include "gst/pointcloud/assembler/assembler_state.h"
 #include "gst/pointcloud/assembler/scan_caps.h"
@@ -103,7 +104,7 @@ static void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, gu
     if (state.scan_latency == latency) return;
     state.scan_latency = latency;
   }
-  gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
+  PostNewLatency(self);
 }
 
 static void LearnUpstreamLatency(GstLidarScanAssembler* self) {
@@ -335,9 +336,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   return result;
 }
 
-static void PostLatency(GObject* object, GParamSpec*) {
-  gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
-}
+static void PostLatency(GObject* object, GParamSpec*) { PostNewLatency(object); }
 
 static void gst_lidar_scan_assembler_init(GstLidarScanAssembler* self) {
   self->state = new State;

@@ -153,8 +153,7 @@ static void NoteChange(GObject* object, GParamSpec* spec) {
     state.changed = true;
   }
   const std::string_view name = spec->name;
-  if (name == "target-frame" || name == "tf-timeout")
-    gst_element_post_message(GST_ELEMENT(object), gst_message_new_latency(GST_OBJECT(object)));
+  if (name == "target-frame" || name == "tf-timeout") PostNewLatency(object);
 }
 
 /// Makes a plan for the present caps and settings. Returns false after an error.
