@@ -2,6 +2,7 @@
 // Properties that a table of tests must have.
 #pragma once
 #include <gst/gst.h>
+#include <gtest/gtest.h>
 
 #include <memory>
 #include <set>
@@ -26,6 +27,15 @@ inline std::set<std::string> OwnWritableProperties(const std::string& element_na
       names.insert(spec.name);
   }
   return names;
+}
+
+/// Expects that a table of effects, each of a `property`, has all properties of the element.
+template <class Effects>
+void ExpectEachPropertyIn(const Effects& effects, const std::string& element_name) {
+  std::set<std::string> tried;
+  for (const auto& effect : effects) tried.insert(effect.property);
+  for (const std::string& name : OwnWritableProperties(element_name))
+    EXPECT_EQ(tried.count(name), 1U) << name;
 }
 
 }  // namespace lidar::test

@@ -111,10 +111,7 @@ TEST_P(OdometryEachProperty, ChangesWhatComesOutOrIsSaid) {
 INSTANTIATE_TEST_SUITE_P(Of, OdometryEachProperty, ::testing::ValuesIn(kOdometryEffects));
 
 TEST(OdometryProperties, AreAllInTheTable) {
-  std::set<std::string> tried;
-  for (const OdometryEffect& effect : kOdometryEffects) tried.insert(effect.property);
-  for (const std::string& name : OwnWritableProperties("lidarodometry"))
-    EXPECT_EQ(tried.count(name), 1U) << name;
+  ExpectEachPropertyIn(kOdometryEffects, "lidarodometry");
 }
 
 /// Leaves much behind: lost scans, new maps, a scan under way, and samples that no scan has taken

@@ -109,7 +109,7 @@ class LargeArchive final : public web::Archive {
   std::uint64_t next_ = 0;
 };
 
-/// What comes before a time is read for its references, and more of it than is kept.
+/// A jump reads the slices before its time for their references, more of them than it keeps.
 TEST(Recording, ThatIsLargeGivesWhatIsWanted) {
   web::Recording recording(std::make_unique<LargeArchive>(100'000));
   const std::uint64_t time = LargeArchive::TimeOf(600);
