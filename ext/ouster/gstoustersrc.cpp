@@ -134,7 +134,10 @@ static gboolean Query(GstBaseSrc* base, GstQuery* query) {
 }
 
 static gboolean DoSeek(GstBaseSrc* base, GstSegment* segment) {
-  if (const auto session = SessionOf(base)) session->Seek(*segment);
+  if (const auto session = SessionOf(base)) {
+    session->Seek(*segment);
+    session->imu().StopFlush();
+  }
   return TRUE;
 }
 
@@ -160,10 +163,9 @@ static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
     base->segment.duration = static_cast<guint64>(duration);
     GST_OBJECT_UNLOCK(base);
   }
-  const bool flush = (flags & GST_SEEK_FLAG_FLUSH) != 0;
-  if (flush) session->imu().StartFlush(seqnum);
+  if ((flags & GST_SEEK_FLAG_FLUSH) != 0) session->imu().StartFlush(seqnum);
   const gboolean done = GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
-  if (flush) session->imu().StopFlush(seqnum);
+  session->imu().StopFlush();  // where the seek failed
   return done;
 }
 

@@ -59,9 +59,16 @@ class ImuPad {
     segment_pending_ = true;
     last_pts_ = 0;
   }
-  /// Call them around a flushing seek of the clouds, from any thread.
+  /// Call it before a flushing seek of the clouds, from any thread.
   void StartFlush(guint32 seqnum) { Flush(true, gst_event_new_flush_start(), seqnum); }
-  void StopFlush(guint32 seqnum) { Flush(false, gst_event_new_flush_stop(TRUE), seqnum); }
+  /// Ends a flush. Call it before clouds flow again, from any thread.
+  void StopFlush() {
+    std::unique_lock lock(mutex_);
+    if (!flushing_) return;
+    const guint32 seqnum = flush_seqnum_;
+    lock.unlock();
+    Flush(false, gst_event_new_flush_stop(TRUE), seqnum);
+  }
 
  private:
   void MakePad() {
@@ -111,6 +118,7 @@ class ImuPad {
   void Flush(bool flushing, GstEvent* event, guint32 seqnum) {
     std::unique_lock lock(mutex_);
     flushing_ = flushing;
+    flush_seqnum_ = seqnum;
     const PadPtr pad(pad_ != nullptr ? GST_PAD(gst_object_ref(pad_)) : nullptr);
     lock.unlock();
     gst_event_set_seqnum(event, seqnum);
@@ -153,6 +161,7 @@ class ImuPad {
   GstBaseSrc* const source_;
   std::mutex mutex_;  // guards flushing_, and pad_ against other threads
   bool flushing_ = false;
+  guint32 flush_seqnum_ = 0;
   GstPad* pad_ = nullptr;  // owned by the element
   GstSegment segment_{};
   bool segment_pending_ = true;
