@@ -21,12 +21,14 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
+from ports import free_port  # noqa: E402
+
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
 ENDS = b"Got EOS from"  # what it prints before it ends by itself, except with -q
 QUIET_SECONDS, PLAY_SECONDS = 4, 1.5
 PATIENCE = 180  # seconds, on a busy machine
 AT_A_TIME = 4
-FIRST_PORT, PORTS = 21000, 100  # first port of the first page; ports of each page
 
 
 def commands(page):
@@ -44,14 +46,16 @@ def commands(page):
             command = None
 
 
-def with_ports(command, first):
-    """Returns `command` with ports from `first` on; equal ports stay equal."""
-    ports = {}
+def with_ports(command, ports):
+    """Returns `command` with free ports; equal ports stay equal. `ports` are those of the page so far."""
 
     def replace(match):
-        port = ports.setdefault(match.group(2), first + len(ports))
-        return match.group(1) + str(port)
+        if match.group(2) not in ports:
+            ports[match.group(2)] = free_port()
+        return match.group(1) + str(ports[match.group(2)])
 
+    # foxglovesink listens at a fixed port by default.
+    command = re.sub(r"\bfoxglovesink ?", "foxglovesink port=8765 ", command)
     return re.sub(r"(\b(?:\w+-)?port=)(\d+)", replace, command)
 
 
@@ -75,9 +79,9 @@ def output_for_a_while(process, quiet, play_seconds):
     return output, not plays and not quiet
 
 
-def run(command, folder, first_port):
+def run(command, folder, ports):
     """Returns what went wrong, or None."""
-    shown = with_ports(command.replace("autovideosink", "fakesink"), first_port)
+    shown = with_ports(command.replace("autovideosink", "fakesink"), ports)
     process = subprocess.Popen(
         ["bash", "-c", "exec " + shown],
         cwd=folder,
@@ -104,18 +108,18 @@ def run(command, folder, first_port):
     return None
 
 
-def run_page(page, root, folder, first_port):
+def run_page(page, root, folder):
     """Returns lines about the page's commands, and how many ran and failed."""
     folder.mkdir()
     # Pages name the committed captures from the project's folder; what commands write goes elsewhere.
     (folder / "tests").symlink_to(root / "tests")
-    said, ran, failed = [], 0, 0
+    ports, said, ran, failed = {}, [], 0, 0
     for command in commands(page):
         if "hostname=" in command:
             said.append(f"left out, needs a sensor: {command}")
             continue
         ran += 1
-        problem = run(command, folder, first_port)
+        problem = run(command, folder, ports)
         if problem:
             failed += 1
             said.append(f"FAILED {page.relative_to(root)}:\n  {command}\n  {problem}")
@@ -133,9 +137,8 @@ def main():
     ran, failed = 0, 0
     with tempfile.TemporaryDirectory() as parent:
         folders = [pathlib.Path(parent) / str(number) for number in range(len(pages))]
-        ports = [FIRST_PORT + PORTS * number for number in range(len(pages))]
         with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
-            for result in pool.map(run_page, pages, [root] * len(pages), folders, ports):
+            for result in pool.map(run_page, pages, [root] * len(pages), folders):
                 print("\n".join(result[0]), end="\n" if result[0] else "")
                 ran += result[1]
                 failed += result[2]

@@ -64,7 +64,7 @@ if gst-inspect-1.0 mcapsink >/dev/null 2>&1; then
   check "play.sh plays clouds to files" "$root/pipelines/play.sh" --to ply --topic /points --decoder none \
     --output "$folder/played" "$folder/clouds/rec-%05d.mcap"
   for file in scan000005.pcd scan000005.ply; do check "$file is there" [ -s "$folder/played/$file" ]; done
-  check "play.sh sends slices" "$root/pipelines/play.sh" --send 127.0.0.1:5504 "$folder/slices/rec-00000.mcap"
+  check "play.sh sends slices" "$root/pipelines/play.sh" --send "127.0.0.1:$(python3 "$root/tests/support/ports.py" 1)" "$folder/slices/rec-00000.mcap"
 fi
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -20,7 +20,7 @@ class Edge:
     """Serves a synthetic sensor over SCReAM to viewers at `port`."""
 
     def __init__(self, model="os1-64", coder="", mbit=2, sink=""):
-        self.port, media = free_port("tcp"), free_port("udp")
+        self.port, media = free_port(), free_port()
         # A tee serves its branches in turn: a slice that foxglovesink holds up comes late to the
         # second branch.
         pipeline = (

@@ -51,8 +51,8 @@ class Fleet:
     """Two robots, lidar-edge, a server, and the pipeline of the viewers at `port`."""
 
     def __init__(self, folder):
-        nats, self.port = free_port("tcp"), free_port("tcp")
-        self.robot_ports = {robot: free_port("udp") for robot in ROBOTS}
+        nats, self.port = free_port(), free_port()
+        self.robot_ports = {robot: free_port() for robot in ROBOTS}
         config = {
             "nats": {"url": f"nats://127.0.0.1:{nats}", "jetstream": "fleet"},
             "robots": [{"name": r, "sensor": "front", "port": p} for r, p in self.robot_ports.items()],

@@ -71,7 +71,7 @@ def wait_for(port):
 
 
 def try_proxy(make, folder, edge):
-    port = free_port("tcp")
+    port = free_port()
     process = subprocess.Popen(make(folder, port, edge.port), cwd=folder, stderr=subprocess.DEVNULL, env={
         "HOME": str(folder), "PATH": "/usr/sbin:/usr/bin:/sbin:/bin"})
     try:
