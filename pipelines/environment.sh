@@ -21,5 +21,31 @@ need() {
   done
 }
 
+# listening PORT PID: waits until a process has the UDP port. Fails if PID ends before that.
+listening() {
+  until grep -qsE "^ *[0-9]+: [0-9A-F]+:$(printf %04X "$1") " /proc/net/udp /proc/net/udp6; do
+    kill -0 "$2" 2>/dev/null || return 1
+    sleep 0.1
+  done
+}
+# until_ended PID...: waits until these processes of this shell have ended; ends them after half a minute.
+until_ended() {
+  local i
+  for ((i = 0; i < 300; ++i)); do
+    kill -0 "$@" 2>/dev/null || break
+    sleep 0.1
+  done
+  kill "$@" 2>/dev/null || true
+  wait "$@" 2>/dev/null || true
+}
+# playing LOG PID: waits, for a minute at most, until statistics in the LOG of a process tell of feedback.
+playing() {
+  local i
+  for ((i = 0; i < 600; ++i)); do
+    ! grep -q 'feedback-accepted=(guint64)[1-9]' "$1" && kill -0 "$2" 2>/dev/null || return 0
+    sleep 0.1
+  done
+}
+
 # launch PIPELINE...: replaces this process by gst-launch-1.0. Shows its warnings, which -q would hide, but not its progress.
 launch() { exec gst-launch-1.0 "$@" > >(grep --line-buffered '^WARNING' >&2); }

@@ -38,7 +38,7 @@ source "$(dirname "$0")/environment.sh"
 need "" openh264enc lidarenc screamsink
 
 work=$(mktemp -d)
-trap 'kill "${link:-}" "${receiver:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT
+trap 'kill "${link:-}" "${receiver:-}" "${sender:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT
 
 capacity=(--rate "$rate")
 [ -z "$trace" ] || capacity=(--trace "$trace")
@@ -56,10 +56,8 @@ gst-launch-1.0 -v \
   in. ! application/x-rtp,media=video ! rtph264depay ! h264parse ! \
   filesink location="$work/video.h264" sync=false async=false >"$work/receiver.log" &
 receiver=$!
-sleep 1
-for end in "$link" "$receiver"; do
-  kill -0 "$end" 2>/dev/null || { echo "The link or the receiver did not start." >&2; exit 1; }
-done
+listening "$port" "$link" && listening $((port + 1)) "$receiver" ||
+  { echo "The link or the receiver did not start." >&2; exit 1; }
 
 # One line for each of the sender's statistics; quotes within the array of streams are escaped.
 show() {
@@ -76,23 +74,27 @@ show() {
       printf "\n"; fflush() }'
 }
 
-timeout --foreground -s INT "$duration" gst-launch-1.0 -e -m \
+gst-launch-1.0 -e -m \
   screamsink name=out host=127.0.0.1 port="$port" stats-interval=1000000000 sink_0::priority="$share" \
   lidartestsrc is-live=true model=os1-64 mode=1024x10 ! queue ! lidarenc max-error=0.05 ! \
   rtplidarpay pt=96 ! out.sink_0 \
   videotestsrc is-live=true pattern=zone-plate kx2=30 ky2=20 kt=3 ! video/x-raw,width=640,height=480,framerate=30/1 ! \
   queue ! openh264enc complexity=low rate-control=bitrate gop-size=300 ! bitrateadapter min=300000 max=4000000 ! \
   h264parse ! rtph264pay pt=97 config-interval=-1 ! out.sink_1 \
-  2>"$work/sender.err" | show || true
+  >"$work/sender" 2>"$work/sender.err" &
+sender=$!
+tail -f --pid=$sender "$work/sender" | show &
+shown=$!
+playing "$work/sender" $sender
+sleep "$duration"
+kill -INT $sender 2>/dev/null || true
+until_ended $sender
+wait $shown || true
 [ ! -s "$work/sender.err" ] || grep -E 'ERROR|WARN' "$work/sender.err" >&2 || true
 
 # The sender's goodbye ends the receiver; a sender that could not start sends none.
-for ((i = 0; i < 50; ++i)); do
-  kill -0 "$receiver" 2>/dev/null || break
-  sleep 0.1
-done
-kill "$receiver" 2>/dev/null || true
-wait "$receiver" 2>/dev/null || true
+[ -s "$work/sender" ] || kill "$receiver" 2>/dev/null || true
+until_ended "$receiver"
 scans=$(grep -c 'chain.*scans' "$work/receiver.log" || true)
 [ "$scans" -gt 0 ] || { echo "No whole scan arrived." >&2; exit 1; }
 [ -s "$work/video.h264" ] || { echo "No video arrived." >&2; exit 1; }

@@ -36,7 +36,7 @@ trap 'kill $(jobs -p) 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$wo
 # one_end NAME RTP_IN RTCP_IN RTP_OUT RTCP_OUT: one end of the call.
 one_end() {
   local name=$1 rtp_in=$2 rtcp_in=$3 rtp_out=$4 rtcp_out=$5
-  timeout --foreground -s INT "$duration" gst-launch-1.0 -m \
+  exec gst-launch-1.0 -m \
     rtpbin name=rtp latency=50 \
     videotestsrc is-live=true pattern=zone-plate kx2=30 ky2=20 kt=3 ! video/x-raw,width=640,height=480,framerate=30/1 ! \
     openh264enc complexity=low rate-control=bitrate gop-size=300 ! bitrateadapter min=200000 max=3000000 ! \
@@ -53,12 +53,16 @@ one_end() {
     fakesink sync=false async=false \
     funnel name=reports ! ecnudpsink host=127.0.0.1 port="$rtcp_out" sync=false async=false \
     rx.rtcp_src ! queue ! reports. \
-    rtp.send_rtcp_src_0 ! queue ! reports. >"$work/$name" 2>&1 || true
+    rtp.send_rtcp_src_0 ! queue ! reports. >"$work/$name" 2>&1
 }
 
-one_end A "$port" $((port + 1)) $((port + 2)) $((port + 3)) &
-one_end B $((port + 2)) $((port + 3)) "$port" $((port + 1)) &
-wait
+one_end A "$port" $((port + 1)) $((port + 2)) $((port + 3)) & a=$!
+one_end B $((port + 2)) $((port + 3)) "$port" $((port + 1)) & b=$!
+playing "$work/A" $a
+playing "$work/B" $b
+sleep "$duration"
+kill -INT $a $b 2>/dev/null || true
+until_ended $a $b
 
 # report NAME: prints the target and the counters of one direction. Fails if hardly any feedback came.
 report() {

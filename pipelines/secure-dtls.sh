@@ -26,7 +26,7 @@ launch=$build/src/tools/lidar-dtls-launch
 
 need gstreamer1.0-plugins-bad dtlssrtpenc srtpenc
 folder=$(mktemp -d)
-trap 'kill $receiver 2>/dev/null || true; rm -rf "$folder"' EXIT
+trap 'kill "${receiver:-}" 2>/dev/null || true; rm -rf "$folder"' EXIT
 
 # certificate NAME: a key and a certificate that signs itself. Each end gets only the certificate of the other.
 certificate() {
@@ -46,6 +46,7 @@ receive() {
     fakesink sync=false async=false \
     rx.rtcp_src ! enc.rtcp_sink_0 dtlssrtpenc name=enc connection-id=edge ! ecnudpsink host=127.0.0.1 port="$back" sync=false async=false
 }
+await_receiver() { listening "$port" "$receiver" || fail "the receiver did not start"; }
 # send CERTIFICATE. packet-overhead: 28 bytes of UDP and IP, 10 of SRTP.
 send() {
   exec timeout --foreground --signal=INT $((seconds + 600)) "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
@@ -67,9 +68,8 @@ send_stranger() {
 statistic() { grep -oE "[ ,]$2=\(guint64\)[0-9]+" "$1" | grep -oE '[0-9]+$'; }
 
 receive >"$folder/received" & receiver=$!
-sleep 1
+await_receiver
 (send robot) >"$folder/sent" || fail "the robot did not reach the edge"
-sleep 0.5
 kill -INT $receiver
 wait $receiver
 slices=$(statistic "$folder/received" slices-received)
@@ -83,7 +83,7 @@ grep -q 'ecn-state=(string)capable' "$folder/sent" || fail "ECN marks do not com
 
 # The stranger is refused, and the receiver waits for the robot.
 receive >"$folder/received" 2>"$folder/refused" & receiver=$!
-sleep 1
+await_receiver
 send_stranger
 [ "$(grep -c REFUSED "$folder/refused")" = 1 ] || fail "a stranger was not refused"
 (send robot) >/dev/null || fail "the stranger kept out the robot"
@@ -95,7 +95,7 @@ echo "a stranger's certificate: $(cat "$folder/refused") $slices slices of the r
 [ $status = 0 ] && [ "$slices" -gt 0 ] || fail "the stranger kept out the robot"
 
 receive >/dev/null 2>"$folder/refused" & receiver=$!
-sleep 1
+await_receiver
 send_stranger
 kill -INT $receiver
 status=0

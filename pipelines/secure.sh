@@ -28,14 +28,14 @@ LIDAR_SRTP_KEY=$(od -An -tx1 -N30 /dev/urandom | tr -d ' \n')
 export LIDAR_SRTP_KEY
 
 log=$(mktemp)
-trap 'kill $receiver 2>/dev/null || true; rm -f "$log"' EXIT
+trap 'kill "${receiver:-}" 2>/dev/null || true; rm -f "$log"' EXIT
 gst-launch-1.0 screamsrc port="$port" srtp-key=env:LIDAR_SRTP_KEY ! rtplidardepay ! lidardec ! \
   identity silent=false ! fakesink sync=false -v >"$log" 2>&1 &
 receiver=$!
-sleep 1
+listening "$port" $receiver || { cat "$log" >&2; echo "FAILED: the receiver did not start" >&2; exit 1; }
 (launch lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! lidarenc max-error=0.05 ! rtplidarpay ! \
   screamsink host=127.0.0.1 port="$port" srtp-key=env:LIDAR_SRTP_KEY)
-sleep 1
+until_ended $receiver  # by the sender's goodbye
 clouds=$(grep -c 'chain.*identity' "$log" || true)
 echo "sent $((seconds * 80)) slices over SRTP, $clouds came out"
 [ "$clouds" -gt 0 ] || { echo "FAILED: no cloud came out" >&2; exit 1; }
