@@ -10,7 +10,8 @@ Usage: pipelines/webrtc.sh [options]
 
 Two LiDARs -> lidarenc -> rtplidarpay -> webrtcbin with screamaux, both in one process, which does the signalling.
 What the caller sends passes lidar-link; what the callee sends has all the capacity that it needs. Prints both
-directions twice a second. Exit code 0: scans came both ways, and the caller's bitrate followed the link; else 1.
+directions twice a second. Exit code 0: scans came both ways, and the caller's bitrate followed the link; 3: scans and
+reports came, but too few, or the bitrate did not follow, as on a busy machine; else 1.
 
   --high MBITS       capacity of the link in the first and third part [Mbit/s] (default 6)
   --low MBITS        capacity in the second part [Mbit/s] (default 2)
@@ -64,7 +65,7 @@ awk -v high="$high" -v low="$low" -v part="$part" '
     if (!match($0, "[ ,]" field "=\\([a-z0-9]*\\)[0-9]+")) return 0
     text = substr($0, RSTART, RLENGTH); sub(/.*\)/, "", text); return text + 0
   }
-  function fail(what) { print "FAILED: " what; failed = 1 }
+  function fail(what, code) { print "FAILED: " what; if (failed != 1) failed = code }
   $2 == "caller-aux:" {
     target = value("target-bitrate") / 1e6; sent = value("sent-bitrate") / 1e6
     printf "%5.1f s  to the callee: target %5.2f  sent %5.2f Mbit/s  RTT %3.0f ms  reports %4d", $1, target, sent,
@@ -81,16 +82,16 @@ awk -v high="$high" -v low="$low" -v part="$part" '
   $2 == "there:" { there = value("scans-complete") }
   $2 == "back:" { back = value("scans-complete") }
   END {
-    if (!n[0] || !n[1] || !n[2]) { fail("the call was too short"); exit 1 }
+    if (!n[0] || !n[1] || !n[2]) { fail("the call was too short", 1); exit 1 }
     for (p = 0; p < 3; ++p) { targets[p] /= n[p]; rates[p] /= n[p] }
     printf "%g, %g, %g Mbit/s: mean target %.2f, %.2f, %.2f; %d scans came there, %d back\n", high, low, high,
       targets[0], targets[1], targets[2], there, back
     possible = 10 * (3 * part - 2)
-    if (there < 0.5 * possible) fail("too few scans reached the callee")
-    if (back < 0.8 * possible) fail("too few scans reached the caller")
-    if (reports < 10) fail("the callee got no reports")
-    if (rates[1] > 1.1 * low || targets[1] < 0.3 * low) fail("the bitrate did not follow the link down")
-    if (highest < 1.25 * low) fail("the target did not follow the link up")
+    if (there < 0.5 * possible) fail("too few scans reached the callee", there ? 3 : 1)
+    if (back < 0.8 * possible) fail("too few scans reached the caller", back ? 3 : 1)
+    if (reports < 10) fail("the callee got no reports", reports ? 3 : 1)
+    if (rates[1] > 1.1 * low || targets[1] < 0.3 * low) fail("the bitrate did not follow the link down", 3)
+    if (highest < 1.25 * low) fail("the target did not follow the link up", 3)
     if (!failed) print "OK: the bitrate followed the link by TWCC"
     exit failed
   }' "$work/stats"
