@@ -117,7 +117,28 @@ class LidarLink : public testing::Test {
     EXPECT_TRUE(socket->Send({payload.data(), payload.size()}, tos, nullptr));
   }
 
+  /// Returns what arrives until a marker behind all that was sent has, `copies` times. The link may
+  /// drop a marker, which another one replaces.
+  std::vector<Got> ReceiveToTheEnd(UdpSocket* sender, int copies = 1) {
+    std::vector<Got> all;
+    for (int marker = 200; marker < 256; ++marker) {
+      Send(sender, static_cast<std::uint8_t>(marker), 100, 0);
+      ++markers_;
+      int came = 0;
+      std::vector<Got> next;
+      do {
+        next = Receive(&receiver_, 1, 1s);
+        for (const Got& g : next) came += g.payload[0] == marker ? 1 : 0;
+        all.insert(all.end(), next.begin(), next.end());
+      } while (came < copies && !next.empty());
+      if (came == copies) return all;
+    }
+    ADD_FAILURE() << "no marker arrives";
+    return all;
+  }
+
   UdpSocket receiver_;
+  std::size_t markers_ = 0;
   const std::string summary_ = testing::TempDir() + "lidar_link_summary.json";
   std::unique_ptr<ChildProcess> link_;
   int port_ = 0;
@@ -152,15 +173,15 @@ TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
 }
 
 TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
-  // A packet of 972 + 28 bytes takes a millisecond at 8 Mbit/s.
+  // A packet of 972 + 28 bytes takes 10 ms at 0.8 Mbit/s, so a sender that is busy makes a burst.
   const std::string log = testing::TempDir() + "lidar_link_burst.csv";
-  Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "9.5", "--log", log});
+  Start({"--rate", "0.8", "--rtt", "0", "--aqm", "step", "--aqm-high", "95", "--log", log});
   auto sender = Sender();
   const Time sent = Now();
   for (std::uint8_t i = 0; i < 50; ++i) Send(&sender, i, 972, kEct1);
   const auto got = Receive(&receiver_, 50);
   ASSERT_EQ(got.size(), 50U);
-  EXPECT_GE(got.back().at - sent, 50ms);
+  EXPECT_GE(got.back().at - sent, 500ms);
   const auto marked =
       std::count_if(got.begin(), got.end(), [](const Got& g) { return g.tos == kCe; });
   EXPECT_GT(marked, 0);
@@ -174,23 +195,23 @@ TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
   double longest_ms = 0;
   for (const Row& row : rows) {
     EXPECT_NEAR(row.sojourn_ms, std::max(free_ms - row.at_ms, 0.0), 0.01);
-    EXPECT_EQ(row.ecn_out, row.sojourn_ms > 9.5 ? kCe : kEct1) << row.sojourn_ms;
-    free_ms = row.at_ms + row.sojourn_ms + 1;
+    EXPECT_EQ(row.ecn_out, row.sojourn_ms > 95 ? kCe : kEct1) << row.sojourn_ms;
+    free_ms = row.at_ms + row.sojourn_ms + 10;
     longest_ms = std::max(longest_ms, row.sojourn_ms);
   }
   EXPECT_NEAR(summary["sojourn_ms"]["max"].get<double>(), longest_ms, 0.01);
 }
 
 TEST_F(LidarLink, LeavesPacketsWithoutEcnUnmarkedAndDropsTheTail) {
-  Start({"--rate", "8", "--rtt", "0", "--aqm", "step", "--aqm-high", "1", "--queue", "10"});
+  Start({"--rate", "0.8", "--rtt", "0", "--aqm", "step", "--aqm-high", "1", "--queue", "100"});
   auto sender = Sender();
   for (std::uint8_t i = 0; i < 50; ++i) Send(&sender, i, 972, 0);
-  const auto got = Receive(&receiver_, 50, 1s);
+  const auto got = ReceiveToTheEnd(&sender);
   EXPECT_GE(got.size(), 10U);
   for (const Got& g : got) EXPECT_EQ(g.tos, 0);
   const auto summary = Stop();
   EXPECT_GT(summary["queue_full"], 0);
-  EXPECT_EQ(summary["queue_full"].get<std::size_t>() + got.size(), 50U);
+  EXPECT_EQ(summary["queue_full"].get<std::size_t>() + got.size(), 50 + markers_);
 }
 
 TEST_F(LidarLink, MarksEct1AsSeldomAsEct0WhereItKnowsNoL4s) {
@@ -240,7 +261,7 @@ TEST_F(LidarLink, DuplicatesAndLosesOnRequest) {
   Start({"--rtt", "0", "--rate", "1000", "--duplicate", "100", "--loss", "50"});
   auto sender = Sender();
   for (int i = 0; i < 200; ++i) Send(&sender, static_cast<std::uint8_t>(i), 100, kEct1);
-  const auto got = Receive(&receiver_, 400, 1s);
+  const auto got = ReceiveToTheEnd(&sender, 2);
   EXPECT_NEAR(static_cast<double>(got.size()), 200, 60);
   const auto summary = Stop();
   EXPECT_EQ(summary["delivered"].get<std::size_t>() * 2, got.size());
