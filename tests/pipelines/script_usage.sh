@@ -6,11 +6,11 @@ set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 failed=0
 
-# expect CODE TEXT SCRIPT [options]: the script ends with CODE within seconds and prints TEXT.
+# expect CODE TEXT SCRIPT [options]: the script ends with CODE and prints TEXT.
 expect() {
   local code=$1 text=$2 script=$3 output status
   shift 3
-  output=$(timeout 10 "$root/pipelines/$script" "$@" 2>&1)
+  output=$(timeout 180 "$root/pipelines/$script" "$@" 2>&1)
   status=$?
   if [ "$status" != "$code" ] || ! grep -qF -- "$text" <<<"$output"; then
     printf '%s %s: code %s instead of %s, or no "%s" in:\n%s\n' "$script" "$*" "$status" "$code" "$text" "$output" >&2
