@@ -90,7 +90,7 @@ try_packages() {
   git -C "$top" archive --prefix=gst-lidar/ HEAD README.md debian/tests tests/data tests/pipelines | tar -x -C "$root/src"
   local install='apt-get -q -y --no-install-recommends install'
   inside "$root" "cd /src && $install --download-only ./*.deb gstreamer1.0-tools >/dev/null"
-  rm "$root/etc/dpkg/dpkg.cfg.d/99mmdebstrap" # as users have it
+  rm "$root/etc/dpkg/dpkg.cfg.d/99mmdebstrap" # users have no such file
   began=$SECONDS
   inside "$root" "cd /src && $install ./*.deb gstreamer1.0-tools >/dev/null"
   inside_alone "$root" 'cd /tmp && gst-launch-1.0 -q lidartestsrc model=os1-128 num-buffers=24 ! pointcloudview ! pngenc snapshot=false ! multifilesink location=view.png && test -s view.png'

@@ -27,7 +27,7 @@ measure() { # SOURCE GRID SETTING [options]
   echo "$name,$grid,$setting,$(number .error.ate_rmse_m "$one"),$other,$(number .error.drift "$one"),$(jq -r '.degenerate / .scans' <<<"$one")"
 }
 for source in "${sources[@]}"; do
-  # If the scene hides the motion, compression is not the cause of errors.
+  # A tunnel hides the motion: its errors come from the scene, not from compression.
   measure "$source" none 0
   [[ $source != *:tunnel ]] || continue
   for step in $steps; do measure "$source" range "$step" --step "$step"; done
