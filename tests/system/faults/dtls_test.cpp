@@ -2,16 +2,12 @@
 // The stock DTLS-SRTP elements around screamtx and screamrx, as in pipelines/secure-dtls.sh.
 #include <gtest/gtest.h>
 
-#include <thread>
-
+#include "tests/support/patience.h"
 #include "tests/system/faults/ends.h"
 #include "tests/system/faults/fault_link.h"
 
 namespace lidar::test {
 namespace {
-
-using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 /// Each end makes a certificate for itself, and does not check that of the other.
 struct DtlsPath {
@@ -48,39 +44,38 @@ struct DtlsPath {
 
 TEST(Dtls, ShowsTheMarksOfTheNetworkToTheCongestionControl) {
   DtlsPath path;
-  std::this_thread::sleep_for(seconds(2));
-  EXPECT_EQ(path.receiver.Stat("rx", "packets-ce"), 0U);
+  const auto marked = [&] { return path.receiver.Stat("rx", "packets-ce"); };
+  const auto shown = [&] { return path.receiver.Stat("depay", "slices-received"); };
+  ASSERT_TRUE(Eventually([&] { return shown() > 50; }));
+  EXPECT_EQ(marked(), 0U);
   Fault marks;
   marks.mark = 0.5;
   path.link.Set(marks);
-  std::this_thread::sleep_for(seconds(3));
+  EXPECT_TRUE(Eventually([&] { return marked() > 100; }));
   path.link.Set({});
-  std::this_thread::sleep_for(milliseconds(500));
-  const auto marked = path.receiver.Stat("rx", "packets-ce");
-  EXPECT_GT(marked, 100U);
+  EXPECT_TRUE(Eventually([&] { return shown() > 200; }));
+  EXPECT_TRUE(Eventually([&] { return path.sender.Stat("tx", "feedback-accepted") > 100; }));
   // The reports come back encrypted, and contain every mark.
-  EXPECT_GT(path.sender.Stat("tx", "feedback-accepted"), 100U);
-  EXPECT_EQ(path.sender.Stat("tx", "packets-ce"), marked);
+  EXPECT_TRUE(Eventually([&] { return path.sender.Stat("tx", "packets-ce") == marked(); }));
   // The link sees packets, but cannot see slices in them. No slice is missing.
   EXPECT_LT(path.link.counts().slices, 3U);
-  EXPECT_GT(path.receiver.Stat("depay", "slices-received"), 200U);
   EXPECT_EQ(path.receiver.Stat("depay", "slices-damaged"), 0U);
   EXPECT_EQ(path.sender.Error() + path.receiver.Error(), "");
 }
 
 TEST(Dtls, ShowsNothingThatIsNotOfThePeerOrWasThereBefore) {
   DtlsPath path;
-  std::this_thread::sleep_for(seconds(2));
-  const auto before = path.receiver.Stat("depay", "slices-received");
+  const auto shown = [&] { return path.receiver.Stat("depay", "slices-received"); };
+  ASSERT_TRUE(Eventually([&] { return shown() > 50; }));
+  const auto before = shown();
   Fault garbage;
   garbage.garbage_ratio = 5;
   garbage.valid_garbage = true;
   garbage.duplicate = 0.5;
   path.link.Set(garbage);
-  std::this_thread::sleep_for(seconds(2));
+  EXPECT_TRUE(Eventually([&] { return shown() > before + 150; }));
   path.link.Set({});
-  std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_GT(path.receiver.Stat("depay", "slices-received"), before + 100);
+  EXPECT_TRUE(Eventually([&] { return shown() > before + 200; }));
   EXPECT_EQ(path.receiver.Stat("depay", "slices-lost"), 0U);
   EXPECT_EQ(path.receiver.Stat("depay", "packets-invalid"), 0U);
   EXPECT_EQ(path.receiver.Stat("depay", "packets-duplicate"), 0U);
