@@ -58,6 +58,7 @@ struct MergePadState {
   std::unique_ptr<FilterPlan> plan;
   std::string plan_transform;
   std::string plan_fields;
+  std::string own_fields;  // of the clouds; empty: not known
 };
 
 /// Scans without a duration that are farther apart belong to different turns.
@@ -72,7 +73,7 @@ struct Head {
 /// The next output.
 struct Merged {
   std::vector<std::uint8_t> points;
-  std::string fields;  // of the first pad with a cloud
+  std::string fields;  // of the first pad
   GstClockTime time = GST_CLOCK_TIME_NONE;
   GstClockTime duration = 0;
   GstClockTime capture_time = GST_CLOCK_TIME_NONE;
@@ -97,10 +98,13 @@ G_DEFINE_TYPE(GstLidarPointCloudMergePad, gst_lidar_point_cloud_merge_pad, GST_T
 static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
   pad->state->caps.reset(gst_caps_ref(caps));
   pad->state->plan.reset();
+  std::string ignored;
+  const auto own = FilterPlan::Make({}, caps, &ignored);
+  pad->state->own_fields = own ? own->fields() : "";
 }
 
-/// Converts the returns of `buffer` to the common frame, with `fields` or the cloud's own. Gives
-/// null on failure; `why` then has the reason for a user.
+/// Converts the returns of `buffer` to the common frame, with `fields`. Gives null on failure;
+/// `why` then has the reason for a user.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
                               const std::string& fields, std::string* why) {
   MergePadState& state = *pad->state;
@@ -121,12 +125,6 @@ static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer
   if (!state.plan) return nullptr;
   *why = "a cloud has another size than its caps say";
   return state.plan->Apply(buffer);
-}
-
-/// Fields of the last result of MergePadRead(), as caps have them; nothing before the first one.
-static std::optional<std::string> MergePadFields(GstLidarPointCloudMergePad* pad) {
-  if (!pad->state->plan) return std::nullopt;
-  return pad->state->plan->fields();
 }
 
 static void gst_lidar_point_cloud_merge_pad_init(GstLidarPointCloudMergePad* self) {
@@ -158,6 +156,15 @@ static std::vector<PadPtr> Pads(GstAggregator* base) {
     pads.emplace_back(GST_PAD(gst_object_ref(pad->data)));
   GST_OBJECT_UNLOCK(base);
   return pads;
+}
+
+/// Returns the fields of the first pad whose fields are known, though it may have no scan now.
+static std::string FieldsOfFirst(const std::vector<PadPtr>& pads) {
+  for (const auto& owner : pads) {
+    const auto& fields = GST_LIDAR_POINT_CLOUD_MERGE_PAD(owner.get())->state->own_fields;
+    if (!fields.empty()) return fields;
+  }
+  return "";
 }
 
 static GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
@@ -222,7 +229,6 @@ static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* me
                       (nullptr));
     return false;
   }
-  if (merged->fields.empty()) merged->fields = MergePadFields(head.pad).value_or("");
   const BufferMap map(cloud.get(), GST_MAP_READ);
   if (map) merged->points.insert(merged->points.end(), map.view().begin(), map.view().end());
   if (GST_CLOCK_TIME_IS_VALID(merged->time) && merged->time <= head.time) return true;
@@ -264,7 +270,7 @@ static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
 static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
   auto* self = GST_LIDAR_POINT_CLOUD_MERGE(base);
   const auto pads = Pads(base);
-  const auto heads = Heads(pads);
+  auto heads = Heads(pads);
   if (heads.empty()) {
     const bool ended = std::all_of(pads.begin(), pads.end(), [](const auto& pad) {
       return gst_aggregator_pad_is_eos(GST_AGGREGATOR_PAD(pad.get())) != FALSE;
@@ -272,8 +278,12 @@ static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
     return ended ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
   }
   // A late sensor is waited for until the latency has passed.
-  if (DropOld(self, heads) && !timeout) return GST_AGGREGATOR_FLOW_NEED_DATA;
+  while (DropOld(self, heads)) {
+    if (!timeout) return GST_AGGREGATOR_FLOW_NEED_DATA;
+    heads = Heads(pads);
+  }
   Merged merged;
+  merged.fields = FieldsOfFirst(pads);
   for (const Head& head : heads)
     if (!AddCloud(self, head, &merged)) return GST_FLOW_ERROR;
   return Push(self, std::move(merged));

@@ -195,6 +195,39 @@ TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
   }
 }
 
+TEST_F(MergedByHand, ALateFirstSensorStillGivesTheFields) {
+  for (GstHarness* h : {first_.get(), second_.get()})
+    gst_harness_set_upstream_latency(h, 20 * GST_MSECOND);
+  gst_harness_set_src_caps_str(second_.get(),
+                               "application/x-pointcloud2,width=1,height=1,point-step=16,"
+                               "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12\","
+                               "is-bigendian=false,is-dense=true");
+  Push(first_, 1, 0);
+  for (GstClockTime turn = 0; turn < 2; ++turn) {
+    const float point[4] = {2, 1, 0, 99};
+    GstBuffer* buffer = gst_buffer_new_memdup(point, sizeof point);
+    GST_BUFFER_PTS(buffer) = turn * 100 * GST_MSECOND;
+    GST_BUFFER_DURATION(buffer) = 100 * GST_MSECOND;
+    gst_lidar_buffer_set_capture_time(buffer, (1'000'000 + turn * 100) * GST_MSECOND);
+    ASSERT_EQ(gst_harness_push(second_.get(), buffer), GST_FLOW_OK);
+    if (turn == 0) ExpectCloud({1, 2}, 0);
+  }
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(first_.get()));
+  ExpectCloud({2}, 100);
+}
+
+TEST_F(MergedByHand, AScanBehindOneOfAnEarlierTurnHasItsOwnTime) {
+  const Harness late(gst_harness_new_with_element(element_.get(), "sink_2", nullptr));
+  gst_harness_set_src_caps_str(late.get(), kCaps);
+  for (GstHarness* h : {first_.get(), second_.get(), late.get()})
+    gst_harness_set_upstream_latency(h, 20 * GST_MSECOND);
+  Push(first_, 1, 100);
+  Push(first_, 2, 200);
+  Push(second_, 3, 200);
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(first_.get()));
+  ExpectCloud({2, 3}, 200);
+}
+
 TEST_F(MergedByHand, EachPadHasItsOwnTransform) {
   const gst::PadPtr pad(gst_element_get_static_pad(element_.get(), "sink_1"));
   g_object_set(pad.get(), "transform", "5,0,0, 0,0,0", nullptr);
