@@ -135,7 +135,8 @@ Moving Odometry::Advance(const Moving& at, Time from, Time to) const {
 
 Moving Odometry::StateAt(Time t) const {
   const Moving last{pose_, velocity_};
-  return last_time_ ? Advance(last, *last_time_, t) : last;
+  if (!last_time_ || t - *last_time_ > kLongestGap || *last_time_ - t > kLongestGap) return last;
+  return Advance(last, *last_time_, t);
 }
 
 std::vector<Pose> Odometry::SweepAround(const Moving& state, Time middle, Duration duration) const {

@@ -129,6 +129,16 @@ TEST(OddScans, ForgetsTheVelocityThatLedToALoss) {
   EXPECT_LT((later.position - e.pose.position).norm(), 1e-9) << "it stands until scans show more";
 }
 
+TEST(OddScans, PredictsNothingForATimeThatIsFarAway) {
+  Drive street(synth::SceneKind::kStreet, 10);
+  Odometry odometry({});
+  Estimate e;
+  for (std::uint64_t i = 0; i < 5; ++i)
+    e = odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
+  for (const Time t : {e.time + std::chrono::minutes(1), e.time - std::chrono::minutes(1)})
+    EXPECT_LT((odometry.PredictAt(t).position - e.pose.position).norm(), 1e-9);
+}
+
 TEST(OddScans, FindsItsWayAfterLostScansInWhichTheCarBraked) {
   Drive drive(synth::SceneKind::kTown, 10);
   Odometry odometry({});
