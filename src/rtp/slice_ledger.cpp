@@ -46,11 +46,11 @@ Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
   }
   Scan* scan = Find(p.scan);
   if (scan == nullptr) return Admission::kTooOld;
-  if (!scan->count_known) {
+  if (scan->slices.size() != count) {
     scan->slices.assign(count, SliceOutcome::kOpen);
     scan->open = count;
-    scan->count_known = true;
   }
+  scan->count_known = true;
   switch (scan->slices[p.index]) {
     case SliceOutcome::kOpen:
       return Admission::kOpen;

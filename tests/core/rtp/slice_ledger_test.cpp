@@ -71,6 +71,17 @@ TEST_F(Ledger, BooksEachScanOnce) {
   EXPECT_EQ(accounts().scans_lost, 1U);
 }
 
+TEST_F(Ledger, ASkippedSliceStaysSkippedIfItsScanBeginsLater) {
+  Receive(1, 0, 1);
+  Receive(3, 0);
+  for (const std::uint32_t index : {3U, 2U, 1U}) ledger.Skip({2, index});
+  Receive(2, 0);
+  ledger.CloseBefore({3, 0});
+  EXPECT_EQ(accounts().slices_skipped, 3U);
+  EXPECT_EQ(accounts().slices_lost, 0U);
+  EXPECT_EQ(accounts().scans_complete, 2U);
+}
+
 TEST_F(Ledger, ASliceBeforeAnotherMayBeOfTheScanBefore) {
   Receive(1, 0);
   Receive(2, 1);
