@@ -47,6 +47,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
   if (packet.ssrc == active_->ssrc && active_->reassembler.Continues(units)) {
     active_arrival_ = packet.arrival;
     if (candidate_) candidate_->streak = 0;
+    if (candidate_ && candidate_->packets >= kProbationNoClock) DropHeld();
     active_->reassembler.Push(packet, units, out);
     return;
   }
@@ -60,6 +61,13 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
   }
   PushToCandidate(packet, units);
   if (CandidateHasWon(packet.arrival)) Promote(packet.arrival, out);
+}
+
+/// A stream that goes on beside the active one is no restart: its slices so far are never wanted.
+void Receiver::DropHeld() {
+  if (candidate_->held.empty()) return;
+  candidate_->held.clear();
+  candidate_->reassembler.MarkNext();
 }
 
 /// Too many SSRCs reset the counts. Forged SSRCs have no other effect.
@@ -83,6 +91,7 @@ void Receiver::PushToCandidate(const RtpPacket& packet, const std::vector<Unit>&
   candidate_->last_sequence = packet.sequence;
   candidate_->last_arrival = packet.arrival;
   ++candidate_->streak;
+  ++candidate_->packets;
   candidate_->reassembler.Push(packet, units, &candidate_->held);
 }
 

@@ -20,8 +20,9 @@ struct ReceiverAccounts {
 };
 
 /// Moves to other scan numbers after several packets in sequence with them, and to another SSRC if
-/// the old one is silent, too. A move loses no packet. During silence one whole later slice of the
-/// same stream is enough: a throttled sender may send only such slices, far apart.
+/// the old one is silent, too. A move loses no packet of a stream that began when the old one
+/// ended. During silence one whole later slice of the same stream is enough: a throttled sender may
+/// send only such slices, far apart.
 class Receiver {
  public:
   explicit Receiver(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
@@ -50,12 +51,14 @@ class Receiver {
     std::uint16_t last_sequence = 0;
     Time last_arrival;
     unsigned streak = 0;  // packets since the active stream's last
+    std::uint64_t packets = 0;
   };
 
   void Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
                 std::vector<ReceivedSlice>* out);
   bool GoesOnWithCandidate(const RtpPacket& packet, const std::vector<Unit>& units) const;
   void NoteRival(std::uint32_t ssrc);
+  void DropHeld();
   void PushToCandidate(const RtpPacket& packet, const std::vector<Unit>& units);
   bool CandidateHasWon(Time now) const;
   bool CandidateGoesOn(Time now) const;

@@ -218,6 +218,22 @@ TEST(Receiver, IsNotMovedByAWholeStreamOfAnotherWhileItsOwnGoesOn) {
   EXPECT_EQ(receiver.accounts().restarts, 0U);
 }
 
+TEST(Receiver, HoldsNoSlicesOfAnotherStreamWhileItsOwnGoesOn) {
+  SenderOptions foreign;
+  foreign.ssrc = 1;
+  const auto own = Sender().Scans(0, 60);
+  const auto other = Sender(foreign).Scans(0, 70);
+  Receiver receiver(milliseconds(100));
+  for (std::size_t i = 0; i < own.size(); ++i) DeliverAll(&receiver, {own[i], other[i]});
+  std::vector<ReceivedSlice> moved;
+  for (std::size_t i = own.size(); i < other.size(); ++i)
+    for (ReceivedSlice& slice : test::Deliver(&receiver, other[i])) moved.push_back(slice);
+  ASSERT_EQ(moved.size(), 41U);
+  EXPECT_EQ(moved.front().info.scan_id, 59U);  // its end is the only packet behind the first stream
+  EXPECT_TRUE(moved.front().discont);
+  EXPECT_FALSE(moved[1].discont);
+}
+
 TEST(Receiver, KeepsTheStreamAmongAHundredTimesAsMuchGarbage) {
   std::mt19937 random(1);
   Receiver receiver(milliseconds(100));
