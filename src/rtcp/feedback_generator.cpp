@@ -11,6 +11,9 @@ namespace {
 constexpr std::size_t kMaxSources = 64;
 /// A more distant sequence number belongs to another run of packets.
 constexpr int kMaxJump = 3000;
+/// A source with more unreported numbers than this starts anew. Only the jumps of a hostile sender,
+/// or reports that cannot leave, cause so many.
+constexpr int kMaxBacklog = 8192;
 constexpr std::int64_t kIpUdp = 28;
 constexpr std::int64_t kReportWithoutBlocks = 12;
 constexpr std::int64_t kBlockWithoutMetrics = 8;
@@ -87,6 +90,10 @@ std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint1
   // A packet before the very first one extends the record backwards. A packet that the record has
   // dropped does not.
   if (extended < source->first && source->next_report > source->first) return std::nullopt;
+  if (extended - source->next_report > kMaxBacklog) {
+    Start(source, seq);
+    return source->first;
+  }
   return source->unwrapper.Unwrap(seq);
 }
 

@@ -271,6 +271,13 @@ TEST_F(FeedbackGeneratorTest, WhatDoesNotFitGoesIntoTheNextReport) {
   EXPECT_EQ(reported.size(), 100U);
 }
 
+TEST_F(FeedbackGeneratorTest, ForgetsTheOldestOfAnEndlessBacklog) {
+  for (int i = 0; i < 100; ++i) Arrive(static_cast<std::uint16_t>(2'900 * i));
+  const auto report = generator_.Take(now_);
+  ASSERT_TRUE(report);
+  EXPECT_LE(static_cast<std::uint16_t>(2'900 * 99 - report->blocks[0].begin_seq), 8'192);
+}
+
 TEST_F(FeedbackGeneratorTest, SeveralSourcesShareAReport) {
   Begin();
   Arrive(1);
