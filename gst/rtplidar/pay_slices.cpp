@@ -117,6 +117,13 @@ void CountSlice(PayState& state, const PaySlice& slice, gsize size) {
   state.recent_payload_bytes *= kShareMemory;
 }
 
+/// Returns true if the slice is of the scan of the open aggregate, as a receiver requires.
+bool IsOfAggregate(const PayState& state, const rtp::SliceId& slice) {
+  const rtp::SliceId& first = state.first_aggregated.unit.slice;
+  return state.aggregator.empty() ||
+         (slice.scan_number == first.scan_number && slice.count == first.count);
+}
+
 /// Adds the slice to the open aggregate. Returns false if it must be sent alone.
 bool Aggregate(GstRTPBasePayload* base, PayState& state, const PaySlice& slice, ByteView bytes,
                GstFlowReturn* flow) {
@@ -125,7 +132,8 @@ bool Aggregate(GstRTPBasePayload* base, PayState& state, const PaySlice& slice, 
                          : 0;
   for (int attempt = 0; attempt < 2; ++attempt) {
     const bool starts = state.aggregator.empty();
-    if (state.aggregator.Add(slice.unit, bytes, MaxPayload(base), ticks)) {
+    if (IsOfAggregate(state, slice.unit.slice) &&
+        state.aggregator.Add(slice.unit, bytes, MaxPayload(base), ticks)) {
       if (starts) state.first_aggregated = slice;
       const GstClockTime held = slice.pts + slice.duration - state.first_aggregated.pts;
       const bool scan_ends = slice.unit.slice.index + 1 == slice.unit.slice.count;

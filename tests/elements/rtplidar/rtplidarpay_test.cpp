@@ -134,6 +134,18 @@ TEST(RtpLidarPay, AggregatesTheSmallSlicesOfAScan) {
   EXPECT_EQ(packets[5].payload[0], 0x02);
 }
 
+TEST(RtpLidarPay, AggregatesNoSlicesOfTwoScans) {
+  const Harness h = Pay();
+  g_object_set(h->element, "aggregate", TRUE, "config-interval", 0, nullptr);
+  gst_harness_push(h.get(), EncodedSlice(0, 0, 100));  // the encoder left out the rest of the scan
+  gst_harness_push(h.get(), EncodedSlice(1, 0, 100));
+  gst_harness_push_event(h.get(), gst_event_new_eos());
+  const auto packets = PullAll(h.get());
+  ASSERT_EQ(packets.size(), 3U);
+  EXPECT_EQ(packets[1].payload[0], 0x02);
+  EXPECT_EQ(packets[2].payload[0], 0x03);
+}
+
 TEST(RtpLidarPay, HoldsAggregatesNoLongerThanMaxPtime) {
   const Harness h = Pay();
   g_object_set(h->element, "aggregate", TRUE, "config-interval", 0, "max-ptime",
