@@ -34,7 +34,10 @@ bool UdpBatchSender::Map(Message& m, GstBuffer* buffer) {
 bool UdpBatchSender::Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to,
                          unsigned interface) {
   Message& m = messages_[count_];
-  if (!Map(m, buffer)) return false;
+  if (!Map(m, buffer)) {
+    Clear();  // the caller gives up the list with the other buffers
+    return false;
+  }
   m.to = to;
   msghdr& h = headers_[count_].msg_hdr;
   h = {};

@@ -336,6 +336,36 @@ TEST(EcnUdpSink, CountsEachRunAlone) {
   gst_object_unref(element);
 }
 
+TEST(EcnUdpSink, ForgetsABatchThatItCannotMap) {
+  const Harness src = NewSource();
+  GstElement* element = SinkElement();
+  g_object_set(element, "host", "127.0.0.1", "port", LocalPort(src.get()), nullptr);
+  GstMemory* busy = gst_allocator_alloc(nullptr, 4, nullptr);
+  GstMapInfo map;
+  ASSERT_TRUE(gst_memory_map(busy, &map, GST_MAP_WRITE));
+  {
+    const Harness sink(gst_harness_new_with_element(element, "sink", nullptr));
+    gst_harness_set_src_caps_str(sink.get(), "application/x-rtp");
+    GstBufferList* list = gst_buffer_list_new();
+    gst_buffer_list_add(list, Payload("first"));
+    GstBuffer* unreadable = gst_buffer_new();
+    gst_buffer_append_memory(unreadable, gst_memory_ref(busy));
+    gst_buffer_list_add(list, unreadable);
+    EXPECT_EQ(gst_pad_push_list(sink->srcpad, list), GST_FLOW_ERROR);
+  }
+  const Harness sink(gst_harness_new_with_element(element, "sink", nullptr));
+  gst_harness_set_src_caps_str(sink.get(), "application/x-rtp");
+  EXPECT_EQ(gst_harness_push(sink.get(), Payload("next")), GST_FLOW_OK);
+  EXPECT_EQ(Stat(sink.get(), "packets-sent"), 1U);
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(Text(got.get()), "next");
+  gst_memory_unmap(busy, &map);
+  gst_memory_unref(busy);
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_object_unref(element);
+}
+
 TEST(EcnUdpSink, AnUnknownHostIsAnElementErrorThatNamesIt) {
   const ElementPtr sink(gst_element_factory_make("ecnudpsink", nullptr));
   gst_object_ref_sink(sink.get());
