@@ -45,6 +45,8 @@ struct State {
   Settings settings;
   guint bitrate = 0;
   bool warned = false;
+  bool bounds_due = false;   // the limits have changed
+  bool told_bounds = false;  // downstream has limits
 };
 
 }  // namespace
@@ -162,27 +164,50 @@ static GstLidarBitrateBounds BoundsOf(const Settings& settings) {
   return {whole(settings.min_bps), whole(settings.max_bps), whole(settings.max_bps)};
 }
 
-/// Sends the user's limits behind the caps, so that the sender's targets keep to them.
-static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
-  const bool is_caps = GST_EVENT_TYPE(event) == GST_EVENT_CAPS;
-  const gboolean result =
-      GST_BASE_TRANSFORM_CLASS(gst_lidar_bitrate_adapter_parent_class)->sink_event(base, event);
-  if (!is_caps || !result) return result;
+/// Sends the user's limits, so that the sender's targets keep to them.
+static void SendBounds(GstBaseTransform* base) {
   State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
   GstLidarBitrateBounds bounds{};
   {
     const std::lock_guard lock(state.mutex);
+    state.bounds_due = false;
     bounds = BoundsOf(state.settings);
+    const bool limits =
+        bounds.min_bitrate > 0 || bounds.max_bitrate < std::numeric_limits<guint>::max();
+    if (!limits && !state.told_bounds) return;
+    state.told_bounds = limits;
   }
-  if (bounds.min_bitrate > 0 || bounds.max_bitrate < std::numeric_limits<guint>::max())
-    gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(base),
-                       gst_lidar_event_new_bitrate_bounds(&bounds));
+  gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(base), gst_lidar_event_new_bitrate_bounds(&bounds));
+}
+
+static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
+  const bool is_caps = GST_EVENT_TYPE(event) == GST_EVENT_CAPS;
+  const gboolean result =
+      GST_BASE_TRANSFORM_CLASS(gst_lidar_bitrate_adapter_parent_class)->sink_event(base, event);
+  if (is_caps && result) SendBounds(base);
   return result;
+}
+
+/// The limits have no meaning before the caps, and go only where buffers go.
+static void BeforeTransform(GstBaseTransform* base, GstBuffer*) {
+  State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
+  {
+    const std::lock_guard lock(state.mutex);
+    if (!state.bounds_due) return;
+  }
+  SendBounds(base);
+}
+
+static void OnPropertySet(GObject* object, GParamSpec*) {
+  State& state = *GST_LIDAR_BITRATE_ADAPTER(object)->state;
+  const std::lock_guard lock(state.mutex);
+  state.bounds_due = true;
 }
 
 static gboolean Start(GstBaseTransform* base) {
   State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
   const std::lock_guard lock(state.mutex);
+  state.told_bounds = false;
   state.bitrate = 0;
   state.warned = false;
   return TRUE;
@@ -196,7 +221,8 @@ static void gst_lidar_bitrate_adapter_init(GstLidarBitrateAdapter* self) {
 static void gst_lidar_bitrate_adapter_class_init(GstLidarBitrateAdapterClass* klass) {
   GST_DEBUG_CATEGORY_INIT(gst_lidar_bitrate_adapter_debug, "bitrateadapter", 0,
                           "Encoder bitrate adapter");
-  ServeState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class, kProperties>(klass);
+  ServeState<GstLidarBitrateAdapter, gst_lidar_bitrate_adapter_parent_class, kProperties,
+             OnPropertySet>(klass);
   Describe(klass,
            {"Encoder bitrate adapter", "Filter/Network",
             "Sets the bitrate of the encoder before it from target-bitrate events"},
@@ -205,5 +231,6 @@ static void gst_lidar_bitrate_adapter_class_init(GstLidarBitrateAdapterClass* kl
   transform->start = Start;
   transform->src_event = SrcEvent;
   transform->sink_event = SinkEvent;
+  transform->before_transform = BeforeTransform;
   transform->passthrough_on_same_caps = TRUE;
 }

@@ -223,6 +223,27 @@ TEST(BitrateAdapter, TellsItsLimitsDownstreamBehindTheCaps) {
   }
 }
 
+TEST(BitrateAdapter, TellsChangedLimitsDownstreamWithTheNextBuffer) {
+  gst_lidar_init();
+  const lidar::test::Harness h(gst_harness_new_parse("bitrateadapter name=a max=2000000"));
+  gst_harness_set_src_caps_str(h.get(), "video/x-h264");
+  const ElementPtr adapter(gst_bin_get_by_name(GST_BIN(h->element), "a"));
+  const auto told_max = [&] {
+    EXPECT_EQ(gst_harness_push(h.get(), gst_buffer_new()), GST_FLOW_OK);
+    guint max = 0;
+    GstLidarBitrateBounds bounds{};
+    while (const EventPtr event{gst_harness_try_pull_event(h.get())})
+      if (gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) max = bounds.max_bitrate;
+    return max;
+  };
+  EXPECT_EQ(told_max(), 2'000'000U);
+  EXPECT_EQ(told_max(), 0U);
+  g_object_set(adapter.get(), "max", 5'000'000, nullptr);
+  EXPECT_EQ(told_max(), 5'000'000U);
+  g_object_set(adapter.get(), "max", G_MAXUINT, nullptr);
+  EXPECT_EQ(told_max(), G_MAXUINT);
+}
+
 TEST(BitrateAdapter, HasToldNothingYetInASecondRun) {
   Chain chain("vp8enc name=e ! bitrateadapter name=a");
   chain.Send(700'000);
