@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The input of screamtx on its sink pads: RTP and events.
+#include <utility>
+
 #include "gst/scream/tx/private.h"
 
 #define GST_CAT_DEFAULT gst_lidar_scream_tx_debug
@@ -153,10 +155,17 @@ gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) 
   return done;
 }
 
+/// A stream begins after its end. If all had ended, the output begins anew, too.
+void BeginAnew(TxState& state) {
+  if (state.pacing.end_sent()) state.merger.BeginAnew();
+  state.pacing.ForgetEnd();
+}
+
 void Remember(TxState& state, TxStream& stream, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
       stream.live.reset();
+      if (std::exchange(stream.eos, false)) BeginAnew(state);
       break;
     case GST_EVENT_SEGMENT:
       gst_event_copy_segment(event, &stream.segment);

@@ -41,6 +41,7 @@ class PacingTask {
   void OnAccepted(Time now);
   /// Call it when the stream begins anew: a new end is then sent, too.
   void ForgetEnd();
+  bool end_sent() const { return end_sent_; }
 
  private:
   /// The output of a round: packets, or an event.

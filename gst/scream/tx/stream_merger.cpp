@@ -41,7 +41,7 @@ bool StreamMerger::Suits(const TxStream& stream, const Streams& streams, GstEven
     case GST_EVENT_STREAM_START:
       return !sent_start_;
     case GST_EVENT_SEGMENT:
-      return segment_.format == GST_FORMAT_UNDEFINED;
+      return segment_due_;
     case GST_EVENT_CAPS:
       return !merged_caps_;
     default:
@@ -56,6 +56,7 @@ void StreamMerger::NoteSent(bool merged, EventPtr* event) {
       break;
     case GST_EVENT_SEGMENT:
       gst_event_copy_segment(event->get(), &segment_);
+      segment_due_ = false;
       break;
     case GST_EVENT_CAPS:
       merged_caps_ = merged;

@@ -19,6 +19,11 @@ class StreamMerger {
   StreamMerger() { gst_segment_init(&segment_, GST_FORMAT_UNDEFINED); }
   /// Returns the next event whose place is before all queued packets of its stream, or NULL.
   EventPtr NextEvent(const Streams& streams);
+  /// Lets events of a start follow the end. No packet may be queued.
+  void BeginAnew() {
+    sent_start_ = merged_caps_ = false;
+    segment_due_ = true;
+  }
   /// Returns `buffer` with its times in the src pad's segment.
   BufferPtr ToOutput(const Streams& streams, const TxStream& stream, BufferPtr buffer) const;
 
@@ -29,6 +34,7 @@ class StreamMerger {
 
   bool sent_start_ = false;
   bool merged_caps_ = false;
+  bool segment_due_ = true;
   GstSegment segment_;
 };
 

@@ -249,6 +249,26 @@ TEST_F(ScreamTx, SeveralStreamsHaveOneStartOneSegmentAndTheEventsOfTheFirst) {
   EXPECT_EQ(events.count(GST_EVENT_TAG), 0U);
 }
 
+TEST_F(ScreamTx, OneOfSeveralStreamsMayBeginAfterTheEndOfAll) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  PushFrame(0, 1);
+  gst_harness_push_event(second.get(), gst_event_new_eos());
+  for (const std::size_t ends : {1U, 2U}) {
+    gst_harness_push_event(rtp.get(), gst_event_new_eos());
+    for (int i = 0; i < 10; ++i) {
+      time.Advance(10 * GST_MSECOND);
+      Acknowledge();
+    }
+    EXPECT_TRUE(HasEos());
+    EXPECT_EQ(sent.size(), ends);
+    ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("next")));
+    ASSERT_TRUE(gst_harness_push_event(rtp.get(), NewSegment()));
+    PushFrame(1, 1);
+  }
+}
+
 TEST_F(ScreamTx, AFlushOfOneOfSeveralStreamsIsItsOwn) {
   Start();
   Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
