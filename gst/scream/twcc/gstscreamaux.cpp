@@ -153,6 +153,11 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   auto* self = GST_LIDAR_SCREAM_AUX(element);
   if (change == GST_STATE_CHANGE_NULL_TO_READY && !HasChildren(element, {{self->tx, "screamtx"}}))
     return GST_STATE_CHANGE_FAILURE;
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    const std::lock_guard lock(self->state->mutex);
+    self->state->numbers.ResetStats();
+    self->state->warned = false;
+  }
   return GST_ELEMENT_CLASS(gst_lidar_scream_aux_parent_class)->change_state(element, change);
 }
 

@@ -29,6 +29,8 @@ class SessionNumbers {
   /// packet is ours.
   std::optional<rtcp::CongestionFeedback> OnEvent(GstEvent* event);
   const Stats& stats() const { return stats_; }
+  /// Begins another run. The session's numbers go on.
+  void ResetStats() { stats_ = {}; }
 
  private:
   bool IsOurs(const GstStructure* packet) const;

@@ -313,6 +313,17 @@ TEST_F(ScreamAux, GoesOnWithTheSessionsNumbersAfterAPauseInReady) {
   EXPECT_EQ(Stat("packets-acked"), 1U);
 }
 
+TEST_F(ScreamAux, CountsTheReportsOfEachRunAlone) {
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  Tell({{0}});
+  EXPECT_EQ(Stat("twcc-reports"), 1U);
+  gst_element_set_state(element, GST_STATE_READY);
+  gst_element_set_state(element, GST_STATE_PLAYING);
+  EXPECT_EQ(Stat("twcc-reports"), 0U);
+  EXPECT_EQ(Stat("twcc-packets"), 0U);
+}
+
 TEST_F(ScreamAux, TellsTheEncoderItsTargetAndHasTheSendersProperties) {
   g_object_set(element, "max-bitrate", 3000000U, "start-bitrate", 2000000U, nullptr);
   guint bps = 0;
