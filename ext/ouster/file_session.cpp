@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/ouster/file_session.h"
 
+#include <utility>
+
 #include "gst/common/refs.h"
 
 #include "ext/ouster/debug.h"
@@ -133,14 +135,13 @@ GstFlowReturn FileSession::Poll() {
 GstFlowReturn FileSession::Take(const PcapFeed::Packet& packet) {
   ouster::Arrival arrival{Time(packet.due), packet.captured, packet.sender};
   if (settings().is_live) {
-    if (!GST_CLOCK_TIME_IS_VALID(pace_start_)) {
-      pace_start_ = RunningTime();
-      pace_start_utc_ = UtcNow();
-    }
+    if (!GST_CLOCK_TIME_IS_VALID(pace_start_)) pace_start_ = RunningTime();
     const auto due = static_cast<GstClockTime>(packet.due.count());
     if (!WaitUntil(pace_start_ + due)) return GST_FLOW_FLUSHING;
     arrival.local = ToTime(pace_start_) + packet.due;
-    arrival.utc = pace_start_utc_ + packet.due;
+    const Duration offset = utc_offset_;
+    arrival.utc = arrival.local + offset;
+    stream()->ShiftUtc(offset - std::exchange(taken_utc_offset_, offset));
   }
   if (packet.starts_over) {
     WarnIfCutShort();

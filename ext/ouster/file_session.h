@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A session on a capture file, at full speed or at the pace of the capture.
 #pragma once
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,6 +19,7 @@ class FileSession : public Session {
   bool Open() override;
   void Unlock() override;
   void UnlockStop() override;
+  void Resume() override { utc_offset_ = UtcNow() - ToTime(RunningTime()); }
   bool seekable() const override { return !settings().is_live && !settings().loop; }
   void Seek(const GstSegment& segment) override;
   std::optional<GstClockTime> duration() override;
@@ -41,7 +43,8 @@ class FileSession : public Session {
   bool restart_reported_ = false;
   bool cut_reported_ = false;
   GstClockTime pace_start_ = GST_CLOCK_TIME_NONE;  // running time of the capture's first packet
-  Time pace_start_utc_{};
+  Duration taken_utc_offset_{0};                   // of the packets so far
+  std::atomic<Duration> utc_offset_{Duration{0}};  // from the running time since the last pause
 
   std::mutex wait_mutex_;  // guards all below
   GstClockID wait_ = nullptr;

@@ -37,6 +37,13 @@ void ClockMapper::Observe(std::uint64_t sensor_ns, Time arrival) {
   last_sensor_ = std::max(last_sensor_, SinceSensorEpoch(sensor_ns));
 }
 
+void ClockMapper::Shift(Duration step) {
+  if (!offset_) return;
+  *offset_ += step;
+  for (Duration* minimum : {&minimum_, &last_minimum_}) *minimum += step;
+  for (Time* time : {&window_start_, &last_arrival_}) *time += step;
+}
+
 Time ClockMapper::Map(std::uint64_t sensor_ns) const {
   return Time(SinceSensorEpoch(sensor_ns) + offset_.value_or(Duration{0}));
 }

@@ -35,6 +35,8 @@ class ClockMapper {
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
   /// Lets the next packet set the offset anew.
   void Reset() { offset_.reset(); }
+  /// The receiver's clock was put forward by `step`.
+  void Shift(Duration step);
   /// Call only after Observe().
   Time Map(std::uint64_t sensor_ns) const;
 

@@ -81,6 +81,8 @@ class SensorStream {
   /// Drops incomplete and waiting slices: the next packet is from another place of a recording. The
   /// clocks stay, so a slice has the same time after any seek.
   void Reposition();
+  /// UTC is later by `step` at the same local time, from the next packet on.
+  void ShiftUtc(Duration step) { utc_.Shift(step); }
   /// Continues after the last slice of the stream before a reconfiguration.
   void Continue(const SensorStream& before) {
     first_scan_id_ = before.next_scan_id_;

@@ -144,6 +144,27 @@ TEST(OusterFile, LivePlaybackWaitsForTheTimeOfEachPacket) {
   EXPECT_EQ(gst_harness_query_latency(h.get()), 12500 * GST_USECOND);
 }
 
+TEST(OusterFile, CaptureTimesAfterAPauseAreThoseOfTheDay) {
+  Harness h(gst_harness_new_parse(("ouster_src is-live=true location=" + DataPath(kThreeScans) +
+                                   " metadata=" + DataPath(kThreeScansMetadata))
+                                      .c_str()));
+  UseTestClock(h.get());
+  gst_harness_play(h.get());
+  // The running time stands still, as it does in a pipeline that pauses.
+  const std::vector<Time> times = TimesOf(kThreeScans);
+  const auto second = kClockStart + static_cast<GstClockTime>((times[1] - times[0]).count());
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+  ASSERT_TRUE(AwaitClockWait(h.get(), second));
+  gst_element_set_state(h->element, GST_STATE_PAUSED);
+  const auto resumed = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
+  gst_element_set_state(h->element, GST_STATE_PLAYING);
+  while (gst_harness_buffers_received(h.get()) < 2)
+    ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+  const BufferPtr first(gst_harness_pull(h.get()));
+  const BufferPtr next(gst_harness_pull(h.get()));
+  EXPECT_GE(gst_lidar_buffer_get_capture_time(next.get()), resumed + GST_BUFFER_PTS(next.get()));
+}
+
 /// A round begins one packet after the last one of the round before.
 TEST(OusterFile, LoopsAtThePaceOfTheCapture) {
   const std::vector<Time> times = TimesOf(kThreeScans);
