@@ -35,6 +35,8 @@ expect 2 "lidarenc codes ranges" --geometry xyz --encoder lidarenc
 expect 2 "--start-bitrate must not be above --max-bitrate" --start-bitrate 9 --max-bitrate 8
 expect 1 "the sender ended early" --pcap "$folder/capture.pcap" --metadata "$folder/metadata.json"
 expect 0 "--duration" --help
+mkdir -p "$folder/out/packets2.csv/kept"  # so that the second link cannot write its packets
+expect 1 "packets2.csv" --links 2
 
 # The receiver has seen the end of the stream and still writes its clouds: a signal does not stop
 # it.

@@ -308,16 +308,19 @@ void Coordinator::Tick() {
     ChildProcess* child;
     const char* name;
     Phase may_end;  // the first phase in which the child may end
+    std::string log;
   };
-  std::vector<Child> children = {{receiver_.get(), "receiver", Phase::kDraining},
-                                 {sender_.get(), "sender", Phase::kDraining}};
-  for (const Link& link : links_)
-    children.push_back({link.process.get(), "link", Phase::kLinkStops});
+  const std::string folder = m_.options.output + "/";
+  std::vector<Child> children = {
+      {receiver_.get(), "receiver", Phase::kDraining, folder + "receiver.log"},
+      {sender_.get(), "sender", Phase::kDraining, folder + "sender.log"}};
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    children.push_back(
+        {links_[i].process.get(), "link", Phase::kLinkStops, LinkFile(m_.options, "link.log", i)});
   for (const auto& c : children)
     if (c.child != nullptr && phase_ < c.may_end && c.child->Ended())
       failure_ = std::string("the ") + c.name + " ended early, code " +
-                 std::to_string(c.child->Wait()) + ":\n" +
-                 Tail(m_.options.output + "/" + c.name + ".log");
+                 std::to_string(c.child->Wait()) + ":\n" + Tail(c.log);
   TakeComparisons();
   CheckLimit();
   if (!failure_.empty() || (phase_ == Phase::kLinkStops && LinksEnded())) {
