@@ -92,6 +92,16 @@ def straight_scans_of_listed_beams_are_read(folder):
     assert slam(f"kitti:{folder}", "--every-beam", "2")["scans"] == 4
 
 
+def points_whose_beams_are_unknown_are_shuffled(folder):
+    """Phases in no order tell no beams, and neither does a line of points."""
+    files = {"velodyne": [v for i in range(600) for v in (5 + i / 100, 1, 0, 0)], "phases": [i % 2 for i in range(600)]}
+    for kind, data in files.items():
+        (folder / kind).mkdir(parents=True)
+        (folder / f"{kind}/000000.bin").write_bytes(struct.pack(f"<{len(data)}f", *data))
+    (folder / "times.txt").write_text("0.0\n")
+    assert "600 points, shuffled" in run("clouds", f"kitti:{folder}", "--shuffle", "--errors=0.05", "--efforts=0")
+
+
 def faults_leave_scans_out():
     long = ["synth:os0-32:street:512", "--speed", "8"]
     assert slam(*long, "--scans", 40, "--lost-scans", "0.3")["error"]["length_m"] > 33
@@ -117,9 +127,10 @@ def what_is_wrong_is_said(folder):
 
 
 with tempfile.TemporaryDirectory() as temporary:
-    synthetic, listed = pathlib.Path(temporary) / "synthetic", pathlib.Path(temporary) / "listed"
+    synthetic, listed, unknown = (pathlib.Path(temporary) / name for name in ("synthetic", "listed", "unknown"))
     scans_come_back_with_their_beams_and_times(synthetic)
     poses_of_a_camera_become_those_of_the_sensor(synthetic)
     straight_scans_of_listed_beams_are_read(listed)
+    points_whose_beams_are_unknown_are_shuffled(unknown)
     faults_leave_scans_out()
     what_is_wrong_is_said(listed)

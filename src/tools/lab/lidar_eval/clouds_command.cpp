@@ -77,9 +77,8 @@ void Shuffle(Scan* scan) {
   for (std::size_t i = scan->xyz.size() / 3; i > 1; --i) {
     const std::size_t other = random() % i;
     std::swap_ranges(&scan->xyz[3 * (i - 1)], &scan->xyz[3 * (i - 1)] + 3, &scan->xyz[3 * other]);
-    if (scan->phases.empty()) continue;
-    std::swap(scan->rings[i - 1], scan->rings[other]);
-    std::swap(scan->phases[i - 1], scan->phases[other]);
+    if (!scan->rings.empty()) std::swap(scan->rings[i - 1], scan->rings[other]);
+    if (!scan->phases.empty()) std::swap(scan->phases[i - 1], scan->phases[other]);
   }
 }
 
