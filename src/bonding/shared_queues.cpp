@@ -24,9 +24,11 @@ constexpr double kStillFound = 1;
 /// The queue did not run empty if it was longer by this than the time to the next packet.
 constexpr double kMarginMs = 1;
 /// Packets of two links that leave within kTogether meet the same queue of one FIFO: the two queues
-/// differ by less than kAlike of the longer one, on average over kQueues packets.
+/// differ by less than kAlike of the longer one, on average over kQueues packets. Links that share
+/// a queue do so until it is more than kStillAlike.
 constexpr Duration kTogether = 10ms;
 constexpr double kAlike = 0.35;
+constexpr double kStillAlike = 0.5;
 constexpr double kQueues = 16;
 /// A longer spacing is a gap of the link.
 constexpr double kPauseMs = 60;
@@ -133,8 +135,9 @@ void SharedQueues::Decide(std::size_t a, std::size_t b) {
   Pair& back = pairs_[b][a];
   const double both = (there.spacing.Significance() + back.spacing.Significance()) / std::sqrt(2.0);
   const Pair& pair = pairs_[std::min(a, b)][std::max(a, b)];
-  there.shared = back.shared =
-      both > (there.shared ? kStillFound : kFound) && pair.apart_ms < kAlike * pair.longer_ms;
+  const bool shared = there.shared;
+  there.shared = back.shared = both > (shared ? kStillFound : kFound) &&
+                               pair.apart_ms < (shared ? kStillAlike : kAlike) * pair.longer_ms;
 }
 
 void SharedQueues::Forget(std::size_t link) {

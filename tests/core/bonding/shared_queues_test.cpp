@@ -20,6 +20,8 @@ class TwoFifos : public testing::Test {
     free = std::max(free, now_) + size / Mbps(8);
     const auto ticks = static_cast<std::uint32_t>(Seconds(free - kStart) * 65536);
     queues_.OnArrival(link, {now_, ticks, 0ms});
+    changes_ += queues_.Shared(0, 1) != shared_ ? 1 : 0;
+    shared_ = queues_.Shared(0, 1);
   }
   /// Sends bursts on both links, at the same times if they are `copies`.
   void Run(std::size_t second_fifo, bool copies) {
@@ -32,8 +34,10 @@ class TwoFifos : public testing::Test {
     }
   }
   SharedQueues queues_;
+  bool shared_ = false;
+  int changes_ = 0;  // of what it finds
   Time now_ = kStart;
-  std::array<Time, 2> free_{};
+  std::array<Time, 2> free_{kStart, kStart};
   link::Random random_{1};
 };
 
@@ -42,6 +46,7 @@ TEST_F(TwoFifos, FindsOneQueue) {
   EXPECT_TRUE(queues_.Shared(0, 1));
   EXPECT_TRUE(queues_.Shared(1, 0));
   EXPECT_FALSE(queues_.Shared(0, 2));
+  EXPECT_EQ(changes_, 1);
   queues_.Forget(1);
   EXPECT_FALSE(queues_.Shared(0, 1));
 }
@@ -64,6 +69,21 @@ TEST_F(TwoFifos, KnowsTheEmptyQueueOfTheWindowBeforeWhileOneStands) {
 TEST_F(TwoFifos, KeepsTwoQueuesApartThatCopiesFillAlike) {
   Run(1, true);
   EXPECT_FALSE(queues_.Shared(0, 1));
+}
+
+TEST_F(TwoFifos, TakesNoLittleLikenessForOneQueue) {
+  for (int round = 0; round < 5; ++round) {
+    now_ = std::max(free_[0], free_[1]) + 1s;  // the queues are empty again
+    const Time end = now_ + 8s;
+    // Both queues stand at 50 ms, with packets of others between ours.
+    for (; now_ < end; now_ += FromSeconds(0.003 + 0.002 * random_.Uniform()))
+      for (const std::size_t link : {0U, 1U})
+        while (free_[link] - now_ < 50ms) {
+          if (random_.Chance(0.5)) free_[link] = std::max(free_[link], now_) + 1200us;
+          Send(link, link, DataSize::Bytes(random_.Chance(0.5) ? 1200 : 600));
+        }
+  }
+  EXPECT_EQ(changes_, 0);
 }
 
 TEST_F(TwoFifos, LeavesAQueueThatIsNoLongerShared) {
