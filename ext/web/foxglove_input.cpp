@@ -105,7 +105,7 @@ bool OpenTopic(GstBaseSink* sink, const std::string& name, Schema schema, Shared
   *topic = state.used->server->Open(name, schema);
   if (*topic) return true;
   GST_ELEMENT_ERROR(sink, RESOURCE, SETTINGS,
-                    ("The topic \"%s\" is already used for something else.", name.c_str()),
+                    ("Cannot show this stream: %s.", lidar::web::TopicInUse(name).c_str()),
                     (nullptr));
   return false;
 }
@@ -169,7 +169,7 @@ bool OpenSlices(GstBaseSink* sink, const InputSettings& settings, const GstCaps*
                                      settings.recording, AskUpstream(sink), hub.max_points},
                                     {hub.points, hub.malformed}, &why);
   if (state.slices) return true;
-  GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("Not the caps of slices to show: %s.", why.c_str()),
+  GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("Cannot show these slices: %s.", why.c_str()),
                     ("%" GST_PTR_FORMAT, static_cast<gconstpointer>(caps)));
   return false;
 }

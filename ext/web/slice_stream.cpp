@@ -126,7 +126,7 @@ bool SliceStream::OpenTopics(SliceCaps caps, std::string* why) {
     slices_ = server_->Open(settings_.topic + kSlicesEnding, foxglove::Schema::kSlice,
                             foxglove::DescribeSlices(about), std::move(recording));
   if (slices_) return true;
-  *why = "the topic \"" + settings_.topic + "\" is already used for something else";
+  *why = TopicInUse(settings_.topic + (clouds_ ? kSlicesEnding : ""));
   return false;
 }
 

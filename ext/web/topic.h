@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -87,5 +88,11 @@ class Topic {
   std::atomic<bool> wants_recoded_{false};
 };
 using SharedTopic = std::shared_ptr<Topic>;
+
+/// Says in words for a user why the topic cannot be opened.
+inline std::string TopicInUse(const std::string& name) {
+  return "the topic \"" + name +
+         "\" is already used for something else; set the property topic of one of its pads";
+}
 
 }  // namespace lidar::web

@@ -301,8 +301,12 @@ TEST(FoxgloveSink, RefusesOneTopicForTwoKindsOfMessages) {
   Sink sink("sink_1::topic=/points");
   sink.SetCloudCaps();
   sink.PushCloud(1);
+  const ElementBus bus(sink.element());
   Harness second(gst_harness_new_with_element(sink.element(), "sink_1", nullptr));
   gst_harness_set_src_caps_str(second.get(), GST_LIDAR_ODOMETRY_MEDIA_TYPE);
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
+            "Cannot show this stream: the topic \"/points\" is already used for something else; "
+            "set the property topic of one of its pads.");
   const std::array<double, 8> words = {};
   EXPECT_EQ(gst_harness_push(second.get(), gst_buffer_new_memdup(words.data(), sizeof words)),
             GST_FLOW_NOT_NEGOTIATED);

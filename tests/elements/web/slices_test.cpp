@@ -4,6 +4,7 @@
 
 #include "src/codec/slice_links.h"
 #include "tests/elements/web/slice_viewer.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/proto_reader.h"
 
 namespace lidar::test {
@@ -235,6 +236,19 @@ TEST(Slices, OfAnotherStreamHaveAnotherChannel) {
     const auto found = viewer.peer.channels.find("/points/slices");
     return found != viewer.peer.channels.end() && found->second["id"] != id;
   }));
+}
+
+TEST(Slices, OfATopicInUseAreRefused) {
+  Edge edge("sink_1::topic=/points/slices");
+  const ElementBus bus(edge.sink.element());
+  Harness poses(gst_harness_new_with_element(edge.sink.element(), "sink_1", nullptr));
+  gst_harness_set_src_caps_str(poses.get(), GST_LIDAR_ODOMETRY_MEDIA_TYPE);
+  gst::BufferPtr slice = edge.robot.Next();
+  gst_harness_set_src_caps(edge.sink.harness(), edge.robot.caps().release());
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
+            "Cannot show these slices: the topic \"/points/slices\" is already used for something "
+            "else; set the property topic of one of its pads.");
+  EXPECT_EQ(gst_harness_push(edge.sink.harness(), slice.release()), GST_FLOW_NOT_NEGOTIATED);
 }
 
 TEST(Slices, WithoutASensorModelAreRefused) {
