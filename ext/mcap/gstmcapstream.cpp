@@ -63,7 +63,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
-  // The base class sends no caps again that it had before refused ones.
+  // Refused caps leave the writer, because GstBaseSink does not set the earlier caps again.
   state.writer = std::move(writer);
   if (state.topic.empty()) {
     const std::string usual(TopicOf(state.writer->type()));

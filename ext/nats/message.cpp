@@ -147,7 +147,7 @@ bool ReadSlice(natsMsg* message, GstBuffer* buffer) {
 
 bool ReadPose(natsMsg* message, GstBuffer* buffer) {
   const auto text = Header(message, kPose);
-  // Streams keep clouds of senders whose poses had other numbers.
+  // A stream may hold clouds of an older sender, whose poses have another number of values.
   if (!text || std::count(text->begin(), text->end(), ' ') != kPoseNumbers - 1) return true;
   GstLidarPose pose{};
   guint tracking = 0;

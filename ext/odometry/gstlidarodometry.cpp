@@ -5,7 +5,7 @@
  * Finds where the sensor is from its clouds, and puts its pose on each of them.
  *
  * |[
- * gst-launch-1.0 lidartestsrc speed=10 slices-per-scan=1 num-buffers=50
+ * gst-launch-1.0 lidartestsrc speed=10 slices-per-scan=1 num-buffers=50 \
  *   ! lidarodometry trajectory=drive.tum ! fakesink
  * ]|
  */

@@ -20,7 +20,7 @@ namespace {
 
 constexpr guint kDefaultLidarPort = 7502;
 constexpr guint kDefaultImuPort = 7503;
-constexpr gint64 kSilenceUs = 1'000'000;        // a sensor is away after such a silence
+constexpr gint64 kSilenceUs = 1'000'000;        // silence after which a sensor counts as away
 constexpr gint64 kFirstSilenceUs = 3'000'000;   // the same before its first packet
 constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // interval between checks for silence
 constexpr gint64 kQuestionIntervalUs = 1'000'000;
@@ -223,8 +223,8 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// Returns false, after an error, without `reconnect`, or if no packet ever came, because a setting
-/// is wrong then.
+/// Posts an error and returns false without `reconnect`, or if no packet ever came: a setting is
+/// wrong then.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {

@@ -24,9 +24,9 @@ class SensorApi {
 
   std::optional<ouster::Metadata> FetchMetadata(ApiError* error);
 
-  /// Sets the differences from `settings`, makes the sensor apply them and checks the result.
-  /// Returns true if the sensor has them. `sleep` waits about a second, and ends the call if it
-  /// returns false.
+  /// Sends the values of `settings` that the sensor lacks, makes it apply them and reads them back.
+  /// Returns true if the sensor has all of them. `sleep` waits about a second, and ends the call if
+  /// it returns false.
   bool Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
                  ApiError* error);
   /// Returns the destination of the sensor's packets, "192.0.2.1:7502"; empty if unknown.

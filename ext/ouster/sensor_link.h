@@ -30,8 +30,8 @@ class SensorLink {
   SensorLink& operator=(const SensorLink&) = delete;
 
   /// Configures the sensor as the settings ask and fetches its metadata. A request during another
-  /// one is ignored. After a failure, which is a result, it tries again ever more slowly, unless
-  /// the settings forbid it.
+  /// one is ignored. A failure is a result, too; the link then tries again, ever more slowly,
+  /// unless the settings forbid it.
   void Request();
   bool busy() const;
   std::optional<Result> Take();

@@ -56,7 +56,7 @@ class UdpFeed {
   ReaderPtr lidar_;
   ReaderPtr imu_;
   guint64 drops_before_ = 0;
-  int epoll_;  // of both
+  int epoll_;  // for both sockets
   WakeFd wake_;
 };
 

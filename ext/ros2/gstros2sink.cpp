@@ -206,7 +206,7 @@ static gboolean Stop(GstBaseSink* base) {
   return TRUE;
 }
 
-/// GstBaseSink sends no caps again that it had before refused ones, so refused ones change nothing.
+/// Refused caps leave the state unchanged, because GstBaseSink does not set the earlier caps again.
 static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   auto* self = GST_LIDAR_ROS2_SINK(base);
   State& state = StateOf(self);

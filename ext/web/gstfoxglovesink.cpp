@@ -341,8 +341,8 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   lidar::web::SetHub(GST_LIDAR_FOXGLOVE_INPUT(input), HubOf(G_OBJECT(element)));
   {
     const std::lock_guard lock(self->state->mutex);
-    // A pipeline may play before each pad of its viewer has data. A viewer shows late data at once:
-    // waiting for a deadline would block a source without buffers.
+    // async=FALSE lets the pipeline play while some pads have no data yet. A viewer shows late data
+    // at once: waiting for a deadline would block a source without buffers.
     g_object_set(input, "sync", self->state->settings.sync, "async", FALSE, "processing-deadline",
                  guint64{0}, nullptr);
   }

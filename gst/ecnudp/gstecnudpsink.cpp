@@ -6,8 +6,8 @@
  * the property `ecn` if it has none.
  *
  * |[
- * gst-launch-1.0 audiotestsrc ! audioconvert ! rtpL16pay ! ecnudpsink host=127.0.0.1 port=5004
- * ecn=ect1
+ * gst-launch-1.0 audiotestsrc ! audioconvert ! rtpL16pay ! ecnudpsink \
+ *   host=127.0.0.1 port=5004 ecn=ect1
  * ]|
  */
 #include <gst/base/gstbasesink.h>

@@ -6,9 +6,10 @@
  * only; damaged slices are dropped, and everything that is missing is counted in `stats`.
  *
  * |[
- * gst-launch-1.0 udpsrc port=5004
- * caps="application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96"
- * ! rtplidardepay ! lidardec ! fakesink
+ * gst-launch-1.0 udpsrc port=5004 \
+ *   caps="application/x-rtp,media=application,clock-rate=90000,payload=96,\
+ *   encoding-name=X-LIDAR-DRACO" \
+ *   ! rtplidardepay ! lidardec ! fakesink
  * ]|
  */
 #include <gst/rtp/gstrtpbasedepayload.h>
@@ -82,9 +83,9 @@ const std::array<Stat<Shown>, 20> kStats = {{
     {"outages", A<&ReceiverAccounts::outages>},
 }};
 
-// This many packets of another payload type without one of ours are no accident.
+// A warning is posted after this many packets of another payload type, if no packet was received.
 constexpr guint64 kWrongTypePackets = 20;
-// This many unreadable packets before the first readable one are no accident.
+// A warning is posted after this many unreadable packets before the first readable one.
 constexpr guint64 kUnreadablePackets = 20;
 
 lidar::Duration ReorderTime(const Settings& s) {

@@ -118,7 +118,7 @@ bool TransformTree::Set(std::string parent, std::string child, Time at, const Fr
     return true;
   }
   link.earlier.Add(parent, sample);
-  // `earlier` may hold fewer poses, because it drops those far from the newest.
+  // too_old counts also poses that `earlier` has dropped because they are far from its newest.
   if (++link.too_old < kRestart) return false;
   link.history = std::exchange(link.earlier, {});
   link.too_old = 0;

@@ -10,7 +10,7 @@ namespace lidar::rtp {
 namespace {
 
 constexpr int kMaxSequenceStep = 64;  // between two packets of a candidate
-// No sensor turns faster, so a stream that advanced further in an outage is another one.
+// No sensor turns faster, so a stream that advanced further in an outage is another stream.
 constexpr double kMostScansPerSecond = 1'000;
 constexpr std::int64_t kScansWithoutClock = 10'000;  // limit while arrival times stand still
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A road tunnel: the same walls for kilometres, in which odometry gets lost.
+// A road tunnel: the same walls for kilometres, in which odometry fails.
 #include "src/synth/props.h"
 #include "src/synth/scene_makers.h"
 

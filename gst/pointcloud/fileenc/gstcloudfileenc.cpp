@@ -6,7 +6,7 @@
  * Makes each cloud a PCD or PLY file, which multifilesink writes.
  *
  * |[
- * gst-launch-1.0 lidartestsrc slices-per-scan=1 num-buffers=3 ! pcdenc
+ * gst-launch-1.0 lidartestsrc slices-per-scan=1 num-buffers=3 ! pcdenc \
  *   ! multifilesink location=scan%06d.pcd
  * ]|
  */

@@ -5,7 +5,7 @@
  * Crops, thins, moves and converts clouds.
  *
  * |[
- * gst-launch-1.0 lidartestsrc num-buffers=80 ! scanassembler
+ * gst-launch-1.0 lidartestsrc num-buffers=80 ! scanassembler \
  *   ! pointcloudfilter crop-box="-20,-20,-1,20,20,4" voxel-size=0.2 invalid=remove ! fakesink
  * ]|
  */

@@ -5,9 +5,10 @@
  * Makes one cloud of the scans of several sensors.
  *
  * |[
- * gst-launch-1.0 pointcloudmerge name=m sink_1::transform="-2,0,0,0,0,180" ! fakesink
- *   lidartestsrc num-buffers=80 ! scanassembler ! m. lidartestsrc num-buffers=80 ! scanassembler !
- * m.
+ * gst-launch-1.0 pointcloudmerge name=m sink_1::transform="-2,0,0,0,0,180" \
+ *   ! fakesink \
+ *   lidartestsrc num-buffers=80 ! scanassembler ! m. \
+ *   lidartestsrc num-buffers=80 ! scanassembler ! m.
  * ]|
  */
 #include <gst/base/gstaggregator.h>

@@ -6,8 +6,8 @@
  * file, stamps and capture times come from the frame rate, and the segment is in time.
  *
  * |[
- * gst-launch-1.0 multifilesrc location=%06d.bin ! pointcloudparse framerate=10/1 ! fakesink
- * sync=true
+ * gst-launch-1.0 multifilesrc location=%06d.bin ! pointcloudparse framerate=10/1 \
+ *   ! fakesink sync=true
  * ]|
  */
 #include <gst/gst.h>

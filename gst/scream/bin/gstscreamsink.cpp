@@ -5,8 +5,8 @@
  * screamtx and UDP with ECN in one bin; the receiver's feedback comes back on the same socket.
  *
  * |[
- * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamsink host=127.0.0.1
- * port=5004
+ * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamsink \
+ *   host=127.0.0.1 port=5004
  * ]|
  */
 #include <gst/gst.h>

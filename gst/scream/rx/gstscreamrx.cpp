@@ -6,8 +6,8 @@
  * the SCReAM sender needs it (RFC 8888).
  *
  * |[
- * gst-launch-1.0 ecnudpsrc port=5004 ! screamrx name=rx ! fakesink  rx.rtcp_src ! ecnudpsink
- * host=127.0.0.1 port=5005 sync=false async=false
+ * gst-launch-1.0 ecnudpsrc port=5004 ! screamrx name=rx ! fakesink \
+ *   rx.rtcp_src ! ecnudpsink host=127.0.0.1 port=5005 sync=false async=false
  * ]|
  */
 #include "gst/scream/rx/gstscreamrx.h"

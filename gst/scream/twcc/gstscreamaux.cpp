@@ -6,9 +6,9 @@
  * stands right before an rtpsession; request-aux-sender of webrtcbin puts it there.
  *
  * |[
- * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamaux !
- * bin.send_rtp_sink_0 rtpbin name=bin rtp-profile=avpf bin.send_rtp_src_0 ! udpsink
- * host=127.0.0.1 port=5004 sync=false async=false
+ * gst-launch-1.0 lidartestsrc is-live=true ! lidarenc ! rtplidarpay ! screamaux \
+ *   ! bin.send_rtp_sink_0 rtpbin name=bin rtp-profile=avpf \
+ *   bin.send_rtp_src_0 ! udpsink host=127.0.0.1 port=5004 sync=false async=false
  * ]|
  */
 #include <gst/gst.h>

@@ -42,8 +42,8 @@ std::optional<Reported> Read(const GstStructure* s) {
   return r;
 }
 
-/// Returns the packets of a report, or none for another event: kMaxTwccPackets at most, and one
-/// more if the report is too long.
+/// Returns the packets of a report, or none if `event` is no report. A report that is too long
+/// gives kMaxTwccPackets + 1 packets.
 std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   std::vector<const GstStructure*> packets;
   const GstStructure* s = gst_event_get_structure(event);

@@ -6,8 +6,8 @@
  * target bitrates. RFC 8888 feedback goes to rtcp_sink.
  *
  * |[
- * gst-launch-1.0 videotestsrc is-live=true ! openh264enc ! rtph264pay ! screamsink host=127.0.0.1
- * port=5004
+ * gst-launch-1.0 videotestsrc is-live=true ! openh264enc ! rtph264pay ! screamsink \
+ *   host=127.0.0.1 port=5004
  * ]|
  */
 #include "gst/scream/tx/gstscreamtx.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Merges the streams of screamtx into one: its events, its segment, its buffers' times.
+// Merges the streams of screamtx at its src pad: chooses the events, and maps buffer times to one
+// segment.
 #pragma once
 #include <gst/gst.h>
 

@@ -105,7 +105,7 @@ TEST(SharedPort, ASocketThatIsOpenedHasNothingFromBefore) {
     while (g_socket_receive(socket, bytes, sizeof bytes, nullptr, nullptr) > 0) ++count;
     return count;
   };
-  send();  // while it is shut
+  send();  // while the socket is shut
   edge::ShutSocket(socket, false);
   EXPECT_EQ(received(), 0);
   send();
@@ -117,7 +117,7 @@ TEST(SharedPort, ASocketThatIsOpenedHasNothingFromBefore) {
   EXPECT_EQ(received(), 0) << "of the session before";
   send();
   EXPECT_EQ(received(), 1);
-  // RTCP has the types 192 to 223, and its SSRC before the place of RTP's.
+  // The second byte of RTCP is 192 to 223. Its SSRC ends at byte 7, that of RTP at byte 11.
   for (const auto& [type, at] :
        {std::pair{191, 11}, std::pair{192, 7}, std::pair{223, 7}, std::pair{224, 11}})
     for (const int place : {7, 11}) {

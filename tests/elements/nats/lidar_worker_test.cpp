@@ -22,9 +22,9 @@ namespace {
 /// State of a decoder that is slow to start.
 struct Slowness {
   std::atomic<bool> hold{false};
-  std::atomic<int> held{0};  // number of starts that wait, or did
+  std::atomic<int> held{0};  // number of starts that have waited
   std::atomic<bool> gave_up{false};
-  std::atomic<bool> fails{false};  // once it need not wait any more
+  std::atomic<bool> fails{false};  // the start fails once `hold` is over
 } slowness;
 
 struct SlowDecoder {

@@ -11,8 +11,8 @@
 
 namespace lidar::edge {
 
-/// Makes a pipeline that receives, and sends to NATS. `socket`: the robot's own on the common port,
-/// or NULL. Throws std::runtime_error if an element is missing.
+/// Makes a pipeline that receives from the robot and publishes to NATS. `socket` is the robot's
+/// share of the common port, or NULL. Throws std::runtime_error if an element is missing.
 gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
 
 /// Adds a recorder that runs with the pipeline. Its failures only reach the bus. Throws

@@ -20,8 +20,8 @@ namespace lidar::edge {
 
 class Session {
  public:
-  /// `socket`: the robot's own on the common port, or NULL. Throws std::runtime_error if an element
-  /// is missing or a setting is wrong.
+  /// `socket` is the robot's share of the common port, or NULL. Throws std::runtime_error if an
+  /// element is missing or a setting is wrong.
   Session(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
   ~Session() { End(); }
   Session(const Session&) = delete;

@@ -31,8 +31,8 @@ class Worker {
 
   /// Works for some milliseconds.
   void Step();
-  /// Stops all pipelines, and leaves the robots to other workers within two seconds. A pipeline
-  /// that runs longer publishes nothing; the destructor waits for it.
+  /// Stops all pipelines, and leaves the robots to other workers, in less than a second. A
+  /// pipeline that runs longer publishes nothing; the destructor waits for it.
   void HandOver();
 
   /// Adds the figures of the worker and of each robot that it has. Does not wait.
