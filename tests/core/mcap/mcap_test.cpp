@@ -256,6 +256,26 @@ TEST(Mcap, SaysWhyAFileIsNone) {
   EXPECT_EQ(why, "it does not begin as an MCAP file");
 }
 
+TEST(Mcap, AChunkThatEndsBeforeItsBeginHasNoNegativeDuration) {
+  for (const bool indexed : {false, true}) {
+    Bytes file(kMagic.begin(), kMagic.end());
+    const std::uint64_t offset = file.size();
+    Append(ChunkHeader{7 * kSecond, 3 * kSecond, 1, 0, "", 1}, test::View("x"), &file);
+    const std::uint64_t size = file.size() - offset;
+    const std::uint64_t summary = file.size();
+    if (indexed) {
+      Append(Channel{1, 0, "points", "cdr", {}}, &file);
+      Append(ChunkIndex{7 * kSecond, 3 * kSecond, offset, size, {}, 0, "", 1, 1}, &file);
+      Append(Footer{summary, 0, 0}, &file);
+      file.insert(file.end(), kMagic.begin(), kMagic.end());
+    }
+    const auto reader = Open(file);
+    ASSERT_EQ(reader->index().chunks.size(), 1U);
+    EXPECT_EQ(reader->index().complete, indexed);
+    EXPECT_GE(reader->index().end_time(), reader->index().start_time());
+  }
+}
+
 TEST(Mcap, AHugeChunkIsNotBelieved) {
   for (const std::uint64_t claimed : {kMaxChunk + 1, UINT64_MAX}) {
     Bytes file(kMagic.begin(), kMagic.end());
