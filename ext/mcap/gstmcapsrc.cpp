@@ -285,6 +285,7 @@ static void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment)
     std::lock_guard lock(state.mutex);
     segment = state.segment = seek.Begun(segment, state.segment);
   }
+  if (seek.flushes()) state.end_wanted = false;  // the flush drops it
   run.playback->Seek(run.playback->start_time() + segment.position);
   run.streams->Restart(segment, seek.seqnum());
 }

@@ -26,6 +26,20 @@ std::pair<gint64, gint64> Times(const Pipeline& p) {
   return times;
 }
 
+TEST_F(McapSeek, AFlushDropsAnEosOfTheApplication) {
+  const auto written = Record(4, "", "a.mcap");
+  Pipeline p("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  ASSERT_TRUE(gst_element_send_event(p.get(), gst_event_new_eos()));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  p.Forget();
+  ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  ExpectSame(p.outcome().buffers["see"], written);
+}
+
 TEST_F(McapSeek, SeeksByTime) {
   const auto written = Record(20, "chunk-duration=300000000", "a.mcap");
   Pipeline p("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
