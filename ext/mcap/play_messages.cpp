@@ -59,11 +59,12 @@ void WarnOfFiles(GstElement* element, const mcap::Playback& playback, const std:
 
 void PostDamage(GstElement* element, const PlayedCounts& counts) {
   const bool nothing = counts.messages == counts.messages_dropped;
-  if (!counts.has_pads || (nothing && counts.chunks_damaged > 0))
+  const bool damaged = counts.chunks_damaged > 0 || counts.messages_dropped > 0;
+  if (!counts.has_pads || (nothing && damaged))
     GST_ELEMENT_ERROR(element, STREAM, DEMUX, ("No message of the recording can be read."),
                       ("damaged: %" G_GUINT64_FORMAT " chunks, %" G_GUINT64_FORMAT " messages",
                        counts.chunks_damaged, counts.messages_dropped));
-  else if (counts.chunks_damaged > 0 || counts.messages_dropped > 0)
+  else if (damaged)
     GST_ELEMENT_WARNING(element, STREAM, DEMUX,
                         ("The recording is damaged: %" G_GUINT64_FORMAT
                          " chunks and %" G_GUINT64_FORMAT " messages are left out.",

@@ -164,6 +164,21 @@ TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
             "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
 }
 
+TEST_F(McapErrors, ARecordingWhoseMessagesAreAllDamagedIsAnError) {
+  mcap::test::FileMaker maker(mcap::WriterSettings{});
+  mcap::Channel channel;
+  channel.topic = "/slices";
+  channel.message_encoding = "cdr";
+  channel.metadata = {{mcap::kCapsKey, "application/x-lidar-slice, alignment=(string)slice"}};
+  const auto id = maker.AddChannel(gst::SchemaOf(gst::MessageType::kSlice), std::move(channel));
+  for (std::uint64_t time = 1; time <= 3; ++time) ASSERT_TRUE(maker.Add(id, time, "x"));
+  ASSERT_TRUE(maker.writer().Finish());
+  std::ofstream(Path("a.mcap"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(maker.file().data()),
+             static_cast<std::streamsize>(maker.file().size()));
+  EXPECT_EQ(PlayError(At("a.mcap")), "No message of the recording can be read.");
+}
+
 TEST_F(McapErrors, APlayerSaysWhatTheNextElementDoesNotTake) {
   Record(1, "", "a.mcap");
   EXPECT_EQ(Play("mcapsrc" + At("a.mcap") + " ! pointcloudview ! fakesink").error,
