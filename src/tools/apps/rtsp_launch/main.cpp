@@ -117,7 +117,12 @@ Options ReadOptions(int argc, char** argv) {
   app.add_option("--port", options.port, "TCP port to listen on; 0: any")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  app.add_option("--path", options.path, "Path in the address of the stream")
+  app.add_option("--path", options.path, "Path in the address of the stream; begins with /")
+      ->check(CLI::Validator(
+          [](const std::string& path) {
+            return path.rfind('/', 0) == 0 ? "" : "\"" + path + "\" does not begin with /";
+          },
+          "/PATH"))
       ->capture_default_str();
   app.prefix_command();  // the first word that is no option begins the pipeline
   app.footer(
