@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -108,7 +107,7 @@ class Receiver {
 
   const BenchOptions& options_;
   gst::ElementPtr pipeline_;
-  std::ofstream log_;
+  OutputFile log_;
   std::mutex mutex_;  // guards the rest, which the streaming thread writes
   FrameMeter meter_;
   Distribution second_;  // ages [ms] in this line's second
@@ -118,12 +117,9 @@ class Receiver {
   Duration next_line_{0};
 };
 
-Receiver::Receiver(const BenchOptions& options) : options_(options) {
-  if (!options.rx.log.empty()) {
-    log_.open(options.rx.log);
-    if (!log_) throw std::runtime_error("cannot write " + options.rx.log);
-    log_ << "time_s,rtp_timestamp,frame_age_ms\n";
-  }
+Receiver::Receiver(const BenchOptions& options)
+    : options_(options), log_(options.rx.log, OutputFile::Rest::kKeepRows) {
+  log_.stream() << "time_s,rtp_timestamp,frame_age_ms\n";
   Build();
 }
 
@@ -199,8 +195,8 @@ void Receiver::OnBuffer(GstBuffer* buffer) {
   if (const auto age = meter_.OnPacket(packet)) {
     second_.Add(Milliseconds(*age));
     if (log_.is_open())
-      log_ << Seconds(packet.unix_time - first_) << ',' << packet.timestamp << ','
-           << Milliseconds(*age) << '\n';
+      log_.stream() << Seconds(packet.unix_time - first_) << ',' << packet.timestamp << ','
+                    << Milliseconds(*age) << '\n';
   }
 }
 
@@ -243,6 +239,8 @@ void Receiver::Finish() {
         {"max", ages.Max()}}}};
   std::puts(summary.dump(2).c_str());
   if (!options_.summary.empty()) tools::WriteFile(options_.summary, summary.dump(2) + '\n');
+  log_.Close();
+  FinishStandardOutput();
 }
 
 int Receiver::Run() {

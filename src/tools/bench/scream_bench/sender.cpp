@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
@@ -50,7 +49,7 @@ class Sender {
   gst::ElementPtr pipeline_;
   GstElement* source_ = nullptr;
   GstElement* sink_ = nullptr;
-  std::ofstream log_;
+  OutputFile log_;
   FrameSizes sizes_;
   FramePacketizer packetizer_;
   std::atomic<std::uint32_t> target_bps_;
@@ -62,15 +61,12 @@ class Sender {
 
 Sender::Sender(const BenchOptions& options)
     : options_(options),
+      log_(options.tx.log, OutputFile::Rest::kKeepRows),
       sizes_(options.tx.fps, options.tx.frame_jitter_percent),
       packetizer_(options.tx.mtu),
       target_bps_(static_cast<std::uint32_t>(options.tx.init_bitrate.bits_per_second())) {
-  if (!options.tx.log.empty()) {
-    log_.open(options.tx.log);
-    if (!log_) throw std::runtime_error("cannot write " + options.tx.log);
-    log_ << "time_s,target_bps,sent_bps,queue_delay_ms,rtt_ms,ref_wnd,bytes_in_flight,"
-            "media_queue_delay_ms,lost,ce\n";
-  }
+  log_.stream() << "time_s,target_bps,sent_bps,queue_delay_ms,rtt_ms,ref_wnd,bytes_in_flight,"
+                   "media_queue_delay_ms,lost,ce\n";
   Build();
 }
 
@@ -170,10 +166,10 @@ void Sender::Tick() {
   const double seconds = Seconds(now - started_);
   const auto get = [&](const char* name) { return Number(stats.get(), name); };
   if (log_.is_open()) {
-    log_ << seconds << ',' << get("target-bitrate") << ',' << get("sent-bitrate") << ','
-         << get("queue-delay") / 1e6 << ',' << get("rtt") / 1e6 << ',' << get("ref-wnd") << ','
-         << get("bytes-in-flight") << ',' << get("sender-queue-delay") / 1e6 << ','
-         << get("packets-lost") << ',' << get("packets-ce") << '\n';
+    log_.stream() << seconds << ',' << get("target-bitrate") << ',' << get("sent-bitrate") << ','
+                  << get("queue-delay") / 1e6 << ',' << get("rtt") / 1e6 << ',' << get("ref-wnd")
+                  << ',' << get("bytes-in-flight") << ',' << get("sender-queue-delay") / 1e6 << ','
+                  << get("packets-lost") << ',' << get("packets-ce") << '\n';
   }
   if (now < next_line_) return;
   next_line_ += std::chrono::seconds{1};
@@ -202,6 +198,8 @@ void Sender::Finish(const GstStructure* stats, double seconds) {
       {"mean_rate_bps", seconds > 0 ? Number(stats, "bytes-sent") * 8 / seconds : 0}};
   std::puts(summary.dump(2).c_str());
   if (!options_.summary.empty()) tools::WriteFile(options_.summary, summary.dump(2) + '\n');
+  log_.Close();
+  FinishStandardOutput();
 }
 
 int Sender::Run() {
