@@ -63,6 +63,7 @@ int Run(const LinkOptions& options) {
   });
   WriteSummary(options.summary, recorder.Summary(Now(), relay.there(), options.there.capacity));
   recorder.Close();
+  FinishStandardOutput();
   return 0;
 }
 
