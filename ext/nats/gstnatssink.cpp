@@ -268,12 +268,28 @@ static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool kee
                         (nullptr));
 }
 
+/// Posts an error if no message reached the server although none waits.
+static void TellOfDropped(GstBaseSink* base, const Publisher& publisher, bool keeps_trying) {
+  const PublisherCounters counters = publisher.counters();
+  const auto lost = guint64{counters.dropped + counters.too_large};
+  if (counters.messages > 0 || lost == 0 || keeps_trying) return;
+  GST_ELEMENT_ERROR(base, RESOURCE, WRITE,
+                    ("None of %" G_GUINT64_FORMAT
+                     " messages reached the NATS server: they exceed its max_payload, or "
+                     "buffer-size.",
+                     lost),
+                    (nullptr));
+}
+
 static gboolean OnEvent(GstBaseSink* base, GstEvent* event) {
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
     const auto publisher = PublisherOf(base);
     const NatsSinkSettings settings = Snapshot(StateOf(base));
-    if (publisher && publisher->Drain(settings.drain_timeout) == Publisher::Drained::kTimeout)
+    const auto drained =
+        publisher ? publisher->Drain(settings.drain_timeout) : Publisher::Drained::kInterrupted;
+    if (drained == Publisher::Drained::kTimeout)
       TellOfUnsent(base, *publisher, settings.keep_trying);
+    if (drained == Publisher::Drained::kAll) TellOfDropped(base, *publisher, settings.keep_trying);
   }
   return GST_BASE_SINK_CLASS(gst_lidar_nats_sink_parent_class)->event(base, event);
 }

@@ -93,8 +93,21 @@ TEST_F(NatsErrors, ABufferThatTheServerDoesNotTakeIsCounted) {
   NatsPipeline sender(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" + At());
   sender.Play();
   EXPECT_NE(sender.WaitForWarning().find("larger than the server takes"), std::string::npos);
-  EXPECT_EQ(sender.WaitForEnd(), "");
+  EXPECT_EQ(sender.WaitForEnd(),
+            "None of 8 messages reached the NATS server: they exceed its max_payload, or "
+            "buffer-size.");
   EXPECT_EQ(sender.stat("messages-too-large"), 8U);
+}
+
+TEST_F(NatsErrors, AStreamWhoseBuffersAllExceedTheBufferSizeEndsWithAnError) {
+  server_.Start();
+  NatsPipeline sender(kQuick + "slices-per-scan=1 num-buffers=8" + kSee +
+                      "! natssink name=n sync=false buffer-size=65536" + At());
+  sender.Play();
+  EXPECT_EQ(sender.WaitForEnd(),
+            "None of 8 messages reached the NATS server: they exceed its max_payload, or "
+            "buffer-size.");
+  EXPECT_EQ(sender.stat("messages-dropped"), 8U);
 }
 
 TEST_F(NatsErrors, AServerThatIsNotThereIsToldOfByBothEnds) {
