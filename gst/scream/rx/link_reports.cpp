@@ -6,10 +6,26 @@
 #include "src/base/sequence.h"
 
 namespace lidar::gst {
+namespace {
+
+void AddFeedback(const rtcp::FeedbackGenerator::Stats& s, rtcp::FeedbackGenerator::Stats* sum) {
+  sum->packets += s.packets;
+  sum->ce_packets += s.ce_packets;
+  sum->duplicates += s.duplicates;
+  sum->reordered += s.reordered;
+  sum->stale += s.stale;
+  sum->lost += s.lost;
+  sum->reports += s.reports;
+  sum->received += s.received;
+  sum->sent += s.sent;
+}
+
+}  // namespace
 
 void LinkReports::Reset(const rtcp::FeedbackConfig& config) {
   config_ = config;
   links_.clear();
+  replaced_ = {};
 }
 
 void LinkReports::set_config(const rtcp::FeedbackConfig& config) {
@@ -25,9 +41,12 @@ LinkReports::Link& LinkReports::LinkOf(GSocketAddress* from) {
       link.address.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
     return link;
   }
-  if (links_.size() >= kMaxLinks)
-    links_.erase(std::min_element(links_.begin(), links_.end(),
-                                  [](const Link& a, const Link& b) { return a.last < b.last; }));
+  if (links_.size() >= kMaxLinks) {
+    const auto oldest = std::min_element(
+        links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.last < b.last; });
+    AddFeedback(oldest->generator.stats(), &replaced_);
+    links_.erase(oldest);
+  }
   Link link;
   if (from != nullptr) link.address.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
   link.generator = rtcp::FeedbackGenerator(config_);
@@ -62,19 +81,8 @@ std::vector<LinkReports::LinkStats> LinkReports::stats() const {
 }
 
 rtcp::FeedbackGenerator::Stats LinkReports::Sum() const {
-  rtcp::FeedbackGenerator::Stats sum;
-  for (const Link& link : links_) {
-    const rtcp::FeedbackGenerator::Stats& s = link.generator.stats();
-    sum.packets += s.packets;
-    sum.ce_packets += s.ce_packets;
-    sum.duplicates += s.duplicates;
-    sum.reordered += s.reordered;
-    sum.stale += s.stale;
-    sum.lost += s.lost;
-    sum.reports += s.reports;
-    sum.received += s.received;
-    sum.sent += s.sent;
-  }
+  rtcp::FeedbackGenerator::Stats sum = replaced_;
+  for (const Link& link : links_) AddFeedback(link.generator.stats(), &sum);
   return sum;
 }
 

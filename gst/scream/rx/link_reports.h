@@ -39,7 +39,7 @@ class LinkReports {
     rtcp::FeedbackGenerator::Stats feedback;
   };
   std::vector<LinkStats> stats() const;
-  /// Sums over all links.
+  /// Sums over all links, also those that were replaced.
   rtcp::FeedbackGenerator::Stats Sum() const;
 
  private:
@@ -52,6 +52,7 @@ class LinkReports {
 
   rtcp::FeedbackConfig config_;
   std::vector<Link> links_;
+  rtcp::FeedbackGenerator::Stats replaced_;  // sum over replaced links
 };
 
 /// Packets that have arrived by any link. A packet that is too old to be found counts as new.

@@ -284,6 +284,7 @@ TEST(LinkReports, KeepFewLinksWhereAddressesChangeAllTheTime) {
     reports.OnPacket(a.get(), now, {7, 1, Ecn::kEct1, true, DataSize::Bytes(1200)});
   }
   EXPECT_EQ(reports.stats().size(), LinkReports::kMaxLinks);
+  EXPECT_EQ(reports.Sum().packets, 249U);
 }
 
 TEST(LinkReports, KeepTheLinkInUse) {
