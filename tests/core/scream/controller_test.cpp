@@ -49,6 +49,15 @@ TEST(Controller, TakesOnlyItsCallersSilenceForAStandstill) {
   EXPECT_EQ(c.statistics(now).bytes_in_flight.bytes(), 0);
 }
 
+TEST(Controller, ExpectsNothingOfAnOldRoute) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
+  c.OnQueued(kStart, id, {1, DataSize::Bytes(1000), true, 0});
+  c.OnSent(kStart, id, {1, 0, DataSize::Bytes(1000), Ecn::kEct1});
+  c.OnRouteChange(kStart + 1ms);
+  EXPECT_EQ(c.statistics(kStart + 1ms).bytes_in_flight.bytes(), 0);
+}
+
 TEST(Controller, FindsTheStreamOfASource) {
   Controller c{Parameters()};
   const StreamId a = c.AddStream({}), b = c.AddStream({});
