@@ -60,6 +60,22 @@ TEST_F(NatsStream, ALateJoinerHasItsCapsWithTheFirstMessage) {
   EXPECT_EQ(receiver.stat("messages-lost"), 0U);
 }
 
+TEST_F(NatsStream, CapsDoNotComeWithEachMessage) {
+  natsConnection* other = nullptr;
+  ASSERT_EQ(natsConnection_ConnectTo(&other, server_.url().c_str()), NATS_OK);
+  natsSubscription* raw = nullptr;
+  ASSERT_EQ(natsConnection_SubscribeSync(&raw, other, "r1.front.config.*"), NATS_OK);
+  natsConnection_Flush(other);
+  PublishSlices(80, At("subject=r1.front"));
+  natsConnection_Flush(other);
+  int caps = 0;
+  natsSubscription_GetPending(raw, &caps, nullptr);
+  EXPECT_GE(caps, 1);
+  EXPECT_LT(caps, 40) << "they come again after a second";
+  natsSubscription_Destroy(raw);
+  natsConnection_Destroy(other);
+}
+
 /// The sender answers the third question.
 TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
   std::string why;
