@@ -30,6 +30,8 @@ SliceService::SliceService(DataRate max_bitrate, std::function<void(std::string)
 void SliceService::Subscribe(Client* client, const SharedTopic& topic, std::uint32_t subscription) {
   Stream& stream = streams_[topic->channel().id];
   stream.topic = topic;
+  const auto before = stream.viewers.find(client);
+  if (before != stream.viewers.end()) EndReplay(&before->second);
   stream.viewers.insert_or_assign(client, Viewer{subscription, viewer::Feed(max_bitrate_)});
   Look(&stream);
 }

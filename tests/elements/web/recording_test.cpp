@@ -354,6 +354,13 @@ class KeptStream {
     const std::lock_guard lock(mutex_);
     left_out_ = messages;
   }
+  /// While the lock exists, the server gives no answer.
+  std::unique_lock<std::mutex> Hang() { return std::unique_lock(mutex_); }
+  /// Number of answers that began at a time.
+  unsigned jumps() {
+    const std::lock_guard lock(mutex_);
+    return jumps_;
+  }
   /// Makes the server unreachable.
   void End() {
     const std::lock_guard lock(mutex_);
@@ -372,6 +379,7 @@ class KeptStream {
     if (!buffers_.empty()) answer.to = TimeOf(buffers_.back());
     // The answer begins up to a second before the time asked for, as JetStream's does.
     const bool by_time = GST_CLOCK_TIME_IS_VALID(question.time);
+    jumps_ += by_time ? 1 : 0;
     const auto first = std::find_if(buffers_.begin(), buffers_.end(), [&](const auto& sample) {
       return by_time ? TimeOf(sample) + GST_SECOND >= question.time
                      : GST_BUFFER_OFFSET(gst_sample_get_buffer(sample.get())) >= question.position;
@@ -394,6 +402,7 @@ class KeptStream {
   std::mutex mutex_;
   std::vector<gst::SamplePtr> buffers_;
   guint64 left_out_ = 0;
+  unsigned jumps_ = 0;
   bool is_there_ = true;
 };
 
@@ -524,6 +533,23 @@ TEST_F(Histories, WhoseServerIsGoneSaySo) {
   viewer.peer.Sync();
   Push(1);
   viewer.Draw();
+}
+
+/// Otherwise a viewer could fill memory with jumps, each of a subscription of its own.
+TEST_F(Histories, AreNotReadForASubscriptionThatAnotherReplaced) {
+  Push(40);
+  Viewer viewer(&edge_.sink);
+  constexpr guint kJumps = 10;
+  {
+    const auto hanging = kept_.Hang();
+    for (guint i = 1; i <= kJumps; ++i) {
+      viewer.peer.Subscribe("/points/slices", 9);
+      Replay(&viewer, i, Seconds(kFirst_ns));
+    }
+    viewer.peer.Sync();
+  }
+  EXPECT_EQ(DamagedAtEnd(&viewer, kJumps), 0);
+  EXPECT_LE(kept_.jumps(), 2U) << "the one under way and the last";
 }
 
 TEST_F(Recordings, SurviveAViewerThatJumpsWithoutEnd) {
