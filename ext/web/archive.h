@@ -24,6 +24,7 @@ class Archive {
     std::size_t read = 0;                 // bytes that were read for it
     std::shared_ptr<SliceMessage> slice;  // null: of another stream, or damaged
     bool is_damaged = false;
+    bool may_end_piece = true;  // false: the position would leave out later items
   };
 
   virtual ~Archive() = default;

@@ -2,6 +2,7 @@
 #include "ext/web/file_archive.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "ext/web/poses.h"
 #include "gst/common/caps_text.h"
@@ -37,7 +38,23 @@ std::optional<Archive::Times> FileArchive::Look(std::string* why) {
   return std::nullopt;
 }
 
+void FileArchive::Seek(std::uint64_t time_ns) {
+  ahead_.reset();
+  playback_->Seek(time_ns);
+  damaged_ = playback_->damaged_chunks();
+}
+
+/// A position is a time, so a piece must not end between two items of one time.
 std::optional<Archive::Item> FileArchive::Next() {
+  auto item = ahead_ ? std::exchange(ahead_, std::nullopt) : Read();
+  damaged_ = playback_->damaged_chunks();
+  if (!item) return item;
+  ahead_ = Read();
+  item->may_end_piece = !ahead_ || ahead_->time_ns != item->time_ns;
+  return item;
+}
+
+std::optional<Archive::Item> FileArchive::Read() {
   const auto message = playback_->Next();
   if (!message) return std::nullopt;
   Item item;

@@ -20,19 +20,22 @@ class FileArchive final : public Archive {
       : location_(std::move(location)), caps_(std::move(caps)) {}
 
   std::optional<Times> Look(std::string* why) override;
-  void Seek(std::uint64_t time_ns) override { playback_->Seek(time_ns); }
-  void GoOn(std::uint64_t position) override { playback_->Seek(position); }
+  void Seek(std::uint64_t time_ns) override;
+  void GoOn(std::uint64_t position) override { Seek(position); }
   std::optional<Item> Next() override;
-  void Rest() override { playback_->Seek(0); }
-  std::uint64_t damaged() const override { return playback_->damaged_chunks(); }
+  void Rest() override { Seek(0); }
+  std::uint64_t damaged() const override { return damaged_; }
 
  private:
+  std::optional<Item> Read();
   std::shared_ptr<SliceMessage> ReadSlice(const mcap::Message& message) const;
   bool IsOurs(const mcap::Schema& schema, const mcap::Channel& channel);
 
   const std::string location_;
   const SliceCaps caps_;
   std::unique_ptr<mcap::Playback> playback_;
+  std::optional<Item> ahead_;               // the item after the last one
+  std::uint64_t damaged_ = 0;               // chunks left out before `ahead_` was read
   std::map<std::string, bool> known_caps_;  // as text; true: of our stream
   std::string topic_;                       // the first one of our stream
 };

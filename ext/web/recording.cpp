@@ -59,12 +59,14 @@ void Recording::Read(std::uint64_t from_ns, Piece* piece) {
   std::size_t kept = 0;    // bytes of all slices
   std::size_t wanted = 0;  // bytes of slices from from_ns on
   std::size_t read = 0;    // bytes of all messages
+  bool may_end = true;
   const std::uint64_t damaged = archive_->damaged();
-  while (wanted < kPiece && read < kMostRead) {
+  while ((wanted < kPiece || !may_end) && read < kMostRead) {
     auto item = archive_->Next();
     piece->ended = !item;
     if (!item) break;
     read += item->read;
+    may_end = item->may_end_piece;
     piece->next = std::max(piece->next, item->position);
     if (item->is_damaged) ++piece->damaged;
     const bool is_early = item->time_ns < from_ns;

@@ -36,7 +36,7 @@ class Recordings : public FolderTest {
   void Push(guint n) {
     for (guint i = 0; i < n; ++i) {
       gst::BufferPtr buffer = edge_->robot.Next();
-      const std::uint64_t captured = kFirst_ns + pushed_++ * kSlice_ns;
+      const std::uint64_t captured = kFirst_ns + pushed_++ / of_a_time_ * kSlice_ns;
       gst_lidar_buffer_set_capture_time(buffer.get(), captured);
       GST_BUFFER_PTS(buffer.get()) = captured - kFirst_ns;
       if (!recorder_) {
@@ -56,6 +56,7 @@ class Recordings : public FolderTest {
   std::optional<Edge> edge_;
   Harness recorder_;
   std::uint64_t pushed_ = 0;
+  std::uint64_t of_a_time_ = 1;  // slices with the same time
 };
 
 void Replay(Viewer* viewer, guint number, double time) {
@@ -481,6 +482,26 @@ TEST_F(Recordings, AreTheSameInPiecesOfAnySize) {
   EndRecording();
   web::FileArchive archive(path(), CapsOf(&*edge_));
   ExpectPiecesToFit(&archive, 24);
+}
+
+TEST_F(Recordings, MissNoSliceOfATimeBetweenTwoPieces) {
+  OpenEdge();
+  constexpr std::size_t kSlices = 600;
+  of_a_time_ = 8;
+  for (std::size_t i = 0; i < kSlices; ++i) {
+    edge_->robot.AskForKey();  // large slices
+    Push(1);
+  }
+  EndRecording();
+  web::Recording recording(std::make_unique<web::FileArchive>(path(), CapsOf(&*edge_)));
+  web::Recording::Piece piece = recording.Jump(kFirst_ns);
+  EXPECT_FALSE(piece.ended);
+  std::size_t slices = piece.slices.size();
+  while (!piece.ended) {
+    piece = recording.GoOn(piece.next);
+    slices += piece.slices.size();
+  }
+  EXPECT_EQ(slices, kSlices);
 }
 
 TEST_F(Histories, AreTheSameInPiecesOfAnySize) {
