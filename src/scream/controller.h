@@ -85,9 +85,10 @@ class Controller {
   // while all queues are empty.
   std::optional<SendDecision> NextSend(Time now) const;
   /// Returns how many packets at the head of the queue are too late. An access unit that has not
-  /// begun to leave is late as a whole after `max_queue_delay`; late units behind it count, too.
-  /// The rest of a unit that has begun is late at five times that age. While packets in flight are
-  /// overdue, their further delay is added, up to half of `max_queue_delay`.
+  /// begun to leave is late as a whole if its last packet would leave later than `max_queue_delay`
+  /// after the middle of its capture; late units behind it count, too. The limit is five times as
+  /// long for a unit that has begun. While packets in flight are overdue, it is longer by the time
+  /// that they took at the earlier rate, up to half of `max_queue_delay`.
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// Returns when to call OnTimer() next.
   Time NextTimer() const;

@@ -48,7 +48,7 @@ class CrossTraffic {
     Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
     Decide(weight);
   }
-  /// Arrival times have the same rounding only within a report.
+  /// Call it at each report: only arrival times within a report have the same rounding.
   void BeginReport() { last_.reset(); }
   /// Returns true if other flows were found. The result stays while departures are too even to show
   /// them.
@@ -140,8 +140,8 @@ class CrossTraffic {
   Average sent_, arrived_, bytes_;
   Average lately_sent_, lately_arrived_;
   double sent_sent_ = 0, sent_arrived_ = 0;  // sums of products
-  int unseen_ = 0;   // weight in a row of a queue that may not be ours alone
-  int against_ = 0;  // weight in a row of shares that contradict `found_`
+  int unseen_ = 0;   // weight since the queue was last known to be ours alone
+  int against_ = 0;  // weight since a share last agreed with `found_`
   bool found_ = false;
 };
 

@@ -88,7 +88,7 @@ class SentHistory {
     std::deque<Packet> packets;  // in the order of seq
     std::vector<std::int64_t> missing;
     std::int64_t next_behind = -1;  // successor of the last number that went backwards
-    int behind = 0;                 // such numbers in a row
+    int behind = 0;                 // consecutive numbers that went backwards
     std::optional<Time> restarted;  // time of the last restart of the numbers
   };
 

@@ -13,8 +13,8 @@ class Outage {
  public:
   explicit Outage(const Parameters& parameters) : p_(parameters) {}
 
-  /// Silence counts from now: the first packet after a pause leaves, or packets under way are given
-  /// up.
+  /// Silence counts from now. Call it when the first packet after a pause leaves, and when packets
+  /// in flight are given up.
   void Restart(Time now) { last_feedback_ = now; }
   /// Call it while packets are in flight. Returns a smaller window each time that the silence is
   /// too long for these round trips and frames.
@@ -28,7 +28,8 @@ class Outage {
     if (!window_before_) window_before_ = ref_wnd;
     return ref_wnd * kBackoff;
   }
-  /// Packets were acknowledged. Returns the window for the restart if that ends an outage.
+  /// Call it when packets are acknowledged. Returns the window for the restart if that ends an
+  /// outage.
   std::optional<DataSize> OnFeedback(Time now) {
     last_feedback_ = now;
     const auto before = std::exchange(window_before_, std::nullopt);

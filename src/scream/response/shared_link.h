@@ -17,9 +17,9 @@ inline double LateMarking(Duration onset) {
   return std::clamp(Seconds(onset - kEarly) / Seconds(kLate - kEarly), 0.0, 1.0);
 }
 
-/// Returns 1 if marking starts so early that a bolder window adds little delay. Marks without a
-/// queue of ours come from a classic flow's queue, by coupling (RFC 9332, section 2.1): the draft
-/// is bold enough beside it.
+/// Returns 1 if marking starts so early that a bolder window adds little delay. It returns 0 if
+/// marks come without an L4S queue: the queue of a classic flow causes them, by coupling (RFC 9332,
+/// section 2.1), and the draft's window is bold enough beside that flow.
 inline double EarlyMarking(Duration onset) {
   constexpr Duration kCoupled = 700us, kOwn = 900us;
   const double own = std::clamp(Seconds(onset - kCoupled) / Seconds(kOwn - kCoupled), 0.0, 1.0);

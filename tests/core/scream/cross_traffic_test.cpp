@@ -107,7 +107,7 @@ TEST_F(CrossTrafficTest, IsNotBelievedAtOnceAndGoesWithTheOthers) {
   EXPECT_FALSE(traffic_.found());
 }
 
-/// An idle link delivers packets as far apart as they leave, as does a link that others fill.
+/// Packets arrive as far apart as they leave both on an idle link and on one full of other flows.
 TEST_F(CrossTrafficTest, IsUnknownWithoutAQueue) {
   Send(500, 1, 0ms);
   EXPECT_FALSE(traffic_.share());
@@ -158,7 +158,7 @@ TEST_F(CrossTrafficTest, IsUnseenWhileFewPacketsTellOfAShareThatIsKnown) {
   ASSERT_GT(traffic_.share().value_or(0), 0.4);
   ASSERT_FALSE(traffic_.found());
   for (int i = 0; i < 100; ++i) {
-    Add(sent_ += 20ms, arrival_ += 20ms, 7ms);  // what left 20 ms before has passed the queue
+    Add(sent_ += 20ms, arrival_ += 20ms, 7ms);  // after a pause longer than the queue
     Add(sent_ += 1ms, arrival_ += 1ms, 7ms);
   }
   EXPECT_FALSE(traffic_.found());

@@ -209,7 +209,7 @@ TEST(QueueDelay, AWayBackThatTakesLongForAWhileIsNoClock) {
   QueueDelay delay(p);
   for (const Time now : {kStart, kStart + 1s})
     EXPECT_TRUE(delay.Add(now, {now - 40ms, now - 20ms, 0ms, 20ms}));
-  const Time later = kStart + 6min;  // after this the shortest is looked for anew
+  const Time later = kStart + 6min;  // the shortest way back is by then forgotten
   EXPECT_TRUE(delay.Add(later, {later - 240ms, later - 220ms, 200ms, 220ms}));
   EXPECT_TRUE(delay.Add(later, {later - 40ms, later - 20ms, 0ms, 20ms}));
 }

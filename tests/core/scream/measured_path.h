@@ -9,7 +9,7 @@ namespace lidar::scream {
 constexpr Duration kRtt = 40ms;
 constexpr DataSize kPacket = DataSize::Bytes(1000);
 
-/// A path whose packets arrive `spacing` apart, `queue` later than the first one did.
+/// Arrive() reports packets that arrive `spacing` apart, after a queue of `queue`.
 class Path {
  public:
   explicit Path(const Parameters& parameters) : model(parameters) {

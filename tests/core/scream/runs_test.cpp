@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs of the whole control loop take the course that they always took.
+// Runs of the whole control loop must match the golden files.
 #include <gtest/gtest.h>
 
 #include <cmath>

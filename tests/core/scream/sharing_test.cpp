@@ -129,7 +129,7 @@ TEST(BesideOthers, TheStatisticsTellTheirShare) {
   EXPECT_EQ(cross_traffic("frames_20M_rtt25"), 0);
 }
 
-/// An idle link delivers packets as far apart as they leave, as does a link with other flows.
+/// Packets arrive as far apart as they leave both on an idle link and on one full of other flows.
 TEST(BesideOthers, NobodyIsFoundOnAnIdleLinkThatJitters) {
   Scenario s = *FindScenario("frames_20M_jitter4", Parameters());
   s.config.forward.path.jitter = 8ms;

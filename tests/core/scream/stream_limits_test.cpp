@@ -45,7 +45,7 @@ TEST_F(Limits, TheMaximumOfAllIsNoMoreThanIsSet) {
   EXPECT_NEAR(InMbps(streams_.start_bitrate()), 5, 1e-6);
   parameters_.max_total_bitrate = Mbps(12);
   EXPECT_NEAR(InMbps(streams_.max_bitrate()), 12, 1e-6);
-  parameters_.max_total_bitrate = Mbps(2);  // below what both must have
+  parameters_.max_total_bitrate = Mbps(2);  // below the sum of both minima
   EXPECT_NEAR(InMbps(streams_.max_bitrate()), 4, 1e-6);
 }
 
@@ -77,7 +77,7 @@ TEST_F(Limits, ASilentStreamHasWhatItNeedsToComeBack) {
 TEST_F(Limits, AStreamIsSilentAfterASecondWithoutPackets) {
   const StreamId a = Add({1, Mbps(1), Mbps(1), Mbps(10)});
   Queue(a, kStart, 1);
-  EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s));  // it still waits
+  EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s));  // its packet still waits
   streams_.OnSent(kStart + 9s, a, 1, DataSize::Bytes(1000));
   EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s + 999ms));
   EXPECT_FALSE(streams_.Find(a)->active(kStart + 10s));
