@@ -9,11 +9,20 @@ trap 'rm -rf "$folder"' EXIT
 trap '' XFSZ # a write past the limit is an error, not a signal
 failed=0
 
+# interrupted PROGRAM ...: interrupts a program once it has said that it listens.
+interrupted() {
+  local pid
+  coproc LINK { exec "$@"; }
+  pid=$LINK_PID
+  read -r <&"${LINK[0]}" && kill -INT "$pid"
+  wait "$pid"
+}
+
 # limit [KiB] and the program's arguments: an error that names a file of the folder, and nothing left
 expect_clean_failure() {
   local limit=$1 output status
   shift
-  output=$(ulimit -f "$limit" && exec "$@" 2>&1)
+  output=$(ulimit -f "$limit" && "$@" 2>&1)
   status=$?
   if [ "$status" -eq 0 ] || [ "$status" -ge 128 ] || [[ $output != *"cannot write $folder/"* ]]; then
     echo "status $status of: $*"
@@ -31,9 +40,9 @@ expect_clean_failure() {
 for program in "$@"; do
   case $(basename "$program") in
     lidar-link)
-      link=("$program" --listen 127.0.0.1:0 --forward 127.0.0.1:9 --quiet)
-      expect_clean_failure 0 timeout --preserve-status -s INT 0.3 "${link[@]}" --summary "$folder/summary.json"
-      expect_clean_failure 0 timeout --preserve-status -s INT 0.3 "${link[@]}" --log "$folder/log.csv"
+      link=("$program" --listen 127.0.0.1:0 --forward 127.0.0.1:9 --json-lines)
+      expect_clean_failure 0 interrupted "${link[@]}" --summary "$folder/summary.json"
+      expect_clean_failure 0 interrupted "${link[@]}" --log "$folder/log.csv"
       ;;
     ouster-replay)
       "$program" --synthesize os0-32 --mode 512x10 --scans 3 --write-pcap "$folder/source.pcap" \
