@@ -27,7 +27,7 @@ diff "$work/cpp" "$work/python"
 # The programs do not wait for a pipeline that cannot be made, or whose source fails.
 fails() {
   local status=0
-  timeout 20 "$@" >"$work/said" 2>&1 || status=$?
+  timeout 180 "$@" >"$work/said" 2>&1 || status=$?
   [ $status = 1 ] && grep -qE 'nosuch|Resource not found' "$work/said" && return
   echo "$*: status $status, and it says: $(cat "$work/said")" >&2
   exit 1
