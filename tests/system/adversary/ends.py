@@ -76,11 +76,11 @@ class Victim:
         begin = time.monotonic()
         self.process.stdin.close()
         try:
-            code = self.process.wait(20)
+            code = self.process.wait(180)  # a busy machine takes long
             Victim.longest_stop = max(Victim.longest_stop, time.monotonic() - begin)
         except subprocess.TimeoutExpired:
             self.process.kill()
-            raise AssertionError("the pipeline did not end within 20 s") from None
+            raise AssertionError("the pipeline did not end within 180 s") from None
         finally:
             self.process.stdout.close()
         assert code == 0, f"the pipeline ended with exit code {code}"

@@ -60,15 +60,18 @@ def forged_feedback(context):
     bench = SenderBench()
     media = wire.parse_rtp(bench.receiver.packets[-1])
     lost = bench.net()["packets-lost"]
-    sent, until = 0, time.monotonic() + context.seconds
-    while time.monotonic() < until:
+    sent, until, foreign = 0, time.monotonic() + context.seconds, 0
+    # The kernel drops reports of a sender that is busy, so the attack goes on until enough have arrived.
+    while time.monotonic() < until or foreign < 100:
+        assert time.monotonic() < until + MOST_PATIENCE, f"{foreign:.0f} of {sent} reports were refused as foreign"
         last = wire.parse_rtp(bench.receiver.packets[-1]).sequence
         for metrics in ([(False, 0, 0)] * 50 + [(True, 3, 0)], [(True, 3, 0)] * 50):
             report = wire.ccfb(9, [(media.ssrc, last - 49, metrics)], time.time())
             bench.stranger.sendto(report, bench.receiver.sender)
             sent += 1
         time.sleep(0.005)
-    net = bench.net_when(lambda net: net["feedback-foreign-address"] >= 0.9 * sent)
+        foreign = bench.net()["feedback-foreign-address"]
+    net = bench.net()
     assert net["packets-lost"] == lost and net["packets-ce"] == 0, net
     bench.finish(context)
     return f"{sent} reports, none believed"

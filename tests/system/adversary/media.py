@@ -101,6 +101,7 @@ def hostile_configs(context):
     """Configs that no decoder can take are refused by the depayloader."""
     bench = Bench(context)
     bench.settle()
+    bench.sender.pause()
     model = wire.sensor_model(32, 512)
     xyz = b"x:F32:0,y:F32:4,z:F32:8"
     hostile = [
@@ -113,18 +114,23 @@ def hostile_configs(context):
     ]
     for n, config in enumerate(hostile * 3):
         own_id = (n + 1) & 0xFF
+        arrived = bench.receiver.ask()["net"]["packets-received"]
         bench.sender.send(bench.sender.pack(wire.config_unit(config, own_id)))
         s = dataclasses.replace(bench.sender.next_slice(), config_id=own_id)
         bench.sender.send(bench.sender.pack(wire.slice_unit(s)))
-        time.sleep(0.01)
+        bench.await_packets(arrived + 2)
+
+    def refused(report):
+        return report["depay"]["configs-damaged"] + report["depay"]["packets-invalid"]
+
+    most = 3 * len(hostile)
+    bench.await_report(lambda report: refused(report) >= most - 3, f"fewer than {most - 3} configs were refused")
+    bench.sender.pause(False)
     bench.await_more_slices()
     bench.expect_flow()
     bench.expect_only_true()
     bench.finish()
-    depay = bench.receiver.last["depay"]
-    refused = depay["configs-damaged"] + depay["packets-invalid"]
-    assert refused >= 3 * len(hostile) - 3, f"{refused:.0f} of {3 * len(hostile)} configs were refused"
-    return f"{3 * len(hostile)} configs, {refused:.0f} refused"
+    return f"{most} configs, {refused(bench.receiver.last):.0f} refused"
 
 
 def varint(n):

@@ -5,7 +5,7 @@ import time
 
 import ends
 import wire
-from bench import Bench
+from bench import MOST_PATIENCE, Bench
 
 
 def come_first(context, junk, before, after, pause, ask_every=1):
@@ -52,20 +52,23 @@ def forged_from_elsewhere(context):
     bench.settle()
     stranger = ends.udp_socket()
     other = context.other
-    until, sent = time.monotonic() + context.seconds, 0
-    while time.monotonic() < until:
+    until, sent, foreign = time.monotonic() + context.seconds, 0, 0
+    # The kernel drops packets of a receiver that is busy, so the attack goes on until enough have arrived.
+    while time.monotonic() < until or foreign < 100:
+        assert time.monotonic() < until + MOST_PATIENCE, f"{foreign:.0f} of {sent} packets were refused as foreign"
         stranger.sendto(wire.bye(bench.sender.ssrc), bench.sender.to)
         s = dataclasses.replace(other.slices[sent % len(other.slices)], config_id=wire.config_id(other.config))
         for unit in [wire.config_unit(other.config)] + wire.slice_payloads(s, 1188):
             stranger.sendto(wire.rtp(unit, sent, 0, bench.sender.ssrc, True), bench.sender.to)
             sent += 1
         time.sleep(0.005)
+        foreign = bench.receiver.ask()["net"]["packets-foreign"]
     bench.expect_flow()
     bench.expect_only_true()
     bench.finish()
     stranger.close()
     net = bench.receiver.last["net"]
-    assert net["packets-foreign"] >= 0.9 * sent and net["peer-moves"] == 0, net
+    assert net["peer-moves"] == 0, net
     return f"{sent} packets, {net['packets-foreign']:.0f} refused as foreign"
 
 
