@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "tests/elements/coders/coder_harness.h"
+#include "tests/elements/coders/stopped_clock.h"
 #include "tests/support/run_trace.h"
 
 namespace lidar::gst {
@@ -92,6 +93,9 @@ class SecondRunOf : public ::testing::TestWithParam<CoderCase> {
                 : "") +
            more;
   }
+
+ private:
+  const test::StoppedClock clock_;
 };
 
 TEST_P(SecondRunOf, AnEncoderIsAsItsFirst) {

@@ -9,6 +9,7 @@
 #include "gst/common/coordinate_frames.h"
 #include "src/base/byte_writer.h"
 #include "tests/elements/coders/coder_harness.h"
+#include "tests/elements/coders/stopped_clock.h"
 #include "tests/support/golden_course.h"
 
 namespace lidar::gst {
@@ -89,6 +90,7 @@ void PushScan(Course& c, const char* what, guint scan) {
 }
 
 void EncoderCourse(Course& c) {
+  const test::StoppedClock clock;
   c.Ask();
   c.Tag();
   c.Begin(CourseCaps(CourseInfo()));
@@ -117,8 +119,7 @@ void EncoderCourse(Course& c) {
   c.Push("acknowledged", CourseSlice(3, 2));
   c.PushUpstream("key unit", KeyUnit());
   c.Push("behind a request", CourseSlice(3, 3));
-  // From here on no slice is coded by another: with one receiver that would last for 2 s of real
-  // time.
+  // From here on no slice is coded by another.
   GstLidarSlicesReceived other_received{6, 0, {}};
   c.PushUpstream("second receiver", gst_lidar_event_new_slices_received(&other_received));
   c.Set("max-error", "0.2");

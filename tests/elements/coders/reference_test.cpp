@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tests/elements/coders/coder_harness.h"
+#include "tests/elements/coders/stopped_clock.h"
 
 namespace lidar::gst {
 namespace {
@@ -15,8 +16,6 @@ constexpr guint kSlices = 8;
 
 class StaticSensor : public ::testing::Test {
  protected:
-  /// Starts with key-interval=0, because the clock of a slow machine could let slices stand alone
-  /// at any scan.
   void Start(const std::string& properties = "", const std::string& between = "") {
     sender_ = Launch("lidarenc name=enc effort=1 error-check=1 key-interval=0 " + properties +
                      " ! " + between + " rtplidarpay name=pay config-interval=1");
@@ -26,7 +25,7 @@ class StaticSensor : public ::testing::Test {
   }
 
   /// Sends one scan. Packets for which `loses` is true never arrive; the others can be
-  /// acknowledged, after each slice: references end 2 s of real time after the last report.
+  /// acknowledged, after each slice.
   void Scan(const std::function<bool(guint packet)>& loses = nullptr) {
     for (guint i = 0; i < kSlices; ++i) {
       const GstLidarSlice slice{scan_, i, kSlices, 64 * i};
@@ -89,6 +88,7 @@ class StaticSensor : public ::testing::Test {
     ASSERT_TRUE(gst_element_link(Get("t", sender_).get(), sink));
   }
 
+  test::StoppedClock clock_;
   bool acknowledges_ = true;
   guint key_requests_ = 0;
 
@@ -174,7 +174,7 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceABranchOfATeeIsAdded) {
   Scans(4);
   ASSERT_EQ(Mode(), "range-temporal1");
   AddBranch();
-  g_usleep(G_USEC_PER_SEC / 10);  // the encoder looks at its downstream this often
+  clock_.Advance(G_USEC_PER_SEC / 10);  // the encoder looks at its downstream this often
   Scan();
   EXPECT_EQ(Mode(), "range-mixing1") << "the new branch has none of what was sent before";
 }
