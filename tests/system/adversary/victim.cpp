@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -22,6 +21,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/common/refs.h"
 #include "src/base/crc.h"
+#include "tests/support/metronome.h"
 
 namespace {
 
@@ -211,12 +211,10 @@ class Victim {
   /// Sets the state and returns how long that took [ms]. A state that is not reached within 10 s
   /// may come later.
   long SetState(GstState state) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = metronome_.elapsed();
     if (gst_element_set_state(pipeline_.get(), state) == GST_STATE_CHANGE_ASYNC)
       gst_element_get_state(pipeline_.get(), nullptr, nullptr, 10 * GST_SECOND);
-    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() -
-                                                                 start)
-        .count();
+    return (metronome_.elapsed() - start).count();
   }
 
   long Obey(const std::string& command, int argument) {
@@ -296,6 +294,7 @@ class Victim {
   std::string error_;
   unsigned warnings_ = 0;
   bool eos_ = false;
+  const lidar::test::Metronome metronome_;
 };
 
 }  // namespace
