@@ -3,6 +3,7 @@
 // exception.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -19,12 +20,26 @@ inline void AddHelpAllFlag(CLI::App* app) {
   app->set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
 }
 
+/// Throws if a number is NaN, which CLI::Range lets pass.
+inline void RefuseNan(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
+    for (const std::string& text : option->results()) {
+      double value = 0;
+      if (CLI::detail::lexical_cast(text, value) && std::isnan(value))
+        throw CLI::ValidationError(option->get_name(), text + " is no number");
+    }
+  }
+  for (const CLI::App* command : app.get_subcommands()) RefuseNan(*command);
+}
+
 /// Parses the command line, and has `check` throw CLI::ParseError for options that contradict each
 /// other. Ends the program for --help and wrong options.
 template <class Check>
 void Parse(CLI::App* app, int argc, char** argv, Check check) {
   try {
     app->parse(argc, argv);
+    RefuseNan(*app);
     check();
   } catch (const CLI::ParseError& e) {
     std::exit(app->exit(e) == 0 ? 0 : 2);
