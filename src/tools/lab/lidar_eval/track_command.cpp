@@ -56,9 +56,9 @@ std::vector<double> Targets(const std::string& name, const TrackArguments& o,
 /// Returns "x-walk.png" for "x.png" and "walk" if `several`, else `path`.
 std::string PathFor(const std::string& path, const std::string& name, bool several) {
   if (path.empty() || !several) return path;
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? path + "-" + name
-                                  : path.substr(0, dot) + "-" + name + path.substr(dot);
+  const std::size_t dot = path.find_last_of("./");
+  const bool has_extension = dot != std::string::npos && path[dot] == '.';
+  return has_extension ? path.substr(0, dot) + "-" + name + path.substr(dot) : path + "-" + name;
 }
 
 void RunTrack(TrackArguments o) {
