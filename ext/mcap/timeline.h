@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// When a message was recorded, on a clock that runs as evenly as the pipeline's.
+// Log times of messages: times of the Unix epoch that advance with the running time.
 #pragma once
 #include <algorithm>
 #include <cstdint>

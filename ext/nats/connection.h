@@ -52,8 +52,8 @@ class Connection {
   natsConnection* get() const { return nc_; }
   /// Never waits for the network.
   ConnectionState state() const;
-  /// Returns true if there was a reconnect since the last call. The new connection cannot send
-  /// before that. For one thread.
+  /// Returns true if there was a reconnect since the last call. libnats counts a reconnect before
+  /// the new connection can send. For one thread.
   bool TakeReconnect();
 
   static constexpr std::int64_t kConnectTimeoutMs = 1'000;

@@ -60,7 +60,7 @@ class Subscriber {
   StreamFormat::Ptr Format(const std::string& id, std::chrono::milliseconds timeout);
   /// Counts messages that came faster than they were taken.
   std::uint64_t overruns() const { return overruns_; }
-  /// Counts formats that are damaged or no natssink's.
+  /// Counts formats that are damaged or not from a natssink.
   std::uint64_t damaged_formats() const { return book_.damaged(); }
 
  private:

@@ -81,7 +81,7 @@ std::string AddressOf(GInetAddress* peer, std::string_view forwarded) {
   return copy;
 }
 
-/// A right token admits pages of any origin: a browser never adds it by itself.
+/// A valid token admits pages of any origin, because a browser never adds it by itself.
 std::optional<Grant> Admission::Check(SoupServerMessage* request, GHashTable* query,
                                       Refusal* refusal) {
   if (!HasToken()) {

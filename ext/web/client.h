@@ -34,7 +34,8 @@ class Client {
 
   /// Control texts wait in order; a client that lets too many wait is closed.
   void SendText(const std::string& text);
-  /// Returns how many of the channel's messages were dropped, this one included.
+  /// Queues a message; at most `depth` of its channel wait. Returns how many of them were dropped,
+  /// which may include the new one.
   std::size_t Send(Outbox::Item item, std::size_t depth);
   /// Notes that a message of the channel is not sent to this client.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }

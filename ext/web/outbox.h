@@ -19,8 +19,9 @@ class Outbox {
     SharedMessage message;
   };
 
-  /// Returns how many of the channel's messages were dropped, this one included. At most `depth`
-  /// stay. Messages that continue a dropped one are dropped, too.
+  /// Queues a message, and drops the oldest ones of its channel if more than `depth` wait. Messages
+  /// that continue a dropped one are dropped, too. Returns how many were dropped, which may include
+  /// the new one.
   std::size_t Push(Item item, std::size_t depth) {
     const std::uint32_t channel = item.channel_id;
     if (!item.message->continues)

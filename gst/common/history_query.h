@@ -42,7 +42,7 @@ inline QueryPtr NewHistoryQuery(const HistoryQuestion& question) {
                         question.most_bytes, nullptr)));
 }
 
-/// Returns nothing for another query.
+/// Returns nothing if `query` is of another kind.
 inline std::optional<HistoryQuestion> ParseHistoryQuestion(GstQuery* query) {
   const GstStructure* s = gst_query_get_structure(query);
   if (GST_QUERY_TYPE(query) != GST_QUERY_CUSTOM || s == nullptr ||

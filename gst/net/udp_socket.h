@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// UDP sockets: opening, addresses, and a file descriptor that wakes a thread that waits for one.
+// UDP sockets: opening, addresses, and a file descriptor that wakes a thread waiting in poll().
 #pragma once
 #include <gio/gio.h>
 

@@ -8,7 +8,7 @@
 
 namespace lidar::gst {
 
-/// A field of a point as a number.
+/// Reads a field of a point as a number.
 class FieldReader {
  public:
   explicit FieldReader(const PointField& field) : field_(field) {}

@@ -10,7 +10,7 @@
 
 namespace lidar {
 
-/// Values are in the frame of the unit. At rest it feels 9.8 m/s^2 upwards.
+/// Values are in the frame of the unit. At rest the acceleration is 9.8 m/s^2 upwards.
 struct ImuSample {
   Time time{};                               // of the capture, since the Unix epoch
   std::array<double, 3> acceleration{};      // [m/s^2]

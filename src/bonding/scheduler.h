@@ -78,7 +78,7 @@ class Scheduler {
 
   Scheduler(std::size_t links, Method method, TargetRule rule = TargetRule::kBetter);
 
-  /// Forgets all but which links are usable.
+  /// Forgets everything except which links are usable.
   void Restart();
 
   struct Packet {

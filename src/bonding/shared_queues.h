@@ -25,7 +25,7 @@ class SharedQueues {
   struct Arrival {
     Time sent{};
     std::uint32_t report_timestamp = 0;  // in 1/65536 s of the receiver's clock
-    Duration age{0};                     // at that time
+    Duration age{0};                     // of the packet at report_timestamp
   };
 
   void OnSent(Time now, std::size_t link, DataSize size);

@@ -21,8 +21,8 @@ bool IsUsable(const RosField& f) {
          !f.name.empty() && std::none_of(f.name.begin(), f.name.end(), bad);
 }
 
-/// Returns the fields that we keep, with a field for each element of an array. Returns false if one
-/// ends past the point.
+/// Returns the fields that we keep, with a field for each element of an array. Returns false if a
+/// field ends past the point.
 bool Expand(const RosLayout& layout, std::vector<PointField>* out, std::string* why) {
   for (const RosField& f : layout.fields) {
     if (!IsUsable(f)) continue;

@@ -49,7 +49,7 @@ struct BlockMemory {
   }
   std::size_t bytes() const { return sizeof *this + pixels.size() * sizeof(PixelMemory); }
 };
-/// A shared memory is never changed.
+/// Encoders, decoders and stores hold the same memory, so it is constant.
 using BlockMemoryPtr = std::shared_ptr<const BlockMemory>;
 
 /// References of a block.

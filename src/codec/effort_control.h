@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Chooses how hard the coder may try, from the time that its slices take.
+// Chooses the coder's effort from the time that its slices take.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -79,7 +79,7 @@ BlockMemoryPtr ReferenceKeeper::Reference(const RangeImage& image) const {
 
 void ReferenceKeeper::OnEncoded(std::vector<BlockMemoryPtr> blocks) {
   if (current_ == nullptr || blocks.empty()) return;
-  // Acknowledgements cannot tell two slices of one name apart.
+  // An acknowledgement names a scan, so it cannot distinguish two slices of one scan.
   const auto same = [&](const Sent& sent) { return sent.scan_id == name_.scan_id; };
   if (std::any_of(current_->sent.begin(), current_->sent.end(), same)) return Restart(current_);
   for (const BlockMemoryPtr& block : blocks) bytes_ += block->bytes();

@@ -30,8 +30,8 @@ class Playback {
   };
 
   /// Opens the files that `location` names, which may have a number. Returns nothing if no file can
-  /// be read; `why` then says so for a user. Reading ends once `cancelled`, which outlives the
-  /// playback, is true.
+  /// be read; `why` then has the reason for a user. Reading ends once `cancelled`, which outlives
+  /// the playback, is true.
   static std::unique_ptr<Playback> Open(const std::string& location,
                                         const std::atomic<bool>* cancelled, std::string* why);
 

@@ -41,7 +41,7 @@ struct Header {
   std::string library;
 };
 struct Footer {
-  static constexpr std::size_t kSize = 20;  // of its content
+  static constexpr std::size_t kSize = 20;  // of the content
   std::uint64_t summary_start = 0;          // 0: there is no summary
   std::uint64_t summary_offset_start = 0;
   std::uint32_t summary_crc = 0;

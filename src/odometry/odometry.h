@@ -68,7 +68,7 @@ class Odometry {
   /// a gap of more than kLongestGap, begins a new map at the last pose. Points that are not finite
   /// or out of range are left out.
   Estimate OnScan(Time start, Duration duration, const TimedPoints& scan);
-  /// Takes a sample of an IMU: angular velocity [rad/s] and felt force [m/s^2] in the sensor's
+  /// Takes a sample of an IMU: angular velocity [rad/s] and specific force [m/s^2] in the sensor's
   /// frame, with gravity and bias uncorrected. Samples may come before or after the scan of their
   /// time. Samples that precede their scan straighten it and predict its pose.
   void OnTurn(Time time, const Eigen::Vector3d& rate,

@@ -15,7 +15,7 @@ namespace lidar::odometry {
 /// stuck sensor do harm for a few scans at most.
 class TurnHistory {
  public:
-  /// Takes an angular velocity [rad/s] and the force that a mass feels [m/s^2], in the sensor's
+  /// Takes an angular velocity [rad/s] and the specific force [m/s^2], in the sensor's
   /// frame. Drops a sample that is not finite or not later than the one before. A clock that goes
   /// back by a second clears the history.
   void Add(Time time, const Eigen::Vector3d& rate,

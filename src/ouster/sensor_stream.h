@@ -67,7 +67,7 @@ class SensorStream {
   static std::unique_ptr<SensorStream> Create(Metadata metadata, const StreamOptions& options,
                                               std::string* error);
 
-  /// Takes a packet. One with kNewInitId is left out: refresh the metadata, or call
+  /// Takes a packet. A packet with kNewInitId is left out: refresh the metadata, or call
   /// AcceptNewInitId() and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
   /// Call this after kNewInitId: the sensor restarted, and packets with that init id count from now

@@ -15,7 +15,7 @@ constexpr double kMaxSaved = 0.05;
 // part of the scan's budget, because later slices even out small errors.
 constexpr double kOver = 0.015;
 constexpr double kOverOfScan = 0.01;
-constexpr double kUnder = 3;         // a size may be this many times as far below the budget
+constexpr double kUnder = 3;         // shortfall that causes a second try, relative to the excess
 constexpr double kSameStep = 0.004;  // steps closer than this are the same
 // A second try aims lower by this many doublings for each doubling between the first size and the
 // budget, because the model's slope may be wrong.

@@ -42,7 +42,7 @@ struct PredictedSize {
   double total() const { return geometry_bytes + intensity_bytes; }
 };
 
-/// The result of the codec.
+/// An encoded slice, as the codec reports it.
 struct EncodedSize {
   DataSize size;
   double step_m = 0;         // the step that was used

@@ -21,7 +21,7 @@ void AddPedestrian(const Placement& at, Random random, std::vector<Shape>* out);
 void AddTree(const Placement& at, Random random, std::vector<Shape>* out);
 /// A lamp whose arm, `arm` metres long, reaches along y (its sign is the side).
 void AddLamp(const Placement& at, float arm, std::vector<Shape>* out);
-/// A retroreflecting plate on a post. It faces those who drive along x.
+/// A retroreflecting plate on a post. It faces traffic along x.
 void AddSign(const Placement& at, std::vector<Shape>* out);
 
 Shape MakeBox(Vec3 center, Vec3 half, float reflectivity);

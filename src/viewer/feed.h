@@ -36,7 +36,7 @@ class RecentScans {
     std::uint32_t number = 0;
     std::map<std::uint32_t, Forms> slices;  // by their place
   };
-  /// Drops scans older than the two newest, whose slices come too late.
+  /// Keeps the two newest scans: a viewer has no use for slices of older ones.
   void Add(SharedSlice slice);
   /// The oldest first.
   const std::deque<Scan>& scans() const { return scans_; }

@@ -6,7 +6,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kMax = 4096;
-  constexpr std::size_t kPart = 97;  // a read of the socket
+  constexpr std::size_t kPart = 97;  // bytes of a read from the socket
   lidar::foxglove::MessageReader reader(kMax);
   const lidar::ByteView all{data, size};
   for (std::size_t at = 0; at < size; at += kPart) {

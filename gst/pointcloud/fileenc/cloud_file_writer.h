@@ -16,8 +16,8 @@ struct CloudFileInput {
   bool binary = true;
 };
 
-/// PCD 0.7. A point without a return is NaN in an organised cloud, as in PCL, and left out of
-/// another one.
+/// PCD 0.7. A point without a return is NaN in an organised cloud, as in PCL, and left out of an
+/// unorganised cloud.
 std::string WritePcd(const CloudFileInput& cloud);
 /// PLY 1.0, without the points that have no return.
 std::string WritePly(const CloudFileInput& cloud);

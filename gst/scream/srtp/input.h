@@ -52,7 +52,7 @@ class SrtpInput {
   /// All threads may call it. Returns false without the srtp plugin. Keeps the key of the packets
   /// that pass; of more than two newer keys it drops the oldest.
   bool AddKey(const SrtpKey& key);
-  /// Keys newer than the present one that no packet has fitted yet.
+  /// Keys newer than the present one that fitted no packet yet.
   std::size_t waiting_keys() const { return waiting_; }
   SrtpCounts counts() const;
 

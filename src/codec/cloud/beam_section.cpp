@@ -206,7 +206,6 @@ bool BeamSectionEncoder::Encode(BeamTable table, const PixelErrors& errors,
 
 namespace {
 
-/// A parsed section.
 struct DecodedSection {
   BeamTable table;
   ResidualSettings azimuths;

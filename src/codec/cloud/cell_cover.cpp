@@ -253,7 +253,7 @@ class Choices {
   /// of them is looked up, so that no look-up waits for its key.
   void FindCells(const std::vector<Point>& points, const NearCells& near) {
     constexpr std::size_t kAtOnce = 64;
-    constexpr std::size_t kUsual = 4;  // cells a point, at most
+    constexpr std::size_t kUsual = 4;  // near cells of a point, as a rule
     std::array<std::uint64_t, kAtOnce * NearCells::kMost> keys;
     map_.Reset(points.size() / 2);
     first_of_point_.reserve(points.size() + 1);
@@ -346,8 +346,8 @@ bool CellGrid::Reaches(double farthest_m) const {
 }
 
 double CellGrid::SurelyHolds() const {
-  // Floats round each coordinate of a cell's middle by up to half of its product with kRounding.
-  // The sum of these errors counts.
+  // Each coordinate of a cell's middle is rounded by up to half of kRounding times its size. The
+  // sum of the three roundings must fit the room that error_m() leaves.
   constexpr double kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
   return 3 * (static_cast<double>(step_m) * kRoom / kRounding - static_cast<double>(step_m));
 }

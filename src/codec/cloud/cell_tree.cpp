@@ -111,8 +111,8 @@ constexpr unsigned kOwnPlace = 13;
 /// A parent whose children may be neighbours of a node.
 struct ParentBeside {
   unsigned parent = 0;                   // place among the 27 around the node's parent
-  unsigned near = 0;                     // the children that are
-  std::array<std::uint8_t, 8> places{};  // of each of them, among the 27 around the node
+  unsigned near = 0;                     // which children may be neighbours
+  std::array<std::uint8_t, 8> places{};  // their places among the 27 around the node
 };
 /// Returns those of each child of a parent.
 constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {

@@ -54,7 +54,7 @@ inline std::int32_t ResidualWidth(std::uint32_t tangent_um, std::uint32_t range_
 /// Most pixels of an image.
 constexpr std::size_t kMostPixels = 1U << 20;
 
-/// A cloud in the beams of a table.
+/// The points of a cloud, each with its place in a table of beams.
 struct PlacedCloud {
   const std::vector<Sighting>* points;
   const std::vector<PlacedPoint>* placed;

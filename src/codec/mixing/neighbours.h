@@ -38,8 +38,8 @@ inline std::uint32_t UnevenClass(std::uint32_t sum) {
   return std::min(HalfOctave(sum) - 2, 23U);
 }
 
-/// Puts a difference in 1/16 bin into one of 11 classes: within 0.5, 1.5, 2.5, 4.5 and 10 bins, or
-/// more, each way.
+/// Puts a difference in 1/16 bin into one of 11 classes: one for less than 0.5 bin, and for each
+/// sign one below 1.5, 2.5, 4.5 and 10 bins each, and one above.
 inline std::uint32_t OffsetClass(std::int32_t difference) {
   static constexpr auto kClasses = [] {
     std::array<std::uint8_t, 323> classes{};
@@ -58,8 +58,8 @@ inline std::uint32_t OffsetClass(std::int32_t difference) {
   return kClasses[static_cast<std::size_t>(std::clamp(difference, -161, 161) + 161)];
 }
 
-/// Puts a difference in 1/16 bin into one of 7 classes: within 0.5, 1.5 and 3.5 bins, or more, each
-/// way.
+/// Puts a difference in 1/16 bin into one of 7 classes: one for less than 0.5 bin, and for each
+/// sign one below 1.5 and 3.5 bins each, and one above.
 inline std::uint32_t StepClass(std::int32_t difference) {
   const std::int32_t size = std::abs(difference);
   const int c = (size > 7 ? 1 : 0) + (size > 23 ? 1 : 0) + (size > 56 ? 1 : 0);

@@ -69,11 +69,10 @@ class BlendedChannel {
 
   std::int32_t limit_;
   AlignedRow<Known> above_;
-  std::vector<std::int32_t>
-      north_;                // nearest value above the pixels from the one before the row on
-  Known* known_ = nullptr;   // of the row's first pixel
-  bool blind_ = true;        // the row has no value above it
-  std::int32_t latest_ = 0;  // value of the latest return
+  std::vector<std::int32_t> north_;  // values above, from the pixel before the row on
+  Known* known_ = nullptr;           // of the row's first pixel
+  bool blind_ = true;                // the row has no value above it
+  std::int32_t latest_ = 0;          // value of the latest return
   std::uint32_t columns_ = 0;
   Row row_;
   std::array<std::vector<NibbleModel>, kBlended> models_;

@@ -41,7 +41,7 @@ TEST_P(GridErrors, AreReachedAndNeverPassed) {
     const auto grid = RangeGrid::OfParts(unit, RangeGrid::kParts + parts * 139);
     ASSERT_TRUE(grid.IsValid());
     std::uint32_t worst = 0;
-    // The bins of all fractions of a cell repeat within these ranges.
+    // The pattern of bins repeats beyond these ranges.
     for (std::uint32_t r = unit; r < 26 * RangeGrid::kParts * unit; r += unit) {
       const std::uint32_t back = grid.RangeOf(grid.BinOf(r));
       ASSERT_GT(back, 0U) << "a return became a missing one";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Raw clouds to and from the form that the codecs work on.
+// Conversions between raw clouds and the clouds that the codecs code.
 #include "src/codec/cloud_io.h"
 
 #include <gtest/gtest.h>

@@ -219,7 +219,7 @@ TEST(Align, EndsAfterItsMostIterations) {
 TEST(MotionThreshold, IsTheRootOfTheMeanSquare) {
   MotionThreshold threshold(100);
   EXPECT_EQ(threshold.sigma_m(), 2);
-  threshold.Add(Moved(0.09, 0, 0));  // a sensor that stands
+  threshold.Add(Moved(0.09, 0, 0));  // as of a sensor at rest
   EXPECT_EQ(threshold.sigma_m(), 2);
   threshold.Add(Moved(3, 0, 0));
   EXPECT_NEAR(threshold.sigma_m(), 3, 1e-9);

@@ -212,7 +212,7 @@ TEST_F(Rivals, AreToldOfAfterAHundredPackets) {
     Push(1, 1);
   }
   EXPECT_EQ(receiver.rival(), 2U);
-  Push(2, 4, 500);  // the first one is silent
+  Push(2, 4, 500);  // the first sender is silent
   EXPECT_EQ(receiver.ssrc(), 2U);
   EXPECT_EQ(receiver.rival(), std::nullopt);
 }

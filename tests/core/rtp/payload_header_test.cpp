@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values("range:U32:0", "x:F64:0,y:F64:8,z:F64:16", "x:F32:0,y:F32:8,z:F32:4",
                       "x:F32:0,y:F32:4,z:F32:8,range:U32:8",       // overlaps z
                       "x:F32:0,y:F32:4,z:F32:8,intensity:F32:11",  // overlaps the end of z
-                      "x:F32:0,y:F32:4,z:F32:8,range:U32:1016",    // room that no decoder fills
+                      "x:F32:0,y:F32:4,z:F32:8,range:U32:1016",    // a gap that no decoder fills
                       "x:F32:4,y:F32:8,z:F32:12", "x:F32:0,y:F32:4,z:I32:8"));
 
 TEST(StreamConfig, SaysWhichCoderMadeTheSlices) {

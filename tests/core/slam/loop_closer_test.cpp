@@ -100,7 +100,7 @@ TEST(LoopCloser, DoubtsTheClosureThatIsMostContradicted) {
   closures[2].pose.rotation = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(FindWorst(closures, poses), 1U);
   closures.erase(closures.begin() + 1);
-  EXPECT_EQ(FindWorst(closures, poses), 1U);  // twice as far as it may turn
+  EXPECT_EQ(FindWorst(closures, poses), 1U);  // it turns twice as far as a closure may
   closures.pop_back();
   closures[0].pose.position.x() = 1.4;
   EXPECT_EQ(FindWorst(closures, poses), 1U);  // now no closure turns

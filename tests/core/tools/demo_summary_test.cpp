@@ -160,7 +160,7 @@ TEST(DemoSummary, UtilisationIsOfSteadyTimeAndOfWhatTheEncoderCanUse) {
   for (int i = 0; i < 1000; ++i) m.packets.push_back({i * 0.01, 3750, true, false, 1});
   m.AddBounds(kOrigin, 1e6, 5e6);
   m.AddBounds(kOrigin + 9 * kSecond, 1e6, 15e6);   // a guess within a gap
-  m.AddBounds(kOrigin + 10 * kSecond, 1e6, 20e6);  // told at the end: it held for no time
+  m.AddBounds(kOrigin + 10 * kSecond, 1e6, 20e6);  // at the end, so they hold for no time
   m.EndBounds(kOrigin + 10 * kSecond);             // 6 on average
   const auto s = Summarise(m);
   EXPECT_NEAR(s["mean_rate_bps"].get<double>(), 3e6, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that a table of leases writes and holds in a scripted run is as it was.
+// What a table of leases writes and holds in a scripted run must match the golden file.
 #include <chrono>
 #include <optional>
 #include <set>

@@ -6,8 +6,8 @@
 namespace lidar::viewer {
 namespace {
 
-/// A slice that refers to the same place `back` scans before; 0: to no slice; negative: no slice
-/// may refer to it.
+/// A slice that refers to the slice `back` scans before it. 0: it stands alone. Negative: it stands
+/// alone, and no slice can refer to it.
 SharedSlice Make(std::uint32_t scan, std::uint32_t index, int back, std::int64_t bytes = 1000) {
   auto slice = std::make_shared<Slice>();
   slice->id = {scan, index};

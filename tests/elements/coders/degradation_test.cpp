@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Below min-bitrate: what is given up, and that sender and receiver count the same.
+// What the coders leave out below min-bitrate, and that sender and receiver count the same.
 #include <gtest/gtest.h>
 
 #include <tuple>

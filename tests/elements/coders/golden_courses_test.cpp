@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that coders put out, send and say in scripted runs is as it was.
+// What coders output, send and post in scripted runs must match the golden files.
 #include <gtest/gtest.h>
 
 #ifdef HAVE_DRACO

@@ -136,7 +136,7 @@ TEST(EcnUdp, WhatArrivesAndWhatTheKernelDropsIsWhatWasSent) {
   const auto dropped = [&] { return Stat(src.get(), "dropped-by-kernel"); };
   while (sent < 50) send();
   gst_harness_play(src.get());
-  // The kernel tells of drops with the next datagram that it does not drop.
+  // The kernel reports drops with the next datagram that it does not drop.
   int looks = 0;
   ASSERT_TRUE(test::Eventually([&] {
     if (looks++ % 50 == 0) send();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that mcapsink and mcapsrc put out, send and say in scripted runs is as it was.
+// What mcapsink and mcapsrc output, send and post in scripted runs must match the golden files.
 #include "tests/support/files.h"
 #include "tests/support/golden_course.h"
 

@@ -20,7 +20,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kEnduringWorkers = 2;
 constexpr double kSamplePause = 0.2;  // between reads of the edge's reports [s]
-constexpr double kReportAge = 1;      // a killed edge has reported slices that are older [s]
+constexpr double kReportAge = 1;      // an edge reports each slice within this time [s]
 constexpr double kMemoryPause = 60;
 
 struct EnduranceOptions {

@@ -184,7 +184,7 @@ TEST_F(NatsRuns, ASinkTellsOnceOfBuffersThatAreTooLargeUntilOneIsTaken) {
       sink.Push(32);
       ASSERT_TRUE(Eventually(
           [&] { return sink.stat("messages") == round && sink.stat("messages-waiting") == 0; }));
-      // A server that has just started may still refuse to make a box, which is told of, too.
+      // A server that has just started may still refuse to make a box, which posts a warning, too.
       const auto texts = sink.Warnings();
       EXPECT_EQ(std::count_if(texts.begin(), texts.end(),
                               [](const std::string& text) {
@@ -365,7 +365,7 @@ TEST_F(NatsRuns, ThePastCountsWhatIsDamaged) {
   PublishSlices(4, At(box));
   Stranger stranger(server_.url());
   stranger.Publish("r1.front", "no natssink's");
-  Publish(&stranger, "r1.front", "7 0");  // of caps that nobody has
+  Publish(&stranger, "r1.front", "7 0");  // its caps were never published
   stranger.Flush();
   const gst::HistoryAnswer answer = Past(At("subject=r1.front"), {0, 0, 1'000'000});
   EXPECT_TRUE(answer.ended);

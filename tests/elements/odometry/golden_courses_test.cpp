@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that lidarodometry puts out, sends and says in scripted runs is as it was.
+// What lidarodometry outputs, sends and posts in scripted runs must match the golden files.
 #include "tests/support/golden_course.h"
 
 #include "tests/elements/odometry/corner_drive.h"

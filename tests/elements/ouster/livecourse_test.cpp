@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that a live ouster_src puts out and says in a scripted run is as it was.
+// What a live ouster_src outputs and posts in a scripted run must match the golden file.
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -89,7 +89,7 @@ class PacketSensor {
   guint64 short_ = 0;
 };
 
-/// Takes the kernel's times of arrival from the sockets of `port`: they are real ones, while all
+/// Switches off the kernel's arrival times on the sockets of `port`: they are real times, while all
 /// else goes by the test clock.
 void LeaveOutArrivals(guint port) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
@@ -109,7 +109,7 @@ void LiveCourse(Course& c) {
   guint imu_port = 0;
   g_object_get(c.element(), "lidar-port", &port, "imu-port", &imu_port, nullptr);
   UseTestClock(c.harness());
-  GstClockTime now = kClockStart + 3600 * GST_SECOND;  // packets of this machine are older than 0
+  GstClockTime now = kClockStart + 3600 * GST_SECOND;  // packets before running time 0 are dropped
   gst_harness_set_time(c.harness(), now);
   // Times are those of arrival.
   c.Hide("buffer at [0-9]+", "buffer");

@@ -482,7 +482,7 @@ TEST_F(Assembler, AnOpenScanLeavesInTheSegmentThatItBeganIn) {
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
-  EXPECT_EQ(Waiting(), 0U);  // the same segment
+  EXPECT_EQ(Waiting(), 0U);  // the segment is unchanged
   segment.base = GST_SECOND;
   gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
   ASSERT_EQ(Waiting(), 1U);

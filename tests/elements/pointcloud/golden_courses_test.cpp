@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that elements put out, send and say in scripted runs is as it was.
+// What elements output, send and post in scripted runs must match the golden files.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that ros2sink and ros2src publish, put out and say in scripted runs is as it was.
+// What ros2sink and ros2src publish, output and post in scripted runs must match the golden files.
 #include "tests/support/golden_course.h"
 
 #include "src/base/crc.h"

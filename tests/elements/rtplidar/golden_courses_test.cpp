@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that the payloader and the depayloader put out, send and say in scripted runs is as it was.
+// What the payloader and the depayloader output, send and post in scripted runs must match the
+// golden files.
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"

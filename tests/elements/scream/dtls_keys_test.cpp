@@ -329,7 +329,7 @@ TEST_F(DtlsEnds, AClientTriesAStrangerOnceASecond) {
       return client_->counts().refused == tries;
     }));
     up_.Take();
-    g_usleep(300'000);  // three times as long as it takes to look
+    g_usleep(300'000);  // three of its ticks
     EXPECT_TRUE(up_.Take().empty());
     frozen_at += G_USEC_PER_SEC;
   }

@@ -51,7 +51,7 @@ class ScreamAux : public ::testing::Test {
   GstElement* element = gst_element_factory_make("screamaux", nullptr);
   Harness harness{gst_harness_new_with_element(element, "sink", "src")};
   guint16 seq = 65534;
-  guint8 extension = kExtension;  // of packets that Push() numbers
+  guint8 extension = kExtension;  // id of the extension that has the number
 
   void SetUp() override {
     // GObject registers GValueArray, the type of the list, at its first use.
@@ -134,7 +134,7 @@ TEST_F(ScreamAux, TheSizeOfAPacketIsKnownAsLongAsAReportMayTellOfIt) {
   Tell({{0}, {1}, {2, 99}});
   EXPECT_EQ(Stat("twcc-mismatched"), 4U);
   EXPECT_EQ(Stat("twcc-packets"), 0U);
-  Tell({{0, 0}, {1}});  // from a session that does not give the size
+  Tell({{0, 0}, {1}});  // from a session that does not report sizes
   EXPECT_EQ(Stat("packets-acked"), 2U);
   EXPECT_EQ(Stat("twcc-packets"), 2U);
   Tell({{40}});  // not sent yet

@@ -202,7 +202,7 @@ TEST_F(ScreamRx, ShowsNothingOfTheOldPeerAfterAMove) {
   Start();
   Rtp r;
   for (const guint16 seq : std::initializer_list<guint16>{
-           0, 1, 1, 9, 8}) {  // one twice, a gap, and one that is overtaken
+           0, 1, 1, 9, 8}) {  // a duplicate, a gap, and an overtaken packet
     r.seq = seq;
     ASSERT_EQ(Push(r, GST_LIDAR_ECN_CE, "10.0.0.1"), GST_FLOW_OK);
   }

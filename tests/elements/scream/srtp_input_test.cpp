@@ -227,7 +227,7 @@ TEST_F(SrtpIn, FindsAStreamThatWrappedInSilence) {
   Wait(3);
   int refused = 0;
   for (guint16 seq = 10; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(++refused, 40);
-  EXPECT_GE(refused, 19);  // before that the losses may be damage
+  EXPECT_GE(refused, 19);  // fewer failures may be damage
   EXPECT_TRUE(Passes(sender.Protect(1'000)));
 }
 
@@ -306,14 +306,14 @@ TEST_F(SrtpIn, RefusesReportsThatBeginAnewUnderTheSameKeyAndSsrc) {
 TEST_F(SrtpIn, KnowsItsStreamsAmongAnyNumberOfOthers) {
   Protector sender(Key(5));
   const BufferPtr recorded = sender.Protect(5);
-  for (int turns = 0; turns < 20; ++turns) sender.Wrap();  // more than the first tries find
+  for (int turns = 0; turns < 20; ++turns) sender.Wrap();  // beyond the 4 and 16 values tried first
   for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(seq, 300);
   for (guint32 ssrc = 0; ssrc < 2'000; ++ssrc) {
     if (ssrc % 100 == 0) Wait(1);
     Forge(1, 100'000 + ssrc);
   }
   EXPECT_FALSE(Passes(recorded));
-  EXPECT_TRUE(Passes(sender.Protect(400)));  // at its rollover count
+  EXPECT_TRUE(Passes(sender.Protect(400)));  // with the rollover count of the known stream
 }
 
 TEST_F(SrtpIn, TakesANewKeyAndForgetsTheOldOne) {

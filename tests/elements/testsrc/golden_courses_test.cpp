@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that lidartestsrc puts out and says in scripted runs is as it was, but for the coordinates,
-// whose last bits differ between machines.
+// What lidartestsrc outputs and posts in scripted runs must match the golden files, except for
+// coordinates, whose last bits differ between machines.
 #include <gtest/gtest.h>
 
 #include "tests/support/golden_course.h"

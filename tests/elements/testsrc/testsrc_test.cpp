@@ -195,7 +195,7 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
-  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // it was under way
+  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // this slice was under way
   ReleaseWaiter(h);
   const BufferPtr next = Pull(h);
   EXPECT_EQ(SliceOf(next).scan_id, 10U);
@@ -468,7 +468,7 @@ TEST(LidarTestSrc, AnImuSkipsWithTheClouds) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
-  Pull(h);  // it was under way
+  Pull(h);  // this slice was under way
   ReleaseWaiter(h);
   EXPECT_EQ(GST_BUFFER_PTS(Pull(h).get()), GST_SECOND);
   ASSERT_EQ(live.samples().size(), 2U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that pointcloudview puts out and says in scripted runs is as it was, but for the colours of
-// pixels, whose last bits differ between machines.
+// What pointcloudview outputs and posts in scripted runs must match the golden files, except for
+// the colours of pixels, whose last bits differ between machines.
 #include <gtest/gtest.h>
 
 #include "src/base/byte_writer.h"

@@ -178,7 +178,7 @@ TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
   const auto deliver = [&](std::uint32_t scan) {
     auto slice = std::make_shared<SliceMessage>();
     slice->id.scan = scan;
-    slice->blocks = {{scan, scan - 1}};  // refers to one that the viewer lacks
+    slice->blocks = {{scan, scan - 1}};  // refers to a block that the viewer lacks
     service.Deliver(7, std::move(slice));
     return topic->wants_recoded();
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All that foxglovesink advertises, sends and says in a scripted run is as it was.
+// What foxglovesink advertises, sends and posts in a scripted run must match the golden file.
 #include "tests/support/golden_course.h"
 
 #include "src/base/crc.h"

@@ -54,7 +54,7 @@ class Ledger {
   /// after it do not count as skipped.
   ScanCounts Count(std::int64_t settled = INT64_MAX) const;
   const std::map<std::uint32_t, ScanLife>& scans() const { return scans_; }
-  /// Times at which the edge knew the pose of each scan.
+  /// Times at which the edge had the pose of each scan.
   const std::map<std::uint32_t, std::int64_t>& posed() const { return posed_; }
   const Comparison& total() const { return total_; }
   std::uint64_t compared_slices() const { return compared_slices_; }
