@@ -80,7 +80,7 @@ server=$(PATH=$PATH:/usr/sbin:/usr/local/bin command -v nats-server || true)
 if [ -n "$server" ] && has natssink; then
   start "grep -q 'Server is ready' output" "$server" -a 127.0.0.1 -p "${ports[1]}" -js -sd "$work/store"
   at="url=nats://127.0.0.1:${ports[1]} subject=robot jetstream=box"
-  "${play[@]}" $encoder ! natssink $at
+  "${play[@]}" $encoder ! natssink $at drain-timeout=60000000000
   "${play[@]}" natssrc $at start-time=0 eos-at-end=true ! $decoder=nats
   cmp direct nats
 fi

@@ -158,7 +158,8 @@ TEST_F(FleetReporter, SendsTheNewestAsSoonAsThereIsAServer) {
   const auto js = nats::OpenJetStream(connection->get());
   nats::StreamSettings stream;
   stream.name = "told";
-  ASSERT_TRUE(nats::EnsureStream(js.get(), stream, {"told.>"}, &why)) << why;
+  ASSERT_TRUE(Eventually([&] { return nats::EnsureStream(js.get(), stream, {"told.>"}, &why); }))
+      << why;
   server_.Kill();
   fleet::Reporter reporter(settings);
   reporter.Publish({{"told.r1", "old"}, {"told.r2", "old"}});

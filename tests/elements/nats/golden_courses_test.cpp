@@ -3,11 +3,13 @@
 #include "tests/support/golden_course.h"
 
 #include <map>
+#include <optional>
 
 #include "ext/nats/jetstream.h"
 #include "ext/nats/stream_format.h"
 #include "gst/common/history_query.h"
 #include "src/base/crc.h"
+#include "tests/elements/nats/nats_client.h"
 #include "tests/elements/nats/nats_server.h"
 
 namespace lidar::test {
@@ -17,7 +19,6 @@ constexpr const char* kSampleCaps = "application/x-imu,sample-size=(int)32";
 constexpr const char* kTwoPointCaps =
     "application/x-pointcloud2,width=2,height=1,point-step=12,fields=(string)\"x:F32:0,y:F32:4,"
     "z:F32:8\",is-bigendian=false,is-dense=true,frame-id=os";
-constexpr std::int64_t kPatienceMs = kPatience / std::chrono::milliseconds(1);
 constexpr GstClockTime kCaptured = 1'500'000'000 * GST_SECOND;
 
 gst::BufferPtr Sample(guint8 value, gsize size = 32) {
@@ -76,32 +77,35 @@ class MessageTexts {
 class Fleet {
  public:
   explicit Fleet(Course* course) : course_(*course) {
-    server_.Start();
+    course_.Hide("message warning No NATS server answers at nats://localhost.*", "");
     course_.Stop();  // the harness starts sinks
+    server_.Start();
     g_object_set(course_.element(), "url", server_.url().c_str(), nullptr);
     // JetStream begins a little after its server.
     course_.Hide("message warning (JetStream gives nothing|The stream box cannot be made).*", "");
     course_.Hide("127[.]0[.]0[.]1:[0-9]+", "the server");
     Connect();
   }
-  ~Fleet() { natsConnection_Destroy(nc_); }
   Fleet(const Fleet&) = delete;
   Fleet& operator=(const Fleet&) = delete;
 
-  natsConnection* connection() const { return nc_; }
+  jsCtx* js() const { return client_->js(); }
+  /// Returns once the server has the element's subscription, or has it no more.
+  void AwaitSubscription(bool is_there) const {
+    EXPECT_TRUE(Eventually([&] { return (server_.Subscriptions("r1.imu") > 0) == is_there; }));
+  }
   /// A stream of JetStream that keeps what is published.
   void MakeBox() const {
     std::string why;
-    const nats::JetStreamPtr js = nats::OpenJetStream(nc_);
     EXPECT_TRUE(Eventually([&] {
-      return nats::EnsureStream(js.get(), {"box", Duration::zero(), 0, 1, ""},
+      return nats::EnsureStream(js(), {"box", Duration::zero(), 0, 1, ""},
                                 {"r1.imu", "r1.imu.config.*"}, &why);
     })) << why;
   }
   /// The server goes, and is missed.
   void Kill() {
     messages_.reset();
-    natsConnection_Destroy(std::exchange(nc_, nullptr));
+    client_.reset();
     server_.Kill();
     course_.AwaitStat("connected", 0);
     EXPECT_TRUE(Eventually([&] { return course_.trace()->Count("message nats-conn") > 0; }));
@@ -116,10 +120,9 @@ class Fleet {
     Connect();
   }
   void AwaitAcknowledged(const char* durable) const {
-    const nats::JetStreamPtr js = nats::OpenJetStream(nc_);
     EXPECT_TRUE(Eventually([&] {
       jsConsumerInfo* found = nullptr;
-      if (js_GetConsumerInfo(&found, js.get(), "box", durable, nullptr, nullptr) != NATS_OK)
+      if (js_GetConsumerInfo(&found, js(), "box", durable, nullptr, nullptr) != NATS_OK)
         return false;
       const nats::ConsumerInfoPtr info(found);
       return info->NumPending == 0 && info->NumAckPending == 0;
@@ -131,8 +134,8 @@ class Fleet {
     natsMsg_Create(&raw, subject, nullptr, bytes.data(), static_cast<int>(bytes.size()));
     const nats::MessagePtr message(raw);
     for (const auto& [name, value] : headers) natsMsgHeader_Set(raw, name, value.c_str());
-    EXPECT_EQ(natsConnection_PublishMsg(nc_, raw), NATS_OK);
-    natsConnection_Flush(nc_);
+    EXPECT_EQ(natsConnection_PublishMsg(client_->get(), raw), NATS_OK);
+    natsConnection_FlushTimeout(client_->get(), NatsClient::kPatienceMs);
   }
   void PublishCaps(const nats::StreamFormat& format) const {
     Publish(("r1.imu.config." + format.id()).c_str(), format.text());
@@ -158,7 +161,7 @@ class Fleet {
   }
   /// Notes the answer to a natssrc that lacks caps.
   void Ask() {
-    natsConnection_Publish(nc_, "r1.imu.get-config", nullptr, 0);
+    natsConnection_Publish(client_->get(), "r1.imu.get-config", nullptr, 0);
     for (const char* begin : {"r1.imu.get-config", "r1.imu.config."})
       while (const nats::MessagePtr message = Next())
         if (std::string(natsMsg_GetSubject(message.get())).rfind(begin, 0) == 0) break;
@@ -168,20 +171,20 @@ class Fleet {
  private:
   void Connect() {
     natsSubscription* raw = nullptr;
-    ASSERT_EQ(natsConnection_ConnectTo(&nc_, server_.url().c_str()), NATS_OK);
-    ASSERT_EQ(natsConnection_SubscribeSync(&raw, nc_, "r1.>"), NATS_OK);
+    client_.emplace(server_.url());
+    ASSERT_EQ(natsConnection_SubscribeSync(&raw, client_->get(), "r1.>"), NATS_OK);
     messages_.reset(raw);
-    natsConnection_Flush(nc_);
+    natsConnection_FlushTimeout(client_->get(), NatsClient::kPatienceMs);
   }
   nats::MessagePtr Next() {
     natsMsg* raw = nullptr;
-    EXPECT_EQ(natsSubscription_NextMsg(&raw, messages_.get(), kPatienceMs), NATS_OK);
+    EXPECT_EQ(natsSubscription_NextMsg(&raw, messages_.get(), NatsClient::kPatienceMs), NATS_OK);
     return nats::MessagePtr(raw);
   }
 
   Course& course_;
   NatsServer server_;
-  natsConnection* nc_ = nullptr;
+  std::optional<NatsClient> client_;
   nats::SubscriptionPtr messages_;
   MessageTexts texts_;
   std::string last_caps_;
@@ -262,9 +265,8 @@ void SinkCourse(Course& c) {
 
 /// Notes the properties of a stream, and all that it keeps.
 void NoteBox(Course& c, const Fleet& fleet, guint64 messages) {
-  const nats::JetStreamPtr js = nats::OpenJetStream(fleet.connection());
   jsStreamInfo* found = nullptr;
-  ASSERT_EQ(js_GetStreamInfo(&found, js.get(), "box", nullptr, nullptr), NATS_OK);
+  ASSERT_EQ(js_GetStreamInfo(&found, fleet.js(), "box", nullptr, nullptr), NATS_OK);
   const nats::StreamInfoPtr info(found);
   c.AddLine(Line("box for ", info->Config->MaxAge, " of ", info->Config->MaxBytes, " on ",
                  info->Config->Subjects[0], " and ", info->Config->SubjectsLen - 1, " more"));
@@ -272,12 +274,12 @@ void NoteBox(Course& c, const Fleet& fleet, guint64 messages) {
   jsSubOptions options;
   jsSubOptions_Init(&options);
   options.Config.DeliverPolicy = js_DeliverAll;
-  ASSERT_EQ(js_SubscribeSync(&raw, js.get(), "r1.imu", nullptr, &options, nullptr), NATS_OK);
+  ASSERT_EQ(js_SubscribeSync(&raw, fleet.js(), "r1.imu", nullptr, &options, nullptr), NATS_OK);
   const nats::SubscriptionPtr kept(raw);
   MessageTexts texts;
   for (guint64 i = 0; i < messages; ++i) {
     natsMsg* message = nullptr;
-    ASSERT_EQ(natsSubscription_NextMsg(&message, raw, kPatienceMs), NATS_OK);
+    ASSERT_EQ(natsSubscription_NextMsg(&message, raw, NatsClient::kPatienceMs), NATS_OK);
     const nats::MessagePtr owner(message);
     c.AddLine(texts.Of(message));
   }
@@ -309,8 +311,10 @@ class SourceScript {
   SourceScript(Course* course, Fleet* fleet) : c_(*course), fleet_(*fleet) {}
 
   void Play(const char* what) {
+    fleet_.AwaitSubscription(false);  // that of the last run is gone
     gst_element_set_state(c_.element(), GST_STATE_PLAYING);
     c_.AwaitStat("connected", 1);
+    fleet_.AwaitSubscription(true);
     c_.Note(what);
     damaged_ = 0;
   }

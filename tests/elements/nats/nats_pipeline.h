@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Pipelines with an end at NATS, whose buffers are kept while they run.
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -11,6 +12,12 @@
 #include "tests/support/patience.h"
 
 namespace lidar::test {
+
+inline std::size_t CountWith(const std::string& part, const std::vector<std::string>& texts) {
+  return static_cast<std::size_t>(
+      std::count_if(texts.begin(), texts.end(),
+                    [&](const std::string& text) { return text.find(part) != text.npos; }));
+}
 
 /// A pipeline whose natssrc or natssink is named `n`. Buffers that pass the element `see` are kept.
 class NatsPipeline {
@@ -49,14 +56,19 @@ class NatsPipeline {
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
     return MessageText(message.get());
   }
-  /// Returns the text of the next warning.
-  std::string WaitForWarning() {
-    const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING);
-    return message ? MessageText(message.get()) : "";
+  /// Returns the text of the next warning with `part` in it. A busy machine may cause others.
+  std::string WaitForWarning(const std::string& part) {
+    while (const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING)) {
+      const std::string text = MessageText(message.get());
+      if (text.find(part) != text.npos) return text;
+    }
+    return "";
   }
 
-  /// How many warnings have come since they were last looked for.
-  std::size_t Warnings() { return bus_->Texts(GST_MESSAGE_WARNING).size(); }
+  /// How many warnings with `part` in them have come since they were last looked for.
+  std::size_t Warnings(const std::string& part) {
+    return CountWith(part, bus_->Texts(GST_MESSAGE_WARNING));
+  }
 
   std::vector<Kept> buffers() const {
     const std::lock_guard lock(mutex_);
@@ -104,14 +116,27 @@ class NatsPipeline {
 inline const std::string kLive = "lidartestsrc is-live=true model=os1-32 mode=512x10 ";
 inline const std::string kQuick = "lidartestsrc model=os1-32 mode=512x10 ";
 inline const std::string kSee = " ! identity name=see ";
+/// The longest that there is: EOS waits for a server that stands still.
+inline const std::string kPatientDrain = " drain-timeout=60000000000 ";
 
 /// Publishes `count` coded slices, waits until the server has them, and returns them.
 inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
   NatsPipeline sender(kQuick + "num-buffers=" + std::to_string(count) + " ! lidarenc" + kSee +
-                      "! natssink name=n sync=false drain-timeout=30000000000" + where);
+                      "! natssink name=n sync=false" + kPatientDrain + where);
   sender.Play();
   EXPECT_EQ(sender.WaitForEnd(), "");
   return sender.buffers();
+}
+
+/// Plays a natssrc that follows its subject. Returns once the server has the subscription, so that
+/// nothing that is published then is missed.
+inline void Listen(const NatsServer& server, NatsPipeline* receiver) {
+  gchar* raw = nullptr;
+  g_object_get(receiver->nats(), "subject", &raw, nullptr);
+  const gst::StringPtr subject(raw);
+  const std::size_t before = server.Subscriptions(raw);
+  receiver->Play();
+  EXPECT_TRUE(Eventually([&] { return server.Subscriptions(raw) > before; })) << raw;
 }
 
 inline void ExpectSameStream(const std::vector<Kept>& got, const std::vector<Kept>& sent) {

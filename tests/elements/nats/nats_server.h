@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "gst/common/refs.h"
+#include "tests/elements/nats/http_get.h"
 #include "tests/support/files.h"
 #include "tests/support/patience.h"
 
@@ -76,6 +77,15 @@ class NatsServer {
     if (std::system(make.c_str()) != 0) return {};
     return {"-c", folder_ + "/operator.conf", "-js=false"};
   }
+  /// Returns how many subscriptions to exactly this subject the server has.
+  std::size_t Subscriptions(const std::string& subject) const {
+    const std::string sign = "\"subject\": \"" + subject + "\"";
+    const std::string text =
+        HttpGet("127.0.0.1:" + monitor_, "/subsz?subs=1&test=" + subject).value_or("");
+    std::size_t count = 0;
+    for (auto at = text.find(sign); at != text.npos; at = text.find(sign, at + 1)) ++count;
+    return count;
+  }
   pid_t pid() const { return pid_; }
 
  private:
@@ -89,6 +99,8 @@ class NatsServer {
                                       "127.0.0.1",
                                       "-p",
                                       port_,
+                                      "-m",
+                                      "-1",
                                       "-js",
                                       "-sd",
                                       folder_ + "/store",
@@ -115,16 +127,24 @@ class NatsServer {
       text = ReadFile(path);
       return text.find('}') != text.npos || waitpid(pid_, nullptr, WNOHANG) == pid_;
     });
-    const auto at = text.find("127.0.0.1:");
-    if (!there || at == text.npos) return false;
-    const auto begin = at + std::string("127.0.0.1:").size();
-    port_ = text.substr(begin, text.find_first_not_of("0123456789", begin) - begin);
+    const std::string port = PortBehind(text, 0);
+    if (!there || port.empty()) return false;
+    port_ = port;
+    monitor_ = PortBehind(text, text.find("monitoring"));
     return true;
+  }
+  static std::string PortBehind(const std::string& text, std::size_t from) {
+    const std::string host = "127.0.0.1:";
+    const auto at = text.find(host, from);
+    if (at == text.npos) return "";
+    const auto begin = at + host.size();
+    return text.substr(begin, text.find_first_not_of("0123456789", begin) - begin);
   }
 
   const TempFolder owner_;
   const std::string& folder_ = owner_.path();
   std::string port_ = "-1";  // any
+  std::string monitor_;      // port of its monitoring
   std::vector<std::string> options_;
   pid_t pid_ = -1;
 };

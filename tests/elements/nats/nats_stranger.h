@@ -7,29 +7,26 @@
 #include <utility>
 #include <vector>
 
-#include "ext/nats/nats_ptr.h"
+#include "tests/elements/nats/nats_client.h"
 
 namespace lidar::test {
 
 /// Another program at the same server.
 class Stranger {
  public:
-  explicit Stranger(const std::string& url) {
-    EXPECT_EQ(natsConnection_ConnectTo(&nc_, url.c_str()), NATS_OK);
-  }
-  ~Stranger() { natsConnection_Destroy(nc_); }
+  explicit Stranger(const std::string& url) : client_(url) {}
   void Publish(const char* subject, const std::string& bytes,
                const std::vector<std::pair<const char*, std::string>>& headers = {}) {
     natsMsg* raw = nullptr;
     natsMsg_Create(&raw, subject, nullptr, bytes.data(), static_cast<int>(bytes.size()));
     const nats::MessagePtr message(raw);
     for (const auto& [name, value] : headers) natsMsgHeader_Set(raw, name, value.c_str());
-    EXPECT_EQ(natsConnection_PublishMsg(nc_, raw), NATS_OK);
+    EXPECT_EQ(natsConnection_PublishMsg(client_.get(), raw), NATS_OK);
   }
-  void Flush() { natsConnection_FlushTimeout(nc_, 30'000); }
+  void Flush() { natsConnection_FlushTimeout(client_.get(), NatsClient::kPatienceMs); }
 
  private:
-  natsConnection* nc_ = nullptr;
+  const NatsClient client_;
 };
 
 }  // namespace lidar::test

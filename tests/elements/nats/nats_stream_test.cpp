@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "ext/nats/subscriber.h"
+#include "tests/elements/nats/nats_client.h"
 #include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {
@@ -19,9 +20,9 @@ class NatsStream : public NatsTest {
 TEST_F(NatsStream, SlicesComeBackByteForByte) {
   NatsPipeline receiver("natssrc name=n" + At("subject=r1.front") +
                         "! fakesink name=see sync=false");
-  receiver.Play();
+  Listen(server_, &receiver);
   NatsPipeline sender(kQuick + "num-buffers=80 ! lidarenc" + kSee + "! natssink name=n sync=false" +
-                      At("subject=r1.front"));
+                      kPatientDrain + At("subject=r1.front"));
   sender.Play();
   EXPECT_EQ(sender.WaitForEnd(), "");
   ASSERT_TRUE(receiver.WaitForBuffers(80));
@@ -39,8 +40,9 @@ TEST_F(NatsStream, SlicesComeBackByteForByte) {
 
 TEST_F(NatsStream, CloudsComeBackByteForByte) {
   NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
-  receiver.Play();
-  NatsPipeline sender(kQuick + "num-buffers=16" + kSee + "! natssink name=n sync=false" + At());
+  Listen(server_, &receiver);
+  NatsPipeline sender(kQuick + "num-buffers=16" + kSee + "! natssink name=n sync=false" +
+                      kPatientDrain + At());
   sender.Play();
   EXPECT_EQ(sender.WaitForEnd(), "");
   ASSERT_TRUE(receiver.WaitForBuffers(16));
@@ -53,7 +55,7 @@ TEST_F(NatsStream, ALateJoinerHasItsCapsWithTheFirstMessage) {
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages") >= 10; }));
   NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
-  receiver.Play();
+  Listen(server_, &receiver);
   ASSERT_TRUE(receiver.WaitForBuffers(8));
   EXPECT_EQ(receiver.caps(), sender.caps());
   EXPECT_EQ(receiver.stat("messages-without-caps"), 0U);
@@ -61,19 +63,17 @@ TEST_F(NatsStream, ALateJoinerHasItsCapsWithTheFirstMessage) {
 }
 
 TEST_F(NatsStream, CapsDoNotComeWithEachMessage) {
-  natsConnection* other = nullptr;
-  ASSERT_EQ(natsConnection_ConnectTo(&other, server_.url().c_str()), NATS_OK);
+  const NatsClient other(server_.url());
   natsSubscription* raw = nullptr;
-  ASSERT_EQ(natsConnection_SubscribeSync(&raw, other, "r1.front.config.*"), NATS_OK);
-  natsConnection_Flush(other);
+  ASSERT_EQ(natsConnection_SubscribeSync(&raw, other.get(), "r1.front.config.*"), NATS_OK);
+  natsConnection_Flush(other.get());
   PublishSlices(80, At("subject=r1.front"));
-  natsConnection_Flush(other);
+  natsConnection_Flush(other.get());
   int caps = 0;
   natsSubscription_GetPending(raw, &caps, nullptr);
   EXPECT_GE(caps, 1);
   EXPECT_LT(caps, 40) << "they come again after a second";
   natsSubscription_Destroy(raw);
-  natsConnection_Destroy(other);
 }
 
 /// The sender answers the third question.
@@ -82,10 +82,9 @@ TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
   const gst::CapsPtr caps(gst_caps_from_string("application/x-imu,sample-size=(int)32"));
   const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
   ASSERT_TRUE(format) << why;
-  natsConnection* sender = nullptr;
-  ASSERT_EQ(natsConnection_ConnectTo(&sender, server_.url().c_str()), NATS_OK);
+  const NatsClient sender(server_.url());
   natsSubscription* raw = nullptr;
-  ASSERT_EQ(natsConnection_SubscribeSync(&raw, sender, "r1.imu.get-config"), NATS_OK);
+  ASSERT_EQ(natsConnection_SubscribeSync(&raw, sender.get(), "r1.imu.get-config"), NATS_OK);
   {
     const nats::SubscriptionPtr questions(raw);
     nats::SubscriberSettings settings;
@@ -102,7 +101,7 @@ TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
             << question;
         natsMsg_Destroy(asked);
       }
-      natsConnection_PublishString(sender, ("r1.imu.config." + format->id()).c_str(),
+      natsConnection_PublishString(sender.get(), ("r1.imu.config." + format->id()).c_str(),
                                    format->text().c_str());
     });
     const auto found = subscriber->Format(format->id(), kPatience);
@@ -110,16 +109,16 @@ TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
     ASSERT_TRUE(found);
     EXPECT_EQ(found->text(), format->text());
   }
-  natsConnection_Destroy(sender);
 }
 
 TEST_F(NatsStream, CapsThatChangeArriveBeforeTheirBuffers) {
   NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
-  receiver.Play();
+  Listen(server_, &receiver);
   const auto slices = PublishSlices(8, At());
   ASSERT_TRUE(receiver.WaitForBuffers(8));
   const std::string first = receiver.caps();
-  NatsPipeline clouds(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" + At());
+  NatsPipeline clouds(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" +
+                      kPatientDrain + At());
   clouds.Play();
   EXPECT_EQ(clouds.WaitForEnd(), "");
   ASSERT_TRUE(receiver.WaitForBuffers(16));
@@ -130,9 +129,9 @@ TEST_F(NatsStream, CapsThatChangeArriveBeforeTheirBuffers) {
 
 TEST_F(NatsStream, ServerKilledAndBackEveryLossIsCounted) {
   NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
-  receiver.Play();
-  NatsPipeline sender(kLive + "! lidarenc" + kSee +
-                      "! natssink name=n buffer-size=65536 drain-timeout=30000000000" + At());
+  Listen(server_, &receiver);
+  NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n buffer-size=65536 " +
+                      kPatientDrain + At());
   sender.Play();
   ASSERT_TRUE(receiver.WaitForBuffers(20));
   server_.Kill();
@@ -159,7 +158,7 @@ TEST_F(NatsStream, AServerThatComesLateGetsWhatWaits) {
   const std::string where = At();
   server_.Kill();
   NatsPipeline sender(kQuick + "num-buffers=40 ! lidarenc" + kSee +
-                      "! natssink name=n sync=false drain-timeout=30000000000" + where);
+                      "! natssink name=n sync=false " + kPatientDrain + where);
   NatsPipeline receiver("natssrc name=n" + where + "! fakesink name=see sync=false");
   receiver.Play();
   sender.Play();
@@ -173,9 +172,11 @@ TEST_F(NatsStream, AServerThatComesLateGetsWhatWaits) {
 TEST_F(NatsStream, TheStreamingThreadNeverWaitsForAServerThatHangs) {
   NatsPipeline sender(kQuick + "num-buffers=400 ! lidarenc" + kSee +
                       "! natssink name=n sync=false buffer-size=65536 drain-timeout=0" + At());
+  sender.HoldFrom(1);
   sender.Play();
-  ASSERT_TRUE(sender.WaitForBuffers(1));
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages") == 1; }));
   server_.Freeze();
+  sender.Hold(false);
   EXPECT_EQ(sender.WaitForEnd(), "");
   server_.Thaw();
 }
@@ -183,8 +184,8 @@ TEST_F(NatsStream, TheStreamingThreadNeverWaitsForAServerThatHangs) {
 TEST_F(NatsStream, AQueueGroupSharesTheMessages) {
   NatsPipeline a("natssrc name=n queue-group=workers" + At() + "! fakesink name=see sync=false");
   NatsPipeline b("natssrc name=n queue-group=workers" + At() + "! fakesink name=see sync=false");
-  a.Play();
-  b.Play();
+  Listen(server_, &a);
+  Listen(server_, &b);
   PublishSlices(200, At());
   EXPECT_TRUE(Eventually([&] { return a.count() + b.count() >= 200; }));
   EXPECT_EQ(a.count() + b.count(), 200U);

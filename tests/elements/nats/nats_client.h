@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A connection of the test's own, which waits for a server that stands still.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "ext/nats/nats_ptr.h"
+#include "tests/support/patience.h"
+
+namespace lidar::test {
+
+class NatsClient {
+ public:
+  static constexpr std::int64_t kPatienceMs = kPatience / std::chrono::milliseconds(1);
+
+  explicit NatsClient(const std::string& url) {
+    natsOptions* raw_options = nullptr;
+    natsOptions_Create(&raw_options);
+    const nats::OptionsPtr options(raw_options);
+    natsOptions_SetURL(raw_options, url.c_str());
+    natsOptions_SetTimeout(raw_options, kPatienceMs);
+    EXPECT_EQ(natsConnection_Connect(&nc_, raw_options), NATS_OK);
+    jsOptions of_requests;
+    jsOptions_Init(&of_requests);
+    of_requests.Wait = kPatienceMs;
+    jsCtx* raw = nullptr;
+    EXPECT_EQ(natsConnection_JetStream(&raw, nc_, &of_requests), NATS_OK);
+    js_.reset(raw);
+  }
+  ~NatsClient() {
+    js_.reset();
+    natsConnection_Destroy(nc_);
+  }
+  NatsClient(const NatsClient&) = delete;
+  NatsClient& operator=(const NatsClient&) = delete;
+
+  natsConnection* get() const { return nc_; }
+  jsCtx* js() const { return js_.get(); }
+
+ private:
+  natsConnection* nc_ = nullptr;
+  nats::JetStreamPtr js_;
+};
+
+}  // namespace lidar::test
