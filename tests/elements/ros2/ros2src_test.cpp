@@ -318,7 +318,7 @@ TEST_F(Ros2Src, IsLiveAndStopsWhileItWaits) {
     EXPECT_NE(gst_element_set_state(h_->element, GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
     EXPECT_NE(gst_element_set_state(h_->element, GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
   }
-  EXPECT_LT(g_get_monotonic_time() - begin, 5 * G_USEC_PER_SEC);
+  EXPECT_LT(g_get_monotonic_time() - begin, 30 * G_USEC_PER_SEC);
 }
 
 TEST_F(Ros2Src, GoesOnAfterAPause) {

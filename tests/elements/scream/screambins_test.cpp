@@ -172,9 +172,9 @@ TEST(ScreamBins, InputThatIsNotLiveTakesItsTimeAfterAFlushingSeekToo) {
   sender.Play();
   const ElementPtr out = sender.Get("out");
   EXPECT_TRUE(Eventually([&] { return Stats(out.get())["packets-sent"] > 80; }));
+  const gint64 start = g_get_monotonic_time();
   EXPECT_TRUE(
       gst_element_seek_simple(sender.Get("pay").get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
-  const gint64 start = g_get_monotonic_time();
   const auto sent = Stats(out.get())["packets-sent"];
   EXPECT_TRUE(Eventually([&] { return Stats(out.get())["packets-sent"] >= sent + 100; }));
   const auto after = static_cast<double>(Stats(out.get())["packets-sent"] - sent);
