@@ -37,7 +37,9 @@ class ClockMapper {
   void Reset() { offset_.reset(); }
   /// The receiver's clock was put forward by `step`.
   void Shift(Duration step);
-  /// Call only after Observe().
+  /// Returns true after Observe(), until Reset().
+  bool is_set() const { return offset_.has_value(); }
+  /// Call only if is_set().
   Time Map(std::uint64_t sensor_ns) const;
 
  private:

@@ -88,8 +88,8 @@ class SensorStream {
     first_scan_id_ = before.next_scan_id_;
     last_local_ = before.last_local_;
   }
-  /// Returns true once a packet has set the clocks.
-  bool knows_time() const { return batcher_.stats().packets > 0; }
+  /// Returns true once a packet has set the clocks, also after Restart().
+  bool knows_time() const { return local_.is_set(); }
   Time LocalOf(std::uint64_t sensor_ns) const;
   /// Returns the sampling time of a lidar packet's first column without taking the packet; nothing
   /// for other packets.

@@ -229,6 +229,15 @@ TEST_F(Stream, TimesNeverGoBackWhateverTheJitterAndSlicesEndWithTheirLastPacket)
   }
 }
 
+TEST_F(Stream, KnowsNoTimeFromARestartToTheNextPacket) {
+  auto stream = Make();
+  EXPECT_FALSE(stream->knows_time());
+  Run(stream.get());
+  EXPECT_TRUE(stream->knows_time());
+  stream->Restart();
+  EXPECT_FALSE(stream->knows_time());
+}
+
 TEST_F(Stream, PacketsThatDoNotFitAreCountedAndLeftOut) {
   auto stream = Make();
   const Arrival now{Time{1s}, Time{1s}};
