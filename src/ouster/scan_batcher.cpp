@@ -103,13 +103,16 @@ void ScanBatcher::AddColumns(const LidarPacket& packet, std::int64_t scan, Time 
   Key newest = -1;
   for (std::uint32_t i = 0; i < packet.columns(); ++i) {
     const PacketColumn column = packet.Column(i);
-    if (column.measurement_id >= columns_per_scan_ || !InWindow(column.measurement_id)) continue;
+    if (column.measurement_id >= columns_per_scan_) continue;
+    if (column.valid())
+      last_valid_ = {scan * columns_per_scan_ + column.measurement_id, column.timestamp, arrival};
+    if (!InWindow(column.measurement_id)) continue;
     const Key key = scan * slices_ + column.measurement_id / width_;
     if (key < next_) {
       if (LeadsPacket(column.measurement_id)) CountTooLate(scan, column.measurement_id);
       continue;
     }
-    OpenSlice& open = Open(key, column, arrival);
+    OpenSlice& open = Open(key, arrival);
     if (key != newest) ++open.packets;
     newest = std::max(newest, key);
     duplicate = !AddColumn(column, &open) || duplicate;
@@ -128,12 +131,16 @@ bool ScanBatcher::AddColumn(const PacketColumn& column, OpenSlice* open) {
   open->columns[i] = true;
   ++open->seen;
   if (!column.valid()) return true;
-  if (i == 0) slice.start = column.timestamp;
+  if (i == 0 || !open->timed) {
+    const auto sweep = static_cast<std::uint64_t>(column_period_ * static_cast<double>(i));
+    slice.start = column.timestamp - std::min(column.timestamp, sweep);
+  }
+  open->timed = true;
   writer_.WriteColumn(column, {slice.points.data(), width_, slice.first_column, slice.start});
   return true;
 }
 
-ScanBatcher::OpenSlice& ScanBatcher::Open(Key key, const PacketColumn& column, Time arrival) {
+ScanBatcher::OpenSlice& ScanBatcher::Open(Key key, Time arrival) {
   const auto at = std::lower_bound(open_.begin(), open_.end(), key,
                                    [](const OpenSlice& o, Key k) { return o.key < k; });
   if (at != open_.end() && at->key == key) return *at;
@@ -142,9 +149,6 @@ ScanBatcher::OpenSlice& ScanBatcher::Open(Key key, const PacketColumn& column, T
   open.columns.resize(width_);
   open.slice = NewSlice(key);
   open.slice.first_arrival = arrival;
-  const auto sweep = static_cast<std::uint64_t>(
-      column_period_ * static_cast<double>(column.measurement_id - open.slice.first_column));
-  open.slice.start = column.timestamp - std::min(column.timestamp, sweep);
   return *open_.insert(at, std::move(open));
 }
 
@@ -194,7 +198,8 @@ void ScanBatcher::GiveOut(OpenSlice open) {
     CountLost(k, nullptr);
     gap_ = gap_ || (k >= joined_key_ && expected_[static_cast<std::size_t>(k % slices_)] > 0);
   }
-  const ColumnTime reference{open.slice.first_column, open.slice.start, open.slice.first_arrival};
+  if (!open.timed && last_valid_) open.slice.start = StartOf(key, *last_valid_);
+  const ColumnTime reference{key * width_, open.slice.start, open.slice.first_arrival};
   GiveOutBlanks(std::max(next_, scan_start), key, reference);
   const auto index = static_cast<std::size_t>(key % slices_);
   open.slice.missing_columns = expected_[index] - open.seen;
@@ -220,14 +225,19 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
     const auto index = static_cast<std::uint32_t>(key % slices_);
     if (expected_[index] > 0) continue;
     Slice slice = NewSlice(key);
-    const double columns = static_cast<double>(slice.first_column) - reference.column;
-    const auto shift = static_cast<std::int64_t>(columns * column_period_);
-    slice.start = static_cast<std::uint64_t>(
-        std::max<std::int64_t>(0, SinceSensorEpoch(reference.time).count() + shift));
+    slice.start = StartOf(key, reference);
     slice.first_arrival = reference.arrival;
     ready_.push_back(std::move(slice));
     ++stats_.slices;
   }
+}
+
+/// Extrapolates to the first column of a slice.
+std::uint64_t ScanBatcher::StartOf(Key key, const ColumnTime& reference) const {
+  const auto columns = static_cast<double>(key * width_ - reference.column);
+  const auto shift = static_cast<std::int64_t>(columns * column_period_);
+  return static_cast<std::uint64_t>(
+      std::max<std::int64_t>(0, SinceSensorEpoch(reference.time).count() + shift));
 }
 
 /// Adds the lost packets whose first column is in the slice; `columns` is null if no column of the

@@ -68,12 +68,13 @@ class ScanBatcher {
     std::uint32_t seen = 0;     // columns of the window that came
     std::uint32_t packets = 0;  // packets of this slice
     std::uint32_t later_packets = 0;
+    bool timed = false;  // a valid column has set slice.start
     std::vector<bool> columns;
     Slice slice;
   };
 
   struct ColumnTime {
-    std::uint32_t column = 0;
+    std::int64_t column = 0;  // counted across scans
     std::uint64_t time = 0;
     Time arrival{};
   };
@@ -83,7 +84,7 @@ class ScanBatcher {
   void Restart(const LidarPacket& packet);
   void AddColumns(const LidarPacket& packet, std::int64_t scan, Time arrival);
   bool AddColumn(const PacketColumn& column, OpenSlice* open);
-  OpenSlice& Open(Key key, const PacketColumn& column, Time arrival);
+  OpenSlice& Open(Key key, Time arrival);
   Slice NewSlice(Key key) const;
   void CountLaterPacket(Key key);
   Key NextExpected() const;
@@ -91,6 +92,7 @@ class ScanBatcher {
   void GiveOutReady();
   void GiveOut(OpenSlice open);
   void GiveOutBlanks(Key first, Key last, ColumnTime reference);
+  std::uint64_t StartOf(Key key, const ColumnTime& reference) const;
   void CountLost(Key key, const std::vector<bool>* columns);
   void CountTooLate(std::int64_t scan, std::uint32_t column);
   bool InWindow(std::uint32_t column) const;
@@ -110,6 +112,7 @@ class ScanBatcher {
 
   std::deque<OpenSlice> open_;  // in order of key
   std::deque<Slice> ready_;
+  std::optional<ColumnTime> last_valid_;   // the valid column that came last
   std::optional<std::uint32_t> frame_id_;  // of scan_
   std::uint32_t init_id_ = 0;
   std::int64_t scan_ = 0;  // newest so far

@@ -135,6 +135,8 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
   ObserveClocks(*packet, arrival);
   last_arrival_utc_ = arrival.utc;
   sender_ = arrival.sender;
+  // Timestamps of invalid columns mean nothing.
+  if (!knows_time()) return PacketVerdict::kLidar;
   batcher_.Push(*packet, arrival.local);
   CollectSlices();
   return PacketVerdict::kLidar;

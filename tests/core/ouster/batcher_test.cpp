@@ -71,6 +71,20 @@ TEST_F(Batcher, GivesEverySliceOnceAndInOrder) {
   EXPECT_EQ(stats_.lost_packets, 0U);
 }
 
+TEST_F(Batcher, TakesNoTimeFromColumnsThatTheSensorMarksAsInvalid) {
+  const auto whole = Run(packets_);
+  auto packets = packets_;
+  test::Invalidate(metadata_.format, 0, &packets[8]);  // the first column of the second slice
+  for (std::size_t p = 16; p < 24; ++p)                // all of the third slice
+    for (std::uint32_t c = 0; c < 16; ++c) test::Invalidate(metadata_.format, c, &packets[p]);
+  const auto slices = Run(packets);
+  ASSERT_EQ(slices.size(), whole.size());
+  for (std::size_t i = 0; i < slices.size(); ++i)
+    EXPECT_NEAR(static_cast<double>(slices[i].start), static_cast<double>(whole[i].start), 1e5)
+        << i;
+  EXPECT_EQ(stats_.incomplete_slices, 0U);
+}
+
 TEST_F(Batcher, GivesASliceWithThePacketThatCompletesIt) {
   std::string error;
   ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {8, 4});

@@ -37,4 +37,12 @@ inline std::vector<std::vector<std::uint8_t>> LoadPackets(const std::string& nam
   return packets;
 }
 
+/// Marks a column of a packet that is not LEGACY as invalid, and sets its time to 0.
+inline void Invalidate(const ouster::PacketFormat& format, std::uint32_t column,
+                       std::vector<std::uint8_t>* packet) {
+  std::uint8_t* at = packet->data() + format.packet_header_size() + column * format.column_size();
+  std::fill_n(at, 8, std::uint8_t{0});
+  std::fill_n(at + 10, 2, std::uint8_t{0});
+}
+
 }  // namespace lidar::test

@@ -229,6 +229,21 @@ TEST_F(Stream, TimesNeverGoBackWhateverTheJitterAndSlicesEndWithTheirLastPacket)
   }
 }
 
+TEST_F(Stream, BeginsWithAPacketThatHasATime) {
+  for (std::size_t p = 0; p < 8; ++p)
+    for (std::uint32_t c = 0; c < 16; ++c) test::Invalidate(metadata_.format, c, &packets_[p]);
+  auto stream = Make();
+  for (int run = 0; run < 2; ++run) {
+    const auto slices = Run(stream.get(), run * 500ms);
+    ASSERT_GE(slices.size(), 22U);
+    EXPECT_EQ(slices[0].slice.index, 1U);
+    EXPECT_LT(slices.back().local, Time(run * 500ms + 300ms));
+    stream->Restart();
+    while (stream->Pop()) {
+    }
+  }
+}
+
 TEST_F(Stream, KnowsNoTimeFromARestartToTheNextPacket) {
   auto stream = Make();
   EXPECT_FALSE(stream->knows_time());
