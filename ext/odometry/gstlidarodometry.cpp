@@ -166,7 +166,8 @@ static std::optional<Time> SampledAt(GstBuffer* buffer) {
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   const GstClockTime at = GST_CLOCK_TIME_IS_VALID(captured) ? captured : GST_BUFFER_PTS(buffer);
   if (!GST_CLOCK_TIME_IS_VALID(at)) return std::nullopt;
-  return Time{} + Duration{static_cast<std::int64_t>(at)};
+  // Sums and differences of times below this bound do not overflow.
+  return Time{} + Duration{static_cast<std::int64_t>(MIN(at, GstClockTime{G_MAXINT64 / 2}))};
 }
 
 static void CountScan(State* state, const Estimate& estimate, GstClockTime time) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/odometry/scan_collector.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace lidar::gst {
 namespace {
 
 constexpr Duration kUsualScan = std::chrono::milliseconds(100);
+constexpr Duration kLongestScan = odometry::Odometry::kLongestGap;
 /// Bounds the memory for a stream of endless slices. Scans of real sensors are smaller.
 constexpr std::size_t kMaxPoints = std::size_t{1} << 22;
 
@@ -36,8 +38,9 @@ bool ScanCollector::BeginsNewScan(const GstLidarSlice& slice) const {
 void ScanCollector::Open(const GstLidarSlice& slice, Time time) {
   const GstClockTime period = info_.ScanDuration();
   scan_.points = {};
-  scan_.duration =
-      GST_CLOCK_TIME_IS_VALID(period) ? Duration{static_cast<std::int64_t>(period)} : kUsualScan;
+  scan_.duration = GST_CLOCK_TIME_IS_VALID(period)
+                       ? std::min(Duration{static_cast<std::int64_t>(period)}, kLongestScan)
+                       : kUsualScan;
   // The first slices of the scan are missing: it began before this one.
   scan_.start = time - scan_.duration * slice.slice_index / slice.slice_count;
   scan_id_ = slice.scan_id;

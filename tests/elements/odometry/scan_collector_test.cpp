@@ -40,6 +40,18 @@ class Collector : public ::testing::Test {
   guint height_ = 1;
 };
 
+TEST_F(Collector, AScanTakesNoLongerThanTheOdometrySpans) {
+  Prepare(1);
+  info_.framerate_n = 1;
+  info_.framerate_d = G_MAXINT;
+  ASSERT_TRUE(collector_.SetInfo(info_));
+  Add(7, 1, 2, kStart, 4);
+  const auto scan = collector_.Take();
+  ASSERT_TRUE(scan);
+  EXPECT_EQ(scan->duration, odometry::Odometry::kLongestGap);
+  EXPECT_EQ(scan->start, kStart - odometry::Odometry::kLongestGap / 2);
+}
+
 TEST_F(Collector, TellsWhenEachColumnWasSampled) {
   Prepare(2);
   for (guint i = 0; i < 2; ++i) Add(7, i, 2, kStart + i * milliseconds(50), 4);
