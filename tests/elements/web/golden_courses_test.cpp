@@ -99,6 +99,7 @@ class WebScript {
   void Begin(const std::string& caps) {
     c_.Begin(caps);
     viewer_.emplace(&c_, c_.Stat("port"));
+    c_.AwaitStat("clients", 1);
   }
   NotedViewer& viewer() { return *viewer_; }
   /// Pushes a buffer that becomes so many messages.
