@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/mcap/chunk.h"
 
-#include <algorithm>
-
 #include "src/base/crc.h"
 #include "src/mcap/compression.h"
 
@@ -26,8 +24,6 @@ std::optional<PlacedHeader> ReadHeader(Input* input, const RecordPlace& record) 
       chunk->uncompressed_size > kMaxChunk)
     return std::nullopt;
   header.chunk = *chunk;
-  // A file may claim an end before the start.
-  header.chunk.end_time = std::max(chunk->start_time, chunk->end_time);
   return header;
 }
 

@@ -49,8 +49,7 @@ std::optional<Bytes> ReadSummary(Input* input, const SummaryPlace& place) {
 void AddChunk(const Input& input, const Record& record, FileIndex* index) {
   const auto chunk = ParseChunkIndex(record.content);
   if (!chunk || chunk->offset > input.size() || chunk->size > input.size() - chunk->offset) return;
-  const auto end_time = std::max(chunk->start_time, chunk->end_time);
-  index->chunks.push_back({chunk->start_time, end_time, chunk->offset, chunk->size, false});
+  index->chunks.push_back({chunk->start_time, chunk->end_time, chunk->offset, chunk->size, false});
 }
 
 /// Overlapping chunks would let a small file cause any amount of work.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/mcap/records.h"
 
+#include <algorithm>
 #include <tuple>
 
 #include "src/base/byte_writer.h"
@@ -128,6 +129,14 @@ std::optional<Fielded> Parse(ByteView content) {
   return Parse<Fielded>(&r);
 }
 
+/// A file may claim that a chunk ends before its start; the chunk then ends at its start.
+template <class Chunk, class Source>
+std::optional<Chunk> ParseChunk(Source source) {
+  auto chunk = Parse<Chunk>(source);
+  if (chunk) chunk->end_time = std::max(chunk->start_time, chunk->end_time);
+  return chunk;
+}
+
 }  // namespace
 
 void Append(const Header& header, Bytes* out) { RecordWriter(Op::kHeader, out).Put(header); }
@@ -168,11 +177,13 @@ std::optional<MessageHeader> ParseMessage(ByteView content, ByteView* data) {
 }
 std::optional<ChunkHeader> ParseChunkHeader(ByteView content, std::size_t* header_size) {
   ByteReader r(content);
-  auto header = Parse<ChunkHeader>(&r);
+  auto header = ParseChunk<ChunkHeader>(&r);
   *header_size = r.position();
   return header;
 }
-std::optional<ChunkIndex> ParseChunkIndex(ByteView content) { return Parse<ChunkIndex>(content); }
+std::optional<ChunkIndex> ParseChunkIndex(ByteView content) {
+  return ParseChunk<ChunkIndex>(content);
+}
 std::optional<Statistics> ParseStatistics(ByteView content) { return Parse<Statistics>(content); }
 
 std::optional<Record> NextRecord(ByteView bytes, std::size_t* offset) {
