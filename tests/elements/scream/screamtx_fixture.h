@@ -4,6 +4,7 @@
 #include <gst/net/gstnetaddressmeta.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -142,6 +143,22 @@ class ScreamTx : public ::testing::Test {
     while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
       eos = eos || GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
     return eos;
+  }
+  /// Streams a packet and EOS in each of two rounds. `begin_anew` runs behind each EOS.
+  void StreamTwice(const std::function<void()>& begin_anew) {
+    Start();
+    for (int round = 0; round < 2; ++round) {
+      PushFrame(static_cast<guint32>(round), 1);
+      gst_harness_push_event(rtp.get(), gst_event_new_eos());
+      for (int i = 0; i < 10; ++i) {
+        time.Advance(10 * GST_MSECOND);
+        Acknowledge();
+      }
+      EXPECT_TRUE(HasEos()) << round;
+      begin_anew();
+      ASSERT_TRUE(gst_harness_push_event(rtp.get(), NewSegment()));
+    }
+    EXPECT_EQ(sent.size(), 2U);
   }
 
   std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;  // of feedback; none by default

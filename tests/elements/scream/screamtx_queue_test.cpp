@@ -140,36 +140,15 @@ TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
 }
 
 TEST_F(ScreamTx, AFlushAfterTheEndLetsAnotherStreamBeginAndEnd) {
-  Start();
-  for (int round = 0; round < 2; ++round) {
-    PushFrame(static_cast<guint32>(round), 1);
-    gst_harness_push_event(rtp.get(), gst_event_new_eos());
-    for (int i = 0; i < 10; ++i) {
-      time.Advance(10 * GST_MSECOND);
-      Acknowledge();
-    }
-    EXPECT_TRUE(HasEos()) << round;
+  StreamTwice([&] {
     gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
     gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
-    ASSERT_TRUE(gst_harness_push_event(rtp.get(), NewSegment()));
-  }
-  EXPECT_EQ(sent.size(), 2U);
+  });
 }
 
 TEST_F(ScreamTx, AStreamThatBeginsAfterTheEndPassesAndEnds) {
-  Start();
-  for (int round = 0; round < 2; ++round) {
-    PushFrame(static_cast<guint32>(round), 1);
-    gst_harness_push_event(rtp.get(), gst_event_new_eos());
-    for (int i = 0; i < 10; ++i) {
-      time.Advance(10 * GST_MSECOND);
-      Acknowledge();
-    }
-    EXPECT_TRUE(HasEos()) << round;
-    ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("next")));
-    ASSERT_TRUE(gst_harness_push_event(rtp.get(), NewSegment()));
-  }
-  EXPECT_EQ(sent.size(), 2U);
+  StreamTwice(
+      [&] { ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("next"))); });
 }
 
 TEST_F(ScreamTx, AnswersNoQueryThatWouldOvertakeThePackets) {
