@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a table of leases writes and holds in a scripted run must match the golden file.
+// A golden file holds what a table of leases writes and holds in a scripted run.
 #include <chrono>
 #include <optional>
 #include <set>

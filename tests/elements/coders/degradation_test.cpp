@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the coders leave out below min-bitrate, and that sender and receiver count the same.
+// Sender and receiver count the same where the coders leave data out below min-bitrate.
 #include <gtest/gtest.h>
 
 #include <tuple>

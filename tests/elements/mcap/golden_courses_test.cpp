@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What mcapsink and mcapsrc output, send and post in scripted runs must match the golden files.
+// Golden files hold what mcapsink and mcapsrc output, send and post in scripted runs.
 #include "tests/support/files.h"
 #include "tests/support/golden_course.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What natssink and natssrc publish, output and post in scripted runs must match the golden files.
+// Golden files hold what natssink and natssrc publish, output and post in scripted runs.
 #include "tests/support/golden_course.h"
 
 #include <map>

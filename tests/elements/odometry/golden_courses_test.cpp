@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lidarodometry outputs, sends and posts in scripted runs must match the golden files.
+// Golden files hold what lidarodometry outputs, sends and posts in scripted runs.
 #include "tests/support/golden_course.h"
 
 #include "tests/elements/odometry/corner_drive.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a live ouster_src outputs and posts in a scripted run must match the golden file.
+// A golden file holds what a live ouster_src outputs and posts in a scripted run.
 #include <netinet/in.h>
 #include <sys/socket.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What elements output, send and post in scripted runs must match the golden files.
+// Golden files hold what elements output, send and post in scripted runs.
 #include <gtest/gtest.h>
 
 #include <limits>

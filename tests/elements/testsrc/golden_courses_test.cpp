@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lidartestsrc outputs and posts in scripted runs must match the golden files, except for
+// Golden files hold what lidartestsrc outputs and posts in scripted runs, except for
 // coordinates, whose last bits differ between machines.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What pointcloudview outputs and posts in scripted runs must match the golden files, except for
+// Golden files hold what pointcloudview outputs and posts in scripted runs, except for
 // the colours of pixels, whose last bits differ between machines.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What foxglovesink advertises, sends and posts in a scripted run must match the golden file.
+// A golden file holds what foxglovesink advertises, sends and posts in a scripted run.
 #include "tests/support/golden_course.h"
 
 #include "src/base/crc.h"
