@@ -14,6 +14,12 @@ struct HarnessFree {
 };
 using Harness = std::unique_ptr<GstHarness, HarnessFree>;
 
+/// Sets a harness to PLAYING. gst_harness_play() aborts if its element has already posted an error.
+inline void SetPlaying(GstHarness* h) {
+  const GstStateChangeReturn change = gst_element_set_state(h->element, GST_STATE_PLAYING);
+  g_assert_cmpint(change, !=, GST_STATE_CHANGE_FAILURE);
+}
+
 /// The event of a segment that begins at 0.
 inline GstEvent* NewSegment(GstFormat format = GST_FORMAT_TIME) {
   GstSegment segment;

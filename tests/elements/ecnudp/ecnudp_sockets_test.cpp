@@ -9,6 +9,7 @@ namespace lidar::gst {
 namespace {
 
 using test::Harness;
+using test::SetPlaying;
 
 /// A socket of an application.
 Object<GSocket> Bound() {
@@ -31,11 +32,11 @@ TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {
   Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   const auto socket = Bound();
   g_object_set(src->element, "socket", socket.get(), "close-socket", FALSE, nullptr);
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   gst_element_set_state(src->element, GST_STATE_NULL);
   EXPECT_FALSE(g_socket_is_closed(socket.get()));
   g_object_set(src->element, "close-socket", TRUE, nullptr);
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   gst_element_set_state(src->element, GST_STATE_NULL);
   EXPECT_TRUE(g_socket_is_closed(socket.get()));
 }

@@ -71,7 +71,7 @@ inline test::Harness NewSink(const char* host, guint port) {
 inline test::Harness NewSource(const char* address = nullptr) {
   test::Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "address", address, nullptr);
-  gst_harness_play(src.get());
+  test::SetPlaying(src.get());
   return src;
 }
 

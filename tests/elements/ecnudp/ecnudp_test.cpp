@@ -21,6 +21,7 @@ namespace lidar::gst {
 namespace {
 
 using test::Harness;
+using test::SetPlaying;
 
 struct Family {
   const char* host;
@@ -90,7 +91,7 @@ TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
   gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read
   Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
   for (int i = 0; i < 50; ++i) gst_harness_push(sink.get(), Payload(std::string(1'000, 'x')));
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   EXPECT_TRUE(test::Eventually([&] {
     gst_harness_push(sink.get(), Payload("behind the loss"));
     return drops() > 0;
@@ -111,7 +112,7 @@ TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
   gst_element_set_state(src->element, GST_STATE_NULL);
   gst_pad_remove_probe(pad.get(), probe);
   while (GstBuffer* old = gst_harness_try_pull(src.get())) gst_buffer_unref(old);
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   sink = NewSink("127.0.0.1", LocalPort(src.get()));
   gst_harness_push(sink.get(), Payload("new"));
   const BufferPtr got(gst_harness_pull(src.get()));
@@ -135,7 +136,7 @@ TEST(EcnUdp, WhatArrivesAndWhatTheKernelDropsIsWhatWasSent) {
   const auto received = [&] { return Stat(src.get(), "packets-received"); };
   const auto dropped = [&] { return Stat(src.get(), "dropped-by-kernel"); };
   while (sent < 50) send();
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   // The kernel reports drops with the next datagram that it does not drop.
   int looks = 0;
   ASSERT_TRUE(test::Eventually([&] {
@@ -418,7 +419,7 @@ TEST_P(WithoutCaps, TheSourceTakesWhatDownstreamWants) {
   Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
   gst_harness_set_sink_caps_str(src.get(), GetParam().accepts);
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
   ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
   const BufferPtr got(gst_harness_pull(src.get()));
@@ -462,7 +463,7 @@ TEST(EcnUdpSrc, SilenceIsReportedAfterTheTimeout) {
   g_object_set(src->element, "port", 0, "timeout", kTimeout, nullptr);
   const test::ElementBus bus(src->element);
   const gint64 begin_us = g_get_monotonic_time();
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   const MessagePtr message = bus.Wait(GST_MESSAGE_ELEMENT);
   ASSERT_TRUE(message);
   EXPECT_TRUE(gst_message_has_name(message.get(), "GstEcnUdpSrcTimeout"));
@@ -475,7 +476,7 @@ TEST(EcnUdp, WorksAgainAfterEveryStateCycle) {
   Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
   for (int cycle = 0; cycle < 3; ++cycle) {
-    gst_harness_play(src.get());
+    SetPlaying(src.get());
     const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
     ASSERT_EQ(gst_harness_push(sink.get(), Payload("again")), GST_FLOW_OK);
     const BufferPtr got(gst_harness_pull(src.get()));
@@ -503,7 +504,7 @@ TEST(EcnUdpSrc, AStopForgetsDatagramsThatWait) {
   ASSERT_TRUE(test::Eventually([&] { return Stat(src.get(), "packets-received") == 3; }));
   gst_element_set_state(src->element, GST_STATE_READY);
   gst_pad_remove_probe(pad.get(), probe);
-  gst_harness_play(src.get());
+  SetPlaying(src.get());
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
   ASSERT_EQ(gst_harness_push(sink.get(), Payload("after")), GST_FLOW_OK);
   EXPECT_EQ(Text(BufferPtr(gst_harness_pull(src.get())).get()), "after");
@@ -537,7 +538,7 @@ TEST(EcnUdp, StopsAndEndsInAFloodWithoutComplaints) {
   Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
   for (int cycle = 0; cycle < 40; ++cycle) {
-    gst_harness_play(src.get());
+    SetPlaying(src.get());
     const Flood flood(LocalPort(src.get()));
     ASSERT_TRUE(BufferPtr(gst_harness_pull(src.get()))) << cycle;
     if (cycle % 2 == 0) {

@@ -60,7 +60,7 @@ class McapContent : public Recording {
     const Harness h = RecordingTo(Path("a.mcap"));
     gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::frame-id", sensor_frame_, nullptr);
     gst_harness_set_src_caps_str(h.get(), caps);
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     for (GstBuffer* buffer : buffers) EXPECT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
     End(h.get());
     return MessagesOf(Path("a.mcap"));
@@ -100,7 +100,7 @@ TEST_F(McapContent, SlicesHaveRunningTimesAsLogTimesAndCaptureTimesAsTheirOwn) {
 TEST_F(McapContent, AStreamThatTakesTurnsBetweenItsCapsHasAChannelForEach) {
   const Harness h = RecordingTo(Path("a.mcap"));
   const std::string other = std::string(kSlices) + ", framerate=(fraction)20/1";
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   for (guint8 i = 0; i < 100; ++i) {
     gst_harness_set_src_caps_str(h.get(), i % 2 == 0 ? kSlices : other.c_str());
     EXPECT_EQ(gst_harness_push(h.get(), Slice(i, i, kCapture)), GST_FLOW_OK);
@@ -210,7 +210,7 @@ TEST_F(McapContent, TheSinkCountsAndTellsWhatItWrote) {
 TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
   const Harness h = RecordingTo(Path("r-%d.mcap"));
   const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   for (const bool first : {true, false}) {
     // The second recording is from an hour before.
     const GstClockTime start = first ? kCapture : kCapture - 3600 * GST_SECOND;
@@ -238,7 +238,7 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
 TEST_F(McapContent, AFlushedStreamGoesOnWhereItWas) {
   const Harness h = RecordingTo(Path("a.mcap"));
   const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   for (GstHarness* stream : {h.get(), other.get()}) Begin(stream, kSlices);
   for (guint i = 0; i < 3; ++i)
     gst_harness_push(h.get(), Slice(1, i * GST_SECOND, kCapture + i * GST_SECOND));
@@ -259,7 +259,7 @@ TEST_F(McapContent, AFlushedStreamGoesOnWhereItWas) {
 TEST_F(McapContent, OtherCapsAreAnotherChannelOfTheSameTopic) {
   {
     const Harness h = RecordingTo(Path("a.mcap"));
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     for (const char* more : {",codec-data=(buffer)01", ",codec-data=(buffer)02"}) {
       gst_harness_set_src_caps_str(h.get(), (std::string(kSlices) + more).c_str());
       gst_harness_push(h.get(), Slice(1, 0, kCapture));
@@ -295,7 +295,7 @@ TEST_F(McapContent, GapsFillWhatASilentStreamLeavesOpen) {
   {
     const Harness h = RecordingTo(Path("a.mcap"));
     const Harness silent(gst_harness_new_with_element(h->element, "sink_1", nullptr));
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     for (GstHarness* stream : {h.get(), silent.get()}) Begin(stream, kSlices);
     for (guint i = 0; i < 30; ++i) {
       const GstClockTime pts = i * 100 * GST_MSECOND;

@@ -61,7 +61,7 @@ std::vector<Kept> ThroughFile(const std::string& path, const char* caps,
   {
     const Harness h = RecordingTo(path);
     gst_harness_set_src_caps_str(h.get(), caps);
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     for (GstBuffer* buffer : buffers) EXPECT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
     gst_harness_push_event(h.get(), gst_event_new_eos());
   }
@@ -140,7 +140,7 @@ TEST_F(Mcap, BuffersOfAnotherSizeThanTheirCapsSayAreAnError) {
         "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\""}) {
     const Harness h = RecordingTo(Path("bad.mcap"));
     gst_harness_set_src_caps_str(h.get(), caps);
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     EXPECT_EQ(gst_harness_push(h.get(), Bytes(bytes, 0)), GST_FLOW_ERROR) << caps;
   }
 }

@@ -228,7 +228,7 @@ TEST_F(NatsRuns, WhatTheStreamNumbersHasItsNumberAndAGapIsMarked) {
     Publish(&stranger, "r1.imu", place);
   stranger.Flush();
   const Harness h(gst_harness_new_with_element(source.get(), nullptr, "src"));
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   // The first message of the stream has the caps, so the sink's first buffer is the second message.
   const struct {
     guint64 offset;

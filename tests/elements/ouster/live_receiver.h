@@ -28,7 +28,7 @@ class Receiver {
     source_.reset(gst_bin_get_by_name(GST_BIN(harness_->element), "src"));
     bus_.emplace(harness_->element);
     gst_harness_use_systemclock(harness_.get());
-    gst_harness_play(harness_.get());
+    SetPlaying(harness_.get());
   }
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }

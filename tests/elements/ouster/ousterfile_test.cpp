@@ -21,7 +21,7 @@ Harness FromFile(const std::string& pcap, const std::string& json, const char* m
   const std::string launch =
       "ouster_src location=" + DataPath(pcap) + " metadata=" + DataPath(json) + " " + more;
   Harness h(gst_harness_new_parse(launch.c_str()));
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   return h;
 }
 
@@ -126,7 +126,7 @@ TEST(OusterFile, LivePlaybackWaitsForTheTimeOfEachPacket) {
                                       .c_str()));
   UseTestClock(h.get());
   const auto started = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   // The capture's packets are about 1.6 ms apart; a slice has 8 of them.
   for (int i = 0; i < 7; ++i) {
     EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U) << i;
@@ -149,7 +149,7 @@ TEST(OusterFile, CaptureTimesAfterAPauseAreThoseOfTheDay) {
                                    " metadata=" + DataPath(kThreeScansMetadata))
                                       .c_str()));
   UseTestClock(h.get());
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   // The running time stands still, as it does in a pipeline that pauses.
   const std::vector<Time> times = TimesOf(kThreeScans);
   const auto second = kClockStart + static_cast<GstClockTime>((times[1] - times[0]).count());
@@ -181,7 +181,7 @@ TEST(OusterFile, LoopsAtThePaceOfTheCapture) {
                              " metadata=" + DataPath(kThreeScansMetadata))
                                 .c_str()));
   UseTestClock(h.get());
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   GstClock* clock = GST_CLOCK(gst_harness_get_testclock(h.get()));
   std::vector<GstClockTime> waited;
   while (waited.size() < due.size()) {
@@ -199,7 +199,7 @@ TEST(OusterFile, StopsWhileItWaits) {
                                    " metadata=" + DataPath(kThreeScansMetadata))
                                       .c_str()));
   UseTestClock(h.get());
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
   EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
 }

@@ -37,7 +37,7 @@ class OusterPixels : public ::testing::Test {
     Harness h(gst_harness_new_parse(
         ("ouster_src slices-per-scan=1 location=" + DataPath(kPcap) + " metadata=" + json_ + more)
             .c_str()));
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     return h;
   }
 

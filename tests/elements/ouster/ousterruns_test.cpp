@@ -133,7 +133,7 @@ class FileRun {
 
   /// Plays to the end. Returns what happened.
   Lines Play() {
-    gst_harness_play(h_.get());
+    SetPlaying(h_.get());
     AwaitEnd();
     Lines lines = trace_->Take();
     lines.push_back("latency " + std::to_string(gst_harness_query_latency(h_.get())));

@@ -34,7 +34,7 @@ Harness Open(const std::string& location, const char* more = "") {
   Harness h(gst_harness_new_parse(("ouster_src location=" + location +
                                    " metadata=" + DataPath(kThreeScansMetadata) + " " + more)
                                       .c_str()));
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   return h;
 }
 
@@ -190,7 +190,7 @@ TEST(OusterSeek, MayComeBeforeThePlayback) {
                DataPath(kThreeScansMetadata).c_str(), nullptr);
   gst_element_set_state(h->element, GST_STATE_READY);
   ASSERT_TRUE(Seek(h, {static_cast<gint64>(all[9].pts + kSlice / 2)}));
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   EXPECT_TRUE(PlayOn(h) == After(all, 9));
 }
 

@@ -21,7 +21,7 @@ class OusterUdp : public ::testing::Test {
                                " metadata=" + DataPath(json) + " " + more;
     Harness h(gst_harness_new_parse(launch.c_str()));
     gst_harness_use_systemclock(h.get());
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     sender_ = std::make_unique<UdpSender>(port_);
     return h;
   }

@@ -87,7 +87,7 @@ void Receive(const Arguments& a, bool fast, const PeerCloud& sent, const char* w
                      cloud.data.data(), cloud.data.size(), sent);
   } else {
     Harness h(gst_harness_new_parse(Properties(a, "ros2src").c_str()));
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     std::int64_t last = NowNs() + 14'000'000'000;
     while (NowNs() - last < 1'500'000'000) {
       const gst::BufferPtr buffer(gst_harness_try_pull(h.get()));

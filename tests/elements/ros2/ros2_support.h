@@ -104,7 +104,7 @@ class Ros2Test : public ::testing::Test {
     bus_.emplace(h_->element);
     ros_.reset(GST_IS_BIN(h_->element) ? gst_bin_get_by_name(GST_BIN(h_->element), "ros")
                                        : GST_ELEMENT(gst_object_ref(h_->element)));
-    gst_harness_play(h_.get());
+    SetPlaying(h_.get());
   }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
   /// Returns a field of the received caps, as text.

@@ -258,7 +258,7 @@ TEST_F(Ros2Src, TellsInEachRunOfWhatDoesNotFit) {
     EXPECT_EQ(Stat("publishers-of-other-types"), 1U) << run;
     gst_element_set_state(h_->element, GST_STATE_NULL);
     while (NextComplaint(0) != "") continue;
-    gst_harness_play(h_.get());
+    SetPlaying(h_.get());
   }
 }
 

@@ -17,6 +17,7 @@ namespace {
 
 using synth::Firing;
 using test::Harness;
+using test::SetPlaying;
 
 class DriverModel : public ::testing::TestWithParam<const char*> {
  protected:
@@ -32,7 +33,7 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
           return GST_PAD_PROBE_OK;
         },
         this, nullptr);
-    gst_harness_play(h_.get());
+    SetPlaying(h_.get());
   }
   ~DriverModel() override {
     h_.reset();
@@ -148,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(All, DriverModel, ::testing::Values("vlp-16", "xt32", "
 TEST(DriverModels, ScansOfAMid360DoNotRepeat) {
   // The sensor stands still, and has no noise.
   Harness h(gst_harness_new_parse("lidartestsrc model=mid-360 speed=0 noise=0 num-buffers=2"));
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   std::set<std::array<float, 3>> first;
   for (int scan = 0; scan < 2; ++scan) {
     const BufferPtr cloud(gst_harness_pull(h.get()));
@@ -171,7 +172,7 @@ TEST(DriverModels, SlicesCoverTheScanOnce) {
   for (const guint slices : {1U, 8U}) {
     Harness h(gst_harness_new_parse(
         ("lidartestsrc model=xt32 slices-per-scan=" + std::to_string(slices)).c_str()));
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     for (guint i = 0; i < slices; ++i) {
       const BufferPtr slice(gst_harness_pull(h.get()));
       points[slices > 1] += static_cast<guint>(gst_buffer_get_size(slice.get()) / 26);

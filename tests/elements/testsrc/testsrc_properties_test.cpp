@@ -40,7 +40,7 @@ Lines LinesOf(const std::string& properties) {
   gst_harness_use_systemclock(h.get());
   RunTrace trace(h.get());
   trace.TakeAddedPads();
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   for (bool ended = false; !ended;) {
     const gst::EventPtr event(gst_harness_pull_event(h.get()));
     if (!event) break;

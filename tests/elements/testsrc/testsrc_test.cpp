@@ -19,6 +19,7 @@ namespace lidar::gst {
 namespace {
 
 using test::Harness;
+using test::SetPlaying;
 
 Harness Launch(const std::string& properties) {
   Harness h(gst_harness_new_parse(("lidartestsrc " + properties).c_str()));
@@ -60,7 +61,7 @@ CloudInfo InfoOf(const Harness& h) {
 
 TEST(LidarTestSrc, CapsDescribeTheSlicesOfTheSensor) {
   const Harness h = Launch("model=os1-128 mode=2048x10");
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   const BufferPtr buffer = Pull(h);
   const CloudInfo info = InfoOf(h);
   EXPECT_EQ(info.width, 256U);
@@ -74,7 +75,7 @@ TEST(LidarTestSrc, CapsDescribeTheSlicesOfTheSensor) {
 
 TEST(LidarTestSrc, StampsAreTheSweepOfEachSlice) {
   const Harness h = Launch("model=os1-32 mode=512x20");
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   for (guint i = 0; i < 12; ++i) {
     const BufferPtr buffer = Pull(h);
     const GstLidarSlice slice = SliceOf(buffer);
@@ -92,7 +93,7 @@ TEST(LidarTestSrc, StampsAreTheSweepOfEachSlice) {
 
 TEST(LidarTestSrc, PointsAreWhatTheRangesAndTheSensorModelSay) {
   const Harness h = Launch("model=os0-32 mode=512x10 slices-per-scan=4");
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   const BufferPtr first = Pull(h);
   const BufferPtr second = Pull(h);
   const RangeProjection projection(*InfoOf(h).sensor_model);
@@ -116,7 +117,7 @@ TEST(LidarTestSrc, TheSameSeedGivesTheSameCloudsOverRestarts) {
     const Harness h = Launch("model=os1-32 mode=512x10 num-buffers=2 " + properties);
     std::vector<std::vector<guint8>> runs;
     for (int run = 0; run < 2; ++run) {
-      gst_harness_play(h.get());
+      SetPlaying(h.get());
       BytesOf(Pull(h));
       runs.push_back(BytesOf(Pull(h)));
       gst_element_set_state(h->element, GST_STATE_NULL);
@@ -132,14 +133,14 @@ TEST(LidarTestSrc, TheSameSeedGivesTheSameCloudsOverRestarts) {
 
 TEST(LidarTestSrc, SlicesThatDoNotDivideTheColumnsAreRoundedDown) {
   const Harness h = Launch("model=os1-32 mode=512x10 slices-per-scan=15");
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   EXPECT_EQ(SliceOf(Pull(h)).slice_count, 8U);
 }
 
 TEST(LidarTestSrc, EndsAfterNumBuffersAndStartsAgainWithTheFirstScan) {
   const Harness h = Launch("model=os1-32 mode=512x10 slices-per-scan=1 num-buffers=3");
   for (int run = 0; run < 3; ++run) {
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     for (guint i = 0; i < 3; ++i) EXPECT_EQ(SliceOf(Pull(h)).scan_id, i);
     bool eos = false;
     while (!eos) {
@@ -154,7 +155,7 @@ TEST(LidarTestSrc, EndsAfterNumBuffersAndStartsAgainWithTheFirstScan) {
 TEST(LidarTestSrc, ALiveSliceLeavesWhenItsLastColumnIsSampled) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   for (guint i = 1; i <= 10; ++i) {
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
     EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))),
@@ -169,7 +170,7 @@ TEST(LidarTestSrc, ALiveSliceLeavesWhenItsLastColumnIsSampled) {
 TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
   const Harness h = Launch("is-live=true model=os1-32 mode=1024x10");
   test::UseTestClock(h.get());
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   const QueryPtr query(gst_query_new_latency());
   ASSERT_TRUE(gst_pad_peer_query(h->sinkpad, query.get()));
   gboolean live = FALSE;
@@ -191,7 +192,7 @@ void ReleaseWaiter(const Harness& h) {
 TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
@@ -207,7 +208,7 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
 TEST(LidarTestSrc, CaptureTimesAfterAPauseAreThoseOfTheDay) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   // The running time stands still, as it does in a pipeline that pauses.
   ASSERT_TRUE(test::AwaitClockWait(h.get(), test::kClockStart + 12'500'000));
   gst_element_set_state(h->element, GST_STATE_PAUSED);
@@ -224,7 +225,7 @@ TEST(LidarTestSrc, ALiveSourceStopsWhileItWaits) {
   for (int run = 0; run < 3; ++run) {
     const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
     test::UseTestClock(h.get());
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   }
 }
@@ -234,7 +235,7 @@ TEST(LidarTestSrc, WritesTheTrajectoryAtTheCaptureTimes) {
   {
     const Harness h =
         Launch("model=os1-32 mode=512x10 speed=10 num-buffers=16 trajectory-location=" + path);
-    gst_harness_play(h.get());
+    SetPlaying(h.get());
     for (int i = 0; i < 16; ++i) Pull(h);
   }
   std::ifstream file(path);
@@ -256,7 +257,7 @@ TEST(LidarTestSrc, WritesTheTrajectoryAtTheCaptureTimes) {
 
 TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
   const Harness h = Launch("model=os1-32 mode=512x10 channels=ring,t,signal");
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   const BufferPtr buffer = Pull(h);
   EXPECT_EQ(InfoOf(h).fields.ToString(),
             "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16,ring:U16:20,t:U32:22,"
@@ -425,7 +426,7 @@ class LiveImu {
     g_object_set(h_->element, "imu", TRUE, "is-live", TRUE, nullptr);
     g_signal_connect(h_->element, "pad-added", G_CALLBACK(OnPad), &samples_);
     test::UseTestClock(h_.get());
-    gst_harness_play(h_.get());
+    SetPlaying(h_.get());
   }
   const Harness& harness() const { return h_; }
   const std::vector<BufferPtr>& samples() const { return samples_; }
@@ -478,7 +479,7 @@ TEST(LidarTestSrc, AnImuSkipsWithTheClouds) {
 
 TEST(LidarTestSrc, HasNoImuUnlessItIsWanted) {
   const Harness h = Launch("num-buffers=2");
-  gst_harness_play(h.get());
+  SetPlaying(h.get());
   EXPECT_TRUE(Pull(h));
   EXPECT_EQ(h->element->numsrcpads, 1);
 }
