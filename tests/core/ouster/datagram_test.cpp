@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "src/base/byte_writer.h"
+#include "src/ouster/pcap_reader.h"
 #include "src/ouster/udp_datagram.h"
+#include "tests/support/files.h"
 
 namespace lidar::ouster {
 namespace {
@@ -118,6 +121,29 @@ TEST(Datagrams, ComeOutOfEveryKindOfFrame) {
     ASSERT_TRUE(datagram) << static_cast<int>(link);
     EXPECT_EQ(datagram->payload, payload);
   }
+}
+
+/// libpcap has a number of its own for this link type.
+TEST(Datagrams, ComeOutOfACaptureOfRawIp) {
+  constexpr std::uint32_t kRawIp = 101;
+  const Bytes ip = Ipv4(Udp(Payload(100)));
+  const auto size = static_cast<std::uint32_t>(ip.size());
+  Bytes file;
+  ByteWriter w(&file);
+  for (const std::uint32_t word :
+       {0xa1b23c4dU, 0x00040002U, 0U, 0U, 65'535U, kRawIp, 1U, 0U, size, size})
+    w.Le32(word);
+  w.Bytes(View(ip));
+  const test::TempFolder folder;
+  const std::string path = folder.path() + "/raw.pcap";
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+  std::string error;
+  const auto reader = PcapReader::Open(path, &error);
+  ASSERT_TRUE(reader) << error;
+  const auto captured = reader->Next();
+  ASSERT_TRUE(captured);
+  EXPECT_EQ(captured->datagram.payload, Payload(100));
 }
 
 class Fragments : public ::testing::TestWithParam<bool> {

@@ -263,5 +263,24 @@ TEST(Metadata, BracketsWithinStringsAreNoDepth) {
   EXPECT_TRUE(Parse(root, &error)) << error;
 }
 
+TEST(Metadata, KeepTheOriginOfTheBeamsInTheirJson) {
+  Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  m.model.beam_to_lidar_x_m = 0.0158;
+  m.model.beam_to_lidar_z_m = 0.0037;
+  std::string error;
+  const auto back = ParseMetadata(WriteMetadata(m), &error);
+  ASSERT_TRUE(back) << error;
+  EXPECT_NEAR(back->model.beam_to_lidar_x_m, 0.0158, 1e-9);
+  EXPECT_NEAR(back->model.beam_to_lidar_z_m, 0.0037, 1e-9);
+}
+
+TEST(Metadata, OfAnotherScanRateHaveAnotherGeometry) {
+  Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  const Metadata before = m;
+  EXPECT_TRUE(SameGeometry(before, m));
+  m.scans_per_second *= 2;
+  EXPECT_FALSE(SameGeometry(before, m));
+}
+
 }  // namespace
 }  // namespace lidar::ouster
