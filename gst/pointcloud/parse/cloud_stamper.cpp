@@ -25,8 +25,10 @@ void CloudStamper::ShowGrid() {
 }
 
 void CloudStamper::SetRate(const FrameRate& rate) {
+  const bool changed = rate.n != rate_.n || rate.d != rate_.d;
   rate_ = rate;
   ShowGrid();
+  if (changed && place_.next > 0 && !times_given_) segment_ = timeline_.Continue(place_.next);
 }
 
 void CloudStamper::SetCloudSize(gsize bytes) {

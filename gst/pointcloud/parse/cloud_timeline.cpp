@@ -25,6 +25,25 @@ void CloudTimeline::Reset() {
   gst_segment_init(&segment_, GST_FORMAT_TIME);
 }
 
+/// Returns the running time at the end of the last cloud. The caller holds the lock.
+GstClockTime CloudTimeline::Gone() const {
+  return gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, segment_.position);
+}
+
+/// The caller holds the lock.
+void CloudTimeline::BeginAt(guint64 cloud) {
+  gst_segment_init(&segment_, GST_FORMAT_TIME);
+  segment_.start = segment_.time = segment_.position = grid_.TimeOf(cloud);
+}
+
+EventPtr CloudTimeline::Continue(guint64 next) {
+  const std::lock_guard lock(mutex_);
+  const GstClockTime gone = Gone();
+  BeginAt(next);
+  segment_.base = gone;
+  return EventPtr(gst_event_new_segment(&segment_));
+}
+
 EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
   const GstSegment* bytes = nullptr;
   gst_event_parse_segment(event, &bytes);
@@ -34,7 +53,7 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
   if (counts) place->next = bytes->start / grid_.cloud_bytes;
   // Clouds may have been pushed since the request of a seek.
   const GstClockTime end = segment_.position;
-  const GstClockTime gone = gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, end);
+  const GstClockTime gone = Gone();
   if (sought_ && sought_->seqnum == seqnum) {
     segment_ = sought_->segment;
     if (sought_->goes_on) {
@@ -42,8 +61,7 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
       place->shown = grid_.CloudAt(segment_.position);
     }
   } else {
-    gst_segment_init(&segment_, GST_FORMAT_TIME);
-    segment_.start = segment_.time = segment_.position = grid_.TimeOf(place->next);
+    BeginAt(place->next);
   }
   segment_.base = gone;
   sought_.reset();

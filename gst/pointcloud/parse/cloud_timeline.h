@@ -37,6 +37,9 @@ class CloudTimeline {
   /// Converts a segment in bytes to one in time that continues after the last cloud. Sets `place`
   /// to its beginning, as far as known.
   EventPtr ToTime(GstEvent* segment, Place* place);
+  /// Returns a segment that begins with cloud `next` and follows the last cloud: the grid has
+  /// changed.
+  EventPtr Continue(guint64 next);
   /// Converts SEGMENT_DONE to time; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
   /// A cloud was pushed that ends at `end`, or at the segment's stop if that is earlier.
@@ -57,6 +60,8 @@ class CloudTimeline {
   };
 
   std::optional<GstClockTime> Duration(GstPad* sinkpad, const Grid& grid) const;
+  GstClockTime Gone() const;
+  void BeginAt(guint64 cloud);
 
   mutable std::mutex mutex_;  // guards what follows; not held while anything is pushed
   Grid grid_;

@@ -47,6 +47,23 @@ TEST_F(Parse, ThePropertyGoesBeforeTheFrameRateOfTheCaps) {
   EXPECT_EQ(CloudInfo::FromCaps(caps.get())->framerate_n, 20);
 }
 
+TEST_F(Parse, ANewFrameRateGoesOnWhereTheLastCloudEnded) {
+  Start(kKitti);
+  const auto running_time = [&] {
+    Push(Bytes(160));
+    const BufferPtr cloud = Pull();
+    const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
+    const GstSegment* segment = nullptr;
+    gst_event_parse_segment(event.get(), &segment);
+    return gst_segment_to_running_time(segment, GST_FORMAT_TIME, GST_BUFFER_PTS(cloud.get()));
+  };
+  for (guint i = 0; i < 3; ++i) EXPECT_EQ(running_time(), i * 100 * GST_MSECOND);
+  const CapsPtr caps(gst_caps_from_string(kKitti));
+  gst_caps_set_simple(caps.get(), "framerate", GST_TYPE_FRACTION, 20, 1, nullptr);
+  gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
+  for (guint i = 0; i < 3; ++i) EXPECT_EQ(running_time(), (300 + i * 50) * GST_MSECOND);
+}
+
 /// A source in time format gets seeks by time, a source in bytes gets seeks by bytes.
 TEST_F(Parse, ASeekReachesTheSourceInTheFormatThatItSends) {
   for (const GstFormat format : {GST_FORMAT_TIME, GST_FORMAT_BYTES}) {
