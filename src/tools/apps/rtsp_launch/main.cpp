@@ -63,17 +63,25 @@ void Check(const std::string& pipeline) {
   if (!good) throw std::runtime_error(why.empty() ? "no element is called pay0" : why);
 }
 
+/// Returns a factory whose viewers get one medium. By default a query in a viewer's address starts
+/// another pipeline.
+GstRTSPMediaFactory* MakeFactory(const std::string& pipeline) {
+  GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
+  GST_RTSP_MEDIA_FACTORY_GET_CLASS(factory)->gen_key =
+      [](GstRTSPMediaFactory*, const GstRTSPUrl*) -> gchar* { return g_strdup(""); };
+  gst_rtsp_media_factory_set_launch(factory, pipeline.c_str());
+  gst_rtsp_media_factory_set_shared(factory, TRUE);
+  return factory;
+}
+
 ObjectPtr<GstRTSPServer> MakeServer(const Options& options) {
   const std::string pipeline = Join(options.pipeline);
   Check(pipeline);
   ObjectPtr<GstRTSPServer> server(gst_rtsp_server_new());
   gst_rtsp_server_set_address(server.get(), options.address.c_str());
   gst_rtsp_server_set_service(server.get(), std::to_string(options.port).c_str());
-  GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
-  gst_rtsp_media_factory_set_launch(factory, pipeline.c_str());
-  gst_rtsp_media_factory_set_shared(factory, TRUE);
   const ObjectPtr<GstRTSPMountPoints> mounts(gst_rtsp_server_get_mount_points(server.get()));
-  gst_rtsp_mount_points_add_factory(mounts.get(), options.path.c_str(), factory);
+  gst_rtsp_mount_points_add_factory(mounts.get(), options.path.c_str(), MakeFactory(pipeline));
   const ObjectPtr<GstRTSPSessionPool> pool(gst_rtsp_server_get_session_pool(server.get()));
   gst_rtsp_session_pool_set_max_sessions(pool.get(), kMaxViewers);
   return server;
