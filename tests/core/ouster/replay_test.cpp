@@ -134,7 +134,8 @@ INSTANTIATE_TEST_SUITE_P(
 /// A capture of two scans.
 class Capture : public test::FolderTest {
  protected:
-  void SetUp() override {
+  void SetUp() override { Write(0); }
+  void Write(std::uint16_t first_frame) {
     SynthOptions options;
     options.model = kModel;
     SynthFormat format;
@@ -145,14 +146,23 @@ class Capture : public test::FolderTest {
     const auto writer = ouster::PcapWriter::Open(path(), &error);
     ASSERT_TRUE(writer) << error;
     for (int lidar = 0; lidar < kRound;) {
-      const auto packet = sensor.Next();
+      auto packet = sensor.Next();
       lidar += packet->imu ? 0 : 1;
+      if (!packet->imu) AddFrames(first_frame, &packet->bytes);
       ASSERT_TRUE(
           writer->Write(Time{packet->due}, 7502, {packet->bytes.data(), packet->bytes.size()}));
     }
     ASSERT_TRUE(writer->Close());
   }
   std::string path() const { return folder_ + "/a.pcap"; }
+  static void AddFrames(std::uint16_t frames, std::vector<std::uint8_t>* packet) {
+    const std::size_t at = ouster::kStandardHeader.frame_id;
+    const auto frame = static_cast<std::uint16_t>((*packet)[at] + frames);
+    std::memcpy(&(*packet)[at], &frame, sizeof frame);
+    const std::size_t body = packet->size() - 8;
+    const std::uint64_t crc = Crc64({packet->data(), body});
+    std::memcpy(&(*packet)[body], &crc, sizeof crc);
+  }
 
   struct Sent {
     ouster::PacketHeader header;
@@ -198,6 +208,19 @@ TEST_F(Capture, GoesOnInEachRoundAsOneSensor) {
   }
   ASSERT_EQ(imu_times_ns_.size(), 60U);
   for (std::size_t i = 0; i < 60; ++i) EXPECT_EQ(imu_times_ns_[i], 1'000'000 + i * 5'000'000);
+}
+
+TEST_F(Capture, MayHaveFrameIdsThatStartOver) {
+  Write(65'535);
+  PcapStream stream(path(), metadata_, {});
+  std::vector<Sent> sent;
+  for (unsigned i = 0; i < 3 * kRound; ++i) {
+    sent.push_back(Next(&stream));
+    EXPECT_EQ(sent[i].header.frame_id, (65'535 + i / (kRound / 2)) % 65'536);
+    if (i >= kRound) {
+      EXPECT_EQ(sent[i].due - sent[i - kRound].due, 2 * metadata_.scan_period());
+    }
+  }
 }
 
 TEST_F(Capture, BeginsAnewAfterARestartAndEndsOnceIfAsked) {

@@ -104,7 +104,8 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
   }
   if (!first_frame)
     throw std::runtime_error(path + " holds no packets of the sensor in the metadata");
-  scans_ = static_cast<std::uint32_t>(last_frame - *first_frame) + 1;
+  const std::uint64_t ids = format_.frame_id_modulus();
+  scans_ = static_cast<std::uint32_t>((ids + last_frame - *first_frame) % ids) + 1;
   // A round lasts whole scans, so that its first scan follows the last one of the round before.
   round_ = metadata.scan_period() * scans_;
 }
