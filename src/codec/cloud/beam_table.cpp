@@ -81,7 +81,7 @@ class SineTable {
  private:
   double sines_[kParts] = {};
 };
-constexpr SineTable kSines;
+const SineTable kSines;
 
 }  // namespace
 

@@ -47,6 +47,6 @@ constexpr Tables::Tables() {
     log_mantissa[i] = static_cast<std::uint16_t>(Interpolate(kLog, i, 2) >> 8);
 }
 
-constexpr Tables kTables;
+const Tables kTables;
 
 }  // namespace lidar::codec::mixing
