@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "tests/system/faults/ends.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <stdexcept>
 #include <thread>
 
@@ -171,13 +170,9 @@ milliseconds ReceivingEnd::NextCloud(milliseconds limit) const {
   return std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - start);
 }
 
-std::uint64_t ResidentBytes() {
-  long pages = 0;
-  FILE* file = std::fopen("/proc/self/statm", "r");
-  if (file == nullptr) return 0;
-  const int read = std::fscanf(file, "%*s %ld", &pages);
-  std::fclose(file);
-  return read == 1 ? static_cast<std::uint64_t>(pages * sysconf(_SC_PAGESIZE)) : 0;
+std::uint64_t AllocatedBytes() {
+  const struct mallinfo2 heap = mallinfo2();
+  return heap.uordblks + heap.hblkhd;
 }
 
 milliseconds CpuTime() {

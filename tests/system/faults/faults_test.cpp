@@ -216,9 +216,9 @@ void ExpectCyclesToLeaveNothing(Pipeline& pipeline) {
   for (int i = 0; i < 1'000; ++i) {
     pipeline.SetState(GST_STATE_PLAYING);
     pipeline.SetState(GST_STATE_NULL);
-    if (i == 100) base = ResidentBytes();
+    if (i == 100) base = AllocatedBytes();
   }
-  EXPECT_LT(ResidentBytes(), base + (20U << 20));
+  EXPECT_LT(AllocatedBytes(), base + (20U << 20));
   pipeline.SetState(GST_STATE_PLAYING);
 }
 

@@ -2,6 +2,7 @@
 // Streams for hours through a link with random faults and checks each minute what must always hold.
 #include <gio/gio.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cinttypes>
 #include <csignal>
@@ -22,9 +23,9 @@ using namespace lidar::test;  // NOLINT
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr std::uint64_t kMaxGrowth = std::uint64_t{16} << 20;  // bytes, since the fifth minute
-constexpr unsigned kWarmUp = 5;                                // minutes
-constexpr std::uint64_t kInFlight = 4;                         // slices on their way during a check
+constexpr std::uint64_t kMaxGrowth = std::uint64_t{8} << 20;  // bytes, since the first minutes
+constexpr unsigned kWarmUp = 5;                               // minutes
+constexpr std::uint64_t kInFlight = 4;                        // slices on their way during a check
 
 struct Options {
   unsigned minutes = 0;
@@ -193,8 +194,8 @@ class Soak {
     const Accounts a = receiver_->accounts();
     const bool agree = BooksAgree(a);
     const std::string error = sender_->pipeline().Error() + receiver_->pipeline().Error();
-    const std::uint64_t memory = ResidentBytes();
-    if (minute == kWarmUp) base_memory_ = memory;
+    const std::uint64_t memory = AllocatedBytes();
+    if (minute <= kWarmUp) base_memory_ = std::max(base_memory_, memory);
     const bool grows = minute > kWarmUp && memory > base_memory_ + kMaxGrowth;
     const std::uint64_t foreign = foreign_ + receiver_->foreign();
     std::printf("%4u min  received %7" PRIu64 " lost %6" PRIu64 " damaged %5" PRIu64
