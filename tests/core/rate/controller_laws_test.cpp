@@ -142,6 +142,19 @@ TEST_F(Accounts, IntensityBitsRiseAgainOnlyWithAMargin) {
   }
 }
 
+TEST_F(Accounts, ASecondTryHasTheIntensityBitsOfItsScan) {
+  ControllerParameters p = WithoutIntensity();
+  p.limits.intensity_bits = 8;
+  controller_.SetParameters(p);
+  controller_.SetTarget(DataRate::BitsPerSecond(1'990 * 8 * 10));
+  const Decision d = controller_.NextSlice(Features(0, 0));
+  ASSERT_TRUE(d.budget);
+  EXPECT_EQ(d.settings.intensity_bits, 3U);
+  const auto again = Encoded(3 * static_cast<double>(d.budget->bytes()), 0.004);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->intensity_bits, 3U);
+}
+
 TEST_F(Accounts, WithoutTheLoopEachSliceGetsItsShareWhateverWasSent) {
   ControllerParameters open = WithoutIntensity();
   open.closed_loop = false;
