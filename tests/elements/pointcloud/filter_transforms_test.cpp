@@ -128,6 +128,13 @@ TEST_F(FilterByTransforms, CloudsWithoutAreCountedAndReportedOnce) {
   EXPECT_EQ(Stat("clouds-without-transform"), 3U);
 }
 
+TEST_F(FilterByTransforms, EachLossOfTheTransformIsReported) {
+  Start("target-frame=map tf-timeout=0");
+  Tell(moving_.get(), "map", "os", 100, 1);
+  for (const int second : {200, 200, 100, 200, 200}) EXPECT_EQ(PushAt(second), GST_FLOW_OK);
+  EXPECT_EQ(bus_->Texts(GST_MESSAGE_WARNING).size(), 2U);
+}
+
 TEST_F(FilterByTransforms, NobodyWaitsForTransformsThatHaveEnded) {
   Start("target-frame=map tf-timeout=60000000000");
   for (const test::Harness* h : {&fixed_, &moving_})
@@ -192,6 +199,18 @@ TEST_F(FilterByTransforms, WhatIsNoTransformIsCounted) {
   Tell(fixed_.get(), "map", "map", 0, 1);
   EXPECT_EQ(Stat("transforms-refused"), 2U);
   EXPECT_EQ(Stat("transforms"), 0U);
+}
+
+/// Another filter would move the points a second time.
+TEST_F(FilterByTransforms, ACloudInItsTargetFrameHasNoPoseLeft) {
+  Start("target-frame=map tf-timeout=0");
+  Tell(fixed_.get(), "map", "os", 0, 10);
+  GstBuffer* cloud = gst_buffer_new_allocate(nullptr, 12, nullptr);
+  gst_buffer_memset(cloud, 0, 1, 12);
+  GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
+  gst_lidar_buffer_set_pose(cloud, &pose);
+  const BufferPtr out(gst_harness_push_and_pull(h_.get(), cloud));
+  EXPECT_FALSE(gst_lidar_buffer_get_pose(out.get(), &pose));
 }
 
 TEST_F(FilterByTransforms, TheFrameStaysWherePointsDo) {
@@ -286,6 +305,16 @@ TEST_F(FilterByTransforms, APoseWithoutATimeIsRefused) {
             GST_FLOW_OK);
   EXPECT_EQ(Stat("transforms-refused"), 1U);
   EXPECT_EQ(Stat("transforms"), 0U);
+}
+
+TEST_F(FilterByTransforms, APadWithoutANameIsNumberedBehindAllOthers) {
+  Start("");
+  for (const auto& [asked, given] : std::vector<std::pair<const char*, std::string>>{
+           {"tf_5", "tf_5"}, {"tf_3", "tf_3"}, {"tf_%u", "tf_6"}}) {
+    const PadPtr pad(gst_element_request_pad_simple(h_->element, asked));
+    ASSERT_TRUE(pad);
+    EXPECT_EQ(GST_PAD_NAME(pad.get()), given);
+  }
 }
 
 }  // namespace

@@ -169,6 +169,17 @@ TEST_F(Parse, ABufferAfterAGapDoesNotFinishTheCloudBeforeIt) {
   EXPECT_EQ(map.data()[0], 2);
 }
 
+TEST_F(Parse, ABufferOfACloudsSizeMayHoldTheEndOfOneAndTheBeginOfTheNext) {
+  Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+  Push(Bytes(100, 1));
+  Push(Bytes(160, 2));
+  ASSERT_EQ(gst_harness_buffers_in_queue(h_.get()), 1U);
+  const BufferPtr cloud = Pull();
+  const BufferMap map(cloud.get(), GST_MAP_READ);
+  EXPECT_EQ(map.data()[99], 1);
+  EXPECT_EQ(map.data()[100], 2);
+}
+
 TEST_F(Parse, StartsAfreshAfterAStateCycle) {
   Start(kKitti);
   for (int cycle = 0; cycle < 3; ++cycle) {
