@@ -196,6 +196,21 @@ TEST(PointFilter, APoseIsTheTransformOfItsQuaternion) {
   for (std::size_t i = 0; i < turn.size(); ++i) EXPECT_NEAR(turn[i], angles[i], 1e-12);
 }
 
+TEST(PointFilter, TakesTheTransformFromWhereThePoseHasPutPoints) {
+  PointFilterSettings settings;
+  settings.has_pose = true;
+  settings.transform = ParseTransform("0,0,0, 0,0,90");
+  auto filter = PointFilter::Make(settings, Fields(), sizeof(Point));
+  const Point point = {2, 0, 0, 7};
+  const auto out = filter->Apply(
+      {reinterpret_cast<const std::uint8_t*>(&point), 1, 1, 0, FromPose({10, 0, 0}, {0, 0, 0, 1})});
+  Point moved{};
+  ASSERT_EQ(out.points.size(), sizeof moved);
+  std::memcpy(&moved, out.points.data(), sizeof moved);
+  EXPECT_NEAR(moved.x, 0, 1e-5);
+  EXPECT_NEAR(moved.y, 12, 1e-5);
+}
+
 TEST(PointFilter, PointsWithoutAReturnFollowThePolicy) {
   auto cloud = Cloud();
   cloud[0].x = std::numeric_limits<float>::quiet_NaN();
