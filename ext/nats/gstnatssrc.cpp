@@ -259,17 +259,18 @@ static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer)
   GST_BUFFER_PTS(buffer) = *delivery.stored - std::min(*state.first, *delivery.stored);
 }
 
-/// Returns false after it dropped and counted a message whose caps the next element does not take,
-/// with a warning the first time. That is no error: others may publish another coder's stream.
-static bool SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
+/// Returns CUSTOM_SUCCESS after it dropped and counted a message whose caps the next element does
+/// not take, with a warning the first time. That is no error: others may publish another coder's
+/// stream.
+static GstFlowReturn SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
   State& state = StateOf(self);
   GstPad* pad = GST_BASE_SRC_PAD(self);
   if (gst_pad_peer_query_accept_caps(pad, format->caps()) &&
       gst_base_src_set_caps(GST_BASE_SRC(self), format->caps())) {
     state.format = format;
-    return true;
+    return GST_FLOW_OK;
   }
-  if (GST_PAD_IS_FLUSHING(pad)) return false;
+  if (GST_PAD_IS_FLUSHING(pad)) return GST_FLOW_FLUSHING;
   state.account.Count(&SourceCounters::not_accepted);
   if (!std::exchange(state.warned_of_caps, true))
     GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
@@ -277,7 +278,7 @@ static bool SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
                          "messages are dropped and counted.",
                          gst_structure_get_name(gst_caps_get_structure(format->caps(), 0))),
                         ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(format->caps())));
-  return false;
+  return GST_FLOW_CUSTOM_SUCCESS;
 }
 
 /// Returns CUSTOM_SUCCESS if the message gives no buffer.
@@ -295,7 +296,10 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
     NoteDamaged(self);
     return GST_FLOW_CUSTOM_SUCCESS;
   }
-  if (format != state.format && !SetFormat(self, format)) return GST_FLOW_CUSTOM_SUCCESS;
+  if (format != state.format) {
+    const GstFlowReturn flow = SetFormat(self, format);
+    if (flow != GST_FLOW_OK) return flow;
+  }
   const auto verdict = state.account.NotePlace(read->place, !state.now.nats.queue_group.empty());
   if (verdict.again) return GST_FLOW_CUSTOM_SUCCESS;
   if (verdict.gap) GST_BUFFER_FLAG_SET(read->buffer.get(), GST_BUFFER_FLAG_DISCONT);
@@ -341,6 +345,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   }
   state.trouble.clear();
   const GstFlowReturn flow = Take(self, delivery, out);
+  if (flow == GST_FLOW_FLUSHING) return flow;  // unacknowledged, the message comes again
   state.at_end = eos_at_end && delivery.stored && delivery.to_come == 0;
   state.delivery = std::move(delivery);
   if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;

@@ -3,6 +3,7 @@
 #include "ext/nats/jetstream.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "gst/common/history_query.h"
@@ -191,6 +192,32 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   };
   EXPECT_TRUE(Eventually(has_all));
   EXPECT_LE(second.count(), 64U - 28U);
+}
+
+TEST_F(NatsJetStream, AMessageThatAStopCutsOffAtItsCapsComesAgain) {
+  PublishSlices(1, At(kBox));
+  const DurableConsumer consumer(server_.url(), 200'000'000, 100);
+  const std::string source =
+      "natssrc name=n durable=slam" + At(kBox) + "! fakesink name=see sync=false";
+  std::atomic<bool> asked{false};
+  const auto wait_for_stop = [](GstPad* pad, GstPadProbeInfo* info, gpointer data) {
+    if (GST_QUERY_TYPE(GST_PAD_PROBE_INFO_QUERY(info)) == GST_QUERY_ACCEPT_CAPS) {
+      *static_cast<std::atomic<bool>*>(data) = true;
+      EXPECT_TRUE(Eventually([&] { return GST_PAD_IS_FLUSHING(pad); }));
+    }
+    return GST_PAD_PROBE_OK;
+  };
+  {
+    NatsPipeline first(source);
+    const gst::PadPtr pad(gst_element_get_static_pad(first.nats(), "src"));
+    gst_pad_add_probe(pad.get(), GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, wait_for_stop, &asked,
+                      nullptr);
+    first.Play();
+    ASSERT_TRUE(Eventually([&] { return asked.load(); }));
+  }
+  NatsPipeline second(source);
+  second.Play();
+  EXPECT_TRUE(second.WaitForBuffers(1));
 }
 
 TEST_F(NatsJetStream, WhatADurableConsumerSendsAgainIsTakenOnce) {
