@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "ext/nats/nats_ptr.h"
 #include "ext/nats/stream_format.h"
 
 namespace lidar::nats {
@@ -14,6 +15,8 @@ class FormatBook {
  public:
   /// Takes a format; `subject` ends with its id. Counts damaged formats.
   void Note(std::string_view subject, std::string_view text);
+  /// Takes the format that JetStream keeps at `subject`. Returns null if there is none.
+  StreamFormat::Ptr Fetch(jsCtx* js, const std::string& stream, const std::string& subject);
   /// Returns null if the format is not known.
   StreamFormat::Ptr Find(const std::string& id) const;
   std::uint64_t damaged() const { return damaged_; }

@@ -178,14 +178,7 @@ void History::Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* 
 /// Returns null if neither the book nor the stream has the format.
 StreamFormat::Ptr History::FormatOf(const std::string& id) {
   if (auto known = book_.Find(id)) return known;
-  natsMsg* raw = nullptr;
-  jsErrCode code{};
-  const std::string subject = ConfigSubject(subject_, id);
-  if (js_GetLastMsg(&raw, js_.get(), stream_.c_str(), subject.c_str(), nullptr, &code) != NATS_OK)
-    return nullptr;
-  const MessagePtr message(raw);
-  book_.Note(subject, {natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))});
-  return book_.Find(id);
+  return book_.Fetch(js_.get(), stream_, ConfigSubject(subject_, id));
 }
 
 }  // namespace lidar::nats

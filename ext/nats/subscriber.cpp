@@ -284,6 +284,9 @@ StreamFormat::Ptr Subscriber::Format(const std::string& id, milliseconds timeout
   TakeFormats({});
   StreamFormat::Ptr format = book_.Find(id);
   const auto deadline = steady_clock::now() + timeout;
+  // A stream may keep more formats than the book.
+  if (!format && stored() && timeout > milliseconds{})
+    format = book_.Fetch(js_.get(), settings_.stream, ConfigSubject(settings_.subject, id));
   auto ask_at = steady_clock::now();
   while (!format && steady_clock::now() < deadline) {
     if (!stored() && steady_clock::now() >= ask_at) {

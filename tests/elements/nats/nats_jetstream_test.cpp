@@ -6,7 +6,10 @@
 #include <atomic>
 #include <utility>
 
+#include "ext/nats/message.h"
+#include "ext/nats/stream_format.h"
 #include "gst/common/history_query.h"
+#include "gst/lidar/gstlidar.h"
 #include "tests/elements/nats/nats_client.h"
 #include "tests/elements/nats/nats_pipeline.h"
 
@@ -95,6 +98,24 @@ bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* 
   return sent_again && Eventually([&] { return consumer.open() == 0; });
 }
 
+/// Puts caps that no other message has into the stream, and a message of them.
+void PutInOwnCaps(const NatsClient& client, int number) {
+  const gst::CapsPtr caps(gst_caps_from_string(
+      (GST_LIDAR_IMU_MEDIA_TYPE ", sample-size=(int)32, number=(int)" + std::to_string(number))
+          .c_str()));
+  std::string why;
+  const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
+  ASSERT_TRUE(format) << why;
+  const std::string& text = format->text();
+  EXPECT_EQ(js_Publish(nullptr, client.js(), nats::ConfigSubject("r1.front", format->id()).c_str(),
+                       text.data(), static_cast<int>(text.size()), nullptr, nullptr),
+            NATS_OK);
+  const gst::BufferPtr buffer(gst_buffer_new_allocate(nullptr, 32, nullptr));
+  const auto message = nats::WriteMessage("r1.front", nullptr, format->id(),
+                                          {1, static_cast<std::uint64_t>(number)}, buffer.get());
+  EXPECT_EQ(js_PublishMsg(nullptr, client.js(), message.get(), nullptr, nullptr), NATS_OK);
+}
+
 TEST_F(NatsJetStream, ABlackBoxIsReplayedWhole) {
   const auto sent = PublishSlices(80, At(kBox));
   const auto played = Replay(0);
@@ -129,6 +150,17 @@ TEST_F(NatsJetStream, AReplayBeginsAtItsNumber) {
   // The first message of the stream is the caps.
   ExpectSameStream(Replay(0, "start-sequence=6"), {sent.begin() + 4, sent.end()});
   EXPECT_EQ(Replay(0, "start-sequence=900").size(), 0U);
+}
+
+TEST_F(NatsJetStream, AStreamOfManyFormatsIsReplayedWhole) {
+  const NatsClient client(server_.url());
+  std::string why;
+  ASSERT_TRUE(nats::EnsureStream(client.js(), {"box", {}, 0, 1, ""},
+                                 {"r1.front", "r1.front.config.*"}, &why))
+      << why;
+  constexpr int kFormats = 20;  // more than a source knows at a time
+  for (int i = 0; i < kFormats; ++i) PutInOwnCaps(client, i);
+  EXPECT_EQ(Replay(0).size(), std::size_t{kFormats});
 }
 
 TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
