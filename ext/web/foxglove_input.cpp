@@ -256,10 +256,14 @@ void PublishPoseOfCloud(GstBaseSink* sink, GstBuffer* buffer, const Header& head
     InputSettings settings = lidar::web::SettingsOf(GST_LIDAR_FOXGLOVE_INPUT(sink));
     settings.topic.clear();
     auto& server = *state.used->server;
-    state.poses = server.Open(TopicName(settings, kPoses), Schema::kPose);
+    const std::string name = TopicName(settings, kPoses);
+    state.poses = server.Open(name, Schema::kPose);
     state.transforms = server.Open(kTransforms, Schema::kFrameTransform);
     if (!state.poses || !state.transforms) {
-      GST_WARNING_OBJECT(sink, "poses of the clouds are not shown: their topics are in use");
+      GST_ELEMENT_WARNING(sink, RESOURCE, SETTINGS,
+                          ("The poses of the clouds are not shown: %s.",
+                           lidar::web::TopicInUse(state.poses ? kTransforms : name).c_str()),
+                          (nullptr));
       state.no_poses = true;
       return;
     }

@@ -312,6 +312,27 @@ TEST(FoxgloveSink, RefusesOneTopicForTwoKindsOfMessages) {
             GST_FLOW_NOT_NEGOTIATED);
 }
 
+TEST(FoxgloveSink, SaysOnceThatItDoesNotShowPosesWhoseTopicIsInUse) {
+  Sink sink("sink_1::topic=/pose");
+  sink.SetCloudCaps();
+  sink.PushCloud(1);
+  const ElementBus bus(sink.element());
+  Harness second(gst_harness_new_with_element(sink.element(), "sink_1", nullptr));
+  const gst::CapsPtr caps(gst_pad_get_current_caps(sink.harness()->srcpad));
+  gst_harness_set_src_caps(second.get(), gst_caps_ref(caps.get()));
+  const GstLidarPose pose = {{4, 5, 6}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
+  for (int i = 0; i < 2; ++i) {
+    GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 64, nullptr);
+    gst_buffer_memset(buffer, 0, 0, 64);
+    gst_lidar_buffer_set_pose(buffer, &pose);
+    EXPECT_EQ(gst_harness_push(sink.harness(), buffer), GST_FLOW_OK);
+  }
+  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING),
+            std::vector<std::string>{
+                "The poses of the clouds are not shown: the topic \"/pose\" is already used for "
+                "something else; set the property topic of one of its pads."});
+}
+
 TEST(FoxgloveSink, GoesOnAfterFlushesAndNewStarts) {
   Sink sink;
   sink.SetCloudCaps();
