@@ -30,6 +30,9 @@ constexpr Duration kTogether = 10ms;
 constexpr double kAlike = 0.35;
 constexpr double kStillAlike = 0.5;
 constexpr double kQueues = 16;
+/// While two queues differ, the samples from before lose this share of their weight with each
+/// packet that shows it: the paths may have parted. A queue that runs empty gives no newer samples.
+constexpr double kFade = 1.0 / 32;
 /// A longer spacing is a gap of the link.
 constexpr double kPauseMs = 60;
 /// A larger change of a delay is due to another clock or path.
@@ -40,14 +43,23 @@ constexpr std::size_t kMaxSent = 8192;
 
 }  // namespace
 
-void SharedQueues::Regression::Add(const Terms& x, double y) {
-  constexpr double kKeep = 1 - 1 / kMemory;
-  count_ = count_ * kKeep + 1;
+void SharedQueues::Regression::Fade(double share) {
+  count_ *= share;
   for (std::size_t i = 0; i < kTerms; ++i) {
-    for (std::size_t k = 0; k < kTerms; ++k) xx_[i][k] = xx_[i][k] * kKeep + x[i] * x[k];
-    xy_[i] = xy_[i] * kKeep + x[i] * y;
+    for (double& product : xx_[i]) product *= share;
+    xy_[i] *= share;
   }
-  yy_ = yy_ * kKeep + y * y;
+  yy_ *= share;
+}
+
+void SharedQueues::Regression::Add(const Terms& x, double y) {
+  Fade(1 - 1 / kMemory);
+  count_ += 1;
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t k = 0; k < kTerms; ++k) xx_[i][k] += x[i] * x[k];
+    xy_[i] += x[i] * y;
+  }
+  yy_ += y * y;
 }
 
 /// Gaussian elimination leaves in the last row what the other terms do not explain.
@@ -128,6 +140,8 @@ void SharedQueues::Compare(std::size_t a, std::size_t b) {
   Pair& pair = pairs_[std::min(a, b)][std::max(a, b)];
   pair.apart_ms += (std::abs(x.queue_ms - y.queue_ms) - pair.apart_ms) / kQueues;
   pair.longer_ms += (std::max(x.queue_ms, y.queue_ms) - pair.longer_ms) / kQueues;
+  if (pair.apart_ms <= kStillAlike * pair.longer_ms) return;
+  for (Pair* way : {&pairs_[a][b], &pairs_[b][a]}) way->spacing.Fade(1 - kFade);
 }
 
 void SharedQueues::Decide(std::size_t a, std::size_t b) {

@@ -43,6 +43,8 @@ class SharedQueues {
     using Terms = std::array<double, kTerms>;
 
     void Add(const Terms& x, double y);
+    /// Reduces the weight of all samples so far to `share` of what it was.
+    void Fade(double share);
     /// Returns the slope of the last term over its standard error, or 0 if the samples do not show
     /// the slope.
     double Significance() const;

@@ -24,13 +24,14 @@ class TwoFifos : public testing::Test {
     shared_ = queues_.Shared(0, 1);
   }
   /// Sends bursts on both links, at the same times if they are `copies`.
-  void Run(std::size_t second_fifo, bool copies) {
+  /// Otherwise the second link gets this share of the packets.
+  void Run(std::size_t second_fifo, bool copies, double share = 0.4) {
     for (int i = 0; i < 4000; ++i) {
       now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());
       const auto size = DataSize::Bytes(random_.Chance(0.5) ? 1200 : 600);
       Send(0, 0, size);
       if (!copies) now_ += 10us;
-      if (copies || random_.Chance(0.4)) Send(1, second_fifo, size);
+      if (copies || random_.Chance(share)) Send(1, second_fifo, size);
     }
   }
   SharedQueues queues_;
@@ -91,6 +92,19 @@ TEST_F(TwoFifos, LeavesAQueueThatIsNoLongerShared) {
   ASSERT_TRUE(queues_.Shared(0, 1));
   Run(1, false);
   EXPECT_FALSE(queues_.Shared(0, 1));
+}
+
+TEST_F(TwoFifos, TakesNoOldSamplesForNewOnesWhereQueuesAreAlikeForAMoment) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    queues_ = {};
+    shared_ = false;
+    random_ = link::Random(seed);
+    Run(0, false, 0.8);
+    ASSERT_TRUE(queues_.Shared(0, 1)) << seed;
+    Run(1, false, 0.8);
+    EXPECT_FALSE(queues_.Shared(0, 1)) << seed;
+  }
+  EXPECT_LE(changes_, 40);  // at least 20
 }
 
 }  // namespace
