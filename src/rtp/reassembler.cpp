@@ -179,6 +179,16 @@ void Reassembler::StartAnew(const Reassembler& previous, std::vector<ReceivedSli
   TakeConfigs(previous, false, out);
 }
 
+void Reassembler::JoinAnew(Time now) {
+  ledger_.StartAnew();
+  missing_at_last_slice_.reset();
+  for (auto it = pending_.begin(); it != pending_.end();) {
+    const Unit* start = it->second.fragments.start();
+    if (start != nullptr) ledger_.Admit(it->first, start->slice.count, now);
+    it = start != nullptr ? std::next(it) : Remove(it);
+  }
+}
+
 void Reassembler::TakeConfigs(const Reassembler& previous, bool all,
                               std::vector<ReceivedSlice>* out) {
   for (auto known = previous.configs_.rbegin(); known != previous.configs_.rend(); ++known)

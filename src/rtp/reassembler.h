@@ -70,8 +70,8 @@ class Reassembler {
   /// The sender of `previous` restarted with the same SSRC. Takes over only configs that came after
   /// the last slice there, because older ids may have a new meaning.
   void StartAnew(const Reassembler& previous, std::vector<ReceivedSlice>* out);
-  /// Marks the next slice as the first one after a loss.
-  void MarkNext() { missing_at_last_slice_.reset(); }
+  /// The slices so far are not wanted: begins to count anew with the incomplete ones.
+  void JoinAnew(Time now);
   /// End of stream: incomplete slices are lost.
   void Finish();
 

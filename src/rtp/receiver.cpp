@@ -67,7 +67,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
 void Receiver::DropHeld() {
   if (candidate_->held.empty()) return;
   candidate_->held.clear();
-  candidate_->reassembler.MarkNext();
+  candidate_->reassembler.JoinAnew(candidate_->last_arrival);
 }
 
 /// Too many SSRCs reset the counts. Forged SSRCs have no other effect.

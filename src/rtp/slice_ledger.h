@@ -74,6 +74,8 @@ class SliceLedger {
   std::optional<SlicePosition> Overdue(Time now) const;
   /// Counts all open slices before `limit` as lost.
   void CloseBefore(SlicePosition limit);
+  /// Forgets everything.
+  void StartAnew() { *this = SliceLedger(max_reorder_time_); }
   /// End of stream: all open slices up to the frontier are lost.
   void Finish();
   /// Continues after a long outage of the same stream. `previous` is finished. Scans between it and

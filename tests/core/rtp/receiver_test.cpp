@@ -232,6 +232,10 @@ TEST(Receiver, HoldsNoSlicesOfAnotherStreamWhileItsOwnGoesOn) {
   EXPECT_EQ(moved.front().info.scan_id, 59U);  // its end is the only packet behind the first stream
   EXPECT_TRUE(moved.front().discont);
   EXPECT_FALSE(moved[1].discont);
+  receiver.Finish();
+  EXPECT_EQ(receiver.accounts().slices.slices_received, 60 * 4 + moved.size());
+  EXPECT_EQ(receiver.accounts().slices.slices_lost, 0U);
+  EXPECT_EQ(receiver.accounts().slices.scans_complete, 60U + 10);
 }
 
 TEST(Receiver, KeepsTheStreamAmongAHundredTimesAsMuchGarbage) {
