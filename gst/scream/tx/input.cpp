@@ -130,18 +130,20 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   state.gate.set_flow(GST_FLOW_OK);
 }
 
-/// A flush of the only stream goes downstream. A flush of one of several streams does not.
+/// A flush of the only stream goes downstream. A flush of one of several streams does not. Pads may
+/// come and go during a flush, so its end goes where its start went.
 gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
   const EventPtr owner(event);
   const bool start = GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_START;
-  bool alone = false;
+  bool flushes_src = false;
   {
     TxLock lock(state.mutex);
-    alone = state.streams.size() == 1;
+    flushes_src = stream.flushes_src || state.streams.size() == 1;
+    stream.flushes_src = start && flushes_src;
   }
   if (start) OnFlushStart(self, stream);
-  if (!alone) {
+  if (!flushes_src) {
     if (!start) OnFlushStop(self, stream, event);
     return TRUE;
   }

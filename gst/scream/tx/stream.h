@@ -79,6 +79,7 @@ struct TxStream {
   bool wants_receipts = false;  // its payloader uses receipts
   bool eos = false;
   bool flushing = false;
+  bool flushes_src = false;  // its flush went downstream
   // Work for the reporter's thread:
   bool target_due = false;
   bool key_unit_due = false;

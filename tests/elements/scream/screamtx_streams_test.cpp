@@ -281,6 +281,16 @@ TEST_F(ScreamTx, AFlushOfOneOfSeveralStreamsIsItsOwn) {
     EXPECT_NE(GST_EVENT_TYPE(event.get()), GST_EVENT_FLUSH_START);
 }
 
+TEST_F(ScreamTx, AFlushEndsWhereItBeganThoughAPadIsAddedMeanwhile) {
+  Start();
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  const gst::PadPtr added(gst_element_request_pad_simple(element, "sink_%u"));
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(rtp.get(), NewSegment());
+  PushFrame(0, 1);
+  EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
+}
+
 TEST_F(ScreamTx, SeveralStreamsMayHaveAnyCapsTogether) {
   Start();
   Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
