@@ -3,6 +3,7 @@
 #include <charconv>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "gst/scream/rx/private.h"
 
@@ -187,25 +188,39 @@ static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPa
                        GST_PAD_NAME(pad)));
 }
 
+/// Returns the pad of a new SSRC. A flush that began before the pad had its route continues here.
+static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header) {
+  GstPad* pad = Route(self, header);
+  {
+    const RxLock lock(self->state->mutex);
+    self->state->routes.emplace(header.ssrc, pad);
+  }
+  if (GST_PAD_IS_FLUSHING(self->sink)) gst_pad_push_event(pad, gst_event_new_flush_start());
+  return pad;
+}
+
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer) {
   RxState& state = *self->state;
   auto found = state.routes.find(header.ssrc);
   if (found == state.routes.end() && state.routes.size() >= kMaxRoutes) {
     return Refuse(self, buffer);
   }
-  if (found == state.routes.end())
-    found = state.routes.emplace(header.ssrc, Route(self, header)).first;
-  GstPad* pad = found->second;
+  GstPad* pad = found == state.routes.end() ? AddRoute(self, header) : found->second;
   const GstFlowReturn flow = gst_pad_push(pad, buffer);
   if (flow == GST_FLOW_NOT_LINKED) WarnOfUntaken(self, header, pad);
   return gst_flow_combiner_update_pad_flow(state.combiner, pad, flow);
 }
 
 gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
-  for (const auto& [ssrc, pad] : self->state->routes)
-    if (pad != self->src) gst_pad_push_event(pad, gst_event_ref(event));
-  if (HasPtMap(self) && !self->state->src_started && GST_EVENT_IS_STICKY(event) &&
-      GST_EVENT_TYPE(event) != GST_EVENT_EOS) {
+  std::vector<PadPtr> pads;
+  {
+    const RxLock lock(self->state->mutex);
+    for (const auto& [ssrc, pad] : self->state->routes)
+      if (pad != self->src) pads.emplace_back(GST_PAD(gst_object_ref(pad)));
+  }
+  for (const PadPtr& pad : pads) gst_pad_push_event(pad.get(), gst_event_ref(event));
+  if (HasPtMap(self) && GST_EVENT_IS_STICKY(event) && GST_EVENT_TYPE(event) != GST_EVENT_EOS &&
+      !self->state->src_started) {
     gst_event_unref(event);  // the segment follows the caps, which the first packet brings
     return TRUE;
   }
@@ -214,13 +229,17 @@ gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
 
 void RemoveRoutes(GstLidarScreamRx* self) {
   RxState& state = *self->state;
-  for (const auto& [ssrc, pad] : state.routes) {
+  std::map<guint32, GstPad*> routes;
+  {
+    const RxLock lock(state.mutex);
+    routes.swap(state.routes);
+  }
+  for (const auto& [ssrc, pad] : routes) {
     if (pad == self->src) continue;
     gst_flow_combiner_remove_pad(state.combiner, pad);
     gst_pad_set_active(pad, FALSE);
     gst_element_remove_pad(GST_ELEMENT(self), pad);
   }
-  state.routes.clear();
   state.src_taken = state.src_started = state.routes_full = state.warned_of_untaken = false;
 }
 

@@ -78,12 +78,14 @@ struct RxState {
   // SSRCs that need a key unit, with the links that still have to send the request.
   std::set<std::pair<guint32, std::size_t>> key_requests;
 
+  // Pads by SSRC, with a pt-map. Only the streaming thread changes it; a flush reads it.
+  std::map<guint32, GstPad*> routes;
+
   // Used by the streaming thread only:
   bool eos = false;
-  std::map<guint32, GstPad*> routes;  // pads by SSRC, with a pt-map
-  bool src_taken = false;             // a stream of pt-map uses it
-  bool src_started = false;           // its caps were sent
-  bool routes_full = false;           // the warning about it was posted
+  bool src_taken = false;    // a stream of pt-map uses it
+  bool src_started = false;  // its caps were sent
+  bool routes_full = false;  // the warning about it was posted
   bool warned_of_untaken = false;
   GstFlowCombiner* combiner = nullptr;
 };

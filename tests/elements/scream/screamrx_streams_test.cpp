@@ -188,6 +188,32 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
                "TEST");
 }
 
+TEST_F(ScreamRx, AFlushReachesAPadThatIsJustBeingAdded) {
+  SetPtMap("97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"");
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  struct Added {
+    GstPad* from;
+    Harness harness;
+  } added{rtp->srcpad, nullptr};
+  g_signal_connect(element, "pad-added", G_CALLBACK(+[](GstElement* e, GstPad* pad, Added* a) {
+                     if (!g_str_has_prefix(GST_PAD_NAME(pad), "src_")) return;
+                     a->harness.reset(gst_harness_new_with_element(e, nullptr, GST_PAD_NAME(pad)));
+                     gst_pad_push_event(a->from, gst_event_new_flush_start());
+                   }),
+                   &added);
+  Rtp camera;
+  camera.payload_type = 97;
+  EXPECT_EQ(Push(camera), GST_FLOW_FLUSHING);
+  ASSERT_TRUE(added.harness);
+  EXPECT_EQ(gst_harness_buffers_received(added.harness.get()), 0U);
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(rtp.get(), NewSegment());
+  ++camera.seq;
+  EXPECT_EQ(Push(camera), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_received(added.harness.get()), 1U);
+}
+
 TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
   SetPtMap(
       "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
