@@ -123,7 +123,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   // The next packet of an erased stream adds it again.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
   state.ssrcs[header.ssrc] = clocks.now;
-  const bool is_new = state.seen.Add(header.ssrc, header.seq);
+  const bool is_new = state.seen.Add(header.ssrc, header.seq, header.timestamp);
   if (is_new || state.latch.links() < 2) return true;
   ++state.counters.copies;
   WakeFeedback(state);

@@ -86,23 +86,25 @@ rtcp::FeedbackGenerator::Stats LinkReports::Sum() const {
   return sum;
 }
 
-bool SeenPackets::Add(std::uint32_t ssrc, std::uint16_t seq) {
-  const auto found = sources_.find(ssrc);
-  if (found == sources_.end()) {
+bool SeenPackets::Add(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp) {
+  if (sources_.count(ssrc) == 0) {
     if (sources_.size() >= kMaxSources) sources_.erase(sources_.begin());
-    Source& source = sources_[ssrc];
-    source.newest = seq;
-    source.seen.set(seq % kWindow);
-    return true;
+    sources_[ssrc].newest = seq;
   }
-  Source& source = found->second;
+  Source& source = sources_[ssrc];
+  std::uint32_t& known = source.timestamps[seq % kWindow];
   const int ahead = SequenceDistance(seq, source.newest);
   if (ahead <= -kWindow) return true;
   for (int i = 1; i <= std::min(ahead, kWindow); ++i)
     source.seen.reset(static_cast<std::uint16_t>(source.newest + i) % kWindow);
   if (ahead > 0) source.newest = seq;
-  if (source.seen[seq % kWindow]) return false;
+  if (source.seen[seq % kWindow] && known == timestamp) return false;
+  if (source.seen[seq % kWindow]) {
+    source.seen.reset();
+    source.newest = seq;
+  }
   source.seen.set(seq % kWindow);
+  known = timestamp;
   return true;
 }
 

@@ -61,13 +61,15 @@ class SeenPackets {
   static constexpr int kWindow = 4096;
   static constexpr std::size_t kMaxSources = 64;
 
-  /// Returns false for a repeated packet.
-  bool Add(std::uint32_t ssrc, std::uint16_t seq);
+  /// Returns false for a repeated packet. A number that has another RTP timestamp than before shows
+  /// that the sender has restarted.
+  bool Add(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp);
 
  private:
   struct Source {
     std::uint16_t newest = 0;
     std::bitset<kWindow> seen;
+    std::vector<std::uint32_t> timestamps = std::vector<std::uint32_t>(kWindow);
   };
   std::map<std::uint32_t, Source> sources_;
 };
