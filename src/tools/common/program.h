@@ -38,8 +38,8 @@ inline void RefuseNan(const CLI::App& app) {
 template <class Check>
 void Parse(CLI::App* app, int argc, char** argv, Check check) {
   try {
+    app->parse_complete_callback([app] { RefuseNan(*app); });  // before any command runs
     app->parse(argc, argv);
-    RefuseNan(*app);
     check();
   } catch (const CLI::ParseError& e) {
     std::exit(app->exit(e) == 0 ? 0 : 2);
