@@ -8,6 +8,7 @@
 
 #include "src/ouster/metadata_writer.h"
 #include "src/ouster/pcap_writer.h"
+#include "src/tools/bench/ouster_replay/faults.h"
 #include "src/tools/bench/ouster_replay/http_api.h"
 #include "src/tools/bench/ouster_replay/options.h"
 #include "src/tools/bench/ouster_replay/pcap_stream.h"
@@ -97,11 +98,16 @@ int WriteFiles(const ReplayOptions& options, const ouster::Metadata& metadata) {
   if (!writer) throw std::runtime_error("cannot write " + options.write_pcap + ": " + error);
   const Duration end = metadata.scan_period() * options.scans;
   const Duration start = Now().time_since_epoch() + UnixOffset();
-  for (auto packet = stream->Next(); packet && packet->due <= end; packet = stream->Next()) {
-    const std::uint16_t port = packet->imu ? metadata.imu_port : metadata.lidar_port;
-    if (!writer->Write(Time(start + packet->due), port,
-                       {packet->bytes.data(), packet->bytes.size()}))
-      throw std::runtime_error("cannot write " + options.write_pcap);
+  Faults faults;
+  faults.Merge(options.faults);
+  FaultInjector injector(options.seed);
+  for (auto next = stream->Next(); next && next->due <= end; next = stream->Next()) {
+    const Time due(start + next->due);
+    for (const OutPacket& packet : injector.Apply(faults, *std::move(next))) {
+      const std::uint16_t port = packet.imu ? metadata.imu_port : metadata.lidar_port;
+      if (!writer->Write(due, port, {packet.bytes.data(), packet.bytes.size()}))
+        throw std::runtime_error("cannot write " + options.write_pcap);
+    }
   }
   if (!writer->Close()) throw std::runtime_error("cannot write " + options.write_pcap);
   return 0;

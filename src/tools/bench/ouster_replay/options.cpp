@@ -110,6 +110,8 @@ void Convert(const Text& t, ReplayOptions* o) {
                          : ouster::HeaderType::kStandard;
   if (o->pcap.empty() != o->metadata.empty())
     throw CLI::ValidationError("--pcap", "--pcap and --metadata go together");
+  if (!o->write_pcap.empty() && !t.events.empty())
+    throw CLI::ValidationError("--at", "--write-pcap has no faults at a time");
   o->seed = o->synth.seed;
   o->faults = {
       {"loss", t.loss}, {"reorder", t.reorder}, {"duplicate", t.duplicate}, {"corrupt", t.corrupt}};
