@@ -226,8 +226,9 @@ TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
 TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   server_.Start();
   const auto ports = FreePorts(2);
-  const std::string stuck = server_.folder() + "/stuck.mcap";  // waits for a reader for ever
-  ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
+  // A FIFO waits for a reader for ever. mcapsink opens it because %% makes a name without a number.
+  ASSERT_EQ(mkfifo((server_.folder() + "/stuck%.mcap").c_str(), 0600), 0);
+  const std::string stuck = server_.folder() + "/stuck%%.mcap";
   StartEdge(
       {{"nats", {{"url", server_.url()}}},
        {"robots",

@@ -159,8 +159,8 @@ RobotConfig ReadRobot(const json& object, std::size_t index) {
   if (!IsWord(robot.name)) s.Fail("name", "is no word of letters, digits, - and _");
   if (!IsWord(robot.sensor)) s.Fail("sensor", "is no word of letters, digits, - and _");
   const bool limited = robot.record_max_files > 0 || robot.record_max_file_size > 0;
-  if (limited && robot.record.find('%') == std::string::npos)
-    s.Fail("record", "has no number such as %05d, which limits for files need");
+  if ((limited || !robot.record.empty()) && robot.record.find('%') == std::string::npos)
+    s.Fail("record", "has no number such as %05d: each session writes files of its own");
   return robot;
 }
 
