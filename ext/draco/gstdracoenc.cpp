@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ext/draco/draco_check.h"
@@ -110,7 +111,7 @@ static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* clou
   Coder& coder = CoderOf(base);
   const DracoSettings settings = Snapshot(*GST_LIDAR_DRACO_ENC(base)->state);
   const auto info = CloudInfo::FromFormat(*cloud);
-  coder = {};
+  const auto before = std::exchange(coder, {}).encoder;
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
   coder.with_intensity = with_intensity != FALSE;
   coded->refusal =
@@ -123,6 +124,7 @@ static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* clou
   }
   coder.encoder = lidar::draco::SliceEncoder::Create(coder.format, geometry, settings.range_coder);
   if (!coder.encoder) return FALSE;
+  if (before) coder.encoder->Continue(*before);  // the width of clouds may change all the time
   const bool range = coder.encoder->geometry() == Geometry::kRange;
   const auto kept = lidar::codec::KeptFields(info.fields, coder.with_intensity, range);
   coded->caps =

@@ -26,6 +26,11 @@ class XyzSliceEncoder {
   bool has_intensity() const { return has_intensity_; }
   void Thin(const std::vector<bool>& kept);
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
+  /// Takes over when `before` tried both methods, and which one was smaller.
+  void Continue(const XyzSliceEncoder& before) {
+    method_ = before.method_;
+    slices_ = before.slices_;
+  }
 
  private:
   bool TryBothMethods(const XyzSettings& settings, codec::EncodedSlice* slice, XyzResult* result);
@@ -73,6 +78,8 @@ class SliceEncoder {
 
   /// Encodes the loaded points. May be called again for the same ones.
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
+  /// Goes on as the encoder of the stream's last format.
+  void Continue(const SliceEncoder& before) { xyz_.Continue(before.xyz_); }
 
  private:
   explicit SliceEncoder(const codec::CloudLayout& layout) : xyz_(layout) {}

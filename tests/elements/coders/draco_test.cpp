@@ -2,6 +2,7 @@
 // What only Draco's elements do: clouds of any kind, as files that other programs read.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 
 #include "tests/elements/coders/plain_clouds.h"
@@ -26,6 +27,27 @@ TEST(DracoEnc, CodesNoRangesOfMoreColumnsThanATurn) {
       EXPECT_STREQ(gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "geometry"),
                    columns <= 512 ? "range" : "xyz");
     }
+}
+
+TEST(DracoEnc, CloudsOfAnotherWidthGoOnWithTheMethodThatWasTheSmallerOne) {
+  const Harness h(gst_harness_new("dracoenc"));
+  for (const std::size_t width : {3000U, 2999U}) {
+    // The sequential coder is smaller in this order, and the kd-tree where points are shuffled.
+    std::vector<std::array<float, 3>> line(width);
+    for (std::size_t i = 0; i < width; ++i) {
+      const auto t = static_cast<float>(i) * 0.02F;
+      line[i] = {t, 3 * std::sin(t), std::cos(t)};
+    }
+    if (width == 2999) std::shuffle(line.begin(), line.end(), std::mt19937(1));
+    std::vector<float> xyz;
+    for (const auto& point : line) xyz.insert(xyz.end(), point.begin(), point.end());
+    SetCaps(h.get(), XyzInfo(static_cast<guint>(width)));
+    const BufferPtr encoded(gst_harness_push_and_pull(h.get(), PlainBuffer(xyz)));
+    ASSERT_TRUE(encoded);
+    const BufferMap map(encoded.get(), GST_MAP_READ);
+    constexpr std::size_t kMethod = 8;  // in Draco's header; 0 is the sequential coder
+    EXPECT_EQ(map.data()[kMethod], 0) << width;
+  }
 }
 
 TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {
