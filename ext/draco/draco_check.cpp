@@ -13,7 +13,6 @@ constexpr std::uint8_t kPointCloud = 0;
 constexpr std::uint8_t kKdTree = 1;
 constexpr std::uint16_t kMetadata = 0x8000;  // flag
 constexpr std::uint8_t kMaxEntries = 16;     // of metadata
-constexpr std::uint8_t kMaxComponents = 4;
 constexpr std::uint8_t kMaxDataType = 11;
 constexpr std::uint8_t kMaxKdLevel = 6;
 constexpr std::uint32_t kMaxBitLength = 32;
@@ -39,9 +38,9 @@ bool SkipMetadata(ByteReader* reader) {
   return Short(reader) == 0;  // number of nested metadata
 }
 
-bool CheckAttributes(ByteReader* reader, std::uint32_t max_attributes) {
+bool CheckAttributes(ByteReader* reader, const DracoLimits& limits) {
   const std::uint8_t count = reader->U8();
-  if (count == 0 || count > max_attributes) return false;
+  if (count == 0 || count > limits.max_attributes) return false;
   for (std::uint8_t i = 0; i < count; ++i) {
     reader->Skip(1);  // what the attribute means
     const std::uint8_t data_type = reader->U8();
@@ -49,7 +48,7 @@ bool CheckAttributes(ByteReader* reader, std::uint32_t max_attributes) {
     reader->Skip(1);  // normalised
     const std::uint8_t id = reader->U8();
     if (data_type == 0 || data_type > kMaxDataType || components == 0 ||
-        components > kMaxComponents || id >= 0x80) {
+        components > limits.max_components || id >= 0x80) {
       return false;
     }
   }
@@ -84,7 +83,7 @@ std::optional<DracoSummary> CheckDraco(ByteView stream, const DracoLimits& limit
   const std::uint8_t decoders = reader.U8();
   if (major != kMajor || minor != kMinor || type != kPointCloud || method > kKdTree ||
       summary.points == 0 || summary.points > limits.max_points || decoders != 1 ||
-      !CheckAttributes(&reader, limits.max_attributes) ||
+      !CheckAttributes(&reader, limits) ||
       (summary.is_kd_tree && !CheckKdTree(&reader, summary.points)) || !reader.ok()) {
     return std::nullopt;
   }

@@ -16,7 +16,8 @@ struct DracoSummary {
 struct DracoLimits {
   std::uint32_t max_points = 0;
   std::uint32_t max_attributes = 8;
-  bool metadata = false;  // allows metadata of the cloud: a few entries, not nested
+  std::uint32_t max_components = 4;  // numbers of an attribute
+  bool metadata = false;             // allows metadata of the cloud: a few entries, not nested
 };
 
 /// Returns the summary of a point cloud that libdraco decodes in bounded time and memory, else

@@ -36,6 +36,12 @@ bool FitsPoint(const FieldLayout& layout) {
          std::all_of(layout.fields.begin(), layout.fields.end(), fits);
 }
 
+std::uint32_t LongestField(const FieldLayout& layout) {
+  std::uint32_t longest = 0;
+  for (const FieldOfPoints& field : layout.fields) longest = std::max(longest, field.count);
+  return longest;
+}
+
 void AddField(const FieldOfPoints& field, ByteView points, std::uint32_t point_step,
               ::draco::PointCloud* cloud) {
   const std::size_t size = BytesOf(field);
@@ -98,8 +104,10 @@ bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::u
 
 bool DecodeFields(ByteView stream, const FieldLayout& layout, std::uint32_t max_points,
                   std::vector<std::uint8_t>* points) {
-  const auto summary = CheckDraco(stream, {max_points, FieldLayout::kMaxFields, true});
-  if (!FitsPoint(layout) || !summary) return false;
+  if (!FitsPoint(layout)) return false;
+  const auto summary =
+      CheckDraco(stream, {max_points, FieldLayout::kMaxFields, LongestField(layout), true});
+  if (!summary) return false;
   try {
     ::draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(stream.data), stream.size);

@@ -140,6 +140,22 @@ TEST_P(CompressedClouds, MayHaveAsManyFieldsAsDracoTakes) {
   }
 }
 
+TEST_P(CompressedClouds, MayHaveFieldsOfManyNumbers) {
+  for (const std::uint32_t count : {2U, 5U, 32U}) {
+    cloud_.layout.fields = {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}, {"h", 12, 2, count}};
+    cloud_.layout.point_step = 12 + count;
+    cloud_.layout.width = 200;
+    cloud_.layout.row_step = cloud_.layout.width * cloud_.layout.point_step;
+    const Bytes points(points_.begin(), points_.begin() + cloud_.layout.row_step);
+    cloud_.data = ViewOf(points);
+    Bytes packed;
+    std::string why;
+    const auto made = Decompress(*Compress(GetParam(), cloud_, &packed), &why);
+    ASSERT_TRUE(made) << why << ": " << count;
+    EXPECT_EQ(made->points, points) << count;
+  }
+}
+
 TEST_P(CompressedClouds, AreWhatTheSinkPublishes) {
   const CapsPtr caps(gst_caps_from_string(
       "application/x-pointcloud2,width=500,height=1,point-step=26,is-dense=true,"
