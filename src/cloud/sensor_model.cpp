@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/base/byte_writer.h"
+#include "src/cloud/range_grid.h"
 
 namespace lidar {
 namespace {
@@ -53,7 +54,7 @@ std::optional<SensorModel> SensorModel::Parse(ByteView bytes) {
   }
   if (!r.ok() || version != kVersion || flags != 0 || beams == 0 || beams > kMaxBeams ||
       m.columns_per_scan == 0 || m.columns_per_scan > kMaxColumns || m.range_unit_mm == 0 ||
-      r.remaining() != beams * std::size_t{10}) {
+      m.range_unit_mm > RangeGrid::kMaxUnitMm || r.remaining() != beams * std::size_t{10}) {
     return std::nullopt;
   }
   m.beams.resize(beams);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "src/cloud/point_fields.h"
+#include "src/cloud/range_grid.h"
 #include "src/cloud/range_projection.h"
 #include "src/cloud/sensor_model.h"
 
@@ -146,6 +147,11 @@ TEST(SensorModel, TakesWhatLiesOnALimit) {
   EXPECT_TRUE(parses(m));
   m.columns_per_scan = SensorModel::kMaxColumns + 1;
   EXPECT_FALSE(parses(m));
+  m = SmallSensor();
+  m.range_unit_mm = RangeGrid::kMaxUnitMm;
+  EXPECT_TRUE(parses(m));
+  m.range_unit_mm = RangeGrid::kMaxUnitMm + 1;
+  EXPECT_FALSE(parses(m)) << "coders have no such unit";
   m = SmallSensor();
   m.beams.resize(SensorModel::kMaxBeams, m.beams[0]);
   EXPECT_TRUE(parses(m));
