@@ -48,8 +48,8 @@ run view "${source[@]}" ! pointcloudview width=320 height=180 ! fakesink
 run "own codec" "${source[@]}" ! lidarenc ! lidardec ! scanassembler ! fakesink
 run Draco "${source[@]}" ! dracoenc ! dracodec ! scanassembler ! fakesink
 run RTP "${source[@]}" ! lidarenc ! rtplidarpay ! rtplidardepay ! lidardec ! scanassembler ! fakesink
-run "ROS 2" "${live[@]}" ! ros2sink topic=/leaks async=false \
-  ros2src topic=/leaks num-buffers=2 ! fakesink async=false
+run "ROS 2" "${live[@]}" ! ros2sink topic=/leaks_$$ async=false \
+  ros2src topic=/leaks_$$ num-buffers=2 ! fakesink async=false
 run SCReAM "${live[@]}" ! lidarenc ! rtplidarpay ! screamtx ! screamrx ! fakesink
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

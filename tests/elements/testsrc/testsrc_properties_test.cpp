@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Each property of lidartestsrc has an effect.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/support/files.h"
 #include "tests/support/own_properties.h"
@@ -9,7 +10,8 @@
 namespace lidar::test {
 namespace {
 
-const std::string kDrivenWay = ::testing::TempDir() + "testsrc_way.tum";
+const std::string kDrivenWay =
+    ::testing::TempDir() + "testsrc_way_" + std::to_string(getpid()) + ".tum";
 
 struct SourceEffect {
   const char* property;

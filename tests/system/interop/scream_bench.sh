@@ -3,9 +3,10 @@
 # Runs scream-bench against itself: IPv4 and IPv6, feedback to the media's source and to a port that is named; either end
 # stops on SIGINT with its summary.
 #
-#   tests/system/interop/scream_bench.sh BUILD PORT
+#   tests/system/interop/scream_bench.sh BUILD
 set -euo pipefail
-build=$1 port=$2
+build=$1
+port=$(python3 "$(dirname "${BASH_SOURCE[0]}")/../../support/ports.py" 2)
 folder=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
 
