@@ -170,11 +170,12 @@ void Publisher::OnAck(natsMsg* message) {
   const std::string error = ErrorOfAck(message);
   Lock lock(mutex_);
   if (error.empty()) {
-    if (is_config)
+    if (is_config) {
       config_unanswered_ = false;
-    else if (outbox_.Remove(*number))
-      ++counters_.acknowledged;
-    told_.clear();
+    } else {
+      if (outbox_.Remove(*number)) ++counters_.acknowledged;
+      told_.clear();
+    }
   } else {
     // All messages in flight are sent again, so that their order stays.
     SendAllAgain();
