@@ -118,12 +118,8 @@ void AddBoundsCommand(CLI::App* app) {
       "bounds", "Step, real error, size and bitrate for a list of error bounds");
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->sources, kSourceHelp)->required();
-  command->add_option("--errors", o->errors, "Error bounds [m], comma-separated")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-4, 10.0));
-  command->add_option("--max-error", o->max_errors, "Bounds whose r_min is wanted [m]")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-4, 10.0));
+  AddErrorBounds(command, "--errors", &o->errors, "Error bounds [m], comma-separated");
+  AddErrorBounds(command, "--max-error", &o->max_errors, "Bounds whose r_min is wanted [m]");
   command->add_option("--range-mode", o->range_mode,
                       "Coding mode of range geometry; empty: dracoenc's default");
   command->add_option("--xyz-mode", o->xyz_mode, "Coding mode of xyz geometry");

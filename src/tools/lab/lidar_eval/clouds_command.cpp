@@ -188,9 +188,7 @@ void AddCloudsCommand(CLI::App* app) {
       "clouds", "What clouds take without a sensor model, beside Draco; geometry only");
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->sources, kSourceHelp)->required();
-  command->add_option("--errors", o->errors, "Largest errors [m], comma-separated")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-4, 10.0));
+  AddErrorBounds(command, "--errors", &o->errors, "Largest errors [m], comma-separated");
   command->add_option("--efforts", o->efforts, "Efforts of lidarenc, comma-separated")
       ->delimiter(',')
       ->check(CLI::Range(0, 3));

@@ -2,6 +2,8 @@
 // The subcommands of lidar-eval: each adds itself to the program with its options.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 namespace lidar::tools {
 
@@ -16,5 +18,11 @@ void AddToPcapCommand(CLI::App* app);
 void AddSlamCommand(CLI::App* app);
 void AddAteCommand(CLI::App* app);
 void AddToKittiCommand(CLI::App* app);
+
+/// Adds an option of a subcommand that takes a list of error bounds [m].
+inline void AddErrorBounds(CLI::App* command, const std::string& name, std::vector<double>* bounds,
+                           const std::string& about) {
+  command->add_option(name, *bounds, about)->delimiter(',')->check(CLI::Range(1e-4, 10.0));
+}
 
 }  // namespace lidar::tools

@@ -136,9 +136,7 @@ void AddRateDistortionCommand(CLI::App* app) {
   command->add_option("--slices", o->slices, "Slices per scan, comma-separated")
       ->delimiter(',')
       ->check(CLI::Range(1U, 64U));
-  command->add_option("--errors", o->errors, "Error bounds [m], comma-separated")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-4, 10.0));
+  AddErrorBounds(command, "--errors", &o->errors, "Error bounds [m], comma-separated");
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
   command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write the table to this file as well");

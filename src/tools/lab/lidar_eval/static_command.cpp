@@ -154,9 +154,7 @@ void AddStaticCommand(CLI::App* app) {
   command->add_option("--effort", o->efforts, "Efforts of the own coder, comma-separated")
       ->delimiter(',')
       ->check(CLI::Range(1U, codec::EffortControl::kHighest));
-  command->add_option("--errors", o->errors, "Error bounds [m], comma-separated")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-4, 10.0));
+  AddErrorBounds(command, "--errors", &o->errors, "Error bounds [m], comma-separated");
   command->add_option("--slices", o->slices, "Slices per scan")->check(CLI::Range(1U, 64U));
   command->add_option("--delay", o->delay, "Scans until a receiver's word is back")
       ->check(CLI::Range(1U, 100U));
