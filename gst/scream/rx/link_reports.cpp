@@ -98,8 +98,8 @@ bool SeenPackets::Add(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t times
   for (int i = 1; i <= std::min(ahead, kWindow); ++i)
     source.seen.reset(static_cast<std::uint16_t>(source.newest + i) % kWindow);
   if (ahead > 0) source.newest = seq;
-  if (source.seen[seq % kWindow] && known == timestamp) return false;
   if (source.seen[seq % kWindow]) {
+    if (known == timestamp) return false;
     source.seen.reset();
     source.newest = seq;
   }
