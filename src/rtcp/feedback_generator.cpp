@@ -102,6 +102,7 @@ bool FeedbackGenerator::Store(Source* source, std::int64_t seq, Time arrival, Ec
   while (seq < source->first) {
     source->window.emplace_front();
     --source->first;
+    ++stats_.lost;  // until it is stored
     source->next_report = source->first;
   }
   if (seq >= source->end()) {

@@ -141,6 +141,14 @@ TEST_F(FeedbackGeneratorTest, GapsAreReportedAsMissingAndALatePacketFillsThem) {
   EXPECT_EQ(generator_.stats().reordered, 1U);
 }
 
+TEST_F(FeedbackGeneratorTest, PacketsFromBeforeTheFirstOneAreNotLostAndThoseBetweenAre) {
+  Arrive(100);
+  Arrive(102);
+  EXPECT_EQ(generator_.stats().lost, 1U);
+  Arrive(97);
+  EXPECT_EQ(generator_.stats().lost, 3U) << "98, 99 and 101";
+}
+
 TEST_F(FeedbackGeneratorTest, AReportReachesBackToTheOldestOfThoseThatCameLate) {
   for (std::uint16_t seq = 0; seq < 100; ++seq)
     if (seq != 10 && seq != 20) Arrive(seq, seq == 99), generator_.Take(now_);
