@@ -100,7 +100,7 @@ void Stream::OnDropped(Time now, std::size_t packets) {
   if (packets > 0) last_active_ = now;
   for (; packets > 0 && !queue_.empty(); --packets) {
     ++counters_.packets_dropped;
-    dropped_group_ = queue_.front().group;
+    if (queue_.front().group) dropped_group_ = queue_.front().group;
     queued_ -= queue_.front().size;
     queue_.pop_front();
   }
@@ -115,7 +115,7 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
     const auto next = UnitEnd(unit);
     const bool group_dropped = unit->group && unit->group == dropped;
     if (!group_dropped && !Late(now, rate, unit, next)) break;
-    dropped = unit->group;
+    if (unit->group) dropped = unit->group;
     unit = next;
   }
   return static_cast<std::size_t>(unit - queue_.begin());

@@ -236,6 +236,17 @@ TEST_F(ScanTest, SlicesThatFollowADroppedOneOfTheirScanGoTheSameWay) {
   EXPECT_EQ(stream_.LatePackets(kStart + 101ms, DataRate::Infinite()), 6U);
 }
 
+TEST_F(ScanTest, SlicesThatFollowADroppedOneGoTheSameWayBehindARepairPacket) {
+  const auto queue = [this](std::uint32_t slice) {
+    stream_.OnQueued(kStart, {1, DataSize::Bytes(1000), false, slice, 1});
+  };
+  queue(0);
+  stream_.OnQueued(kStart, {2, DataSize::Bytes(500), false, 77, {}});
+  queue(1);
+  stream_.OnDropped(kStart, 2);
+  EXPECT_EQ(stream_.LatePackets(kStart + 1ms, DataRate::Infinite()), 1U);
+}
+
 TEST_F(ScanTest, SlicesThatFollowOneWhichAnotherPathDeliveredAreSent) {
   Scan(kStart, 1);
   for (int i = 0; i < 2; ++i) stream_.OnUnneeded(kStart);
