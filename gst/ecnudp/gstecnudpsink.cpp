@@ -161,13 +161,16 @@ static guint8 SocketTos(int fd, GSocketFamily family) {
   return static_cast<guint8>(tos & ~kEcnMask);
 }
 
-static void ConfigureSocket(GSocket* socket, const SinkSettings& s) {
+static void ConfigureSocket(GstLidarEcnUdpSink* self, GSocket* socket, const SinkSettings& s) {
   if (s.buffer_size > 0)
     g_socket_set_option(socket, SOL_SOCKET, SO_SNDBUF, static_cast<gint>(s.buffer_size), nullptr);
   g_socket_set_multicast_ttl(socket, static_cast<guint>(s.ttl_mc));
   if (!s.multicast_iface.empty() &&
       !lidar::net::SendMulticastFrom(g_socket_get_fd(socket), s.multicast_iface))
-    GST_WARNING("cannot send multicast from %s: %s", s.multicast_iface.c_str(), g_strerror(errno));
+    GST_ELEMENT_WARNING(
+        self, RESOURCE, SETTINGS,
+        ("The multicast-iface %s is not used: %s.", s.multicast_iface.c_str(), g_strerror(errno)),
+        ("multicast leaves by the interface that the kernel chooses"));
 }
 
 static gboolean Start(GstBaseSink* base) {
@@ -182,7 +185,7 @@ static gboolean Start(GstBaseSink* base) {
       TakeSocket(s.given, [&] { return OpenSending(GST_ELEMENT(self), s.target, family); });
   if (!used.socket) return FALSE;
   GSocket* socket = used.socket.get();
-  ConfigureSocket(socket, s);
+  ConfigureSocket(self, socket, s);
   state.family = g_socket_get_family(socket);
   state.socket_tos = SocketTos(g_socket_get_fd(socket), state.family);
   state.to = peer ? ToNative(peer.get(), state.family) : NativeAddress{};

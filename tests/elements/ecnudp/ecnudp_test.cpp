@@ -8,6 +8,7 @@
 
 #include <array>
 #include <atomic>
+#include <ctime>
 #include <functional>
 #include <string>
 #include <thread>
@@ -16,6 +17,15 @@
 #include "tests/support/element_bus.h"
 #include "tests/support/ipv6.h"
 #include "tests/support/patience.h"
+
+static std::atomic<gint64> clock_ahead{0};  // [us]
+
+/// Replaces GLib's function in this program and in its plugins.
+extern "C" gint64 g_get_real_time() {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return gint64{now.tv_sec} * G_USEC_PER_SEC + now.tv_nsec / 1'000 + clock_ahead;
+}
 
 namespace lidar::gst {
 namespace {
@@ -170,6 +180,17 @@ TEST(EcnUdp, ADatagramThatCannotGoCostsNoOther) {
   }
 }
 
+TEST(EcnUdp, AnEmptyDatagramIsPassedOver) {
+  const Harness src = NewSource();
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  for (const char* text : {"", "x"})
+    ASSERT_EQ(gst_harness_push(sink.get(), Payload(text)), GST_FLOW_OK);
+  EXPECT_EQ(Stat(sink.get(), "packets-sent"), 2U);
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(Text(got.get()), "x");
+}
+
 TEST(EcnUdp, APauseOrAFlushEndsNothing) {
   const Harness src = NewSource();
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
@@ -252,6 +273,9 @@ TEST(EcnUdp, ReplyGoesToThePeerThatTheBufferNames) {
       EXPECT_EQ(Text(got.get()), text);
     }
   }
+  EXPECT_TRUE(GetObject<GSocketAddress>(reply.get(), "peer-address"));
+  gst_element_set_state(reply->element, GST_STATE_NULL);
+  EXPECT_FALSE(GetObject<GSocketAddress>(reply.get(), "peer-address"));
 }
 
 /// Returns the TOS byte of the next datagram on `fd`; -1 if the kernel does not give it.
@@ -311,6 +335,22 @@ TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
           << dscp;
     }
   }
+}
+
+/// A socket for both address families sends to an IPv4 host through the IPv4 stack.
+TEST(EcnUdpSink, MarksWhatLeavesThroughTheIpv4StackOfAnIpv6Socket) {
+  const Harness src = NewSource(), both = NewSource();
+  GstElement* element = SinkElement();
+  gst_util_set_object_arg(G_OBJECT(element), "ecn", "ect1");
+  g_object_set(element, "socket", GetObject<GSocket>(both.get(), "used-socket").get(),
+               "close-socket", FALSE, "host", "127.0.0.1", "port", LocalPort(src.get()), nullptr);
+  const Harness sink = Wrap(element);
+  ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  GstLidarEcn ecn{};
+  ASSERT_TRUE(gst_lidar_buffer_get_ecn(got.get(), &ecn, nullptr));
+  EXPECT_EQ(ecn, GST_LIDAR_ECN_ECT1);
 }
 
 TEST(EcnUdpSink, CountsEachRunAlone) {
@@ -410,6 +450,30 @@ TEST(EcnUdpSrc, AnInterfaceThatIsNotThereIsAnElementErrorThatNamesIt) {
   gst_element_set_state(src.get(), GST_STATE_NULL);
 }
 
+TEST(EcnUdpSink, WarnsOfAnInterfaceThatIsNotThere) {
+  const ElementPtr sink(gst_element_factory_make("ecnudpsink", nullptr));
+  gst_object_ref_sink(sink.get());
+  g_object_set(sink.get(), "host", "239.201.7.1", "port", 9, "multicast-iface", "nosuch0", nullptr);
+  const test::ElementBus bus(sink.get());
+  gst_element_set_state(sink.get(), GST_STATE_PAUSED);
+  EXPECT_NE(bus.Text(GST_MESSAGE_WARNING).find("nosuch0"), std::string::npos);
+  gst_element_set_state(sink.get(), GST_STATE_NULL);
+}
+
+TEST(EcnUdpSrc, SeveralOfAMachineReceiveAMulticastGroup) {
+  const auto listener = [](guint port) {
+    Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+    g_object_set(src->element, "port", port, "multicast-group", "239.201.7.1", "multicast-iface",
+                 "lo", nullptr);
+    return src;
+  };
+  const Harness first = listener(0);
+  if (gst_element_set_state(first->element, GST_STATE_PAUSED) == GST_STATE_CHANGE_FAILURE)
+    GTEST_SKIP() << "no multicast here";
+  const Harness second = listener(LocalPort(first.get()));
+  EXPECT_NE(gst_element_set_state(second->element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+}
+
 struct Peer {
   const char* accepts;
   const char* wants;  // caps that the source then sets; NULL for none
@@ -446,6 +510,21 @@ INSTANTIATE_TEST_SUITE_P(
              "clock-rate=90000,payload=96"},
         Peer{"application/x-rtp,media={video,audio},clock-rate=90000;application/x-other",
              "application/x-rtp,media=video,clock-rate=90000"}));
+
+TEST(EcnUdpSrc, AClockThatWasSetIsNoArrivalTime) {
+  const Harness src = NewSource();
+  gst_harness_use_testclock(src.get());
+  gst_harness_set_time(src.get(), 100 * GST_SECOND);
+  const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
+  for (const gint64 hours : {1, -1}) {
+    clock_ahead = hours * 3'600 * G_USEC_PER_SEC;
+    ASSERT_EQ(gst_harness_push(sink.get(), Payload("x")), GST_FLOW_OK);
+    const BufferPtr got(gst_harness_pull(src.get()));
+    ASSERT_TRUE(got);
+    EXPECT_EQ(GST_BUFFER_PTS(got.get()), 100 * GST_SECOND) << hours;
+  }
+  clock_ahead = 0;
+}
 
 TEST(EcnUdpSrc, EosFromTheApplicationEndsTheStream) {
   const Harness src = NewSource();
