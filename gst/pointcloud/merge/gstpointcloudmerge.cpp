@@ -104,6 +104,12 @@ static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
   pad->state->own_fields = own ? own->fields() : "";
 }
 
+static void MergePadForget(GstLidarPointCloudMergePad* pad) {
+  pad->state->caps.reset();
+  pad->state->plan.reset();
+  pad->state->own_fields.clear();
+}
+
 /// Converts the returns of `buffer` to the common frame, with `fields`. Gives null on failure;
 /// `why` then has the reason for a user.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
@@ -255,6 +261,8 @@ static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
 
 static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   auto* base = GST_AGGREGATOR(self);
+  if (GST_CLOCK_TIME_IS_VALID(merged.time))
+    GST_AGGREGATOR_PAD(base->srcpad)->segment.position = merged.time + merged.duration;
   const auto fields = lidar::PointFields::Parse(merged.fields);
   if (merged.points.empty() || !fields) return GST_FLOW_OK;
   SetCaps(self, merged, *fields);
@@ -263,8 +271,6 @@ static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   GST_BUFFER_DURATION(out) = merged.duration;
   if (GST_CLOCK_TIME_IS_VALID(merged.capture_time))
     gst_lidar_buffer_set_capture_time(out, merged.capture_time);
-  GstSegment* segment = &GST_AGGREGATOR_PAD(base->srcpad)->segment;
-  segment->position = merged.time + merged.duration;
   return gst_aggregator_finish_buffer(base, out);
 }
 
@@ -321,6 +327,7 @@ static GstClockTime NextTime(GstAggregator* base) {
 
 static gboolean Stop(GstAggregator* base) {
   *GST_LIDAR_POINT_CLOUD_MERGE(base)->state = State();
+  for (const auto& pad : Pads(base)) MergePadForget(GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad.get()));
   return TRUE;
 }
 

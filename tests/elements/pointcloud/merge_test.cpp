@@ -2,6 +2,7 @@
 // Scans of several sensors become one cloud.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "gst/lidar/gstlidar.h"
@@ -182,16 +183,18 @@ TEST_F(MergedByHand, SoDoesAScanWhoseDurationIsZero) {
   ExpectCloud({1, 2}, 100);
 }
 
-/// A live sensor is waited for until the end of the last cloud and the latency have passed.
+/// A live sensor is waited for until the end of the last cloud and the latency have passed, also
+/// behind a turn in which no sensor saw anything.
 TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
   constexpr GstClockTime kLatency = 20 * GST_MSECOND;
   for (GstHarness* h : {first_.get(), second_.get()}) gst_harness_set_upstream_latency(h, kLatency);
-  for (GstClockTime turn = 0; turn < 3; ++turn) {
-    Push(first_, 1, 100 * turn);
+  for (GstClockTime turn = 0; turn < 5; ++turn) {
+    const bool sees_nothing = turn == 3;
+    Push(first_, sees_nothing ? NAN : 1, 100 * turn);
     EXPECT_TRUE(AwaitClockWait(first_.get(), 100 * turn * GST_MSECOND + kLatency)) << turn;
     EXPECT_EQ(gst_harness_buffers_in_queue(first_.get()), 0U) << turn;
-    Push(second_, 2, 100 * turn);
-    ExpectCloud({1, 2}, 100 * turn);
+    Push(second_, sees_nothing ? NAN : 2, 100 * turn);
+    if (!sees_nothing) ExpectCloud({1, 2}, 100 * turn);
   }
 }
 
@@ -282,6 +285,30 @@ TEST_F(MergedByHand, ASecondRunBeginsWithItsCaps) {
     gst_element_set_state(element_.get(), GST_STATE_NULL);
     gst_element_set_state(element_.get(), GST_STATE_PLAYING);
   }
+}
+
+TEST_F(MergedByHand, ASecondRunForgetsTheFieldsOfTheFirst) {
+  gst_harness_set_src_caps_str(first_.get(),
+                               "application/x-pointcloud2,width=1,height=1,point-step=16,"
+                               "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12\"");
+  gst_pad_push_event(second_->srcpad, gst_event_new_eos());
+  const float point[4] = {1, 1, 1, 99};
+  GstBuffer* buffer = gst_buffer_new_memdup(point, sizeof point);
+  GST_BUFFER_PTS(buffer) = 0;
+  ASSERT_EQ(gst_harness_push(first_.get(), buffer), GST_FLOW_OK);
+  gst_buffer_unref(gst_harness_pull(first_.get()));
+  gst_element_set_state(element_.get(), GST_STATE_NULL);
+  gst_element_set_state(element_.get(), GST_STATE_PLAYING);
+  for (GstHarness* h : {first_.get(), second_.get()}) {
+    gst_pad_set_active(h->srcpad, FALSE);  // forgets caps
+    gst_pad_set_active(h->srcpad, TRUE);
+    gst_pad_push_event(h->srcpad, gst_event_new_stream_start("run"));
+  }
+  gst_pad_push_event(first_->srcpad, gst_event_new_eos());
+  gst_harness_set_src_caps_str(second_.get(), kCaps);
+  gst_pad_push_event(second_->srcpad, NewSegment());
+  Push(second_, 2, 100);
+  ExpectCloud({2}, 100);
 }
 
 TEST_F(MergedByHand, APadThatGoesIsToldOf) {
