@@ -56,6 +56,7 @@ class CloudReader : public MessageReader {
   /// `caps` may be NULL, because ROS messages have nearly all of the caps' content.
   explicit CloudReader(CapsPtr caps) {
     if (caps) info_ = CloudInfo::FromFrameCaps(caps.get());
+    if (info_) recorded_ = cdr::PointLayout{info_->fields, info_->point_step};
     if (info_) caps_ = std::move(caps);
   }
 
@@ -81,11 +82,8 @@ class CloudReader : public MessageReader {
   bool Follow(const cdr::PointCloud2& cloud) {
     if (converter_ && converter_->layout() == cloud.layout && info_->is_dense == cloud.is_dense)
       return true;
-    // Caps of our own recording give the points back as they were, gaps between fields included.
-    std::optional<cdr::PointLayout> wanted;
-    if (info_) wanted = cdr::PointLayout{info_->fields, info_->point_step};
-    converter_ = cdr::PointConverter::Make(cloud.layout, wanted);
-    if (!converter_ && wanted) converter_ = cdr::PointConverter::Make(cloud.layout);
+    converter_ = cdr::PointConverter::Make(cloud.layout, recorded_);
+    if (!converter_ && recorded_) converter_ = cdr::PointConverter::Make(cloud.layout);
     if (!converter_) return false;
     CloudInfo info = info_.value_or(CloudInfo());
     info.width = cloud.layout.width;
@@ -114,6 +112,8 @@ class CloudReader : public MessageReader {
   }
 
   std::optional<CloudInfo> info_;
+  /// Set in our own recordings, whose points come back as they were, gaps between fields included.
+  std::optional<cdr::PointLayout> recorded_;
   std::optional<cdr::PointConverter> converter_;
 };
 

@@ -323,6 +323,36 @@ TEST_F(McapContent, GapsFillWhatASilentStreamLeavesOpen) {
   EXPECT_EQ(p.outcome().gaps["see1"], (Gaps{{1'500, 500}, {2'000, 500}}));
 }
 
+TEST_F(McapContent, SamplesBesideSlicesDoNotEndAFileWithinAScan) {
+  {
+    const gst::ElementPtr sink(gst_parse_launch(
+        ("mcapsink max-file-duration=100000000" + At("r-%d.mcap")).c_str(), nullptr));
+    const Harness h(gst_harness_new_with_element(sink.get(), "sink_0", nullptr));
+    const Harness imu(gst_harness_new_with_element(sink.get(), "sink_1", nullptr));
+    SetPlaying(h.get());
+    Begin(h.get(), kSlices);
+    Begin(imu.get(), kImu);
+    const auto push = [&](guint scan, guint index, GstClockTime ms) {
+      GstBuffer* buffer = Slice(1, ms * GST_MSECOND, kCapture + ms * GST_MSECOND);
+      const GstLidarSlice place{scan, index, 2, 0};
+      gst_lidar_buffer_set_slice(buffer, &place);
+      EXPECT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
+    };
+    push(0, 0, 0);
+    push(0, 1, 50);
+    push(1, 0, 90);
+    GstBuffer* sample = gst_buffer_new_allocate(nullptr, 32, nullptr);
+    gst_buffer_memset(sample, 0, 0, 32);
+    GST_BUFFER_PTS(sample) = 105 * GST_MSECOND;
+    EXPECT_EQ(gst_harness_push(imu.get(), sample), GST_FLOW_OK);
+    push(1, 1, 110);
+    push(2, 0, 120);
+    for (GstHarness* stream : {h.get(), imu.get()}) End(stream);
+  }
+  EXPECT_EQ(MessagesOf(Path("r-0.mcap")).size(), 5U);
+  EXPECT_EQ(MessagesOf(Path("r-1.mcap")).size(), 1U);
+}
+
 TEST_F(McapContent, CloudsBeginAFileWhereThereAreNoSlices) {
   const auto recorded = Play(kSensor + " num-buffers=80 ! scanassembler ! mcapsink name=m " +
                              "max-file-duration=300000000" + At("r-%d.mcap"));

@@ -279,6 +279,37 @@ TEST_F(McapOfOthers, CloudsBecomeOurs) {
   EXPECT_EQ(kept.capture_time, kCapture);
 }
 
+TEST_F(McapOfOthers, CloudsSayEachWhetherTheyAreDense) {
+  const std::vector<std::uint8_t> points(48);
+  cdr::PointCloud2 cloud = Cloud(2);
+  cloud.data = {points.data(), points.size()};
+  cdr::PointCloud2 dense = cloud;
+  dense.is_dense = true;
+  for (const bool ends_dense : {false, true}) {
+    Record(ends_dense ? std::vector{cloud, dense} : std::vector{dense, cloud});
+    const auto played = Play("mcapsrc" + At("other.mcap") + " ! fakesink name=see");
+    EXPECT_EQ(played.buffers.at("see").size(), 2U);
+    const std::string field = std::string("is-dense=(boolean)") + (ends_dense ? "true" : "false");
+    EXPECT_NE(played.caps.at("see").find(field), std::string::npos) << played.caps.at("see");
+  }
+}
+
+TEST_F(McapOfOthers, CloudsHaveTheFieldsOfTheirOwnMessages) {
+  const std::vector<std::uint8_t> points(56);
+  cdr::PointCloud2 cloud = Cloud(2);
+  cloud.data = {points.data(), 48};
+  cdr::PointCloud2 more = cloud;
+  more.layout.fields.push_back({"intensity", 24, 7, 1});
+  more.layout.point_step = 28;
+  more.layout.row_step = 56;
+  more.data = {points.data(), 56};
+  Record({cloud, more});
+  const auto played = Play("mcapsrc" + At("other.mcap") + " ! fakesink name=see");
+  ASSERT_EQ(played.buffers.at("see").size(), 2U);
+  EXPECT_NE(played.caps.at("see").find("intensity:F32"), std::string::npos)
+      << played.caps.at("see");
+}
+
 TEST_F(McapOfOthers, NoMorePadsComeOnceAllAreThere) {
   const std::vector<std::uint8_t> points(48);
   cdr::PointCloud2 cloud = Cloud(2);
