@@ -92,6 +92,7 @@ struct Stream {
   std::optional<CloudInfo> info;
   RefusedCaps refused;
   ScanCollector collector;
+  GstClockTime newest_pts = GST_CLOCK_TIME_NONE;  // of the buffers that the collector took
   std::unique_ptr<Odometry> odometry;
   std::unique_ptr<LoopThread> loops;  // null: no loops are closed
   std::size_t loops_taken = 0;
@@ -241,8 +242,8 @@ static void SearchLoops(GstLidarOdometry* self, const Estimate& estimate) {
   TakeLoops(self);
 }
 
-/// Aligns the open scan, if there is one. `pts` is the timestamp of its last buffer.
-static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
+/// Aligns the open scan, if there is one. Its pose has the timestamp of its last buffer.
+static void FinishScan(GstLidarOdometry* self) {
   State& state = *self->state;
   Stream& stream = state.stream;
   const auto scan = stream.collector.Take();
@@ -260,9 +261,9 @@ static void FinishScan(GstLidarOdometry* self, GstClockTime pts) {
   WriteTrajectory(self, estimate);
   WarnIfLost(self, estimate);
   if (Snapshot(state).post_messages) Post(self, OdometryMessage(estimate));
-  PushPose(GST_ELEMENT(self), estimate, pts);
+  PushPose(GST_ELEMENT(self), estimate, stream.newest_pts);
   SearchLoops(self, estimate);
-  PushMap(GST_ELEMENT(self), stream.map_from_odometry, estimate.time, pts);
+  PushMap(GST_ELEMENT(self), stream.map_from_odometry, estimate.time, stream.newest_pts);
 }
 
 /// Waits until all scans were searched for loops, and pushes the corrected pose of the last scan.
@@ -271,7 +272,8 @@ static void FinishLoops(GstLidarOdometry* self) {
   if (!stream.loops) return;
   stream.loops->Finish();
   TakeLoops(self);
-  PushMap(GST_ELEMENT(self), stream.map_from_odometry, stream.last.time, GST_CLOCK_TIME_NONE);
+  if (stream.last.time == Time{}) return;  // there was no scan
+  PushMap(GST_ELEMENT(self), stream.map_from_odometry, stream.last.time, stream.newest_pts);
 }
 
 /// Adds the buffer to a scan. Returns false if it cannot be mapped or does not hold whole points.
@@ -281,6 +283,7 @@ static bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarS
   const BufferMap map(buffer, GST_MAP_READ);
   if (!map || map.size() % stream.info->point_step != 0) return false;
   stream.collector.Add(slice, at, map.data(), map.size());
+  stream.newest_pts = GST_BUFFER_PTS(buffer);
   return true;
 }
 
@@ -298,14 +301,14 @@ static GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
                       (nullptr));
     return GST_FLOW_ERROR;
   }
-  if (stream.collector.BeginsNewScan(slice)) FinishScan(self, GST_BUFFER_PTS(buffer));
+  if (stream.collector.BeginsNewScan(slice)) FinishScan(self);
   if (!AddBuffer(self, buffer, slice, *at)) {
     GST_WARNING_OBJECT(self, "a buffer of another size than its caps say");
     return GST_FLOW_OK;
   }
   // The scan is aligned only when its last slice is there: earlier slices leave with a predicted
   // pose.
-  if (stream.collector.complete()) FinishScan(self, GST_BUFFER_PTS(buffer));
+  if (stream.collector.complete()) FinishScan(self);
   const GstLidarPose pose = ToMeta(stream.odometry->PredictAt(*at), stream.last);
   gst_lidar_buffer_set_pose(buffer, &pose);
   return GST_FLOW_OK;
@@ -313,7 +316,7 @@ static GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
 
 static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   Stream& stream = GST_LIDAR_ODOMETRY(base)->state->stream;
-  FinishScan(GST_LIDAR_ODOMETRY(base), GST_CLOCK_TIME_NONE);
+  FinishScan(GST_LIDAR_ODOMETRY(base));
   stream.info = CloudInfo::FromCaps(in);
   if (stream.info && stream.collector.SetInfo(*stream.info)) {
     stream.refused.Reset();
@@ -333,7 +336,7 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
     case GST_EVENT_CAPS:
       break;  // the pad of poses has its own segment and caps
     case GST_EVENT_EOS:
-      FinishScan(self, GST_CLOCK_TIME_NONE);
+      FinishScan(self);
       FinishLoops(self);
       PushToPoses(GST_ELEMENT(self), event);
       break;

@@ -116,6 +116,23 @@ TEST(ImuInput, KeepsTheNewestSamplesWhereNoScanTakesThem) {
   EXPECT_TRUE(input.Take().empty());
 }
 
+TEST(ImuInput, TakesNothingOnceTheLayoutIsAnother) {
+  ImuInput input;
+  ASSERT_TRUE(input.SetCaps(ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
+  const CapsPtr other(gst_caps_new_simple(GST_LIDAR_IMU_MEDIA_TYPE, "fields", G_TYPE_STRING,
+                                          "t:U64:0,gx:F64:8", nullptr));
+  EXPECT_FALSE(input.SetCaps(other.get()));
+  const auto sample = cdr::WriteImuSample({});
+  EXPECT_FALSE(input.Add({sample.data(), sample.size()}));
+  EXPECT_TRUE(input.Take().empty());
+}
+
+TEST_F(ImuPad, IsRequestedOnce) {
+  GstPadTemplate* imu =
+      gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(h_->element), "imu");
+  EXPECT_EQ(gst_element_request_pad(h_->element, imu, nullptr, nullptr), nullptr);
+}
+
 TEST_F(ImuPad, UsesSamplesThatAgreeWithTheScans) {
   ASSERT_TRUE(Describe(kImuFields));
   EXPECT_GE(ScansWithImu(0), kScans / 2);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -111,6 +112,41 @@ TEST_F(MapPad, IsTheOdometryWhereLoopsAreNotClosed) {
   EXPECT_EQ(poses_, 5U);
   EXPECT_EQ(local_maps_, 0U);
   EXPECT_EQ(last_.orientation[3], 1);
+}
+
+TEST(LateMapPad, HasTheEventsOfTheStreamAndItsOwnCaps) {
+  const Harness h(gst_harness_new("lidarodometry"));
+  gst_harness_set_src_caps_str(h.get(),
+                               "application/x-pointcloud2,width=1,height=1,point-step=12,"
+                               "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1");
+  const std::array<float, 3> point = {1, 2, 3};
+  const auto push = [&](GstClockTime pts) {
+    GstBuffer* cloud = gst_buffer_new_memdup(point.data(), sizeof point);
+    GST_BUFFER_PTS(cloud) = pts;
+    EXPECT_EQ(gst_harness_push(h.get(), cloud), GST_FLOW_OK);
+  };
+  push(0);
+  const Harness map(gst_harness_new_with_element(h->element, nullptr, "map"));
+  push(100 * GST_MSECOND);
+  const CapsPtr caps(gst_pad_get_current_caps(map->sinkpad));
+  ASSERT_TRUE(caps);
+  const GstStructure* s = gst_caps_get_structure(caps.get(), 0);
+  EXPECT_STREQ(gst_structure_get_string(s, "frame-id"), "map");
+  const BufferPtr pose(gst_harness_pull(map.get()));
+  EXPECT_EQ(GST_BUFFER_PTS(pose.get()), 100 * GST_MSECOND);
+}
+
+TEST(MapPadWithoutScans, GivesNoPose) {
+  const ElementPtr odometry(gst_element_factory_make("lidarodometry", nullptr));
+  gst_object_ref_sink(odometry.get());
+  g_object_set(odometry.get(), "local-maps", 2, nullptr);
+  const Harness h(gst_harness_new_with_element(odometry.get(), "sink", "src"));
+  const Harness map(gst_harness_new_with_element(h->element, nullptr, "map"));
+  gst_harness_set_src_caps_str(h.get(),
+                               "application/x-pointcloud2,width=1,height=1,point-step=12,"
+                               "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1");
+  gst_harness_push_event(h.get(), gst_event_new_eos());
+  EXPECT_EQ(gst_harness_buffers_received(map.get()), 0U);
 }
 
 /// A drive of laps through lidarodometry. Its sensor measures up to 2 % too far on the far side of

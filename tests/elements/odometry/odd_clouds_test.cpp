@@ -175,6 +175,23 @@ TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
   EXPECT_EQ(Count("scans"), 1U);  // the first four slices, once they had too many points
 }
 
+TEST_F(OddClouds, CutOffByTheNextScanOrTheEndHaveTheirOwnTimestamp) {
+  Start(kXyz);
+  const Harness poses(gst_harness_new_with_element(h_->element, nullptr, "odometry"));
+  for (guint scan = 0; scan < 2; ++scan) {
+    GstBuffer* buffer = Points({1, 2, 3}, scan * 100 * GST_MSECOND);
+    const GstLidarSlice slice{scan, 0, 2, 0};
+    gst_lidar_buffer_set_slice(buffer, &slice);
+    ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
+  }
+  gst_harness_push_event(h_.get(), gst_event_new_eos());
+  for (guint scan = 0; scan < 2; ++scan) {
+    const BufferPtr pose(gst_harness_try_pull(poses.get()));
+    ASSERT_TRUE(pose) << scan;
+    EXPECT_EQ(GST_BUFFER_PTS(pose.get()), scan * 100 * GST_MSECOND);
+  }
+}
+
 TEST_F(OddClouds, MayBeSlicesOfNoScan) {
   Start(kXyz);
   GstBuffer* buffer = Points({1, 2, 3}, 0);
@@ -191,11 +208,17 @@ TEST_F(OddClouds, NeedTimestamps) {
 }
 
 TEST_F(OddClouds, NeedPackedCoordinates) {
-  Start(
+  constexpr const char* kDoubles =
       "application/x-pointcloud2,width=1,height=1,point-step=24,"
-      "fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",framerate=10/1");
-  EXPECT_NE(Push({1, 2, 3, 4, 5, 6}, 0), GST_FLOW_OK);
-  EXPECT_TRUE(HasError());
+      "fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",framerate=10/1";
+  Start(kDoubles);
+  for (const GstClockTime t : {1U, 3U}) {
+    EXPECT_NE(Push({1, 2, 3, 4, 5, 6}, t * GST_SECOND), GST_FLOW_OK);
+    EXPECT_EQ(bus_->Texts(GST_MESSAGE_ERROR).size(), 1U) << "again, after good ones";
+    gst_harness_set_src_caps_str(h_.get(), kXyz);
+    EXPECT_EQ(Push({1, 2, 3}, (t + 1) * GST_SECOND), GST_FLOW_OK);
+    gst_harness_set_src_caps_str(h_.get(), kDoubles);
+  }
 }
 
 TEST_F(OddClouds, MayGoBackInTime) {

@@ -120,12 +120,31 @@ TEST(PointTimes, AreTakenAsTheDriversGiveThem) {
   ExpectQuarters(PhasesWith<guint32>("t", {0, 25'000'000, 50'000'000, 75'000'000}));
   ExpectQuarters(PhasesWith<guint32>("time_stamp", {9, 25'000'009, 50'000'009, 75'000'009}));
   ExpectQuarters(PhasesWith<float>("time", {-0.075F, -0.05F, -0.025F, 0}));
+  // Livox's own messages [ns since the cloud].
+  ExpectQuarters(PhasesWith<guint32>("offset_time", {0, 25'000'000, 50'000'000, 75'000'000}));
   // Hesai and RoboSense [s since 1970], Livox [ns since 1970], a sensor without a clock [us].
   constexpr double kNow = 1'700'000'000;
   ExpectQuarters(PhasesWith<double>("timestamp", {kNow, kNow + .025, kNow + .05, kNow + .075}));
   ExpectQuarters(PhasesWith<double>(
       "timestamp", {1e9 * kNow, 1e9 * kNow + 25e6, 1e9 * kNow + 50e6, 1e9 * kNow + 75e6}));
   ExpectQuarters(PhasesWith<double>("timestamp", {4e6, 4e6 + 25e3, 4e6 + 50e3, 4e6 + 75e3}));
+}
+
+TEST(PointRings, AreThoseOfTheFieldRingOrChannel) {
+  for (const char* name : {"ring", "channel"}) {
+    CloudInfo info;
+    info.fields.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);
+    info.fields.Add(name, FieldType::kU8);
+    info.point_step = info.fields.MinimumStep();
+    info.framerate_n = 10;
+    ScanCollector collector;
+    ASSERT_TRUE(collector.SetInfo(info));
+    std::vector<guint8> bytes(2 * info.point_step, 9);
+    bytes[12] = 3;
+    bytes[info.point_step + 12] = 7;
+    collector.Add({7, 0, 1, 0}, kStart, bytes.data(), bytes.size());
+    EXPECT_EQ(collector.Take()->points.rings, (std::vector<std::uint16_t>{3, 7})) << name;
+  }
 }
 
 TEST(PointTimes, OfMissingReturnsDoNotCount) {
