@@ -116,14 +116,15 @@ bool SensorStream::IsForeign(const PacketHeader& header, const Arrival& arrival)
 PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
   const auto packet = LidarPacket::Parse(payload, metadata_.format);
   if (!packet) return Refuse(payload, arrival);
-  if (!crc_.Accept(payload)) {
-    ++stats_.damaged;
-    return PacketVerdict::kDamaged;
-  }
   const PacketHeader& header = packet->header();
   if (IsForeign(header, arrival)) {
     ++stats_.foreign;
     return PacketVerdict::kForeign;
+  }
+  // Another sensor's checksums would make this sensor's packets without them count as damaged.
+  if (!crc_.Accept(payload)) {
+    ++stats_.damaged;
+    return PacketVerdict::kDamaged;
   }
   if (metadata_.init_id != 0 && header.init_id != 0 && header.init_id != metadata_.init_id) {
     refused_init_id_ = header.init_id;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "src/base/byte_writer.h"
+#include "src/base/crc.h"
 #include "src/ouster/imu_packet.h"
 #include "src/ouster/sensor_stream.h"
 #include "tests/core/ouster/captures.h"
@@ -98,6 +99,13 @@ TEST(ClockMapper, RemembersTheFastestPacketOfTheWindowBefore) {
   const Duration error = ErrorAfter(&mapper, 8s, 16s, 10ms);
   EXPECT_GT(error, 2ms);
   EXPECT_LT(error, 4ms);
+}
+
+TEST(ClockMapper, KeepsItsOffsetToAClockThatIsPutForward) {
+  ClockMapper mapper(ClockMapper::Mode::kFollow);
+  EXPECT_EQ(ErrorAfter(&mapper, 0s, 1s, 0ms), 0ms);
+  mapper.Shift(100ms);
+  EXPECT_EQ(ErrorAfter(&mapper, 1s, 2s, 100ms), 100ms);
 }
 
 TEST(ClockMapper, StartsOverWhenAClockJumps) {
@@ -268,6 +276,20 @@ TEST_F(Stream, PacketsThatDoNotFitAreCountedAndLeftOut) {
   EXPECT_EQ(stream->batcher().stats().packets, 1U);
   EXPECT_EQ(stream->stats().wrong_size, 1U);
   EXPECT_EQ(stream->stats().foreign, 1U);
+}
+
+TEST_F(Stream, ChecksumsOfAnotherSensorAreNotAskedOfItsOwn) {
+  auto stream = Make();
+  auto foreign = packets_[0];
+  auto own = packets_[1];
+  const std::size_t body = foreign.size() - 8;
+  foreign[kStandardHeader.serial] ^= 1;
+  const std::uint64_t crc = Crc64({foreign.data(), body});
+  std::memcpy(&foreign[body], &crc, sizeof crc);
+  std::memset(&own[body], 0, sizeof crc);
+  const Arrival now{Time{1s}, Time{1s}};
+  EXPECT_EQ(stream->Push({foreign.data(), foreign.size()}, now), PacketVerdict::kForeign);
+  EXPECT_EQ(stream->Push({own.data(), own.size()}, now), PacketVerdict::kLidar);
 }
 
 TEST_F(Stream, PacketsWithoutASerialNumberGoByTheirSender) {
