@@ -72,7 +72,7 @@ std::optional<ChannelReader> ReaderFor(const PacketFormat& format, Channel chann
 }
 
 std::uint32_t ToMillimetres(double metres) {
-  return static_cast<std::uint32_t>(std::clamp(metres * 1e3, 0.0, 4e9));
+  return static_cast<std::uint32_t>(std::clamp(std::round(metres * 1e3), 0.0, 4e9));
 }
 
 template <class T>

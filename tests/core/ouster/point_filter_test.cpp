@@ -37,7 +37,7 @@ class RangeLimits : public ::testing::Test {
     const auto bytes = packet.Finish();
     PointOptions options;
     options.returns = Return::kBoth;
-    options.min_range_m = 2;
+    options.min_range_m = 2.01;
     options.max_range_m = 10;
     std::string error;
     auto writer = PointWriter::Create(m, options, &error);
@@ -53,8 +53,8 @@ class RangeLimits : public ::testing::Test {
 };
 
 TEST_F(RangeLimits, AreThemselvesWithinThem) {
-  EXPECT_EQ(Filter({2000, 10'000}), (Ranges{2000, 10'000}));
-  EXPECT_EQ(Filter({1999, 10'001}), (Ranges{0, 0}));
+  EXPECT_EQ(Filter({2010, 10'000}), (Ranges{2010, 10'000}));
+  EXPECT_EQ(Filter({2009, 10'001}), (Ranges{0, 0}));
 }
 
 TEST_F(RangeLimits, HoldForEachReturnByItself) {
