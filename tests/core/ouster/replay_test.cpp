@@ -12,7 +12,9 @@
 #include "src/ouster/pcap_writer.h"
 #include "src/ouster/sensor_stream.h"
 #include "src/tools/bench/ouster_replay/pcap_stream.h"
+#include "src/tools/bench/ouster_replay/player.h"
 #include "src/tools/bench/ouster_replay/synth_stream.h"
+#include "src/tools/common/event_loop.h"
 #include "tests/support/files.h"
 
 namespace lidar::tools {
@@ -240,6 +242,27 @@ TEST_F(Capture, BeginsAnewAfterARestartAndEndsOnceIfAsked) {
     EXPECT_EQ(sent.time_ns, 5U);
     EXPECT_EQ(sent.due, first);
   }
+}
+
+/// A sensor that sends nothing.
+class NoPackets final : public PacketStream {
+ public:
+  void Restart(const Start&) override {}
+  std::optional<OutPacket> Next() override { return std::nullopt; }
+};
+
+TEST(PlayerEvents, ComeAtTimesSinceTheProgramBeganWhateverRestarts) {
+  ReplayOptions options;
+  const ouster::Metadata metadata = MakeSynthMetadata(options.synth, options.format);
+  Sensor sensor(metadata, "", [&](const nlohmann::json&) { return metadata; });
+  options.events = {{100, {{"restart", true}}}, {200, {{"silent", true}}}};
+  const Time begin = Now();
+  Player player(options, metadata, &sensor,
+                [](const ouster::Metadata&) { return std::make_unique<NoPackets>(); });
+  player.Pump(begin + std::chrono::seconds(150));
+  EXPECT_FALSE(sensor.faults().silent);
+  player.Pump(begin + std::chrono::seconds(250));
+  EXPECT_TRUE(sensor.faults().silent);
 }
 
 }  // namespace

@@ -22,6 +22,10 @@ def direction(beam, column):
             math.sin(altitude))
 
 
+def point_at(beam, column, range_mm, intensity):
+    return struct.pack("<4f", *(c * range_mm / 1000 for c in direction(beam, column)), intensity)
+
+
 def make_cloud(seed):
     """Ranges [mm] and intensities [0, 1] of some pixels, and their KITTI file."""
     dice = random.Random(seed)
@@ -32,8 +36,10 @@ def make_cloud(seed):
                 continue
             range_mm, intensity = dice.randrange(1000, 80000), dice.random()
             pixels[beam, column] = (range_mm, intensity)
-            data += struct.pack("<4f", *(c * range_mm / 1000 for c in direction(beam, column)),
-                                intensity)
+            point = point_at(beam, column, range_mm, intensity)
+            behind = point_at(beam, column, range_mm + 900, 1 - intensity)
+            # Of the points of a pixel the nearest stays, wherever it stands.
+            data += dice.choice((point, point + behind, behind + point))
     return pixels, data
 
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 
 #include "src/ouster/scan_batcher.h"
 #include "src/tools/bench/ouster_replay/http_server.h"
@@ -353,6 +354,17 @@ TEST(OusterLive, PacketsOfARestartedSensorAreTakenWhereItsApiIsDown) {
   ASSERT_TRUE(receiver.PullUntil([](GstBuffer* buffer) {
     return GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) != FALSE;
   }));
+  // The answers of the API were no lost connection: the first one is that of the packets.
+  sensor.Fault({{"silent", true}});
+  std::string reason;
+  for (gboolean connected = TRUE; connected != FALSE;) {
+    const MessagePtr message = receiver.Await("ouster-connection-changed");
+    ASSERT_TRUE(message);
+    const GstStructure* s = gst_message_get_structure(message.get());
+    gst_structure_get_boolean(s, "connected", &connected);
+    reason = gst_structure_get_string(s, "reason");
+  }
+  EXPECT_EQ(reason.rfind("no packets", 0), 0U) << reason;
 }
 
 TEST(OusterLive, StopsAtOnceWhileTheApiIsSlow) {
@@ -416,6 +428,37 @@ TEST(OusterLive, FollowsNoRedirect) {
   const std::string error = receiver.AwaitError();
   EXPECT_NE(error.find("302"), std::string::npos) << error;
   EXPECT_EQ(visits, 0);
+}
+
+/// Sets a variable of the environment during its lifetime.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const gchar* before = g_getenv(name)) before_ = before;
+    g_setenv(name, value, TRUE);
+  }
+  ~Variable() {
+    if (before_)
+      g_setenv(name_, before_->c_str(), TRUE);
+    else
+      g_unsetenv(name_);
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* const name_;
+  std::optional<std::string> before_;
+};
+
+TEST(OusterLive, AsksItsSensorWithoutTheProxyOfTheEnvironment) {
+  const Variable proxy("http_proxy", "http://127.0.0.1:1");
+  const Variable lower("no_proxy", "");
+  const Variable upper("NO_PROXY", "");
+  const Impostor impostor([](const tools::HttpRequest&) { return tools::HttpReply{404, {}, {}}; });
+  Receiver receiver(impostor.host(), "reconnect=false");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("answers with status 404"), std::string::npos) << error;
 }
 
 TEST(OusterLive, AnAnswerOfMoreThanAMebibyteIsCutOff) {

@@ -23,6 +23,7 @@ const char* const kPcap = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 class OusterPixels : public ::testing::Test {
  protected:
   OusterPixels() {
+    metadata_.model.beam_to_lidar_z_m = 0.02;
     for (std::uint32_t beam = 0; beam < 128; ++beam) {
       for (std::uint32_t column = 0; column < 1024; ++column) {
         metadata_.pixel_angles.azimuth_deg.push_back(60.0F -

@@ -242,20 +242,21 @@ bool IsFree(const char* address, guint16 port) {
   return g_socket_bind(socket.get(), place.get(), FALSE, nullptr) != FALSE;
 }
 
-/// A sensor that refuses each configuration, and keeps what it was asked.
+/// A sensor that refuses each configuration, and notes that it was asked.
 class RefusingSensor {
  public:
-  explicit RefusingSensor(int status) : status_(status) {}
+  RefusingSensor(int status, bool can_be_read) : status_(status), can_be_read_(can_be_read) {}
   std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
   bool asked() const { return asked_; }
 
  private:
   tools::HttpReply Answer(const tools::HttpRequest& request) {
     asked_ = true;
-    if (request.method == "GET" && status_ < 500) return {200, "{}", {}};
+    if (request.method == "GET" && can_be_read_) return {200, "{}", {}};
     return {status_, "{}", {}};
   }
   const int status_;
+  const bool can_be_read_;
   std::atomic<bool> asked_{false};
   tools::HttpServer server_{"127.0.0.1", 0,
                             [this](const tools::HttpRequest& r) { return Answer(r); }};
@@ -345,6 +346,40 @@ TEST_F(OusterLiveEffects, TheReceiveBufferOfASharedSocketIsTheLargest) {
   for (const auto& pipeline : pipelines) gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
+/// The queue of a source holds the packets that another source takes from the socket: at least
+/// 1 MiB, of which these packets are more than twice as much.
+TEST_F(OusterLiveEffects, SourcesOfOnePortGetEachPacketHoweverManyCome) {
+  constexpr std::size_t kPackets = 300;
+  constexpr std::size_t kAtOnce = 8;  // fewer than a small socket holds
+  const guint16 port = FreePort();
+  const std::string launch =
+      "ouster_src name=s buffer-size=1048576 " + Ports(port, FreePort()) + " ! fakesink";
+  std::vector<gst::ElementPtr> pipelines;
+  std::vector<gst::ElementPtr> sources;
+  for (int i = 0; i < 2; ++i) {
+    pipelines.emplace_back(gst_parse_launch(launch.c_str(), nullptr));
+    sources.emplace_back(gst_bin_get_by_name(GST_BIN(pipelines.back().get()), "s"));
+    gst_element_set_state(pipelines.back().get(), GST_STATE_PLAYING);
+    ASSERT_TRUE(Eventually([&] { return StatOf(sources.back().get(), "receive-buffer") > 0; }));
+  }
+  const auto packets = LoadPackets(kDual + ".pcap", LoadMetadata(kDual + ".json"));
+  UdpSender sender(port);
+  const auto sent_to_all = [&](std::size_t sent) {
+    return std::all_of(sources.begin(), sources.end(), [&](const gst::ElementPtr& source) {
+      return StatOf(source.get(), "packets") + StatOf(source.get(), "dropped-by-kernel") >= sent;
+    });
+  };
+  for (std::size_t sent = 0; sent < kPackets; ++sent) {
+    if (sent % kAtOnce == 0) {
+      ASSERT_TRUE(Eventually([&] { return sent_to_all(sent); })) << sent;
+    }
+    sender.Send(packets[sent % packets.size()]);
+  }
+  EXPECT_TRUE(Eventually([&] { return sent_to_all(kPackets); }));
+  for (const auto& source : sources) EXPECT_EQ(StatOf(source.get(), "dropped-by-kernel"), 0U);
+  for (const auto& pipeline : pipelines) gst_element_set_state(pipeline.get(), GST_STATE_NULL);
+}
+
 const OusterEffect kSensorEffects[] = {
     {R"("udp_port_lidar":7)", "lidar-port", "7"},
     {R"("udp_port_imu":9)", "imu-port", "9"},
@@ -357,7 +392,7 @@ const OusterEffect kSensorEffects[] = {
 };
 
 TEST_F(OusterLiveEffects, ASensorIsAskedForWhatTheSettingsSayAndNothingElse) {
-  const RefusingSensor sensor(400);
+  const RefusingSensor sensor(400, true);
   for (const auto& [asked, property, value] : kSensorEffects) {
     const std::string error =
         FirstProblem("hostname=" + sensor.host() + " " + property + "=" + value);
@@ -369,7 +404,9 @@ TEST_F(OusterLiveEffects, ASensorIsAskedForWhatTheSettingsSayAndNothingElse) {
 }
 
 TEST_F(OusterLiveEffects, ASensorThatFailsIsWaitedForOrAnError) {
-  const RefusingSensor sensor(503);
+  const RefusingSensor busy(503, true);
+  EXPECT_EQ(FirstProblem("lidar-mode=512x10 hostname=" + busy.host()).rfind("warning: ", 0), 0U);
+  const RefusingSensor sensor(503, false);
   EXPECT_EQ(FirstProblem("hostname=" + sensor.host()).rfind("warning: ", 0), 0U);
   EXPECT_EQ(FirstProblem("reconnect=false hostname=" + sensor.host()).rfind("error: ", 0), 0U);
 }
@@ -444,6 +481,28 @@ TEST(OusterSecondRun, IsAsTheFirst) {
   EXPECT_TRUE(HasLine(first, "troubles.pcap is cut short"));
   run.Stop();
   EXPECT_EQ(run.Play(), first);
+}
+
+TEST(OusterRestarts, InACaptureAreWarnedOfOnce) {
+  CaptureFile file(DataPath(kDual + ".pcap"));
+  std::vector<CaptureFile::Record> all;
+  for (guint scan = 0; scan < 3; ++scan) {
+    for (CaptureFile::Record& r : file.Scan(scan)) {
+      char& init_id = r.frame[CaptureFile::kPayload + 4];
+      init_id = static_cast<char>(init_id ^ static_cast<char>(scan));
+      all.push_back(std::move(r));
+    }
+  }
+  file.records = std::move(all);
+  const std::string path = kRunFiles + "restarts.pcap";
+  file.Write(path);
+  const Lines lines = FileRun("location=" + path + " metadata=" + DataPath(kDual + ".json")).Play();
+  EXPECT_TRUE(HasLine(lines, "restarts=(guint64)2,"));
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
+                          [](const std::string& line) {
+                            return line.find("warning The sensor was restarted") != line.npos;
+                          }),
+            1);
 }
 
 TEST(OusterSecondRun, OfAFileThatWasSoughtGivesTheSameClouds) {

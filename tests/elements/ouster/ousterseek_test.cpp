@@ -138,6 +138,9 @@ TEST(OusterSeek, GoesToTheSliceOfATimeAndPlaysTheSameFromThere) {
       EXPECT_TRUE(After(rest, rest.size() - (24 - n)) == After(all, n)) << n;
     }
   }
+  // A slice that ends where the segment begins is left out.
+  ASSERT_TRUE(Seek(h, {static_cast<gint64>(all[4].pts + kSlice)}));
+  EXPECT_TRUE(PlayOn(h) == After(all, 5));
 }
 
 TEST(OusterSeek, GoesAnywhereInAPcapNgFileToo) {

@@ -198,5 +198,15 @@ TEST(OusterFiles, ThatMayNotBeOpenedAreAnElementError) {
   EXPECT_NE(error.find("ulimit -n"), std::string::npos) << error;
 }
 
+TEST(OusterFirmware, ThatIsTooOldIsAnError) {
+  const HostileServer server(
+      [](const Exchange& e) { e.Send("HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n"); });
+  for (const std::string& host : {server.host(), "http://" + server.host() + "/"}) {
+    Receiver receiver(host, "", {0, 0});
+    const std::string error = receiver.AwaitError();
+    EXPECT_NE(error.find("is its firmware older than 2.1?"), std::string::npos) << error;
+  }
+}
+
 }  // namespace
 }  // namespace lidar::test
