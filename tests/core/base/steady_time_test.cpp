@@ -20,6 +20,8 @@ TEST(SteadyTime, GoesOnWhereTheClockOfItsCallerIsSetBack) {
   EXPECT_EQ(clock.Peek(kStart), kStart + 2001ms);
   EXPECT_EQ(clock.ToCaller(kStart), kStart - 2001ms);
   EXPECT_EQ(clock.ToCaller(Time::max()), Time::max());
+  EXPECT_EQ(clock.From(kStart - 60s), kStart + 1ms) << "set back again";
+  EXPECT_EQ(clock.From(kStart - 59s), kStart + 1001ms);
 }
 
 }  // namespace

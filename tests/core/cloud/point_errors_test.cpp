@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <random>
+
+#include "src/cloud/point_math.h"
 
 namespace lidar {
 namespace {
@@ -138,6 +143,26 @@ TEST(PointErrors, AreNotConfusedByAnotherOrder) {
   const std::vector<DecodedPoint> turned(cloud.rbegin(), cloud.rend());
   EXPECT_EQ(Measure(cloud, turned, PointOrder::kAny).max_m, 0);
   EXPECT_GT(Measure(cloud, turned, PointOrder::kKept).max_m, 1);
+}
+
+TEST(PointErrors, OfACloudOfManyNearPointsAreDistancesToTheNearest) {
+  std::mt19937 random(5);
+  const auto cloud = [&random] {
+    std::vector<DecodedPoint> points(300);
+    for (DecodedPoint& p : points)
+      for (float& c : p.position) c = 1 + static_cast<float>(random() % 1'000) / 1'000;
+    return points;
+  };
+  const auto before = cloud();
+  const auto after = cloud();
+  double sum = 0;
+  for (const DecodedPoint& p : before) {
+    double nearest = 9;
+    for (const DecodedPoint& q : after)
+      nearest = std::min(nearest, SquaredDistance(p.position.data(), q.position.data()));
+    sum += std::sqrt(nearest);
+  }
+  EXPECT_NEAR(Measure(before, after, PointOrder::kAny).mean_m, sum / 300, 1e-9);
 }
 
 TEST(PointErrors, SayWhatFloatsAddFarAway) {

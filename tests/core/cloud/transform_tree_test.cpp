@@ -197,6 +197,9 @@ TEST_F(Tree, AClockThatWentBackIsSeenWhateverThePosesHold) {
 TEST_F(Tree, AFrameThatMovesToAnotherParentLeavesTheFirst) {
   ASSERT_TRUE(tree_.Set("odom", "lidar", kStart, At(7), false));
   ExpectNear(Place(tree_.Find("odom", "lidar", kStart), {0, 0, 0}), {7, 0, 0});
+  // No time lies between a pose in the first parent and one in the second.
+  ASSERT_TRUE(tree_.Set("map", "base", kStart + seconds(2), At(40), false));
+  EXPECT_FALSE(tree_.Find("map", "base", kStart + seconds(1)).transform);
 }
 
 TEST_F(Tree, TakesNamesWithTheSlashOfRos1) {

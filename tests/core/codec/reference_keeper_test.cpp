@@ -57,6 +57,16 @@ TEST(ReferenceKeeper, ForgetsSlicesThatAreNeverAcknowledgedOnceALaterOneIs) {
   }
 }
 
+TEST(ReferenceKeeper, HoldsNoMemoryForAReceiverThatIsGone) {
+  ReferenceKeeper keeper;
+  keeper.OnAcknowledged(Time{0s}, kOneReceiver, 0, UINT32_MAX);
+  ASSERT_TRUE(keeper.Begin(Time{0s}, {1, 0, 1}));
+  keeper.OnEncoded({Block(64)});
+  EXPECT_GT(keeper.bytes(), 0U);
+  EXPECT_FALSE(keeper.Begin(Time{3s}, {2, 0, 1}));
+  EXPECT_EQ(keeper.bytes(), 0U);
+}
+
 TEST(ReferenceKeeper, RefersToNoSliceWhoseNameCameTwice) {
   for (const bool twice : {false, true}) {
     ReferenceKeeper keeper;

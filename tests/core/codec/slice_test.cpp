@@ -78,17 +78,21 @@ TEST_P(Efforts, KeepTheErrorNextToAReturnAtTenKilometres) {
 }
 
 TEST_P(Efforts, AreTheSameCloudFromAnyNumberOfThreads) {
-  const RangeImage image = test::RoomScan(test::RoomSensor(128), 100, 128);  // two blocks at most
-  const auto one = CodedRanges(image, 1, GetParam());
-  for (const unsigned threads : {2U, 64U}) {
-    const auto several = CodedRanges(image, threads, GetParam());
-    if (GetParam() < mixing::kSearchingEffort) {
-      EXPECT_EQ(several, one);
-      continue;
+  // Two blocks at most; the second block of the second slice begins behind the end of the turn.
+  for (const auto& [first_column, columns] : {std::pair(100U, 128U), std::pair(420U, 192U)}) {
+    const RangeImage image = test::RoomScan(test::RoomSensor(128), first_column, columns);
+    const auto one = CodedRanges(image, 1, GetParam());
+    for (const unsigned threads : {2U, 64U}) {
+      const auto several = CodedRanges(image, threads, GetParam());
+      ASSERT_EQ(several.size(), image.size());
+      if (GetParam() < mixing::kSearchingEffort) {
+        EXPECT_EQ(several, one);
+        continue;
+      }
+      // Each block chooses bins for itself.
+      EXPECT_EQ(CodedRanges(image, threads, GetParam()), several);
+      for (std::size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(several[i], image.ranges[i], 20);
     }
-    // Each block chooses bins for itself.
-    EXPECT_EQ(CodedRanges(image, threads, GetParam()), several);
-    for (std::size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(several[i], image.ranges[i], 20);
   }
 }
 
@@ -163,11 +167,32 @@ TEST_P(SliceFigures, AreThoseOfTheDecodedCloud) {
   EXPECT_EQ(quality.error_m, slice.error_m);
   EXPECT_EQ(quality.intensity_bits, coding.intensity_bits);
   EXPECT_EQ(quality.keep_fraction, coding.thinned_to / 64.0);
+  // The next slice has all beams again.
+  encoder.Load({raw.data(), raw.size()}, 0, coding.intensity_bits > 0);
+  ASSERT_EQ(encoder.Encode({0.2, coding.step_m, coding.intensity_bits}, &slice),
+            SliceResult::kEncoded);
+  ASSERT_TRUE(decoder.Decode({slice.bytes.data(), slice.bytes.size()}));
+  EXPECT_EQ(quality.keep_fraction, 1);
 }
 INSTANTIATE_TEST_SUITE_P(Of, SliceFigures,
                          ::testing::Values(Coding{1, 0, 64, 0.1, 0}, Coding{4, 0, 64, 0.1, 5},
                                            Coding{1, 1, 16, 0.05, 5}, Coding{3, 1, 32, 0.3, 0},
                                            Coding{2, 2, 8, 0, 3}));
+
+TEST(RangeSlices, TellTheirOwnErrorBehindOneOfAnotherEffort) {
+  const RangeImage image = test::RoomScan(test::RoomSensor(), 0, 256);
+  const auto raw = test::RawCloud(test::RoomSensor(), image);
+  auto encoder = *SliceEncoder::Create(test::RoomFormat());
+  encoder.Load({raw.data(), raw.size()}, 0, false);
+  SliceDecoder decoder(test::RoomFormat(), kMaxPoints);
+  for (const unsigned effort : {EffortControl::kHighest, 0U}) {
+    encoder.set_effort(effort);
+    EncodedSlice slice;
+    ASSERT_EQ(encoder.Encode({effort > 0 ? 0.05 : 0.02, 0, 0}, &slice), SliceResult::kEncoded);
+    ASSERT_TRUE(decoder.Decode({slice.bytes.data(), slice.bytes.size()}));
+    EXPECT_EQ(decoder.quality().error_m, slice.error_m) << effort;
+  }
+}
 
 TEST(RangeSlices, ShrinkWithEveryEffort) {
   const RangeImage image = test::RoomScan(test::RoomSensor(), 0, 256);

@@ -10,6 +10,7 @@
 #include <random>
 #include <tuple>
 
+#include "ext/draco/draco_check.h"
 #include "ext/draco/slice_coder.h"
 
 namespace lidar::draco {
@@ -195,6 +196,21 @@ TEST(XyzSlices, TakeTheSmallerOfDracosCodersForTheOrderGiven) {
     };
     EXPECT_EQ(size(7) == size(0), in_order);
     EXPECT_LE(size(7), size(0));
+  }
+}
+
+/// The sequential coder would take a table of all steps.
+TEST(XyzSlices, OfFineStepsAreCodedInATree) {
+  for (const double step : {1e-3, 1e-4, 5e-5, 1e-5}) {
+    SliceSettings settings;
+    settings.level = 0;
+    settings.step_m = step;
+    const Result coded = Coded(Rings(700), settings);
+    ASSERT_EQ(coded.result, SliceResult::kEncoded) << step;
+    const auto summary =
+        CheckDraco({coded.slice.bytes.data(), coded.slice.bytes.size()}, {kMaxPoints});
+    ASSERT_TRUE(summary) << step;
+    EXPECT_EQ(summary->is_kd_tree, step < 1e-4) << step;
   }
 }
 

@@ -450,6 +450,34 @@ TEST(CloudCodec, GivesBackTheLevelsOfIntensities) {
   }
 }
 
+/// The beams are known from the second cloud on; then points near the sensor are set apart.
+TEST(CloudCodec, GivesEachPointItsOwnIntensityWhetherItIsNearOrFar) {
+  constexpr double kError = 0.35;
+  constexpr float kBorder = 8.5F;  // [m]
+  const auto intensity_at = [](float range) { return range < kBorder ? 50.0F : 200.0F; };
+  PlainPoints points = SpinningScan(0);
+  for (auto& p : points) p[3] = intensity_at(std::hypot(p[0], p[1], p[2]));
+  auto encoder = CloudEncoder::Create(PlainLayout());
+  encoder->set_effort(1);
+  for (int scan = 0; scan < 2; ++scan) {
+    encoder->Load(BytesOf(points), true);
+    EncodedSlice slice;
+    ASSERT_EQ(encoder->Encode({kError, 0, 8}, &slice), SliceResult::kEncoded);
+    CloudDecoder decoder(kMaxPoints);
+    ASSERT_TRUE(decoder.Decode({slice.bytes.data(), slice.bytes.size()}));
+    const XyzCloud& cloud = decoder.cloud();
+    ASSERT_EQ(cloud.intensity.size(), points.size());
+    unsigned wrong = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const float* p = &cloud.xyz[3 * i];
+      const float range = std::hypot(p[0], p[1], p[2]);
+      const bool is_sure = std::abs(static_cast<double>(range - kBorder)) > kError + 0.01;
+      if (is_sure && cloud.intensity[i] != intensity_at(range)) ++wrong;
+    }
+    EXPECT_EQ(wrong, 0U) << scan;
+  }
+}
+
 TEST(CloudCodec, KeepsPointsThatNoGridHoldsAsTheyAre) {
   const PlainPoints points = {{1e30F, 1, 2, 200}, {1, 2, 3, 100}, {-5e9F, 5e9F, 7, 50}};
   const Coded coded = RoundTrip(points, {0.001, 0, 8}, 1);

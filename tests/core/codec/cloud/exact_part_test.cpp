@@ -271,6 +271,13 @@ TEST(ExactPart, LeavesOutOnlyWhatIsNoPoint) {
   EXPECT_EQ(decoded.Number(2, n), 28U);
 }
 
+// A decoder takes no more numbers than the bytes of a slice may hold.
+TEST(ExactPart, IsTakenWhereItCostsNextToNothing) {
+  const Cloud cloud = CloudOf(std::vector<Point>(1U << 17, Point{1, 2, 3}), "n:U8:12");
+  const Wish wish = {{"n"}, false};
+  EXPECT_EQ(Decoded(cloud, wish, Encoded(cloud, wish, 0)).size(), cloud.size());
+}
+
 TEST(ExactPart, BelongsToThePointsThatAreKeptOfAThinnedCloud) {
   const Cloud cloud = SpinningScan();
   const Wish wish = {{"ring", "time"}, true};
@@ -384,6 +391,15 @@ TEST(ExactPart, ReadsNoMoreNumbersThanItMay) {
   EXPECT_FALSE(Decodes(section, 1U << 20, 1U << 20));
   EXPECT_FALSE(Decodes({0, 33}, 1, 1U << 20));  // more than 32 fields
   EXPECT_FALSE(Decodes({0, 0}, 1, 1U << 20));   // neither fields nor an order
+}
+
+TEST(ExactPart, RefusesAnOrderByAFieldThatItDoesNotHave) {
+  auto section = SectionOf({0, 1, 2});
+  constexpr std::size_t kOrderKey = 2;  // behind the flags and the number of fields
+  for (const unsigned key : {0U, 1U, 2U, 255U}) {
+    section.at(kOrderKey) = static_cast<std::uint8_t>(key);
+    EXPECT_EQ(Decodes(section, 3, 1U << 20), key < 2) << key;
+  }
 }
 
 // Each place in the order is coded as a step to a long run of taken places. A search from place to
