@@ -74,6 +74,15 @@ TEST(AdaptiveModel, LearnsNothingFromWhatIsNoMeasure) {
   }
 }
 
+TEST(AdaptiveModel, GoesOnStraightBeyondTheStepsOfItsTraining) {
+  ModeCoefficients fit{{11, -0.5, -0.02, 0}};
+  fit.min_x = -2;
+  fit.max_x = 4;
+  // The slope is -0.5 - 0.04 x.
+  EXPECT_NEAR(fit.GeometryLog2(-5, 0) - fit.GeometryLog2(-2, 0), 3 * 0.42, 1e-9);
+  EXPECT_NEAR(fit.GeometryLog2(7, 0) - fit.GeometryLog2(4, 0), -3 * 0.66, 1e-9);
+}
+
 TEST(AdaptiveModel, PassesASurpriseOnToTheNextSlice) {
   AdaptiveModel model = Taught();
   const double before = Bytes(model, Slice(2, 1));

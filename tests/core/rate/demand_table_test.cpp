@@ -3,14 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace lidar::rate {
 namespace {
 
-/// A scan of slices that can take 10, 20 and 60 bytes more than they need.
-DemandTable Table() {
+/// A scan of three slices that can take so many bytes more than they need.
+DemandTable Table(const std::array<double, 3>& rooms = {10, 20, 60}) {
   DemandTable table;
   std::uint32_t i = 0;
-  for (const double room : {10.0, 20.0, 60.0}) table.Set(i++, 3, {5, 5 + room, {}});
+  for (const double room : rooms) table.Set(i++, 3, {5, 5 + room, {}});
   return table;
 }
 
@@ -24,6 +26,8 @@ TEST(DemandTable, GivesOthersWhatASliceCannotUse) {
   EXPECT_DOUBLE_EQ(Table().EvenShare(0, 40), 15);  // 10, 15, 15
   EXPECT_DOUBLE_EQ(Table().EvenShare(0, 70), 40);  // 10, 20, 40
   EXPECT_DOUBLE_EQ(Table().EvenShare(1, 70), 50);  // 20, 50
+  EXPECT_DOUBLE_EQ(Table({60, 10, 20}).EvenShare(0, 40), 15) << "in any order";
+  EXPECT_DOUBLE_EQ(Table({20, 60, 10}).EvenShare(0, 70), 40) << "in any order";
 }
 
 TEST(DemandTable, GivesAllThatItCanTakeToEverySliceWhereThereIsMore) {

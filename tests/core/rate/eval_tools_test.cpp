@@ -113,12 +113,12 @@ TEST_F(Files, PcdThatIsCutOffOrOfAnotherKindIsRefused) {
 
 TEST_F(Files, AFolderIsReadInTheOrderOfItsNames) {
   Write("2.bin", Bytes<float>({2, 0, 0, 0}));
+  Write("3.bin", Bytes<float>({3, 0, 0, 0}));  // no order of creation is that of the names
   Write("1.bin", Bytes<float>({1, 0, 0, 0}));
   Write("notes.txt", "not a cloud");
   const ScanSet set = LoadScans(folder_, {});
-  ASSERT_EQ(set.scans.size(), 2U);
-  EXPECT_EQ(set.scans[0].xyz[0], 1);
-  EXPECT_EQ(set.scans[1].xyz[0], 2);
+  ASSERT_EQ(set.scans.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(set.scans[i].xyz[0], static_cast<float>(i + 1));
 }
 
 TEST_F(Files, RecordedTargetsHoldUntilTheNextLine) {

@@ -48,6 +48,12 @@ TEST(ScanPlan, ThinsToASixteenthAtMostAndSkipsBelow) {
   ScanPlan plan = PlanScan(in, DegradationPreference::kMaintainFramerate);
   EXPECT_DOUBLE_EQ(plan.keep_fraction, 1.0 / 8);
   EXPECT_FALSE(plan.skip);
+  in.budget = 60.0 / 4;
+  in.saved = -60.0 / 16;
+  plan = PlanScan(in, DegradationPreference::kMaintainFramerate);
+  EXPECT_DOUBLE_EQ(plan.keep_fraction, 3.0 / 16) << "a debt thins a scan further";
+  EXPECT_FALSE(plan.skip);
+  in.saved = 0;
   in.budget = 60.0 / 50;
   plan = PlanScan(in, DegradationPreference::kMaintainFramerate);
   EXPECT_DOUBLE_EQ(plan.keep_fraction, 1.0 / 16);
