@@ -109,6 +109,17 @@ TEST_P(AnyCoder, PassesOverABufferWithoutAnyPoint) {
   EXPECT_EQ(codec.Errors(), 0U);
 }
 
+TEST_P(AnyCoder, RefusesABufferOfAnotherWidthThanItsCaps) {
+  const SensorModel model = test::RoomSensor();
+  for (const guint columns : {kColumns - 1, kColumns + 1, 2 * kColumns}) {
+    const Harness h = Encoder(GetParam());
+    SetCaps(h.get(), OrganisedInfo(model, kColumns));
+    EXPECT_EQ(gst_harness_push(h.get(), OrganisedBuffer(model, columns, {0, 0, 8, 0})),
+              GST_FLOW_ERROR)
+        << columns;
+  }
+}
+
 TEST_P(AnyCoder, KeepsTheErrorWhateverTheStepAndTheBitrate) {
   const SensorModel model = test::RoomSensor();
   for (const char* settings :
@@ -131,12 +142,13 @@ TEST_P(AnyCoder, KeepsTheErrorWhateverTheStepAndTheBitrate) {
 }
 
 /// The error on the bus when an encoder gets caps with `text` as its model file.
-std::string ErrorWithModelFile(const std::string& text, const CoderCase& coder) {
+std::string ErrorWithModelFile(const std::string& text, const CoderCase& coder,
+                               const std::string& properties = "") {
   gchar* name = nullptr;
   g_close(g_file_open_tmp("model-XXXXXX.json", &name, nullptr), nullptr);
   const StringPtr owned(name);
   g_file_set_contents(name, text.c_str(), static_cast<gssize>(text.size()), nullptr);
-  const Harness h = Encoder(coder, "model-location=" + std::string(name));
+  const Harness h = Encoder(coder, properties + " model-location=" + name);
   const test::ElementBus bus(h->element);
   gst_harness_play(h.get());
   gst_harness_push_event(h.get(), gst_event_new_stream_start("model"));
@@ -161,6 +173,8 @@ TEST_P(AnyCoder, RefusesAModelFileThatIsTruncatedForeignOrFromTheFuture) {
   future.replace(future.find("\"version\": 1"), 12, "\"version\": 9");
   EXPECT_NE(error(future).find("version"), std::string::npos) << error(future);
   EXPECT_NE(ErrorWithModelFile("", GetParam()), "");
+  const std::string other = ErrorWithModelFile(good, GetParam(), "rate-model=paper");
+  EXPECT_NE(other.find("no coefficients of the model \"paper\""), std::string::npos) << other;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "tests/elements/coders/coder_harness.h"
+#include "tests/elements/coders/stopped_clock.h"
 #include "tests/support/element_bus.h"
 #include "tests/support/patience.h"
 
@@ -159,6 +160,20 @@ TEST_P(EitherCoder, GivesTheSameCloudWithMoreThreads) {
   EXPECT_EQ(clouds[0], clouds[1]);
 }
 
+/// Each thread codes a block of its own, with a header.
+TEST_P(EitherCoder, DividesALargeCloudAmongItsThreads) {
+  const SensorModel model = test::RoomSensor(128);
+  gsize before = 0;
+  for (const char* settings : {"threads=1", "threads=3"}) {
+    const Harness h = Encoder(GetParam(), settings);
+    SetCaps(h.get(), OrganisedInfo(model, 512));
+    const BufferPtr output(
+        gst_harness_push_and_pull(h.get(), OrganisedBuffer(model, 512, {0, 0, 1, 0})));
+    EXPECT_GT(gst_buffer_get_size(output.get()), before);
+    before = gst_buffer_get_size(output.get());
+  }
+}
+
 TEST_P(AnyCoder, DropsWhatTakesMoreProcessorTimeThanAllowed) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Codec(GetParam());
@@ -265,7 +280,8 @@ INSTANTIATE_TEST_SUITE_P(
                                 "application/x-draco,fields=(string)\"x:F64:0,y:F64:8,z:F64:16\""),
                       std::pair("dracodec",
                                 "application/x-draco,geometry=(string)range,"
-                                "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"")));
+                                "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\""),
+                      std::pair("dracodec", "application/x-draco,geometry=(string)mesh")));
 #endif
 
 TEST_P(EitherCoder, RefusesASliceOfMorePointsThanItMayHave) {
@@ -319,6 +335,46 @@ TEST_P(AnyCoder, PostsItsStatsAsOftenAsAsked) {
     }
     EXPECT_EQ(slices.size(), asked ? 2U : 0U);
     for (const auto& [name, count] : slices) EXPECT_GE(count, 3U) << name;
+  }
+}
+
+TEST_P(AnyCoder, PostsItsStatsOnceTheIntervalHasPassed) {
+  test::StoppedClock clock;
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(GetParam(), "stats-interval=1000000000");
+  const test::ElementBus bus(h->element);
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  for (guint i = 0; i < 3; ++i) {  // a slice each half a second
+    gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
+    EXPECT_EQ(bus.Pop(GST_MESSAGE_ELEMENT) != nullptr, i == 2) << i;
+    clock.Advance(G_USEC_PER_SEC / 2);
+  }
+}
+
+TEST_P(EitherCoder, DecodesASensorThatTakesThePlaceOfAnother) {
+  const Harness h = Codec(GetParam());
+  for (const guint beams : {32U, 16U, 32U}) {
+    const SensorModel model = test::RoomSensor(beams);
+    SetCaps(h.get(), OrganisedInfo(model, 64));
+    GstBuffer* input = OrganisedBuffer(model, 64, {0, 0, 8, 0});
+    const auto before = PointsOf(input, 20);
+    ASSERT_EQ(gst_harness_push(h.get(), input), GST_FLOW_OK);
+    const BufferPtr output(gst_harness_try_pull(h.get()));
+    ASSERT_TRUE(output) << beams;
+    EXPECT_LE(LargestDistance(before, PointsOf(output.get(), 20)), 0.02 + 1e-5);
+  }
+}
+
+TEST(LidarEnc, CodesCloudsWiderThanATurnAsPoints) {
+  const SensorModel model = test::RoomSensor();
+  for (const guint columns : {512U, 513U}) {
+    const Harness h = Encoder(kLidar);
+    SetCaps(h.get(), OrganisedInfo(model, columns));
+    gst_harness_push(h.get(), OrganisedBuffer(model, columns, {0, 0, 1, 0}));
+    EXPECT_EQ(gst_harness_buffers_received(h.get()), 1U) << columns;
+    const CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+    EXPECT_STREQ(gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "geometry"),
+                 columns == 512 ? "range" : "xyz");
   }
 }
 

@@ -2,8 +2,10 @@
 // What encoders report about their own errors, and about clouds that contradict themselves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
+#include "gst/lidar/gstlidarencoder.h"
 #include "tests/elements/coders/checked_codec.h"
 
 namespace lidar::gst {
@@ -211,6 +213,44 @@ TEST_P(EitherCoder, WarnsWhenTheErrorIsLargerThanItMayBe) {
   guint64 failed = 0;
   EXPECT_TRUE(gst_structure_get_uint64(stats.get(), "error-checks-failed", &failed));
   EXPECT_EQ(failed, 2U);
+}
+
+TEST_P(EitherCoder, SeesAPointThatIsGone) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec(GetParam(), "error-check=1");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(codec.harness()->element), "enc"));
+  GstLidarEncoderClass* klass = GST_LIDAR_ENCODER_GET_CLASS(enc.get());
+  static gboolean (*decode)(GstLidarEncoder*, const guint8*, gsize, GArray*, GstLidarPointOrder*);
+  decode = klass->decode;
+  klass->decode = [](GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
+                     GstLidarPointOrder* order) -> gboolean {
+    if (!decode(base, data, size, points, order)) return FALSE;
+    auto* all = reinterpret_cast<GstLidarPoint*>(points->data);
+    auto* gone = std::find_if(all, all + points->len, [](const auto& p) { return p.range > 0; });
+    *gone = {};
+    return TRUE;
+  };
+  codec.Push(OrganisedBuffer(model, 64, {0, 0, 8, 0}));
+  klass->decode = decode;
+  const StructurePtr check = codec.PopCheck();
+  ASSERT_TRUE(check);
+  EXPECT_FALSE(Holds(check.get()));
+  guint64 missing = 0;
+  EXPECT_TRUE(gst_structure_get_uint64(check.get(), "points-missing", &missing));
+  EXPECT_EQ(missing, 1U);
+  EXPECT_EQ(codec.Warnings(), 1U);
+}
+
+TEST_P(EitherCoder, WarnsAgainOfErrorsThatComeBack) {
+  const SensorModel model = test::RoomSensor();
+  CheckedCodec codec(GetParam(), "error-check=1");
+  codec.SetCaps(OrganisedInfo(model, 64));
+  for (const unsigned warnings : {2U, 3U}) {  // the first includes that of the ranges
+    for (guint i = 0; i < 2; ++i) codec.Push(MovedBuffer(model, {0, i, 8, 64 * i}));
+    codec.Push(OrganisedBuffer(model, 64, {0, 2, 8, 128}));
+    EXPECT_EQ(codec.Warnings(), warnings);
+  }
 }
 
 TEST_P(EitherCoder, TellsHowGoodASliceIs) {

@@ -81,14 +81,34 @@ TEST_P(EitherCoder, ForgetsTheTargetBitrateOfTheRunBefore) {
   EXPECT_EQ(StatOf(h.get(), "target-bitrate"), 3'000'000U);
 }
 
+TEST_P(EitherCoder, KnowsNoMinimumBeforeTheFirstScanOfASecondRun) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Encoder(GetParam());
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+  const auto minimum = [&] {
+    guint bps = 0;
+    g_object_get(enc.get(), "min-bitrate", &bps, nullptr);
+    return bps;
+  };
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  ScanSizes(h.get(), model, 2);
+  EXPECT_GT(minimum(), 0U);
+  ASSERT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+  gst_harness_play(h.get());
+  EXPECT_EQ(minimum(), 0U);
+}
+
 TEST_P(EitherCoder, TellsItsBitrateFromTheFirstScanOn) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Encoder(GetParam());
-  SetCaps(h.get(), OrganisedInfo(model, 64));
+  CloudInfo info = OrganisedInfo(model, 64);
+  info.framerate_n = 15;
+  info.framerate_d = 2;
+  SetCaps(h.get(), info);
   const auto sizes = ScanSizes(h.get(), model, 2);
-  // A scan is counted once the next begins: ten in a second.
-  EXPECT_NEAR(StatOf(h.get(), "bitrate"), 80.0 * static_cast<double>(sizes[0]),
-              0.2 * 80 * static_cast<double>(sizes[0]));
+  // A scan is counted once the next begins: 7.5 in a second.
+  EXPECT_NEAR(StatOf(h.get(), "bitrate"), 60.0 * static_cast<double>(sizes[0]),
+              0.2 * 60 * static_cast<double>(sizes[0]));
 }
 
 TEST_P(EitherCoder, MarksTheFirstSliceBehindAFlush) {
@@ -112,8 +132,13 @@ TEST_P(EitherCoder, MarksTheFirstSliceBehindAFlush) {
 TEST_P(EitherCoder, TellsDownstreamWhatItsErrorBoundNeeds) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Encoder(GetParam());
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+  int notified = 0;
+  g_signal_connect(enc.get(), "notify::min-bitrate",
+                   G_CALLBACK(+[](GObject*, GParamSpec*, int* n) { ++*n; }), &notified);
   SetCaps(h.get(), OrganisedInfo(model, 64));
   const auto sizes = ScanSizes(h.get(), model, 10);
+  EXPECT_GT(notified, 0);
   GstLidarBitrateBounds bounds{};
   while (const EventPtr event{gst_harness_try_pull_event(h.get())})
     gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds);

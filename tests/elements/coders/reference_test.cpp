@@ -17,8 +17,9 @@ constexpr guint kSlices = 8;
 class StaticSensor : public ::testing::Test {
  protected:
   void Start(const std::string& properties = "", const std::string& between = "") {
-    sender_ = Launch("lidarenc name=enc effort=1 error-check=1 key-interval=0 " + properties +
-                     " ! " + between + " rtplidarpay name=pay config-interval=1");
+    sender_ = Launch(
+        "lidarenc name=enc effort=1 key-interval=0 error-check=" + std::to_string(checks_every_) +
+        " " + properties + " ! " + between + " rtplidarpay name=pay config-interval=1");
     receiver_ = Launch("rtplidardepay ! lidardec name=dec");
     CloudInfo info = OrganisedInfo(model_, 64);
     SetCaps(sender_.get(), info);
@@ -89,6 +90,7 @@ class StaticSensor : public ::testing::Test {
   }
 
   test::StoppedClock clock_;
+  guint checks_every_ = 1;  // slices
   bool acknowledges_ = true;
   guint key_requests_ = 0;
 
@@ -150,6 +152,16 @@ TEST_F(StaticSensor, IsCodedByTheScansThatTheReceiverHas) {
   EXPECT_EQ(Encoded("error-checks-failed"), 0U);
 }
 
+/// The check has not decoded the slices that a checked slice refers to.
+TEST_F(StaticSensor, IsCheckedByTheScansThatTheReceiverHas) {
+  checks_every_ = 3;
+  Start();
+  Scans(10);
+  EXPECT_EQ(Mode(), "range-temporal1");
+  EXPECT_EQ(Encoded("error-checks"), (10 * kSlices + 2) / 3);
+  EXPECT_EQ(Encoded("error-checks-failed"), 0U);
+}
+
 TEST_F(StaticSensor, IsCodedSliceBySliceWhereNobodyAcknowledges) {
   Start();
   acknowledges_ = false;
@@ -199,6 +211,7 @@ TEST_F(StaticSensor, IsAskedForSlicesThatStandAloneByAReceiverThatHasNone) {
   EXPECT_EQ(Decoded("slices"), 0U);
   EXPECT_EQ(Decoded("slices-unreferenced"), kSlices);
   EXPECT_TRUE(CarryKeyRequest());
+  EXPECT_EQ(key_requests_, 1U) << "for all slices within half a second";
   Scans(3);
   EXPECT_EQ(Decoded("slices"), 3 * kSlices);
   EXPECT_EQ(Mode(), "range-temporal1");

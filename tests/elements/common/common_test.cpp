@@ -251,6 +251,19 @@ TEST(Clouds, GiveTheNumbersOfFieldsByName) {
   gst_lidar_cloud_unmap(&cloud);
 }
 
+TEST(Clouds, AreRefusedInABufferThatIsLargerThanTheirs) {
+  const CapsPtr caps(SmallCloud().ToCaps());
+  GstLidarCloudInfo info;
+  ASSERT_TRUE(gst_lidar_cloud_info_from_caps(&info, caps.get()));
+  for (const gsize more : {0U, 1U, 20U}) {
+    const BufferPtr buffer(
+        gst_buffer_new_allocate(nullptr, SmallCloud().FrameSize() + more, nullptr));
+    GstLidarCloud cloud;
+    EXPECT_EQ(gst_lidar_cloud_map(&cloud, &info, buffer.get(), GST_MAP_READ), more == 0) << more;
+    gst_lidar_cloud_unmap(&cloud);
+  }
+}
+
 TEST(Clouds, AreRefusedWhereBufferAndCapsContradictEachOther) {
   GstLidarCloudInfo info;
   const CapsPtr other(gst_caps_from_string("video/x-raw"));
