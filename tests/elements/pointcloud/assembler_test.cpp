@@ -151,6 +151,19 @@ TEST_F(Assembler, KnowsWhenAScanBeganWhoseFirstSliceWasLost) {
   EXPECT_EQ(MetaOf(scan).first_column, 0U);
 }
 
+TEST_F(Assembler, KnowsTheTimesOfAScanWhoseSlicesHaveNoDuration) {
+  for (guint i = 1; i < kSlices; ++i) {
+    BufferPtr slice = Slice(2, i);
+    GST_BUFFER_DURATION(slice.get()) = GST_CLOCK_TIME_NONE;
+    Push(std::move(slice));
+  }
+  Push(Slice(3, 0));
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(GST_BUFFER_PTS(scan.get()), 200 * GST_MSECOND);
+  EXPECT_EQ(GST_BUFFER_DURATION(scan.get()), 100 * GST_MSECOND);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(scan.get()), 1'200 * GST_MSECOND);
+}
+
 TEST_F(Assembler, AWindowMayPassTheEndOfTheTurn) {
   // The sensor's window has 16 columns from column 24 on: slices at columns 24 and 0. Scan 0 lacks
   // the slice at 24.

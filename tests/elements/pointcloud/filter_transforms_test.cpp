@@ -220,6 +220,13 @@ TEST_F(FilterByTransforms, TheFrameStaysWherePointsDo) {
   g_object_set(h_->element, "transform", "1,0,0,0,0,0", nullptr);
   ASSERT_EQ(PushAt(1), GST_FLOW_OK);
   EXPECT_EQ(FrameOut(), "");
+  Tell(fixed_.get(), "map", "os", 0, 10);
+  g_object_set(h_->element, "target-frame", "map", nullptr);
+  ASSERT_EQ(PushAt(1), GST_FLOW_OK);
+  EXPECT_EQ(FrameOut(), "") << "the transform moves points on from there";
+  g_object_set(h_->element, "transform", "", nullptr);
+  ASSERT_EQ(PushAt(1), GST_FLOW_OK);
+  EXPECT_EQ(FrameOut(), "map");
 }
 
 TEST_F(FilterByTransforms, CloudsWaitAgainBehindAFlush) {

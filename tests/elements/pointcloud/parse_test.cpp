@@ -97,6 +97,36 @@ TEST_F(Parse, KeepsTimesThatAreGiven) {
   EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 42U);
 }
 
+TEST_F(Parse, KeepsTheSegmentOfGivenTimesWhereTheFrameRateChanges) {
+  Start(kKitti);
+  PushSegment(GST_FORMAT_TIME);
+  for (const gint rate : {10, 20}) {
+    const CapsPtr caps(gst_caps_from_string(kKitti));
+    gst_caps_set_simple(caps.get(), "framerate", GST_TYPE_FRACTION, rate, 1, nullptr);
+    gst_pad_push_event(h_->srcpad, gst_event_new_caps(caps.get()));
+    BufferPtr buffer = Bytes(160);
+    GST_BUFFER_PTS(buffer.get()) = 42;
+    Push(std::move(buffer));
+    EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 42U);
+    const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
+    const GstSegment* segment = nullptr;
+    gst_event_parse_segment(event.get(), &segment);
+    EXPECT_EQ(segment->start, 0U) << rate;
+    EXPECT_EQ(segment->base, 0U) << rate;
+  }
+}
+
+TEST_F(Parse, StampsFilesByTheFrameRateOfTheirCaps) {
+  const std::string file =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n1 2 3\n";
+  Start("application/x-ply,framerate=20/1");
+  for (guint i = 0; i < 3; ++i) {
+    Push(BufferPtr(gst_buffer_new_memdup(file.data(), file.size())));
+    EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), i * 50 * GST_MSECOND);
+  }
+}
+
 TEST_F(Parse, CutsAStreamOfAnySplitWhereTheCapsGiveTheWidth) {
   Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
   for (int i = 0; i < 10; ++i) ASSERT_EQ(Push(Bytes(48, static_cast<guint8>(i))), GST_FLOW_OK);
