@@ -28,7 +28,7 @@ TEST(Delivery, TellsOfASliceOnceAllOfItHasArrived) {
   Delivery delivery;
   Send(&delivery, 65'534, 3, 2);  // over the wrap
   EXPECT_EQ(Received(&delivery, 65'534, 65'534), Slices{});
-  EXPECT_EQ(Received(&delivery, 0, 0), Slices{});
+  for (int report = 0; report < 2; ++report) EXPECT_EQ(Received(&delivery, 0, 0), Slices{});
   EXPECT_EQ(Received(&delivery, 65'534, 65'535), Slices{0});
   EXPECT_EQ(Received(&delivery, 65'534, 3), (Slices{1, 2}));
   EXPECT_EQ(Received(&delivery, 65'534, 3), Slices{});

@@ -282,5 +282,21 @@ TEST(Receiver, StartsAnewAfterTheEnd) {
   EXPECT_EQ(receiver.accounts().slices.slices_received, 8U);
 }
 
+TEST(Receiver, WaitsForLatePacketsAsLongAsWasSetBeforeAFlush) {
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, Sender().Scans(0, 1)), AllSlices(0, 1));
+  receiver.set_max_reorder_time(milliseconds(1'000));
+  receiver.Finish();
+  auto packets = Sender().Scans(0, 8);
+  const auto late = std::find_if(packets.begin(), packets.end(),
+                                 [](const Wire& w) { return w.scan == 1 && w.index == 1; });
+  ASSERT_NE(late, packets.end());
+  const Wire packet = *late;
+  packets.erase(late);
+  DeliverAll(&receiver, packets);
+  EXPECT_EQ(receiver.accounts().slices.slices_received, 35U);
+  EXPECT_EQ(DeliverAll(&receiver, {packet}), Names{"1.1"});
+}
+
 }  // namespace
 }  // namespace lidar::rtp

@@ -202,6 +202,14 @@ TEST_F(FullLink, WaitsForAllThatIsInFlightForHalfOfTheDelayAtMost) {
   EXPECT_EQ(c_.LatePackets(now_ + 301ms, id_), 1U);
 }
 
+TEST_F(FullLink, APauseOfTheSourceIsNoSilenceOfTheReceiver) {
+  Report(now_ - kTick);
+  now_ += 10s;
+  c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
+  c_.OnTimer(now_);
+  EXPECT_EQ(c_.statistics(now_).feedback_timeouts, 0U);
+}
+
 /// The controller waits for a packet no longer than a round trip, however late another packet was.
 TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
   Controller c{Parameters()};
@@ -225,6 +233,19 @@ TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
   EXPECT_EQ(c.statistics(kStart).packets_lost, 1U);
   report(kStart + 100ms, "rrr-rr");
   EXPECT_EQ(c.statistics(kStart).packets_lost, 2U);
+}
+
+TEST(Controller, CountsAMarkThatOnlyALaterReportHas) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({});
+  c.OnSent(kStart, id, {1, 0, DataSize::Bytes(1000), Ecn::kEct1});
+  for (const Ecn arrived : {Ecn::kEct1, Ecn::kCe}) {
+    rtcp::CongestionFeedback f;
+    f.report_timestamp = rtcp::ReportClock::ToTimestamp(kStart + 20ms);
+    f.blocks.push_back({1, 0, {{true, arrived, 10ms}}});
+    ASSERT_EQ(c.OnFeedback(kStart + 30ms, f), FeedbackResult::kAccepted);
+    EXPECT_EQ(c.statistics(kStart + 30ms).packets_ce, arrived == Ecn::kCe ? 1U : 0U);
+  }
 }
 
 TEST(Controller, ImplausibleFeedbackChangesNothingAndIsCounted) {

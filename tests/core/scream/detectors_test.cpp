@@ -280,6 +280,12 @@ TEST_F(LossContextTest, KnowsRandomLossWhereDelaysScatter) {
   }
 }
 
+TEST_F(LossContextTest, ForgetsTheDelaysOfALongerQueue) {
+  for (int i = 0; i < 2000; ++i, now_ += 1ms) context_.OnAcked(now_, 50ms);
+  Lose(100, [](int) { return 9; });
+  EXPECT_TRUE(context_.AtFullQueue());
+}
+
 TEST(BusyRun, TellsWhatTheLinkCarriesAfterAHole) {
   BusyRun run;
   Time now = kStart;

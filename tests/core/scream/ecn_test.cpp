@@ -77,6 +77,10 @@ TEST(EcnMonitor, StaysCapableWhileTheCodepointArrives) {
   ecn.OnAcked(Ecn::kEct1, Ecn::kEct1);
   EXPECT_EQ(ecn.state(), EcnState::kCapable);
   EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
+  for (int i = 0; i < 19; ++i) ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+  EXPECT_EQ(ecn.state(), EcnState::kCapable);
+  ecn.OnAcked(Ecn::kEct1, Ecn::kNotEct);
+  EXPECT_EQ(ecn.state(), EcnState::kBleached) << "the path has changed";
 }
 
 TEST(EcnMonitor, FallsBackWhenTheCodepointIsBleachedAndProbesANewRoute) {

@@ -40,6 +40,13 @@ TEST_F(ReferenceWindowTest, IsNeverSetBelowItsMinimum) {
   EXPECT_EQ(window_.ref_wnd(), parameters_.min_ref_wnd);
 }
 
+TEST_F(ReferenceWindowTest, IsLoweredByALimitAndNeverRaised) {
+  window_.Limit(DataSize::Bytes(200000));
+  EXPECT_EQ(window_.ref_wnd().bytes(), 100000);
+  window_.Limit(DataSize::Bytes(50000));
+  EXPECT_EQ(window_.ref_wnd().bytes(), 50000);
+}
+
 TEST_F(ReferenceWindowTest, GivesATargetOverTheRoundTripWithTheDraftsReserves) {
   window_.Set(DataSize::Bytes(50000));
   EXPECT_NEAR(window_.TargetBitrate(40ms, 0).bits_per_second(), 1e7 * (1000.0 / 1020) / 1.2, 1);

@@ -166,6 +166,11 @@ TEST_F(Limits, TheStreamWithTheHighestTargetSetsThePeriod) {
   streams_.Find(slow)->Configure({0.1, Mbps(0), Mbps(1), Mbps(100)});
   streams_.Allocate(kStart + 240ms, Mbps(10));
   EXPECT_NEAR(Seconds(streams_.frame_period()), 0.03, 1e-6);
+  // A silent stream does not count, however much it needs.
+  streams_.Find(slow)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(20)});
+  streams_.Find(fast)->OnQueued(kStart + 1300ms, {1, DataSize::Bytes(1000), false, 99});
+  streams_.Allocate(kStart + 1300ms, Mbps(10));
+  EXPECT_NEAR(Seconds(streams_.frame_period()), 0.03, 1e-6);
 }
 
 TEST_F(Limits, SumsWhatWaitsAndTellsTheOldest) {

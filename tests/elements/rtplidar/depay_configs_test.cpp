@@ -144,13 +144,38 @@ TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
     for (guint i = 0; i < kSlices; ++i) gst_harness_push(pay.get(), EncodedSlice(scan, i));
     while (GstBuffer* b = gst_harness_try_pull(pay.get()))
       EXPECT_EQ(gst_harness_push(h.get(), b), GST_FLOW_OK);
-    EXPECT_EQ(Pull(h.get()).size(), scan++ % 2 == 0 ? 0U : kSlices);
+    const auto slices = Pull(h.get());
+    EXPECT_EQ(slices.size(), scan++ % 2 == 0 ? 0U : kSlices);
+    for (std::size_t i = 0; i < slices.size(); ++i)
+      EXPECT_EQ(GST_BUFFER_FLAG_IS_SET(slices[i].get(), GST_BUFFER_FLAG_DISCONT), i == 0)
+          << "behind the slices that were dropped";
   }
   EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 2 * kSlices);
   unsigned warnings = 0;
   while (const gst::MessagePtr message = bus.Pop())
     warnings += GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING ? 1U : 0U;
   EXPECT_EQ(warnings, 1U);
+}
+
+/// A flush begins while the element offers its caps, and the next element refuses them.
+TEST(RtpLidarDepay, WarnsOfNoDecoderWhereAFlushBegins) {
+  const Harness h(gst_harness_new("rtplidardepay"));
+  gst_harness_set_sink_caps_str(h.get(), "application/x-other");
+  gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  const ElementBus bus(h->element);
+  const gst::PadPtr src(gst_element_get_static_pad(h->element, "src"));
+  gst_pad_add_probe(
+      src.get(), GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM,
+      [](GstPad*, GstPadProbeInfo* info, gpointer harness) -> GstPadProbeReturn {
+        if (GST_QUERY_TYPE(GST_PAD_PROBE_INFO_QUERY(info)) == GST_QUERY_ACCEPT_CAPS)
+          gst_harness_push_event(static_cast<GstHarness*>(harness), gst_event_new_flush_start());
+        return GST_PAD_PROBE_OK;
+      },
+      h.get(), nullptr);
+  for (const auto& packet : Packets(1))
+    gst_harness_push(h.get(), gst_buffer_copy_deep(packet.get()));
+  EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 1U);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING));
 }
 
 constexpr const char* kVoxels =
