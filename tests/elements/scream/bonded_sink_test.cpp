@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -122,6 +123,21 @@ class BondedSink : public ::testing::Test {
     });
   }
   guint64 OfLink(const char* field, std::size_t link) { return OfLinks(sink_, field)[link]; }
+  /// Gives the socket of a link datagrams of these sizes in one call.
+  void SendDatagrams(std::size_t link, std::initializer_list<std::size_t> sizes) {
+    GstBufferList* list = gst_buffer_list_new();
+    for (const std::size_t size : sizes)
+      gst_buffer_list_add(list, FromBytes(std::vector<std::uint8_t>(size)));
+    EXPECT_EQ(gst_pad_chain_list(PadOf(NameOf("ecnudpsink", link), "sink").get(), list),
+              GST_FLOW_OK);
+  }
+  /// Returns the next link that changed, or an empty text.
+  std::string ChangedLink() {
+    while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT))
+      if (gst_message_has_name(message.get(), "scream-link-changed"))
+        return gst_structure_get_string(gst_message_get_structure(message.get()), "link");
+    return "";
+  }
   int Warnings(const char* text) {
     int count = 0;
     for (const std::string& warning : bus_->Texts(GST_MESSAGE_WARNING))
@@ -279,6 +295,33 @@ TEST_F(BondedSink, CountsTheErrorsOfEachLinkAsItsOwn) {
     return OfLink("send-errors", 1) > 0 && OfLink("packets-sent", 0) > 0;
   }));
   EXPECT_EQ(OfLink("send-errors", 0), 0U);
+}
+
+TEST_F(BondedSink, KeepsALinkThatSendsSomePacketsAndGivesUpOneThatSendsNone) {
+  constexpr std::size_t kTooLong = 70'000;
+  g_object_set(sink_, "bonding-method", 1, nullptr);  // broadcast
+  Start();
+  EXPECT_EQ(Send(1), (std::set<std::size_t>{0, 1}));
+  for (const std::size_t link : {0U, 1U}) ASSERT_TRUE(HasLeft(link));
+  SendDatagrams(0, {100, kTooLong});
+  std::string changed;
+  EXPECT_TRUE(Eventually([&] {
+    SendDatagrams(1, {kTooLong});
+    Advance(100 * GST_MSECOND);  // the bond looks at all links
+    changed = ChangedLink();
+    return !changed.empty();
+  }));
+  EXPECT_EQ(changed, "127.0.0.1:5006@127.0.0.2");
+  EXPECT_EQ(OfLink("send-errors", 0), 1U);
+  EXPECT_TRUE(Stats(sink_).Of("links", 0).True("usable"));
+}
+
+TEST_F(BondedSink, GoesOnWhereALinkTakesNothing) {
+  g_object_set(sink_, "bonding-method", 1, nullptr);  // broadcast
+  Start();
+  EXPECT_EQ(Send(1), (std::set<std::size_t>{0, 1}));
+  gst_element_set_state(Child("screamtx1").get(), GST_STATE_READY);
+  EXPECT_EQ(Send(2), (std::set<std::size_t>{0, 1})) << "one link is enough";
 }
 
 TEST_F(BondedSink, SendsByTheInterfaceAndToThePortOfEachLink) {

@@ -1,10 +1,29 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // screamsink over several links to one screamsrc, over loopback sockets.
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+
+#include <atomic>
+#include <string>
 
 #include "gst/scream/bond/addresses.h"
 #include "tests/elements/scream/bonded_ends.h"
 #include "tests/elements/scream/rtp_support.h"
+
+static std::atomic<bool> loopback_has_carrier{true};
+
+/// Replaces libc's function in this program and in its plugins.
+extern "C" int getifaddrs(ifaddrs** first) noexcept {
+  using Get = int (*)(ifaddrs**);
+  static const auto next = reinterpret_cast<Get>(dlsym(RTLD_NEXT, "getifaddrs"));
+  if (next(first) != 0) return -1;
+  for (ifaddrs* a = *first; a != nullptr; a = a->ifa_next)
+    if (std::string(a->ifa_name) == "lo" && !loopback_has_carrier)
+      a->ifa_flags &= ~static_cast<unsigned>(IFF_RUNNING);
+  return 0;
+}
 
 namespace lidar::test {
 namespace {
@@ -78,6 +97,21 @@ TEST(Bonding, GoesOnWithoutALinkWhoseInterfaceIsMissingAndSaysSo) {
   EXPECT_EQ(sent[1], 150U);
 }
 
+TEST(Bonding, SaysThatAnInterfaceWithoutACarrierIsDown) {
+  const ElementPtr sink(gst_element_factory_make("screamsink", nullptr));
+  gst_object_ref_sink(sink.get());
+  const ElementBus bus(sink.get());
+  g_object_set(sink.get(), "bonding-addresses", "127.0.0.1:9@127.0.0.1,127.0.0.1:9@lo", nullptr);
+  for (const bool carrier : {true, false}) {
+    loopback_has_carrier = carrier;
+    EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING),
+              carrier ? "" : "The link 127.0.0.1:9@lo cannot be used: the interface lo is down");
+    gst_element_set_state(sink.get(), GST_STATE_NULL);
+  }
+  loopback_has_carrier = true;
+}
+
 TEST(Bonding, GoesOnWhereTheFeedbackOfTwoLinksIsSwapped) {
   BondReceiver receiver;
   Router router(receiver.port);
@@ -104,7 +138,7 @@ TEST(Bonding, GoesOnWhereFeedbackOfALinkNeverComes) {
   const auto accepted = OfLinks(out.get(), "feedback-accepted");
   EXPECT_GT(accepted[0], 10U);
   EXPECT_EQ(accepted[1], 0U);
-  // On a busy machine the first report of the other link may be overdue.
+  // The first report of the other link may be overdue on a busy machine.
   EXPECT_LT(OfLinks(out.get(), "packets-first")[1], 15U) << "it has proved nothing";
 }
 
@@ -397,8 +431,9 @@ TEST(BondAddresses, AreHostPortAndWhatPacketsLeaveBy) {
 TEST(BondAddresses, RefuseAllElseWithAWord) {
   for (const char* text :
        {"", ",", "edge", "edge:", "edge:0", "edge:65536", "edge:99999999999999999999", "edge:5004@",
-        ":5004", "2001:db8::1:7", "edge:5004@averyveryverylonginterface", "a:1,a:1", "a:1, a:1",
-        "a:1,b:1,c:1,d:1,e:1", "a:1,,b:1", "edge:5004:wwan0", "edge:-1"}) {
+        ":5004", "2001:db8::1:7", "edge:5004@averyveryverylonginterface",
+        "edge:5004@interface0123456", "a:1,a:1", "a:1, a:1", "a:1,b:1,c:1,d:1,e:1", "a:1,,b:1",
+        "edge:5004:wwan0", "edge:-1"}) {
     std::string error;
     EXPECT_FALSE(ParseBondAddresses(text, &error)) << text;
     EXPECT_FALSE(error.empty()) << text;

@@ -208,14 +208,39 @@ TEST_F(ScreamBin, SocketsStayWhileTheBinIsReadyAndGoWithIt) {
 }
 
 TEST_F(ScreamBin, WhatCannotBeSecuredKeepsNoSocket) {
-  for (const char* factory : {"screamsink", "screamsrc"}) {
-    Make(factory);
-    g_object_set(bin_.get(), "srtp-key", "env:LIDAR_NO_SUCH_KEY", nullptr);
-    if (std::string(factory) == "screamsrc") g_object_set(bin_.get(), "port", 0, nullptr);
-    EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
-    EXPECT_FALSE(SocketOf(Child("ecnudpsink").get())) << factory;
-    EXPECT_FALSE(SocketOf(Child("ecnudpsrc").get())) << factory;
-  }
+  const std::string digits(59, '5');
+  for (const char* factory : {"screamsink", "screamsrc"})
+    for (const std::string& key :
+         {std::string("env:LIDAR_NO_SUCH_KEY"), digits, digits + "g", "g" + digits}) {
+      Make(factory);
+      g_object_set(bin_.get(), "srtp-key", key.c_str(), nullptr);
+      if (std::string(factory) == "screamsrc") g_object_set(bin_.get(), "port", 0, nullptr);
+      EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE) << key;
+      EXPECT_FALSE(SocketOf(Child("ecnudpsink").get())) << factory;
+      EXPECT_FALSE(SocketOf(Child("ecnudpsrc").get())) << factory;
+      To(GST_STATE_NULL);
+    }
+}
+
+TEST_F(ScreamBin, TheSourceNamesAMissingNextElementOnlyWhereThereIsNone) {
+  Make("screamsrc");
+  g_object_set(bin_.get(), "port", 0, nullptr);
+  ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  const ElementBus bus(bin_.get());
+  const ElementPtr udp = Child("ecnudpsrc");
+  const auto text_of_error = [&] {
+    const gst::ErrorPtr error(
+        g_error_new_literal(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ, "Receiving failed"));
+    gst_element_post_message(
+        udp.get(), gst_message_new_error(GST_OBJECT(udp.get()), error.get(), "of the test"));
+    return bus.Text(GST_MESSAGE_ERROR);
+  };
+  EXPECT_EQ(text_of_error(), "No element takes the stream, which is application/x-rtp.");
+  const gst::PadPtr src(gst_element_get_static_pad(bin_.get(), "src"));
+  const gst::PadPtr next(GST_PAD(gst_object_ref_sink(gst_pad_new("sink", GST_PAD_SINK))));
+  ASSERT_EQ(gst_pad_link(src.get(), next.get()), GST_PAD_LINK_OK);
+  EXPECT_EQ(text_of_error(), "Receiving failed");
+  gst_pad_unlink(src.get(), next.get());
 }
 
 TEST_F(ScreamBin, PadsOfTheSinkAreItsChildren) {

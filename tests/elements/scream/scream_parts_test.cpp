@@ -2,6 +2,7 @@
 // The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <variant>
 
 #include "gst/scream/feedback_peer.h"
@@ -436,6 +437,9 @@ TEST(Tuning, SaysWhatIsWrong) {
   EXPECT_EQ(wrong("tuning,beta-loss=1.5"), "\"beta-loss\" takes numbers from 0.1 to 1");
   EXPECT_EQ(wrong("tuning,beta-loss=much"), "\"beta-loss\" takes numbers from 0.1 to 1");
   EXPECT_EQ(wrong("tuning,capacity=2"), "\"capacity\" takes true or false");
+  scream::Parameters p;
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(scream::FindTunable("beta-loss")->Set(no_number, &p));
 }
 
 }  // namespace

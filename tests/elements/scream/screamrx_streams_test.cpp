@@ -233,7 +233,12 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     EXPECT_EQ(Stats(element)["packets-foreign"], 77U);
     const auto told = bus.Texts(GST_MESSAGE_WARNING);
     EXPECT_EQ(std::count(told.begin(), told.end(), "More than 1024 streams."), 1) << "once a run";
+    gpointer pad = gst_element_get_static_pad(element, "src_2");
+    ASSERT_TRUE(pad);
+    g_object_add_weak_pointer(G_OBJECT(pad), &pad);
+    gst_object_unref(pad);
     gst_element_set_state(element, GST_STATE_NULL);
+    EXPECT_FALSE(pad) << "nothing keeps a pad that is gone";
     EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 2);
     gst_harness_play(rtp.get());
   }
@@ -243,7 +248,8 @@ TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
   SetPtMap(
       "72=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
       "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\","
-      "98=(string)\"application/x-rtp,clock-rate=[1,2]\",200=(int)7,lidar=(int)96");
+      "98=(string)\"application/x-rtp,clock-rate=[1,2]\","
+      "200=(string)\"application/x-rtp,media=video\",lidar=(int)96");
   const ElementBus bus(element);
   Start();
   std::string texts;

@@ -94,6 +94,8 @@ TEST_F(ScreamTx, EosDoesNotWaitForAPathThatIsGone) {
   EXPECT_TRUE(HasEos());
   Collect();
   EXPECT_LT(sent.size(), 200U);
+  EXPECT_EQ(Stats(element)["queued-bytes"], 0U);
+  EXPECT_EQ(sent.size() + Stats(element)["packets-dropped"], 200U);
   EXPECT_TRUE(byes.empty());
 }
 
@@ -255,6 +257,17 @@ TEST_F(ScreamTxOf, AFileWaitsBehindItsFirstPacketWhileItIsPaused) {
   EXPECT_FALSE(IsIn(pushed, std::chrono::milliseconds(50)));
   gst_element_set_state(element, GST_STATE_PLAYING);
   EXPECT_TRUE(IsIn(pushed, kPatience));
+  EXPECT_EQ(pushed.get(), GST_FLOW_OK);
+}
+
+/// The sink of a pipeline that pauses needs a packet to preroll.
+TEST_F(ScreamTxOf, APacketThatWaitsForItsTimeEntersAtAPause) {
+  StartLive(false);
+  auto pushed = PushAt(0, 3600 * GST_SECOND);
+  EXPECT_TRUE(gst_harness_wait_for_clock_id_waits(rtp.get(), 1, 180));
+  gst_element_set_state(element, GST_STATE_PAUSED);
+  EXPECT_TRUE(IsIn(pushed, kPatience));
+  if (!IsIn(pushed, std::chrono::seconds(0))) gst_harness_crank_single_clock_wait(rtp.get());
   EXPECT_EQ(pushed.get(), GST_FLOW_OK);
 }
 

@@ -2,6 +2,9 @@
 // screamtx under a test clock: its events upstream, its packets, its statistics.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <functional>
+
 #include "src/rtcp/sender_report.h"
 #include "tests/elements/scream/screamtx_fixture.h"
 #include "tests/support/element_bus.h"
@@ -137,14 +140,14 @@ TEST_F(ScreamTx, NotifiesTheEstimatedBitrateOnTheWire) {
   EXPECT_EQ(bps, 3'000'000U);
 }
 
-/// Sends and acknowledges a packet each 100 ms.
+/// Sends and acknowledges packets, one each 100 ms unless set otherwise.
 class ScreamTxReports : public ScreamTx {
  protected:
-  void Run(int packets) {
+  void Run(int packets, GstClockTime apart = 100 * GST_MSECOND) {
     for (int i = 0; i < packets; ++i) {
       PushFrame(static_cast<guint32>(i) * 9000, 1);
       Acknowledge();
-      time.Advance(100 * GST_MSECOND);
+      time.Advance(apart);
     }
     Collect();
   }
@@ -196,10 +199,49 @@ TEST_F(ScreamTxReports, AreNotSentUnlessAskedForNorMoreOftenThanTenASecond) {
   Run(15);
   EXPECT_TRUE(Reports().empty());
   g_object_set(element, "sender-report-interval", guint64{1}, nullptr);
-  Run(20);
+  Run(100, 20 * GST_MSECOND);
   EXPECT_GE(Reports().size(), 15U);
   EXPECT_LE(Reports().size(), 20U);
 }
+
+/// An encoder that takes targets, or not, and no key requests.
+class ScreamTxUnheeded : public ScreamTx, public ::testing::WithParamInterface<bool> {
+ protected:
+  void StartRefusing() {
+    takes_targets_ = GetParam();
+    Start(kVideoCaps);
+    gst_pad_set_event_function(rtp->srcpad, [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
+      const EventPtr owner(event);
+      if (gst_event_has_name(event, "GstForceKeyUnit")) ++requests_;
+      return takes_targets_ && gst_event_has_name(event, "target-bitrate") ? TRUE : FALSE;
+    });
+  }
+  bool DropsUntil(const std::function<bool()>& enough) {
+    return Eventually([&] {
+      PushFrame(next_seq_, 30);
+      time.Advance(100 * GST_MSECOND);
+      return enough();
+    });
+  }
+  static inline std::atomic<bool> takes_targets_{false};
+  static inline std::atomic<int> requests_{0};
+};
+
+TEST_P(ScreamTxUnheeded, WarnsOnceOfDroppedFramesWhereNoEncoderTakesTheTarget) {
+  g_object_set(element, "max-queue-delay", guint64{50 * GST_MSECOND}, nullptr);
+  const ElementBus bus(element);
+  StartRefusing();
+  EXPECT_TRUE(DropsUntil([this] { return Stats(element)["frames-dropped"] >= 20; }));
+  requests_ = 0;
+  // The warning is posted before the next request.
+  EXPECT_TRUE(DropsUntil([] { return requests_ >= 4; }));
+  int warnings = 0;
+  for (const std::string& text : bus.Texts(GST_MESSAGE_WARNING))
+    warnings += text.find("no encoder upstream follows") != std::string::npos ? 1 : 0;
+  EXPECT_EQ(warnings, takes_targets_ ? 0 : 1);
+  gst_element_set_state(element, GST_STATE_NULL);
+}
+INSTANTIATE_TEST_SUITE_P(TakesTargets, ScreamTxUnheeded, ::testing::Bool());
 
 TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
   g_object_set(element, "stats-interval", guint64{100 * GST_MSECOND}, nullptr);
