@@ -109,6 +109,7 @@ TEST(FleetMetrics, CutOffWhoSaysNothingOrTooMuch) {
   fleet::MetricsServer server("127.0.0.1", 0);
   for (const auto& request : {std::string(), std::string(100'000, 'x')})
     EXPECT_EQ(Received(Clients(server.port(), 1, request)[0].get()), "");
+  EXPECT_GE(server.cut(), 1U) << "the silent one";
 }
 
 TEST(FleetMetrics, AreAtTheirPathWithAndWithoutAQuery) {

@@ -420,6 +420,7 @@ void KeptSourceCourse(Course& c) {
   c.Play("all of it", "event eos");
   NotePast(c, {kCaptured, 0, 1});
   NotePast(c, {GST_CLOCK_TIME_NONE, 3, 1'000'000});
+  NotePast(c, {GST_CLOCK_TIME_NONE, 9, 1'000'000});
   NotePast(c, {0, 0, 0});
   c.Stop();
   c.Set("start-sequence", "4");

@@ -302,6 +302,44 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "it has the scan of the record";
 }
 
+/// A map of half a scan would fit the next scan badly.
+TEST_F(LidarWorker, BeginsItsMapWithAWholeScan) {
+  NatsPipeline sender(
+      "lidartestsrc model=os0-32 mode=512x10 speed=10 slices-per-scan=4 num-buffers=40 ! lidarenc "
+      "effort=0" +
+      kSee + "! natssink name=n sync=false subject=fleet.r1.lidar.front jetstream=fleet" + At());
+  sender.HoldFrom(36);  // before the last scan
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= 36; }));
+  const std::uint64_t before = LastOf("fleet");
+  sender.Hold(false);
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  WithJetStream([](jsCtx* js) {
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Stream.Purge.Subject = "fleet.r1.lidar.front";
+    options.Stream.Purge.Sequence = 4;  // behind the caps and two slices
+    EXPECT_EQ(js_PurgeStream(js, "fleet", &options, nullptr), NATS_OK);
+  });
+  worker::PipelineSettings settings;
+  settings.connection.url = server_.url();
+  worker::Progress begin;
+  begin.pose = {0, 0, 0, 0, 0, 0, 1};
+  begin.stream = CreationOf("fleet");
+  begin.scan = begin.from = 1;
+  worker::RobotPipeline pipeline(settings, "r1.front", begin.stream, begin);
+  pipeline.SetEnd(Time::max());
+  pipeline.Play();
+  ASSERT_TRUE(Eventually([&] {
+    const auto progress = pipeline.progress();
+    return progress && progress->scan > before;
+  }));
+  fleet::Exposition exposition;
+  nlohmann::json report;
+  pipeline.AddStats("", &exposition, &report);
+  EXPECT_EQ(report["lidarodometry"]["scans"], 9) << "of ten, of which the first is not whole";
+}
+
 TEST_F(LidarWorker, PrintsNoControlCharactersOfARecord) {
   PutRecord(worker::ToJson({"a\x1b[2J\nr2.front: taken", milliseconds(300), std::nullopt}));
   const auto robot = Robot();

@@ -145,6 +145,32 @@ TEST_F(NatsJetStream, AReplayBeginsEarlyInASecondAsWell) {
   ExpectSameStream(played, second);
 }
 
+/// Returns when the server stored the last message [ns since 1970].
+guint64 LastStored(const NatsClient& client) {
+  natsMsg* raw = nullptr;
+  EXPECT_EQ(js_GetLastMsg(&raw, client.js(), "box", "r1.front", nullptr, nullptr), NATS_OK);
+  const nats::MessagePtr message(raw);
+  return message ? static_cast<guint64>(natsMsg_GetTime(raw)) : 0;
+}
+
+/// A replay that begins early in a second leaves out what the server has of that second before.
+TEST_F(NatsJetStream, AReplayEndsWhereAllMessagesAreBeforeItsTime) {
+  const NatsClient client(server_.url());
+  std::string why;
+  ASSERT_TRUE(nats::EnsureStream(client.js(), {"box", {}, 0, 1, ""},
+                                 {"r1.front", "r1.front.config.*"}, &why))
+      << why;
+  guint64 last = 0;
+  ASSERT_TRUE(Eventually([&] {
+    const guint64 now = static_cast<guint64>(g_get_real_time()) * 1000;
+    if (now % GST_SECOND > 40 * GST_MSECOND) return false;
+    PutInOwnCaps(client, 0);
+    last = LastStored(client);
+    return last % GST_SECOND < 90 * GST_MSECOND;
+  }));
+  EXPECT_EQ(Replay(last + 1).size(), 0U);
+}
+
 TEST_F(NatsJetStream, AReplayBeginsAtItsNumber) {
   const auto sent = PublishSlices(16, At(kBox));
   // The first message of the stream is the caps.

@@ -108,6 +108,34 @@ TEST_F(NatsRuns, OfASinkCountAlikeAndItsCountsStayAfterTheStop) {
   }
 }
 
+/// Returns how many messages of the subject `counted` come before one of the subject `last`.
+int CountBefore(const std::string& last, natsSubscription* all, const std::string& counted) {
+  for (int count = 0;;) {
+    natsMsg* raw = nullptr;
+    if (natsSubscription_NextMsg(&raw, all, NatsClient::kPatienceMs) != NATS_OK) {
+      ADD_FAILURE() << "no message " << last;
+      return count;
+    }
+    const nats::MessagePtr message(raw);
+    const std::string subject = natsMsg_GetSubject(raw);
+    if (subject == last) return count;
+    count += subject == counted ? 1 : 0;
+  }
+}
+
+TEST_F(NatsRuns, CapsComeAgainBeforeASmallBoxDropsThem) {
+  const NatsClient client(server_.url());
+  natsSubscription* all = nullptr;
+  ASSERT_EQ(natsConnection_SubscribeSync(&all, client.get(), "r1.>"), NATS_OK);
+  const nats::SubscriptionPtr owner(all);
+  natsConnection_FlushTimeout(client.get(), NatsClient::kPatienceMs);
+  Feeder sink(At(kImuBox + " max-bytes=40000"));
+  for (int i = 0; i < 20; ++i) sink.Push(10'016);  // each a little more than a quarter of the box
+  sink.End();
+  natsConnection_PublishString(client.get(), "r1.end", "");
+  EXPECT_GE(CountBefore("r1.end", all, "r1.imu.config." + imu_->id()), 20);
+}
+
 TEST_F(NatsRuns, WhatJetStreamHasNotAcknowledgedWaits) {
   Feeder sink(At(kImuBox));
   sink.Push(32);
@@ -364,6 +392,17 @@ TEST_F(NatsRuns, ThePastIsFoundByTheClockOfARobotThatIsAhead) {
   sink.Push(32, captured);
   sink.End();
   EXPECT_EQ(Past(At("subject=r1.imu"), {captured, 0, 1'000'000}).samples.size(), 1U);
+}
+
+TEST_F(NatsRuns, ThePastOfARobotThatPutItsClockBackDoesNotEndBeforeItBegins) {
+  const auto captured = static_cast<GstClockTime>(g_get_real_time()) * 1'000;
+  Feeder sink(At(kImuBox));
+  sink.Push(32, captured);
+  sink.Push(32, captured - 60 * GST_SECOND);
+  sink.End();
+  const gst::HistoryAnswer past = Past(At("subject=r1.imu"), {});
+  EXPECT_EQ(past.from, captured);
+  EXPECT_EQ(past.to, captured);
 }
 
 TEST(NatsSource, AnswersWhatGStreamerAsks) {

@@ -257,6 +257,22 @@ TEST(MotionMessages, HaveNewCapsOnlyWhereTheirFrameChanges) {
   }
 }
 
+TEST(MotionMessages, MayNameAFrameThatIsNoText) {
+  cdr::Imu imu;
+  cdr::Odometry odometry;
+  imu.header.frame_id = odometry.header.frame_id = "\xff";
+  for (const auto& [type, message] :
+       {std::pair(cdr::RosType::kImu, cdr::WriteImu(imu)),
+        std::pair(cdr::RosType::kOdometry, cdr::WriteOdometry(odometry))}) {
+    MessageReader reader(type, [] { return CapsPtr(); });
+    ASSERT_EQ(reader.Read(AsView(message)), Verdict::kBuffer);
+    const CapsPtr caps = reader.TakeNewCaps();
+    const char* frame = gst_structure_get_string(gst_caps_get_structure(caps.get(), 0), "frame-id");
+    ASSERT_NE(frame, nullptr);
+    EXPECT_TRUE(g_utf8_validate(frame, -1, nullptr));
+  }
+}
+
 TEST(MotionMessages, ThatAreCutAreDamagedAndSayWhatTheyAreNot) {
   const auto why = [](cdr::RosType type, Bytes message) {
     message.resize(message.size() / 2);
