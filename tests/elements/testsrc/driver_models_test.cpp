@@ -10,6 +10,7 @@
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"
 #include "src/synth/firing.h"
+#include "src/synth/scanner.h"
 #include "tests/support/harness.h"
 
 namespace lidar::gst {
@@ -56,6 +57,12 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
   std::uint32_t RingAt(std::size_t point) const {
     return info_.fields.Find("ring") != nullptr ? At<std::uint16_t>(point, "ring")
                                                 : At<std::uint8_t>(point, "line");
+  }
+  /// Inverts Firing::RingOf().
+  std::uint32_t LaserAt(std::size_t point) const {
+    const std::uint32_t rings_of_a_bank = firing_.lasers / firing_.banks;
+    const std::uint32_t ring = RingAt(point);
+    return ring % rings_of_a_bank * firing_.banks + ring / rings_of_a_bank;
   }
   /// Returns the time since the first column of the scan [s].
   double TimeAt(std::size_t point) const {
@@ -107,9 +114,13 @@ TEST_P(DriverModel, FiresEveryLaserInTurnOverTheWholeScan) {
   std::set<std::uint32_t> rings;
   // Seconds since 1970 in an F64 have steps of a quarter of a microsecond.
   const double slack = 5e-7;
+  const double column_s = 0.1 / firing_.columns;
   for (std::size_t i = 0; i < info_.width; ++i) {
     rings.insert(RingAt(i));
     ASSERT_LT(RingAt(i), firing_.lasers);
+    const double fires_s = 1e-9 * firing_.laser_delay_ns * LaserAt(i);  // after its column begins
+    const double columns = (TimeAt(i) - fires_s) / column_s;
+    ASSERT_NEAR(columns, std::round(columns), 0.1) << i;
     if (i == 0) continue;
     ASSERT_GE(TimeAt(i), TimeAt(i - 1) - slack) << i;
   }
@@ -142,6 +153,26 @@ TEST_P(DriverModel, PointsLieWhereTheTableSays) {
     }
   }
   EXPECT_EQ(fans > 100, firing_.fan > 0);
+}
+
+TEST_P(DriverModel, RangesAreRoundedToTheNearestUnit) {
+  Pull();
+  synth::ScannerConfig config;  // as the source's defaults
+  config.sensor = synth::MakeSensor(firing_);
+  config.scene = synth::SceneKind::kTunnel;
+  config.speed_mps = 12;
+  synth::Returns returns;
+  synth::Scanner(config).Cast(0, {0, firing_.columns}, &returns);
+  std::size_t point = 0;
+  for (std::size_t column = 0; column < firing_.columns; ++column) {
+    for (std::size_t laser = 0; laser < firing_.lasers; ++laser) {
+      const std::uint32_t exact = returns.range_mm[laser * firing_.columns + column];
+      if (exact == 0) continue;
+      ASSERT_LT(point, info_.width);
+      ASSERT_NEAR(PolarAt(point++).range_m * 1000, exact, firing_.range_unit_mm / 2.0 + 0.1);
+    }
+  }
+  EXPECT_EQ(point, info_.width);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DriverModel, ::testing::Values("vlp-16", "xt32", "at128", "mid-360"));

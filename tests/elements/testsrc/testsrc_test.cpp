@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -255,8 +257,42 @@ TEST(LidarTestSrc, WritesTheTrajectoryAtTheCaptureTimes) {
   std::filesystem::remove(path);
 }
 
+/// Limits files to `size` bytes during its lifetime, as if the disk were full then.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t size) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{size, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(LidarTestSrc, TellsOnceThatTheTrajectoryDoesNotFit) {
+  const std::string path = ::testing::TempDir() + "long_trajectory.tum";
+  std::vector<std::string> warnings;
+  {
+    const SmallDisk disk(300);
+    const Harness h = Launch("model=os1-32 mode=512x10 num-buffers=16 trajectory-location=" + path);
+    const test::ElementBus bus(h->element);
+    SetPlaying(h.get());
+    for (int i = 0; i < 16; ++i) Pull(h);
+    warnings = bus.Texts(GST_MESSAGE_WARNING);
+  }
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("The trajectory cannot be written"), std::string::npos);
+  EXPECT_GT(std::filesystem::file_size(path), 0U);
+  std::filesystem::remove(path);
+}
+
 TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
-  const Harness h = Launch("model=os1-32 mode=512x10 channels=ring,t,signal");
+  const Harness h = Launch("model=os1-32 mode=512x10 channels=\"ring , t,signal\"");
   SetPlaying(h.get());
   const BufferPtr buffer = Pull(h);
   EXPECT_EQ(InfoOf(h).fields.ToString(),

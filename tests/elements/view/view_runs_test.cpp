@@ -104,6 +104,10 @@ TEST_P(ViewEachProperty, ChangesThePicture) {
 }
 INSTANTIATE_TEST_SUITE_P(Of, ViewEachProperty, ::testing::ValuesIn(kViewEffects));
 
+TEST(ViewColors, AreAutomaticWhereTheyWouldEndBelowTheirBegin) {
+  EXPECT_EQ(PicturesOf("color-min=5"), PicturesOf(""));
+}
+
 TEST(ViewProperties, AreAllInTheTable) { ExpectEachPropertyIn(kViewEffects, "pointcloudview"); }
 
 /// Leaves much behind: a map, a warning, and a picture that is begun.

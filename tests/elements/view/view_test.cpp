@@ -178,6 +178,15 @@ TEST_F(View, EveryFormatShowsTheSameColours) {
   }
 }
 
+TEST_F(View, WhatIsBrightestIsBrightInEachPicture) {
+  Start("view=top point-size=1 color-by=intensity", Info(1));
+  for (const float intensity : {1000.0F, 1.0F}) {
+    Push(Cloud({{25, 0, 0, intensity}}));
+    Pull();
+    EXPECT_TRUE(IsPoint(150, 50)) << intensity;
+  }
+}
+
 TEST_F(View, SettingsMayChangeWhileItPlays) {
   Start("view=top point-size=1", Info(1));
   Push(Cloud({{25, 0, 0, 1}}));
@@ -217,6 +226,18 @@ TEST_F(View, TheWholeWayIsInThePictureOfTheMap) {
   EXPECT_TRUE(IsDrawn(195, 50));
 }
 
+TEST_F(View, TheWholeWayIsInALowPictureToo) {
+  Start("map=true view=top extent=100", Info(1));
+  for (guint scan = 0; scan < 5; ++scan) {
+    PushFrom({0, 25.0F * static_cast<float>(scan), 0}, {{5, 5, 0, 1}}, scan);
+    Pull();
+  }
+  EXPECT_TRUE(IsDrawn(100, 20));
+  EXPECT_TRUE(IsDrawn(100, 80));
+  EXPECT_FALSE(IsDrawn(100, 5));
+  EXPECT_FALSE(IsDrawn(100, 95));
+}
+
 TEST_F(View, WithoutPosesThereIsNoMapAndAWarning) {
   Start("map=true view=top extent=100 point-size=1", Info(1));
   const test::ElementBus bus(h_->element);
@@ -253,6 +274,19 @@ TEST(TrailMap, IsBoundedHoweverLongTheWay) {
   EXPECT_GT(map.way().back()[0], 39'990);
 }
 
+TEST(TrailMap, ThinsItsWayOutEvenly) {
+  TrailMap map(1000);
+  for (int i = 0; i < 200'000; ++i)
+    map.MoveTo({{1.0 * i, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 0.1 * i);
+  float least = 1e9F;
+  float most = 0;
+  for (std::size_t i = 1; i < map.way().size(); ++i) {
+    least = std::min(least, map.way()[i][0] - map.way()[i - 1][0]);
+    most = std::max(most, map.way()[i][0] - map.way()[i - 1][0]);
+  }
+  EXPECT_LE(most, 4 * least);
+}
+
 TEST(TrailMap, CountsTheScansThatSawAPlaceNotTheirPoints) {
   TrailMap map(1000);
   map.MoveTo({{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 0);
@@ -274,6 +308,15 @@ TEST(TrailMap, FollowsTheVelocityWithinAScan) {
   const Rigid after_a_gap = map.PoseAfter(0.05);
   EXPECT_NEAR(after_a_gap.position[0], 4, 1e-5);
   EXPECT_NEAR(after_a_gap.heading(), 1.5708F, 1e-3);
+  // A quaternion and its negative are one rotation.
+  std::vector<float> headings;
+  for (const double sign : {1.0, -1.0}) {
+    map.MoveTo({{4, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 30);
+    map.MoveTo({{4, 0, 0}, {0, 0, sign * half, sign * half}, GST_LIDAR_TRACKING_OK, {}}, 30.1);
+    headings.push_back(map.PoseAfter(0.05).heading());
+  }
+  EXPECT_GT(headings[0], 1.6F);
+  EXPECT_NEAR(headings[0], headings[1], 1e-5);
 }
 
 TEST_F(View, DrawsNoNonsense) {
