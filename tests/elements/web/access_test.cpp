@@ -2,6 +2,8 @@
 // Access to foxglovesink: its page, its token, its port.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "ext/web/admission.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/element_bus.h"
@@ -20,6 +22,15 @@ TEST(FoxgloveSink, ServesItsPageAndNothingElse) {
   EXPECT_EQ(HttpGet(sink.Url("http", "/etc/passwd")).status, 404U);
   EXPECT_EQ(HttpGet(sink.Url("http", "/..%2f..%2fetc/passwd")).status, 400U);
   EXPECT_EQ(HttpGet(sink.Url("http"), "POST").status, 405U);
+}
+
+TEST(FoxgloveSink, NamesTheTypeOfEachFileOfItsPage) {
+  Sink sink;
+  for (const auto& [file, type] : {std::pair("/page.js", "text/javascript; charset=utf-8"),
+                                   std::pair("/page.css", "text/css; charset=utf-8"),
+                                   std::pair("/lidar_decoder.wasm", "application/wasm"),
+                                   std::pair("/licenses.txt", "text/plain; charset=utf-8")})
+    EXPECT_EQ(HttpGet(sink.Url("http", file)).type, type) << file;
 }
 
 TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {

@@ -162,19 +162,25 @@ class EmptyArchive final : public Archive {
   std::uint64_t damaged() const override { return 0; }
 };
 
+/// A client whose connection is the socket `fd`.
+std::unique_ptr<Client> ClientOn(int fd) {
+  const ObjectPtr<GSocket> socket(g_socket_new_from_fd(fd, nullptr));
+  return std::make_unique<Client>(
+      ObjectPtr<GIOStream>(
+          G_IO_STREAM(g_socket_connection_factory_create_connection(socket.get()))),
+      Client::Handlers{[](Client*, const auto&) {}, [](Client*) {}, [](Client*) {}});
+}
+
 TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
   std::array<int, 2> ends{};
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
-  const ObjectPtr<GSocket> socket(g_socket_new_from_fd(ends[0], nullptr));
-  Client client(ObjectPtr<GIOStream>(
-                    G_IO_STREAM(g_socket_connection_factory_create_connection(socket.get()))),
-                {[](Client*, const auto&) {}, [](Client*) {}, [](Client*) {}});
+  const auto client = ClientOn(ends[0]);
   foxglove::Channel channel;
   channel.id = 7;
   const auto topic = std::make_shared<Topic>(
       channel, std::make_shared<Recording>(std::make_unique<EmptyArchive>()));
   SliceService service{DataRate()};
-  service.Subscribe(&client, topic, 1);
+  service.Subscribe(client.get(), topic, 1);
   const auto deliver = [&](std::uint32_t scan) {
     auto slice = std::make_shared<SliceMessage>();
     slice->id.scan = scan;
@@ -188,12 +194,60 @@ TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
   request.number = 1;
   EXPECT_TRUE(deliver(10));
   request.kind = Kind::kReplay;
-  service.OnRequest(&client, request);
+  service.OnRequest(client.get(), request);
   EXPECT_FALSE(deliver(20));
   request.kind = Kind::kLive;
-  service.OnRequest(&client, request);
+  service.OnRequest(client.get(), request);
   EXPECT_TRUE(deliver(30));
-  service.Forget(&client);
+  service.Forget(client.get());
+  close(ends[1]);
+}
+
+/// A recording of one slice. It claims to have read so much that a piece ends with the slice.
+class ShortArchive final : public Archive {
+ public:
+  std::optional<Times> Look(std::string*) override { return Times{kTime_ns, kTime_ns}; }
+  void Seek(std::uint64_t) override { next_ = 0; }
+  void GoOn(std::uint64_t position) override { next_ = position; }
+  std::optional<Item> Next() override {
+    if (next_++ > 0) return {};
+    auto slice = std::make_shared<SliceMessage>();
+    slice->unix_ns = kTime_ns;
+    slice->payload = {1};
+    slice->ReadLinks(false);
+    return Item{kTime_ns, 1, std::size_t{1} << 30, std::move(slice), false};
+  }
+  void Rest() override {}
+  std::uint64_t damaged() const override { return 0; }
+
+ private:
+  static constexpr std::uint64_t kTime_ns = 2'000'000'000;
+  std::uint64_t next_ = 0;
+};
+
+TEST(SliceService, TellsWhenAReplayEndsThoughItsLastPieceIsEmpty) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+  const auto client = ClientOn(ends[0]);
+  foxglove::Channel channel;
+  channel.id = 7;
+  const auto topic = std::make_shared<Topic>(
+      channel, std::make_shared<Recording>(std::make_unique<ShortArchive>()));
+  SliceService service{DataRate()};
+  service.Subscribe(client.get(), topic, 1);
+  foxglove::Request request;
+  request.kind = foxglove::Request::Kind::kReplay;
+  request.subscription = 1;
+  request.number = 1;
+  service.OnRequest(client.get(), request);
+  std::string said;
+  EXPECT_TRUE(test::WaitUntil([&] {
+    std::array<char, 4096> bytes{};
+    const ssize_t size = recv(ends[1], bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (size > 0) said.append(bytes.data(), static_cast<std::size_t>(size));
+    return said.find("\"end\":2.0") != std::string::npos;
+  })) << said;
+  service.Forget(client.get());
   close(ends[1]);
 }
 

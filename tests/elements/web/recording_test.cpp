@@ -123,6 +123,16 @@ TEST(Recording, ThatIsLargeGivesWhatIsWanted) {
   EXPECT_EQ(more.slices.front()->unix_ns, LargeArchive::TimeOf(596));
 }
 
+TEST(Recording, ShowsItsNearestEndForATimeOutsideOfIt) {
+  web::Recording recording(std::make_unique<LargeArchive>(1'000));
+  const auto begin = recording.Jump(0);
+  ASSERT_FALSE(begin.slices.empty());
+  EXPECT_EQ(begin.slices.front()->unix_ns, kFirst_ns);
+  const auto end = recording.Jump(LargeArchive::TimeOf(2 * LargeArchive::kCount));
+  ASSERT_EQ(end.slices.size(), 11U) << "of the last quarter of a second";
+  EXPECT_EQ(end.slices.front()->unix_ns, LargeArchive::TimeOf(LargeArchive::kCount - 11));
+}
+
 TEST_F(Recordings, AreOfferedWithTheirTimes) {
   OpenEdge();
   Push(400);  // 10 s
@@ -357,6 +367,11 @@ class KeptStream {
   }
   /// While the lock exists, the server gives no answer.
   std::unique_lock<std::mutex> Hang() { return std::unique_lock(mutex_); }
+  /// Number of answers that only told the times.
+  unsigned looks() {
+    const std::lock_guard lock(mutex_);
+    return looks_;
+  }
   /// Number of answers that began at a time.
   unsigned jumps() {
     const std::lock_guard lock(mutex_);
@@ -381,6 +396,7 @@ class KeptStream {
     // The answer begins up to a second before the time asked for, as JetStream's does.
     const bool by_time = GST_CLOCK_TIME_IS_VALID(question.time);
     jumps_ += by_time ? 1 : 0;
+    looks_ += question.most_bytes == 0 ? 1 : 0;
     const auto first = std::find_if(buffers_.begin(), buffers_.end(), [&](const auto& sample) {
       return by_time ? TimeOf(sample) + GST_SECOND >= question.time
                      : GST_BUFFER_OFFSET(gst_sample_get_buffer(sample.get())) >= question.position;
@@ -404,6 +420,7 @@ class KeptStream {
   std::vector<gst::SamplePtr> buffers_;
   guint64 left_out_ = 0;
   unsigned jumps_ = 0;
+  unsigned looks_ = 0;
   bool is_there_ = true;
 };
 
@@ -484,6 +501,27 @@ TEST_F(Recordings, AreTheSameInPiecesOfAnySize) {
   ExpectPiecesToFit(&archive, 24);
 }
 
+TEST_F(Recordings, OfTwoSensorsAlikeAreThoseOfTheFirst) {
+  OpenEdge();
+  Push(4);
+  {
+    const Harness rear(gst_harness_new_with_element(recorder_->element, "sink_1", nullptr));
+    gst_harness_set_src_caps(rear.get(), edge_->robot.caps().release());
+    for (std::uint64_t i = 4; i < 7; ++i) {
+      gst::BufferPtr buffer = edge_->robot.Next();
+      gst_lidar_buffer_set_capture_time(buffer.get(), kFirst_ns + i * kSlice_ns);
+      GST_BUFFER_PTS(buffer.get()) = i * kSlice_ns;
+      EXPECT_EQ(gst_harness_push(rear.get(), buffer.release()), GST_FLOW_OK);
+    }
+  }
+  EndRecording();
+  web::FileArchive archive(path(), CapsOf(&*edge_));
+  std::string why;
+  ASSERT_TRUE(archive.Look(&why)) << why;
+  archive.Seek(kFirst_ns);
+  EXPECT_EQ(RestOf(&archive).size(), 4U);
+}
+
 TEST_F(Recordings, MissNoSliceOfATimeBetweenTwoPieces) {
   OpenEdge();
   constexpr std::size_t kSlices = 600;
@@ -556,10 +594,12 @@ TEST_F(Histories, WhoseServerIsGoneSaySo) {
   viewer.Draw();
 }
 
-/// Otherwise a viewer could fill memory with jumps, each of a subscription of its own.
+/// Otherwise a viewer could fill memory with jumps and looks, each of a subscription of its own.
 TEST_F(Histories, AreNotReadForASubscriptionThatAnotherReplaced) {
   Push(40);
   Viewer viewer(&edge_.sink);
+  AwaitStatus(&viewer, 0);
+  const unsigned looks = kept_.looks();
   constexpr guint kJumps = 10;
   {
     const auto hanging = kept_.Hang();
@@ -571,6 +611,7 @@ TEST_F(Histories, AreNotReadForASubscriptionThatAnotherReplaced) {
   }
   EXPECT_EQ(DamagedAtEnd(&viewer, kJumps), 0);
   EXPECT_LE(kept_.jumps(), 2U) << "the one under way and the last";
+  EXPECT_LT(kept_.looks() - looks, kJumps) << "some under way, and one for all that wait";
 }
 
 TEST_F(Recordings, SurviveAViewerThatJumpsWithoutEnd) {

@@ -157,9 +157,11 @@ TEST(Slices, GoBeforeTheCameraOfAViewerThatFallsBehind) {
   const auto frames = [&] {
     return edge.sink.Stat("messages-sent") + edge.sink.Stat("messages-dropped");
   };
-  const auto push_frame = [&] {
+  const auto push_frame = [&](bool is_key = true) {
     const guint64 before = frames();
-    gst_harness_push(camera.get(), gst_buffer_new_memdup("key", 3));
+    GstBuffer* frame = gst_buffer_new_memdup(is_key ? "key" : "rest", is_key ? 3 : 4);
+    if (!is_key) GST_BUFFER_FLAG_SET(frame, GST_BUFFER_FLAG_DELTA_UNIT);
+    gst_harness_push(camera.get(), frame);
     EXPECT_TRUE(WaitUntil([&] { return frames() > before; }));
   };
   Viewer viewer(&edge.sink);
@@ -178,8 +180,11 @@ TEST(Slices, GoBeforeTheCameraOfAViewerThatFallsBehind) {
   viewer.Acknowledge(0, 2);
   viewer.peer.Sync();
   viewer.peer.received.clear();
+  push_frame(false);  // continues a frame that was left out
   push_frame();
-  EXPECT_EQ(viewer.peer.Next().subscription, 5U);
+  const Received next = viewer.peer.Next();
+  EXPECT_EQ(next.subscription, 5U);
+  EXPECT_NE(next.payload.find("key"), std::string::npos);
 }
 
 TEST(Slices, HaveTheTopicOfTheirRobot) {

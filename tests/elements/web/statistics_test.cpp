@@ -96,6 +96,12 @@ std::string StatsWithCovariance(const std::string& first, int zeros) {
   return stats + ">;";
 }
 
+TEST(Statistics, HaveNothingOfASenderThatHasReportedNothing) {
+  const std::string rtt = "s,sender-rtt=(guint64)0,sender-reports=(guint64)";
+  EXPECT_FALSE(MessageOf(rtt + "0;").contains("rtt"));
+  EXPECT_TRUE(MessageOf(rtt + "1;").contains("rtt"));
+}
+
 TEST(Statistics, HaveACovarianceOf36FiniteNumbersOnly) {
   const auto message = MessageOf(StatsWithCovariance("0.25", 35));
   ASSERT_TRUE(message.contains("pose_covariance"));
