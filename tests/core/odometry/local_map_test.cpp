@@ -71,6 +71,15 @@ TEST(LocalMap, ForgetsWhatIsFarAndUsesItsPlaceAgain) {
   EXPECT_FALSE(map.FindNearest({0, 0.5, 0.5}, 1));
 }
 
+TEST(LocalMap, APlaceThatIsUsedAgainHasNoneOfItsOldPoints) {
+  LocalMap map({1, 20});
+  map.Add({{0.2, 0.5, 0.5}});
+  map.Forget({100, 0, 0});
+  map.Add({{100.8, 0.5, 0.5}});
+  EXPECT_EQ(map.CountPoints(), 1U);
+  EXPECT_FALSE(map.FindNearest({100.2, 0.5, 0.5}, 0.1));
+}
+
 TEST(LocalMap, KnowsTheNormalOfASurface) {
   LocalMap map({1, 100});
   Points floor;

@@ -27,16 +27,23 @@ TEST(OddScans, StartsAfreshBesideAMapToWhichNothingHasFitted) {
 }
 
 TEST(OddScans, IsLostWhereAVehicleCannotHaveMovedLikeThat) {
-  Drive street(synth::SceneKind::kStreet, 10);
-  Odometry odometry({});
-  for (std::uint64_t i = 0; i < 10; ++i)
-    odometry.OnScan(street.StartOf(i), kPeriod, street.Scan(i));
-  const Pose before = odometry.PredictAt(street.StartOf(10) + kPeriod / 2);
-  TimedPoints aside = street.Scan(10);
-  for (Eigen::Vector3d& point : aside.points) point.y() += 1;
-  const Estimate lost = odometry.OnScan(street.StartOf(10), kPeriod, aside);
-  EXPECT_EQ(lost.tracking, Tracking::kLost);
-  EXPECT_LT((lost.pose.position - before.position).norm(), 1e-9);
+  for (const bool was_lost : {false, true}) {  // and found its way again
+    Drive street(synth::SceneKind::kStreet, 10);
+    Odometry odometry({});
+    for (std::uint64_t i = 0; i < 10; ++i) {
+      TimedPoints scan = street.Scan(i);
+      const bool elsewhere = was_lost && i == 8;
+      for (Eigen::Vector3d& point : scan.points) point.z() += elsewhere ? 40 : 0;
+      const Estimate e = odometry.OnScan(street.StartOf(i), kPeriod, scan);
+      EXPECT_EQ(e.tracking == Tracking::kLost, elsewhere) << i;
+    }
+    const Pose before = odometry.PredictAt(street.StartOf(10) + kPeriod / 2);
+    TimedPoints aside = street.Scan(10);
+    for (Eigen::Vector3d& point : aside.points) point.y() += 1;
+    const Estimate lost = odometry.OnScan(street.StartOf(10), kPeriod, aside);
+    EXPECT_EQ(lost.tracking, Tracking::kLost) << was_lost;
+    EXPECT_LT((lost.pose.position - before.position).norm(), 1e-9) << was_lost;
+  }
 }
 
 TEST(OddScans, KnowsWhenAScanDoesNotFit) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "src/slam/pose_graph.h"
 #include "tests/support/block_drive.h"
 
@@ -78,6 +80,36 @@ TEST(LoopCloser, BoundsItsMapsByForgettingThoseThatLieOverOthers) {
   }
   closer.Finish();
   EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
+}
+
+/// The drive is one map long up to a lap of ten maps, and then repeats the first map of the lap.
+/// The closer forgets that map, because the last one lies on it.
+TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
+  constexpr int kScansOfAMap = kScansOfALap / 10;
+  const Points world = MakeWorld();
+  const double step_m = TrueAt(1).position.norm();
+  LoopSettings settings;
+  settings.local_map_m = (kScansOfAMap - 1.2) * step_m;
+  settings.drift_m = -0.5 * settings.local_map_m;  // no loop with the maps beside
+  settings.drift_share = 0;
+  settings.most_maps = 11;
+  LoopCloser closer(settings);
+  for (int scan = 0; scan < 2 * kScansOfAMap + kScansOfALap; ++scan) {
+    const int on_lap = scan - kScansOfAMap;
+    odometry::StampedPose stamped{Time{} + std::chrono::milliseconds(100) * scan, TrueAt(on_lap)};
+    if (on_lap < 0) {
+      stamped.pose.position = {0, on_lap * step_m, 0};
+      stamped.pose.rotation = Eigen::AngleAxisd(kTurn / 4, Eigen::Vector3d::UnitZ());
+    }
+    closer.AddScan(stamped, SeenFrom(stamped.pose, world, scan));
+  }
+  EXPECT_EQ(closer.local_maps(), settings.most_maps);
+  ASSERT_EQ(closer.closures().size(), 1U);
+  const Closure& closure = closer.closures().front();
+  EXPECT_EQ(closure.from, 0U);
+  EXPECT_EQ(closure.to, settings.most_maps - 1);
+  // The middles of the two maps are half a map before and behind the corner.
+  EXPECT_NEAR(closure.pose.position.norm(), std::sqrt(0.5) * kScansOfAMap * step_m, 5);
 }
 
 /// A sensor that stands sees nothing new, and its noise is no motion.
