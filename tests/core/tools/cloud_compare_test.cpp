@@ -41,6 +41,14 @@ TEST(CloudCompare, UnorganisedCloudsMayComeInAnyOrderAndWithoutZeros) {
   EXPECT_NEAR(c.max_error_m, 0.02, 1e-6);
 }
 
+TEST(CloudCompare, AnUnorganisedPointThatNobodySentIsAnErrorOfItsDistance) {
+  const auto sent = Unorganised({1, 0, 0, 5, 0, 0});
+  const auto c = Compare(sent, Unorganised({1, 0, 0, 5, 0, 0, 5, 0, 0.09F}), 0.1);
+  EXPECT_EQ(c.points, 2U);
+  EXPECT_EQ(c.missing + c.added, 0U);
+  EXPECT_NEAR(c.max_error_m, 0.09, 1e-6);
+}
+
 TEST(CloudCompare, AnUnorganisedPointOutOfReachIsMissingHereAndAddedThere) {
   const auto c = Compare(Unorganised({1, 0, 0}), Unorganised({1, 0, 0.2F}), 0.1);
   EXPECT_EQ(c.missing, 1U);

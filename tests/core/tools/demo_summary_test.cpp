@@ -7,6 +7,7 @@
 #include "src/tools/bench/demo/measurements.h"
 #include "src/tools/bench/demo/summary.h"
 #include "src/tools/bench/demo/verdict.h"
+#include "tests/support/files.h"
 
 namespace lidar::demo {
 namespace {
@@ -108,6 +109,24 @@ TEST(DemoLinkLog, IsReadWithWhatTheLinkDidToEachPacket) {
   EXPECT_FALSE(packets[2].delivered || packets[2].marked);
 }
 
+TEST(DemoLinkLog, OfTwoLinksIsInTheOrderOfTime) {
+  const test::TempFolder folder;
+  RunOptions options;
+  options.output = folder.path();
+  options.links = 2;
+  const auto write = [&](std::size_t link, const char* lines) {
+    std::ofstream(LinkFile(options, "packets.csv", link)) << "names of the columns\n" << lines;
+  };
+  write(0, "0.1,1,0,1,7,8,1,1,3,delivered,1,9\n0.3,1,0,3,7,8,1,1,3,delivered,1,9\n");
+  write(1, "0.2,1,0,2,7,8,1,1,3,delivered,1,9\n0.4,1,0,4,7,8,1,1,3,delivered,1,9\n");
+  const auto packets = ReadLinkLogs(options);
+  ASSERT_EQ(packets.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(packets[i].size, static_cast<std::int64_t>(i) + 1);
+    EXPECT_EQ(packets[i].link, i % 2);
+  }
+}
+
 TEST(DemoSamples, HaveTheUnitsOfTheirNames) {
   const nlohmann::json encoder = {{"step", 0.03}, {"target-bitrate", 9'000'000}};
   const nlohmann::json sender = {{"target-bitrate", 1'000'000}, {"estimated-capacity", 2'000'000},
@@ -193,6 +212,12 @@ TEST(DemoSummary, ATransientKnowsItsStepWhereThePartsAreNoRoundNumber) {
   EXPECT_EQ(transients[1].to_bps, 6e6);
 }
 
+TEST(DemoSummary, AStepThatTheRunDidNotReachIsNoTransient) {
+  auto m = TwoSteps();
+  m.ran_s = 4;
+  EXPECT_TRUE(FindTransients(m).empty());
+}
+
 bool AllHold(const Measurements& m) {
   for (const Guarantee& g : CheckGuarantees(m))
     if (!g.holds) return false;
@@ -255,6 +280,15 @@ TEST(DemoVerdict, IsAboutTheScansThatTheLinkCouldHaveCarried) {
   EXPECT_NE(poor.text.find("8 of 40 scans"), std::string::npos) << poor.text;
   ASSERT_FALSE(poor.hints.empty());
   EXPECT_NE(poor.hints[0].find("left out"), std::string::npos) << poor.hints[0];
+}
+
+TEST(DemoVerdict, AsksNoMoreThanTheSourceGave) {
+  auto m = Stream(100);
+  m.ran_s = 11;  // in which the oracle has time for more scans
+  const std::string text = Judge(m).text;
+  EXPECT_NE(text.find("40 of 40 scans arrived whole; a sender that knew the link: 40"),
+            std::string::npos)
+      << text;
 }
 
 TEST(DemoVerdict, AsksNoMoreThanALinkInAnOutageCanCarry) {

@@ -29,6 +29,7 @@ class LinkRecorder : public ::testing::Test {
     link::Fate fate = link::Fate::kDelivered;
     bool marked = false;
     bool duplicate = false;
+    Ecn ecn_in = Ecn::kEct1;
   };
   void Push(const Packet& p) {
     link::Outcome o;
@@ -37,7 +38,7 @@ class LinkRecorder : public ::testing::Test {
     o.sent = o.arrival = kBegin;
     o.sojourn = milliseconds(p.sojourn_ms);
     o.duplicate = p.duplicate;
-    recorder_.OnPacket({o, Ecn::kEct1, p.flow, {}});
+    recorder_.OnPacket({o, p.ecn_in, p.flow, {}});
   }
   nlohmann::ordered_json LiveAt(int s) {
     return recorder_.Live(kBegin + seconds(s), Link(), capacity_);
@@ -72,6 +73,16 @@ TEST_F(LinkRecorder, EachLineHasWhatCameSinceTheOneBefore) {
   EXPECT_EQ(second["marked"], 0);
   EXPECT_EQ(second["dropped"], 0);
   EXPECT_EQ(second["sojourn_ms"]["max"], 4.0);
+}
+
+TEST_F(LinkRecorder, APacketThatCameMarkedIsNotCountedAsMarkedHere) {
+  Packet packet;
+  packet.marked = true;
+  packet.ecn_in = Ecn::kCe;
+  Push(packet);
+  const auto live = LiveAt(1);
+  EXPECT_EQ(live["packets"], 1);
+  EXPECT_EQ(live["marked"], 0);
 }
 
 TEST_F(LinkRecorder, TheSummaryHasAllOfEachFlow) {
