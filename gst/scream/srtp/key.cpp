@@ -78,7 +78,7 @@ std::optional<SrtpKey> ReadSrtpKey(const std::string& source, const SrtpPolicy& 
     const int high = g_ascii_xdigit_value(text[i]);
     const int low = g_ascii_xdigit_value(text[i + 1]);
     hex = high >= 0 && low >= 0;
-    key.push_back(static_cast<std::uint8_t>(high << 4 | low));
+    key.push_back(static_cast<std::uint8_t>(16 * high + low));
   }
   if (hex) return key;
   *error = "the SRTP key must be " + std::to_string(2 * policy.key_size) +
