@@ -56,8 +56,9 @@ class CloudReader : public MessageReader {
   /// `caps` may be NULL, because ROS messages have nearly all of the caps' content.
   explicit CloudReader(CapsPtr caps) {
     if (caps) info_ = CloudInfo::FromFrameCaps(caps.get());
-    if (info_) recorded_ = cdr::PointLayout{info_->fields, info_->point_step};
-    if (info_) caps_ = std::move(caps);
+    if (!info_) return;
+    recorded_ = cdr::PointLayout{info_->fields, info_->point_step};
+    caps_ = std::move(caps);
   }
 
   BufferPtr Read(ByteView message) override {
