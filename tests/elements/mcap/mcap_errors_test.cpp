@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What mcapsink and mcapsrc report if they cannot do their work.
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
 #include <fstream>
 
 #include "ext/mcap/message_types.h"
 #include "ext/mcap/output_file.h"
 #include "tests/core/mcap/memory_file.h"
 #include "tests/elements/mcap/recording.h"
+#include "tests/support/small_disk.h"
 
 namespace lidar::test {
 namespace {
@@ -22,23 +21,6 @@ class McapErrors : public Recording {
   std::string PlayError(const std::string& options) const {
     return Play("mcapsrc " + options + " ! fakesink").error;
   }
-};
-
-/// Limits files to `size` during its lifetime, as if the disk were full then.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t size) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{size, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
- private:
-  rlimit before_{};
 };
 
 TEST_F(McapErrors, AFullDiskIsAnErrorAndWhatWasCompleteStays) {

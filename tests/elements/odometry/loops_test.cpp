@@ -114,11 +114,13 @@ TEST_F(MapPad, IsTheOdometryWhereLoopsAreNotClosed) {
   EXPECT_EQ(last_.orientation[3], 1);
 }
 
+constexpr const char* kCaps =
+    "application/x-pointcloud2,width=1,height=1,point-step=12,"
+    "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1";
+
 TEST(LateMapPad, HasTheEventsOfTheStreamAndItsOwnCaps) {
   const Harness h(gst_harness_new("lidarodometry"));
-  gst_harness_set_src_caps_str(h.get(),
-                               "application/x-pointcloud2,width=1,height=1,point-step=12,"
-                               "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1");
+  gst_harness_set_src_caps_str(h.get(), kCaps);
   const std::array<float, 3> point = {1, 2, 3};
   const auto push = [&](GstClockTime pts) {
     GstBuffer* cloud = gst_buffer_new_memdup(point.data(), sizeof point);
@@ -142,9 +144,7 @@ TEST(MapPadWithoutScans, GivesNoPose) {
   g_object_set(odometry.get(), "local-maps", 2, nullptr);
   const Harness h(gst_harness_new_with_element(odometry.get(), "sink", "src"));
   const Harness map(gst_harness_new_with_element(h->element, nullptr, "map"));
-  gst_harness_set_src_caps_str(h.get(),
-                               "application/x-pointcloud2,width=1,height=1,point-step=12,"
-                               "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1");
+  gst_harness_set_src_caps_str(h.get(), kCaps);
   gst_harness_push_event(h.get(), gst_event_new_eos());
   EXPECT_EQ(gst_harness_buffers_received(map.get()), 0U);
 }

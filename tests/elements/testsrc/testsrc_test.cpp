@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +14,7 @@
 #include "tests/support/element_bus.h"
 #include "tests/support/harness.h"
 #include "tests/support/patience.h"
+#include "tests/support/small_disk.h"
 
 namespace lidar::gst {
 namespace {
@@ -257,28 +256,11 @@ TEST(LidarTestSrc, WritesTheTrajectoryAtTheCaptureTimes) {
   std::filesystem::remove(path);
 }
 
-/// Limits files to `size` bytes during its lifetime, as if the disk were full then.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t size) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{size, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
- private:
-  rlimit before_{};
-};
-
 TEST(LidarTestSrc, TellsOnceThatTheTrajectoryDoesNotFit) {
   const std::string path = ::testing::TempDir() + "long_trajectory.tum";
   std::vector<std::string> warnings;
   {
-    const SmallDisk disk(300);
+    const test::SmallDisk disk(300);
     const Harness h = Launch("model=os1-32 mode=512x10 num-buffers=16 trajectory-location=" + path);
     const test::ElementBus bus(h->element);
     SetPlaying(h.get());

@@ -162,45 +162,55 @@ class EmptyArchive final : public Archive {
   std::uint64_t damaged() const override { return 0; }
 };
 
-/// A client whose connection is the socket `fd`.
-std::unique_ptr<Client> ClientOn(int fd) {
-  const ObjectPtr<GSocket> socket(g_socket_new_from_fd(fd, nullptr));
-  return std::make_unique<Client>(
-      ObjectPtr<GIOStream>(
-          G_IO_STREAM(g_socket_connection_factory_create_connection(socket.get()))),
-      Client::Handlers{[](Client*, const auto&) {}, [](Client*) {}, [](Client*) {}});
-}
+/// A viewer of a recording, whose end of the connection is `socket`.
+struct RecordingViewer {
+  explicit RecordingViewer(std::unique_ptr<Archive> archive) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+    socket = ends[1];
+    const ObjectPtr<GSocket> other(g_socket_new_from_fd(ends[0], nullptr));
+    client = std::make_unique<Client>(
+        ObjectPtr<GIOStream>(
+            G_IO_STREAM(g_socket_connection_factory_create_connection(other.get()))),
+        Client::Handlers{[](Client*, const auto&) {}, [](Client*) {}, [](Client*) {}});
+    foxglove::Channel channel;
+    channel.id = 7;
+    topic = std::make_shared<Topic>(channel, std::make_shared<Recording>(std::move(archive)));
+    service.Subscribe(client.get(), topic, 1);
+  }
+  ~RecordingViewer() {
+    service.Forget(client.get());
+    close(socket);
+  }
+  void Request(foxglove::Request::Kind kind) {
+    foxglove::Request request;
+    request.kind = kind;
+    request.subscription = 1;
+    request.number = 1;
+    service.OnRequest(client.get(), request);
+  }
+
+  int socket = -1;
+  std::unique_ptr<Client> client;
+  std::shared_ptr<Topic> topic;
+  SliceService service{DataRate()};
+};
 
 TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
-  std::array<int, 2> ends{};
-  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
-  const auto client = ClientOn(ends[0]);
-  foxglove::Channel channel;
-  channel.id = 7;
-  const auto topic = std::make_shared<Topic>(
-      channel, std::make_shared<Recording>(std::make_unique<EmptyArchive>()));
-  SliceService service{DataRate()};
-  service.Subscribe(client.get(), topic, 1);
+  RecordingViewer viewer(std::make_unique<EmptyArchive>());
   const auto deliver = [&](std::uint32_t scan) {
     auto slice = std::make_shared<SliceMessage>();
     slice->id.scan = scan;
     slice->blocks = {{scan, scan - 1}};  // refers to a block that the viewer lacks
-    service.Deliver(7, std::move(slice));
-    return topic->wants_recoded();
+    viewer.service.Deliver(7, std::move(slice));
+    return viewer.topic->wants_recoded();
   };
   using Kind = foxglove::Request::Kind;
-  foxglove::Request request;
-  request.subscription = 1;
-  request.number = 1;
   EXPECT_TRUE(deliver(10));
-  request.kind = Kind::kReplay;
-  service.OnRequest(client.get(), request);
+  viewer.Request(Kind::kReplay);
   EXPECT_FALSE(deliver(20));
-  request.kind = Kind::kLive;
-  service.OnRequest(client.get(), request);
+  viewer.Request(Kind::kLive);
   EXPECT_TRUE(deliver(30));
-  service.Forget(client.get());
-  close(ends[1]);
 }
 
 /// A recording of one slice. It claims to have read so much that a piece ends with the slice.
@@ -226,29 +236,15 @@ class ShortArchive final : public Archive {
 };
 
 TEST(SliceService, TellsWhenAReplayEndsThoughItsLastPieceIsEmpty) {
-  std::array<int, 2> ends{};
-  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
-  const auto client = ClientOn(ends[0]);
-  foxglove::Channel channel;
-  channel.id = 7;
-  const auto topic = std::make_shared<Topic>(
-      channel, std::make_shared<Recording>(std::make_unique<ShortArchive>()));
-  SliceService service{DataRate()};
-  service.Subscribe(client.get(), topic, 1);
-  foxglove::Request request;
-  request.kind = foxglove::Request::Kind::kReplay;
-  request.subscription = 1;
-  request.number = 1;
-  service.OnRequest(client.get(), request);
+  RecordingViewer viewer(std::make_unique<ShortArchive>());
+  viewer.Request(foxglove::Request::Kind::kReplay);
   std::string said;
   EXPECT_TRUE(test::WaitUntil([&] {
     std::array<char, 4096> bytes{};
-    const ssize_t size = recv(ends[1], bytes.data(), bytes.size(), MSG_DONTWAIT);
+    const ssize_t size = recv(viewer.socket, bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (size > 0) said.append(bytes.data(), static_cast<std::size_t>(size));
     return said.find("\"end\":2.0") != std::string::npos;
   })) << said;
-  service.Forget(client.get());
-  close(ends[1]);
 }
 
 TEST(SliceService, WantsNothingRecodedOnceTheLastViewerLeft) {
