@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <sstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -79,8 +80,16 @@ struct Connection::Shared {
   std::mutex mutex;  // guards all but `changed`; never held while that runs
   std::condition_variable ended;
   ConnectionState state;
-  bool over = false;  // the last callback has come
+  bool refused = false;  // a server refused the first connect
+  bool over = false;     // the last callback has come
   Changed changed;
+
+  void NoteFirst(natsStatus failure) {
+    const std::lock_guard lock(mutex);
+    refused = failure != NATS_NO_SERVER && failure != NATS_TIMEOUT && failure != NATS_IO_ERROR &&
+              failure != NATS_CONNECTION_CLOSED;
+    if (refused) state.last_error = ErrorText(failure);
+  }
 
   template <class Change>
   void Update(Change change) {
@@ -130,6 +139,7 @@ struct Callbacks {
     const std::string text = LastError(nc, NATS_CONNECTION_CLOSED);
     shared.Update([&](ConnectionState* s) {
       s->closed = true;
+      s->unanswered = s->connections == 0 && !shared.refused;
       if (s->last_error.empty()) s->last_error = text;
     });
     const std::lock_guard lock(shared.mutex);
@@ -155,7 +165,10 @@ std::string WithoutUser(const std::string& urls) {
 std::string ErrorText(natsStatus status) {
   natsStatus last = NATS_OK;
   const char* words = nats_GetLastError(&last);
-  return last == status && words != nullptr && *words != '\0' ? words : natsStatus_GetText(status);
+  if (last != status || words == nullptr || *words == '\0') return natsStatus_GetText(status);
+  const std::string_view text = words;  // begins with libnats' file and line, such as "(a.c:7): "
+  const auto place = text.front() == '(' ? text.find("): ") : text.npos;
+  return std::string(place == text.npos ? text : text.substr(place + 3));
 }
 
 natsStatus Connection::Connect(natsOptions* o) {
@@ -165,10 +178,14 @@ natsStatus Connection::Connect(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetDisconnectedCB(o, Call::OnDisconnected, closure.get());
   if (s == NATS_OK) s = natsOptions_SetReconnectedCB(o, Call::OnConnected, closure.get());
   if (s == NATS_OK) s = natsOptions_SetErrorHandler(o, Call::OnError, closure.get());
-  if (s == NATS_OK)
-    s = natsOptions_SetRetryOnFailedConnect(o, true, Call::OnConnected, closure.get());
   if (s != NATS_OK) return s;
-  s = natsConnection_Connect(&nc_, o);
+  const natsStatus first = natsConnection_Connect(&nc_, o);
+  if (first != NATS_OK) {
+    shared_->NoteFirst(first);
+    // libnats would not tell of the reason of a refusal, had it been asked to try again at once.
+    s = natsOptions_SetRetryOnFailedConnect(o, true, Call::OnConnected, closure.get());
+    if (s == NATS_OK) s = natsConnection_Connect(&nc_, o);
+  }
   if (nc_ == nullptr) return s;
   closure.release();  // OnClosed() deletes it
   if (s == NATS_OK) shared_->Update([](ConnectionState* state) { ++state->connections; });

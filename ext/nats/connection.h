@@ -26,7 +26,11 @@ struct ConnectionSettings {
 struct ConnectionState {
   bool connected() const { return connections > disconnections && !closed; }
 
-  bool closed = false;       // for good, because the server refused the client
+  bool refused() const { return closed && !unanswered; }
+
+  bool closed = false;  // for good, so that only another connection helps
+  // No server refused the first connect, but libnats gives it up if one takes it and is silent.
+  bool unanswered = false;
   unsigned connections = 0;  // how many were made so far
   unsigned disconnections = 0;
   std::uint64_t errors = 0;  // reports of the server
@@ -40,7 +44,7 @@ class Connection {
  public:
   /// `changed` runs in threads of libnats, at each change of the state until the destructor
   /// returns. Returns null, and `why`, if the settings are wrong. A server that does not answer is
-  /// no error: the connection tries again until it does.
+  /// no error: the connection tries again until it does, or is `unanswered`.
   using Changed = std::function<void(const ConnectionState&)>;
   static std::unique_ptr<Connection> Open(const ConnectionSettings& settings, Changed changed,
                                           std::string* why);

@@ -360,7 +360,7 @@ static void NoteAbsence(State& state) {
   if (connection.connected()) {
     state.here_at_us = now;
     state.warned_absent = false;
-  } else if (!connection.closed &&
+  } else if (!connection.refused() &&
              now - state.here_at_us > std::chrono::microseconds(lidar::nats::kAbsence).count() &&
              !std::exchange(state.warned_absent, true)) {
     state.watch->Warn("No NATS server answers at " +

@@ -86,7 +86,10 @@ std::optional<gst::HistoryAnswer> History::Answer(const gst::HistoryQuestion& qu
 /// Returns true once the server is there and has the stream.
 bool History::Find() {
   std::string why;
-  if (!connection_) connection_ = Connection::Open(settings_, nullptr, &why);
+  if (!connection_ || connection_->state().unanswered) {
+    js_.reset();
+    connection_ = Connection::Open(settings_, nullptr, &why);
+  }
   if (!connection_ || !connection_->state().connected()) return false;
   if (!js_) js_ = OpenJetStream(connection_->get());
   if (!js_ || !stream_.empty()) return js_ != nullptr;

@@ -75,7 +75,7 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
   if (silent_) return;
   const bool changed = std::exchange(connected_, state.connected()) != state.connected();
   if (state.connected()) closed_ = false;
-  const bool closed = state.closed && !std::exchange(closed_, true);
+  const bool closed = state.refused() && !std::exchange(closed_, true);
   const bool error = state.errors > std::exchange(errors_, state.errors);
   lock.unlock();
   // The server's text may be invalid UTF-8, which messages on the bus must not have.

@@ -96,6 +96,7 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
   const natsStatus s =
       natsConnection_Subscribe(&raw, connection_->get(), subject.c_str(), on_message, target.get());
   out->reset(raw);
+  if (s == NATS_CONNECTION_CLOSED) return true;  // state() has the reason
   if (s != NATS_OK) {
     *why = ErrorText(s);
     return false;
@@ -203,10 +204,11 @@ void Publisher::Run() {
 void Publisher::Step(Lock* lock) {
   const ConnectionState state = connection_ ? connection_->state() : ConnectionState();
   NoteConnection(state);
-  if (settings_.keep_trying && (!connection_ || state.closed)) return OpenAgain(lock);
+  if (connection_ && !state.connected() && !state.refused() && Clock::now() - here_at_ > kAbsence)
+    Tell(lock, "No NATS server answers at " + WithoutUser(settings_.connection.url));
+  if (!connection_ || state.unanswered || (state.closed && settings_.keep_trying))
+    return OpenAgain(lock);
   if (!state.connected()) {
-    if (!state.closed && Clock::now() - here_at_ > kAbsence)
-      Tell(lock, "No NATS server answers at " + WithoutUser(settings_.connection.url));
     wake_.wait_for(*lock, kPatrol);
     return;
   }
@@ -255,7 +257,7 @@ void Publisher::OpenAgain(Lock* lock) {
     const ConnectionState state = connection_->state();
     connections_before_ += state.connections;
     errors_before_ += state.errors;
-    if (state.closed) ++counters_.refusals;
+    if (state.refused()) ++counters_.refusals;
   }
   lock->unlock();
   Close();

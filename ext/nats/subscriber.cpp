@@ -35,22 +35,28 @@ std::int64_t SafeTime(std::uint64_t time) {
 
 std::unique_ptr<Subscriber> Subscriber::Open(const SubscriberSettings& settings,
                                              Connection::Changed changed, std::string* why) {
-  std::unique_ptr<Subscriber> self(new Subscriber(settings));
-  self->connection_ = Connection::Open(settings.connection, std::move(changed), why);
-  if (!self->connection_) return nullptr;
+  std::unique_ptr<Subscriber> self(new Subscriber(settings, std::move(changed)));
+  return self->Connect(why) ? std::move(self) : nullptr;
+}
+
+bool Subscriber::Connect(std::string* why) {
+  auto connection = Connection::Open(settings_.connection, changed_, why);
+  if (!connection) return false;
+  connection_ = std::move(connection);
   natsStatus status = NATS_OK;
-  if (self->stored()) {
-    self->js_ = OpenJetStream(self->connection_->get());
-    if (!self->js_) status = NATS_NO_MEMORY;
+  if (stored()) {
+    js_ = OpenJetStream(connection_->get());
+    if (!js_) status = NATS_NO_MEMORY;
   } else {
-    status = self->SubscribeLive();
+    status = SubscribeLive();
     // This waits until the server has the subscription, so that callers can publish after it.
-    if (self->connection_->state().connected())
-      natsConnection_FlushTimeout(self->connection_->get(), Connection::kConnectTimeoutMs);
+    if (connection_->state().connected())
+      natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
   }
-  if (status == NATS_OK) return self;
+  // Next() sees why a connection is closed.
+  if (status == NATS_OK || status == NATS_CONNECTION_CLOSED) return true;
   *why = ErrorText(status);
-  return nullptr;
+  return false;
 }
 
 Subscriber::~Subscriber() {
@@ -238,8 +244,18 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   return Event::kMessage;
 }
 
+Subscriber::Event Subscriber::ConnectAgain(milliseconds pause) {
+  std::this_thread::sleep_for(pause);
+  messages_.reset();
+  configs_.reset();
+  js_.reset();
+  std::string why;
+  return Connect(&why) ? Event::kNothing : Event::kClosed;
+}
+
 Subscriber::Event Subscriber::Next(milliseconds timeout, Delivery* delivery) {
   const ConnectionState state = connection_->state();
+  if (state.unanswered) return ConnectAgain(timeout);
   if (state.closed) return Event::kClosed;
   if (stored() && (!messages_ || stale_ || state.connections != connections_ ||
                    state.missed_heartbeats != missed_heartbeats_))
@@ -254,7 +270,8 @@ Subscriber::Event Subscriber::Next(milliseconds timeout, Delivery* delivery) {
   delivery->message.reset(raw);
   if (s == NATS_SLOW_CONSUMER) CountOverruns();
   if (s == NATS_MISMATCH) stale_ = true;
-  if (s == NATS_CONNECTION_CLOSED) return Event::kClosed;
+  // The state, which says why, may come a moment later.
+  if (!messages_ || s == NATS_CONNECTION_CLOSED) std::this_thread::sleep_for(timeout);
   if (s != NATS_OK || raw == nullptr) return Event::kNothing;
   return stored() ? NoteStored(delivery) : Event::kMessage;
 }

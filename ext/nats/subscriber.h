@@ -64,9 +64,12 @@ class Subscriber {
   std::uint64_t damaged_formats() const { return book_.damaged(); }
 
  private:
-  explicit Subscriber(SubscriberSettings settings) : settings_(std::move(settings)) {}
+  Subscriber(SubscriberSettings settings, Connection::Changed changed)
+      : settings_(std::move(settings)), changed_(std::move(changed)) {}
   bool stored() const { return !settings_.stream.empty(); }
 
+  bool Connect(std::string* why);
+  Event ConnectAgain(std::chrono::milliseconds pause);
   Event Renew();
   natsStatus SubscribeLive();
   natsStatus SubscribeStored(jsErrCode* code);
@@ -80,6 +83,7 @@ class Subscriber {
   void AskForFormat();
 
   const SubscriberSettings settings_;
+  const Connection::Changed changed_;
   std::unique_ptr<Connection> connection_;
   JetStreamPtr js_;
   SubscriptionPtr messages_;  // declared after the connection that it needs

@@ -186,6 +186,17 @@ TEST_F(LidarWorker, GivesUpWithoutAServerAndGoesOnWithIt) {
   EXPECT_GT(DistanceOf(consumer.buffers().back()), 10);
 }
 
+TEST_F(LidarWorker, WaitsForAServerThatTakesItsConnectionAndIsSilent) {
+  server_.Freeze();
+  auto worker = Worker();
+  NatsPipeline other("natssrc name=n" + At() + "! fakesink name=see");
+  other.Play();
+  EXPECT_NE(other.WaitForWarning("No NATS server answers"), "");  // comes after both gave it up
+  server_.Thaw();
+  const auto robot = Robot();
+  EXPECT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
+}
+
 TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
   const auto robot = Robot();
   const auto stop_s = [&](bool hangs) {

@@ -123,6 +123,21 @@ TEST_F(NatsErrors, AServerThatIsNotThereIsToldOfByBothEnds) {
   }
 }
 
+/// As at the start in a gap of the link: libnats gives such a connect up for good.
+TEST_F(NatsErrors, AServerThatTakesConnectionsAndIsSilentIsTriedAgain) {
+  server_.Start();
+  server_.Freeze();
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At());
+  receiver.Play();
+  sender.Play();
+  EXPECT_NE(receiver.WaitForWarning("No NATS server answers"), "");
+  EXPECT_NE(sender.WaitForWarning("No NATS server answers"), "");
+  server_.Thaw();
+  EXPECT_TRUE(receiver.WaitForBuffers(1));
+  EXPECT_EQ(sender.stat("refusals"), 0U);
+}
+
 TEST_F(NatsErrors, AStreamThatReachesNoServerEndsWithAnError) {
   NatsPipeline sender(kQuick + "num-buffers=8 ! lidarenc" + kSee +
                       "! natssink name=n sync=false drain-timeout=100000000 "
@@ -141,7 +156,8 @@ TEST_F(NatsErrors, AWrongTokenIsAnErrorAndTheRightOneIsTaken) {
     NatsPipeline refused(end.empty() ? kLive + "! lidarenc" + kSee + "! natssink name=n" + with
                                      : "natssrc name=n" + with + end);
     refused.Play();
-    EXPECT_NE(refused.WaitForEnd().find("refuses us"), std::string::npos);
+    const std::string text = refused.WaitForEnd();
+    EXPECT_NE(text.find("refuses us: Authorization Violation."), text.npos) << text;
   }
   NatsPipeline receiver("natssrc name=n" + At("token=s3cret") + "! fakesink name=see sync=false");
   Listen(server_, &receiver);

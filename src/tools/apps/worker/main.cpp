@@ -143,6 +143,7 @@ int Main(int argc, char** argv) {
   std::optional<fleet::Statistics> statistics(std::in_place, o.statistics,
                                               o.worker.pipeline.connection);
   while (!stopping) {
+    if (worker->unanswered()) worker.emplace(o.worker);
     worker->Step();
     statistics->Poll([&](auto* exposition, auto* reports) { worker->Tell(exposition, reports); });
   }

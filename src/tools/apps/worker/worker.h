@@ -29,6 +29,8 @@ class Worker {
   /// Throws std::runtime_error if settings are wrong or elements missing.
   explicit Worker(const WorkerSettings& settings);
 
+  /// Whether only another worker can reach a server: see ConnectionState.
+  bool unanswered() const { return connection_->state().unanswered; }
   /// Works for some milliseconds.
   void Step();
   /// Stops all pipelines, and leaves the robots to other workers, in less than a second. A
