@@ -70,7 +70,8 @@ struct TxStream {
   std::optional<guint8> payload_type;  // from the caps, or of the first media packet
   scream::StreamConfig config;         // as given to the controller
   double configured_share = 1;         // payload share in `config`
-  GstSegment segment{};                // of the pad, for entry times and merged output
+  GstSegment segment{};                // of the packets that come in
+  GstSegment leaving_segment{};        // of the packets that leave
   GstClockID entry_wait = nullptr;     // not owned
   EntryShift entry_shift;
   std::optional<bool> live;  // unknown before the first buffer

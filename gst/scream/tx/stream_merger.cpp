@@ -18,6 +18,7 @@ EventPtr StreamMerger::TakeEvent(TxStream* stream) const {
   if (type != GST_EVENT_STREAM_START && type != GST_EVENT_EOS && !sent_start_) return NewStart();
   EventPtr event = std::move(stream->queue.front().event);
   stream->queue.pop_front();
+  if (type == GST_EVENT_SEGMENT) gst_event_copy_segment(event.get(), &stream->leaving_segment);
   return event;
 }
 
@@ -71,13 +72,14 @@ void StreamMerger::NoteSent(bool merged, EventPtr* event) {
 
 BufferPtr StreamMerger::ToOutput(const Streams& streams, const TxStream& stream,
                                  BufferPtr buffer) const {
-  if (streams.size() == 1 || stream.segment.format != GST_FORMAT_TIME ||
-      gst_segment_is_equal(&stream.segment, &segment_))
+  const GstSegment& segment = stream.leaving_segment;
+  if (streams.size() == 1 || segment.format != GST_FORMAT_TIME ||
+      gst_segment_is_equal(&segment, &segment_))
     return buffer;
   GstBuffer* out = gst_buffer_make_writable(buffer.release());
   for (GstClockTime* t : {&GST_BUFFER_PTS(out), &GST_BUFFER_DTS(out)}) {
     if (!GST_CLOCK_TIME_IS_VALID(*t)) continue;
-    const GstClockTime running = gst_segment_to_running_time(&stream.segment, GST_FORMAT_TIME, *t);
+    const GstClockTime running = gst_segment_to_running_time(&segment, GST_FORMAT_TIME, *t);
     *t = gst_segment_position_from_running_time(&segment_, GST_FORMAT_TIME, running);
   }
   return BufferPtr(out);

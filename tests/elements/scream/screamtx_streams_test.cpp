@@ -311,6 +311,41 @@ TEST_F(ScreamTx, AFlushEndsWhereItBeganThoughAPadIsAddedMeanwhile) {
   EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
 }
 
+TEST_F(ScreamTx, APacketThatWaitsKeepsTheTimeOfItsSegment) {
+  constexpr guint16 kPackets = 30;  // more than the window allows: some wait in the queue
+  g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  std::multiset<GstClockTime> times;
+  gst_pad_add_probe(
+      rtp->sinkpad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo* info, gpointer all) -> GstPadProbeReturn {
+        static_cast<std::multiset<GstClockTime>*>(all)->insert(
+            GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info)));
+        return GST_PAD_PROBE_OK;
+      },
+      &times, nullptr);
+  const auto push = [&](guint16 seq, GstClockTime pts) {
+    GstBuffer* buffer = NewRtp({seq, seq, true, 0x5678});
+    GST_BUFFER_PTS(buffer) = pts;
+    ASSERT_EQ(gst_harness_push(second.get(), buffer), GST_FLOW_OK);
+  };
+  for (guint16 seq = 0; seq < kPackets; ++seq) push(seq, 500 * GST_MSECOND);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.start = segment.time = segment.position = 5 * GST_SECOND;
+  segment.base = GST_SECOND;
+  ASSERT_TRUE(gst_harness_push_event(second.get(), gst_event_new_segment(&segment)));
+  push(kPackets, 5'500 * GST_MSECOND);
+  for (int i = 0; i < 400 && sent.size() <= kPackets; ++i) {
+    time.Advance(10 * GST_MSECOND);
+    Acknowledge();
+  }
+  EXPECT_EQ(times.count(500 * GST_MSECOND), kPackets);
+  EXPECT_EQ(times.count(1'500 * GST_MSECOND), 1U);
+}
+
 TEST_F(ScreamTx, SeveralStreamsMayHaveAnyCapsTogether) {
   Start();
   Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
