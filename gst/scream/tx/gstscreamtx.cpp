@@ -141,13 +141,16 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   TxState& state = StateOf(element);
   const PadPtr keep(GST_PAD(gst_object_ref(pad)));
   const StringPtr name(gst_pad_get_name(pad));
+  TxStream* stream = PadStream(pad);
+  bool flushes_src = false;
   {
     TxLock lock(state.mutex);
-    TxStream* stream = PadStream(pad);
+    flushes_src = stream->flushes_src && state.gate.open();
     stream->flushing = true;
     state.gate.Release(*stream);
   }
   gst_pad_set_active(pad, FALSE);  // returns after the pad's thread has left
+  if (flushes_src) TxFlush(GST_LIDAR_SCREAM_TX(element), *stream, gst_event_new_flush_stop(TRUE));
   gst_element_remove_pad(element, pad);
   {
     TxLock lock(state.mutex);

@@ -70,8 +70,7 @@ GstFlowReturn Queue(GstLidarScreamTx* self, GstPad* pad, GstBuffer* first, Take 
   TxStream& stream = *PadStream(pad);
   const bool live = KnownLive(state, stream, pad);
   TxLock lock(state.mutex);
-  if (!live)
-    state.gate.Wait(lock, GST_ELEMENT(self), state.settings.max_queue_delay, stream, first);
+  if (!live) state.gate.Wait(lock, GST_ELEMENT(self), state.settings.max_queue_delay, stream, first);
   const GstFlowReturn flow = state.gate.Check(stream);
   if (flow != GST_FLOW_OK) return flow;
   take(state, stream, TxNow(state));
@@ -130,32 +129,33 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   state.gate.set_flow(GST_FLOW_OK);
 }
 
+}  // namespace
+
 /// A flush of the only stream goes downstream. A flush of one of several streams does not. Pads may
 /// come and go during a flush, so its end goes where its start went.
-gboolean HandleFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
+gboolean TxFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
   const EventPtr owner(event);
   const bool start = GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_START;
   bool flushes_src = false;
   {
     TxLock lock(state.mutex);
-    flushes_src = stream.flushes_src || state.streams.size() == 1;
+    const bool alone = state.streams.size() == 1;
+    flushes_src = stream.flushes_src || (alone && (start || !stream.flushing));
     stream.flushes_src = start && flushes_src;
   }
   if (start) OnFlushStart(self, stream);
-  if (!flushes_src) {
-    if (!start) OnFlushStop(self, stream, event);
-    return TRUE;
-  }
-  const gboolean done = gst_pad_push_event(self->src, gst_event_ref(event));
-  if (start) {
-    state.pacing.Pause(GST_FLOW_FLUSHING);
-  } else {
+  const gboolean done =
+      flushes_src ? gst_pad_push_event(self->src, gst_event_ref(event)) : gboolean{TRUE};
+  if (start && flushes_src) state.pacing.Pause(GST_FLOW_FLUSHING);
+  if (!start) {
     OnFlushStop(self, stream, event);
-    state.pacing.Start();
+    state.pacing.Start();  // pauses again if downstream still takes nothing
   }
   return done;
 }
+
+namespace {
 
 /// A stream begins after its end. If all had ended, the output begins anew, too.
 void BeginAnew(TxState& state) {
@@ -215,7 +215,7 @@ gboolean TxSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   TxStream& stream = *PadStream(pad);
   const GstEventType type = GST_EVENT_TYPE(event);
   if (type == GST_EVENT_FLUSH_START || type == GST_EVENT_FLUSH_STOP)
-    return HandleFlush(self, stream, event);
+    return TxFlush(self, stream, event);
   if (!GST_EVENT_IS_SERIALIZED(event)) return gst_pad_push_event(self->src, event);
   if (type == GST_EVENT_CAPS) {
     OnCaps(self, pad, stream, event);

@@ -88,6 +88,8 @@ void SettingsChanged(GstLidarScreamTx* self);
 GstFlowReturn TxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 GstFlowReturn TxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 gboolean TxSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event);
+/// Handles the start or end of a flush of `stream`. Call it without the lock. Takes the event.
+gboolean TxFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event);
 // feedback.cpp: the pad rtcp_sink
 GstFlowReturn TxRtcpChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 

@@ -311,6 +311,48 @@ TEST_F(ScreamTx, AFlushEndsWhereItBeganThoughAPadIsAddedMeanwhile) {
   EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
 }
 
+TEST_F(ScreamTx, AFlushEndsWhereItBeganThoughTheOtherPadLeavesMeanwhile) {
+  Start();
+  const gst::PadPtr other(gst_element_request_pad_simple(element, "sink_%u"));
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  gst_element_release_request_pad(element, other.get());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(rtp.get(), NewSegment());
+  PushFrame(0, 1);
+  EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
+  while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
+    EXPECT_NE(GST_EVENT_TYPE(event.get()), GST_EVENT_FLUSH_STOP);
+}
+
+TEST_F(ScreamTx, AFlushEndsWithThePadThatBeganIt) {
+  Start();
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  const gst::PadPtr first(gst_element_get_static_pad(element, "sink_0"));
+  gst_element_release_request_pad(element, first.get());
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  ASSERT_EQ(gst_harness_push(second.get(), NewRtp({})), GST_FLOW_OK);
+  EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
+}
+
+TEST_F(ScreamTx, GoesOnBehindAFlushOfOneOfSeveralStreamsWhereTheNextElementHadStopped) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  PushFrame(0, 1);
+  time.Advance(20 * GST_MSECOND);
+  Acknowledge();
+  gst_pad_set_active(rtp->sinkpad, FALSE);
+  ASSERT_TRUE(Eventually([&] { return Push({}) == GST_FLOW_FLUSHING; }));
+  gst_pad_set_active(rtp->sinkpad, TRUE);
+  gst_test_clock_set_time(time.clock(), time.now() + GST_SECOND);
+  gst_harness_push_event(second.get(), gst_event_new_flush_start());
+  gst_harness_push_event(second.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(second.get(), NewSegment());
+  ASSERT_EQ(gst_harness_push(second.get(), NewRtp({})), GST_FLOW_OK);
+  EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
+}
+
 TEST_F(ScreamTx, APacketThatWaitsKeepsTheTimeOfItsSegment) {
   constexpr guint16 kPackets = 30;  // more than the window allows: some wait in the queue
   g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);
