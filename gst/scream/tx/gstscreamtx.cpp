@@ -173,6 +173,7 @@ static bool TakesTuning(GstElement* element) {
 static void Prepare(TxState& state) {
   TxLock lock(state.mutex);
   state.controller.emplace(ToParameters(state.settings));
+  state.max_queue_delay = state.settings.max_queue_delay;
   state.parser = {};
   state.feedback_peer = {};
   for (auto& stream : state.streams) {

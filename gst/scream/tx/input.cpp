@@ -70,7 +70,7 @@ GstFlowReturn Queue(GstLidarScreamTx* self, GstPad* pad, GstBuffer* first, Take 
   TxStream& stream = *PadStream(pad);
   const bool live = KnownLive(state, stream, pad);
   TxLock lock(state.mutex);
-  if (!live) state.gate.Wait(lock, GST_ELEMENT(self), state.settings.max_queue_delay, stream, first);
+  if (!live) state.gate.Wait(lock, GST_ELEMENT(self), state.max_queue_delay, stream, first);
   const GstFlowReturn flow = state.gate.Check(stream);
   if (flow != GST_FLOW_OK) return flow;
   take(state, stream, TxNow(state));

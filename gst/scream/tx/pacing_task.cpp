@@ -186,14 +186,14 @@ void PacingTask::CollectPackets(Time now, Batch* batch) {
 void PacingTask::OnAccepted(Time now) {
   const auto waits = [](const auto& stream) { return !stream->live.value_or(true); };
   if (end_deadline_ && std::any_of(state().streams.begin(), state().streams.end(), waits))
-    end_deadline_ = now + std::max(kReceiverTimeout, 2 * state().settings.max_queue_delay);
+    end_deadline_ = now + std::max(kReceiverTimeout, 2 * state().max_queue_delay);
 }
 
 /// Returns true, once, when all packets have left or the deadline of the end has passed.
 bool PacingTask::Drained(Time now) {
   TxState& s = state();
   if (!AllEnded(s) || end_sent_) return false;
-  if (!end_deadline_) end_deadline_ = now + 2 * s.settings.max_queue_delay;
+  if (!end_deadline_) end_deadline_ = now + 2 * s.max_queue_delay;
   if (!AllSent(s) && now < *end_deadline_) return false;
   for (auto& stream : s.streams) ClearQueue(s, *stream, now);
   end_sent_ = true;
@@ -207,7 +207,7 @@ Time PacingTask::NextWake(Time now) const {
   if (end_deadline_ && !end_sent_) wake = std::min(wake, *end_deadline_);
   for (const auto& stream : s.streams)
     if (!stream->queue.empty() && stream->live.value_or(true))
-      wake = std::min(wake, now - stream->HeadAge(now) + s.settings.max_queue_delay);
+      wake = std::min(wake, now - stream->HeadAge(now) + s.max_queue_delay);
   // A late frame stays if it has begun to leave or waits behind a gap: the task checks it again
   // soon.
   return std::max(wake, now + std::chrono::milliseconds(1));

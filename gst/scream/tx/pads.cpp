@@ -33,7 +33,7 @@ gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!ReadLatency(query).live) return TRUE;
   TxState& state = StateOf(parent);
   TxLock lock(state.mutex);
-  AddLatency(query, static_cast<GstClockTime>(state.settings.max_queue_delay.count()));
+  AddLatency(query, static_cast<GstClockTime>(state.max_queue_delay.count()));
   return TRUE;
 }
 

@@ -42,6 +42,7 @@ struct TxState {
   std::mutex mutex;  // guards all members but the clock
   GstClock* clock = gst_system_clock_obtain();
   TxSettings settings;
+  Duration max_queue_delay{};                    // of this run
   std::optional<scream::Controller> controller;  // set from the first change to PAUSED on
   TxStreams streams;
   guint next_pad = 0;

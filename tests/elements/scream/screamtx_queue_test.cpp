@@ -348,6 +348,8 @@ TEST_F(ScreamTx, AddsItsLongestDelayToTheLatency) {
   Start();
   gst_harness_set_upstream_latency(rtp.get(), 30 * GST_MSECOND);
   EXPECT_EQ(gst_harness_query_latency(rtp.get()), 100 * GST_MSECOND);
+  g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);  // for the next start
+  EXPECT_EQ(gst_harness_query_latency(rtp.get()), 100 * GST_MSECOND);
 }
 
 TEST_F(ScreamTx, HoldsNoMoreThanItsDelayThroughAnOutageAndRecoversWithinASecond) {
