@@ -126,6 +126,12 @@ static void OnReport(GstLidarScreamAux* self, GstEvent* event) {
   if (report) TxTakeReport(GST_LIDAR_SCREAM_TX(self->tx), *report);
 }
 
+/// A packet that the next pad refuses gets no number from the session.
+static bool NextPadTakes(GstPad* src) {
+  const PadPtr next(gst_pad_get_peer(src));
+  return next && !GST_PAD_IS_FLUSHING(next.get()) && !GST_PAD_IS_EOS(next.get());
+}
+
 static GstPadProbeReturn WatchSource(GstPad*, GstPadProbeInfo* info, gpointer data) {
   auto* self = GST_LIDAR_SCREAM_AUX(data);
   State& state = *self->state;
@@ -139,6 +145,8 @@ static GstPadProbeReturn WatchSource(GstPad*, GstPadProbeInfo* info, gpointer da
     GstCaps* caps = nullptr;
     if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) gst_event_parse_caps(event, &caps);
     if (caps != nullptr) state.numbers.OnCaps(caps);
+  } else if (!NextPadTakes(self->src)) {
+    return GST_PAD_PROBE_OK;
   } else if ((info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0) {
     GstBufferList* list = GST_PAD_PROBE_INFO_BUFFER_LIST(info);
     for (guint i = 0; i < gst_buffer_list_length(list); ++i)

@@ -57,8 +57,19 @@ class ScreamAux : public ::testing::Test {
     // GObject registers GValueArray, the type of the list, at its first use.
     g_type_class_ref(G_TYPE_OBJECT);
     ASSERT_NE(g_type_from_name("GValueArray"), G_TYPE_INVALID);
+    SetCaps();
+  }
+  void SetCaps() {
     gst_harness_set_src_caps_str(
         harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + rtcp::kTwccUri).c_str());
+  }
+  /// Plays again after a pause in READY.
+  void Restart() {
+    gst_element_set_state(element, GST_STATE_READY);
+    gst_element_set_state(element, GST_STATE_PLAYING);
+    gst_harness_play(harness.get());
+    gst_harness_push_event(harness.get(), gst_event_new_stream_start("again"));
+    SetCaps();
   }
   void TearDown() override {
     harness.reset();
@@ -254,8 +265,7 @@ TEST_F(ScreamAux, ForgetsTheExtensionWhereNewCapsHaveNone) {
   gst_harness_set_src_caps_str(harness.get(), kRtpCaps);
   Push();  // the extension's id now means something else
   ASSERT_EQ(Leave(), 1);
-  gst_harness_set_src_caps_str(
-      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + rtcp::kTwccUri).c_str());
+  SetCaps();
   Push();
   ASSERT_EQ(Leave(), 1);
   Tell({{0}, {1}, {2}});  // there is no number 2
@@ -301,12 +311,22 @@ TEST(ScreamAuxPads, AreNamedAfterTheSession) {
 TEST_F(ScreamAux, GoesOnWithTheSessionsNumbersAfterAPauseInReady) {
   Push();
   ASSERT_EQ(Leave(), 1);
-  gst_element_set_state(element, GST_STATE_READY);
-  gst_element_set_state(element, GST_STATE_PLAYING);
-  gst_harness_play(harness.get());
-  gst_harness_push_event(harness.get(), gst_event_new_stream_start("again"));
-  gst_harness_set_src_caps_str(
-      harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + rtcp::kTwccUri).c_str());
+  Restart();
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  Tell({{1}});
+  EXPECT_EQ(Stat("packets-acked"), 1U);
+}
+
+TEST_F(ScreamAux, GivesNoNumberToAPacketThatTheSessionRefuses) {
+  Push();
+  ASSERT_EQ(Leave(), 1);
+  gst_pad_set_active(harness->sinkpad, FALSE);
+  Push();
+  ASSERT_TRUE(
+      Eventually([&] { return gst_harness_push(harness.get(), NewRtp({})) == GST_FLOW_FLUSHING; }));
+  gst_pad_set_active(harness->sinkpad, TRUE);
+  Restart();
   Push();
   ASSERT_EQ(Leave(), 1);
   Tell({{1}});
