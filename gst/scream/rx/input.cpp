@@ -139,10 +139,12 @@ bool AnyAlive(const RxState& state, Time now) {
 }
 
 /// Handles RTCP on the media's port: a goodbye ends streams, `stats` keeps a sender's report, and
-/// other RTCP passes unread. The caller holds the lock.
+/// other RTCP passes unread. With a pt-map it is dropped, because no stream's pad is for it. The
+/// caller holds the lock.
 Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
-  if (goodbyes.empty() && !rtcp::HasSenderReport(map.view())) return Fate::kPass;
+  if (goodbyes.empty() && !rtcp::HasSenderReport(map.view()))
+    return state.settings.pt_map ? Fate::kDrop : Fate::kPass;
   if (!state.latch.IsPeer(SourceOf(buffer))) {
     ++state.counters.foreign;
     return Fate::kDrop;

@@ -188,6 +188,20 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
                "TEST");
 }
 
+TEST_F(ScreamRx, RtcpIsNoStreamOfPtMap) {
+  SetPtMap(
+      "0=(string)\"application/x-rtp,media=audio,clock-rate=8000,encoding-name=PCMU\","
+      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  const std::vector<std::uint8_t> receiver_report{0x80, 201, 0, 1, 0, 0, 0x12, 0x34};
+  EXPECT_EQ(gst_harness_push(rtp.get(), FromBytes(receiver_report)), GST_FLOW_OK);
+  EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 2);
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_push(rtp.get(), FromBytes(receiver_report)), GST_FLOW_OK);
+  EXPECT_EQ(Passed(), 1U) << "the media";
+}
+
 TEST_F(ScreamRx, AFlushReachesAPadThatIsJustBeingAdded) {
   SetPtMap("97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"");
   Start();
