@@ -29,6 +29,13 @@ FeedbackGenerator::FeedbackGenerator(const FeedbackConfig& config) : config_(con
 
 void FeedbackGenerator::Reset() { *this = FeedbackGenerator(config_); }
 
+void FeedbackGenerator::Forget(std::uint32_t ssrc) {
+  const auto found = sources_.find(ssrc);
+  if (found == sources_.end()) return;
+  unreported_ -= found->second.unreported;
+  sources_.erase(found);
+}
+
 void FeedbackGenerator::OnPacket(Time at, const ReceivedPacket& packet) {
   const Time arrival = clock_.From(at);
   ++stats_.packets;

@@ -66,6 +66,8 @@ class FeedbackGenerator {
   std::optional<CongestionFeedback> Take(Time at);
   /// Forgets all packets, for a new peer.
   void Reset();
+  /// Forgets the packets of an SSRC whose sender has restarted.
+  void Forget(std::uint32_t ssrc);
   void set_config(const FeedbackConfig& config) { config_ = config; }
 
   struct Stats {

@@ -119,6 +119,8 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   packet.marker = header.marker;
   packet.size = DataSize::Bytes(static_cast<std::int64_t>(gst_buffer_get_size(buffer))) +
                 state.settings.packet_overhead;
+  if (state.seen.ShowsRestart(header.ssrc, header.seq, header.timestamp))
+    state.reports.Forget(header.ssrc);
   state.reports.OnPacket(SourceOf(buffer), ArrivalTime(clocks, arrival), packet);
   // The next packet of an erased stream adds it again.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());

@@ -60,6 +60,10 @@ void LinkReports::OnPacket(GSocketAddress* from, Time arrival, const rtcp::Recei
   link.generator.OnPacket(arrival, packet);
 }
 
+void LinkReports::Forget(std::uint32_t ssrc) {
+  for (Link& link : links_) link.generator.Forget(ssrc);
+}
+
 Time LinkReports::NextDue() const {
   Time due = Time::max();
   for (const Link& link : links_) due = std::min(due, link.generator.NextDue());
@@ -86,25 +90,34 @@ rtcp::FeedbackGenerator::Stats LinkReports::Sum() const {
   return sum;
 }
 
+bool SeenPackets::ShowsRestart(std::uint32_t ssrc, std::uint16_t seq,
+                               std::uint32_t timestamp) const {
+  const auto found = sources_.find(ssrc);
+  if (found == sources_.end()) return false;
+  const Source& source = found->second;
+  const int ahead = SequenceDistance(seq, source.newest);
+  return ahead <= 0 && ahead > -kWindow && source.seen[seq % kWindow] &&
+         source.timestamps[seq % kWindow] != timestamp;
+}
+
 bool SeenPackets::Add(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp) {
   if (sources_.count(ssrc) == 0) {
     if (sources_.size() >= kMaxSources) sources_.erase(sources_.begin());
     sources_[ssrc].newest = seq;
   }
   Source& source = sources_[ssrc];
-  std::uint32_t& known = source.timestamps[seq % kWindow];
+  if (ShowsRestart(ssrc, seq, timestamp)) {
+    source.seen.reset();
+    source.newest = seq;
+  }
   const int ahead = SequenceDistance(seq, source.newest);
   if (ahead <= -kWindow) return true;
   for (int i = 1; i <= std::min(ahead, kWindow); ++i)
     source.seen.reset(static_cast<std::uint16_t>(source.newest + i) % kWindow);
   if (ahead > 0) source.newest = seq;
-  if (source.seen[seq % kWindow]) {
-    if (known == timestamp) return false;
-    source.seen.reset();
-    source.newest = seq;
-  }
+  if (source.seen[seq % kWindow]) return false;
   source.seen.set(seq % kWindow);
-  known = timestamp;
+  source.timestamps[seq % kWindow] = timestamp;
   return true;
 }
 

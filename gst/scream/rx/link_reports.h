@@ -31,6 +31,8 @@ class LinkReports {
   void Reset(const rtcp::FeedbackConfig& config);
   void set_config(const rtcp::FeedbackConfig& config);
   void OnPacket(GSocketAddress* from, Time arrival, const rtcp::ReceivedPacket& packet);
+  /// Forgets the packets of an SSRC whose sender has restarted.
+  void Forget(std::uint32_t ssrc);
   Time NextDue() const;
   std::optional<Report> Take(Time now);
 
@@ -61,8 +63,9 @@ class SeenPackets {
   static constexpr int kWindow = 4096;
   static constexpr std::size_t kMaxSources = 64;
 
-  /// Returns false for a repeated packet. A number that has another RTP timestamp than before shows
-  /// that the sender has restarted.
+  /// Returns true if the number has another RTP timestamp than before: the sender has restarted.
+  bool ShowsRestart(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp) const;
+  /// Returns false for a repeated packet. A restart forgets the packets of before.
   bool Add(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp);
 
  private:

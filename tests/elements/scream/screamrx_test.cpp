@@ -70,6 +70,29 @@ TEST_F(ScreamRx, ReportsEachPacketOfAFrameAtItsMarker) {
   EXPECT_EQ(Passed(), 4U);
 }
 
+TEST_F(ScreamRx, ASenderMayBeginAgainWithNumbersThatItUsedBefore) {
+  Start();
+  Rtp r;
+  r.marker = true;
+  for (r.seq = 0; r.seq < 1'000; ++r.seq) {
+    ASSERT_EQ(Push(r), GST_FLOW_OK);
+    Report();
+  }
+  for (const guint16 begin : std::initializer_list<guint16>{0, 500, 990}) {
+    ++r.timestamp;
+    r.seq = begin;
+    for (; r.seq < 1'000; ++r.seq) {
+      ASSERT_EQ(Push(r), GST_FLOW_OK);
+      const CongestionFeedback report = Report();
+      ASSERT_EQ(report.blocks.size(), 1U) << r.seq;
+      const rtcp::SsrcReport& block = report.blocks[0];
+      EXPECT_EQ(block.begin_seq + block.metrics.size(), r.seq + 1U);
+      ASSERT_GE(block.begin_seq, begin) << "nothing of before";
+    }
+  }
+  EXPECT_EQ(Stats(element)["packets-lost"], 0U);
+}
+
 TEST_F(ScreamRx, ReportsALonePacketAfterTheInterval) {
   g_object_set(element, "feedback-interval", guint64{30 * GST_MSECOND}, nullptr);
   Start();
