@@ -262,6 +262,7 @@ static gboolean HandleEvent(GstRTPBaseDepayload* base, GstEvent* event) {
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS || GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
     std::lock_guard lock(state.mutex);
     state.receiver.Finish();
+    state.output.ResetTime();
     state.now = {};
   }
   return GST_RTP_BASE_DEPAYLOAD_CLASS(gst_lidar_rtp_depay_parent_class)->handle_event(base, event);

@@ -104,7 +104,7 @@ void SliceOutput::Push(std::vector<rtp::ReceivedSlice> slices, Time now) {
 void SliceOutput::Reset() {
   config_.reset();
   asked_.reset();
-  changes_ = {kFormatChanges, kFormatChangePeriod};
+  ResetTime();
   discont_ = warned_of_coder_ = warned_of_changes_ = false;
   not_accepted_ = format_changes_ = 0;
 }

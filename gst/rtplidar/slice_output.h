@@ -23,6 +23,8 @@ class SliceOutput {
   void Push(std::vector<rtp::ReceivedSlice> slices, Time now);
   /// Resets all state with the counts. The caller holds the element's lock.
   void Reset();
+  /// The times of Push() begin anew.
+  void ResetTime() { changes_ = {kFormatChanges, kFormatChangePeriod}; }
 
   guint64 not_accepted() const { return not_accepted_; }
   guint64 format_changes() const { return format_changes_; }

@@ -261,6 +261,16 @@ TEST_F(DepayLimits, TimeMayBeginAnewAfterAFlush) {
   EXPECT_EQ(Slices(), 15U);
 }
 
+TEST_F(DepayLimits, AnyNumberOfFlushesMayTurnTheTimeBack) {
+  SetCaps(",payload=96");
+  const auto packets = Packets(1);
+  for (guint64 i = 20; i > 0; --i) {
+    for (const auto& packet : packets) Push(packet, i * GST_SECOND);
+    Flush(h_.get());
+  }
+  EXPECT_EQ(Slices(), 80U);
+}
+
 TEST_F(DepayLimits, WarnsAtTheTwentiethPacketOfAnotherTypeAndAgainAfterARestart) {
   const auto packets = Packets(8);
   const ElementBus bus(h_->element);
