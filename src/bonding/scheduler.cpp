@@ -186,13 +186,26 @@ LinkSet Scheduler::OnPacket(Time now, const Packet& packet) {
 
 void Scheduler::Forget(Time now) {
   while (!order_.empty()) {
-    const auto found = packets_.find(order_.front().key());
-    if (order_.size() < kMaxPackets && now - found->second.made < kReceiptMemory) return;
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      if (found->second.waits[i]) links_[i].queued -= found->second.size;
-    packets_.erase(found);
+    const PacketId oldest = order_.front();
+    if (order_.size() < kMaxPackets && now - Find(oldest)->made < kReceiptMemory) return;
+    Erase(oldest);
     order_.pop_front();
   }
+}
+
+void Scheduler::Abandon(std::uint32_t ssrc) {
+  const auto of_source = [ssrc](PacketId id) { return id.ssrc == ssrc; };
+  for (const PacketId id : order_)
+    if (of_source(id)) Erase(id);
+  order_.erase(std::remove_if(order_.begin(), order_.end(), of_source), order_.end());
+}
+
+/// Erases the entry of a packet of order_.
+void Scheduler::Erase(PacketId id) {
+  const auto found = packets_.find(id.key());
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    if (found->second.waits[i]) links_[i].queued -= found->second.size;
+  packets_.erase(found);
 }
 
 void Scheduler::LookAtGaps(Time now) {

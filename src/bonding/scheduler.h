@@ -93,6 +93,8 @@ class Scheduler {
     PacketId id;
     std::size_t link;
   };
+  /// Forgets the packets of a source that was flushed or removed: its FIFOs are empty.
+  void Abandon(std::uint32_t ssrc);
   /// Returns the copies to queue now. Call it at least each kTick while packets are under way.
   std::vector<Copy> TakeCopies(Time now);
   static constexpr Duration kTick = std::chrono::milliseconds(10);
@@ -154,6 +156,7 @@ class Scheduler {
   Entry* Find(PacketId id);
   const Entry* Find(PacketId id) const;
   void Forget(Time now);
+  void Erase(PacketId id);
   void Assign(std::size_t link, Entry* entry);
   void LookAtGaps(Time now);
   bool Overdue(Time now, const Entry& entry) const;

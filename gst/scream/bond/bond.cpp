@@ -80,6 +80,11 @@ static void AwaitArrivals(BondState& state) {
 static gboolean BondSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owner(event);
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) AwaitArrivals(BondOf(parent));
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
+    BondShared& shared = *BondOf(parent).shared;
+    const std::lock_guard lock(shared.mutex);
+    shared.ForgetPacketsLocked(&StreamOf(pad));
+  }
   gboolean taken = FALSE;
   for (GstPad* src : StreamOf(pad).srcs)
     taken = gst_pad_push_event(src, gst_event_ref(event)) || taken;

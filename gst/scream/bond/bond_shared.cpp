@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "gst/scream/rtp_packet.h"
 
@@ -148,8 +149,13 @@ BondWork BondShared::TakeWorkLocked(const std::vector<std::unique_ptr<BondStream
 }
 
 void BondShared::ForgetPacketsLocked(const BondStream* stream) {
-  for (auto it = kept_.begin(); it != kept_.end();)
-    it = it->second.stream == stream ? kept_.erase(it) : std::next(it);
+  std::set<std::uint32_t> ssrcs;
+  for (auto it = kept_.begin(); it != kept_.end();) {
+    const bool gone = it->second.stream == stream;
+    if (gone) ssrcs.insert(static_cast<std::uint32_t>(it->first >> 16));
+    it = gone ? kept_.erase(it) : std::next(it);
+  }
+  for (const std::uint32_t ssrc : ssrcs) scheduler.Abandon(ssrc);
 }
 
 void BondShared::Clear(const std::vector<std::unique_ptr<BondStream>>& streams) {

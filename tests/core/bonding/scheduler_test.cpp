@@ -99,6 +99,20 @@ TEST_F(TwoLinks, SendsASliceWhereItIsWholeFirst) {
   EXPECT_EQ(Packet(), SetOf({0}));
 }
 
+TEST_F(TwoLinks, AnAbandonedSourceLeavesNothingInTheFifos) {
+  Settle();
+  const PacketId other{kMedia + 1, 0};
+  scheduler_.OnPacket(now_, {other, kSize, 0});
+  const std::uint32_t slice = ++seq_;
+  for (int i = 0; i < 30; ++i) scheduler_.OnPacket(now_, {{kMedia, ++seq_}, kSize, slice});
+  scheduler_.Abandon(kMedia);
+  EXPECT_EQ(Packet(), SetOf({0})) << "which has no backlog";
+  scheduler_.Abandon(kMedia);
+  const auto copies = scheduler_.TakeCopies(now_ + 150ms);
+  ASSERT_EQ(copies.size(), 1U);
+  EXPECT_EQ(copies[0].id, other);
+}
+
 TEST_F(TwoLinks, CopiesAtOnceWhatWaitsBehindAGap) {
   Settle();
   Packet();

@@ -284,6 +284,33 @@ TEST_F(BondedSink, GivesEachLinkTheSettingsOfTheSink) {
   EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=333333\n"), std::string::npos);
 }
 
+/// The copy of the packet behind the flush comes after those of older packets.
+TEST_F(BondedSink, CopiesNothingOfBeforeAFlush) {
+  Start();
+  guint16 seq = 0;
+  std::set<std::size_t> links;
+  do {
+    links = Send(++seq);
+    for (const std::size_t link : links) {
+      ASSERT_TRUE(HasLeft(link));
+      Report(link, seq);
+    }
+  } while (links.size() > 1);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(Send(++seq).size(), 1U);
+    if (i > 0) break;
+    gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+    gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+    gst_harness_push_event(h_.get(), NewSegment());
+  }
+  const int before = packets_[0] + packets_[1];
+  const guint64 copies = OfAllLinks(sink_, "packets-copies");
+  Advance(150 * GST_MSECOND);
+  ASSERT_TRUE(Eventually([&] { return packets_[0] + packets_[1] > before; }));
+  EXPECT_EQ(packets_[0] + packets_[1], before + 1);
+  EXPECT_EQ(OfAllLinks(sink_, "packets-copies"), copies + 1);
+}
+
 TEST_F(BondedSink, CountsTheErrorsOfEachLinkAsItsOwn) {
   Start();
   g_object_set(Child("ecnudpsink1").get(), "interface", "none0", nullptr);
