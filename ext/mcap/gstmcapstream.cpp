@@ -63,6 +63,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
+  state.refused.Reset();
   // Refused caps leave the writer, because GstBaseSink does not set the earlier caps again.
   state.writer = std::move(writer);
   if (state.topic.empty()) {

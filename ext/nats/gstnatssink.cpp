@@ -221,6 +221,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   std::string why;
   // Refused caps leave the format, because GstBaseSink does not set the earlier caps again.
   if (auto format = StreamFormat::FromCaps(caps, &why)) {
+    state.refused_caps.Reset();
     state.format = std::move(format);
     return TRUE;
   }

@@ -208,6 +208,7 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
+  state.refused.Reset();
   if (info) state.info = std::move(*info);
   if (kind != Kind::kOdometry && !IsVideo(kind)) state.used->scan_duration = ScanDurationOf(caps);
   // Clouds of another width stay in the channel; coded slices with other caps are another stream.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Remembers refused caps, so that an element posts one error although GStreamer offers them with
-// each buffer.
+// each buffer. Accepted caps end that.
 #pragma once
 #include <gst/gst.h>
 
@@ -18,6 +18,7 @@ class RefusedCaps {
     return true;
   }
   bool noted() const { return last_ != nullptr; }
+  /// Call it for accepted caps, and between runs.
   void Reset() { last_.reset(); }
 
  private:

@@ -131,6 +131,7 @@ static gboolean SetCaps(GstRTPBasePayload* base, GstCaps* caps) {
         ("caps are %" GST_PTR_FORMAT, static_cast<void*>(caps)));
     return FALSE;
   }
+  state.refused.Reset();
   PushAggregate(base, state);
   if (state.config != config) {
     const bool first = !state.config.has_value();

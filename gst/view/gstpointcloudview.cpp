@@ -197,6 +197,7 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
     return FALSE;
   }
+  state.refused.Reset();
   GstVideoInfo video;
   if (!gst_video_info_from_caps(&video, out)) return FALSE;
   // Unorganised slices change their caps within a scan; the picture goes on.

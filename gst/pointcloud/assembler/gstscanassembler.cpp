@@ -234,6 +234,7 @@ static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
+  state.refused.Reset();
   bool scan_changes = false;
   {
     std::lock_guard lock(state.mutex);

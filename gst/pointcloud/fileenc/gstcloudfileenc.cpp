@@ -91,7 +91,10 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   State& state = StateOf(base);
   std::string why;
   state.info = CloudInfo::FromFrameCaps(in, &why);
-  if (state.info) return TRUE;
+  if (state.info) {
+    state.refused.Reset();
+    return TRUE;
+  }
   if (state.refused.Note(in))
     GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a point cloud: %s.", why.c_str()),
                       ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));

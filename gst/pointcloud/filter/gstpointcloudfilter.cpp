@@ -172,7 +172,9 @@ static bool MakePlan(GstLidarPointCloudFilter* self) {
   }
   state.plan = FilterPlan::Make(settings, state.caps.get(), &why);
   state.placer.SetTarget(settings.target_frame, settings.tf_timeout);
-  if (!state.plan && state.refused.Note(state.caps.get()))
+  if (state.plan)
+    state.refused.Reset();
+  else if (state.refused.Note(state.caps.get()))
     GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Clouds cannot be filtered so: %s.", why.c_str()),
                       ("%" GST_PTR_FORMAT, static_cast<gpointer>(state.caps.get())));
   return state.plan != nullptr;

@@ -240,6 +240,7 @@ static gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   gst_event_parse_caps(event, &caps);
   state.type = CloudFileTypeOf(caps);
   if (state.type) {
+    state.refused.Reset();
     state.info.reset();
     FrameRate given;
     gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &given.n, &given.d);
@@ -255,6 +256,7 @@ static gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
+  state.refused.Reset();
   SetRate(&state, info->framerate_n, info->framerate_d);
   state.info = std::move(info);
   state.caps.reset(gst_caps_ref(caps));

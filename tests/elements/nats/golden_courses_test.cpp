@@ -252,7 +252,9 @@ void SinkCourse(Course& c) {
   sink.Begin(kSampleCaps);
   sink.Push("in a second run", Sample(8));
   sink.PushOfAnotherSize();
-  for (const char* caps : {"text/x-raw,format=utf8", kSampleCaps}) c.SetCaps(caps);
+  for (const char* caps :
+       {"text/x-raw,format=utf8", kTwoPointCaps, "text/x-raw,format=utf8", kSampleCaps})
+    c.SetCaps(caps);
   fleet.Kill();
   for (int i = 0; i < 3; ++i) c.Push("that waits", Sample(1, 32'000));
   c.Set("drain-timeout", "1");

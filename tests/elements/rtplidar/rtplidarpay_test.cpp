@@ -259,6 +259,9 @@ TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
   EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR));
   EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));  // no second one
+  for (const char* next : {"application/x-voxels,alignment=slice", GetParam()})
+    gst_harness_set_src_caps_str(h.get(), next);
+  EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR)) << "they come again behind others";
 }
 INSTANTIATE_TEST_SUITE_P(
     All, CapsThatNoReceiverCouldUse,

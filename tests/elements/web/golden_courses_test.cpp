@@ -157,6 +157,8 @@ void CloudsCourse(Course& c) {
   web.viewer().Subscribe("/points", 1);
   web.Push("in a second run", CloudWithPose(11, 64));
   c.SetCaps(kCapsOfDoubles);
+  c.SetCaps(CloudCapsOf(8));
+  c.SetCaps(kCapsOfDoubles);
   c.End();
 }
 
