@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/pointcloud/fileenc/cloud_file_writer.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -39,12 +40,18 @@ TypeText TextOf(FieldType type) {
   return {'F', "double"};
 }
 
-/// Names come from caps, so they may contain characters that would break a header.
-std::string SafeName(const std::string& name) {
-  std::string safe = name;
-  for (char& c : safe)
-    if (g_ascii_isalnum(c) == FALSE) c = '_';
-  return safe;
+/// Names come from caps, so they may contain characters that would break a header. Readers
+/// drop the second field of a name.
+std::vector<std::string> SafeNames(const PointFields& fields) {
+  std::vector<std::string> names;
+  for (const PointField& f : fields.all()) {
+    std::string name = f.name;
+    for (char& c : name)
+      if (g_ascii_isalnum(c) == FALSE) c = '_';
+    while (std::find(names.begin(), names.end(), name) != names.end()) name += '_';
+    names.push_back(std::move(name));
+  }
+  return names;
 }
 
 bool IsCoordinate(const PointField& field) {
@@ -140,8 +147,8 @@ std::string WritePcd(const CloudFileInput& cloud) {
   const bool organised = info.height > 1;
   const gsize count = organised ? info.Points() : points.CountReturns();
   std::string names, sizes, types, counts;
+  for (const std::string& name : SafeNames(info.fields)) names += " " + name;
   for (const PointField& f : info.fields.all()) {
-    names += " " + SafeName(f.name);
     sizes += " " + std::to_string(SizeOf(f.type));
     types += std::string(" ") + TextOf(f.type).pcd;
     counts += " 1";
@@ -163,8 +170,10 @@ std::string WritePly(const CloudFileInput& cloud) {
   out += cloud.binary ? "binary_little_endian 1.0\n" : "ascii 1.0\n";
   out += CaptureComment(cloud, "comment");
   out += "element vertex " + std::to_string(points.CountReturns()) + "\n";
+  const std::vector<std::string> names = SafeNames(cloud.info->fields);
+  auto name = names.begin();
   for (const PointField& f : cloud.info->fields.all())
-    out += std::string("property ") + TextOf(f.type).ply + " " + SafeName(f.name) + "\n";
+    out += std::string("property ") + TextOf(f.type).ply + " " + *name++ + "\n";
   out += "end_header\n";
   points.AppendAll(false, &out);
   return out;

@@ -139,6 +139,15 @@ TEST(CloudFiles, NamesOfFieldsCannotBreakTheHeader) {
   EXPECT_NE(Encode("plyenc", info).find("property uchar a_b_c\n"), std::string::npos);
 }
 
+TEST(CloudFiles, NamesOfFieldsStayDifferent) {
+  CloudInfo info = Info(3, 1);
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,a b:U8:20,a_b:U8:21,a-b:U8:22");
+  EXPECT_NE(Encode("pcdenc", info).find("FIELDS x y z a_b a_b_ a_b__\n"), std::string::npos);
+  EXPECT_NE(Encode("plyenc", info)
+                .find("property uchar a_b\nproperty uchar a_b_\nproperty uchar a_b__\n"),
+            std::string::npos);
+}
+
 class CloudFileManners : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(All, CloudFileManners, ::testing::Values("pcdenc", "plyenc"));
 
