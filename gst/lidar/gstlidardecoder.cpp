@@ -292,11 +292,13 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   Stream& stream = self->state->stream;
   if (!stream.cloud) return GST_FLOW_NOT_NEGOTIATED;
   const Settings settings = Snapshot(*self->state);
-  if (!MayDecode(self, settings.max_decode_load)) return DropSlice(self, buffer, false);
-  GstLidarDecodedSlice slice;
-  const lidar::Duration before = ThreadTime();
-  BufferPtr output = DecodeBuffer(self, buffer, &slice);
-  stream.load.Spend(ThreadTime() - before);
+  GstLidarDecodedSlice slice{};
+  BufferPtr output;
+  if (MayDecode(self, settings.max_decode_load)) {
+    const lidar::Duration before = ThreadTime();
+    output = DecodeBuffer(self, buffer, &slice);
+    stream.load.Spend(ThreadTime() - before);
+  }
   stream.stats_timer.Post(GST_ELEMENT(self), settings.stats_interval, Stats);
   if (!output) return DropSlice(self, buffer, slice.lacks_reference != FALSE);
   PushCaps(self, slice);
