@@ -254,7 +254,7 @@ static void Loop(gpointer user_data) {
   if (run.streams->empty()) run.streams->ShowKnown(*run.playback, settings.topic);
   const auto item = state.end_wanted ? std::nullopt : run.playback->Next();
   if (!item) return Stop(self, GST_FLOW_EOS);
-  if (!IsWanted(settings, item->channel->topic) || !TypeOf(*item->schema)) return;
+  if (!IsWanted(settings, item->channel->topic) || !TypeOf(*item->schema, *item->channel)) return;
   const std::uint64_t start = run.playback->start_time();
   const std::uint64_t log_time = std::max(item->message.header.log_time, start);
   const GstClockTime pts = std::min<guint64>(log_time - start, G_MAXINT64);

@@ -159,8 +159,8 @@ class OdometryReader : public MessageReader {
 
 std::unique_ptr<MessageReader> MessageReader::Make(const mcap::Schema& schema,
                                                    const mcap::Channel& channel) {
-  const auto type = TypeOf(schema);
-  if (!type || channel.message_encoding != "cdr") return nullptr;
+  const auto type = TypeOf(schema, channel);
+  if (!type) return nullptr;
   const auto text = channel.metadata.find(mcap::kCapsKey);
   CapsPtr caps = text == channel.metadata.end() ? nullptr : CapsOfType(text->second, *type);
   switch (*type) {

@@ -153,9 +153,9 @@ mcap::Schema SchemaOf(MessageType type) {
   return {0, std::string(InfoOf(type).schema), "ros2msg", TextOf(type)};
 }
 
-std::optional<MessageType> TypeOf(const mcap::Schema& schema) {
+std::optional<MessageType> TypeOf(const mcap::Schema& schema, const mcap::Channel& channel) {
   for (const TypeInfo& info : kTypes)
-    if (schema.name == info.schema) return info.type;
+    if (schema.name == info.schema && channel.message_encoding == "cdr") return info.type;
   return std::nullopt;
 }
 

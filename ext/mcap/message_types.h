@@ -16,8 +16,8 @@ enum class MessageType { kCloud, kImu, kOdometry, kSlice };
 
 /// Schema of the messages of that type, without an id.
 mcap::Schema SchemaOf(MessageType type);
-/// Returns nothing for a schema that is not ours.
-std::optional<MessageType> TypeOf(const mcap::Schema& schema);
+/// Returns nothing for a schema that is not ours, or in another encoding than CDR.
+std::optional<MessageType> TypeOf(const mcap::Schema& schema, const mcap::Channel& channel);
 /// The message for buffers of `caps`; nothing if they cannot be recorded.
 std::optional<MessageType> TypeOf(const GstCaps* caps);
 /// Whether samples of an IMU are of the layout that can be recorded.

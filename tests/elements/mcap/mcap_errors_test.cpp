@@ -6,6 +6,7 @@
 
 #include "ext/mcap/message_types.h"
 #include "ext/mcap/output_file.h"
+#include "src/cdr/messages.h"
 #include "tests/core/mcap/memory_file.h"
 #include "tests/elements/mcap/recording.h"
 #include "tests/support/small_disk.h"
@@ -20,6 +21,12 @@ class McapErrors : public Recording {
   }
   std::string PlayError(const std::string& options) const {
     return Play("mcapsrc " + options + " ! fakesink").error;
+  }
+  void Save(mcap::test::FileMaker* maker) const {
+    ASSERT_TRUE(maker->writer().Finish());
+    std::ofstream(Path("a.mcap"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(maker->file().data()),
+               static_cast<std::streamsize>(maker->file().size()));
   }
 };
 
@@ -138,10 +145,7 @@ TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
   channel.metadata = {{mcap::kCapsKey, caps}};
   ASSERT_TRUE(maker.Add(
       maker.AddChannel(gst::SchemaOf(gst::MessageType::kSlice), std::move(channel)), 1, "x"));
-  ASSERT_TRUE(maker.writer().Finish());
-  std::ofstream(Path("a.mcap"), std::ios::binary)
-      .write(reinterpret_cast<const char*>(maker.file().data()),
-             static_cast<std::streamsize>(maker.file().size()));
+  Save(&maker);
   EXPECT_EQ(PlayError(At("a.mcap")),
             "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
 }
@@ -154,11 +158,25 @@ TEST_F(McapErrors, ARecordingWhoseMessagesAreAllDamagedIsAnError) {
   channel.metadata = {{mcap::kCapsKey, "application/x-lidar-slice, alignment=(string)slice"}};
   const auto id = maker.AddChannel(gst::SchemaOf(gst::MessageType::kSlice), std::move(channel));
   for (std::uint64_t time = 1; time <= 3; ++time) ASSERT_TRUE(maker.Add(id, time, "x"));
-  ASSERT_TRUE(maker.writer().Finish());
-  std::ofstream(Path("a.mcap"), std::ios::binary)
-      .write(reinterpret_cast<const char*>(maker.file().data()),
-             static_cast<std::streamsize>(maker.file().size()));
+  Save(&maker);
   EXPECT_EQ(PlayError(At("a.mcap")), "No message of the recording can be read.");
+}
+
+TEST_F(McapErrors, ATopicInAnotherEncodingIsNoDamage) {
+  mcap::test::FileMaker maker(mcap::WriterSettings{});
+  const auto bytes = cdr::WriteImu({});
+  for (const char* encoding : {"json", "cdr"}) {
+    mcap::Channel channel;
+    channel.topic = std::string("/imu_") + encoding;
+    channel.message_encoding = encoding;
+    const auto id = maker.AddChannel(gst::SchemaOf(gst::MessageType::kImu), std::move(channel));
+    ASSERT_TRUE(maker.Add(id, 1, std::string(bytes.begin(), bytes.end())));
+  }
+  Save(&maker);
+  const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.buffers.at("see").size(), 1U);
+  EXPECT_EQ(played.stats.at("messages"), 1U);
+  EXPECT_EQ(played.stats.at("messages-dropped"), 0U);
 }
 
 TEST_F(McapErrors, APlayerSaysWhatTheNextElementDoesNotTake) {
