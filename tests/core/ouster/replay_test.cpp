@@ -244,12 +244,30 @@ TEST_F(Capture, BeginsAnewAfterARestartAndEndsOnceIfAsked) {
   }
 }
 
-/// A sensor that sends nothing.
-class NoPackets final : public PacketStream {
+/// A sensor that sends some packets at once.
+class FewPackets final : public PacketStream {
  public:
+  explicit FewPackets(int count) : count_(count) {}
   void Restart(const Start&) override {}
-  std::optional<OutPacket> Next() override { return std::nullopt; }
+  std::optional<OutPacket> Next() override {
+    if (count_-- <= 0) return std::nullopt;
+    return OutPacket{{}, false, {1}};
+  }
+
+ private:
+  int count_;
 };
+
+TEST(PlayerFaults, KeepNoPacketBackAtTheEnd) {
+  ReplayOptions options;
+  const ouster::Metadata metadata = MakeSynthMetadata(options.synth, options.format);
+  Sensor sensor(metadata, "", [&](const nlohmann::json&) { return metadata; });
+  sensor.MergeFaults({{"reorder", 1}});
+  Player player(options, metadata, &sensor,
+                [](const ouster::Metadata&) { return std::make_unique<FewPackets>(3); });
+  player.Pump(Now());
+  EXPECT_EQ(player.counts().sent, 3U);
+}
 
 TEST(PlayerEvents, ComeAtTimesSinceTheProgramBeganWhateverRestarts) {
   ReplayOptions options;
@@ -258,7 +276,7 @@ TEST(PlayerEvents, ComeAtTimesSinceTheProgramBeganWhateverRestarts) {
   options.events = {{100, {{"restart", true}}}, {200, {{"silent", true}}}};
   const Time begin = Now();
   Player player(options, metadata, &sensor,
-                [](const ouster::Metadata&) { return std::make_unique<NoPackets>(); });
+                [](const ouster::Metadata&) { return std::make_unique<FewPackets>(0); });
   player.Pump(begin + std::chrono::seconds(150));
   EXPECT_FALSE(sensor.faults().silent);
   player.Pump(begin + std::chrono::seconds(250));

@@ -85,9 +85,15 @@ std::vector<OutPacket> FaultInjector::Apply(const Faults& faults, OutPacket pack
   counts_.duplicated += twice ? 1 : 0;
   if (twice) out.push_back(packet);
   out.push_back(std::move(packet));
-  if (held_) out.push_back(*std::exchange(held_, std::nullopt));
-  counts_.sent += out.size();
+  for (OutPacket& held : Finish()) out.push_back(std::move(held));
+  counts_.sent += twice ? 2 : 1;
   return out;
+}
+
+std::vector<OutPacket> FaultInjector::Finish() {
+  if (!held_) return {};
+  ++counts_.sent;
+  return {*std::exchange(held_, std::nullopt)};
 }
 
 }  // namespace lidar::tools

@@ -101,14 +101,19 @@ int WriteFiles(const ReplayOptions& options, const ouster::Metadata& metadata) {
   Faults faults;
   faults.Merge(options.faults);
   FaultInjector injector(options.seed);
-  for (auto next = stream->Next(); next && next->due <= end; next = stream->Next()) {
-    const Time due(start + next->due);
-    for (const OutPacket& packet : injector.Apply(faults, *std::move(next))) {
+  Time due(start);
+  const auto write = [&](const std::vector<OutPacket>& packets) {
+    for (const OutPacket& packet : packets) {
       const std::uint16_t port = packet.imu ? metadata.imu_port : metadata.lidar_port;
       if (!writer->Write(due, port, {packet.bytes.data(), packet.bytes.size()}))
         throw std::runtime_error("cannot write " + options.write_pcap);
     }
+  };
+  for (auto next = stream->Next(); next && next->due <= end; next = stream->Next()) {
+    due = Time(start + next->due);
+    write(injector.Apply(faults, *std::move(next)));
   }
+  write(injector.Finish());
   if (!writer->Close()) throw std::runtime_error("cannot write " + options.write_pcap);
   return 0;
 }

@@ -43,7 +43,7 @@ void Player::Start(const ouster::Metadata& metadata, Time now) {
 
 void Player::RunEvents(Time now) {
   for (; next_event_ < options_.events.size(); ++next_event_) {
-    ReplayOptions::Event event = options_.events[next_event_];
+    const ReplayOptions::Event& event = options_.events[next_event_];
     if (began_ + FromSeconds(event.at_s) > now) return;
     if (event.faults.contains("restart")) {
       event.faults.erase("restart");
@@ -64,12 +64,13 @@ void Player::SetDestination(const Sensor::Destination& to) {
   destination_ = to;
 }
 
-void Player::Send(const OutPacket& packet) {
+void Player::Send(const std::vector<OutPacket>& packets) {
   const Sensor::Destination to = sensor_.destination();
   if (to.host.empty()) return;
   if (to != destination_) SetDestination(to);
-  socket_->Send({packet.bytes.data(), packet.bytes.size()}, 0,
-                packet.imu ? &imu_address_ : &lidar_address_);
+  for (const OutPacket& packet : packets)
+    socket_->Send({packet.bytes.data(), packet.bytes.size()}, 0,
+                  packet.imu ? &imu_address_ : &lidar_address_);
 }
 
 std::optional<Time> Player::Pump(Time now) {
@@ -82,7 +83,8 @@ std::optional<Time> Player::Pump(Time now) {
   sensor_.SetRunning(true);
   const Faults faults = sensor_.faults();
   while (next_ && origin_ + next_->due <= now) {
-    for (const OutPacket& packet : injector_.Apply(faults, *std::move(next_))) Send(packet);
+  if (!next_) Send(injector_.Finish());
+    Send(injector_.Apply(faults, *std::move(next_)));
     next_ = stream_->Next();
   }
   {

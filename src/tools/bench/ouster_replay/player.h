@@ -31,7 +31,7 @@ class Player {
  private:
   void Start(const ouster::Metadata& metadata, Time now);
   void RunEvents(Time now);
-  void Send(const OutPacket& packet);
+  void Send(const std::vector<OutPacket>& packets);
   void SetDestination(const Sensor::Destination& to);
 
   const ReplayOptions options_;
