@@ -273,7 +273,7 @@ TEST(PlayerEvents, ComeAtTimesSinceTheProgramBeganWhateverRestarts) {
   ReplayOptions options;
   const ouster::Metadata metadata = MakeSynthMetadata(options.synth, options.format);
   Sensor sensor(metadata, "", [&](const nlohmann::json&) { return metadata; });
-  options.events = {{100, {{"restart", true}}}, {200, {{"silent", true}}}};
+  options.events = {{100, nlohmann::json::object(), true}, {200, {{"silent", true}}}};
   const Time begin = Now();
   Player player(options, metadata, &sensor,
                 [](const ouster::Metadata&) { return std::make_unique<FewPackets>(0); });

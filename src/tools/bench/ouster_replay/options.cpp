@@ -14,6 +14,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kLongest_s = 1e9;  // nanoseconds in 64 bits last 9 times as long
+
 struct Text {
   std::string profile = "RNG19_RFL8_SIG16_NIR16";
   std::string header = "STANDARD";
@@ -70,7 +72,7 @@ void AddSending(CLI::App* app, ReplayOptions* o) {
   app->add_option("--boot", o->boot_s, "How long a restart takes [s]")
       ->check(CLI::Range(0.0, 3600.0));
   app->add_option("--duration", o->duration_s, "Stop after [s]; 0: never")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, kLongest_s));
   app->add_option("--write-pcap", o->write_pcap, "Write a capture instead of sending");
   app->add_option("--write-metadata", o->write_metadata, "Write the metadata JSON");
   app->add_option("--scans", o->scans, "Scans to write")->check(CLI::Range(1, 1'000'000));
@@ -92,11 +94,14 @@ ReplayOptions::Event ParseEvent(const std::string& text) {
   ReplayOptions::Event event;
   event.at_s = std::strtod(text.c_str(), &end);
   event.faults = json::parse(end, nullptr, false);
-  if (end == text.c_str() || !event.faults.is_object() || !(event.at_s >= 0))
+  const bool is_event = end != text.c_str() && event.at_s >= 0 && event.at_s <= kLongest_s &&
+                        event.faults.is_object();
+  const json restart = is_event ? event.faults.value("restart", json(false)) : json();
+  if (!restart.is_boolean())
     throw CLI::ValidationError("--at", "\"" + text + "\" is not like 5 {\"silent\":true}");
-  json faults = event.faults;
-  faults.erase("restart");
-  const std::string error = Faults{}.Merge(faults);
+  event.restart = restart;
+  event.faults.erase("restart");
+  const std::string error = Faults{}.Merge(event.faults);
   if (!error.empty()) throw CLI::ValidationError("--at", error);
   return event;
 }

@@ -33,7 +33,8 @@ struct ReplayOptions {
   nlohmann::json faults = nlohmann::json::object();
   struct Event {
     double at_s = 0;
-    nlohmann::json faults;  // as in faults.h, and "restart": true
+    nlohmann::json faults;  // as in faults.h
+    bool restart = false;
   };
   std::vector<Event> events;  // in order of time
   std::string write_pcap;     // write a file instead of sending

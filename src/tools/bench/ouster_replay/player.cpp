@@ -45,10 +45,7 @@ void Player::RunEvents(Time now) {
   for (; next_event_ < options_.events.size(); ++next_event_) {
     const ReplayOptions::Event& event = options_.events[next_event_];
     if (began_ + FromSeconds(event.at_s) > now) return;
-    if (event.faults.contains("restart")) {
-      event.faults.erase("restart");
-      sensor_.Restart();
-    }
+    if (event.restart) sensor_.Restart();
     sensor_.MergeFaults(event.faults);
   }
 }
@@ -83,10 +80,10 @@ std::optional<Time> Player::Pump(Time now) {
   sensor_.SetRunning(true);
   const Faults faults = sensor_.faults();
   while (next_ && origin_ + next_->due <= now) {
-  if (!next_) Send(injector_.Finish());
     Send(injector_.Apply(faults, *std::move(next_)));
     next_ = stream_->Next();
   }
+  if (!next_) Send(injector_.Finish());
   {
     std::lock_guard lock(mutex_);
     counts_ = injector_.counts();
