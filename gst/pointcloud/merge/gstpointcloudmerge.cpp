@@ -261,13 +261,16 @@ static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
 
 static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   auto* base = GST_AGGREGATOR(self);
-  if (GST_CLOCK_TIME_IS_VALID(merged.time))
-    GST_AGGREGATOR_PAD(base->srcpad)->segment.position = merged.time + merged.duration;
+  GstSegment& segment = GST_AGGREGATOR_PAD(base->srcpad)->segment;
+  // The segment of a seek begins where the seek goes to, and the running time at 0.
+  const GstClockTime pts =
+      gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, merged.time);
+  if (GST_CLOCK_TIME_IS_VALID(pts)) segment.position = pts + merged.duration;
   const auto fields = lidar::PointFields::Parse(merged.fields);
   if (merged.points.empty() || !fields) return GST_FLOW_OK;
   SetCaps(self, merged, *fields);
   GstBuffer* out = gst_buffer_new_memdup(merged.points.data(), merged.points.size());
-  GST_BUFFER_PTS(out) = merged.time;
+  GST_BUFFER_PTS(out) = pts;
   GST_BUFFER_DURATION(out) = merged.duration;
   if (GST_CLOCK_TIME_IS_VALID(merged.capture_time))
     gst_lidar_buffer_set_capture_time(out, merged.capture_time);

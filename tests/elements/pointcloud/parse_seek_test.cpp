@@ -204,12 +204,13 @@ TEST_F(ParseUnderWay, BuffersThatAreCloudsGoOnWhereTheLastCloudEnded) {
 /// A file of ten clouds at 10 Hz, each of 8 points that hold its number, in PAUSED.
 class ParseSeek : public ::testing::Test {
  protected:
-  ParseSeek() {
+  explicit ParseSeek(const std::string& behind = "") {
     std::ofstream file(path_, std::ios::binary);
     for (char i = 0; i < 10; ++i) file << std::string(8 * 16, i);
     file.close();
     const std::string line = "filesrc location=" + path_ + " ! " + kKitti +
-                             ",width=8 ! pointcloudparse ! fakesink name=sink sync=false "
+                             ",width=8 ! pointcloudparse ! " + behind +
+                             "fakesink name=sink sync=false "
                              "signal-handoffs=true";
     pipeline_.reset(gst_parse_launch(line.c_str(), nullptr));
     const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
@@ -330,6 +331,17 @@ TEST_F(ParseSeek, RefusesToPlayBackwardsAndToEndBeforeItBegins) {
   EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, 800 * GST_MSECOND, 200 * GST_MSECOND));
   EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, 0, gint64{GST_SECOND}, -1));
   EXPECT_EQ(PlayTo(GST_MESSAGE_EOS).size(), 10U);
+}
+
+class SeekThroughMerge : public ParseSeek {
+ protected:
+  SeekThroughMerge() : ParseSeek("pointcloudmerge ! ") {}
+};
+
+TEST_F(SeekThroughMerge, GivesTheCloudsOfItsSegment) {
+  ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE, 300 * GST_MSECOND));
+  EXPECT_EQ(PlayTo(GST_MESSAGE_EOS), (std::vector<int>{3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(times_.front(), 300 * GST_MSECOND);
 }
 
 }  // namespace
