@@ -259,6 +259,14 @@ static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
   self->state->pushed = std::move(caps);
 }
 
+/// Downstream need not wait for a cloud that does not come. There is no segment for the gap before
+/// the first cloud, and after a flush.
+static void PushGap(GstPad* pad, GstClockTime pts, GstClockTime duration) {
+  const EventPtr segment(gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0));
+  if (segment && GST_CLOCK_TIME_IS_VALID(pts))
+    gst_pad_push_event(pad, gst_event_new_gap(pts, duration));
+}
+
 static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   auto* base = GST_AGGREGATOR(self);
   GstSegment& segment = GST_AGGREGATOR_PAD(base->srcpad)->segment;
@@ -267,7 +275,10 @@ static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
       gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, merged.time);
   if (GST_CLOCK_TIME_IS_VALID(pts)) segment.position = pts + merged.duration;
   const auto fields = lidar::PointFields::Parse(merged.fields);
-  if (merged.points.empty() || !fields) return GST_FLOW_OK;
+  if (merged.points.empty() || !fields) {
+    PushGap(base->srcpad, pts, merged.duration);
+    return GST_FLOW_OK;
+  }
   SetCaps(self, merged, *fields);
   GstBuffer* out = gst_buffer_new_memdup(merged.points.data(), merged.points.size());
   GST_BUFFER_PTS(out) = pts;

@@ -198,6 +198,23 @@ TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
   }
 }
 
+/// Downstream shall not wait for a cloud that does not come.
+TEST_F(MergedByHand, ATurnInWhichNoSensorSeesAnythingIsAGap) {
+  for (const float x : {1.F, NAN, 1.F}) {
+    Push(first_, x, 100);
+    Push(second_, x, 100);
+  }
+  ExpectCloud({1, 1}, 100);
+  ExpectCloud({1, 1}, 100);
+  GstClockTime time = 0;
+  GstClockTime duration = 0;
+  while (const gst::EventPtr event{gst_harness_try_pull_event(first_.get())})
+    if (GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP)
+      gst_event_parse_gap(event.get(), &time, &duration);
+  EXPECT_EQ(time, 100 * GST_MSECOND);
+  EXPECT_EQ(duration, 100 * GST_MSECOND);
+}
+
 TEST_F(MergedByHand, ALateFirstSensorStillGivesTheFields) {
   for (GstHarness* h : {first_.get(), second_.get()})
     gst_harness_set_upstream_latency(h, 20 * GST_MSECOND);
