@@ -283,9 +283,10 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       PushAll(self);
       break;
     case GST_EVENT_GAP: {
-      // The open scan is flagged when it leaves, which marks the gap.
+      // The open scan is flagged when it leaves, which marks the gap. Before the first scan there
+      // are no caps and no segment for it.
       std::unique_lock lock(state.mutex);
-      if (state.queue.empty()) break;
+      if (state.queue.empty() && state.caps_sent) break;
       lock.unlock();
       gst_event_unref(event);
       return TRUE;

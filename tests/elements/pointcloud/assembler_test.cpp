@@ -502,6 +502,19 @@ TEST_F(Assembler, AnOpenScanLeavesInTheSegmentThatItBeganIn) {
   EXPECT_TRUE(IsCorrupted(Pull()));
 }
 
+TEST_F(Assembler, AGapBeforeTheCapsOfTheFirstScanStays) {
+  const auto gaps = [&] {
+    gst_harness_push_event(h_.get(), gst_event_new_gap(0, GST_MSECOND));
+    int count = 0;
+    while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+      count += GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(gaps(), 0);
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
+  EXPECT_EQ(gaps(), 1);
+}
+
 TEST_F(Assembler, EachRunWarnsOnceOfSlicesWithoutTheirMeta) {
   const test::ElementBus bus(h_->element);
   for (int run = 0; run < 2; ++run) {
