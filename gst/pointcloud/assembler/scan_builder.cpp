@@ -40,7 +40,10 @@ bool ScanBuilder::IsSane(const SliceView& slice) {
 }
 
 ScanBuilder::ScanBuilder(const SliceView& slice)
-    : scan_id_(slice.meta.scan_id), info_(*slice.info), present_(slice.meta.slice_count, false) {
+    : scan_id_(slice.meta.scan_id),
+      info_(*slice.info),
+      is_discont_(GST_BUFFER_IS_DISCONT(slice.buffer)),
+      present_(slice.meta.slice_count, false) {
   const guint turn = std::max(1U, ColumnsPerTurn(info_, slice.meta.slice_count));
   const guint before = slice.meta.slice_index * info_.width % turn;
   first_column_ = (slice.meta.first_column % turn + turn - before) % turn;
@@ -139,6 +142,7 @@ FinishedScan ScanBuilder::Finish() {
   gst_lidar_buffer_set_slice(buffer, &whole);
   if (GST_CLOCK_TIME_IS_VALID(capture_)) gst_lidar_buffer_set_capture_time(buffer, capture_);
   if (!out.complete) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_CORRUPTED);
+  if (is_discont_) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
   return out;
 }
 

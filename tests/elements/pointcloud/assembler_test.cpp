@@ -515,6 +515,19 @@ TEST_F(Assembler, AGapBeforeTheCapsOfTheFirstScanStays) {
   EXPECT_EQ(gaps(), 1);
 }
 
+TEST_F(Assembler, AScanDoesNotContinueTheLastIfItsFirstSliceDoesNot) {
+  guint scan = 0;
+  for (const bool gap : {true, false, true}) {
+    for (guint i = 0; i < kSlices; ++i) {
+      BufferPtr slice = Slice(scan, i);
+      if (gap && i == 0) GST_BUFFER_FLAG_SET(slice.get(), GST_BUFFER_FLAG_DISCONT);
+      Push(std::move(slice));
+    }
+    ++scan;
+    EXPECT_EQ(GST_BUFFER_IS_DISCONT(Pull().get()), gap);
+  }
+}
+
 TEST_F(Assembler, EachRunWarnsOnceOfSlicesWithoutTheirMeta) {
   const test::ElementBus bus(h_->element);
   for (int run = 0; run < 2; ++run) {
