@@ -59,7 +59,7 @@ struct State {
   CapsPtr caps;
   guint out_width = 0;
   std::optional<gsize> file_size;  // of a file that comes in pieces; 0: each piece is a cloud
-  bool discont = false;            // a cloud was left out
+  bool discont = false;            // something is missing before the next cloud
   bool empty_reported = false;
   RefusedCaps refused;
   AdapterPtr adapter{gst_adapter_new()};
@@ -144,7 +144,9 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
   PushSegment(self);
   GstBuffer* out = gst_buffer_make_writable(buffer.release());
   state.stamper.Stamp(out);
-  if (std::exchange(state.discont, false)) GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_DISCONT);
+  // All clouds of one buffer have its flag.
+  gst_buffer_unset_flags(out, GST_BUFFER_FLAG_DISCONT);
+  if (std::exchange(state.discont, false)) gst_buffer_set_flags(out, GST_BUFFER_FLAG_DISCONT);
   return gst_pad_push(self->srcpad, out);
 }
 
@@ -222,6 +224,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
     return GST_FLOW_ERROR;
   }
   state.stamper.SetCloudSize(cloud);
+  state.discont = state.discont || GST_BUFFER_IS_DISCONT(buffer.get());
   if (cloud == 0) return PushWhole(self, std::move(buffer));
   if (GST_BUFFER_IS_DISCONT(buffer.get())) gst_adapter_clear(state.adapter.get());
   if (gst_adapter_available(state.adapter.get()) == 0 && gst_buffer_get_size(raw) == cloud)

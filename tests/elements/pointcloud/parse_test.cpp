@@ -199,6 +199,19 @@ TEST_F(Parse, ABufferAfterAGapDoesNotFinishTheCloudBeforeIt) {
   EXPECT_EQ(map.data()[0], 2);
 }
 
+TEST_F(Parse, TheFirstCloudOfABufferAfterAGapIsDiscontAndNoOther) {
+  Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
+  for (const gsize begin : {100U, 160U, 320U}) {
+    BufferPtr after = Bytes(begin);
+    GST_BUFFER_FLAG_SET(after.get(), GST_BUFFER_FLAG_DISCONT);
+    Push(std::move(after));
+    Push(Bytes(480 - begin));
+    ASSERT_EQ(gst_harness_buffers_in_queue(h_.get()), 3U);
+    for (const bool first : {true, false, false})
+      EXPECT_EQ(GST_BUFFER_IS_DISCONT(Pull().get()), first) << begin;
+  }
+}
+
 TEST_F(Parse, ABufferOfACloudsSizeMayHoldTheEndOfOneAndTheBeginOfTheNext) {
   Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
   Push(Bytes(100, 1));
