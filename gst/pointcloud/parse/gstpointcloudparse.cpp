@@ -297,6 +297,13 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       gst_adapter_clear(state.adapter.get());
       state.stamper.TakeSegment(event);
       return TRUE;
+    case GST_EVENT_GAP:
+      if (state.out_width > 0) {
+        PushSegment(self);
+        break;
+      }
+      gst_event_unref(event);  // there are no caps for it
+      return TRUE;
     case GST_EVENT_EOS:
       Drain(self);
       PushSegment(self);

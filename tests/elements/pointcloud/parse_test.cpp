@@ -212,6 +212,23 @@ TEST_F(Parse, TheFirstCloudOfABufferAfterAGapIsDiscontAndNoOther) {
   }
 }
 
+TEST_F(Parse, AGapComesBehindCapsAndSegmentOrNotAtAll) {
+  Start(kKitti);
+  PushSegment(GST_FORMAT_TIME);
+  const auto push = [&](BufferPtr cloud) {
+    gst_pad_push_event(h_->srcpad, gst_event_new_gap(0, GST_MSECOND));
+    if (cloud) Push(std::move(cloud));
+    std::string events;
+    while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+      events += std::string(GST_EVENT_TYPE_NAME(event.get())) + " ";
+    return events;
+  };
+  EXPECT_EQ(push(Bytes(160)), "stream-start caps segment ");
+  EXPECT_EQ(push(nullptr), "gap ");
+  PushSegment(GST_FORMAT_TIME);
+  EXPECT_EQ(push(nullptr), "segment gap ");
+}
+
 TEST_F(Parse, ABufferOfACloudsSizeMayHoldTheEndOfOneAndTheBeginOfTheNext) {
   Start("application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\"");
   Push(Bytes(100, 1));
