@@ -90,7 +90,7 @@ struct _GstLidarPointCloudFilter {
   GstElement parent;
   GstPad* sinkpad;
   GstPad* srcpad;
-  guint next_pad;  // number of the next pad for transforms
+  guint64 next_pad;  // number of the next pad for transforms
   State* state;
 };
 
@@ -279,8 +279,8 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
   GST_OBJECT_LOCK(self);
   // A requested name is kept, and pads that are requested later without a name get other names.
   guint64 number = self->next_pad;
-  if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT - 1, &number, nullptr);
-  self->next_pad = std::max(self->next_pad, static_cast<guint>(number) + 1);
+  if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT, &number, nullptr);
+  self->next_pad = std::max(self->next_pad, number + 1);
   GST_OBJECT_UNLOCK(self);
   const std::string chosen = "tf_" + std::to_string(number);
   return self->state->placer.inbox().AddPad(element, pad_template, chosen.c_str());

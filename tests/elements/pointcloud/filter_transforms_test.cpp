@@ -316,8 +316,13 @@ TEST_F(FilterByTransforms, APoseWithoutATimeIsRefused) {
 
 TEST_F(FilterByTransforms, APadWithoutANameIsNumberedBehindAllOthers) {
   Start("");
-  for (const auto& [asked, given] : std::vector<std::pair<const char*, std::string>>{
-           {"tf_5", "tf_5"}, {"tf_3", "tf_3"}, {"tf_%u", "tf_6"}}) {
+  for (const auto& [asked, given] :
+       std::vector<std::pair<const char*, std::string>>{{"tf_5", "tf_5"},
+                                                        {"tf_3", "tf_3"},
+                                                        {"tf_%u", "tf_6"},
+                                                        {"tf_4294967294", "tf_4294967294"},
+                                                        {"tf_%u", "tf_4294967295"},
+                                                        {"tf_%u", "tf_4294967296"}}) {
     const PadPtr pad(gst_element_request_pad_simple(h_->element, asked));
     ASSERT_TRUE(pad);
     EXPECT_EQ(GST_PAD_NAME(pad.get()), given);
