@@ -124,6 +124,8 @@ static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer
   }
   *why = "its caps are missing";
   if (!state.caps) return nullptr;
+  *why = "they have no times; pointcloudparse gives them";
+  if (GST_AGGREGATOR_PAD(pad)->segment.format != GST_FORMAT_TIME) return nullptr;
   if (!state.plan || state.plan_transform != settings.transform || state.plan_fields != fields) {
     state.plan = FilterPlan::Make(settings, state.caps.get(), why);
     state.plan_transform = settings.transform;
@@ -174,7 +176,9 @@ static std::string FieldsOfFirst(const std::vector<PadPtr>& pads) {
   return "";
 }
 
+/// Returns 0 for a buffer without a time.
 static GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
+  if (pad->segment.format != GST_FORMAT_TIME) return 0;
   const GstClockTime time =
       gst_segment_to_running_time(&pad->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
   return GST_CLOCK_TIME_IS_VALID(time) ? time : 0;

@@ -109,6 +109,14 @@ TEST_F(Merge, SaysWhatIsWrong) {
             "");
 }
 
+TEST_F(Merge, CloudsWithoutTimesAreAnError) {
+  EXPECT_EQ(Play("fakesrc num-buffers=2 sizetype=fixed sizemax=160 format=bytes ! "
+                 "application/x-pointcloud2,width=10,height=1,point-step=16,"
+                 "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\" ! pointcloudmerge ! fakesink")
+                .error,
+            "Clouds of sink_0 cannot be merged: they have no times; pointcloudparse gives them.");
+}
+
 /// Two pads that take clouds of one point each.
 class MergedByHand : public ::testing::Test {
  protected:
