@@ -89,21 +89,22 @@ class LidarLink : public testing::Test {
                                      summary_};
     command.insert(command.end(), options.begin(), options.end());
     link_ = std::make_unique<ChildProcess>(ChildProcess::Config{command, "", false});
-    port_ = 0;
+    ports_.clear();
     const Time end = Now() + 30s;
-    while (port_ == 0 && Now() < end) {
+    while (ports_.empty() && Now() < end) {
       std::this_thread::sleep_for(5ms);
       link_->ReadLines([&](const std::string& line) {
         const auto record = nlohmann::json::parse(line, nullptr, false);
-        if (record.contains("listening")) port_ = record["listening"][0];
+        if (record.contains("listening")) ports_ = record["listening"].get<std::vector<int>>();
       });
     }
-    ASSERT_NE(port_, 0) << "lidar-link does not listen";
+    ASSERT_FALSE(ports_.empty()) << "lidar-link does not listen";
   }
 
-  UdpSocket Sender() const {
-    return UdpSocket::Connect(ResolveAddress("127.0.0.1:" + std::to_string(port_), ""));
+  Address Port(std::size_t i) const {
+    return ResolveAddress("127.0.0.1:" + std::to_string(ports_.at(i)), "");
   }
+  UdpSocket Sender() const { return UdpSocket::Connect(Port(0)); }
 
   nlohmann::json Stop() {
     link_->Signal(SIGINT);
@@ -141,7 +142,7 @@ class LidarLink : public testing::Test {
   std::size_t markers_ = 0;
   const std::string summary_ = testing::TempDir() + "lidar_link_summary.json";
   std::unique_ptr<ChildProcess> link_;
-  int port_ = 0;
+  std::vector<int> ports_;
 };
 
 TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
@@ -255,6 +256,21 @@ TEST_F(LidarLink, KeepsTwoSendersApartAndGivesEachItsAnswers) {
   EXPECT_EQ(Receive(&first, 1).at(0).payload[0], 1);
   EXPECT_EQ(Receive(&second, 1).at(0).payload[0], 2);
   EXPECT_EQ(Stop()["flows"].size(), 2U);
+}
+
+TEST_F(LidarLink, KeepsTwoPortsOfOneSenderApart) {
+  auto other = UdpSocket::Bind(ResolveAddress("127.0.0.1:0", ""));
+  const std::string second = "127.0.0.1:" + std::to_string(other.LocalPort());
+  Start({"--rtt", "0", "--listen", "127.0.0.1:0", "--forward", second});
+  ASSERT_EQ(ports_.size(), 2U);
+  auto sender = UdpSocket::Bind(ResolveAddress("127.0.0.1:0", ""));
+  for (std::uint8_t i = 0; i < 2; ++i) {
+    const Address to = Port(i);
+    EXPECT_TRUE(sender.Send({&i, 1}, kEct1, &to));
+    const auto got = Receive(i == 0 ? &receiver_ : &other, 1, 5s);
+    ASSERT_EQ(got.size(), 1U) << "port " << int{i};
+    EXPECT_EQ(got[0].payload[0], i);
+  }
 }
 
 TEST_F(LidarLink, DuplicatesAndLosesOnRequest) {

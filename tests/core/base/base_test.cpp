@@ -179,6 +179,8 @@ TEST(TargetNotifier, TellsMovesOfTwoPercentAtOnceAndAllElseEvery200Milliseconds)
   EXPECT_TRUE(notifier.ShouldNotify(start + 1ms, mbps(10.21)));
   EXPECT_FALSE(notifier.ShouldNotify(start + 200ms, mbps(10.21)));
   EXPECT_TRUE(notifier.ShouldNotify(start + 201ms, mbps(10.21)));
+  EXPECT_FALSE(notifier.ShouldNotify(start + 202ms, mbps(10.01)));
+  EXPECT_TRUE(notifier.ShouldNotify(start + 202ms, mbps(9.99)));
 }
 
 TEST(RowFile, KeepsItsRowsAndNothingThatIsEmpty) {

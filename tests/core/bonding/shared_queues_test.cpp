@@ -18,7 +18,7 @@ class TwoFifos : public testing::Test {
     queues_.OnSent(now_, link, size);
     Time& free = free_[fifo];
     free = std::max(free, now_) + size / Mbps(8);
-    const auto ticks = static_cast<std::uint32_t>(Seconds(free - kStart) * 65536);
+    const auto ticks = static_cast<std::uint32_t>(Seconds(free - kStart + behind_[link]) * 65536);
     queues_.OnArrival(link, {now_, ticks, 0ms});
     changes_ += queues_.Shared(0, 1) != shared_ ? 1 : 0;
     shared_ = queues_.Shared(0, 1);
@@ -39,6 +39,7 @@ class TwoFifos : public testing::Test {
   int changes_ = 0;  // of what it finds
   Time now_ = kStart;
   std::array<Time, 2> free_{kStart, kStart};
+  std::array<Duration, 2> behind_{};  // delay of each link behind its queue
   link::Random random_{1};
 };
 
@@ -92,6 +93,14 @@ TEST_F(TwoFifos, LeavesAQueueThatIsNoLongerShared) {
   ASSERT_TRUE(queues_.Shared(0, 1));
   Run(1, false);
   EXPECT_FALSE(queues_.Shared(0, 1));
+}
+
+TEST_F(TwoFifos, FindsOneQueueThoughThePathBehindItBecomesMuchLongerForOneLink) {
+  Run(0, false);
+  ASSERT_TRUE(queues_.Shared(0, 1));
+  behind_[1] = 2s;
+  Run(0, false);
+  EXPECT_TRUE(queues_.Shared(0, 1));
 }
 
 TEST_F(TwoFifos, TakesNoOldSamplesForNewOnesWhereQueuesAreAlikeForAMoment) {

@@ -363,6 +363,7 @@ TEST(Las, SaysWhyItCannotBeRead) {
       {with([](Las& l) { l.format = 11; }),
        "its point format is unknown, or its records are too short for it"},
       {with([](Las& l) { l.scale = std::nan(""); }), "its scale or offset is no number"},
+      {with([](Las& l) { l.offset = std::nan(""); }), "its scale or offset is no number"},
       {with([](Las& l) { l.points = 3; }), "the file ends before its last point"},
       {with([](Las& l) { l.points = 2'000'000'000; }), "the cloud is larger than 1 GiB"},
   };

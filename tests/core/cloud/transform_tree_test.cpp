@@ -205,6 +205,7 @@ TEST_F(Tree, AFrameThatMovesToAnotherParentLeavesTheFirst) {
 TEST_F(Tree, TakesNamesWithTheSlashOfRos1) {
   ASSERT_TRUE(tree_.Set("/base", "/imu", kStart, At(5), true));
   ExpectNear(Place(tree_.Find("base", "/imu", kStart), {0, 0, 0}), {5, 0, 0});
+  ExpectNear(Place(tree_.Find("/base", "imu", kStart), {0, 0, 0}), {5, 0, 0});
 }
 
 TEST_F(Tree, RefusesWhatIsNoPose) {

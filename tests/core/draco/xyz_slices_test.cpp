@@ -214,6 +214,22 @@ TEST(XyzSlices, OfFineStepsAreCodedInATree) {
   }
 }
 
+/// A tree has the number of points a second time, and libdraco decodes as many.
+TEST(XyzSlices, WhoseTreeHasAnotherNumberOfPointsAreRefused) {
+  SliceSettings settings;
+  settings.step_m = 1e-5;
+  const auto stream = Coded(Rings(700), settings).slice.bytes;
+  constexpr std::size_t kPointsOfTree = 27;  // behind the header, an attribute, level and bits
+  ASSERT_GT(stream.size(), kPointsOfTree);
+  ASSERT_EQ(stream[kPointsOfTree], 700 % 256);
+  for (const int more : {0, 1, -1}) {
+    auto changed = stream;
+    changed[kPointsOfTree] = static_cast<std::uint8_t>(changed[kPointsOfTree] + more);
+    const auto summary = CheckDraco({changed.data(), changed.size()}, {kMaxPoints});
+    EXPECT_EQ(summary && summary->is_kd_tree, more == 0) << more;
+  }
+}
+
 TEST(XyzSlices, AreCodedByTheCoderThatWasTheSmallerOneUntilBothAreTriedAgain) {
   const Points line = Line();
   auto encoder = *SliceEncoder::Create(PlainFormat(), Geometry::kXyz);

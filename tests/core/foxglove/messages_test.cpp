@@ -128,6 +128,17 @@ TEST(PointCloud, OfAnOrganisedCloudTellsTheBeam) {
   EXPECT_EQ(data[2 * (sizeof(Point) + 2) + sizeof(Point)], 1);  // row 1
 }
 
+TEST(PointCloud, OfAnOrganisedCloudThatTellsTheBeamIsAsItWas) {
+  const std::vector<Point> points = {{1, 0, 0, 7}, {2, 0, 0, 6}};
+  const PointFields fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,ring:U16:12");
+  const PointsView rows = View(points, 1);
+  const auto encoded =
+      EncodePointCloud({}, {fields, rows.point_step, rows.width, rows.height, rows.data}, 0);
+  const ProtoMessage cloud = Parse(encoded.message);
+  EXPECT_EQ(cloud.Count(5), 4U);
+  EXPECT_EQ(cloud.Number(4), sizeof(Point));
+}
+
 TEST(PointCloud, ThinsToTheMostPoints) {
   std::vector<Point> points;
   for (int i = 1; i <= 100; ++i) points.push_back({static_cast<float>(i), 0, 0, 0});

@@ -2,6 +2,7 @@
 // Scans that do not fit, come late, or belong to no drive.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "src/odometry/odometry.h"
@@ -158,6 +159,29 @@ TEST(OddScans, FindsItsWayAfterLostScansInWhichTheCarBraked) {
   const Estimate found = odometry.OnScan(drive.StartOf(25), kPeriod, drive.Scan(24));
   EXPECT_EQ(found.tracking, Tracking::kTracking);
   EXPECT_LT((found.pose.position - drive.WayTo(24).position).norm(), 0.3);
+}
+
+/// A hall of which the sensor sees the walls and the edge of the floor.
+TEST(OddScans, FollowsWhereAllIsFarAway) {
+  Points hall;
+  for (double along = -50; along < 50; along += 0.5)
+    for (double z = -1.5; z < 10; z += 0.5)
+      for (const double side : {-50.2, 50.2}) {
+        hall.emplace_back(side, along, z);
+        hall.emplace_back(along, side, z);
+      }
+  for (double x = -50; x < 50; x += 0.5)
+    for (double y = -50; y < 50; y += 0.5)
+      if (std::hypot(x, y) > 44) hall.emplace_back(x, y, -1.5);
+  Odometry odometry({});
+  for (int scan = 0; scan < 6; ++scan) {
+    const Eigen::Vector3d place(0.5 * scan, 0, 0);
+    TimedPoints seen;
+    for (const Eigen::Vector3d& point : hall) seen.points.push_back(point - place);
+    const Estimate e = odometry.OnScan(Time{} + kPeriod * scan, kPeriod, seen);
+    EXPECT_EQ(e.tracking, scan == 0 ? Tracking::kStarted : Tracking::kTracking) << scan;
+    EXPECT_LT((e.pose.position - place).norm(), 0.05) << scan;
+  }
 }
 
 TEST(OddScans, BeginsANewMapAfterALongGap) {

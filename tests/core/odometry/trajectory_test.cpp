@@ -92,6 +92,8 @@ TEST(TrajectoryErrors, AreZeroForTheTruthInAnotherFrame) {
   const Trajectory truth = Circle();
   Trajectory moved = truth;
   for (StampedPose& p : moved) p.pose = At(5, -7, 2) * p.pose;
+  // A quaternion and its negative are one rotation.
+  for (std::size_t i = 0; i < moved.size(); i += 2) moved[i].pose.rotation.coeffs() *= -1;
   const auto error = Compare(truth, moved);
   ASSERT_TRUE(error);
   EXPECT_LT(error->ate_rmse_m, 1e-6);

@@ -160,6 +160,14 @@ TEST_F(Batcher, LeavesOutSlicesOfWhichNothingCame) {
   EXPECT_EQ(stats_.lost_packets, 64U);
 }
 
+TEST_F(Batcher, ThePacketInWhichAWindowBeginsIsMissed) {
+  metadata_.window = {1, 256};
+  Packets lossy = packets_;
+  lossy.erase(lossy.begin() + 64);  // columns 0 to 15 of the second scan
+  Run(lossy);
+  EXPECT_EQ(stats_.lost_packets, 1U);
+}
+
 TEST_F(Batcher, JoiningOrLeavingInTheMiddleOfAScanIsNoLoss) {
   const Packets middle(packets_.begin() + 21, packets_.end() - 5);
   const auto slices = Run(middle);

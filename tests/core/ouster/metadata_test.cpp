@@ -274,12 +274,14 @@ TEST(Metadata, KeepTheOriginOfTheBeamsInTheirJson) {
   EXPECT_NEAR(back->model.beam_to_lidar_z_m, 0.0037, 1e-9);
 }
 
-TEST(Metadata, OfAnotherScanRateHaveAnotherGeometry) {
-  Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
-  const Metadata before = m;
-  EXPECT_TRUE(SameGeometry(before, m));
-  m.scans_per_second *= 2;
-  EXPECT_FALSE(SameGeometry(before, m));
+TEST(Metadata, OfAnotherScanRateOrWindowHaveAnotherGeometry) {
+  const Metadata before = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  std::vector<Metadata> others(3, before);
+  EXPECT_TRUE(SameGeometry(before, others[0]));
+  others[0].scans_per_second *= 2;
+  others[1].window.first = 1;
+  others[2].window.count = 512;
+  for (const Metadata& other : others) EXPECT_FALSE(SameGeometry(before, other));
 }
 
 }  // namespace

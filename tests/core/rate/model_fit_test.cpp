@@ -194,6 +194,7 @@ TEST(PaperModel, ChoosesTheGridPointNearestToTheTarget) {
   const Settings s = model.Choose(slice, 13700, limits);
   EXPECT_NEAR(BitsOfStep(100, s.step_m), 14, 1e-9);
   EXPECT_EQ(s.level, 3U);
+  EXPECT_EQ(model.Choose(slice, 13100, limits).level, 9U) << "the highest level";
   // Steps coarser than the error bound are no choice, however small the target.
   limits.coarsest_step_m = StepOfBits(100, 12);
   EXPECT_NEAR(BitsOfStep(100, model.Choose(slice, 1, limits).step_m), 12, 1e-9);

@@ -94,6 +94,18 @@ TEST_F(Mapper, TimesGoOnWhereTheReferenceWrapsAround) {
               ReportClock::ToTimestamp(Time{20ms}), 1);
 }
 
+TEST_F(Mapper, AReportOfLossesAloneHasTheTimeOfTheNewestArrival) {
+  mapper.OnSent(65534, 100, 1);
+  mapper.OnSent(65535, 100, 2);
+  const auto before = mapper.Map(Report({10s}));
+  TwccFeedback lost = Report({std::nullopt});
+  lost.base_number = 65535;
+  const auto after = mapper.Map(lost);
+  ASSERT_TRUE(before && after);
+  EXPECT_FALSE(after->blocks.at(0).metrics.at(0).received);
+  EXPECT_EQ(after->report_timestamp, before->report_timestamp);
+}
+
 TEST_F(Mapper, AReportThatWasOvertakenAcrossTheWrapIsTheEarlierOne) {
   mapper.OnSent(65534, 100, 1);
   mapper.OnSent(65535, 100, 2);

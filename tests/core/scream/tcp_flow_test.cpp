@@ -3,7 +3,9 @@
 // functions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "src/sim/simulated_time.h"
 #include "src/sim/simulation.h"
@@ -123,6 +125,19 @@ TEST(Prague, SharesADualQueueWithCubic) {
   const double prague = RateOf(r, 0, 15s, 59s), cubic = RateOf(r, 1, 15s, 59s);
   EXPECT_GE(Utilisation(r), 0.95);
   EXPECT_LE(std::max(prague, cubic) / std::min(prague, cubic), 2) << prague << " and " << cubic;
+}
+
+/// Each file is one packet. A late packet is sent again after a second, and its acknowledgement
+/// comes while a later file is under way.
+TEST(Files, TakeARoundTripAtLeastThoughAcknowledgementsOfEarlierFilesComeLate) {
+  SimulationConfig config = Path(TcpKind::kCubic, Mbps(20), 40ms);
+  config.forward.path.reorder = 0.02;
+  config.forward.path.reorder_delay = 2s;
+  config.others[0].files = FileConfig{DataSize::Bytes(1500), DataSize::Bytes(1500)};
+  const std::vector<double> times = Simulate(config).others[0].file_s;
+  ASSERT_GT(times.size(), 100U);
+  EXPECT_GE(*std::min_element(times.begin(), times.end()), 0.04);
+  EXPECT_GE(*std::max_element(times.begin(), times.end()), 1.0) << "no packet was late";
 }
 
 TEST(Classic, AnEcnMarkCountsAsALoss) {

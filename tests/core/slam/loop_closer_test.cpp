@@ -57,6 +57,15 @@ TEST(LoopCloser, TakesADriveWithoutPoints) {
   EXPECT_TRUE(blind.closures().empty());
 }
 
+TEST(LoopCloser, SearchesFartherAfterALongerWay) {
+  LoopSettings settings;
+  settings.drift_m = -settings.local_map_m;  // a drive without a length allows no distance
+  settings.drift_share = 0.1;
+  LoopCloser closer(settings);
+  AddDrive(Drive(kScansOfALap + 12), &closer);
+  EXPECT_FALSE(closer.closures().empty());
+}
+
 TEST(LoopCloser, MovesTheMapAndNotTheOdometry) {
   const odometry::Trajectory drifted = Drive(kScansOfALap + 30);
   LoopCloser closer({});

@@ -53,6 +53,25 @@ TEST(TrueMotion, ItsTurnsAddUpToThoseOfTheDrive) {
   }
 }
 
+/// A turn of a radian a second to the left, on the spot.
+class TurningRoute : public Route {
+ public:
+  Place At(double time_s) const override {
+    Place place;
+    place.yaw = std::remainder(time_s, 2 * M_PI);
+    return place;
+  }
+};
+
+TEST(TrueMotion, TurnsNoFasterWhereTheHeadingPasses180Degrees) {
+  TrajectorySettings settings;
+  settings.sway_m = settings.bounce = 0;
+  settings.route = std::make_shared<TurningRoute>();
+  const Trajectory trajectory(settings);
+  for (Duration t{}; t < seconds(7); t += milliseconds(10))
+    ASSERT_NEAR(TrueMotion(trajectory, t).angular_velocity[2], 1, 1e-4) << Seconds(t);
+}
+
 TEST(TrueMotion, ItsAccelerationsAddUpToTheChangeOfSpeed) {
   const Scanner drive = DriveThrough(SceneKind::kTown, 1);
   const Trajectory& trajectory = drive.trajectory();

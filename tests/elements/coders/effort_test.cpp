@@ -2,7 +2,8 @@
 // The property effort of lidarenc.
 #include <gtest/gtest.h>
 
-#include "tests/elements/coders/coder_harness.h"
+#include "tests/elements/coders/plain_clouds.h"
+#include "tests/elements/coders/stopped_clock.h"
 
 namespace lidar::gst {
 namespace {
@@ -69,6 +70,28 @@ TEST(Effort, RisesByItselfWhereThereIsTime) {
 // A slice sweeps in a microsecond here, so that no machine has time.
 TEST(Effort, FallsByItselfWhereThereIsNone) {
   EXPECT_EQ(EffortHarness("effort=auto", 125'000, 1).Push(20), "range-adaptive");
+}
+
+// A scan takes 16 us here, and the coder 2 us for each cloud, on the stopped clock: an eighth of a
+// scan, but all that a slice lasts.
+TEST(Effort, FallsWherePointsHaveTheTimeOfASliceOnly) {
+  const test::StoppedClock clock;
+  for (const guint slices : {1U, 8U}) {
+    const Harness h = Encoder(kLidarXyz, "effort=auto");
+    CloudInfo info = XyzInfo(500);
+    info.framerate_n = 62'500;
+    SetCaps(h.get(), info);
+    for (guint i = 0; i < 20; ++i) {
+      const GstLidarSlice slice{i / slices, i % slices, slices, 0};
+      GstBuffer* input = PlainBuffer(RandomPoints(500, 40));
+      gst_lidar_buffer_set_slice(input, &slice);
+      ASSERT_EQ(gst_harness_push(h.get(), input), GST_FLOW_OK);
+    }
+    const ElementPtr encoder(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+    const StructurePtr stats(StatsOf(encoder.get()));
+    EXPECT_STREQ(gst_structure_get_string(stats.get(), "mode"),
+                 slices == 1 ? "xyz-cloud1" : "xyz-cloud0");
+  }
 }
 
 TEST(Effort, StaysWhereOnlyTheCapsAreOthers) {

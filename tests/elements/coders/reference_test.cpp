@@ -50,6 +50,17 @@ class StaticSensor : public ::testing::Test {
     arrived_.clear();
     gst_harness_push_upstream_event(sender_.get(), gst_lidar_event_new_packets_received(&received));
   }
+  /// Reports slices that the encoder never sent.
+  void AcknowledgeUnknown() {
+    GstLidarSlicesReceived received{1, GST_LIDAR_MAX_RECEIVED, {}};
+    for (GstLidarReceivedSlice& slice : received.slices) slice = {4'000'000, 0};
+    gst_harness_push_upstream_event(sender_.get(), gst_lidar_event_new_slices_received(&received));
+  }
+  void AskForKeyUnit() {
+    gst_harness_push_upstream_event(
+        sender_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
+                                            gst_structure_new_empty("GstForceKeyUnit")));
+  }
   /// Passes on what the receiver asks of the sender. Returns true if it asked for a key unit, and
   /// numbered its requests from 1 on.
   bool CarryKeyRequest() {
@@ -215,6 +226,21 @@ TEST_F(StaticSensor, IsAskedForSlicesThatStandAloneByAReceiverThatHasNone) {
   Scans(3);
   EXPECT_EQ(Decoded("slices"), 3 * kSlices);
   EXPECT_EQ(Mode(), "range-temporal1");
+}
+
+/// The encoder keeps 4,096 reports until the next cloud, and drops the others.
+TEST_F(StaticSensor, IsCodedByNoMoreReportsThanTheEncoderKeeps) {
+  Start();
+  Scans(2);
+  acknowledges_ = false;
+  for (const guint events : {15U, 16U}) {
+    AskForKeyUnit();
+    Scan();
+    for (guint i = 0; i < events; ++i) AcknowledgeUnknown();
+    Acknowledge();
+    Scan();
+    EXPECT_EQ(Mode(), events == 15 ? "range-temporal1" : "range-mixing1") << events;
+  }
 }
 
 TEST_F(StaticSensor, IsCodedSliceBySliceForTwoReceivers) {

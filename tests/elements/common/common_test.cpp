@@ -261,6 +261,10 @@ TEST(Clouds, AreRefusedInABufferThatIsLargerThanTheirs) {
     GstLidarCloud cloud;
     EXPECT_EQ(gst_lidar_cloud_map(&cloud, &info, buffer.get(), GST_MAP_READ), more == 0) << more;
     gst_lidar_cloud_unmap(&cloud);
+    GstMemory* memory = gst_buffer_peek_memory(buffer.get(), 0);
+    GstMapInfo map;
+    ASSERT_TRUE(gst_memory_map(memory, &map, GST_MAP_WRITE)) << "it stays mapped: " << more;
+    gst_memory_unmap(memory, &map);
   }
 }
 

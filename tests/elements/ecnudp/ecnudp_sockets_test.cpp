@@ -11,13 +11,14 @@ namespace {
 using test::Harness;
 using test::SetPlaying;
 
-/// A socket of an application.
-Object<GSocket> Bound() {
+/// A socket of an application, at a free port if `address` is null.
+Object<GSocket> Bound(GSocketAddress* address = nullptr) {
   Object<GSocket> socket(
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
   const Object<GInetAddress> any(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
   const Object<GSocketAddress> local(g_inet_socket_address_new(any.get(), 0));
-  EXPECT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
+  EXPECT_TRUE(
+      g_socket_bind(socket.get(), address != nullptr ? address : local.get(), FALSE, nullptr));
   return socket;
 }
 
@@ -39,6 +40,25 @@ TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {
   SetPlaying(src.get());
   gst_element_set_state(src->element, GST_STATE_NULL);
   EXPECT_TRUE(g_socket_is_closed(socket.get()));
+}
+
+/// The peer's port is closed when the application sends, so the kernel reports a refusal.
+TEST(EcnUdpSockets, APeerThatDoesNotListenYetEndsNothing) {
+  const auto socket = Bound();
+  auto peer = Bound();
+  const Object<GSocketAddress> here(g_socket_get_local_address(socket.get(), nullptr));
+  const Object<GSocketAddress> there(g_socket_get_local_address(peer.get(), nullptr));
+  peer.reset();
+  ASSERT_TRUE(g_socket_connect(socket.get(), there.get(), nullptr, nullptr));
+  ASSERT_EQ(g_socket_send(socket.get(), "?", 1, nullptr, nullptr), 1);
+  const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "socket", socket.get(), nullptr);
+  SetPlaying(src.get());
+  peer = Bound(there.get());
+  ASSERT_EQ(g_socket_send_to(peer.get(), here.get(), "!", 1, nullptr, nullptr), 1);
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(Text(got.get()), "!");
 }
 
 TEST(EcnUdpSockets, ASocketThatIsReplacedWhileItIsUsedIsTreatedAsItWasGiven) {

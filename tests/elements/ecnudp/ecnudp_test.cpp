@@ -474,6 +474,18 @@ TEST(EcnUdpSrc, SeveralOfAMachineReceiveAMulticastGroup) {
   EXPECT_NE(gst_element_set_state(second->element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
 }
 
+/// A machine without multicast joins no group, with brackets or without.
+TEST(EcnUdpSrc, TakesAMulticastGroupInBrackets) {
+  const auto joins = [](const std::string& group) {
+    const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+    g_object_set(src->element, "port", 0, "multicast-group", group.c_str(), "multicast-iface", "lo",
+                 nullptr);
+    return gst_element_set_state(src->element, GST_STATE_PAUSED) != GST_STATE_CHANGE_FAILURE;
+  };
+  for (const std::string group : {"239.201.7.1", "ff12::7:1"})
+    EXPECT_EQ(joins("[" + group + "]"), joins(group)) << group;
+}
+
 struct Peer {
   const char* accepts;
   const char* wants;  // caps that the source then sets; NULL for none

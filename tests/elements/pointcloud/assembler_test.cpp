@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "gst/common/buffer_map.h"
 #include "gst/lidar/cloud_info.h"
@@ -405,6 +407,35 @@ TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
   EXPECT_TRUE(IsCorrupted(scan));
   Push(Slice(0, 3));
   EXPECT_EQ(Stat("late-slices"), 1U);
+}
+
+/// Returns true once the thread of the element's timer sleeps.
+bool AwaitSleepOfTimer(GstElement* assembler) {
+  // A thread has the name of its element and pad, as far as Linux keeps it.
+  const std::string name = (std::string(GST_OBJECT_NAME(assembler)) + ":src").substr(0, 15);
+  return test::Eventually([&] {
+    for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+      std::ifstream stat(thread.path() / "stat");
+      std::string text;
+      std::getline(stat, text);
+      if (text.find("(" + name + ") S ") != std::string::npos) return true;
+    }
+    return false;
+  });
+}
+
+TEST_F(Assembler, AScanFromBeforeTheClockRanLeavesAtItsDeadline) {
+  gst_harness_set_live(h_.get(), TRUE);
+  gst_harness_set_upstream_latency(h_.get(), kSweep);
+  gst_element_set_state(h_->element, GST_STATE_PAUSED);
+  gst_element_set_clock(h_->element, nullptr);
+  for (guint i = 0; i < 3; ++i) Push(Slice(0, i));
+  ASSERT_TRUE(AwaitSleepOfTimer(h_->element));
+  test::UseTestClock(h_.get());
+  gst_element_set_state(h_->element, GST_STATE_PLAYING);
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));
+  EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 2, 3, 0}));
 }
 
 TEST_F(LiveAssembler, AScanOfASenderThatStartedAgainHasItsOwnDeadline) {

@@ -12,16 +12,19 @@
 #include "tests/elements/scream/bonded_ends.h"
 #include "tests/elements/scream/rtp_support.h"
 
-static std::atomic<bool> loopback_has_carrier{true};
+static std::atomic<bool> loopback_has_carrier{true}, loopback_has_ipv4{true};
 
 /// Replaces libc's function in this program and in its plugins.
 extern "C" int getifaddrs(ifaddrs** first) noexcept {
   using Get = int (*)(ifaddrs**);
   static const auto next = reinterpret_cast<Get>(dlsym(RTLD_NEXT, "getifaddrs"));
   if (next(first) != 0) return -1;
-  for (ifaddrs* a = *first; a != nullptr; a = a->ifa_next)
-    if (std::string(a->ifa_name) == "lo" && !loopback_has_carrier)
-      a->ifa_flags &= ~static_cast<unsigned>(IFF_RUNNING);
+  for (ifaddrs* a = *first; a != nullptr; a = a->ifa_next) {
+    if (std::string(a->ifa_name) != "lo") continue;
+    if (!loopback_has_carrier) a->ifa_flags &= ~static_cast<unsigned>(IFF_RUNNING);
+    const bool is_ipv4 = a->ifa_addr != nullptr && a->ifa_addr->sa_family == AF_INET;
+    if (!loopback_has_ipv4 && is_ipv4) a->ifa_addr = nullptr;
+  }
   return 0;
 }
 
@@ -97,19 +100,25 @@ TEST(Bonding, GoesOnWithoutALinkWhoseInterfaceIsMissingAndSaysSo) {
   EXPECT_EQ(sent[1], 150U);
 }
 
-TEST(Bonding, SaysThatAnInterfaceWithoutACarrierIsDown) {
+TEST(Bonding, SaysWhatTheInterfaceOfALinkLacks) {
+  struct Case {
+    bool carrier, ipv4;
+    std::string trouble;
+  };
   const ElementPtr sink(gst_element_factory_make("screamsink", nullptr));
   gst_object_ref_sink(sink.get());
   const ElementBus bus(sink.get());
   g_object_set(sink.get(), "bonding-addresses", "127.0.0.1:9@127.0.0.1,127.0.0.1:9@lo", nullptr);
-  for (const bool carrier : {true, false}) {
-    loopback_has_carrier = carrier;
+  for (const Case& c : {Case{true, true, ""}, Case{false, true, "the interface lo is down"},
+                        Case{true, false, "the interface lo has no address"}}) {
+    loopback_has_carrier = c.carrier;
+    loopback_has_ipv4 = c.ipv4;
     EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
     EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING),
-              carrier ? "" : "The link 127.0.0.1:9@lo cannot be used: the interface lo is down");
+              c.trouble.empty() ? "" : "The link 127.0.0.1:9@lo cannot be used: " + c.trouble);
     gst_element_set_state(sink.get(), GST_STATE_NULL);
   }
-  loopback_has_carrier = true;
+  loopback_has_carrier = loopback_has_ipv4 = true;
 }
 
 TEST(Bonding, GoesOnWhereTheFeedbackOfTwoLinksIsSwapped) {

@@ -53,10 +53,11 @@ class View : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer.get(), &slice);
     return Push(std::move(buffer), slice.scan_id * 100 * GST_MSECOND);
   }
-  /// Pushes a scan taken at `place`, without a rotation.
-  GstFlowReturn PushFrom(std::array<float, 3> place, const std::vector<Point>& points, guint scan) {
+  /// Pushes a scan or a slice of it, taken at `place`, without a rotation.
+  GstFlowReturn PushFrom(std::array<float, 3> place, const std::vector<Point>& points, guint scan,
+                         guint index = 0, guint count = 1) {
     BufferPtr buffer = Cloud(points);
-    const GstLidarSlice slice{scan, 0, 1, 0};
+    const GstLidarSlice slice{scan, index, count, 0};
     gst_lidar_buffer_set_slice(buffer.get(), &slice);
     const GstLidarPose pose{
         {place[0], place[1], place[2]}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
@@ -213,6 +214,21 @@ TEST_F(View, TheMapKeepsWhatWasSeenWhereItWas) {
   EXPECT_FALSE(IsDrawn(160, 25));
   EXPECT_TRUE(IsDrawn(95, 50));  // the way
   EXPECT_FALSE(IsDrawn(80, 50));
+}
+
+TEST_F(View, TheColumnsOfASliceLieWhereTheSensorWasInItsSweep) {
+  Start("map=true view=top extent=100 point-size=1", Info(2, 2));
+  const Point missing{};
+  const Point aside{0.25F, 11.75F, 0, 1};
+  PushFrom({0, 0, 0}, {missing, missing, missing, missing}, 0);
+  Pull();
+  // The sensor drives ten metres in a scan, so a quarter of that between the columns of a half.
+  PushFrom({10, 0, 0}, {aside, aside, missing, missing}, 1, 0, 2);
+  PushFrom({10, 0, 0}, {missing, missing, missing, missing}, 1, 1, 2);
+  Pull();
+  EXPECT_TRUE(IsPoint(110, 26));
+  EXPECT_TRUE(IsPoint(115, 26));
+  EXPECT_FALSE(IsPoint(120, 26));
 }
 
 TEST_F(View, TheWholeWayIsInThePictureOfTheMap) {
