@@ -13,6 +13,7 @@ Time Now() { return Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
 bool LidarEncCoder::SetFormat(const CloudInfo& info, bool with_intensity,
                               const codec::cloud::ExactChoice& exact) {
+  MeasureEffort();
   LidarEncCoder next;
   next.control_ = control_;
   if (info.framerate_n > 0)
@@ -53,14 +54,18 @@ void LidarEncCoder::KeepBlocks() {
   slice_.blocks.clear();
 }
 
-/// Measures the last slice, and chooses the effort for the next one.
-void LidarEncCoder::ChooseEffort(const GstLidarRawSlice& raw, std::optional<unsigned> effort) {
+/// Notes what the last slice took. Call it while its coder is there.
+void LidarEncCoder::MeasureEffort() {
   if (automatic_ && spent_ > Duration{0}) control_.OnSlice(sweep_, returns(), spent_);
+  spent_ = {};
+}
+
+void LidarEncCoder::ChooseEffort(const GstLidarRawSlice& raw, std::optional<unsigned> effort) {
+  MeasureEffort();
   const double part = encoder_
                           ? static_cast<double>(raw.width) / format_.sensor_model->columns_per_scan
                           : 1.0 / std::max(raw.slice_count, 1U);
   sweep_ = FromSeconds(part / scans_per_second_);
-  spent_ = {};
   automatic_ = !effort;
   const unsigned chosen = effort.value_or(control_.effort());
   encoder_ ? encoder_->set_effort(chosen) : cloud_->set_effort(chosen);

@@ -46,6 +46,7 @@ class LidarEncCoder {
 
  private:
   void KeepBlocks();
+  void MeasureEffort();
   void ChooseEffort(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
   std::size_t returns() const { return encoder_ ? encoder_->returns() : cloud_->returns(); }
 

@@ -101,5 +101,19 @@ TEST(Effort, StaysWhereOnlyTheCapsAreOthers) {
   EXPECT_EQ(h.Push(), "range-adaptive");
 }
 
+/// A driver that leaves out missing returns makes such clouds.
+TEST(Effort, FallsWhereEachCloudHasAWidthOfItsOwn) {
+  const Harness h = Encoder(kLidarXyz, "effort=auto");
+  for (guint points = 500; points < 520; ++points) {
+    CloudInfo info = XyzInfo(points);
+    info.framerate_n = 1'000'000;
+    SetCaps(h.get(), info);
+    ASSERT_EQ(gst_harness_push(h.get(), PlainBuffer(RandomPoints(points, 50))), GST_FLOW_OK);
+  }
+  const ElementPtr encoder(gst_harness_find_element(h.get(), "lidarenc"));
+  const StructurePtr stats(StatsOf(encoder.get()));
+  EXPECT_STREQ(gst_structure_get_string(stats.get(), "mode"), "xyz-cloud0");
+}
+
 }  // namespace
 }  // namespace lidar::gst
