@@ -145,11 +145,10 @@ static gboolean SetCaps(GstLidarEncoder* self, GstCaps* caps) {
   stream.coder.reset();
   const CapsPtr encoded = AskForCaps(self, caps, &stream);
   if (!encoded) return FALSE;
-  const CloudInfo& info = stream.input.info();
-  stream.error_report.emplace(self, info.fields, info.point_step);
   if (!stream.loop) {
     auto model = LoadModel(GST_ELEMENT(self), Snapshot(state));
     if (!model) return FALSE;
+    stream.error_report.emplace(self);
     stream.loop = std::make_unique<lidar::rate::RateLoop>(std::move(model));
   }
   stream.coder = std::make_unique<VtableCoder>(self);
@@ -263,8 +262,9 @@ static void CheckErrors(GstLidarEncoder* self, lidar::ByteView raw, const GstLid
   State& state = *self->state;
   const CheckedSlice checked{place.scan_id, place.slice_index, result.max_error_m,
                              result.slice.error_m, result.keep_fraction < 1};
-  const auto found = state.stream.error_report->OnSlice(Snapshot(state).error_check, raw,
-                                                        state.stream.coder->bytes(), checked);
+  Stream& stream = state.stream;
+  const auto found = stream.error_report->OnSlice(Snapshot(state).error_check, stream.input.info(),
+                                                  raw, stream.coder->bytes(), checked);
   if (!found) return;
   std::lock_guard lock(state.mutex);
   state.stats.OnErrorCheck(found->errors, found->holds);

@@ -5,11 +5,8 @@
 
 namespace lidar::gst {
 
-ErrorReport::ErrorReport(GstLidarEncoder* encoder, const PointFields& fields, guint point_step)
-    : encoder_(encoder),
-      fields_(fields),
-      point_step_(point_step),
-      points_(g_array_new(FALSE, TRUE, sizeof(GstLidarPoint))) {}
+ErrorReport::ErrorReport(GstLidarEncoder* encoder)
+    : encoder_(encoder), points_(g_array_new(FALSE, TRUE, sizeof(GstLidarPoint))) {}
 
 bool ErrorReport::IsDue(guint every) {
   if (every == 0 || GST_LIDAR_ENCODER_GET_CLASS(encoder_)->decode == nullptr) return false;
@@ -21,7 +18,8 @@ bool ErrorReport::IsDue(guint every) {
   return true;
 }
 
-std::optional<PointErrors> ErrorReport::Measure(ByteView raw, ByteView coded, bool thinned) {
+std::optional<PointErrors> ErrorReport::Measure(const CloudInfo& info, ByteView raw, ByteView coded,
+                                                bool thinned) {
   g_array_set_size(points_.get(), 0);
   auto order = GST_LIDAR_ORDER_ANY;
   if (!GST_LIDAR_ENCODER_GET_CLASS(encoder_)->decode(encoder_, coded.data, coded.size,
@@ -33,7 +31,8 @@ std::optional<PointErrors> ErrorReport::Measure(ByteView raw, ByteView coded, bo
     const auto& p = g_array_index(points_.get(), GstLidarPoint, i);
     decoded[i] = {{p.x, p.y, p.z}, p.range};
   }
-  return MeasureErrors(raw, fields_, point_step_, decoded, static_cast<PointOrder>(order), thinned);
+  return MeasureErrors(raw, info.fields, info.point_step, decoded, static_cast<PointOrder>(order),
+                       thinned);
 }
 
 void ErrorReport::Warn(const CheckedSlice& slice, const std::optional<PointErrors>& errors) {
@@ -62,10 +61,11 @@ void ErrorReport::Post(const CheckedSlice& slice, const Outcome& outcome) {
   gst_element_post_message(GST_ELEMENT(encoder_), gst_message_new_element(GST_OBJECT(encoder_), s));
 }
 
-std::optional<ErrorReport::Outcome> ErrorReport::OnSlice(guint every, ByteView raw, ByteView coded,
+std::optional<ErrorReport::Outcome> ErrorReport::OnSlice(guint every, const CloudInfo& info,
+                                                         ByteView raw, ByteView coded,
                                                          const CheckedSlice& slice) {
   if (!IsDue(every)) return std::nullopt;
-  const auto errors = Measure(raw, coded, slice.thinned);
+  const auto errors = Measure(info, raw, coded, slice.thinned);
   const bool holds = errors && errors->max_m <= slice.max_error_m + errors->rounding_m &&
                      (slice.thinned || errors->missing == 0);
   if (!holds && !warned_) Warn(slice, errors);

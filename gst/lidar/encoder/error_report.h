@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
+#include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidarencoder.h"
 #include "src/base/byte_reader.h"
 #include "src/cloud/point_errors.h"
-#include "src/cloud/point_fields.h"
 
 namespace lidar::gst {
 
@@ -28,10 +28,10 @@ class ErrorReport {
     bool holds = false;
   };
 
-  ErrorReport(GstLidarEncoder* encoder, const PointFields& fields, guint point_step);
-  /// Compares `raw` with `coded` for every `every`-th slice (0: never). Returns nothing for the
-  /// others.
-  std::optional<Outcome> OnSlice(guint every, ByteView raw, ByteView coded,
+  explicit ErrorReport(GstLidarEncoder* encoder);
+  /// Compares `raw`, points as in `info`, with `coded` for every `every`-th slice (0: never).
+  /// Returns nothing for the others.
+  std::optional<Outcome> OnSlice(guint every, const CloudInfo& info, ByteView raw, ByteView coded,
                                  const CheckedSlice& slice);
 
  private:
@@ -39,13 +39,12 @@ class ErrorReport {
     void operator()(GArray* points) const { g_array_unref(points); }
   };
   bool IsDue(guint every);
-  std::optional<PointErrors> Measure(ByteView raw, ByteView coded, bool thinned);
+  std::optional<PointErrors> Measure(const CloudInfo& info, ByteView raw, ByteView coded,
+                                     bool thinned);
   void Warn(const CheckedSlice& slice, const std::optional<PointErrors>& errors);
   void Post(const CheckedSlice& slice, const Outcome& outcome);
 
   GstLidarEncoder* encoder_;
-  PointFields fields_;
-  guint point_step_;
   std::unique_ptr<GArray, FreePoints> points_;
   guint left_out_ = 0;  // slices until the next check
   bool warned_ = false;
