@@ -16,10 +16,7 @@ guint ColumnsPerTurn(const CloudInfo& info, guint slices) {
   return info.sensor_model ? info.sensor_model->columns_per_scan : info.width * slices;
 }
 
-GstClockTime Back(GstClockTime time, GstClockTime by) {
-  if (!GST_CLOCK_TIME_IS_VALID(time)) return time;
-  return time > by ? time - by : 0;
-}
+GstClockTime Back(GstClockTime time, GstClockTime by) { return time > by ? time - by : 0; }
 
 }  // namespace
 
@@ -81,10 +78,13 @@ void ScanBuilder::TakeTimes(const SliceView& slice) {
   const GstClockTime before = sweep * slice.meta.slice_index;
   // The first slice has the exact time; until it comes, the time is counted back from another
   // slice.
-  if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(pts_))
-    pts_ = Back(GST_BUFFER_PTS(slice.buffer), before);
-  if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(capture_))
-    capture_ = Back(gst_lidar_buffer_get_capture_time(slice.buffer), before);
+  const auto take = [&](GstClockTime time, GstClockTime* of_scan) {
+    if (!GST_CLOCK_TIME_IS_VALID(time)) return;
+    if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(*of_scan))
+      *of_scan = Back(time, before);
+  };
+  take(GST_BUFFER_PTS(slice.buffer), &pts_);
+  take(gst_lidar_buffer_get_capture_time(slice.buffer), &capture_);
   duration_ = sweep > 0 ? sweep * slices : scan;
 }
 

@@ -166,6 +166,17 @@ TEST_F(Assembler, KnowsTheTimesOfAScanWhoseSlicesHaveNoDuration) {
   EXPECT_EQ(gst_lidar_buffer_get_capture_time(scan.get()), 1'200 * GST_MSECOND);
 }
 
+TEST_F(Assembler, KeepsTheTimesOfOthersWhereTheFirstSliceComesLateAndHasNone) {
+  for (guint i = 1; i < kSlices; ++i) Push(Slice(2, i));
+  BufferPtr first(gst_buffer_copy_region(Slice(2, 0).get(), GST_BUFFER_COPY_MEMORY, 0, G_MAXSIZE));
+  const GstLidarSlice meta{2, 0, kSlices, 0};
+  gst_lidar_buffer_set_slice(first.get(), &meta);
+  Push(std::move(first));
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(GST_BUFFER_PTS(scan.get()), 200 * GST_MSECOND);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(scan.get()), 1'200 * GST_MSECOND);
+}
+
 TEST_F(Assembler, AWindowMayPassTheEndOfTheTurn) {
   // The sensor's window has 16 columns from column 24 on: slices at columns 24 and 0. Scan 0 lacks
   // the slice at 24.
