@@ -16,12 +16,6 @@ namespace {
 
 using InetAddressPtr = std::unique_ptr<GInetAddress, GObjectUnref>;
 
-std::string WithoutBrackets(const std::string& host) {
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']')
-    return host.substr(1, host.size() - 2);
-  return host;
-}
-
 /// Returns true if the machine has a route there. Nothing is sent.
 bool HasRouteTo(GInetAddress* address) {
   const SocketPtr socket(g_socket_new(g_inet_address_get_family(address), G_SOCKET_TYPE_DATAGRAM,
@@ -102,6 +96,12 @@ bool SameHost(GSocketAddress* a, GSocketAddress* b) {
     std::memcpy(&host.storage, &v6, sizeof v6);
   }
   return hosts[0].valid() && hosts[0] == hosts[1];
+}
+
+std::string WithoutBrackets(const std::string& host) {
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']')
+    return host.substr(1, host.size() - 2);
+  return host;
 }
 
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error) {

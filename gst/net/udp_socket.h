@@ -35,6 +35,9 @@ bool SameAddress(GSocketAddress* a, GSocketAddress* b);
 /// Compares without the port.
 bool SameHost(GSocketAddress* a, GSocketAddress* b);
 
+/// Returns the host, without the brackets of an IPv6 literal.
+std::string WithoutBrackets(const std::string& host);
+
 /// Looks `host` (a name or a literal, brackets allowed) up; may block. Transfer full, or NULL.
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error);
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "gst/common/refs.h"
+
 namespace lidar::gst {
 namespace {
 
@@ -22,10 +24,11 @@ std::optional<guint> ParsePort(const std::string& text) {
   return port >= 1 && port <= 65535 ? std::optional(static_cast<guint>(port)) : std::nullopt;
 }
 
-bool IsAddress(const std::string& text) {
+/// Returns the address as GLib writes it, or nothing if the text is none.
+std::string AddressOf(const std::string& text) {
   const std::unique_ptr<GInetAddress, GObjectUnref> address(
-      g_inet_address_new_from_string(text.c_str()));
-  return address != nullptr;
+      g_inet_address_new_from_string(WithoutBrackets(text).c_str()));
+  return address ? StringPtr(g_inet_address_to_string(address.get())).get() : "";
 }
 
 std::optional<BondAddress> ParseOne(const std::string& text, std::string* error) {
@@ -43,10 +46,8 @@ std::optional<BondAddress> ParseOne(const std::string& text, std::string* error)
     return std::nullopt;
   }
   link.target.port = *port;
-  if (IsAddress(local))
-    link.target.bind_address = local;
-  else
-    link.interface = local;
+  link.target.bind_address = AddressOf(local);
+  if (link.target.bind_address.empty()) link.interface = local;
   if (link.interface.size() >= IFNAMSIZ || (at != std::string::npos && local.empty())) {
     *error = "\"" + text + "\": \"" + local + "\" is no interface's name and no address";
     return std::nullopt;

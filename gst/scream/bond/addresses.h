@@ -18,8 +18,8 @@ struct BondAddress {
 };
 
 /// Parses HOST:PORT, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, separated by commas; an IPv6
-/// host stands in brackets. Returns nothing and sets the error for other text, more than kMaxLinks,
-/// or a repeated link.
+/// host stands in brackets, and an IPv6 local address may. Returns nothing and sets the error for
+/// other text, more than kMaxLinks, or a repeated link.
 std::optional<std::vector<BondAddress>> ParseBondAddresses(const std::string& text,
                                                            std::string* error);
 

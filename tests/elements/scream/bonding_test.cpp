@@ -437,6 +437,17 @@ TEST(BondAddresses, AreHostPortAndWhatPacketsLeaveBy) {
   EXPECT_EQ((*links)[2].interface + (*links)[2].target.bind_address, "");
 }
 
+// The addresses of interfaces are compared in this form.
+TEST(BondAddresses, AreKeptInOneForm) {
+  for (const char* local : {"fd00::2", "FD00::2", "fd00:0:0::2", "[fd00::2]"}) {
+    std::string error;
+    const auto links = ParseBondAddresses(std::string("[::1]:7@") + local, &error);
+    ASSERT_TRUE(links) << error;
+    EXPECT_EQ(links->front().target.bind_address, "fd00::2") << local;
+    EXPECT_EQ(links->front().interface, "") << local;
+  }
+}
+
 TEST(BondAddresses, RefuseAllElseWithAWord) {
   for (const char* text :
        {"", ",", "edge", "edge:", "edge:0", "edge:65536", "edge:99999999999999999999", "edge:5004@",
