@@ -49,7 +49,7 @@ struct State : BinState {
 }  // namespace
 
 /// A ghost pad for a sink pad of screamtx or, with several links, for a pad of each link's
-/// screamtx. It has their properties.
+/// screamtx. It has the properties of the first one, which the others follow.
 G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
                      GstGhostPad)
 struct _GstLidarScreamSinkPad {
@@ -60,23 +60,20 @@ G_DEFINE_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST_TYPE_GHOST_P
 
 static void gst_lidar_scream_sink_pad_init(GstLidarScreamSinkPad*) {}
 
-static std::vector<PadPtr> TxPadsOf(GObject* ghost) {
+static PadPtr TxPadOf(GObject* ghost) {
   PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(ghost)));
   if (target && GST_IS_LIDAR_SCREAM_BOND(GST_OBJECT_PARENT(target.get())))
-    return BondedPads(target.get());
-  std::vector<PadPtr> pads;
-  if (target) pads.push_back(std::move(target));
-  return pads;
+    return std::move(BondedPads(target.get()).front());
+  return target;
 }
 
 static void gst_lidar_scream_sink_pad_class_init(GstLidarScreamSinkPadClass* klass) {
   auto* object = G_OBJECT_CLASS(klass);
   object->set_property = [](GObject* o, guint, const GValue* v, GParamSpec* spec) {
-    for (const PadPtr& pad : TxPadsOf(o)) g_object_set_property(G_OBJECT(pad.get()), spec->name, v);
+    if (const PadPtr pad = TxPadOf(o)) g_object_set_property(G_OBJECT(pad.get()), spec->name, v);
   };
   object->get_property = [](GObject* o, guint, GValue* v, GParamSpec* spec) {
-    const auto pads = TxPadsOf(o);
-    if (!pads.empty()) g_object_get_property(G_OBJECT(pads.front().get()), spec->name, v);
+    if (const PadPtr pad = TxPadOf(o)) g_object_get_property(G_OBJECT(pad.get()), spec->name, v);
   };
   InstallProperties(object, TxPadPropertyTable());
 }

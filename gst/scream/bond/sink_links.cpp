@@ -70,19 +70,15 @@ GstPadProbeReturn FilterLink(GstPad*, GstPadProbeInfo* info, gpointer data) {
   });
 }
 
-/// Copies the properties that were set on `from` to `to`, an object of the same class.
-void CopyProperties(GObject* from, GObject* to) {
+/// Keeps the properties of `to` the same as those of `from`, an object of the same class, except
+/// `own`.
+void BindProperties(GObject* from, GObject* to, std::string_view own) {
   guint n = 0;
   GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(from), &n);
   for (guint i = 0; i < n; ++i) {
-    if (specs[i]->owner_type != G_OBJECT_TYPE(from) ||
-        (specs[i]->flags & G_PARAM_READWRITE) != G_PARAM_READWRITE)
-      continue;
-    GValue value = G_VALUE_INIT;
-    g_value_init(&value, specs[i]->value_type);
-    g_object_get_property(from, specs[i]->name, &value);
-    g_object_set_property(to, specs[i]->name, &value);
-    g_value_unset(&value);
+    if (specs[i]->owner_type == G_OBJECT_TYPE(from) && specs[i]->name != own &&
+        (specs[i]->flags & G_PARAM_READWRITE) == G_PARAM_READWRITE)
+      g_object_bind_property(from, specs[i]->name, to, specs[i]->name, G_BINDING_SYNC_CREATE);
   }
   g_free(specs);
 }
@@ -192,15 +188,14 @@ void SinkLinks::AddLink(const OpenLink& link) {
   const std::size_t index = chains_.size();
   const Chain chain{NewChild(bin_, "screamtx", index), NewChild(bin_, "ecnudpsink", index),
                     NewChild(bin_, "ecnudpsrc", index)};
-  CopyProperties(G_OBJECT(chains_[0].tx), G_OBJECT(chain.tx));
+  BindProperties(G_OBJECT(chains_[0].tx), G_OBJECT(chain.tx), "packet-overhead");
   g_object_set(chain.tx, "packet-overhead", OverheadOf(link.peer.get()), nullptr);
-  gint dscp = -1;
-  g_object_get(chains_[0].sink, "qos-dscp", &dscp, nullptr);
+  g_object_bind_property(chains_[0].sink, "qos-dscp", chain.sink, "qos-dscp",
+                         G_BINDING_SYNC_CREATE);
   GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(link.peer.get()));
   const StringPtr literal(g_inet_address_to_string(host));
-  g_object_set(chain.sink, "sync", FALSE, "async", FALSE, "qos-dscp", dscp, "host", literal.get(),
-               "port", link.address.target.port, "interface", link.address.interface.c_str(),
-               nullptr);
+  g_object_set(chain.sink, "sync", FALSE, "async", FALSE, "host", literal.get(), "port",
+               link.address.target.port, "interface", link.address.interface.c_str(), nullptr);
   GiveSocket(chain.sink, link.socket.get());
   GiveSocket(chain.src, link.socket.get());
   gst_element_link_pads(chain.tx, "src", chain.sink, "sink");
@@ -236,7 +231,7 @@ GstPad* SinkLinks::Add(GstPad* tx_pad) {
   const StringPtr name(gst_pad_get_name(tx_pad));
   for (std::size_t i = 1; i < chains_.size(); ++i) {
     GstPad* pad = gst_element_request_pad_simple(chains_[i].tx, name.get());
-    CopyProperties(G_OBJECT(tx_pad), G_OBJECT(pad));
+    BindProperties(G_OBJECT(tx_pad), G_OBJECT(pad), "");
     pads.push_back(pad);
   }
   GstPad* sink = BondAddStream(bond_, pads);

@@ -282,6 +282,11 @@ TEST_F(BondedSink, GivesEachLinkTheSettingsOfTheSink) {
     EXPECT_EQ(SettingsOf(Child(NameOf(factory, 1)).get()), SettingsOf(Child(factory).get()));
   EXPECT_NE(SettingsOf(Child("ecnudpsink1").get()).find("qos-dscp=46\n"), std::string::npos);
   EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=333333\n"), std::string::npos);
+  g_object_set(sink_, "qos-dscp", 10, "max-bitrate", 555'555, "send-bye", TRUE, nullptr);
+  for (const char* factory : {"screamtx", "ecnudpsink"})
+    EXPECT_EQ(SettingsOf(Child(NameOf(factory, 1)).get()), SettingsOf(Child(factory).get()))
+        << "while they play";
+  EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=555555\n"), std::string::npos);
 }
 
 /// The copy of the packet behind the flush comes after those of older packets.
