@@ -94,9 +94,12 @@ bonding::LinkSet BondShared::Schedule(GstBuffer* buffer, BondStream* stream) {
 
 EventPtr BondShared::DueTargetLocked(BondStream& stream) {
   std::vector<DataRate> rates;
-  for (const GstLidarTargetBitrate& t : stream.targets)
+  DataRate most;
+  for (const GstLidarTargetBitrate& t : stream.targets) {
     rates.push_back(DataRate::BitsPerSecond(t.bitrate));
-  const double bps = scheduler.Target(Now(), rates).bits_per_second();
+    most = std::max(most, DataRate::BitsPerSecond(t.max_bitrate));
+  }
+  const double bps = std::min(scheduler.Target(Now(), rates), most).bits_per_second();
   if (bps <= 0 ||
       std::abs(bps / std::max(1.0, static_cast<double>(stream.told)) - 1) < kWorthTelling)
     return nullptr;

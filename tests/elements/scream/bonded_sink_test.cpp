@@ -316,6 +316,17 @@ TEST_F(BondedSink, CopiesNothingOfBeforeAFlush) {
   EXPECT_EQ(OfAllLinks(sink_, "packets-copies"), copies + 1);
 }
 
+TEST_F(BondedSink, AsksForNoMoreThanTheEncoderMayHaveWhereLinksAddUp) {
+  g_object_set(sink_, "bonding-target", 1, "start-bitrate", 800'000, "max-bitrate", 900'000,
+               nullptr);
+  Start();
+  GstLidarTargetBitrate target{};
+  while (const EventPtr event{gst_harness_try_pull_upstream_event(h_.get())})
+    gst_lidar_event_parse_target_bitrate(event.get(), &target);
+  EXPECT_GT(target.max_bitrate, 850'000U);
+  EXPECT_EQ(target.bitrate, target.max_bitrate);
+}
+
 TEST_F(BondedSink, CountsTheErrorsOfEachLinkAsItsOwn) {
   Start();
   g_object_set(Child("ecnudpsink1").get(), "interface", "none0", nullptr);
