@@ -78,7 +78,7 @@ class Drive {
 
 void AppendLine(Duration time, DataRate rate, std::string* text) {
   char line[64];
-  std::snprintf(line, sizeof line, "%.3f %.3f\n", Seconds(time), rate.bits_per_second() / 1e6);
+  std::snprintf(line, sizeof line, "%.14g %.7g\n", Seconds(time), rate.bits_per_second() / 1e6);
   *text += line;
 }
 

@@ -77,5 +77,16 @@ TEST(TraceMaker, RegularGapsEndTheirPeriods) {
   }
 }
 
+TEST(TraceMaker, KeepsShortTimesAndLowRatesThatWereAskedFor) {
+  GapTraceConfig config;
+  config.every = 2ms;
+  config.gap = 1800us;
+  config.in_gaps = Mbps(0.0004);
+  config.duration = 10ms;
+  const Capacity c = Parse(MakeGapTrace(config));
+  EXPECT_EQ(c.RateAt(2199us), Mbps(8));
+  EXPECT_EQ(c.RateAt(2200us), Mbps(0.0004));
+}
+
 }  // namespace
 }  // namespace lidar::link
