@@ -44,8 +44,12 @@ std::vector<ImuSample> ReadAccelGyro(ByteView bytes, std::uint32_t measurements)
 
 }  // namespace
 
+bool IsImuPacket(ByteView bytes, const Metadata& metadata) {
+  return !bytes.empty() && bytes.size == metadata.imu_packet_size();
+}
+
 std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metadata& metadata) {
-  if (bytes.empty() || bytes.size != metadata.imu_packet_size()) return std::nullopt;
+  if (!IsImuPacket(bytes, metadata)) return std::nullopt;
   if (metadata.imu_profile == ImuProfile::kLegacy) return ReadLegacy(bytes);
   return ReadAccelGyro(bytes, metadata.imu_measurements_per_packet);
 }

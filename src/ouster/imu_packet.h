@@ -18,6 +18,9 @@ struct ImuSample {
   std::array<float, 3> angular_velocity{};  // rad/s
 };
 
+/// Returns true if `bytes` have the size of an IMU packet. A sensor whose IMU is off has none.
+bool IsImuPacket(ByteView bytes, const Metadata& metadata);
+
 /// Returns nothing unless `bytes` are exactly one IMU packet. Samples that the sensor marks as
 /// invalid are left out.
 std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metadata& metadata);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "src/ouster/imu_packet.h"
+
 namespace lidar::ouster {
 namespace {
 
@@ -90,7 +92,7 @@ void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arriv
 
 /// Counts and names a packet that has another size than this sensor's lidar packets.
 PacketVerdict SensorStream::Refuse(ByteView payload, const Arrival& arrival) {
-  if (payload.size == metadata_.imu_packet_size()) {
+  if (IsImuPacket(payload, metadata_)) {
     const bool first = batcher_.stats().packets == 0;
     if (first || arrival.sender == sender_) {
       ++stats_.imu_packets;

@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{Profile::kRng19Rfl8Sig16Nir16, kStandard, "512x20", 8},
                       Case{Profile::kRng15Rfl8Nir8Dual, kStandard, "1024x5", 64}));
 
-/// A capture of two scans.
+/// A capture of two scans, and of a packet without a payload.
 class Capture : public test::FolderTest {
  protected:
   void SetUp() override { Write(0); }
@@ -154,6 +154,7 @@ class Capture : public test::FolderTest {
       ASSERT_TRUE(
           writer->Write(Time{packet->due}, 7502, {packet->bytes.data(), packet->bytes.size()}));
     }
+    ASSERT_TRUE(writer->Write(Time{}, 7503, {}));
     ASSERT_TRUE(writer->Close());
   }
   std::string path() const { return folder_ + "/a.pcap"; }
@@ -223,6 +224,16 @@ TEST_F(Capture, MayHaveFrameIdsThatStartOver) {
       EXPECT_EQ(sent[i].due - sent[i - kRound].due, 2 * metadata_.scan_period());
     }
   }
+}
+
+TEST_F(Capture, OfASensorWithoutAnImuHasNoImuPackets) {
+  metadata_.imu_profile = ouster::ImuProfile::kOff;
+  PcapStream::Options options;
+  options.loop = false;
+  PcapStream stream(path(), metadata_, options);
+  int packets = 0;
+  for (; const auto packet = stream.Next(); ++packets) EXPECT_FALSE(packet->imu);
+  EXPECT_EQ(packets, kRound);
 }
 
 TEST_F(Capture, BeginsAnewAfterARestartAndEndsOnceIfAsked) {

@@ -318,6 +318,12 @@ TEST_F(Stream, APacketOfAnotherSizeIsForeignWhereItSaysSo) {
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kForeign);
 }
 
+TEST_F(Stream, AnEmptyPacketIsNoneOfAnImuThatIsOff) {
+  metadata_.imu_profile = ImuProfile::kOff;
+  auto stream = Make();
+  EXPECT_EQ(stream->Push({}, {Time{1s}, Time{1s}}), PacketVerdict::kWrongSize);
+}
+
 TEST_F(Stream, TheInitIdTellsTheSerialNumberThatOldMetadataLacks) {
   metadata_.serial = 0;
   auto stream = Make();

@@ -89,8 +89,9 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
   std::uint32_t last_frame = 0;
   while (auto captured = reader->Next()) {
     std::vector<std::uint8_t>& bytes = captured->datagram.payload;
-    const auto lidar = ouster::LidarPacket::Parse({bytes.data(), bytes.size()}, format_);
-    const bool imu = bytes.size() == metadata.imu_packet_size();
+    const ByteView payload{bytes.data(), bytes.size()};
+    const auto lidar = ouster::LidarPacket::Parse(payload, format_);
+    const bool imu = ouster::IsImuPacket(payload, metadata);
     if (!lidar && !imu) continue;
     if (lidar) {
       if (!first_frame) {
