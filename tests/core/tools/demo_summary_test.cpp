@@ -127,6 +127,25 @@ TEST(DemoLinkLog, OfTwoLinksIsInTheOrderOfTime) {
   }
 }
 
+TEST(DemoLinks, HaveASumWhicheverHasItsFirstLineFirst) {
+  const auto line = [](double bps, double p95_ms) -> nlohmann::json {
+    return {{"time_s", 1},          {"capacity_bps", 2 * bps},
+            {"delivered_bps", bps}, {"sojourn_ms", {{"p95", p95_ms}}},
+            {"marked", 3},          {"dropped", 1}};
+  };
+  for (std::size_t late = 0; late < 3; ++late) {
+    std::vector<nlohmann::json> lines = {line(1e6, 10), line(1e6, 30), line(1e6, 20)};
+    lines[late] = nullptr;
+    const auto sum = SumOfLinks(lines);
+    EXPECT_EQ(sum["time_s"], 1);
+    EXPECT_EQ(sum["capacity_bps"], 4e6);
+    EXPECT_EQ(sum["delivered_bps"], 2e6);
+    EXPECT_EQ(sum["marked"], 6);
+    EXPECT_EQ(sum["dropped"], 2);
+    EXPECT_EQ(sum["sojourn_ms"]["p95"], late == 1 ? 20 : 30);
+  }
+}
+
 TEST(DemoSamples, HaveTheUnitsOfTheirNames) {
   const nlohmann::json encoder = {{"step", 0.03}, {"target-bitrate", 9'000'000}};
   const nlohmann::json sender = {{"target-bitrate", 1'000'000}, {"estimated-capacity", 2'000'000},

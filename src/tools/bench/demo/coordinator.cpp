@@ -62,7 +62,6 @@ class Coordinator {
   void OnSender(const nlohmann::json& record);
   void OnReceiver(const nlohmann::json& record);
   void OnLink(std::size_t index, const nlohmann::json& record);
-  nlohmann::json Together() const;
   void PrintLive(const nlohmann::json& link);
   void Tick();
   void Enter(Phase phase);
@@ -78,9 +77,9 @@ class Coordinator {
   struct Link {
     std::unique_ptr<ChildProcess> process;
     bool listens = false;
-    nlohmann::json latest;
   };
   std::vector<Link> links_;
+  std::vector<nlohmann::json> latest_;  // of each link, null before its first line
   std::unique_ptr<ChildProcess> sender_;
   std::unique_ptr<StreamComparer> comparer_;
   Phase phase_ = Phase::kReceiver;
@@ -171,6 +170,7 @@ void Coordinator::OnSender(const nlohmann::json& record) {
 
 void Coordinator::StartLinks() {
   links_.resize(m_.options.links);
+  latest_.resize(m_.options.links);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     auto command = LinkArguments(m_.options, ports_, i);
     command.insert(command.begin(), tools::OwnFolder() + "/lidar-link");
@@ -194,22 +194,8 @@ void Coordinator::OnLink(std::size_t index, const nlohmann::json& record) {
   if (index == 0) m_.origin_unix_ns = record.value("origin_unix_ns", std::int64_t{0});
   if (index == 0 && phase_ == Phase::kSender) Enter(Phase::kStreaming);
   if (!record.contains("time_s")) return;
-  links_[index].latest = record;
-  if (index + 1 == links_.size()) PrintLive(Together());
-}
-
-/// Returns the sum of all links over the last second, with the longest queue.
-nlohmann::json Coordinator::Together() const {
-  nlohmann::json all = links_.front().latest;
-  if (!all.is_object()) return links_.back().latest;
-  for (std::size_t i = 1; i < links_.size(); ++i) {
-    const nlohmann::json& link = links_[i].latest;
-    for (const char* key : {"capacity_bps", "delivered_bps", "marked", "dropped"})
-      all[key] = all.value(key, 0.0) + link.value(key, 0.0);
-    all["sojourn_ms"]["p95"] =
-        std::max(all["sojourn_ms"].value("p95", 0.0), link["sojourn_ms"].value("p95", 0.0));
-  }
-  return all;
+  latest_[index] = record;
+  if (index + 1 == links_.size()) PrintLive(SumOfLinks(latest_));
 }
 
 void PrintHeader() {

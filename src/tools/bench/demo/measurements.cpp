@@ -115,4 +115,20 @@ nlohmann::json LinkStats(const Measurements& m) {
                             : nlohmann::json::array();
 }
 
+nlohmann::json SumOfLinks(const std::vector<nlohmann::json>& lines) {
+  nlohmann::json sum;
+  for (const nlohmann::json& line : lines) {
+    if (line.is_null()) continue;
+    if (sum.is_null()) {
+      sum = line;
+      continue;
+    }
+    for (const char* key : {"capacity_bps", "delivered_bps", "marked", "dropped"})
+      sum[key] = sum.value(key, 0.0) + line.value(key, 0.0);
+    sum["sojourn_ms"]["p95"] =
+        std::max(sum["sojourn_ms"].value("p95", 0.0), line["sojourn_ms"].value("p95", 0.0));
+  }
+  return sum;
+}
+
 }  // namespace lidar::demo

@@ -76,4 +76,8 @@ struct Measurements {
 /// The sender's statistics of each link; empty for a single link.
 nlohmann::json LinkStats(const Measurements& m);
 
+/// Returns the sum of the links' `lines` of a second, with the longest queue. A link without a line
+/// is null.
+nlohmann::json SumOfLinks(const std::vector<nlohmann::json>& lines);
+
 }  // namespace lidar::demo
