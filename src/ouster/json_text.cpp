@@ -32,12 +32,15 @@ bool IsWithinBounds(std::string_view text) {
 
 }  // namespace
 
-nlohmann::json ParseJsonObject(std::string_view text) {
+nlohmann::json ParseJson(std::string_view text) {
   using nlohmann::json;
-  json refused(json::value_t::discarded);
-  if (!IsWithinBounds(text)) return refused;
-  json root = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!root.is_object()) return refused;
+  if (!IsWithinBounds(text)) return json(json::value_t::discarded);
+  return json::parse(text, nullptr, /*allow_exceptions=*/false);
+}
+
+nlohmann::json ParseJsonObject(std::string_view text) {
+  nlohmann::json root = ParseJson(text);
+  if (!root.is_object()) root = nlohmann::json(nlohmann::json::value_t::discarded);
   return root;
 }
 

@@ -11,9 +11,12 @@ inline constexpr int kMaxJsonDepth = 16;
 /// Limit of strings, lists and objects: each takes up to 100 times as much memory as text.
 inline constexpr std::size_t kMaxJsonItems = 1U << 16;
 
-/// The object in `text`; discarded (`is_discarded()`) if the text is no JSON object or exceeds the
-/// bounds above. Takes time linear in the size of the text. The result may be copied, compared and
-/// written without regard to the stack, because its depth is bounded.
+/// The value in `text`; discarded (`is_discarded()`) if the text is no JSON or exceeds the bounds
+/// above. Takes time linear in the size of the text. The result may be copied, compared and written
+/// without regard to the stack, because its depth is bounded.
+nlohmann::json ParseJson(std::string_view text);
+
+/// The same; discarded also if the value is no object.
 nlohmann::json ParseJsonObject(std::string_view text);
 
 }  // namespace lidar::ouster

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "src/ouster/json_text.h"
 #include "src/tools/bench/ouster_replay/http_server.h"
 
 namespace lidar::tools {
@@ -35,7 +36,7 @@ json ParseArguments(const std::string& text) {
   const std::size_t space = text.find(' ');
   if (space == std::string::npos) return {};
   const std::string word = text.substr(space + 1);
-  json value = json::parse(word, nullptr, false);
+  json value = ouster::ParseJson(word);
   if (value.is_discarded()) value = word;
   return {{text.substr(0, space), value}};
 }
@@ -79,7 +80,7 @@ class HttpApi::Impl {
       return Ok(sensor_.ConfigJson(Flag(request, "staging")));
     };
     routes_["POST /api/v1/sensor/config"] = [this](const HttpRequest& request) {
-      return OkUnless(sensor_.SetConfig(json::parse(request.body, nullptr, false),
+      return OkUnless(sensor_.SetConfig(ouster::ParseJson(request.body),
                                         {Flag(request, "staging"), Flag(request, "reinit")},
                                         request.peer));
     };
@@ -110,7 +111,7 @@ class HttpApi::Impl {
       return Ok();
     };
     routes_["POST /replay/faults"] = [this](const HttpRequest& request) {
-      return OkUnless(sensor_.MergeFaults(json::parse(request.body, nullptr, false)));
+      return OkUnless(sensor_.MergeFaults(ouster::ParseJson(request.body)));
     };
   }
 

@@ -23,8 +23,11 @@ HttpRequest RequestOf(SoupServerMessage* message, const char* path, GHashTable* 
   gpointer value = nullptr;
   if (query == nullptr) return request;
   g_hash_table_iter_init(&iter, query);
-  while (g_hash_table_iter_next(&iter, &key, &value))
-    request.query[static_cast<const char*>(key)] = static_cast<const char*>(value);
+  while (g_hash_table_iter_next(&iter, &key, &value)) {
+    gchar* text = g_utf8_make_valid(static_cast<const char*>(value), -1);
+    request.query[static_cast<const char*>(key)] = text;
+    g_free(text);
+  }
   return request;
 }
 

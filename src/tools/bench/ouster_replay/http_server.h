@@ -12,8 +12,8 @@ struct HttpRequest {
   std::string method;
   std::string path;
   std::string body;
-  std::string peer;  // address of the client
-  std::map<std::string, std::string> query;
+  std::string peer;                          // address of the client
+  std::map<std::string, std::string> query;  // values are UTF-8, as in JSON
 };
 
 struct HttpReply {
