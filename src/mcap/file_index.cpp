@@ -94,6 +94,11 @@ bool FileIndex::Learn(const Record& record) {
   return is_new;
 }
 
+void FileIndex::LearnAll(ByteView records) {
+  std::size_t offset = 0;
+  while (const auto record = NextRecord(records, &offset)) Learn(*record);
+}
+
 FileIndex ReadFileIndex(Input* input, FileIndex known) {
   const auto place = FindSummary(input);
   const auto summary = place ? ReadSummary(input, *place) : std::nullopt;

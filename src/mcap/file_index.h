@@ -31,6 +31,8 @@ struct FileIndex {
   /// Takes a new schema or channel. Returns false for other records, damaged ones and known ones,
   /// which stay unchanged. Memory stays within kMaxCatalogue.
   bool Learn(const Record& record);
+  /// The same of all records of a chunk.
+  void LearnAll(ByteView records);
 };
 
 /// Reads the index of `input`, which begins with the magic. It never fails, but leaves unreadable

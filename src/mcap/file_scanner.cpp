@@ -78,11 +78,8 @@ class Scanner {
         {header->start_time, header->end_time, offset, record.end() - offset, false});
     if (learned_ == kChunksToLearn) return true;
     ++learned_;
-    if (ReadChunk(&input_, index_.chunks.back(), &content_)) {
-      std::size_t at = 0;
-      while (const auto inner = NextRecord({content_.data(), content_.size()}, &at))
-        index_.Learn(*inner);
-    }
+    if (ReadChunk(&input_, index_.chunks.back(), &content_))
+      index_.LearnAll({content_.data(), content_.size()});
     return true;
   }
 

@@ -49,6 +49,18 @@ bool Reader::WantsNextChunk() const {
          size < kMaxOpen;
 }
 
+/// Returns true for a channel of the index. Some writers write a channel once, so that it may stand
+/// in a chunk that a seek passed over.
+bool Reader::Knows(std::uint16_t channel) {
+  Bytes records;
+  for (; index_.channels.count(channel) == 0; ++learnt_chunks_) {
+    if (learnt_chunks_ + 1 >= next_chunk_) return false;
+    if (ReadChunk(input_.get(), index_.chunks[learnt_chunks_], &records))
+      index_.LearnAll({records.data(), records.size()});
+  }
+  return true;
+}
+
 void Reader::FindMessages(OpenChunk* chunk) {
   const ByteView records{chunk->records.data(), chunk->records.size()};
   std::size_t offset = 0;
@@ -59,7 +71,7 @@ void Reader::FindMessages(OpenChunk* chunk) {
     }
     ByteView data;
     const auto header = ParseMessage(record->content, &data);
-    if (header && header->log_time >= from_ && index_.channels.count(header->channel_id) > 0)
+    if (header && header->log_time >= from_ && Knows(header->channel_id))
       chunk->entries.push_back({header->log_time, record->offset});
   }
   std::stable_sort(chunk->entries.begin(), chunk->entries.end(),
@@ -69,6 +81,7 @@ void Reader::FindMessages(OpenChunk* chunk) {
 void Reader::OpenNextChunk() {
   const ChunkPlace& place = index_.chunks[next_chunk_++];
   if (place.end_time < from_) return;
+  if (learnt_chunks_ + 1 == next_chunk_) ++learnt_chunks_;
   OpenChunk chunk;
   if (!ReadChunk(input_.get(), place, &chunk.records)) {
     ++damaged_chunks_;

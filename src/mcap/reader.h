@@ -53,12 +53,14 @@ class Reader {
   bool WantsNextChunk() const;
   void OpenNextChunk();
   void FindMessages(OpenChunk* chunk);
+  bool Knows(std::uint16_t channel);
   OpenChunk* Earliest();
 
   const std::unique_ptr<Input> input_;
   FileIndex index_;
   std::uint64_t from_ = 0;
   std::size_t next_chunk_ = 0;
+  std::size_t learnt_chunks_ = 0;  // the first ones, whose channels the index has
   std::deque<OpenChunk> open_;
   std::uint64_t damaged_chunks_ = 0;
 };

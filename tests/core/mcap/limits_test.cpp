@@ -291,6 +291,19 @@ TEST(McapOfOthers, TheChannelsOfTheFirstChunksAreKnownAtOnceOthersWithTheirMessa
   EXPECT_EQ(reader->index().channels.size(), 6U);
 }
 
+TEST(McapOfOthers, AChannelMayStandOnceInAChunkThatASeekPassesOver) {
+  Bytes file = Begin();
+  for (std::uint16_t id = 1; id <= 6; ++id) AppendChunk(ChannelWithMessage(id, id), id, &file);
+  Bytes message;
+  Append(MessageHeader{5, 0, 9, 9}, View("data"), &message);
+  AppendChunk(message, 9, &file);
+  const auto reader = Open(file);
+  reader->Seek(8);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{9}));
+  reader->Seek(4);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{4, 5, 6, 9}));
+}
+
 TEST(McapOfOthers, MessagesOfNoChannelAreLeftOut) {
   Bytes records = ChannelWithMessage(1, 5);
   Append(MessageHeader{2, 0, 6, 6}, View("whose?"), &records);
