@@ -162,7 +162,9 @@ static bool Open(GstLidarMcapSrc* self) {
     PostNothingToPlay(GST_ELEMENT(self), *playback, settings.location, settings.topic);
     return false;
   }
-  WarnOfFiles(GST_ELEMENT(self), *playback, why);
+  if (playback->unclosed_files() > 0) WarnOfUnclosed(GST_ELEMENT(self), playback->unclosed_files());
+  if (playback->unreadable_files() > 0)
+    WarnOfUnreadable(GST_ELEMENT(self), playback->unreadable_files(), why);
   const guint64 span = playback->end_time() - playback->start_time();
   std::lock_guard lock(state.mutex);
   state.counters.files_unclosed = playback->unclosed_files();
@@ -246,6 +248,20 @@ static GstFlowReturn PlayItem(GstLidarMcapSrc* self, const lidar::mcap::Playback
   return GST_FLOW_OK;
 }
 
+/// Counts files that can no longer be read by their turn, and warns of them.
+static void NoteUnreadable(GstLidarMcapSrc* self) {
+  State& state = *self->state;
+  const lidar::mcap::Playback& playback = *state.run.playback;
+  const guint64 files = playback.unreadable_files();
+  {
+    std::lock_guard lock(state.mutex);
+    // A file that stays unread because the task stops is not missing.
+    if (state.stopping || state.counters.files_unreadable == files) return;
+    state.counters.files_unreadable = files;
+  }
+  WarnOfUnreadable(GST_ELEMENT(self), files, playback.why_unreadable());
+}
+
 static void Loop(gpointer user_data) {
   auto* self = GST_LIDAR_MCAP_SRC(user_data);
   State& state = *self->state;
@@ -253,6 +269,7 @@ static void Loop(gpointer user_data) {
   const Settings settings = Snapshot(state);
   if (run.streams->empty()) run.streams->ShowKnown(*run.playback, settings.topic);
   const auto item = state.end_wanted ? std::nullopt : run.playback->Next();
+  NoteUnreadable(self);
   if (!item) return Stop(self, GST_FLOW_EOS);
   if (!IsWanted(settings, item->channel->topic) || !TypeOf(*item->schema, *item->channel)) return;
   const std::uint64_t start = run.playback->start_time();

@@ -43,18 +43,18 @@ void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
                      TopicNames(playback).c_str()));
 }
 
-void WarnOfFiles(GstElement* element, const mcap::Playback& playback, const std::string& why) {
-  if (playback.unclosed_files() > 0)
-    GST_ELEMENT_WARNING(element, STREAM, DEMUX,
-                        ("%" G_GUINT64_FORMAT " files of the recording break off, or are being "
-                         "written. They are played up to their last whole chunk.",
-                         playback.unclosed_files()),
-                        (nullptr));
-  if (playback.unreadable_files() > 0)
-    GST_ELEMENT_WARNING(element, RESOURCE, READ,
-                        ("%" G_GUINT64_FORMAT " files of the recording cannot be read.",
-                         playback.unreadable_files()),
-                        ("the last one: %s", why.c_str()));
+void WarnOfUnclosed(GstElement* element, guint64 files) {
+  GST_ELEMENT_WARNING(element, STREAM, DEMUX,
+                      ("%" G_GUINT64_FORMAT " files of the recording break off, or are being "
+                       "written. They are played up to their last whole chunk.",
+                       files),
+                      (nullptr));
+}
+
+void WarnOfUnreadable(GstElement* element, guint64 files, const std::string& why) {
+  GST_ELEMENT_WARNING(element, RESOURCE, READ,
+                      ("%" G_GUINT64_FORMAT " files of the recording cannot be read.", files),
+                      ("the last one: %s", why.c_str()));
 }
 
 void PostDamage(GstElement* element, const PlayedCounts& counts) {

@@ -19,8 +19,10 @@ struct PlayedCounts {
 /// Posts an error: no topic of the recording can be played, or the wanted one cannot.
 void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
                        const std::string& location, const std::string& topic);
-/// Warns of files that break off or cannot be read; `why` is the reason for the last one.
-void WarnOfFiles(GstElement* element, const mcap::Playback& playback, const std::string& why);
+/// Warns of files that break off.
+void WarnOfUnclosed(GstElement* element, guint64 files);
+/// Warns of files that cannot be read; `why` is the reason for the last one.
+void WarnOfUnreadable(GstElement* element, guint64 files, const std::string& why);
 /// Posts an error if nothing could be read, and a warning if parts are left out.
 void PostDamage(GstElement* element, const PlayedCounts& counts);
 /// Posts an error: no pad's caps are taken downstream.

@@ -96,11 +96,11 @@ bool Playback::OpenNextFile() {
   reader_.reset();
   while (next_file_ < files_.size()) {
     const File& file = files_[next_file_++];
-    std::string why;
     if (file.end_time < from_) continue;
-    reader_ = OpenReader(file.path, file.known, cancelled_, &why);
+    reader_ = OpenReader(file.path, file.known, cancelled_, &why_unreadable_);
     if (reader_ == nullptr) {
       ++unreadable_files_;
+      files_.erase(files_.begin() + static_cast<std::ptrdiff_t>(--next_file_));
       continue;
     }
     reader_->Seek(from_);

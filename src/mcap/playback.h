@@ -45,9 +45,12 @@ class Playback {
   std::uint64_t end_time() const { return end_time_; }
   /// The first channel of each topic, known before any message is read.
   const std::vector<Topic>& topics() const { return topics_; }
-  /// Counts of files without an index, and of unreadable files.
+  /// Counts of files without an index, and of unreadable files, those included that can no longer
+  /// be read by their turn.
   std::uint64_t unclosed_files() const { return unclosed_files_; }
   std::uint64_t unreadable_files() const { return unreadable_files_; }
+  /// The reason for the last file that could not be read by its turn.
+  const std::string& why_unreadable() const { return why_unreadable_; }
   /// Chunks that were left out so far.
   std::uint64_t damaged_chunks() const;
 
@@ -80,6 +83,7 @@ class Playback {
   std::uint64_t end_time_ = 0;
   std::uint64_t unclosed_files_ = 0;
   std::uint64_t unreadable_files_ = 0;
+  std::string why_unreadable_;
   // Place in the file.
   std::uint64_t from_ = 0;
   std::size_t next_file_ = 0;

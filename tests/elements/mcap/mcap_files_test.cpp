@@ -126,6 +126,23 @@ TEST_F(McapFiles, APieceThatIsMissingOrDamagedCostsItselfOnly) {
   EXPECT_EQ(played.stats.at("files-unreadable"), 1U);
 }
 
+TEST_F(McapFiles, APieceThatIsGoneByItsTurnIsCountedOnce) {
+  Record(10, "max-file-duration=200000000", "rec-%03d.mcap");
+  Pipeline p("mcapsrc name=m" + At("rec-%03d.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  std::filesystem::remove(Path("rec-002.mcap"));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  for (int rounds = 0; rounds < 2; ++rounds) {
+    ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+    EXPECT_EQ(p.outcome().buffers["see"].size(), 64U);
+    EXPECT_EQ(p.outcome().warning, "1 files of the recording cannot be read.");
+    p.Forget();
+    ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
+  }
+  EXPECT_EQ(p.Run().stats["files-unreadable"], 1U);
+}
+
 TEST_F(McapFiles, AChunkThatIsDamagedCostsItselfAndIsCounted) {
   Record(4, "chunk-duration=100000000 compression=none", "a.mcap");
   std::string damaged = ReadFile("a.mcap");
