@@ -90,9 +90,9 @@ def provenance():
     """Returns commit, date and machine, for the head of a table."""
     commit = run("git", "rev-parse", "--short", "HEAD").strip()
     cpu = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
-    model = cpu[1].strip() if cpu else os.uname().machine
+    model = re.sub(r"\(R\)| Processor", "", cpu[1]).strip() if cpu else os.uname().machine
     today = datetime.date.today().isoformat()
-    return f"Commit {commit}, {today}, {os.cpu_count()} cores of {model}, load {os.getloadavg()[1]:.0f}"
+    return f"Commit {commit}, {today}, {os.cpu_count()} {model} cores, load {os.getloadavg()[1]:.0f}"
 
 
 UNITS = ("%", "m", "mm", "cm", "m/s", "s", "ms", "µs", "MB", "Mbit/s", "scans/s", "frames/s", "cores")
