@@ -206,6 +206,7 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   std::lock_guard lock(state.mutex);
   state.changed = true;
   state.renderer.reset();
+  state.drawing = false;  // a picture that is begun has the format of before
   return TRUE;
 }
 

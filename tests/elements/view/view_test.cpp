@@ -388,6 +388,29 @@ TEST_F(View, AFlushForgetsThePictureThatWasBegun) {
   EXPECT_EQ(Waiting(), 0U);
 }
 
+TEST_F(View, AnotherSizeWithinAScanForgetsThePictureThatWasBegun) {
+  Start("view=top point-size=1", Info(1));
+  PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
+  gst_harness_set_sink_caps_str(h_.get(), "video/x-raw,format=RGB,width=100,height=50");
+  ASSERT_EQ(PushSlice({{0, 15, 0, 1}}, {0, 1, 2, 1}), GST_FLOW_OK);
+  Pull();
+  EXPECT_EQ(GST_VIDEO_INFO_WIDTH(&video_), 100);
+  EXPECT_FALSE(IsPoint(75, 25));
+  EXPECT_TRUE(IsPoint(50, 10));
+}
+
+TEST_F(View, AnotherRateAfterALossForgetsThePictureThatWasBegun) {
+  Start("view=top point-size=1", Info(1));
+  PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
+  CloudInfo info = Info(1);
+  info.framerate_n = 20;
+  gst_harness_set_src_caps(h_.get(), info.ToCaps());
+  ASSERT_EQ(PushSlice({{0, 15, 0, 1}}, {1, 0, 1, 0}), GST_FLOW_OK);
+  Pull();
+  EXPECT_FALSE(IsPoint(150, 50));
+  EXPECT_TRUE(IsPoint(100, 20));
+}
+
 TEST_F(View, StartsAfreshAfterAStateCycle) {
   Start("view=top point-size=1", Info(1));
   for (int cycle = 0; cycle < 3; ++cycle) {
