@@ -265,14 +265,15 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
 
 static void ReleasePad(GstElement* element, GstPad* pad) {
   const StringPtr name(gst_pad_get_name(pad));
-  GstElement* stream = gst_bin_get_by_name(GST_BIN(element), name.get());
+  const ElementPtr stream(gst_bin_get_by_name(GST_BIN(element), name.get()));
+  if (stream) {
+    // The stream stops first: this wakes a thread that waits in it and holds the pad's lock.
+    gst_element_set_locked_state(stream.get(), TRUE);
+    gst_element_set_state(stream.get(), GST_STATE_NULL);
+  }
   gst_pad_set_active(pad, FALSE);
   gst_element_remove_pad(element, pad);
-  if (stream == nullptr) return;
-  gst_element_set_locked_state(stream, TRUE);
-  gst_element_set_state(stream, GST_STATE_NULL);
-  gst_bin_remove(GST_BIN(element), stream);
-  gst_object_unref(stream);
+  if (stream) gst_bin_remove(GST_BIN(element), stream.get());
 }
 
 /// Returns the caps without fields that may change within a channel, such as a cloud's width, which

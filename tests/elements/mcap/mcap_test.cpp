@@ -6,7 +6,9 @@
 #include "src/mcap/writer.h"
 #include "tests/elements/mcap/recording.h"
 
+#include <atomic>
 #include <fstream>
+#include <thread>
 
 namespace lidar::test {
 namespace {
@@ -189,6 +191,39 @@ TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
   EXPECT_EQ(played.error, "");
   EXPECT_EQ(played.buffers.at("see0").size(), 100U);
   EXPECT_EQ(played.buffers.at("see1").size(), 1U);
+}
+
+TEST_F(Mcap, APadMayGoWhileABufferWaitsInItsStream) {
+  const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
+  g_object_set(sink.get(), "location", Path("a.mcap").c_str(), nullptr);
+  const gst::PadPtr pad(gst_element_request_pad_simple(sink.get(), "sink_0"));
+  const gst::ElementPtr stream(gst_bin_get_by_name(GST_BIN(sink.get()), "sink_0"));
+  ASSERT_NE(gst_element_set_state(sink.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  const gst::CapsPtr caps(gst_caps_from_string("application/x-odometry"));
+  gst_pad_send_event(pad.get(), gst_event_new_stream_start("s"));
+  gst_pad_send_event(pad.get(), gst_event_new_caps(caps.get()));
+  gst_pad_send_event(pad.get(), NewSegment());
+  std::thread waits([&] {
+    GstBuffer* buffer = Bytes(std::vector<std::uint8_t>(64, 1), 0);
+    EXPECT_EQ(gst_pad_chain(pad.get(), buffer), GST_FLOW_FLUSHING);
+  });
+  EXPECT_TRUE(Eventually([&] {
+    GstSample* sample = nullptr;
+    g_object_get(stream.get(), "last-sample", &sample, nullptr);
+    const bool is_there = sample != nullptr;
+    if (is_there) gst_sample_unref(sample);
+    return is_there;
+  }));
+  std::atomic<bool> gone{false};
+  std::thread goes([&] {
+    gst_element_release_request_pad(sink.get(), pad.get());
+    gone = true;
+  });
+  EXPECT_TRUE(Eventually([&] { return gone.load(); }));
+  gst_element_set_state(sink.get(), GST_STATE_PLAYING);
+  waits.join();
+  goes.join();
+  gst_element_set_state(sink.get(), GST_STATE_NULL);
 }
 
 TEST_F(Mcap, EndsWhenToldToAndPlaysTheNextTime) {
