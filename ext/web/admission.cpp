@@ -18,9 +18,11 @@ std::string_view TokenOf(SoupServerMessage* request, GHashTable* query) {
   const auto* in_query =
       query != nullptr ? static_cast<const char*>(g_hash_table_lookup(query, "token")) : nullptr;
   if (in_query != nullptr) return in_query;
+  // Names of schemes are case-insensitive (RFC 9110, section 11.1).
   constexpr std::string_view kBearer = "Bearer ";
   const std::string_view text = HeaderOf(request, "Authorization");
-  return text.substr(0, kBearer.size()) == kBearer ? text.substr(kBearer.size()) : "";
+  const bool is_bearer = g_ascii_strncasecmp(text.data(), kBearer.data(), kBearer.size()) == 0;
+  return is_bearer ? text.substr(kBearer.size()) : "";
 }
 
 std::string PeerOf(SoupServerMessage* request) {

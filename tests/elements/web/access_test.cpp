@@ -48,6 +48,7 @@ TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {
     return HttpGet(sink.Url("http", path), "GET", authorization).status;
   };
   EXPECT_EQ(status("/session", "Bearer secret"), 200U);
+  EXPECT_EQ(status("/session", "bearer secret"), 200U);
   EXPECT_EQ(status("/session", "Bearer secrets"), 401U);
   EXPECT_EQ(status("/session", "Basic secret"), 401U);
   EXPECT_EQ(status("/session?token=wrong", "Bearer secret"), 401U) << "the query goes first";
