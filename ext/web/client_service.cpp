@@ -21,8 +21,13 @@ void Answer(SoupServerMessage* request, guint status, const char* text) {
   soup_server_message_set_status(request, status, nullptr);
   soup_server_message_set_response(request, "text/plain; charset=utf-8", SOUP_MEMORY_COPY, text,
                                    strlen(text));
-  soup_message_headers_replace(soup_server_message_get_response_headers(request), "Cache-Control",
-                               "no-store");
+  auto* headers = soup_server_message_get_response_headers(request);
+  soup_message_headers_replace(headers, "Cache-Control", "no-store");
+  // RFC 9110, sections 15.5.2 and 15.5.6, wants these.
+  if (status == SOUP_STATUS_UNAUTHORIZED)
+    soup_message_headers_replace(headers, "WWW-Authenticate", "Bearer");
+  if (status == SOUP_STATUS_METHOD_NOT_ALLOWED)
+    soup_message_headers_replace(headers, "Allow", "GET, HEAD");
 }
 
 bool WantsWebSocket(SoupServerMessage* request) {

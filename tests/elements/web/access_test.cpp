@@ -21,7 +21,9 @@ TEST(FoxgloveSink, ServesItsPageAndNothingElse) {
   EXPECT_NE(page.body.find("<title>"), std::string::npos);
   EXPECT_EQ(HttpGet(sink.Url("http", "/etc/passwd")).status, 404U);
   EXPECT_EQ(HttpGet(sink.Url("http", "/..%2f..%2fetc/passwd")).status, 400U);
-  EXPECT_EQ(HttpGet(sink.Url("http"), "POST").status, 405U);
+  const HttpAnswer posted = HttpGet(sink.Url("http"), "POST");
+  EXPECT_EQ(posted.status, 405U);
+  EXPECT_EQ(posted.allow, "GET, HEAD");
 }
 
 TEST(FoxgloveSink, NamesTheTypeOfEachFileOfItsPage) {
@@ -40,7 +42,9 @@ TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {
     EXPECT_FALSE(peer.connected()) << path;
     EXPECT_EQ(peer.status(), 401U) << path;
   }
-  EXPECT_EQ(HttpGet(sink.Url("http", "/session")).status, 401U);
+  const HttpAnswer refused = HttpGet(sink.Url("http", "/session"));
+  EXPECT_EQ(refused.status, 401U);
+  EXPECT_EQ(refused.challenge, "Bearer");
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 200U);
   EXPECT_TRUE(Peer(sink.Url("ws", "/?token=secret"), {"foxglove.sdk.v1"}).connected());
   EXPECT_EQ(sink.Stat("clients-refused"), 6U);

@@ -86,6 +86,8 @@ struct HttpAnswer {
   guint status = 0;
   std::string type;
   std::string policy;
+  std::string allow;
+  std::string challenge;
   std::string body;
 };
 inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET",
@@ -120,6 +122,8 @@ inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET",
   auto* headers = soup_message_get_response_headers(message);
   const auto text = [](const char* t) { return std::string(t != nullptr ? t : ""); };
   answer.type = text(soup_message_headers_get_one(headers, "Content-Type"));
+  answer.allow = text(soup_message_headers_get_one(headers, "Allow"));
+  answer.challenge = text(soup_message_headers_get_one(headers, "WWW-Authenticate"));
   answer.policy = text(soup_message_headers_get_one(headers, "Content-Security-Policy"));
   if (body != nullptr) {
     gsize size = 0;
