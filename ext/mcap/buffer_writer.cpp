@@ -84,6 +84,10 @@ class CloudWriter : public BufferWriter {
 
 /// Writes a message for each sample of a packet.
 class ImuWriter : public BufferWriter {
+  /// A sample further behind the first has another clock, because the sensor's clock was set. It is
+  /// logged with the sample before.
+  static constexpr std::uint64_t kLongestPacket = GST_SECOND;
+
  public:
   explicit ImuWriter(const std::string& frame_id) : BufferWriter(MessageType::kImu, frame_id) {}
 
@@ -91,11 +95,13 @@ class ImuWriter : public BufferWriter {
     const BufferMap map(buffer, GST_MAP_READ);
     if (!map || map.size() % kImuSampleSize != 0) return false;
     std::uint64_t first = 0;
+    std::uint64_t after = 0;
     for (cdr::Imu& imu : cdr::ReadImuSamples(map.view())) {
       const auto time = static_cast<std::uint64_t>(imu.header.stamp.time_since_epoch().count());
       if (first == 0) first = time;
       imu.header.frame_id = frame_id_;
-      out->push_back({time > first ? time - first : 0, time, cdr::WriteImu(imu)});
+      if (time >= first && time - first <= kLongestPacket) after = time - first;
+      out->push_back({after, time, cdr::WriteImu(imu)});
     }
     return true;
   }

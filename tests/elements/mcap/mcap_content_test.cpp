@@ -143,6 +143,22 @@ TEST_F(McapContent, SamplesOfAnImuNameTheirFrame) {
   EXPECT_EQ(cdr::ReadImu(ViewOf(messages[0]))->header.frame_id, "front");
 }
 
+TEST_F(McapContent, SamplesOfAnImuWhoseClockIsSetMeanwhileStayTogether) {
+  GstBuffer* samples = gst_buffer_new_allocate(nullptr, 3 * 32, nullptr);
+  gst_buffer_memset(samples, 0, 0, 3 * 32);
+  const std::array<guint64, 3> times = {GST_SECOND, GST_SECOND + 5 * GST_MSECOND, kCapture};
+  for (gsize i = 0; i < times.size(); ++i)
+    gst_buffer_fill(samples, i * 32, &times[i], sizeof times[i]);
+  GST_BUFFER_PTS(samples) = 0;
+  gst_lidar_buffer_set_capture_time(samples, kCapture);
+  const auto messages = Write(kImu, {samples});
+  ASSERT_EQ(messages.size(), 3U);
+  EXPECT_EQ(messages[0].header.log_time, kCapture);
+  EXPECT_EQ(messages[1].header.log_time, kCapture + 5 * GST_MSECOND);
+  EXPECT_EQ(messages[2].header.log_time, kCapture + 5 * GST_MSECOND);
+  EXPECT_EQ(messages[2].header.publish_time, kCapture);
+}
+
 TEST_F(McapContent, FramesAreThoseOfTheCapsUnlessOneIsSet) {
   sensor_frame_ = nullptr;
   const auto frames = [](const cdr::Odometry& o) {
