@@ -22,11 +22,11 @@ class EcnMonitor {
 
   void OnSent(Time now, Ecn sent) {
     plain_next_ = takes_turns_ && sent != Ecn::kNotEct;
-    if (state_ != EcnState::kTesting || sent == Ecn::kNotEct) return;
+    if (!Tries() || sent == Ecn::kNotEct) return;
     if (sent_++ == 0) first_sent_ = now;
   }
   void OnAcked(Ecn sent, Ecn arrived) {
-    if (state_ != EcnState::kTesting && state_ != EcnState::kCapable) return;
+    if (!Tries()) return;
     if (sent == Ecn::kNotEct) {
       if (takes_turns_ && ++plain_acked_ >= kSilentPackets) state_ = EcnState::kSilent;
       return;
@@ -42,17 +42,16 @@ class EcnMonitor {
     takes_turns_ = plain_next_ = false;
   }
   void OnTimer(Time now) {
-    if (state_ == EcnState::kTesting && sent_ >= kSilentPackets && now - first_sent_ >= kSilence)
-      takes_turns_ = true;
+    // A capable path may change to one that drops ECT: then no report shows the change of route.
+    if (Tries() && sent_ >= kSilentPackets && now - first_sent_ >= kSilence) takes_turns_ = true;
   }
 
-  Ecn codepoint() const {
-    const bool wanted = state_ == EcnState::kTesting || state_ == EcnState::kCapable;
-    return wanted && !plain_next_ ? wanted_ : Ecn::kNotEct;
-  }
+  Ecn codepoint() const { return Tries() && !plain_next_ ? wanted_ : Ecn::kNotEct; }
   EcnState state() const { return state_; }
 
  private:
+  bool Tries() const { return state_ == EcnState::kTesting || state_ == EcnState::kCapable; }
+
   /// Number of packets without their codepoint that cannot be chance.
   static constexpr int kBleachedPackets = 20;
   /// Number of unacknowledged packets, and time, after which ECN may be the cause of silence. So

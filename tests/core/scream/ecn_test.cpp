@@ -139,7 +139,26 @@ TEST(EcnMonitor, IsCapableAlsoWhereTheReceiverCameLate) {
   Send(&ecn, 60s, 61s, kAll);
   EXPECT_EQ(ecn.state(), EcnState::kCapable);
   Send(&ecn, 61s, 70s, kNone);
-  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1) << "a gap says nothing of codepoints";
+  Send(&ecn, 70s, 71s, kAll);
+  EXPECT_EQ(ecn.state(), EcnState::kCapable) << "a gap says nothing of codepoints";
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
+}
+
+TEST(EcnMonitor, FallsBackWhereACapablePathBeginsToDropCodepoints) {
+  EcnMonitor ecn(Ecn::kEct1);
+  Send(&ecn, 0s, 10s, kAll);
+  Send(&ecn, 10s, 12s, kPlain);
+  EXPECT_EQ(ecn.state(), EcnState::kCapable);
+  Send(&ecn, 12s, 12s + 250ms, kPlain);
+  EXPECT_EQ(ecn.state(), EcnState::kSilent);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kNotEct);
+}
+
+TEST(EcnMonitor, IsNotCalledSilentAfterAPauseOfACapablePath) {
+  EcnMonitor ecn(Ecn::kEct1);
+  Send(&ecn, 0s, 10s, kAll);
+  Send(&ecn, 60s, 61s, kNone);
+  EXPECT_EQ(ecn.codepoint(), Ecn::kEct1);
 }
 
 TEST(EcnMonitor, IsNotCalledSilentForAFewPacketsAlone) {
