@@ -13,6 +13,13 @@ using Json = nlohmann::json;
 constexpr const char* kFormat = "gst-lidar-rate-model";
 constexpr double kLargest = 1e12;  // larger coefficients are a mistake
 
+/// Returns the member, or null. Copies of deep JSON would exhaust the stack.
+const Json& Member(const Json& parent, const char* name) {
+  static const Json kNone;
+  const auto found = parent.find(name);
+  return found == parent.end() ? kNone : *found;
+}
+
 /// Reads members and keeps the first fault.
 class Reader {
  public:
@@ -24,8 +31,8 @@ class Reader {
 
   const Json& Object(const Json& parent, const std::string& path, const char* name) {
     static const Json kNone = Json::object();
-    const auto found = parent.find(name);
-    if (found != parent.end() && found->is_object()) return *found;
+    const Json& found = Member(parent, name);
+    if (found.is_object()) return found;
     Fail(path + name + " is missing or not an object");
     return kNone;
   }
@@ -37,19 +44,18 @@ class Reader {
     return value.get<double>();
   }
   double Number(const Json& parent, const std::string& path, const char* name) {
-    const auto found = parent.find(name);
-    return Number(found == parent.end() ? Json() : *found, path + name);
+    return Number(Member(parent, name), path + name);
   }
   template <std::size_t N>
   std::array<double, N> Numbers(const Json& parent, const std::string& path, const char* name) {
     std::array<double, N> numbers{};
-    const auto found = parent.find(name);
-    if (found == parent.end() || !found->is_array() || found->size() != N) {
+    const Json& found = Member(parent, name);
+    if (!found.is_array() || found.size() != N) {
       Fail(path + name + " is not a list of " + std::to_string(N) + " numbers");
       return numbers;
     }
     for (std::size_t i = 0; i < N; ++i)
-      numbers[i] = Number((*found)[i], path + name + "[" + std::to_string(i) + "]");
+      numbers[i] = Number(found[i], path + name + "[" + std::to_string(i) + "]");
     return numbers;
   }
 
@@ -101,9 +107,9 @@ Json WriteMode(const ModeCoefficients& mode) {
 }
 
 void CheckHeader(const Json& json, Reader* reader) {
-  if (!json.is_object() || json.value("format", Json()) != kFormat)
+  if (!json.is_object() || Member(json, "format") != kFormat)
     return reader->Fail(std::string("not a rate model: \"format\" is not \"") + kFormat + '"');
-  const Json version = json.value("version", Json());
+  const Json& version = Member(json, "version");
   if (!version.is_number_integer() || version < 1)
     return reader->Fail("\"version\" is not a positive integer");
   if (version > kModelFileVersion)
@@ -129,8 +135,8 @@ std::optional<ModelFile> ParseModelFile(std::string_view text, std::string* erro
   CheckHeader(json, &reader);
   if (!reader.ok()) return std::nullopt;
   ModelFile file;
-  if (const auto text_of = json.find("trained-on"); text_of != json.end() && text_of->is_string())
-    file.trained_on = *text_of;
+  if (const Json& text_of = Member(json, "trained-on"); text_of.is_string())
+    file.trained_on = text_of;
   if (json.contains("adaptive"))
     file.adaptive = ReadAdaptive(reader.Object(json, "", "adaptive"), &reader);
   if (json.contains("paper")) file.paper = ReadPaper(reader.Object(json, "", "paper"), &reader);

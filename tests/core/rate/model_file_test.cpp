@@ -137,8 +137,14 @@ TEST(ModelFile, OfMoreThanAMegabyteIsNotEvenParsed) {
 
 TEST(ModelFile, OfDeepNestingIsRefused) {
   std::string error;
+  const std::string deep = std::string(400000, '[') + std::string(400000, ']');
   EXPECT_FALSE(ParseModelFile(std::string(200000, '['), &error));
-  EXPECT_FALSE(ParseModelFile(std::string(200000, '[') + std::string(200000, ']'), &error));
+  EXPECT_FALSE(ParseModelFile(deep, &error));
+  EXPECT_FALSE(ParseModelFile("{\"format\": " + deep + "}", &error));
+  EXPECT_FALSE(
+      ParseModelFile("{\"format\": \"gst-lidar-rate-model\", \"version\": " + deep + "}", &error));
+  EXPECT_FALSE(ParseModelFile(
+      "{" HEADER R"(, "adaptive": {"modes": {}, "fallback": {"returns": )" + deep + "}}}", &error));
 }
 
 TEST(ModelFile, TellsWhichModelItDoesNotHave) {
