@@ -128,8 +128,12 @@ std::optional<ModelFile> ParseModelFile(std::string_view text, std::string* erro
   Json json;
   try {
     json = Json::parse(text);
+  } catch (const Json::parse_error& e) {
+    // Its text quotes bytes of the file, and messages hold UTF-8 only.
+    reader.Fail("not JSON, or cut off, at byte " + std::to_string(e.byte));
+    return std::nullopt;
   } catch (const Json::exception& e) {
-    reader.Fail(std::string("not JSON, or cut off: ") + e.what());
+    reader.Fail(std::string("not JSON: ") + e.what());
     return std::nullopt;
   }
   CheckHeader(json, &reader);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lidar::rate {
@@ -145,6 +146,16 @@ TEST(ModelFile, OfDeepNestingIsRefused) {
       ParseModelFile("{\"format\": \"gst-lidar-rate-model\", \"version\": " + deep + "}", &error));
   EXPECT_FALSE(ParseModelFile(
       "{" HEADER R"(, "adaptive": {"modes": {}, "fallback": {"returns": )" + deep + "}}}", &error));
+}
+
+TEST(ModelFile, IsRefusedInWordsThatAMessageCanHold) {
+  for (const char* text : {"\x89PNG\r\n", "{\"format\": \"\xFF\"}"}) {
+    std::string error;
+    EXPECT_FALSE(ParseModelFile(text, &error));
+    EXPECT_TRUE(std::all_of(error.begin(), error.end(), [](char c) {
+      return c >= ' ' && c <= '~';
+    })) << error;
+  }
 }
 
 TEST(ModelFile, TellsWhichModelItDoesNotHave) {
