@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/cloud/cloud_file_parts.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "src/cloud/field_number.h"
@@ -21,6 +22,14 @@ std::string_view TakeWord(std::string_view* text) {
   const std::string_view word = text->substr(0, n);
   text->remove_prefix(n);
   return word;
+}
+
+/// Returns the beginning of a word, for messages, which hold UTF-8 only.
+std::string Quoted(std::string_view word) {
+  std::string text(word.substr(0, 20));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return '"' + text + '"';
 }
 
 std::string_view View(ByteView bytes) {
@@ -114,8 +123,8 @@ bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cl
         if (word.front() == '+') word.remove_prefix(1);
         double value = 0;
         const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (parsed.ec == std::errc::invalid_argument) {
-          *why = "\"" + std::string(word.substr(0, 20)) + "\" is no number";
+        if (parsed.ec == std::errc::invalid_argument || parsed.ptr != word.data() + word.size()) {
+          *why = Quoted(word) + " is no number";
           return false;
         }
         if (f.type) WriteNumber(value, *f.type, to);
