@@ -74,16 +74,17 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
   for (std::size_t i = 0; i < count; ++i, point += layout.point_step)
     image->ranges[i] = Load<std::uint32_t>(point);
   if (!with_intensity || !HasIntensity(layout.fields)) return FullScale::kByte;
+  // Drivers leave any number at a missing return, which must not set the scale of the others.
   const std::uint8_t* first = raw.data + layout.fields.Find("intensity")->offset;
+  const auto intensity_of = [&](std::size_t i) {
+    const auto value = Load<float>(first + i * layout.point_step);
+    return image->ranges[i] != 0 && std::isfinite(value) ? value : 0.0F;
+  };
   float largest = 0;
-  point = first;
-  for (std::size_t i = 0; i < count; ++i, point += layout.point_step)
-    largest = std::max(largest, Load<float>(point));
+  for (std::size_t i = 0; i < count; ++i) largest = std::max(largest, intensity_of(i));
   const IntensityScale scale(IntensityScale::Fitting(largest), kFineIntensityBits);
   image->intensity.resize(count);
-  point = first;
-  for (std::size_t i = 0; i < count; ++i, point += layout.point_step)
-    image->intensity[i] = scale.LevelOf(Load<float>(point));
+  for (std::size_t i = 0; i < count; ++i) image->intensity[i] = scale.LevelOf(intensity_of(i));
   return scale.full();
 }
 

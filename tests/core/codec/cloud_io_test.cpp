@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "src/base/byte_writer.h"
 #include "tests/core/codec/test_clouds.h"
 
 namespace lidar::codec {
@@ -44,6 +45,25 @@ TEST(ReadXyz, LeavesOutPointsWithACoordinateThatIsNoNumber) {
   EXPECT_EQ(cloud.xyz, (std::vector<float>{1, 2, 3, 0, 0, -1}));
   EXPECT_EQ(cloud.intensity, (std::vector<float>{4, 9})) << "each its own";
   EXPECT_TRUE(Read(points, false).intensity.empty());
+}
+
+TEST(ReadRangeImage, ScalesIntensitiesByThoseOfReturns) {
+  const CloudLayout layout{*PointFields::Parse("range:U32:0,intensity:F32:4"), 8};
+  std::vector<std::uint8_t> raw;
+  ByteWriter w(&raw);
+  const auto add = [&w](std::uint32_t range_mm, float intensity) {
+    w.Le32(range_mm);
+    w.LeF32(intensity);
+  };
+  add(1000, 100);
+  add(0, 60'000);
+  add(2000, kInfinity);
+  add(3000, kNan);
+  RangeImage image;
+  image.beams = 1;
+  image.columns = 4;
+  EXPECT_EQ(ReadRangeImage({raw.data(), raw.size()}, layout, true, &image), FullScale::kByte);
+  EXPECT_EQ(image.intensity, (std::vector<std::uint8_t>{100, 0, 0, 0}));
 }
 
 TEST(ReadXyz, TakesIntensitiesThatAreNoneForZero) {
