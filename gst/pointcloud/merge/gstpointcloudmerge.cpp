@@ -249,6 +249,14 @@ static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* me
   return true;
 }
 
+/// Gaps on all pads, as of filters that leave no point, are a turn, too.
+static void TakeTimeOfGaps(const std::vector<Head>& heads, Merged* merged) {
+  const auto first = std::min_element(heads.begin(), heads.end(),
+                                      [](const Head& a, const Head& b) { return a.time < b.time; });
+  merged->time = first->time;
+  merged->duration = first->duration;
+}
+
 /// Sends caps if the next cloud's number of points or fields differ from the last ones.
 static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
                     const lidar::PointFields& fields) {
@@ -311,6 +319,7 @@ static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
   merged.fields = FieldsOfFirst(pads);
   for (const Head& head : heads)
     if (!AddCloud(self, head, &merged)) return GST_FLOW_ERROR;
+  if (!GST_CLOCK_TIME_IS_VALID(merged.time)) TakeTimeOfGaps(heads, &merged);
   return Push(self, std::move(merged));
 }
 

@@ -154,6 +154,17 @@ class MergedByHand : public ::testing::Test {
     for (std::size_t i = 0; i < xs.size(); ++i) EXPECT_FLOAT_EQ(points[3 * i], xs[i]);
   }
 
+  /// The last gap until now.
+  void ExpectGap(GstClockTime time_ms) {
+    GstClockTime time = 0;
+    GstClockTime duration = 0;
+    while (const gst::EventPtr event{gst_harness_try_pull_event(first_.get())})
+      if (GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP)
+        gst_event_parse_gap(event.get(), &time, &duration);
+    EXPECT_EQ(time, time_ms * GST_MSECOND);
+    EXPECT_EQ(duration, 100 * GST_MSECOND);
+  }
+
   const gst::ElementPtr element_{gst_element_factory_make("pointcloudmerge", nullptr)};
   Harness first_;
   Harness second_;
@@ -214,13 +225,24 @@ TEST_F(MergedByHand, ATurnInWhichNoSensorSeesAnythingIsAGap) {
   }
   ExpectCloud({1, 1}, 100);
   ExpectCloud({1, 1}, 100);
-  GstClockTime time = 0;
-  GstClockTime duration = 0;
-  while (const gst::EventPtr event{gst_harness_try_pull_event(first_.get())})
-    if (GST_EVENT_TYPE(event.get()) == GST_EVENT_GAP)
-      gst_event_parse_gap(event.get(), &time, &duration);
-  EXPECT_EQ(time, 100 * GST_MSECOND);
-  EXPECT_EQ(duration, 100 * GST_MSECOND);
+  ExpectGap(100);
+}
+
+/// As pointcloudfilter sends if no point stays.
+TEST_F(MergedByHand, ATurnOfGapsIsAGapOfTheEarliersTime) {
+  const auto push_gap = [](const Harness& h, GstClockTime time_ms) {
+    ASSERT_TRUE(gst_harness_push_event(
+        h.get(), gst_event_new_gap(time_ms * GST_MSECOND, 100 * GST_MSECOND)));
+  };
+  Push(first_, 1, 100);
+  Push(second_, 2, 100);
+  push_gap(first_, 230);
+  push_gap(second_, 200);
+  Push(first_, 1, 300);
+  Push(second_, 2, 300);
+  ExpectCloud({1, 2}, 100);
+  ExpectCloud({1, 2}, 300);
+  ExpectGap(200);
 }
 
 TEST_F(MergedByHand, ALateFirstSensorStillGivesTheFields) {
