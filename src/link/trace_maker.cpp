@@ -103,10 +103,13 @@ std::string MakeDriveTrace(const DriveTraceConfig& config) {
 
 std::string MakeGapTrace(const GapTraceConfig& config) {
   std::string text = "# time_s rate_mbps; regular gaps\n";
-  for (Duration t{0}; t < config.duration; t += config.every) {
+  Duration t{0};
+  for (; t < config.duration; t += config.every) {
     AppendLine(t, config.rate, &text);
     AppendLine(t + config.every - config.gap, config.in_gaps, &text);
   }
+  // The last line of a repeating trace lasts as long as the line before it: half a gap each.
+  AppendLine(t - config.gap / 2, config.in_gaps, &text);
   return text;
 }
 

@@ -77,6 +77,15 @@ TEST(TraceMaker, RegularGapsEndTheirPeriods) {
   }
 }
 
+TEST(TraceMaker, TheLastOfRegularGapsIsNoLongerWhereTheTraceStartsOver) {
+  GapTraceConfig config;
+  config.duration = 6s;
+  const Capacity c = Parse(MakeGapTrace(config));
+  EXPECT_EQ(c.RateAt(5950ms), Mbps(0.2));
+  EXPECT_EQ(c.RateAt(6s), Mbps(8));
+  EXPECT_EQ(GapsOf(c, 61s), std::vector<int>(30, 1));
+}
+
 TEST(TraceMaker, KeepsShortTimesAndLowRatesThatWereAskedFor) {
   GapTraceConfig config;
   config.every = 2ms;
