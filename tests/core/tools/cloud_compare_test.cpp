@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <limits>
+
 #include "src/tools/bench/demo/stream_comparer.h"
 
 namespace lidar::demo {
@@ -39,6 +41,23 @@ TEST(CloudCompare, UnorganisedCloudsMayComeInAnyOrderAndWithoutZeros) {
   EXPECT_EQ(c.points, 3U);
   EXPECT_EQ(c.missing + c.added, 0U);
   EXPECT_NEAR(c.max_error_m, 0.02, 1e-6);
+}
+
+/// PCD files mark missing returns so.
+TEST(CloudCompare, PointsThatAreNotFiniteAreMissingReturns) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  const std::vector<float> sent = {kNan, kNan, kNan, 2, 0, 0, kFar, 0, 0, 4, 0, 0};
+  for (const auto& c :
+       {Compare(Unorganised(sent), Unorganised({2, 0, 0, 4, 0, 0}), 0.1),
+        Compare(Unorganised({2, 0, 0, 4, 0, 0}), Unorganised(sent), 0.1),
+        Compare(Organised(sent), Organised({0, 0, 0, 2, 0, 0, 0, 0, 0, 4, 0, 0}), 1),
+        Compare(Organised(sent), Organised(sent), 1)}) {
+    EXPECT_EQ(c.points, 2U);
+    EXPECT_EQ(c.missing, 0U);
+    EXPECT_EQ(c.added, 0U);
+    EXPECT_EQ(c.max_error_m, 0);
+  }
 }
 
 TEST(CloudCompare, AnUnorganisedPointThatNobodySentIsAnErrorOfItsDistance) {

@@ -8,22 +8,12 @@
 #include <unordered_map>
 #include <vector>
 
+#include "src/cloud/point_math.h"
+
 namespace lidar::demo {
 namespace {
 
-bool IsMissing(const float* p) {
-  return std::fpclassify(p[0]) == FP_ZERO && std::fpclassify(p[1]) == FP_ZERO &&
-         std::fpclassify(p[2]) == FP_ZERO;
-}
-
-double SquaredDistance(const float* a, const float* b) {
-  double sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double d = double{a[i]} - double{b[i]};
-    sum += d * d;
-  }
-  return sum;
-}
+bool IsMissing(const float* p) { return !IsReturn({p[0], p[1], p[2]}); }
 
 void AddError(Comparison* c, double error) {
   ++c->points;
