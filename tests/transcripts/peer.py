@@ -6,7 +6,8 @@
     peer.py rtp PORT PACKET...           sends PACKETs to PORT, and prints nothing
     peer.py link 'PACKET...' LIDAR-LINK  sends PACKETs through lidar-link one by one, each with an answer
 
-A PACKET is SEQUENCE:TIMESTAMP:MARKER:TOS:SIZE; a TIMESTAMP of -AGE is the time of day before AGE seconds.
+A PACKET is SEQUENCE:TIMESTAMP:MARKER:TOS:SIZE; a TIMESTAMP of -AGE is the time of day before AGE seconds, of
++AGE that in AGE seconds.
 """
 import json
 import signal
@@ -30,7 +31,7 @@ def http(port, method, path, body=""):
 def packet(text):
     """Returns an RTP packet and its TOS."""
     sequence, timestamp, marker, tos, size = text.split(":")
-    ticks = int(timestamp) if not timestamp.startswith("-") else int((time.time() + float(timestamp)) * 90000)
+    ticks = int(timestamp) if timestamp[0] not in "+-" else int((time.time() + float(timestamp)) * 90000)
     header = struct.pack(">BBHII", 0x80, int(marker) << 7 | 96, int(sequence), ticks & 0xFFFFFFFF, 100)
     return header + bytes(int(size) - len(header)), int(tos)
 

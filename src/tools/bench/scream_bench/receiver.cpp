@@ -73,13 +73,17 @@ std::optional<Duration> FrameMeter::OnPacket(const ReceivedPacket& packet) {
   ce_packets_ += packet.is_ce;
   received_ += packet.size;
   if (!packet.marker) return std::nullopt;
-  const Duration age =
+  Duration age =
       FromTicks(SequenceDistance(RtpTimestamp(packet.unix_time), packet.timestamp)) - offset_;
-  if (frames() == 0 && (age < Duration{0} || age > kPlausibleAge)) offset_ += age;
-  if (is_relative() && age < Duration{0}) offset_ += age;  // the youngest frame has the age 0
-  const Duration shown = std::max(Duration{0}, frames() == 0 && is_relative() ? Duration{0} : age);
-  ages_ms_.Add(Milliseconds(shown));
-  return shown;
+  const bool differs = frames() == 0 && (age < Duration{0} || age > kPlausibleAge);
+  const bool is_youngest = is_relative() && age < Duration{0};
+  if (differs || is_youngest) {
+    offset_ += age;
+    age = Duration{0};
+  }
+  age = std::max(Duration{0}, age);
+  ages_ms_.Add(Milliseconds(age));
+  return age;
 }
 
 std::uint64_t FrameMeter::lost() const {
