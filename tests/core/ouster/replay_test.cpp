@@ -213,6 +213,30 @@ TEST_F(Capture, GoesOnInEachRoundAsOneSensor) {
   for (std::size_t i = 0; i < 60; ++i) EXPECT_EQ(imu_times_ns_[i], 1'000'000 + i * 5'000'000);
 }
 
+/// A sensor with an azimuth window sends columns that it has not sampled, without their time.
+TEST_F(Capture, HasItsTimesFromTheFirstValidColumn) {
+  SynthOptions options;
+  options.model = kModel;
+  SynthStream sensor(options, metadata_);
+  sensor.Restart({1, 5'000'000'000});
+  auto packet = sensor.Next();
+  while (packet->imu) packet = sensor.Next();
+  constexpr std::size_t kTimeAndIdAndStatus = 12;
+  std::memset(&packet->bytes[metadata_.format.packet_header_size()], 0, kTimeAndIdAndStatus);
+  AddFrames(0, &packet->bytes);
+  std::string error;
+  const auto writer = ouster::PcapWriter::Open(path(), &error);
+  ASSERT_TRUE(writer->Write(Time{}, 7502, {packet->bytes.data(), packet->bytes.size()}));
+  ASSERT_TRUE(writer->Close());
+  PcapStream stream(path(), metadata_, {});
+  stream.Restart({7, 1'000'000});
+  const auto sent = stream.Next();
+  const auto lidar =
+      ouster::LidarPacket::Parse({sent->bytes.data(), sent->bytes.size()}, metadata_.format);
+  EXPECT_FALSE(lidar->Column(0).valid());
+  EXPECT_EQ(lidar->Column(1).timestamp, 1'000'000U);
+}
+
 TEST_F(Capture, MayHaveFrameIdsThatStartOver) {
   Write(65'535);
   PcapStream stream(path(), metadata_, {});

@@ -19,7 +19,7 @@ struct PacketPatch {
   std::uint32_t init_id = 0;  // 0: as it is
   std::uint64_t serial = 0;   // 0: as it is
   std::uint32_t add_frames = 0;
-  std::uint64_t first_time_ns = 0;  // time of the recording's first column
+  std::uint64_t first_time_ns = 0;  // time of the recording's first valid column
   std::uint64_t new_time_ns = 0;    // its new time
   double speed = 1;                 // divides the time from the first column
 };
@@ -35,6 +35,13 @@ std::uint64_t Get(const std::uint8_t* at, std::size_t n) {
 
 void Put(std::uint8_t* at, std::uint64_t v, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<std::uint8_t>(v >> (8 * i));
+}
+
+/// Returns the time of the first valid column: those of other columns mean nothing.
+std::optional<std::uint64_t> TimeOf(const ouster::LidarPacket& packet) {
+  for (std::uint32_t i = 0; i < packet.columns(); ++i)
+    if (packet.Column(i).valid()) return packet.Column(i).timestamp;
+  return std::nullopt;
 }
 
 /// Writes the new time in place of a recorded one.
@@ -86,6 +93,7 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
   if (!reader) throw std::runtime_error("cannot read " + path + ": " + error);
   std::optional<Time> first;
   std::optional<std::uint32_t> first_frame;
+  std::optional<std::uint64_t> first_time;
   std::uint32_t last_frame = 0;
   while (auto captured = reader->Next()) {
     std::vector<std::uint8_t>& bytes = captured->datagram.payload;
@@ -94,10 +102,8 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
     const bool imu = ouster::IsImuPacket(payload, metadata);
     if (!lidar && !imu) continue;
     if (lidar) {
-      if (!first_frame) {
-        first_frame = lidar->header().frame_id;
-        first_time_ns_ = lidar->Column(0).timestamp;
-      }
+      if (!first_frame) first_frame = lidar->header().frame_id;
+      if (!first_time) first_time = TimeOf(*lidar);
       last_frame = lidar->header().frame_id;
     }
     if (!first) first = captured->time;
@@ -105,6 +111,7 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
   }
   if (!first_frame)
     throw std::runtime_error(path + " holds no packets of the sensor in the metadata");
+  first_time_ns_ = first_time.value_or(0);
   const std::uint64_t ids = format_.frame_id_modulus();
   scans_ = static_cast<std::uint32_t>((ids + last_frame - *first_frame) % ids) + 1;
   // A round lasts whole scans, so that its first scan follows the last one of the round before.
