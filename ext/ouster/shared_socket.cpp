@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "ext/ouster/shared_socket.h"
 
-#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -14,17 +13,6 @@ namespace {
 
 constexpr gsize kSmallestQueue = 1U << 20;  // bytes
 
-/// Ignores multicast groups that other programs joined.
-void OnlyJoinedGroups(GSocket* socket) {
-  const int off = 0;
-  const int fd = g_socket_get_fd(socket);
-  const bool v6 = g_socket_get_family(socket) == G_SOCKET_FAMILY_IPV6;
-  const int failed = v6 ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof off)
-                        : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off);
-  // An old kernel has no such option; serial numbers still separate the sensors.
-  if (failed != 0) return;
-}
-
 GSocket* OpenSocket(const SocketPlace& place, GError** error) {
   UdpBind bind{place.address, place.port, G_SOCKET_FAMILY_INVALID, !place.group.empty()};
   if (!place.group.empty())
@@ -32,10 +20,8 @@ GSocket* OpenSocket(const SocketPlace& place, GError** error) {
         place.group.find(':') != std::string::npos ? G_SOCKET_FAMILY_IPV6 : G_SOCKET_FAMILY_IPV4;
   std::unique_ptr<GSocket, GObjectUnref> socket(OpenUdpSocket(bind, error));
   if (!socket) return nullptr;
-  if (!place.group.empty()) {
-    if (!JoinMulticast(socket.get(), place.group, place.interface, error)) return nullptr;
-    OnlyJoinedGroups(socket.get());
-  }
+  if (!place.group.empty() && !JoinMulticast(socket.get(), place.group, place.interface, error))
+    return nullptr;
   net::AskForInfo(g_socket_get_fd(socket.get()));
   return socket.release();
 }

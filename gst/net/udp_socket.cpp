@@ -2,6 +2,7 @@
 #include "gst/net/udp_socket.h"
 
 #include <net/if.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -46,6 +47,17 @@ GSocket* BoundSocket(GInetAddress* address, const UdpBind& bind, GError** error)
   const SocketAddressPtr local(g_inet_socket_address_new(address, static_cast<guint16>(bind.port)));
   if (!g_socket_bind(socket.get(), local.get(), bind.reuse, error)) return nullptr;
   return socket.release();
+}
+
+/// Ignores multicast groups that other programs joined.
+void OnlyJoinedGroups(GSocket* socket) {
+  const int off = 0;
+  const int fd = g_socket_get_fd(socket);
+  const bool v6 = g_socket_get_family(socket) == G_SOCKET_FAMILY_IPV6;
+  const int failed = v6 ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof off)
+                        : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off);
+  // An old kernel has no such option for IPv6.
+  if (failed != 0) return;
 }
 
 }  // namespace
@@ -141,6 +153,7 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
                 interface.c_str());
     return false;
   }
+  OnlyJoinedGroups(socket);
   return g_socket_join_multicast_group(socket, address.get(), FALSE,
                                        interface.empty() ? nullptr : interface.c_str(),
                                        error) != FALSE;

@@ -50,7 +50,8 @@ struct UdpBind {
 /// A bound non-blocking socket; transfer full, or NULL.
 GSocket* OpenUdpSocket(const UdpBind& bind, GError** error);
 
-/// Joins `group` on the interface of that name (empty: the kernel's choice).
+/// Joins `group` on the interface of that name (empty: the kernel's choice). The socket gets no
+/// other groups, which the kernel would give it if other programs joined them.
 bool JoinMulticast(GSocket* socket, const std::string& group, const std::string& interface,
                    GError** error);
 /// "host:port" for messages and logs.

@@ -460,18 +460,41 @@ TEST(EcnUdpSink, WarnsOfAnInterfaceThatIsNotThere) {
   gst_element_set_state(sink.get(), GST_STATE_NULL);
 }
 
+Harness ListenerOf(const char* group, guint port) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", port, "multicast-group", group, "multicast-iface", "lo",
+               nullptr);
+  return src;
+}
+
 TEST(EcnUdpSrc, SeveralOfAMachineReceiveAMulticastGroup) {
-  const auto listener = [](guint port) {
-    Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
-    g_object_set(src->element, "port", port, "multicast-group", "239.201.7.1", "multicast-iface",
-                 "lo", nullptr);
-    return src;
-  };
-  const Harness first = listener(0);
+  const Harness first = ListenerOf("239.201.7.1", 0);
   if (gst_element_set_state(first->element, GST_STATE_PAUSED) == GST_STATE_CHANGE_FAILURE)
     GTEST_SKIP() << "no multicast here";
-  const Harness second = listener(LocalPort(first.get()));
+  const Harness second = ListenerOf("239.201.7.1", LocalPort(first.get()));
   EXPECT_NE(gst_element_set_state(second->element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+}
+
+void SendToGroup(const char* group, guint port, const std::string& text) {
+  GstElement* sink = SinkElement();
+  g_object_set(sink, "host", group, "port", port, "multicast-iface", "lo", nullptr);
+  const Harness harness = Wrap(sink);
+  EXPECT_EQ(gst_harness_push(harness.get(), Payload(text)), GST_FLOW_OK);
+}
+
+/// The kernel gives a socket the groups of all programs, unless it is told otherwise.
+TEST(EcnUdpSrc, TakesNothingOfAnotherGroupOnItsPort) {
+  const Harness ours = ListenerOf("239.201.7.1", 0);
+  if (gst_element_set_state(ours->element, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE)
+    GTEST_SKIP() << "no multicast here";
+  const guint port = LocalPort(ours.get());
+  const Harness theirs = ListenerOf("239.201.7.2", port);
+  SetPlaying(theirs.get());
+  SendToGroup("239.201.7.2", port, "theirs");
+  SendToGroup("239.201.7.1", port, "ours");
+  const BufferPtr got(gst_harness_pull(ours.get()));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(Text(got.get()), "ours");
 }
 
 /// A machine without multicast joins no group, with brackets or without.
