@@ -158,6 +158,7 @@ static lidar::nats::SubscriberSettings ToSubscriber(const NatsSrcSettings& setti
   if (GST_CLOCK_TIME_IS_VALID(settings.start_time)) s.start_time = settings.start_time;
   s.start_sequence = settings.start_sequence;
   s.max_pending = static_cast<int>(settings.buffer_size);
+  s.seeks_end = settings.eos_at_end;
   return s;
 }
 
@@ -346,7 +347,9 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   state.trouble.clear();
   const GstFlowReturn flow = Take(self, delivery, out);
   if (flow == GST_FLOW_FLUSHING) return flow;  // unacknowledged, the message comes again
-  state.at_end = eos_at_end && delivery.stored && delivery.to_come == 0;
+  // Of a durable consumer, earlier messages may come again.
+  state.at_end =
+      eos_at_end && delivery.stored && delivery.to_come == 0 && !state.subscriber->acknowledges();
   state.delivery = std::move(delivery);
   if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
   Acknowledge(state);

@@ -15,6 +15,7 @@ using std::chrono::steady_clock;
 
 constexpr milliseconds kRenewInterval{500};
 constexpr milliseconds kAskInterval{200};
+constexpr milliseconds kDoneInterval{200};
 constexpr milliseconds kConfigWait{10};
 constexpr int kMaxPendingMessages = 65'536;
 constexpr int kMaxPendingConfigs = 64;
@@ -204,13 +205,13 @@ Subscriber::Event Subscriber::Renew() {
   stale_ = false;
   connections_ = state.connections;
   missed_heartbeats_ = state.missed_heartbeats;
-  if (std::exchange(began_, true)) return Event::kNothing;
+  if (std::exchange(began_, true) || acknowledges()) return Event::kNothing;
   jsConsumerInfo* raw = nullptr;
   natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
   const ConsumerInfoPtr info(raw);
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
   // The server may lose the consumer before the first message: the new one begins here.
-  if (!acknowledges()) last_stored_ = info->Delivered.Stream;
+  last_stored_ = info->Delivered.Stream;
   return info->NumPending == 0 ? Event::kEmpty : Event::kNothing;
 }
 
@@ -244,6 +245,19 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   return Event::kMessage;
 }
 
+/// Asks the server, because only it knows which messages come again and what others of the group
+/// have not acknowledged.
+bool Subscriber::IsDone() {
+  const auto now = steady_clock::now();
+  if (!settings_.seeks_end || !acknowledges() || now < is_done_at_) return false;
+  is_done_at_ = now + kDoneInterval;
+  jsConsumerInfo* raw = nullptr;
+  js_GetConsumerInfo(&raw, js_.get(), settings_.stream.c_str(), settings_.durable.c_str(), nullptr,
+                     nullptr);
+  const ConsumerInfoPtr info(raw);
+  return info && info->NumPending == 0 && info->NumAckPending == 0;
+}
+
 Subscriber::Event Subscriber::ConnectAgain(milliseconds pause) {
   std::this_thread::sleep_for(pause);
   messages_.reset();
@@ -272,6 +286,7 @@ Subscriber::Event Subscriber::Next(milliseconds timeout, Delivery* delivery) {
   if (s == NATS_MISMATCH) stale_ = true;
   // The state, which says why, may come a moment later.
   if (!messages_ || s == NATS_CONNECTION_CLOSED) std::this_thread::sleep_for(timeout);
+  if (s == NATS_TIMEOUT && stored() && state.connected() && IsDone()) return Event::kEmpty;
   if (s != NATS_OK || raw == nullptr) return Event::kNothing;
   return stored() ? NoteStored(delivery) : Event::kMessage;
 }

@@ -22,6 +22,8 @@ struct SubscriberSettings {
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
   std::uint64_t start_sequence = 0;         // replaces start_time, unless it is 0
   int max_pending = 8 << 20;                // bytes that may wait, if live
+  // Next() returns kEmpty once all messages of the durable consumer are acknowledged.
+  bool seeks_end = false;
 };
 
 /// A message and its place in JetStream.
@@ -44,7 +46,7 @@ class Subscriber {
   enum class Event {
     kMessage,
     kNothing,  // no message in this time
-    kEmpty,    // JetStream had no message at the first request
+    kEmpty,    // JetStream had no message at the first request; see also seeks_end
     kTrouble,  // trouble() describes it; the subscriber continues
     kClosed,   // the connection is gone for good
   };
@@ -78,6 +80,7 @@ class Subscriber {
   natsStatus AddDurable(jsErrCode* code);
   void SetStart(jsConsumerConfig* config) const;
   Event NoteStored(Delivery* delivery);
+  bool IsDone();
   void CountOverruns();
   void TakeFormats(std::chrono::milliseconds wait);
   void AskForFormat();
@@ -90,8 +93,9 @@ class Subscriber {
   SubscriptionPtr configs_;
   FormatBook book_;
   std::string trouble_;
-  std::chrono::steady_clock::time_point renew_at_{};  // earliest next renewal
-  unsigned connections_ = 0;                          // number of connections at the last renewal
+  std::chrono::steady_clock::time_point renew_at_{};    // earliest next renewal
+  std::chrono::steady_clock::time_point is_done_at_{};  // earliest next request of IsDone()
+  unsigned connections_ = 0;                            // number of connections at the last renewal
   unsigned missed_heartbeats_ = 0;
   bool stale_ = false;             // the consumer missed a message
   std::uint64_t last_stored_ = 0;  // number of the last message in the stream

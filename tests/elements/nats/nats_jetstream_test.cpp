@@ -56,6 +56,8 @@ class DurableConsumer {
   }
   /// Returns the number of messages that were sent again and are not acknowledged.
   std::int64_t again() const { return Info()->NumRedelivered; }
+  /// Returns the number of messages that were sent and are not acknowledged.
+  std::int64_t unacknowledged() const { return Info()->NumAckPending; }
   /// Returns the number of messages without an acknowledgement.
   std::uint64_t open() const {
     const auto info = Info();
@@ -250,6 +252,35 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   };
   EXPECT_TRUE(Eventually(has_all));
   EXPECT_LE(second.count(), 64U - 28U);
+}
+
+/// Returns what the durable consumer has left, once the pipeline has ended.
+std::vector<Kept> TakeRest(const std::string& at) {
+  NatsPipeline rest("natssrc name=n durable=slam start-time=0 eos-at-end=true" + at +
+                    "! fakesink name=see sync=false");
+  rest.Play();
+  EXPECT_EQ(rest.WaitForEnd(), "");
+  return rest.buffers();
+}
+
+TEST_F(NatsJetStream, ADurableConsumerThatHasHadAllEndsAtOnce) {
+  const auto sent = PublishSlices(8, At(kBox));
+  ExpectSameStream(TakeRest(At(kBox)), sent);
+  EXPECT_EQ(TakeRest(At(kBox)).size(), 0U);
+}
+
+TEST_F(NatsJetStream, ADurableConsumerEndsAfterAllThatAnotherDidNotAcknowledge) {
+  PublishSlices(8, At(kBox));
+  const DurableConsumer consumer(server_.url(), 200'000'000, 100);
+  {
+    const NatsClient other(server_.url());
+    natsSubscription* raw = nullptr;
+    ASSERT_EQ(natsConnection_SubscribeSync(&raw, other.get(), "slam-delivery"), NATS_OK);
+    const nats::SubscriptionPtr subscription(raw);
+    ASSERT_TRUE(Eventually([&] { return consumer.unacknowledged() == 8; }));
+  }
+  EXPECT_EQ(TakeRest(At(kBox)).size(), 8U);
+  EXPECT_EQ(consumer.open(), 0U);
 }
 
 TEST_F(NatsJetStream, AMessageThatAStopCutsOffAtItsCapsComesAgain) {
