@@ -333,12 +333,14 @@ void Publisher::SendConfig(Lock* lock) {
   const std::string subject = ConfigSubject(settings_.subject, format->id());
   const std::string& text = format->text();
   const auto size = static_cast<int>(text.size());
-  if (keeps())
-    natsConnection_PublishRequest(connection_->get(), subject.c_str(),
-                                  answers_->Of(kConfigReply).c_str(), text.data(), size);
-  else
-    natsConnection_Publish(connection_->get(), subject.c_str(), text.data(), size);
+  const natsStatus status =
+      keeps() ? natsConnection_PublishRequest(connection_->get(), subject.c_str(),
+                                              answers_->Of(kConfigReply).c_str(), text.data(), size)
+              : natsConnection_Publish(connection_->get(), subject.c_str(), text.data(), size);
   lock->lock();
+  if (status != NATS_MAX_PAYLOAD) return;
+  config_unanswered_ = false;
+  Tell(lock, "The caps are larger than the server takes (max_payload)");
 }
 
 void Publisher::SendNext(Lock* lock) {

@@ -88,12 +88,13 @@ TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
   EXPECT_EQ(receiver.count(), 2U);
 }
 
-TEST_F(NatsErrors, ABufferThatTheServerDoesNotTakeIsCounted) {
-  std::ofstream(server_.folder() + "/conf") << "max_payload: 1024\n";
+TEST_F(NatsErrors, CapsAndBuffersThatTheServerDoesNotTakeAreTold) {
+  std::ofstream(server_.folder() + "/conf") << "max_payload: 100\n";
   server_.Start({"-c", server_.folder() + "/conf"});
   NatsPipeline sender(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" + At());
   sender.Play();
-  EXPECT_NE(sender.WaitForWarning("larger than the server takes"), "");
+  for (const std::string what : {"The caps are", "A buffer is"})
+    EXPECT_NE(sender.WaitForWarning(what + " larger than the server takes"), "");
   EXPECT_EQ(sender.WaitForEnd(),
             "None of 8 messages reached the NATS server: they exceed its max_payload, or "
             "buffer-size.");
