@@ -46,6 +46,7 @@ std::string_view WithoutPort(std::string_view host) {
 
 bool Lists(std::string_view list, std::string_view item) {
   while (!list.empty()) {
+    list.remove_prefix(std::min(list.find_first_not_of(' '), list.size()));
     const auto comma = std::min(list.find(','), list.size());
     if (list.substr(0, comma) == item) return true;
     list.remove_prefix(std::min(comma + 1, list.size()));

@@ -104,7 +104,7 @@ struct Asks {
 };
 class Origins : public ::testing::TestWithParam<Asks> {};
 TEST_P(Origins, OfOtherSitesNeedATokenOrToBeAllowed) {
-  Sink open("allowed-origins=https://a.example,https://app.foxglove.dev");
+  Sink open("allowed-origins=\"https://a.example, https://app.foxglove.dev\"");
   Peer peer(open.Url("ws"), {"foxglove.sdk.v1"}, GetParam().origin);
   EXPECT_EQ(peer.connected(), GetParam().enters);
   if (!GetParam().enters) {
