@@ -123,7 +123,7 @@ bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cl
         if (word.front() == '+') word.remove_prefix(1);
         double value = 0;
         const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (parsed.ec == std::errc::invalid_argument || parsed.ptr != word.data() + word.size()) {
+        if (parsed.ec != std::errc() || parsed.ptr != word.data() + word.size()) {
           *why = Quoted(word) + " is no number";
           return false;
         }

@@ -8,6 +8,8 @@
 #include <locale>
 #include <sstream>
 
+#include "src/cloud/point_math.h"
+
 namespace lidar {
 namespace {
 
@@ -121,6 +123,7 @@ bool PointFilter::Keeps(std::array<float, 3>* xyz) {
   if (s.max_range_m > 0 && range > s.max_range_m * s.max_range_m) return false;
   if (s.has_pose) *xyz = Moved(pose_, *xyz);
   if (s.transform) *xyz = Moved(*s.transform, *xyz);
+  if (!IsFinite(*xyz)) return false;
   if (s.crop_box) {
     bool inside = true;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -133,11 +136,8 @@ bool PointFilter::Keeps(std::array<float, 3>* xyz) {
 }
 
 void PointFilter::Take(const std::uint8_t* point, std::vector<std::uint8_t>* out) {
-  std::array<float, 3> xyz{};
-  std::memcpy(xyz.data(), point + xyz_, sizeof xyz);
-  const bool finite = std::all_of(xyz.begin(), xyz.end(), [](float c) { return std::isfinite(c); });
-  const bool is_return =
-      finite && std::any_of(xyz.begin(), xyz.end(), [](float c) { return c != 0; });
+  std::array<float, 3> xyz = PositionAt(point + xyz_);
+  const bool is_return = IsReturn(xyz);
   const bool kept = is_return && Keeps(&xyz);
   if (is_return && !kept) ++removed_;
   if (!kept && settings_.invalid == InvalidPoints::kRemove) return;

@@ -149,6 +149,7 @@ TEST(Pcd, SaysWhyItCannotBeRead) {
       {PcdHeader("binary", 2'000'000'000), "the cloud is larger than 1 GiB"},
       {PcdHeader("ascii") + "1 2 3", "the file ends before its last point"},
       {PcdHeader("ascii") + "1 2 3 0 0 1 1 2 three 0 0 1 1", "\"three\" is no number"},
+      {PcdHeader("ascii") + "1 1e400 3 0 0 1 4 5 6 0 0 1", "\"1e400\" is no number"},
       {PcdHeader("ascii") + "1 2,5 3 0 0 1 4 5 6 0 0 1", "\"2,5\" is no number"},
       {PcdHeader("ascii") + "1 1.#QNAN 3 0 0 1 4 5 6 0 0 1", "\"1.#QNAN\" is no number"},
       {PcdHeader("ascii") + "1 2 \x80\x3F\x01 0 0 1 4 5 6 0 0 1", "\"???\" is no number"},

@@ -211,6 +211,20 @@ TEST(PointFilter, TakesTheTransformFromWhereThePoseHasPutPoints) {
   EXPECT_NEAR(moved.y, 12, 1e-5);
 }
 
+TEST(PointFilter, PointsThatAPosePutsNowhereAreRemoved) {
+  PointFilterSettings settings;
+  settings.has_pose = true;
+  settings.voxel_size_m = 1;
+  settings.invalid = InvalidPoints::kRemove;
+  auto filter = PointFilter::Make(settings, Fields(), sizeof(Point));
+  const Point point = {2, 0, 0, 7};
+  const double nowhere = std::numeric_limits<double>::quiet_NaN();
+  const auto out = filter->Apply({reinterpret_cast<const std::uint8_t*>(&point), 1, 1, 0,
+                                  FromPose({nowhere, 0, 0}, {0, 0, 0, 1})});
+  EXPECT_TRUE(out.points.empty());
+  EXPECT_EQ(filter->removed(), 1U);
+}
+
 TEST(PointFilter, PointsWithoutAReturnFollowThePolicy) {
   auto cloud = Cloud();
   cloud[0].x = std::numeric_limits<float>::quiet_NaN();
