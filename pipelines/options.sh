@@ -15,7 +15,7 @@ number() {
 # count OPTION VALUE ...: whole and above zero
 count() {
   text "$@"
-  [[ $2 =~ ^[0-9]+$ && ! $2 =~ ^0+$ ]] || wrong "$1 wants a whole number above zero, not \"$2\""
+  [[ $2 =~ ^[1-9][0-9]*$ ]] || wrong "$1 wants a whole number above zero, not \"$2\""
 }
 # only_count NAME [ARGUMENT ...]: the script takes one count that may be left out, and --help.
 only_count() {

@@ -37,6 +37,7 @@ expect 2 'there is no format las' record.sh --format las
 expect 2 'there is no way to play to disk' play.sh --to disk
 expect 2 '--send wants HOST:PORT' play.sh --send edge
 expect 2 '--scan wants a whole number' view.sh --scan first
+expect 2 '--scan wants a whole number' view.sh --scan 08
 expect 2 'SECONDS wants a whole number' secure.sh five
 expect 2 'CLOUDS wants a whole number' rtsp.sh 1.5
 expect 2 'there is nothing to say behind SECONDS' secure-dtls.sh 5 6
