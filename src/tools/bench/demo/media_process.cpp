@@ -95,14 +95,13 @@ void MediaProcess::Write(const Cloud& cloud) { clouds_.Write(WriteFrame(cloud));
 
 std::int64_t MediaProcess::UnixTimeOf(GstPad* pad, GstClockTime pts) const {
   const gst::EventPtr event(gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0));
-  GstClock* clock = gst_element_get_clock(pipeline_.get());
+  const std::unique_ptr<GstClock, gst::Unref> clock(gst_element_get_clock(pipeline_.get()));
   const std::int64_t now = UnixNow();
-  if (!event || clock == nullptr) return now;
+  if (!event || !clock) return now;
   const GstSegment* segment = nullptr;
   gst_event_parse_segment(event.get(), &segment);
   const auto running = gst_segment_to_running_time(segment, GST_FORMAT_TIME, pts);
-  const auto clock_now = static_cast<std::int64_t>(gst_clock_get_time(clock));
-  gst_object_unref(clock);
+  const auto clock_now = static_cast<std::int64_t>(gst_clock_get_time(clock.get()));
   const auto base = static_cast<std::int64_t>(gst_element_get_base_time(pipeline_.get()));
   return now - (clock_now - (base + static_cast<std::int64_t>(running)));
 }
