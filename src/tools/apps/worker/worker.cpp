@@ -56,7 +56,7 @@ Worker::Worker(const WorkerSettings& settings)
 
 void Worker::Step() {
   const nats::ConnectionState state = connection_->state();
-  if (state.closed) throw std::runtime_error("the NATS server refuses us: " + state.last_error);
+  if (state.refused()) throw std::runtime_error("the NATS server refuses us: " + state.last_error);
   TakeNews();
   TakeAnswers();
   if (table_.MissesEntries(Now())) watch_.Renew();
