@@ -347,7 +347,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   state.trouble.clear();
   const GstFlowReturn flow = Take(self, delivery, out);
   if (flow == GST_FLOW_FLUSHING) return flow;  // unacknowledged, the message comes again
-  // Of a durable consumer, earlier messages may come again.
+  // A durable consumer may get earlier messages again.
   state.at_end =
       eos_at_end && delivery.stored && delivery.to_come == 0 && !state.subscriber->acknowledges();
   state.delivery = std::move(delivery);

@@ -124,7 +124,7 @@ TEST_F(NatsErrors, AServerThatIsNotThereIsToldOfByBothEnds) {
   }
 }
 
-/// As at the start in a gap of the link: libnats gives such a connect up for good.
+/// A robot that starts in a gap of its link meets this: libnats gives the connect up for good.
 TEST_F(NatsErrors, AServerThatTakesConnectionsAndIsSilentIsTriedAgain) {
   server_.Start();
   server_.Freeze();

@@ -228,7 +228,7 @@ TEST_F(MergedByHand, ATurnInWhichNoSensorSeesAnythingIsAGap) {
   ExpectGap(100);
 }
 
-/// As pointcloudfilter sends if no point stays.
+/// Sends a gap, as pointcloudfilter does if no point stays.
 TEST_F(MergedByHand, ATurnOfGapsIsAGapOfTheEarliersTime) {
   const auto push_gap = [](const Harness& h, GstClockTime time_ms) {
     ASSERT_TRUE(gst_harness_push_event(
