@@ -55,6 +55,7 @@ sanitized_job=
 sanitized_result=
 passed=0
 failed=0
+failures=
 started=$SECONDS
 
 # Long simulations and command-line programs run the same code as other tests. A sanitizer makes
@@ -148,15 +149,17 @@ shorten() { grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass
 results() { cat "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json 2>/dev/null; }
 forget() { rm -f "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json; }
 
-# tally: adds the results that it reads to the totals.
+# tally LOG: adds the results in a log to the totals, and keeps the ends of what failed tests printed.
 tally() {
   local counts ok bad
   counts=$(jq -s -r '[(map(select(.result == "OK" or .result == "EXPECTEDFAIL")) | length),
       (map(select(.result != "OK" and .result != "EXPECTEDFAIL" and .result != "SKIP")) | length)]
-      | @tsv')
+      | @tsv' "$1")
   read -r ok bad <<<"$counts"
   passed=$((passed + ok))
   failed=$((failed + bad))
+  failures+=$(jq -r 'select(.result | IN("OK", "EXPECTEDFAIL", "SKIP") | not)
+      | "\n== \(.result): \(.name)", (((.stdout // "") + (.stderr // "")) / "\n" | .[-20:][] | "  " + .)' "$1")
 }
 
 # settle DIR SUITE NAME: adds the results of a suite in a log of meson to the totals.
@@ -166,7 +169,7 @@ settle() {
   results "$1" "$3" |
     jq -c --arg suite "$2" 'select(.name | sub("^[^:]*:"; "") | sub(" / .*"; "") | split("+") | index($suite))' >"$log"
   [ -s "$log" ] || { echo "meson left no results of $2"; failed=$((failed + 1)); return; }
-  tally <"$log"
+  tally "$log"
 }
 
 # run DIR SUITES [meson options]: runs the tests of the suites together, and adds their results to the totals.
@@ -286,6 +289,7 @@ if [ "$tsan" = yes ]; then
   fi
 fi
 
+[ -z "$failures" ] || echo "$failures"
 echo "== $((SECONDS - started)) s"
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
