@@ -54,6 +54,8 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   natsConnection* get() const { return nc_; }
+  /// After this, the ends of subscriptions do not wait for the server.
+  void Close() { natsConnection_Close(nc_); }
   /// Never waits for the network.
   ConnectionState state() const;
   /// Returns true if there was a reconnect since the last call. libnats counts a reconnect before

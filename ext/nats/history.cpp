@@ -141,7 +141,7 @@ std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64
   if (js_PullSubscribe(&raw, js_.get(), subject_.c_str(), nullptr, nullptr, &options, &code) !=
       NATS_OK)
     return {};
-  const SubscriptionPtr subscription(raw);
+  const SubscriptionPtr subscription(raw, {connection_->get()});
   // The server sends nothing if the first message alone exceeds MaxBytes.
   const std::int64_t largest = 2 * natsConnection_GetMaxPayload(connection_->get());
   jsFetchRequest request;

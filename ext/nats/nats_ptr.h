@@ -3,13 +3,13 @@
 #pragma once
 #include <nats/nats.h>
 
+#include <cstdint>
 #include <memory>
 
 namespace lidar::nats {
 
 struct Destroy {
   void operator()(natsOptions* p) const { natsOptions_Destroy(p); }
-  void operator()(natsSubscription* p) const { natsSubscription_Destroy(p); }
   void operator()(natsMsg* p) const { natsMsg_Destroy(p); }
   void operator()(jsCtx* p) const { jsCtx_Destroy(p); }
   void operator()(jsStreamInfo* p) const { jsStreamInfo_Destroy(p); }
@@ -19,8 +19,21 @@ struct Destroy {
   void operator()(natsInbox* p) const { natsInbox_Destroy(p); }
 };
 
+/// libnats 3.4 frees a subscription even while its reading thread has a message for it. The
+/// server's answer comes to that thread after such messages. A closed connection does not wait for
+/// one.
+struct EndSubscription {
+  static constexpr std::int64_t kTimeoutMs = 1'000;
+  natsConnection* connection = nullptr;
+  void operator()(natsSubscription* p) const {
+    natsSubscription_Unsubscribe(p);
+    natsConnection_FlushTimeout(connection, kTimeoutMs);
+    natsSubscription_Destroy(p);
+  }
+};
+
 using OptionsPtr = std::unique_ptr<natsOptions, Destroy>;
-using SubscriptionPtr = std::unique_ptr<natsSubscription, Destroy>;
+using SubscriptionPtr = std::unique_ptr<natsSubscription, EndSubscription>;
 using MessagePtr = std::unique_ptr<natsMsg, Destroy>;
 using JetStreamPtr = std::unique_ptr<jsCtx, Destroy>;
 using StreamInfoPtr = std::unique_ptr<jsStreamInfo, Destroy>;

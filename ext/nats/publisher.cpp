@@ -77,6 +77,7 @@ bool Publisher::Open(std::string* why) {
 }
 
 void Publisher::Close() {
+  if (connection_) connection_->Close();
   asks_.reset();
   acks_.reset();
   js_.reset();
@@ -95,7 +96,7 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
   natsSubscription* raw = nullptr;
   const natsStatus s =
       natsConnection_Subscribe(&raw, connection_->get(), subject.c_str(), on_message, target.get());
-  out->reset(raw);
+  *out = SubscriptionPtr(raw, {connection_->get()});
   if (s == NATS_CONNECTION_CLOSED) return true;  // state() has the reason
   if (s != NATS_OK) {
     *why = ErrorText(s);

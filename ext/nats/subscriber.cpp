@@ -64,6 +64,7 @@ Subscriber::~Subscriber() {
   // Closing a socket with unread messages would lose the acknowledgements that it sent.
   if (connection_ && acknowledges() && connection_->state().connected())
     natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
+  if (connection_) connection_->Close();
 }
 
 /// libnats subscribes again by itself after a reconnect.
@@ -71,7 +72,7 @@ natsStatus Subscriber::SubscribeLive() {
   natsSubscription* raw = nullptr;
   const std::string configs = ConfigSubject(settings_.subject, "*");
   natsStatus s = natsConnection_SubscribeSync(&raw, connection_->get(), configs.c_str());
-  configs_.reset(raw);
+  configs_ = Own(raw);
   if (s == NATS_OK)
     s = natsSubscription_SetPendingLimits(raw, kMaxPendingConfigs, kMaxPendingConfigBytes);
   raw = nullptr;
@@ -80,7 +81,7 @@ natsStatus Subscriber::SubscribeLive() {
             ? natsConnection_SubscribeSync(&raw, connection_->get(), settings_.subject.c_str())
             : natsConnection_QueueSubscribeSync(&raw, connection_->get(), settings_.subject.c_str(),
                                                 settings_.queue_group.c_str());
-  messages_.reset(raw);
+  messages_ = Own(raw);
   if (s == NATS_OK)
     s = natsSubscription_SetPendingLimits(raw, kMaxPendingMessages, settings_.max_pending);
   return s;
@@ -114,7 +115,7 @@ natsStatus Subscriber::SubscribeOwn(jsErrCode* code) {
   natsSubscription* raw = nullptr;
   const natsStatus s =
       js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
-  messages_.reset(raw);
+  messages_ = Own(raw);
   return s;
 }
 
@@ -153,7 +154,7 @@ natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   options.ManualAck = true;
   natsSubscription* raw = nullptr;
   s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
-  messages_.reset(raw);
+  messages_ = Own(raw);
   if (s != NATS_OK) return s;
   // Messages beyond the limit are dropped here and, unacknowledged, come again. A single message
   // must fit.
@@ -174,7 +175,7 @@ natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
   natsSubscription* raw = nullptr;
   const std::string configs = ConfigSubject(settings_.subject, "*");
   const natsStatus s = js_SubscribeSync(&raw, js_.get(), configs.c_str(), nullptr, &options, code);
-  configs_.reset(raw);
+  configs_ = Own(raw);
   if (s != NATS_OK) return s;
   natsSubscription_SetPendingLimits(raw, kMaxPendingConfigs, kMaxPendingConfigBytes);
   return settings_.durable.empty() ? SubscribeOwn(code) : SubscribeDurable(code);

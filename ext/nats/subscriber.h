@@ -69,6 +69,9 @@ class Subscriber {
   Subscriber(SubscriberSettings settings, Connection::Changed changed)
       : settings_(std::move(settings)), changed_(std::move(changed)) {}
   bool stored() const { return !settings_.stream.empty(); }
+  SubscriptionPtr Own(natsSubscription* raw) const {
+    return SubscriptionPtr(raw, {connection_->get()});
+  }
 
   bool Connect(std::string* why);
   Event ConnectAgain(std::chrono::milliseconds pause);

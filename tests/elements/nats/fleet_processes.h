@@ -134,7 +134,7 @@ class AckWitness {
     natsSubscription* raw = nullptr;
     EXPECT_EQ(natsConnection_Subscribe(&raw, connection_->get(), "_INBOX.>", OnMessage, this),
               NATS_OK);
-    subscription_.reset(raw);
+    subscription_ = nats::SubscriptionPtr(raw, {connection_->get()});
     natsSubscription_SetPendingLimits(raw, -1, -1);
   }
   /// Stops listening.

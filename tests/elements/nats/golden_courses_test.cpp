@@ -170,11 +170,9 @@ class Fleet {
 
  private:
   void Connect() {
-    natsSubscription* raw = nullptr;
+    messages_.reset();
     client_.emplace(server_.url());
-    ASSERT_EQ(natsConnection_SubscribeSync(&raw, client_->get(), "r1.>"), NATS_OK);
-    messages_.reset(raw);
-    natsConnection_FlushTimeout(client_->get(), NatsClient::kPatienceMs);
+    messages_ = client_->Subscribe("r1.>");
   }
   nats::MessagePtr Next() {
     natsMsg* raw = nullptr;

@@ -190,16 +190,14 @@ TEST_F(LidarEdge, AServerThatRefusesDoesNotEndARecordingAndMayTakeUsLater) {
   ASSERT_TRUE(Eventually([&] { return Metric("lidar_natssink_refusals", "r1").value_or(0) >= 2; }));
   server_.Start({"--user", "edge", "--pass", "second"});
   const NatsClient client(server_.url("nats", "edge:second@"));
-  natsSubscription* statistics = nullptr;
-  natsConnection_SubscribeSync(&statistics, client.get(), "fleet.r1.statistics.lidar");
+  const auto statistics = client.Subscribe("fleet.r1.statistics.lidar");
   NatsPipeline consumer("natssrc name=n subject=fleet.r1.lidar.lidar url=" +
                         server_.url("nats", "edge:second@") + " ! fakesink name=see sync=false");
   consumer.Play();
   EXPECT_TRUE(consumer.WaitForBuffers(8));
   natsMsg* report = nullptr;
-  EXPECT_EQ(natsSubscription_NextMsg(&report, statistics, NatsClient::kPatienceMs), NATS_OK);
+  EXPECT_EQ(natsSubscription_NextMsg(&report, statistics.get(), NatsClient::kPatienceMs), NATS_OK);
   natsMsg_Destroy(report);
-  natsSubscription_Destroy(statistics);
   EXPECT_EQ(Metric("lidar_edge_sessions", "r1"), 1);
   EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
   EXPECT_TRUE(EndsByItself());

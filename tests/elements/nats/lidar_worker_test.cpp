@@ -365,12 +365,10 @@ TEST_F(LidarWorker, TellsOfItsRobots) {
   WorkerProcess worker(
       {"r*", "--url", server_.url(), "--lease", "2000", "--interval", "0.2", "--http-port", "0"});
   const NatsClient client(server_.url());
-  natsSubscription* raw_reports = nullptr;
-  natsConnection_SubscribeSync(&raw_reports, client.get(), "fleet.*.worker.*");
-  nats::SubscriptionPtr reports(raw_reports);
+  auto reports = client.Subscribe("fleet.*.worker.*");
   const auto counts_poses = [&] {
     natsMsg* raw_report = nullptr;
-    if (natsSubscription_NextMsg(&raw_report, raw_reports, 1'000) != NATS_OK) return false;
+    if (natsSubscription_NextMsg(&raw_report, reports.get(), 1'000) != NATS_OK) return false;
     const nats::MessagePtr message(raw_report);
     EXPECT_STREQ(natsMsg_GetSubject(raw_report), "fleet.r1.worker.front");
     const auto report = nlohmann::json::parse(natsMsg_GetData(raw_report));

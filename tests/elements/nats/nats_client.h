@@ -37,6 +37,13 @@ class NatsClient {
 
   natsConnection* get() const { return nc_; }
   jsCtx* js() const { return js_.get(); }
+  /// The server has the subscription when this returns.
+  nats::SubscriptionPtr Subscribe(const std::string& subject) const {
+    natsSubscription* raw = nullptr;
+    EXPECT_EQ(natsConnection_SubscribeSync(&raw, nc_, subject.c_str()), NATS_OK);
+    EXPECT_EQ(natsConnection_FlushTimeout(nc_, kPatienceMs), NATS_OK);
+    return nats::SubscriptionPtr(raw, {nc_});
+  }
 
  private:
   natsConnection* nc_ = nullptr;

@@ -274,9 +274,7 @@ TEST_F(NatsJetStream, ADurableConsumerEndsAfterAllThatAnotherDidNotAcknowledge) 
   const DurableConsumer consumer(server_.url(), 200'000'000, 100);
   {
     const NatsClient other(server_.url());
-    natsSubscription* raw = nullptr;
-    ASSERT_EQ(natsConnection_SubscribeSync(&raw, other.get(), "slam-delivery"), NATS_OK);
-    const nats::SubscriptionPtr subscription(raw);
+    const auto subscription = other.Subscribe("slam-delivery");
     ASSERT_TRUE(Eventually([&] { return consumer.unacknowledged() == 8; }));
   }
   EXPECT_EQ(TakeRest(At(kBox)).size(), 8U);

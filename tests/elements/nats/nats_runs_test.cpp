@@ -125,15 +125,12 @@ int CountBefore(const std::string& last, natsSubscription* all, const std::strin
 
 TEST_F(NatsRuns, CapsComeAgainBeforeASmallBoxDropsThem) {
   const NatsClient client(server_.url());
-  natsSubscription* all = nullptr;
-  ASSERT_EQ(natsConnection_SubscribeSync(&all, client.get(), "r1.>"), NATS_OK);
-  const nats::SubscriptionPtr owner(all);
-  natsConnection_FlushTimeout(client.get(), NatsClient::kPatienceMs);
+  const auto all = client.Subscribe("r1.>");
   Feeder sink(At(kImuBox + " max-bytes=40000"));
   for (int i = 0; i < 20; ++i) sink.Push(10'016);  // each a little more than a quarter of the box
   sink.End();
   natsConnection_PublishString(client.get(), "r1.end", "");
-  EXPECT_GE(CountBefore("r1.end", all, "r1.imu.config." + imu_->id()), 20);
+  EXPECT_GE(CountBefore("r1.end", all.get(), "r1.imu.config." + imu_->id()), 20);
 }
 
 TEST_F(NatsRuns, WhatJetStreamHasNotAcknowledgedWaits) {

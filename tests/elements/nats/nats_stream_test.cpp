@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Buffers go into natssink and come out of natssrc, while both run.
+#include <atomic>
 #include <thread>
 
 #include "ext/nats/subscriber.h"
@@ -64,16 +65,13 @@ TEST_F(NatsStream, ALateJoinerHasItsCapsWithTheFirstMessage) {
 
 TEST_F(NatsStream, CapsDoNotComeWithEachMessage) {
   const NatsClient other(server_.url());
-  natsSubscription* raw = nullptr;
-  ASSERT_EQ(natsConnection_SubscribeSync(&raw, other.get(), "r1.front.config.*"), NATS_OK);
-  natsConnection_Flush(other.get());
+  const auto configs = other.Subscribe("r1.front.config.*");
   PublishSlices(80, At("subject=r1.front"));
   natsConnection_Flush(other.get());
   int caps = 0;
-  natsSubscription_GetPending(raw, &caps, nullptr);
+  natsSubscription_GetPending(configs.get(), &caps, nullptr);
   EXPECT_GE(caps, 1);
   EXPECT_LT(caps, 40) << "they come again after a second";
-  natsSubscription_Destroy(raw);
 }
 
 /// The sender answers the third question.
@@ -83,10 +81,8 @@ TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
   const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
   ASSERT_TRUE(format) << why;
   const NatsClient sender(server_.url());
-  natsSubscription* raw = nullptr;
-  ASSERT_EQ(natsConnection_SubscribeSync(&raw, sender.get(), "r1.imu.get-config"), NATS_OK);
   {
-    const nats::SubscriptionPtr questions(raw);
+    const auto questions = sender.Subscribe("r1.imu.get-config");
     nats::SubscriberSettings settings;
     settings.connection.url = server_.url();
     settings.subject = "r1.imu";
@@ -96,7 +92,7 @@ TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
     std::thread answers([&] {
       for (int question = 1; question <= 3; ++question) {
         natsMsg* asked = nullptr;
-        EXPECT_EQ(natsSubscription_NextMsg(&asked, raw, kPatience / std::chrono::milliseconds(1)),
+        EXPECT_EQ(natsSubscription_NextMsg(&asked, questions.get(), NatsClient::kPatienceMs),
                   NATS_OK)
             << question;
         natsMsg_Destroy(asked);
@@ -109,6 +105,33 @@ TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
     ASSERT_TRUE(found);
     EXPECT_EQ(found->text(), format->text());
   }
+}
+
+/// libnats 3.4 frees a subscription even while its reading thread has a message for it.
+TEST_F(NatsStream, SubscriptionsEndWhileMessagesCome) {
+  std::atomic<bool> done{false};
+  std::thread flood([&] {
+    const NatsClient sender(server_.url());
+    while (!done) natsConnection_PublishString(sender.get(), "r1.imu", "a message");
+  });
+  nats::SubscriberSettings settings;
+  settings.connection.url = server_.url();
+  settings.subject = "r1.imu";
+  const NatsClient other(server_.url());
+  for (int i = 0; i < 100; ++i) {
+    other.Subscribe("r1.imu");
+    std::string why;
+    const auto subscriber = nats::Subscriber::Open(
+        settings, [](const auto&) {}, &why);
+    ASSERT_TRUE(subscriber) << why;
+    nats::Delivery delivery;
+    EXPECT_TRUE(Eventually([&] {
+      return subscriber->Next(std::chrono::milliseconds(100), &delivery) ==
+             nats::Subscriber::Event::kMessage;
+    }));
+  }
+  done = true;
+  flood.join();
 }
 
 TEST_F(NatsStream, CapsThatChangeArriveBeforeTheirBuffers) {

@@ -126,7 +126,7 @@ natsStatus FleetWatch::Subscribe() {
   natsSubscription* raw = nullptr;
   s = js_SubscribeSync(&raw, js_.get(), LeaseStore::Subject(settings_.bucket, ">").c_str(), nullptr,
                        &options, nullptr);
-  entries_.reset(raw);
+  entries_ = nats::SubscriptionPtr(raw, {connection_->get()});
   return s;
 }
 

@@ -23,7 +23,7 @@ LeaseStore::LeaseStore(natsConnection* connection, const std::string& bucket)
   natsSubscription* raw = nullptr;
   natsStatus s = NATS_NO_MEMORY;
   if (subjects_) s = natsConnection_SubscribeSync(&raw, connection_, subjects_->All().c_str());
-  answers_.reset(raw);
+  answers_ = nats::SubscriptionPtr(raw, {connection_});
   if (s != NATS_OK) throw std::runtime_error("NATS cannot be used: " + nats::ErrorText(s));
 }
 

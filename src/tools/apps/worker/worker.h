@@ -28,6 +28,9 @@ class Worker {
  public:
   /// Throws std::runtime_error if settings are wrong or elements missing.
   explicit Worker(const WorkerSettings& settings);
+  ~Worker() { connection_->Close(); }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
 
   /// Whether only another worker can reach a server: see ConnectionState.
   bool unanswered() const { return connection_->state().unanswered; }
