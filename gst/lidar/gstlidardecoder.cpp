@@ -297,7 +297,8 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   if (MayDecode(self, settings.max_decode_load)) {
     const lidar::Duration before = ThreadTime();
     output = DecodeBuffer(self, buffer, &slice);
-    stream.load.Spend(ThreadTime() - before);
+    // Work without a limit must not count against a later limit.
+    if (settings.max_decode_load > 0) stream.load.Spend(ThreadTime() - before);
   }
   stream.stats_timer.Post(GST_ELEMENT(self), settings.stats_interval, Stats);
   if (!output) return DropSlice(self, buffer, slice.lacks_reference != FALSE);

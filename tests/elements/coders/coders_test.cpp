@@ -206,6 +206,20 @@ TEST_P(AnyCoder, DropsWhatTakesMoreProcessorTimeThanAllowed) {
   EXPECT_EQ(test::StatOf(dec.get(), "slices-dropped"), test::StatOf(dec.get(), "slices-over-load"));
 }
 
+TEST_P(AnyCoder, WhatItDecodedWithoutALimitDoesNotCountAgainstALaterOne) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Codec(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
+  const test::StoppedClock clock;
+  for (guint i = 0; i < 8; ++i)
+    gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
+  g_object_set(dec.get(), "max-decode-load", 1.0, nullptr);
+  gst_harness_push(h.get(), OrganisedBuffer(model, 64, {1, 0, 8, 0}));
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-over-load"), 0U);
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 9U);
+}
+
 TEST_P(AnyCoder, SurvivesFlushEosAndStateCycles) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Codec(GetParam());
