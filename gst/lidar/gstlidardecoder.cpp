@@ -222,7 +222,8 @@ static BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
   *slice = {0, 1, 0, 0, 0, 1, FALSE};
   if (!in || !klass->decode(self, in.data(), in.size(), stream.max_points, slice)) return nullptr;
   const gsize points = gsize{slice->width} * slice->height;
-  if (points > stream.max_points) return nullptr;
+  // Caps without a width would stop the elements downstream.
+  if (points == 0 || points > stream.max_points) return nullptr;
   BufferPtr output(gst_buffer_new_allocate(nullptr, points * stream.cloud->point_step, nullptr));
   if (!output) return nullptr;
   {

@@ -4,7 +4,9 @@
 
 #include <map>
 #include <tuple>
+#include <utility>
 
+#include "gst/lidar/gstlidardecoder.h"
 #include "tests/elements/coders/coder_harness.h"
 #include "tests/elements/coders/stopped_clock.h"
 #include "tests/support/element_bus.h"
@@ -402,6 +404,24 @@ INSTANTIATE_TEST_SUITE_P(Coders, EitherCoder, ::testing::ValuesIn(RangeCoders())
                          [](const auto& c) { return c.param.name; });
 INSTANTIATE_TEST_SUITE_P(Coders, AnyCoder, ::testing::ValuesIn(AllCoders()),
                          [](const auto& c) { return c.param.name; });
+
+// Caps without a width would stop the elements behind the decoder.
+TEST(Decoders, DropASliceWithoutAPoint) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Codec(kExample);
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
+  auto& decode = GST_LIDAR_DECODER_GET_CLASS(dec.get())->decode;
+  const auto real = std::exchange(
+      decode, [](GstLidarDecoder*, const guint8*, gsize, guint, GstLidarDecodedSlice* slice) {
+        slice->width = 0;
+        return gboolean{TRUE};
+      });
+  EXPECT_EQ(gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, 0, 8, 0})), GST_FLOW_OK);
+  decode = real;
+  EXPECT_EQ(test::StatOf(dec.get(), "slices-dropped"), 1U);
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U);
+}
 
 TEST(Decoders, TellTheAgeOfTheNewestSlice) {
   GError* error = nullptr;
