@@ -70,9 +70,8 @@ const std::array<Stat<Counters>, 14> kStats = {{
 
 /// Belongs to the streaming thread.
 struct Stream {
-  std::optional<CloudInfo> cloud;  // of the output; its size is that of the last pushed caps
+  std::optional<CloudInfo> cloud;  // of the output; its width is 0 until its caps are pushed
   guint max_points = 0;
-  bool has_size = false;  // the caps of `cloud` have been pushed
   HeldEvents held;
   RefusedCaps refused;
   MessageTimer stats_timer;
@@ -148,7 +147,6 @@ static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
 
 static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   Stream& stream = self->state->stream;
-  stream.has_size = false;
   stream.max_points = Snapshot(*self->state).max_points;
   stream.cloud = CloudInfo::FromCodedCaps(caps);
   GstLidarDecodedFormat decoded{};
@@ -169,12 +167,11 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
 static void PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;
-  if (stream.has_size && slice.width == cloud.width && slice.height == cloud.height) return;
+  if (slice.width == cloud.width && slice.height == cloud.height) return;
   cloud.width = slice.width;
   cloud.height = slice.height;
   const CapsPtr caps(cloud.ToCaps());
   GST_DEBUG_OBJECT(self, "giving %" GST_PTR_FORMAT, static_cast<gpointer>(caps.get()));
-  stream.has_size = true;
   stream.held.PushCapsTo(self->state->pads.src(), caps.get());
 }
 

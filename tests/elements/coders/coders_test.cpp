@@ -373,6 +373,19 @@ TEST_P(AnyCoder, PostsItsStatsOnceTheIntervalHasPassed) {
   }
 }
 
+TEST_P(AnyCoder, GivesCapsOfAnotherFrameRateThoughSlicesKeepTheirSize) {
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Codec(GetParam());
+  CloudInfo info = OrganisedInfo(model, 64);
+  for (const gint rate : {10, 20}) {
+    info.framerate_n = rate;
+    SetCaps(h.get(), info);
+    ASSERT_EQ(gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, 0, 8, 0})), GST_FLOW_OK);
+    const CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+    EXPECT_EQ(CloudInfo::FromCaps(caps.get())->framerate_n, rate);
+  }
+}
+
 TEST_P(EitherCoder, DecodesASensorThatTakesThePlaceOfAnother) {
   const Harness h = Codec(GetParam());
   for (const guint beams : {32U, 16U, 32U}) {
