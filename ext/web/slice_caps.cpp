@@ -11,7 +11,7 @@ std::optional<SliceCaps> SliceCaps::Parse(const GstCaps* caps, std::string* why)
                   ? gst::CloudInfo::FromCodedCaps(caps)
                   : std::nullopt;
   if (!info) {
-    *why = "their fields lack x, y and z as F32 side by side";
+    *why = "their fields lack x, y and z as F32 side by side, or have gaps between them";
     return std::nullopt;
   }
   SliceCaps out;

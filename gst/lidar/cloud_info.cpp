@@ -104,7 +104,7 @@ std::optional<CloudInfo> CloudInfo::FromCodedCaps(const GstCaps* caps) {
   const gchar* fields = gst_structure_get_string(s, "fields");
   CloudInfo cloud;
   auto parsed = PointFields::Parse(fields != nullptr ? fields : "x:F32:0,y:F32:4,z:F32:8");
-  if (!parsed || !parsed->HasPackedXyz()) return std::nullopt;
+  if (!parsed || !parsed->HasPackedXyz() || !parsed->ArePacked()) return std::nullopt;
   cloud.fields = *std::move(parsed);
   cloud.point_step = cloud.fields.MinimumStep();
   gst_structure_get_fraction(s, "framerate", &cloud.framerate_n, &cloud.framerate_d);

@@ -150,7 +150,7 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   stream.max_points = Snapshot(*self->state).max_points;
   stream.cloud = CloudInfo::FromCodedCaps(caps);
   GstLidarDecodedFormat decoded{};
-  decoded.refusal = "their fields lack x, y and z as F32 side by side";
+  decoded.refusal = "their fields lack x, y and z as F32 side by side, or have gaps between them";
   if (stream.cloud && AskSubclass(self, caps, &*stream.cloud, &decoded)) {
     stream.refused.Reset();
     return TRUE;

@@ -286,6 +286,9 @@ INSTANTIATE_TEST_SUITE_P(
                                 "application/x-pointcloud2,width=4,point-step=4,"
                                 "fields=(string)\"x:F32:0\""),
                       std::pair("lidardec",
+                                "application/x-lidar-slice,geometry=(string)xyz,"
+                                "fields=(string)\"x:F32:1000,y:F32:1004,z:F32:1008\""),
+                      std::pair("lidardec",
                                 "application/x-lidar-slice,geometry=(string)range,"
                                 "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"")));
 #ifdef HAVE_DRACO
