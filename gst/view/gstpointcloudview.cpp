@@ -337,6 +337,16 @@ static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer*
   return FinishPicture(base, out);
 }
 
+/// A slice that completes no picture is no loss: otherwise the base class would mark each picture
+/// as DISCONT.
+static GstFlowReturn GenerateOutput(GstBaseTransform* base, GstBuffer** out) {
+  const GstFlowReturn flow =
+      GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)->generate_output(base, out);
+  if (flow != GST_BASE_TRANSFORM_FLOW_DROPPED) return flow;
+  gst_clear_buffer(out);
+  return GST_FLOW_OK;
+}
+
 static gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta,
                               GstBuffer* in) {
   // A picture must not carry the metas of a slice.
@@ -397,6 +407,7 @@ static void gst_lidar_point_cloud_view_class_init(GstLidarPointCloudViewClass* k
   transform->get_unit_size = GetUnitSize;
   transform->transform_size = TransformSize;
   transform->transform = Transform;
+  transform->generate_output = GenerateOutput;
   transform->transform_meta = TransformMeta;
   transform->sink_event = SinkEvent;
   transform->stop = Stop;

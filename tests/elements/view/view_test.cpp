@@ -158,6 +158,21 @@ TEST_F(View, AScanIsOnePictureHoweverItIsCut) {
   }
 }
 
+TEST_F(View, APictureIsDiscontWhereOneOfItsSlicesIs) {
+  Start("view=top", Info(1));
+  for (guint scan = 0; scan < 4; ++scan) {
+    for (guint index = 0; index < 3; ++index) {
+      BufferPtr buffer = Cloud({{25, 0, 0, 1}});
+      const GstLidarSlice slice{scan, index, 3, index};
+      gst_lidar_buffer_set_slice(buffer.get(), &slice);
+      if (scan == 2 && index == 1) GST_BUFFER_FLAG_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT);
+      ASSERT_EQ(Push(std::move(buffer), scan * 100 * GST_MSECOND), GST_FLOW_OK);
+    }
+    Pull();
+    EXPECT_EQ(GST_BUFFER_IS_DISCONT(frame_.get()), scan == 2) << scan;
+  }
+}
+
 TEST_F(View, AScanWhoseLastSliceIsLostShowsWhenTheNextBegins) {
   Start("view=top point-size=1", Info(1));
   PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
