@@ -49,6 +49,8 @@ class CloudStamper {
   /// Sets the size of all clouds in bytes; 0: sizes differ. With a size, seeks and queries in time
   /// are answered here, and go upstream in bytes.
   void SetCloudSize(gsize bytes);
+  /// Returns the time that `clouds` take.
+  GstClockTime TimeOf(guint64 clouds) const { return Grid().TimeOf(clouds); }
   /// Sets a missing capture time as if the sensor had begun when the first cloud came. Numbers a
   /// cloud that is no slice as a scan of its own.
   void Stamp(GstBuffer* cloud);

@@ -203,6 +203,17 @@ static void GuessType(State* state, GstBuffer* buffer) {
   if (state->type) SetRate(state, 0, 1);
 }
 
+/// Takes a cloud from the adapter, with the time of the buffer in which it begins. Further clouds
+/// of that buffer follow at the frame rate.
+static BufferPtr TakeCloud(State* state, gsize size) {
+  guint64 distance = 0;
+  const GstClockTime pts = gst_adapter_prev_pts(state->adapter.get(), &distance);
+  BufferPtr cloud(gst_buffer_make_writable(gst_adapter_take_buffer(state->adapter.get(), size)));
+  GST_BUFFER_PTS(cloud.get()) =
+      GST_CLOCK_TIME_IS_VALID(pts) ? pts + state->stamper.TimeOf(distance / size) : pts;
+  return cloud;
+}
+
 static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   auto* self = GST_LIDAR_POINT_CLOUD_PARSE(parent);
   State& state = *self->state;
@@ -232,7 +243,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   gst_adapter_push(state.adapter.get(), buffer.release());
   GstFlowReturn flow = GST_FLOW_OK;
   while (flow == GST_FLOW_OK && gst_adapter_available(state.adapter.get()) >= cloud)
-    flow = PushWhole(self, BufferPtr(gst_adapter_take_buffer(state.adapter.get(), cloud)));
+    flow = PushWhole(self, TakeCloud(&state, cloud));
   return flow;
 }
 

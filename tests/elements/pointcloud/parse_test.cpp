@@ -97,6 +97,19 @@ TEST_F(Parse, KeepsTimesThatAreGiven) {
   EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 42U);
 }
 
+TEST_F(Parse, ACloudOfSeveralBuffersHasTheTimeOfThatInWhichItBegins) {
+  Start(std::string(kKitti) + ",width=10");
+  PushSegment(GST_FORMAT_TIME);
+  for (const guint64 ms : {0U, 70U, 140U}) {
+    BufferPtr piece = Bytes(100);
+    GST_BUFFER_PTS(piece.get()) = 5 * GST_SECOND + ms * GST_MSECOND;
+    ASSERT_EQ(Push(std::move(piece)), GST_FLOW_OK);
+  }
+  ASSERT_EQ(Push(Bytes(340)), GST_FLOW_OK);  // without a time: at the frame rate
+  for (const guint ms : {0U, 70U, 140U, 240U})
+    EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 5 * GST_SECOND + ms * GST_MSECOND);
+}
+
 TEST_F(Parse, KeepsTheSegmentOfGivenTimesWhereTheFrameRateChanges) {
   Start(kKitti);
   PushSegment(GST_FORMAT_TIME);
