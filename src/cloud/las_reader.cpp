@@ -29,6 +29,9 @@ constexpr PointFormat kFormats[] = {{20, 0, 0, 0},   {28, 20, 0, 0},  {26, 0, 20
                                     {30, 22, 0, 0},  {36, 22, 30, 0}, {38, 22, 30, 36},
                                     {59, 22, 0, 0},  {67, 22, 30, 36}};
 constexpr unsigned kFirstLong = 6;
+// Short formats have flags in the upper bits of the class.
+constexpr std::uint32_t kShortClass = 15;
+constexpr std::uint8_t kShortClassBits = 0x1F;
 
 struct LasHeader {
   std::uint32_t points_at = 0;
@@ -46,7 +49,7 @@ std::vector<PointField> FieldsOf(unsigned format) {
       {"y", FieldType::kF32, 4},
       {"z", FieldType::kF32, 8},
       {"intensity", FieldType::kU16, 12},
-      {"classification", FieldType::kU8, is_long ? 16U : 15U},
+      {"classification", FieldType::kU8, is_long ? 16U : kShortClass},
       {"user_data", FieldType::kU8, 17},
       {"point_source_id", FieldType::kU16, is_long ? 20U : 18U},
   };
@@ -143,6 +146,7 @@ std::optional<FileCloud> ReadLas(ByteView file, std::string* why) {
     for (unsigned k = 0; k < 3; ++k) w.LeF32(static_cast<float>(p[k] - origin[k]));
     cloud.points.insert(cloud.points.end(), records.data + at + 12,
                         records.data + at + header->step);
+    if (header->format < kFirstLong) cloud.points[at + kShortClass] &= kShortClassBits;
   }
   return cloud;
 }

@@ -314,6 +314,21 @@ TEST(Las, RecordsOfAllFormatsAreRead) {
   }
 }
 
+TEST(Las, AClassIsReadWithoutTheFlagsBesideIt) {
+  for (const bool is_long : {false, true}) {
+    Las las;
+    las.minor = is_long ? 4 : 2;
+    las.format = is_long ? 6 : 1;
+    las.step = is_long ? 30 : 28;
+    std::string file = las.File();
+    const std::size_t classification = is_long ? 375 + 16 : 227 + 15;
+    file[classification] = static_cast<char>(0xE2);  // withheld, key point, synthetic; ground
+    const auto cloud = ReadLasFile(file);
+    ASSERT_TRUE(cloud);
+    EXPECT_EQ(cloud->points[OffsetOf(*cloud, "classification")], is_long ? 0xE2 : 2);
+  }
+}
+
 TEST(Las, PointsOnAMapKeepTheirMillimetres) {
   Las las;
   las.offset = 5'400'000;
