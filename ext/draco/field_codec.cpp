@@ -17,6 +17,8 @@ using Attribute = ::draco::GeometryAttribute;
 
 // The default of both speeds in draco_point_cloud_transport is 7.
 constexpr int kSpeed = 7;
+// Draco counts them in a byte.
+constexpr std::uint32_t kMostNumbers = 255;  // of a field
 
 ::draco::DataType DracoTypeOf(FieldType type) {
   constexpr ::draco::DataType kTypes[] = {
@@ -29,8 +31,7 @@ std::size_t BytesOf(const FieldOfPoints& field) { return SizeOf(field.type) * fi
 
 bool FitsPoint(const FieldLayout& layout) {
   const auto fits = [&](const FieldOfPoints& f) {
-    return f.count >= 1 && f.count <= PointFields::kMaxFields &&
-           f.offset + BytesOf(f) <= layout.point_step;
+    return f.count >= 1 && f.count <= kMostNumbers && f.offset + BytesOf(f) <= layout.point_step;
   };
   return !layout.fields.empty() && layout.fields.size() <= FieldLayout::kMaxFields &&
          std::all_of(layout.fields.begin(), layout.fields.end(), fits);

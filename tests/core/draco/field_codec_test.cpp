@@ -28,5 +28,22 @@ TEST(FieldCodec, RefusesAStreamOfFewerOrMoreFieldsThanTheLayoutHas) {
   }
 }
 
+// Descriptors of points have many numbers: FPFH has 33.
+TEST(FieldCodec, TakesAFieldOfAsManyNumbersAsDracoCounts) {
+  for (const std::uint32_t count : {33U, 255U, 256U}) {
+    FieldLayout layout;
+    layout.fields = {{FieldType::kF32, 0, 1, true}, {FieldType::kU16, 4, count, false}};
+    layout.point_step = 4 + 2 * count;
+    std::vector<std::uint8_t> points(20 * layout.point_step);
+    std::iota(points.begin(), points.end(), std::uint8_t{0});
+    std::vector<std::uint8_t> stream;
+    ASSERT_EQ(EncodeFields({points.data(), points.size()}, layout, &stream), count < 256) << count;
+    if (count == 256) continue;
+    std::vector<std::uint8_t> decoded;
+    ASSERT_TRUE(DecodeFields({stream.data(), stream.size()}, layout, 20, &decoded)) << count;
+    EXPECT_EQ(decoded, points);
+  }
+}
+
 }  // namespace
 }  // namespace lidar::draco
