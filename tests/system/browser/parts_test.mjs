@@ -2,6 +2,7 @@
 // Parts of the page that need no browser.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { chooseChannels } from '../../../ext/web/page/src/channels.js';
 import { Clock, nowSeconds } from '../../../ext/web/page/src/clock.js';
 import { ellipseOf } from '../../../ext/web/page/src/ellipse.js';
 import { History, Player } from '../../../ext/web/page/src/history.js';
@@ -57,6 +58,19 @@ test('the ellipse of a position has three standard deviations along each of its 
   assert.equal(most(corners(0, 0, 4), [1, 0]), 0);
   assert.equal(most(corners(0, 0, 0), [1, 1]), 0);
   assert.ok(corners(1, 1 + 1e-12, 1).flat().every(Number.isFinite));
+});
+
+test('of several cameras the page takes the first one of its robot', () => {
+  const video = (topic) => ({ topic, schemaName: 'foxglove.CompressedVideo', schema: '' });
+  const clouds = (topic) => ({ topic, schemaName: 'foxglove.PointCloud', schema: '' });
+  const known = { 'foxglove.CompressedVideo': 1, 'foxglove.PointCloud': 1 };
+  const chosen = (list, robot = '') =>
+    chooseChannels(list, { known, robot, idle: false, paused: false }).map(({ topic }) => topic);
+  assert.deepEqual(chosen([video('/camera_1'), clouds('/points'), video('/camera')]), ['/points', '/camera']);
+  assert.deepEqual(
+    chosen([video('/r1/camera'), video('/r2/left'), video('/r2/right'), clouds('/r1/points'), clouds('/r2/points')], 'r2'),
+    ['/r2/left', '/r2/points'],
+  );
 });
 
 /** Slice `i` of scans of two slices at 10 Hz; it refers to slice `i` - 2, except in every `period`th scan. */

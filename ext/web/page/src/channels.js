@@ -4,6 +4,7 @@ import { canDecode } from './slices.js';
 
 const CLOUDS = ['foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
 const SLICES = 'lidar.Slice';
+const VIDEO = 'foxglove.CompressedVideo';
 
 /** The topic of the clouds that a channel has, also as slices; null if it has none. */
 function cloudTopic({ schemaName, schema, topic }) {
@@ -32,9 +33,13 @@ export function chooseChannels(list, { known, robot, idle, paused }) {
   const chosen = robots.includes(robot) ? robot : robots[0];
   const isOthers = ({ topic }) => robotOf(topic) !== chosen && robots.includes(robotOf(topic));
   const decodes = canDecode();
+  // The page has one decoder of pictures: frames of two cameras would refer to each other.
+  const cameras = list.filter((channel) => channel.schemaName === VIDEO && !isOthers(channel)).map(({ topic }) => topic);
+  const [camera] = cameras.sort();
   const coded = new Set(decodes ? list.filter((c) => c.schemaName === SLICES).map(cloudTopic) : []);
   return list.filter((channel) => {
     if (!(channel.schemaName in known) || isOthers(channel)) return false;
+    if (channel.schemaName === VIDEO) return channel.topic === camera;
     const topic = cloudTopic(channel);
     if (topic === null) return true;
     if (paused) return false;
