@@ -142,7 +142,8 @@ bool MessageWriter::WritePose(ByteView bytes, const Publish& publish) {
   }
   if (type_ == cdr::RosType::kOdometry) {
     publish({View(cdr::WriteOdometry(*pose))});
-  } else {
+  } else if (tracking < GST_LIDAR_TRACKING_LOST) {
+    // Transforms have no covariance, which would show that a pose is a guess.
     const cdr::TransformStamped transform{pose->header, pose->child_frame_id, pose->position,
                                           pose->orientation};
     publish({View(cdr::WriteTransforms({transform}))});

@@ -152,6 +152,17 @@ TEST_F(WrittenMessages, OfOdometryNameFramesBySettingElseByCapsElseAsUsual) {
   EXPECT_EQ(pose.child_frame_id, "os");
 }
 
+TEST_F(WrittenMessages, OfTransformsHaveNoPoseThatIsLost) {
+  const auto writer = Make(cdr::RosType::kTransforms, "application/x-odometry");
+  for (const guint8 tracking : {GST_LIDAR_TRACKING_STARTED, GST_LIDAR_TRACKING_OK,
+                                GST_LIDAR_TRACKING_DEGENERATE, GST_LIDAR_TRACKING_LOST}) {
+    GstBuffer* pose = Zeros(64);
+    gst_buffer_fill(pose, 56, &tracking, 1);
+    EXPECT_TRUE(Write(writer.get(), pose));
+    EXPECT_EQ(messages_.size(), tracking == GST_LIDAR_TRACKING_LOST ? 0U : 1U) << int{tracking};
+  }
+}
+
 TEST_F(WrittenMessages, OfPosesHaveTheVarianceOfTheSettingsWhereTheyAreTracked) {
   const auto writer = Make(cdr::RosType::kOdometry, "application/x-odometry");
   ASSERT_TRUE(writer);
