@@ -222,10 +222,12 @@ unsigned Writer::subscribers() const {
   return status.current_count;
 }
 
-bool Writer::FoundIncompatible() {
+Writer::Want Writer::TakeIncompatible() {
   dds_offered_incompatible_qos_status_t status{};
   dds_get_offered_incompatible_qos_status(endpoint_, &status);
-  return status.total_count_change > 0;
+  if (status.total_count_change == 0) return Want::kNothing;
+  const bool reliability = status.last_policy_id == DDS_RELIABILITY_QOS_POLICY_ID;
+  return reliability ? Want::kReliability : Want::kOther;
 }
 
 }  // namespace lidar::dds

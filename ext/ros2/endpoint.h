@@ -89,8 +89,10 @@ class Writer : public Node {
   /// Waits for slow reliable subscribers, but no longer than kMaxBlockingNs.
   Result Publish(const std::vector<ByteView>& pieces);
   unsigned subscribers() const;
-  /// Returns true once for each subscriber with an incompatible reliability.
-  bool FoundIncompatible();
+  /// What a subscriber wants that this writer does not give.
+  enum class Want { kNothing, kReliability, kOther };
+  /// Returns once what new incompatible subscribers want: of several, the last one.
+  Want TakeIncompatible();
 
   static constexpr std::int64_t kMaxBlockingNs = 100'000'000;  // as ROS 2 has it
 };

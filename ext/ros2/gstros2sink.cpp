@@ -248,6 +248,20 @@ static void NoteResult(GstLidarRos2Sink* self, Writer::Result result, gsize byte
   state.warned_timeout = !sent;
 }
 
+static void NoteIncompatible(GstLidarRos2Sink* self, Writer::Want want) {
+  if (want == Writer::Want::kNothing || std::exchange(StateOf(self).warned_incompatible, true))
+    return;
+  if (want == Writer::Want::kReliability)
+    GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                        ("A subscriber of the topic wants what qos=sensor-data does not give."),
+                        ("use qos=reliable"));
+  else
+    GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                        ("A subscriber of the topic wants what this element does not give, such as "
+                         "earlier messages (durability transient local)."),
+                        ("subscribe with the durability volatile, and without a deadline"));
+}
+
 static Writer::Result PublishMessage(GstLidarRos2Sink* self, Writer* writer,
                                      const std::vector<lidar::ByteView>& pieces) {
   gsize bytes = 0;
@@ -262,10 +276,7 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   State& state = StateOf(self);
   const auto writer = WriterOf(self);
   if (!writer || !state.messages) return GST_FLOW_NOT_NEGOTIATED;
-  if (writer->FoundIncompatible() && !std::exchange(state.warned_incompatible, true))
-    GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
-                        ("A subscriber of the topic wants what qos=sensor-data does not give."),
-                        ("use qos=reliable"));
+  NoteIncompatible(self, writer->TakeIncompatible());
   if (writer->subscribers() == 0) {
     const std::lock_guard lock(state.mutex);
     ++state.counters.unread;

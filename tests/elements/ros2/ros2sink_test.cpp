@@ -140,6 +140,21 @@ TEST_F(Ros2Sink, TellsOfSubscribersThatItsReliabilityDoesNotFit) {
   EXPECT_EQ(NextComplaint(0), "");  // one warning for each
 }
 
+TEST_F(Ros2Sink, BlamesNoReliabilityForSubscribersThatWantEarlierMessages) {
+  Start("ros2sink", "topic=/points sync=false qos=reliable");
+  const PeerCloud cloud = TestCloud(2, 1);
+  gst_harness_set_src_caps(h_.get(), CloudCaps(cloud).release());
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Subscribe<PeerCloud>("rt/points", kCloudType, Qos::kReliableTransient);
+  std::string text;
+  for (int i = 0; i < 100 && text.empty(); ++i) {
+    ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
+    text = NextComplaint(50 * GST_MSECOND);
+  }
+  EXPECT_NE(text.find("transient local"), std::string::npos) << text;
+  EXPECT_EQ(text.find("qos="), std::string::npos) << text;
+}
+
 TEST_F(Ros2Sink, RefusesACloudOfOneRowThatEndsWithinAPoint) {
   const PeerCloud cloud = TestCloud(2, 1);
   StartWithCloudPeer(cloud);
