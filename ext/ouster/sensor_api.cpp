@@ -117,10 +117,12 @@ bool SensorApi::WriteConfig(const std::string& text, ApiError* error) {
   HttpResponse response = client_.Post("sensor/config?reinit=true&persist=false", text);
   if (response.status == kNotFound) {  // firmware before 2.4
     const json parameters = ParseObject(text);
-    for (const auto& [key, value] : parameters.items())
+    for (const auto& [key, value] : parameters.items()) {
       response =
           client_.Get("sensor/cmd/set_config_param?args=" + key + "+" +
                       client_.Escape(value.is_string() ? value.get<std::string>() : Write(value)));
+      if (!response.ok) break;
+    }
     if (response.ok) response = client_.Get("sensor/cmd/reinitialize");
   }
   if (response.ok) return true;

@@ -68,6 +68,18 @@ TEST(OusterLive, ConfiguresFirmwareThatHasTheOldApi) {
   EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
 }
 
+TEST(OusterLive, FirmwareThatHasTheOldApiIsNotRestartedWhereItRefusesASetting) {
+  SoftwareSensor::Options options;
+  options.old_firmware = true;
+  SoftwareSensor sensor(options);
+  const auto before = nlohmann::json::parse(sensor.state().MetadataJson());
+  Receiver receiver(sensor.host(), "udp-dest=@auto lidar-mode=1x1");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("there is no mode"), std::string::npos) << error;
+  const auto after = nlohmann::json::parse(sensor.state().MetadataJson());
+  EXPECT_EQ(before["sensor_info"]["initialization_id"], after["sensor_info"]["initialization_id"]);
+}
+
 TEST(OusterLive, ASettingThatTheSensorRefusesIsAnError) {
   SoftwareSensor sensor({});
   Receiver receiver(sensor.host(), "signal-multiplier=0.7");
