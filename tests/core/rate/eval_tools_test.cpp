@@ -2,6 +2,7 @@
 // What lidar-train and lidar-eval are made of: sources, targets, measurements.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -248,6 +249,24 @@ TEST(ScanFaults, LoseTheirShareThreeAtATimeButNeverTheFirst) {
   EXPECT_NEAR(static_cast<double>(numbers.size()) / 30'000, 0.8, 0.01);
   for (std::size_t i = 1; i < numbers.size(); ++i)
     EXPECT_EQ((numbers[i] - numbers[i - 1] - 1) % 3, 0) << numbers[i];
+}
+
+TEST(Slices, HoldEachReturnOfTheirScanOnce) {
+  SourceOptions options;
+  options.max_scans = 1;
+  const ScanSet set = LoadScans("synth:os0-32:street", options);
+  const Scan& scan = set.scans.front();
+  const auto returns = scan.ranges.size() - static_cast<std::size_t>(std::count(
+                                                scan.ranges.begin(), scan.ranges.end(), 0U));
+  for (const std::uint32_t count : {1U, 3U, 8U, 60U}) {
+    SliceCodec codec;
+    std::size_t sum = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      codec.Load(scan, {i, count});
+      sum += codec.returns();
+    }
+    EXPECT_EQ(sum, returns) << count;
+  }
 }
 
 TEST(Measure, FindsErrorsBelowTheBoundAndCloseToIt) {

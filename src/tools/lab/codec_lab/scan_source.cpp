@@ -25,8 +25,9 @@ const char* const kSourceHelp =
     "folder, kitti:FOLDER, or synth:MODEL:SCENE[:COLUMNS] such as synth:os1-64:street";
 
 ColumnWindow WindowOf(const Scan& scan, SliceOf slice) {
-  const std::uint32_t width = scan.geometry->model.columns_per_scan / slice.count;
-  return {slice.index * width, width};
+  const std::uint32_t columns = scan.geometry->model.columns_per_scan;
+  const std::uint32_t first = columns * slice.index / slice.count;
+  return {first, columns * (slice.index + 1) / slice.count - first};
 }
 
 namespace {
