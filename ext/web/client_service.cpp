@@ -244,11 +244,21 @@ void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text
   }
 }
 
-/// The newest subscription of a channel counts.
+/// The newest subscription of a channel counts. An id names one channel: unsubscribe has only the
+/// id.
 void ClientService::Subscribe(Client* client, const foxglove::Subscription& subscription) {
   const auto topic = topics_.find(subscription.channel_id);
   if (topic == topics_.end() || client->closed()) return;  // the topic or client has just gone
   if (!client->grant.Allows(topic->second->channel().topic)) return;
+  const bool in_use = std::any_of(
+      client->subscriptions.begin(), client->subscriptions.end(), [&subscription](const auto& s) {
+        return s.second == subscription.id && s.first != subscription.channel_id;
+      });
+  if (in_use) {
+    ++counters_.malformed;
+    return client->SendText(foxglove::ErrorStatus("The subscription id " +
+                                                  std::to_string(subscription.id) + " is in use."));
+  }
   const bool added =
       client->subscriptions.insert_or_assign(subscription.channel_id, subscription.id).second;
   if (added) topic->second->AddSubscribers(1);

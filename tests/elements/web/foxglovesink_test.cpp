@@ -109,6 +109,24 @@ TEST(FoxgloveSink, OfTwoSubscriptionsOfATopicTheNewestCounts) {
   EXPECT_EQ(sink.Stat("clouds"), 3U);
 }
 
+TEST(FoxgloveSink, ASubscriptionIdNamesOneChannel) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer peer(&sink);
+  peer.Subscribe("/points", 1);
+  const std::size_t before = peer.statuses.size();
+  peer.Subscribe("/statistics", 1);
+  EXPECT_EQ(peer.statuses.size(), before + 2);  // of the refusal, and of Sync()
+  EXPECT_EQ(sink.Stat("malformed"), 1U);
+  peer.Subscribe("/points", 1);  // the same again is none of another channel
+  EXPECT_EQ(sink.Stat("malformed"), 1U);
+  peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
+  peer.Sync();
+  const guint64 sent = sink.Stat("points-sent");
+  sink.PushCloud(1);
+  EXPECT_EQ(sink.Stat("points-sent"), sent);
+}
+
 TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
   Sink sink;
   sink.SetCloudCaps();
