@@ -138,6 +138,20 @@ test('who asks for another time waits for no older one', async () => {
   assert.ok(slow.decoded < 100);
 });
 
+test('the decoder of a closed stream ends with the last of its slices', async () => {
+  const sources = [{}, {}];
+  const slices = Array.from({ length: 40 }, (_, i) => coded(i, { source: sources[i < 20 ? 0 : 1] }));
+  const history = filled(slices);
+  const player = new Player(history, () => new Decoder(slices), () => {});
+  for (const i of [10, 30]) await player.show(slices[i].captured);
+  sources[0].isClosed = true;
+  player.stop();
+  assert.equal(player.decoders.size, 2);
+  history.clear();
+  player.stop();
+  assert.deepEqual([...player.decoders.keys()], [sources[1]]);
+});
+
 test('a receiver tells of links, too, as long as no sender does', () => {
   const links = new Links();
   const got = (...bytes) => ({ elements: { rx: { links: bytes.map((b, i) => ({ address: `10.0.0.${i}:9`, bytes_received: b })) } } });

@@ -99,7 +99,10 @@ export class Player {
     this.stop();
   }
 
+  /** Forgets the picture, and the decoders of closed streams of which no slice is kept. */
   stop() {
+    const kept = new Set(this.history.slices.map(({ source }) => source));
+    for (const source of this.decoders.keys()) if (source.isClosed && !kept.has(source)) this.decoders.delete(source);
     this.shown = null; // time of the picture shown last
     this.next = 0; // number of the slice to be shown next
     this.known = new Set(); // blocks that the decoders have

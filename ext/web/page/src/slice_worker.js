@@ -10,7 +10,7 @@ const MOST_BYTES = 64 << 20; // of coded slices: four minutes of 2 Mbit/s
 
 const compiled = WebAssembly.compileStreaming(fetch(new URL('lidar_decoder.wasm', self.location.href)));
 let module = null;
-const sources = new Map(); // {id, model, decoder}
+const sources = new Map(); // {id, model, decoder, isClosed}
 const history = new History(MOST_BYTES);
 const pause = () => new Promise((done) => setTimeout(done));
 const recorded = new History(MOST_BYTES); // of the replay
@@ -28,6 +28,12 @@ async function open(id, model) {
   } catch {
     // The sensor model is damaged: the stream has no decoder.
   }
+}
+
+/** Frees the decoder at once: kept slices refer to their source for minutes. */
+function close(id) {
+  Object.assign(sources.get(id) ?? {}, { decoder: null, isClosed: true });
+  sources.delete(id);
 }
 
 function decode({ stream, header, data, offset }) {
@@ -85,7 +91,7 @@ onmessage = ({ data: message }) => {
   if (message.replay !== undefined) return beginReplay(message.replay);
   last = last.then(() => {
     if (message.open !== undefined) return open(message.open, message.model);
-    if (message.close !== undefined) return sources.delete(message.close);
+    if (message.close !== undefined) return close(message.close);
     if (message.forget) return forget();
     return decode(message);
   });
