@@ -39,14 +39,27 @@ GInetAddress* Resolve(const std::string& host, GError** error) {
   return address;
 }
 
-GSocket* BoundSocket(GInetAddress* address, const UdpBind& bind, GError** error) {
-  SocketPtr socket(g_socket_new(g_inet_address_get_family(address), G_SOCKET_TYPE_DATAGRAM,
+/// Keeps the interface of a link-local address (fe80::1%eth0), which a GInetAddress lacks.
+SocketAddressPtr ResolveWithPort(const std::string& host, guint port, GError** error) {
+  if (GSocketAddress* literal = g_inet_socket_address_new_from_string(host.c_str(), port))
+    return SocketAddressPtr(literal);
+  const InetAddressPtr found(Resolve(host, error));
+  if (!found) return nullptr;
+  return SocketAddressPtr(g_inet_socket_address_new(found.get(), static_cast<guint16>(port)));
+}
+
+GSocket* BoundSocket(GSocketAddress* local, const UdpBind& bind, GError** error) {
+  SocketPtr socket(g_socket_new(g_socket_address_get_family(local), G_SOCKET_TYPE_DATAGRAM,
                                 G_SOCKET_PROTOCOL_UDP, error));
   if (!socket) return nullptr;
   g_socket_set_blocking(socket.get(), FALSE);
-  const SocketAddressPtr local(g_inet_socket_address_new(address, static_cast<guint16>(bind.port)));
-  if (!g_socket_bind(socket.get(), local.get(), bind.reuse, error)) return nullptr;
+  if (!g_socket_bind(socket.get(), local, bind.reuse, error)) return nullptr;
   return socket.release();
+}
+
+SocketAddressPtr Any(GSocketFamily family, guint port) {
+  const InetAddressPtr any(g_inet_address_new_any(family));
+  return SocketAddressPtr(g_inet_socket_address_new(any.get(), static_cast<guint16>(port)));
 }
 
 /// Ignores multicast groups that other programs joined.
@@ -117,18 +130,26 @@ std::string WithoutBrackets(const std::string& host) {
 }
 
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error) {
-  const InetAddressPtr address(Resolve(WithoutBrackets(host), error));
-  if (!address) return nullptr;
-  return g_inet_socket_address_new(address.get(), static_cast<guint16>(port));
+  return ResolveWithPort(WithoutBrackets(host), port, error).release();
+}
+
+std::string HostOf(GSocketAddress* address) {
+  auto* inet = G_INET_SOCKET_ADDRESS(address);
+  gchar* text = g_inet_address_to_string(g_inet_socket_address_get_address(inet));
+  std::string host(text);
+  g_free(text);
+  if (g_socket_address_get_family(address) != G_SOCKET_FAMILY_IPV6) return host;
+  const guint32 interface = g_inet_socket_address_get_scope_id(inet);
+  return interface == 0 ? host : host + "%" + std::to_string(interface);
 }
 
 GSocket* OpenUdpSocket(const UdpBind& bind, GError** error) {
   if (!bind.address.empty()) {
-    const InetAddressPtr address(Resolve(WithoutBrackets(bind.address), error));
+    const auto address = ResolveWithPort(WithoutBrackets(bind.address), bind.port, error);
     return address ? BoundSocket(address.get(), bind, error) : nullptr;
   }
   if (bind.family != G_SOCKET_FAMILY_IPV4) {
-    const InetAddressPtr any(g_inet_address_new_any(G_SOCKET_FAMILY_IPV6));
+    const SocketAddressPtr any = Any(G_SOCKET_FAMILY_IPV6, bind.port);
     const bool may_fall_back = bind.family == G_SOCKET_FAMILY_INVALID;
     GError* v6_error = nullptr;
     if (GSocket* socket = BoundSocket(any.get(), bind, &v6_error)) return socket;
@@ -139,8 +160,7 @@ GSocket* OpenUdpSocket(const UdpBind& bind, GError** error) {
     }
     g_error_free(v6_error);  // a machine without IPv6
   }
-  const InetAddressPtr any(g_inet_address_new_any(G_SOCKET_FAMILY_IPV4));
-  return BoundSocket(any.get(), bind, error);
+  return BoundSocket(Any(G_SOCKET_FAMILY_IPV4, bind.port).get(), bind, error);
 }
 
 bool JoinMulticast(GSocket* socket, const std::string& group, const std::string& interface,

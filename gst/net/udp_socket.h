@@ -41,6 +41,9 @@ std::string WithoutBrackets(const std::string& host);
 /// Looks `host` (a name or a literal, brackets allowed) up; may block. Transfer full, or NULL.
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error);
 
+/// Returns the host as ResolveUdpAddress() reads it, with the interface of a link-local address.
+std::string HostOf(GSocketAddress* address);
+
 struct UdpBind {
   std::string address;  // empty: every address, of both families if the machine has them
   guint port = 0;       // 0: any free one

@@ -303,11 +303,9 @@ static bool Open(GstLidarScreamSink* self) {
   SharedSocketAddress peer = first.peer;
   SharedSocket socket = first.socket;
   if (!socket) return false;
-  GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(peer.get()));
   // The sink gets the address, because a name may have several.
-  const StringPtr literal(g_inet_address_to_string(host));
-  g_object_set(self->sink, "host", literal.get(), "port", first.address.target.port, "interface",
-               first.address.interface.c_str(), nullptr);
+  g_object_set(self->sink, "host", HostOf(peer.get()).c_str(), "port", first.address.target.port,
+               "interface", first.address.interface.c_str(), nullptr);
   GiveSocket(self->sink, socket.get());
   GiveSocket(self->src, socket.get());
   if (links.size() > 1) Bond(self, links, s.bond);

@@ -192,10 +192,9 @@ void SinkLinks::AddLink(const OpenLink& link) {
   g_object_set(chain.tx, "packet-overhead", OverheadOf(link.peer.get()), nullptr);
   g_object_bind_property(chains_[0].sink, "qos-dscp", chain.sink, "qos-dscp",
                          G_BINDING_SYNC_CREATE);
-  GInetAddress* host = g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(link.peer.get()));
-  const StringPtr literal(g_inet_address_to_string(host));
-  g_object_set(chain.sink, "sync", FALSE, "async", FALSE, "host", literal.get(), "port",
-               link.address.target.port, "interface", link.address.interface.c_str(), nullptr);
+  g_object_set(chain.sink, "sync", FALSE, "async", FALSE, "host", HostOf(link.peer.get()).c_str(),
+               "port", link.address.target.port, "interface", link.address.interface.c_str(),
+               nullptr);
   GiveSocket(chain.sink, link.socket.get());
   GiveSocket(chain.src, link.socket.get());
   gst_element_link_pads(chain.tx, "src", chain.sink, "sink");

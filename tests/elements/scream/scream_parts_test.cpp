@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
 #include <gtest/gtest.h>
+#include <net/if.h>
 
 #include <limits>
 #include <variant>
@@ -172,6 +173,18 @@ TEST_F(Latch, FirstPeerIsBelievedAtOnceAndByAnyObjectOfItsAddress) {
   EXPECT_EQ(Send(same, 1, 1), kAccepted);
   EXPECT_TRUE(latch.IsPeer(robot.get()));
   EXPECT_FALSE(latch.IsPeer(thief.get()));
+}
+
+TEST(UdpAddress, ALinkLocalOneKeepsItsInterface) {
+  const guint lo = if_nametoindex("lo");
+  for (const char* host : {"fe80::1%lo", "[fe80::1%lo]"}) {
+    const gst::SocketAddressPtr address(gst::ResolveUdpAddress(host, 5004, nullptr));
+    ASSERT_TRUE(address) << host;
+    EXPECT_EQ(g_inet_socket_address_get_scope_id(G_INET_SOCKET_ADDRESS(address.get())), lo);
+    const gst::SocketAddressPtr again(
+        gst::ResolveUdpAddress(gst::HostOf(address.get()), 5004, nullptr));
+    EXPECT_TRUE(gst::SameAddress(address.get(), again.get()));
+  }
 }
 
 TEST_F(Latch, CannotBeStolenWhileThePeerSends) {
