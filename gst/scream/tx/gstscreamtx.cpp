@@ -67,6 +67,18 @@ void ClearQueue(TxState& state, TxStream& stream, Time now) {
   stream.queue.clear();
 }
 
+void FlushQueue(TxState& state, TxStream& stream, Time now) {
+  std::deque<TxItem> kept;
+  for (TxItem& item : stream.queue) {
+    const GstEvent* event = item.event.get();
+    if (event != nullptr && GST_EVENT_IS_STICKY(event) &&
+        GST_EVENT_TYPE(event) != GST_EVENT_SEGMENT && GST_EVENT_TYPE(event) != GST_EVENT_EOS)
+      kept.push_back(std::move(item));
+  }
+  ClearQueue(state, stream, now);
+  stream.queue = std::move(kept);
+}
+
 }  // namespace lidar::gst
 
 static TxState& StateOf(gpointer self) { return *GST_LIDAR_SCREAM_TX(self)->state; }

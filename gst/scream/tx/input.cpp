@@ -111,14 +111,14 @@ void OnFlushStart(GstLidarScreamTx* self, TxStream& stream) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
   stream.flushing = true;
-  if (state.controller) ClearQueue(state, stream, TxNow(state));
+  if (state.controller) FlushQueue(state, stream, TxNow(state));
   state.gate.Release(stream);
 }
 
 void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
-  if (state.controller) ClearQueue(state, stream, TxNow(state));
+  if (state.controller) FlushQueue(state, stream, TxNow(state));
   gboolean resets_time = TRUE;
   gst_event_parse_flush_stop(event, &resets_time);
   stream.entry_shift.due = resets_time != FALSE;

@@ -80,6 +80,8 @@ TxStream* FindStream(TxState& state, scream::StreamId id);
 void Configure(TxState& state, TxStream& stream);
 /// Drops the packets and events of `stream`.
 void ClearQueue(TxState& state, TxStream& stream, Time now);
+/// Drops what a flush drops. Caps and other events stay that upstream does not repeat.
+void FlushQueue(TxState& state, TxStream& stream, Time now);
 StructurePtr StatsOf(TxState& state);
 
 /// Makes changed settings of the element and its pads take effect soon. Call it without the lock.

@@ -141,6 +141,22 @@ TEST_F(ScreamTx, AFlushForgetsTheQueueAndItGoesOn) {
   EXPECT_EQ(ReadRtp(out.get()).timestamp, 77U);
 }
 
+TEST_F(ScreamTx, AFlushDropsNoCapsThatWaitBehindPackets) {
+  Start();
+  PushFrame(0, 100);
+  gst_harness_set_src_caps_str(rtp.get(), kVideoCaps);
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(rtp.get(), NewSegment());
+  while (BufferPtr(gst_harness_try_pull(rtp.get()))) continue;
+  time.Advance(5 * GST_SECOND);
+  PushFrame(77, 1);
+  ASSERT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
+  const gst::CapsPtr caps(gst_pad_get_current_caps(rtp->sinkpad));
+  const gst::CapsPtr video(gst_caps_from_string(kVideoCaps));
+  EXPECT_TRUE(caps && gst_caps_is_equal(caps.get(), video.get()));
+}
+
 TEST_F(ScreamTx, AFlushAfterTheEndLetsAnotherStreamBeginAndEnd) {
   StreamTwice([&] {
     gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
