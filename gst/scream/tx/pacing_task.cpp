@@ -167,7 +167,7 @@ BufferPtr PacingTask::TakePacket(TxStream& stream, Ecn ecn, Time now) {
     gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(ecn), GST_CLOCK_TIME_NONE);
     item.buffer.reset(buffer);
   }
-  return s.merger.ToOutput(s.streams, stream, std::move(item.buffer));
+  return s.merger.ToOutput(stream, std::move(item.buffer));
 }
 
 void PacingTask::CollectPackets(Time now, Batch* batch) {

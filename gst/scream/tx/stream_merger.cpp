@@ -70,12 +70,10 @@ void StreamMerger::NoteSent(bool merged, EventPtr* event) {
   }
 }
 
-BufferPtr StreamMerger::ToOutput(const Streams& streams, const TxStream& stream,
-                                 BufferPtr buffer) const {
+/// The last stream may have another segment: that of a stream that left.
+BufferPtr StreamMerger::ToOutput(const TxStream& stream, BufferPtr buffer) const {
   const GstSegment& segment = stream.leaving_segment;
-  if (streams.size() == 1 || segment.format != GST_FORMAT_TIME ||
-      gst_segment_is_equal(&segment, &segment_))
-    return buffer;
+  if (segment.format != GST_FORMAT_TIME || gst_segment_is_equal(&segment, &segment_)) return buffer;
   GstBuffer* out = gst_buffer_make_writable(buffer.release());
   for (GstClockTime* t : {&GST_BUFFER_PTS(out), &GST_BUFFER_DTS(out)}) {
     if (!GST_CLOCK_TIME_IS_VALID(*t)) continue;

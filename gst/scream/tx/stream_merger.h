@@ -26,7 +26,7 @@ class StreamMerger {
     segment_due_ = true;
   }
   /// Returns `buffer` with its times in the src pad's segment.
-  BufferPtr ToOutput(const Streams& streams, const TxStream& stream, BufferPtr buffer) const;
+  BufferPtr ToOutput(const TxStream& stream, BufferPtr buffer) const;
 
  private:
   EventPtr TakeEvent(TxStream* stream) const;

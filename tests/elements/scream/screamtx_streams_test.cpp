@@ -388,6 +388,27 @@ TEST_F(ScreamTx, APacketThatWaitsKeepsTheTimeOfItsSegment) {
   EXPECT_EQ(times.count(1'500 * GST_MSECOND), 1U);
 }
 
+TEST_F(ScreamTx, AStreamKeepsItsTimesWhenTheOtherPadLeaves) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.start = segment.time = segment.position = 5 * GST_SECOND;
+  ASSERT_TRUE(gst_harness_push_event(second.get(), gst_event_new_segment(&segment)));
+  for (guint16 seq = 0; seq < 2; ++seq) {
+    GstBuffer* in = NewRtp({seq, seq, true});
+    GST_BUFFER_PTS(in) = 5'500 * GST_MSECOND;
+    ASSERT_EQ(gst_harness_push(second.get(), in), GST_FLOW_OK);
+    const BufferPtr out(gst_harness_pull(rtp.get()));
+    ASSERT_TRUE(out);
+    EXPECT_EQ(GST_BUFFER_PTS(out.get()), 500 * GST_MSECOND) << "in the segment of src";
+    const gst::PadPtr first(gst_element_get_static_pad(element, "sink_0"));
+    if (first) gst_element_release_request_pad(element, first.get());
+    time.Advance(5 * GST_SECOND);
+  }
+}
+
 TEST_F(ScreamTx, SeveralStreamsMayHaveAnyCapsTogether) {
   Start();
   Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
