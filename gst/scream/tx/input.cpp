@@ -115,7 +115,8 @@ void OnFlushStart(GstLidarScreamTx* self, TxStream& stream) {
   state.gate.Release(stream);
 }
 
-void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
+/// A flush that went downstream has removed the segment there.
+void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event, bool flushes_src) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
   if (state.controller) FlushQueue(state, stream, TxNow(state));
@@ -125,6 +126,7 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   stream.flushing = false;
   stream.eos = false;
   gst_segment_init(&stream.segment, GST_FORMAT_TIME);
+  if (flushes_src) state.merger.ForgetSegment();
   state.pacing.ForgetEnd();
   state.gate.set_flow(GST_FLOW_OK);
 }
@@ -149,7 +151,7 @@ gboolean TxFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
       flushes_src ? gst_pad_push_event(self->src, gst_event_ref(event)) : gboolean{TRUE};
   if (start && flushes_src) state.pacing.Pause(GST_FLOW_FLUSHING);
   if (!start) {
-    OnFlushStop(self, stream, event);
+    OnFlushStop(self, stream, event, flushes_src);
     state.pacing.Start();  // pauses again if downstream still takes nothing
   }
   return done;

@@ -25,6 +25,8 @@ class StreamMerger {
     sent_start_ = merged_caps_ = false;
     segment_due_ = true;
   }
+  /// Sends the next segment: a flush has removed the last one downstream.
+  void ForgetSegment() { segment_due_ = true; }
   /// Returns `buffer` with its times in the src pad's segment.
   BufferPtr ToOutput(const TxStream& stream, BufferPtr buffer) const;
 

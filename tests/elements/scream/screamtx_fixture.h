@@ -14,6 +14,7 @@
 #include "gst/net/udp_socket.h"
 #include "gst/scream/rtp_packet.h"
 #include "tests/elements/scream/rtp_support.h"
+#include "tests/support/patience.h"
 
 namespace lidar::test {
 
@@ -143,6 +144,14 @@ class ScreamTx : public ::testing::Test {
     while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
       eos = eos || GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS;
     return eos;
+  }
+  bool Ends() {
+    time.Advance(10 * GST_MSECOND);
+    return HasEos();
+  }
+  /// Returns true once a packet has left.
+  bool Leaves() {
+    return Eventually([this] { return BufferPtr(gst_harness_try_pull(rtp.get())) != nullptr; });
   }
   /// Streams a packet and EOS in each of two rounds. `begin_anew` runs behind each EOS.
   void StreamTwice(const std::function<void()>& begin_anew) {

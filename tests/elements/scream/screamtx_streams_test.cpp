@@ -388,6 +388,21 @@ TEST_F(ScreamTx, APacketThatWaitsKeepsTheTimeOfItsSegment) {
   EXPECT_EQ(times.count(1'500 * GST_MSECOND), 1U);
 }
 
+TEST_F(ScreamTx, ASegmentFollowsAFlushThoughAPadIsAddedMeanwhile) {
+  Start();
+  PushFrame(0, 1);
+  EXPECT_TRUE(Leaves());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  const gst::PadPtr added(gst_element_request_pad_simple(element, "sink_%u"));
+  gst_harness_push_event(rtp.get(), NewSegment());
+  time.Advance(5 * GST_SECOND);
+  PushFrame(0, 1);
+  EXPECT_TRUE(Leaves());
+  const EventPtr segment(gst_pad_get_sticky_event(rtp->sinkpad, GST_EVENT_SEGMENT, 0));
+  EXPECT_TRUE(segment);
+}
+
 TEST_F(ScreamTx, AStreamKeepsItsTimesWhenTheOtherPadLeaves) {
   Start();
   Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
