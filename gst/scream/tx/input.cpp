@@ -107,6 +107,12 @@ void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* eve
   if (start) gst_pad_push_event(pad, start.release());
 }
 
+/// A stream begins after its end. If all had ended, the output begins anew, too.
+void BeginAnew(TxState& state) {
+  if (state.pacing.end_sent()) state.merger.BeginAnew();
+  state.pacing.ForgetEnd();
+}
+
 void OnFlushStart(GstLidarScreamTx* self, TxStream& stream) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
@@ -115,7 +121,7 @@ void OnFlushStart(GstLidarScreamTx* self, TxStream& stream) {
   state.gate.Release(stream);
 }
 
-/// A flush that went downstream has removed the segment there.
+/// A flush that went downstream has removed the end and the segment there.
 void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event, bool flushes_src) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
@@ -126,8 +132,12 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event, bool
   stream.flushing = false;
   stream.eos = false;
   gst_segment_init(&stream.segment, GST_FORMAT_TIME);
-  if (flushes_src) state.merger.ForgetSegment();
-  state.pacing.ForgetEnd();
+  if (flushes_src) {
+    state.merger.ForgetSegment();
+    state.pacing.ForgetEnd();
+  } else {
+    BeginAnew(state);
+  }
   state.gate.set_flow(GST_FLOW_OK);
 }
 
@@ -159,17 +169,12 @@ gboolean TxFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
 
 namespace {
 
-/// A stream begins after its end. If all had ended, the output begins anew, too.
-void BeginAnew(TxState& state) {
-  if (state.pacing.end_sent()) state.merger.BeginAnew();
-  state.pacing.ForgetEnd();
-}
-
 void Remember(TxState& state, TxStream& stream, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
       stream.live.reset();
-      if (std::exchange(stream.eos, false)) BeginAnew(state);
+      // The end may be that of other streams, and this one's pad new.
+      if (std::exchange(stream.eos, false) || state.pacing.end_sent()) BeginAnew(state);
       break;
     case GST_EVENT_SEGMENT:
       gst_event_copy_segment(event, &stream.segment);

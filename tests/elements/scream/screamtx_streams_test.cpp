@@ -388,6 +388,42 @@ TEST_F(ScreamTx, APacketThatWaitsKeepsTheTimeOfItsSegment) {
   EXPECT_EQ(times.count(1'500 * GST_MSECOND), 1U);
 }
 
+TEST_F(ScreamTx, AStreamOfANewPadMayBeginAndEndAfterTheEndOfAll) {
+  for (const bool first_leaves : {false, true}) {
+    Start();
+    gst_harness_push_event(rtp.get(), gst_event_new_eos());
+    EXPECT_TRUE(Ends());
+    const gst::PadPtr first(gst_element_get_static_pad(element, "sink_0"));
+    if (first_leaves) gst_element_release_request_pad(element, first.get());
+    Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+    gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+    ASSERT_EQ(gst_harness_push(second.get(), NewRtp({})), GST_FLOW_OK);
+    EXPECT_TRUE(Leaves()) << first_leaves;
+    gst_harness_push_event(second.get(), gst_event_new_eos());
+    EXPECT_TRUE(Ends()) << first_leaves;
+    rtcp.reset();
+    rtp.reset();
+    second.reset();
+    gst_object_unref(element);
+    element = gst_element_factory_make("screamtx", nullptr);
+  }
+}
+
+TEST_F(ScreamTx, OneOfSeveralStreamsMayBeginAnewByAFlushAfterTheEndOfAll) {
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  for (GstHarness* h : {rtp.get(), second.get()}) gst_harness_push_event(h, gst_event_new_eos());
+  EXPECT_TRUE(Ends());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(rtp.get(), NewSegment());
+  PushFrame(0, 1);
+  EXPECT_TRUE(Leaves());
+  gst_harness_push_event(rtp.get(), gst_event_new_eos());
+  EXPECT_TRUE(Ends());
+}
+
 TEST_F(ScreamTx, ASegmentFollowsAFlushThoughAPadIsAddedMeanwhile) {
   Start();
   PushFrame(0, 1);
