@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "gst/scream/tx/notices.h"
 
+#include <algorithm>
 #include <string>
 
 #include "gst/common/fields.h"
@@ -10,6 +11,8 @@ namespace {
 
 // An outage may drop fewer frames, which needs no warning.
 constexpr guint64 kFramesUntilWarning = 20;
+// A sum with a longer interval may exceed the range of a time.
+constexpr Duration kLongestInterval = std::chrono::hours(24 * 365);
 
 /// Returns host and port of the sink behind `src`, if they can be found.
 std::string Destination(GstPad* src) {
@@ -75,8 +78,10 @@ bool Notices::Evaluate(const scream::Controller& controller, Duration stats_inte
     estimated_bps_ = bps;
   }
   ecn_ = controller.ecn_state();
+  const Time next = now + std::min(stats_interval, kLongestInterval);
+  if (stats_interval > Duration{0}) next_stats_ = std::min(next_stats_, next);  // it may be shorter
   if (stats_interval > Duration{0} && now >= next_stats_) {
-    next_stats_ = now + stats_interval;
+    next_stats_ = next;
     stats_due_ = true;
   }
   return due();

@@ -243,6 +243,25 @@ TEST_P(ScreamTxUnheeded, WarnsOnceOfDroppedFramesWhereNoEncoderTakesTheTarget) {
 }
 INSTANTIATE_TEST_SUITE_P(TakesTargets, ScreamTxUnheeded, ::testing::Bool());
 
+TEST_F(ScreamTx, PostsItsStatisticsOnceWhereTheIntervalIsTheLongestUntilItIsShortened) {
+  g_object_set(element, "stats-interval", guint64{G_MAXINT64}, nullptr);
+  const ElementBus bus(element);
+  Start();
+  for (int i = 0; i < 5; ++i) {
+    PushFrame(static_cast<guint32>(i), 1);
+    time.Advance(100 * GST_MSECOND);
+    Collect();
+  }
+  ASSERT_TRUE(bus.Wait(GST_MESSAGE_ELEMENT)) << "that of the start";
+  g_usleep(20'000);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ELEMENT));
+  g_object_set(element, "stats-interval", guint64{GST_MSECOND}, nullptr);
+  time.Settle();
+  time.Advance(300 * GST_MSECOND);
+  EXPECT_TRUE(bus.Wait(GST_MESSAGE_ELEMENT));
+  gst_element_set_state(element, GST_STATE_NULL);
+}
+
 TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
   g_object_set(element, "stats-interval", guint64{100 * GST_MSECOND}, nullptr);
   const ElementBus bus(element);
