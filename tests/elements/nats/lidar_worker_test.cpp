@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // lidar-worker: robots pass from worker to worker.
 #include <gst/base/gstbasetransform.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <algorithm>
+#include <atomic>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "ext/nats/connection.h"
 #include "ext/nats/jetstream.h"
@@ -195,6 +199,50 @@ TEST_F(LidarWorker, WaitsForAServerThatTakesItsConnectionAndIsSilent) {
   server_.Thaw();
   const auto robot = Robot();
   EXPECT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
+}
+
+/// A proxy without a server behind it: takes connections, and closes them at once.
+class LoneProxy {
+ public:
+  LoneProxy() {
+    sockaddr_in address{};
+    socklen_t size = sizeof address;
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    auto* raw = reinterpret_cast<sockaddr*>(&address);
+    EXPECT_EQ(bind(listener_.get(), raw, size), 0);
+    EXPECT_EQ(listen(listener_.get(), 16), 0);
+    EXPECT_EQ(getsockname(listener_.get(), raw, &size), 0);
+    port_ = ntohs(address.sin_port);
+    thread_ = std::thread([this] {
+      while (tools::FileDescriptor(accept(listener_.get(), nullptr, nullptr))) ++taken_;
+    });
+  }
+  ~LoneProxy() {
+    shutdown(listener_.get(), SHUT_RDWR);
+    thread_.join();
+  }
+  LoneProxy(const LoneProxy&) = delete;
+  LoneProxy& operator=(const LoneProxy&) = delete;
+
+  std::string url() const { return "nats://127.0.0.1:" + std::to_string(port_); }
+  int taken() const { return taken_; }
+
+ private:
+  const tools::FileDescriptor listener_{socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  int port_ = 0;
+  std::atomic<int> taken_{0};
+  std::thread thread_;
+};
+
+TEST_F(LidarWorker, PausesWhereAProxyClosesItsConnections) {
+  const LoneProxy proxy;
+  WorkerProcess worker({"r1", "--url", proxy.url()});
+  ASSERT_TRUE(Eventually([&] { return proxy.taken() > 0; }));
+  const Time end = tools::Now() + std::chrono::seconds(3);
+  ASSERT_TRUE(Eventually([&] { return tools::Now() > end; }));
+  EXPECT_LT(proxy.taken(), 60);
+  EXPECT_EQ(worker.Stop(), 0);
 }
 
 TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {

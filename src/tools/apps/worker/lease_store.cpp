@@ -24,7 +24,9 @@ LeaseStore::LeaseStore(natsConnection* connection, const std::string& bucket)
   natsStatus s = NATS_NO_MEMORY;
   if (subjects_) s = natsConnection_SubscribeSync(&raw, connection_, subjects_->All().c_str());
   answers_ = nats::SubscriptionPtr(raw, {connection_});
-  if (s != NATS_OK) throw std::runtime_error("NATS cannot be used: " + nats::ErrorText(s));
+  // The state of the connection says why it is closed.
+  if (s != NATS_OK && s != NATS_CONNECTION_CLOSED)
+    throw std::runtime_error("NATS cannot be used: " + nats::ErrorText(s));
 }
 
 std::string LeaseStore::Subject(const std::string& bucket, const std::string& key) {

@@ -8,17 +8,24 @@
 #include <chrono>
 #include <csignal>
 #include <string>
+#include <thread>
 
 #include "ext/nats/jetstream.h"
+#include "src/base/backoff.h"
 #include "src/tools/apps/fleet/statistics.h"
 #include "src/tools/apps/worker/worker.h"
 #include "src/tools/common/bounded_end.h"
+#include "src/tools/common/event_loop.h"
 #include "src/tools/common/program.h"
 
 namespace lidar::worker {
 namespace {
 
 constexpr std::chrono::milliseconds kEnd{900};  // longest end, even if servers hang
+// Pauses between connections where servers do not answer.
+constexpr std::chrono::seconds kFirstPause{1};
+constexpr std::chrono::seconds kLongestPause{16};
+constexpr std::chrono::milliseconds kPoll{50};
 
 std::atomic<bool> stopping{false};
 
@@ -142,9 +149,17 @@ int Main(int argc, char** argv) {
   o.worker.pipeline.connection.name = "lidar-worker";
   std::optional<fleet::Statistics> statistics(std::in_place, o.statistics,
                                               o.worker.pipeline.connection);
+  Backoff pauses(kFirstPause, kLongestPause);
+  Time open_at = tools::Now() + pauses.Next();
   while (!stopping) {
-    if (worker->unanswered()) worker.emplace(o.worker);
-    worker->Step();
+    if (!worker->unanswered()) {
+      worker->Step();
+    } else if (tools::Now() < open_at) {
+      std::this_thread::sleep_for(kPoll);
+    } else {
+      worker.emplace(o.worker);
+      open_at = tools::Now() + pauses.Next();
+    }
     statistics->Poll([&](auto* exposition, auto* reports) { worker->Tell(exposition, reports); });
   }
   const tools::BoundedEnd bounded(kEnd);
