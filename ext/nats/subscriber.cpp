@@ -88,7 +88,7 @@ natsStatus Subscriber::SubscribeLive() {
 }
 
 void Subscriber::SetStart(jsConsumerConfig* config) const {
-  const std::uint64_t first = last_stored_ > 0 ? last_stored_ + 1 : settings_.start_sequence;
+  const std::uint64_t first = next_ > 0 ? next_ : settings_.start_sequence;
   if (first > 0) {
     config->OptStartSeq = first;
     config->DeliverPolicy = js_DeliverByStartSequence;
@@ -181,6 +181,16 @@ natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
   return settings_.durable.empty() ? SubscribeOwn(code) : SubscribeDurable(code);
 }
 
+/// Numbers are void in another stream, even one of the same name: it is read from its beginning.
+void Subscriber::NoteStream() {
+  jsStreamInfo* raw = nullptr;
+  js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), nullptr, nullptr);
+  const StreamInfoPtr info(raw);
+  if (!info) return;
+  const std::int64_t before = std::exchange(created_, info->Created);
+  if (before != 0 && before != created_) next_ = 1;
+}
+
 /// Makes the consumer of JetStream anew after each connect, because the server may have lost it.
 Subscriber::Event Subscriber::Renew() {
   const auto now = steady_clock::now();
@@ -196,6 +206,7 @@ Subscriber::Event Subscriber::Renew() {
   configs_.reset();
   last_number_ = 0;
   dropped_ = 0;
+  if (!acknowledges()) NoteStream();
   jsErrCode code{};
   const natsStatus status = SubscribeStored(&code);
   if (status != NATS_OK) {
@@ -212,7 +223,7 @@ Subscriber::Event Subscriber::Renew() {
   const ConsumerInfoPtr info(raw);
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
   // The server may lose the consumer before the first message: the new one begins here.
-  last_stored_ = info->Delivered.Stream;
+  next_ = info->Delivered.Stream + 1;
   return info->NumPending == 0 ? Event::kEmpty : Event::kNothing;
 }
 
@@ -235,7 +246,7 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
       return Event::kNothing;
     }
     last_number_ = meta->Sequence.Consumer;
-    last_stored_ = meta->Sequence.Stream;
+    next_ = meta->Sequence.Stream + 1;
     if (settings_.start_sequence == 0 && settings_.start_time &&
         meta->Timestamp < static_cast<std::int64_t>(*settings_.start_time))
       return meta->NumPending == 0 ? Event::kEmpty : Event::kNothing;  // see SafeTime()

@@ -82,6 +82,7 @@ class Subscriber {
   natsStatus SubscribeDurable(jsErrCode* code);
   natsStatus AddDurable(jsErrCode* code);
   void SetStart(jsConsumerConfig* config) const;
+  void NoteStream();
   Event NoteStored(Delivery* delivery);
   bool IsDone();
   void CountOverruns();
@@ -101,8 +102,9 @@ class Subscriber {
   unsigned connections_ = 0;                            // number of connections at the last renewal
   unsigned missed_heartbeats_ = 0;
   bool stale_ = false;             // the consumer missed a message
-  std::uint64_t last_stored_ = 0;  // number of the last message in the stream
-  std::uint64_t last_number_ = 0;  // its number at the consumer
+  std::int64_t created_ = 0;       // time when the stream was made; 0: unknown
+  std::uint64_t next_ = 0;         // least number in the stream of the next message; 0: unknown
+  std::uint64_t last_number_ = 0;  // number of the last message at the consumer
   bool began_ = false;
   std::uint64_t overruns_ = 0;
   std::int64_t dropped_ = 0;  // messages that the present subscription dropped

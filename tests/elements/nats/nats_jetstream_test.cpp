@@ -361,6 +361,20 @@ TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
   }));
 }
 
+TEST_F(NatsJetStream, ASourceBeginsAnotherStreamOfTheSameNameAtItsFirstMessage) {
+  PublishSlices(80, At(kBox));
+  NatsPipeline receiver("natssrc name=n start-time=0" + At(kBox) +
+                        "! fakesink name=see sync=false");
+  receiver.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(80));
+  const NatsClient client(server_.url());
+  ASSERT_EQ(js_DeleteStream(client.js(), "box", nullptr, nullptr), NATS_OK);
+  const auto sent = PublishSlices(8, At(kBox));
+  ASSERT_TRUE(receiver.WaitForBuffers(88));
+  const auto got = receiver.buffers();
+  ExpectSameStream({got.begin() + 80, got.end()}, sent);
+}
+
 TEST_F(NatsJetStream, TheOldestGoesWhereTheBoxIsFull) {
   const auto sent = PublishSlices(80, At(kBox + " max-bytes=50000"));
   const auto played = Replay(0);
