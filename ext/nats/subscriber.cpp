@@ -224,7 +224,7 @@ Subscriber::Event Subscriber::Renew() {
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
   // The server may lose the consumer before the first message: the new one begins here.
   next_ = info->Delivered.Stream + 1;
-  return info->NumPending == 0 ? Event::kEmpty : Event::kNothing;
+  return Event::kNothing;
 }
 
 void Subscriber::CountOverruns() {
@@ -249,7 +249,7 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
     next_ = meta->Sequence.Stream + 1;
     if (settings_.start_sequence == 0 && settings_.start_time &&
         meta->Timestamp < static_cast<std::int64_t>(*settings_.start_time))
-      return meta->NumPending == 0 ? Event::kEmpty : Event::kNothing;  // see SafeTime()
+      return Event::kNothing;  // see SafeTime()
   }
   delivery->stored = static_cast<std::uint64_t>(std::max<std::int64_t>(meta->Timestamp, 0));
   delivery->sequence = meta->Sequence.Stream;
@@ -257,17 +257,21 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   return Event::kMessage;
 }
 
-/// Asks the server, because only it knows which messages come again and what others of the group
-/// have not acknowledged.
+/// Asks the server, because only it knows which messages come again, what others of the group have
+/// not acknowledged, and which messages it has removed.
 bool Subscriber::IsDone() {
   const auto now = steady_clock::now();
-  if (!settings_.seeks_end || !acknowledges() || now < is_done_at_) return false;
+  if (!settings_.seeks_end || now < is_done_at_) return false;
   is_done_at_ = now + kDoneInterval;
   jsConsumerInfo* raw = nullptr;
-  js_GetConsumerInfo(&raw, js_.get(), settings_.stream.c_str(), settings_.durable.c_str(), nullptr,
-                     nullptr);
+  if (acknowledges())
+    js_GetConsumerInfo(&raw, js_.get(), settings_.stream.c_str(), settings_.durable.c_str(),
+                       nullptr, nullptr);
+  else
+    natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
   const ConsumerInfoPtr info(raw);
-  return info && info->NumPending == 0 && info->NumAckPending == 0;
+  return info && info->NumPending == 0 && info->NumAckPending == 0 &&
+         (acknowledges() || info->Delivered.Consumer == last_number_);
 }
 
 Subscriber::Event Subscriber::ConnectAgain(milliseconds pause) {

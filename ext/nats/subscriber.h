@@ -22,7 +22,8 @@ struct SubscriberSettings {
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
   std::uint64_t start_sequence = 0;         // replaces start_time, unless it is 0
   int max_pending = 8 << 20;                // bytes that may wait, if live
-  // Next() returns kEmpty once all messages of the durable consumer are acknowledged.
+  // Next() returns kEmpty once the stream has no more messages, and those of a durable consumer are
+  // acknowledged.
   bool seeks_end = false;
 };
 
@@ -46,7 +47,7 @@ class Subscriber {
   enum class Event {
     kMessage,
     kNothing,  // no message in this time
-    kEmpty,    // JetStream had no message at the first request; see also seeks_end
+    kEmpty,    // see seeks_end
     kTrouble,  // trouble() describes it; the subscriber continues
     kClosed,   // the connection is gone for good
   };

@@ -8,6 +8,7 @@
 
 #include "ext/nats/message.h"
 #include "ext/nats/stream_format.h"
+#include "ext/nats/subscriber.h"
 #include "gst/common/history_query.h"
 #include "gst/lidar/gstlidar.h"
 #include "tests/elements/nats/nats_client.h"
@@ -359,6 +360,32 @@ TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
     PublishSlices(8, At(kBox));
     return b.count() > 0;
   }));
+}
+
+TEST_F(NatsJetStream, AReplayEndsWhereTheServerDropsTheRestMeanwhile) {
+  PublishSlices(8, At(kBox));
+  nats::SubscriberSettings settings;
+  settings.connection.url = server_.url();
+  settings.subject = "r1.front";
+  settings.stream = "box";
+  settings.start_time = 0;
+  settings.seeks_end = true;
+  std::string why;
+  const auto subscriber = nats::Subscriber::Open(settings, nullptr, &why);
+  ASSERT_TRUE(subscriber) << why;
+  nats::Delivery delivery;
+  const auto gives = [&](nats::Subscriber::Event event) {
+    return Eventually(
+        [&] { return subscriber->Next(std::chrono::milliseconds(10), &delivery) == event; });
+  };
+  ASSERT_TRUE(gives(nats::Subscriber::Event::kMessage));
+  ASSERT_EQ(delivery.to_come, 7U);
+  server_.Kill();
+  server_.Restart();
+  ASSERT_TRUE(Eventually([&] { return subscriber->connection().connections == 2; }));
+  const NatsClient client(server_.url());
+  ASSERT_EQ(js_PurgeStream(client.js(), "box", nullptr, nullptr), NATS_OK);
+  EXPECT_TRUE(gives(nats::Subscriber::Event::kEmpty));
 }
 
 TEST_F(NatsJetStream, ASourceBeginsAnotherStreamOfTheSameNameAtItsFirstMessage) {
