@@ -31,15 +31,27 @@ std::optional<std::uint64_t> ToNumber(std::string_view text) {
   return value;
 }
 
+namespace {
+
+std::string_view TextOf(natsMsg* answer) {
+  return {natsMsg_GetData(answer), static_cast<std::size_t>(natsMsg_GetDataLength(answer))};
+}
+
+}  // namespace
+
 std::string ErrorOfAck(natsMsg* answer) {
   if (natsMsg_IsNoResponders(answer)) return "no stream of JetStream takes the subject";
-  const std::string_view text(natsMsg_GetData(answer),
-                              static_cast<std::size_t>(natsMsg_GetDataLength(answer)));
+  const std::string_view text = TextOf(answer);
   if (text.find("\"error\"") == text.npos && text.find("\"stream\"") != text.npos) return "";
   constexpr std::size_t kShownLetters = 200;
   const gst::StringPtr shown(
       g_utf8_make_valid(text.data(), static_cast<gssize>(std::min(text.size(), kShownLetters))));
   return std::string("JetStream refuses a message: ") + shown.get();
+}
+
+bool IsTooLarge(natsMsg* answer) {
+  const std::string code = "\"err_code\":" + std::to_string(JSStreamMessageExceedsMaximumErr);
+  return TextOf(answer).find(code) != std::string_view::npos;
 }
 
 }  // namespace lidar::nats

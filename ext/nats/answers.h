@@ -33,5 +33,7 @@ std::optional<std::uint64_t> ToNumber(std::string_view text);
 
 /// The reason why JetStream did not store a message; empty if it did.
 std::string ErrorOfAck(natsMsg* answer);
+/// Returns true if the message exceeds the stream's max_msg_size.
+bool IsTooLarge(natsMsg* answer);
 
 }  // namespace lidar::nats

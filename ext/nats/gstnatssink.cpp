@@ -269,16 +269,19 @@ static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool kee
                         (nullptr));
 }
 
-/// Posts an error if no message reached the server although none waits.
-static void TellOfDropped(GstBaseSink* base, const Publisher& publisher, bool keeps_trying) {
+/// Posts an error if the server has no message although none waits.
+static void TellOfDropped(GstBaseSink* base, const Publisher& publisher,
+                          const NatsSinkSettings& settings) {
   const PublisherCounters counters = publisher.counters();
   const auto lost = guint64{counters.dropped + counters.too_large};
-  if (counters.messages > 0 || lost == 0 || keeps_trying) return;
+  const bool kept = !settings.nats.stream.empty();
+  const guint64 reached = kept ? counters.acknowledged : counters.messages;
+  if (reached > 0 || lost == 0 || settings.keep_trying) return;
   GST_ELEMENT_ERROR(base, RESOURCE, WRITE,
                     ("None of %" G_GUINT64_FORMAT
-                     " messages reached the NATS server: they exceed its max_payload, or "
-                     "buffer-size.",
-                     lost),
+                     " messages reached the NATS server: they exceed its max_payload, %s"
+                     "or buffer-size.",
+                     lost, kept ? "the stream's max_msg_size, " : ""),
                     (nullptr));
 }
 
@@ -290,7 +293,7 @@ static gboolean OnEvent(GstBaseSink* base, GstEvent* event) {
         publisher ? publisher->Drain(settings.drain_timeout) : Publisher::Drained::kInterrupted;
     if (drained == Publisher::Drained::kTimeout)
       TellOfUnsent(base, *publisher, settings.keep_trying);
-    if (drained == Publisher::Drained::kAll) TellOfDropped(base, *publisher, settings.keep_trying);
+    if (drained == Publisher::Drained::kAll) TellOfDropped(base, *publisher, settings);
   }
   return GST_BASE_SINK_CLASS(gst_lidar_nats_sink_parent_class)->event(base, event);
 }

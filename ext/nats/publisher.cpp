@@ -170,7 +170,9 @@ void Publisher::OnAck(natsMsg* message) {
   const bool is_config = word == kConfigReply;
   if (!is_config && !number) return;
   const std::string error = ErrorOfAck(message);
+  const bool too_large = !error.empty() && IsTooLarge(message);
   Lock lock(mutex_);
+  if (too_large) return NoteTooLarge(&lock, number);
   if (error.empty()) {
     if (is_config) {
       config_unanswered_ = false;
@@ -185,6 +187,17 @@ void Publisher::OnAck(natsMsg* message) {
   }
   wake_.notify_all();
   if (!error.empty()) Tell(&lock, error);
+}
+
+/// The stream would refuse it each time. `number` is missing if the message is the caps.
+void Publisher::NoteTooLarge(Lock* lock, std::optional<std::uint64_t> number) {
+  if (!number)
+    config_unanswered_ = false;
+  else if (outbox_.Remove(*number))
+    ++counters_.too_large;
+  wake_.notify_all();
+  Tell(lock, std::string(number ? "A message is" : "The caps are") +
+                 " larger than the stream takes (max_msg_size)");
 }
 
 void Publisher::Tell(Lock* lock, const std::string& why) {

@@ -36,7 +36,7 @@ struct PublisherCounters {
   std::uint64_t acknowledged = 0;  // stored by JetStream
   std::uint64_t resent = 0;
   std::uint64_t dropped = 0;    // dropped for lack of room or at stop
-  std::uint64_t too_large = 0;  // for the server
+  std::uint64_t too_large = 0;  // for the server or its stream
   std::uint64_t waiting = 0;    // to be sent or acknowledged
   std::uint64_t buffered = 0;   // bytes in the waiting messages
   std::uint64_t server_errors = 0;
@@ -87,6 +87,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
                  SubscriptionPtr* out, std::string* why);
   void OnAsk(natsMsg* message);
   void OnAck(natsMsg* message);
+  void NoteTooLarge(Lock* lock, std::optional<std::uint64_t> number);
 
   void Run();
   void Step(Lock* lock);

@@ -402,6 +402,44 @@ TEST_F(NatsJetStream, ASourceBeginsAnotherStreamOfTheSameNameAtItsFirstMessage) 
   ExpectSameStream({got.begin() + 80, got.end()}, sent);
 }
 
+/// Makes the box, which takes no message larger than `most` bytes.
+void MakeBoxForSmallMessages(const std::string& url, std::int32_t most) {
+  const NatsClient client(url);
+  const char* subjects[] = {"r1.front", "r1.front.config.*"};
+  jsStreamConfig config;
+  jsStreamConfig_Init(&config);
+  config.Name = "box";
+  config.Subjects = subjects;
+  config.SubjectsLen = 2;
+  config.MaxMsgSize = most;
+  EXPECT_TRUE(Eventually(
+      [&] { return js_AddStream(nullptr, client.js(), &config, nullptr, nullptr) == NATS_OK; }));
+}
+
+TEST_F(NatsJetStream, MessagesThatAreTooLargeForTheStreamDelayNoOthers) {
+  MakeBoxForSmallMessages(server_.url(), 10'000);
+  NatsPipeline sender("concat name=c" + kSee + "! natssink name=n sync=false" + kPatientDrain +
+                      At(kBox) + kQuick + "num-buffers=8 ! c. " + kQuick +
+                      "num-buffers=8 ! lidarenc ! c.");
+  sender.Play();
+  EXPECT_NE(sender.WaitForWarning("A message is larger than the stream takes (max_msg_size)"), "");
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  EXPECT_EQ(sender.stat("messages-too-large"), 8U);
+  EXPECT_EQ(sender.stat("messages-acknowledged"), 8U);
+  EXPECT_EQ(sender.stat("messages-waiting"), 0U);
+}
+
+TEST_F(NatsJetStream, AStreamThatTakesNoMessageEndsWithAnError) {
+  MakeBoxForSmallMessages(server_.url(), 100);
+  NatsPipeline sender(kQuick + "num-buffers=8 ! lidarenc" + kSee + "! natssink name=n sync=false" +
+                      kPatientDrain + At(kBox));
+  sender.Play();
+  EXPECT_EQ(sender.WaitForEnd(),
+            "None of 8 messages reached the NATS server: they exceed its max_payload, the stream's "
+            "max_msg_size, or buffer-size.");
+  EXPECT_EQ(sender.stat("messages-too-large"), 8U);
+}
+
 TEST_F(NatsJetStream, TheOldestGoesWhereTheBoxIsFull) {
   const auto sent = PublishSlices(80, At(kBox + " max-bytes=50000"));
   const auto played = Replay(0);
