@@ -88,6 +88,7 @@ struct State {
   bool warned_of_caps = false;
   bool warned_absent = false;
   bool at_end = false;
+  bool left_out = false;  // a message before the next buffer was dropped
 };
 
 }  // namespace
@@ -186,7 +187,7 @@ static void ForgetStream(State& state) {
   state.no_wait_until_us = 0;
   state.here_at_us = g_get_monotonic_time();
   state.warned_damaged = state.warned_of_caps = state.warned_absent = false;
-  state.at_end = false;
+  state.at_end = state.left_out = false;
 }
 
 static gboolean Start(GstBaseSrc* base) {
@@ -282,6 +283,12 @@ static GstFlowReturn SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& f
   return GST_FLOW_CUSTOM_SUCCESS;
 }
 
+/// Notes a message that came and is dropped: it is not lost, but leaves a gap.
+static void NoteLeftOut(State& state, const ReadMessage& read) {
+  state.account.NotePlace(read.place, !state.now.nats.queue_group.empty());
+  state.left_out = true;
+}
+
 /// Returns CUSTOM_SUCCESS if the message gives no buffer.
 static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBuffer** out) {
   State& state = StateOf(self);
@@ -291,7 +298,10 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
     return GST_FLOW_CUSTOM_SUCCESS;
   }
   const StreamFormat::Ptr format = FormatOf(self, read->format_id);
-  if (!format) return GST_FLOW_CUSTOM_SUCCESS;
+  if (!format) {
+    NoteLeftOut(state, *read);
+    return GST_FLOW_CUSTOM_SUCCESS;
+  }
   const gsize size = gst_buffer_get_size(read->buffer.get());
   if (!format->Fits(size)) {
     NoteDamaged(self);
@@ -299,11 +309,13 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
   }
   if (format != state.format) {
     const GstFlowReturn flow = SetFormat(self, format);
+    if (flow == GST_FLOW_CUSTOM_SUCCESS) NoteLeftOut(state, *read);
     if (flow != GST_FLOW_OK) return flow;
   }
   const auto verdict = state.account.NotePlace(read->place, !state.now.nats.queue_group.empty());
   if (verdict.again) return GST_FLOW_CUSTOM_SUCCESS;
-  if (verdict.gap) GST_BUFFER_FLAG_SET(read->buffer.get(), GST_BUFFER_FLAG_DISCONT);
+  if (std::exchange(state.left_out, false) || verdict.gap)
+    GST_BUFFER_FLAG_SET(read->buffer.get(), GST_BUFFER_FLAG_DISCONT);
   SetStored(state, delivery, read->buffer.get());
   state.warned_damaged = false;
   state.account.NoteTaken(size);

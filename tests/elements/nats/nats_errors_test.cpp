@@ -65,6 +65,38 @@ TEST_F(NatsErrors, WhatTheNextElementDoesNotTakeIsSaidOnceAndTheStreamGoesOn) {
   EXPECT_TRUE(receiver.WaitForBuffers(8));
 }
 
+TEST_F(NatsErrors, WhatIsLeftOutIsNotCountedAsLostAndLeavesAMarkedGap) {
+  server_.Start();
+  NatsPipeline receiver("natssrc name=n" + At() +
+                        "! application/x-imu ! fakesink name=see sync=false");
+  Listen(server_, &receiver);
+  Stranger stranger(server_.url());
+  const auto publish = [&](const std::string& caps, const char* place) {
+    std::string why;
+    const gst::CapsPtr of(gst_caps_from_string(caps.c_str()));
+    const auto format = nats::StreamFormat::FromCaps(of.get(), &why);
+    ASSERT_TRUE(format) << why;
+    if (caps != "application/x-imu, sample-size=(int)1")
+      stranger.Publish(("lidar.config." + format->id()).c_str(), format->text());
+    stranger.Publish("lidar", std::string(32, 'x'),
+                     {{"Lidar-Caps", format->id()}, {"Lidar-Place", place}});
+  };
+  const char* const kImu = "application/x-imu, sample-size=(int)32";
+  publish(kImu, "1 0");
+  publish("application/x-imu, sample-size=(int)1", "1 1");  // its caps never come
+  publish(kImu, "1 2");
+  publish("application/x-voxels, alignment=(string)slice", "1 3");
+  publish(kImu, "1 4");
+  publish(kImu, "1 5");
+  ASSERT_TRUE(receiver.WaitForBuffers(4));
+  EXPECT_EQ(receiver.stat("messages-without-caps"), 1U);
+  EXPECT_EQ(receiver.stat("messages-not-accepted"), 1U);
+  EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+  std::vector<bool> marked;
+  for (const Kept& kept : receiver.buffers()) marked.push_back(kept.discont);
+  EXPECT_EQ(marked, (std::vector<bool>{true, true, true, false}));
+}
+
 TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
   server_.Start();
   NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
