@@ -7,6 +7,11 @@
 #include "ext/nats/message.h"
 
 namespace lidar::gst {
+namespace {
+
+constexpr std::size_t kMaxComplaints = 8;  // of a connection
+
+}  // namespace
 
 const std::array<Property<NatsSettings>, 8>& NatsRows() {
   using Connection = nats::ConnectionSettings;
@@ -77,6 +82,10 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
   if (state.connected()) closed_ = false;
   const bool closed = state.refused() && !std::exchange(closed_, true);
   const bool error = state.errors > std::exchange(errors_, state.errors);
+  if (changed) complaints_.clear();
+  // A complaint may come with each message.
+  const bool is_new =
+      error && complaints_.size() < kMaxComplaints && complaints_.insert(state.last_error).second;
   lock.unlock();
   // The server's text may be invalid UTF-8, which messages on the bus must not have.
   const StringPtr words(g_utf8_make_valid(state.last_error.c_str(), -1));
@@ -90,7 +99,7 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
     Warn(std::string("The NATS server refuses us: ") + words.get() + "; it is tried again.");
   else if (closed)
     PostRefused(state);
-  else if (error)
+  else if (is_new)
     Warn(std::string("The NATS server complains: ") + words.get() + ".");
 }
 

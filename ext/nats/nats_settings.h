@@ -4,6 +4,7 @@
 #include <gst/gst.h>
 
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "ext/nats/connection.h"
@@ -47,6 +48,7 @@ class ConnectionWatch {
   bool connected_ = false;
   bool closed_ = false;
   std::uint64_t errors_ = 0;
+  std::set<std::string> complaints_;  // of this connection, as warned of
 };
 
 }  // namespace lidar::gst

@@ -65,6 +65,18 @@ TEST_F(NatsErrors, WhatTheNextElementDoesNotTakeIsSaidOnceAndTheStreamGoesOn) {
   EXPECT_TRUE(receiver.WaitForBuffers(8));
 }
 
+TEST_F(NatsErrors, AComplaintThatComesWithEachMessageIsToldOnce) {
+  std::ofstream(server_.folder() + "/conf")
+      << "authorization { users = [{ user: me, password: pw, permissions: { publish: { deny: lidar "
+         "} } }] }\n";
+  server_.Start({"-c", server_.folder() + "/conf"});
+  NatsPipeline sender(kLive + "! lidarenc" + kSee +
+                      "! natssink name=n url=" + server_.url("nats", "me:pw@"));
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("server-errors") >= 10; }));
+  EXPECT_EQ(sender.Warnings("The NATS server complains"), 1U);
+}
+
 TEST_F(NatsErrors, WhatIsLeftOutIsNotCountedAsLostAndLeavesAMarkedGap) {
   server_.Start();
   NatsPipeline receiver("natssrc name=n" + At() +
