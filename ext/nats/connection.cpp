@@ -195,8 +195,10 @@ natsStatus Connection::Connect(natsOptions* o) {
 std::unique_ptr<Connection> Connection::Open(const ConnectionSettings& settings, Changed changed,
                                              std::string* why) {
   *why = CheckFiles(settings);
-  if (!why->empty()) return nullptr;
   std::vector<std::string> urls = SplitUrls(settings.url);
+  // libnats would connect to the local machine.
+  if (why->empty() && urls.empty()) *why = "url names no server";
+  if (!why->empty()) return nullptr;
   std::vector<const char*> servers;
   for (const std::string& url : urls) servers.push_back(url.c_str());
   natsOptions* raw = nullptr;

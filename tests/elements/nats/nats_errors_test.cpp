@@ -360,6 +360,8 @@ INSTANTIATE_TEST_SUITE_P(
                      "jetstream-subjects \"a.*\" does not cover a.b and a.b.config.*."},
         WrongSetting{"natssink name=n jetstream=s jetstream-subjects=>",
                      "jetstream-subjects \">\" begins with a wildcard."},
+        WrongSetting{"natssink name=n url=,", "NATS cannot be used: url names no server."},
+        WrongSetting{"natssrc name=n url=,", "NATS cannot be used: url names no server."},
         WrongSetting{"natssink name=n replicas=3", "replicas needs jetstream."},
         WrongSetting{"natssink name=n tls-ca-file=/none",
                      "NATS cannot be used: cannot read /none."},
