@@ -180,6 +180,21 @@ TEST_F(FleetReporter, SendsTheNewestAsSoonAsThereIsAServer) {
   }
 }
 
+TEST_F(FleetReporter, TellsOfAServerThatRefusesUs) {
+  server_.Start({"--auth", "other"});
+  nats::ConnectionSettings settings;
+  settings.url = server_.url();
+  settings.token = "s3cret";
+  testing::internal::CaptureStderr();
+  {
+    const fleet::Reporter reporter(settings);
+    // A connection is refused three times before it is given up.
+    EXPECT_TRUE(Eventually([&] { return server_.Logged("authentication error") >= 7; }));
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "NATS gets no statistics: the server refuses us: Authorization Violation\n");
+}
+
 TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {
   const std::string path = ::testing::TempDir() + "reporter-" + std::to_string(getpid());
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);

@@ -37,17 +37,24 @@ void Reporter::Open(Clock::time_point now) {
   connection_.reset();
   std::string why;
   connection_ = nats::Connection::Open(settings_, nullptr, &why);
-  if (connection_ || why == told_) return;
-  told_ = why;
+  if (!connection_) Tell(why);
+}
+
+/// Prints each reason once until there is a connection.
+void Reporter::Tell(const std::string& why) {
+  if (std::exchange(told_, why) == why) return;
   std::fprintf(stderr, "NATS gets no statistics: %s\n", tools::Printable(why).c_str());
 }
 
 /// libnats closes a refused connection, so a new one is made after a while.
 bool Reporter::Connected(Clock::time_point now) {
   if ((!connection_ || connection_->state().closed) && now >= open_at_) Open(now);
-  const bool connected = connection_ && connection_->state().connected();
-  if (connected) refusals_.Reset();
-  return connected;
+  const nats::ConnectionState state = connection_ ? connection_->state() : nats::ConnectionState();
+  if (state.refused()) Tell("the server refuses us: " + state.last_error);
+  if (!state.connected()) return false;
+  refusals_.Reset();
+  told_.clear();
+  return true;
 }
 
 void Reporter::Send(const Reports& reports) const {

@@ -34,6 +34,7 @@ class Reporter {
   void Run();
   bool Connected(Clock::time_point now);
   void Open(Clock::time_point now);
+  void Tell(const std::string& why);
   void Send(const Reports& reports) const;
 
   const nats::ConnectionSettings settings_;
