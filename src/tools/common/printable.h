@@ -31,4 +31,9 @@ inline std::string Printable(const std::string& text) {
   return out;
 }
 
+/// Returns an address as URLs have it: IPv6 in brackets.
+inline std::string HostInUrl(const std::string& address) {
+  return address.find(':') == address.npos ? address : "[" + address + "]";
+}
+
 }  // namespace lidar::tools

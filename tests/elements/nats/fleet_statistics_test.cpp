@@ -17,9 +17,11 @@
 #include "src/tools/apps/fleet/exposition.h"
 #include "src/tools/apps/fleet/metrics_server.h"
 #include "src/tools/apps/fleet/reporter.h"
+#include "src/tools/apps/fleet/statistics.h"
 #include "src/tools/common/file_descriptor.h"
 #include "src/tools/common/printable.h"
 #include "tests/elements/nats/nats_server.h"
+#include "tests/support/ipv6.h"
 
 namespace lidar::test {
 namespace {
@@ -193,6 +195,14 @@ TEST_F(FleetReporter, TellsOfAServerThatRefusesUs) {
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "NATS gets no statistics: the server refuses us: Authorization Violation\n");
+}
+
+TEST(FleetStatistics, PrintAnAddressThatABrowserTakes) {
+  if (!HasIpv6()) GTEST_SKIP() << "this machine has no IPv6";
+  testing::internal::CaptureStdout();
+  fleet::Statistics({"::1", 0, 5}, std::nullopt);
+  const std::string told = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(told.rfind("metrics http://[::1]:", 0), 0U) << told;
 }
 
 TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {

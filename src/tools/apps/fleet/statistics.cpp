@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "src/tools/common/event_loop.h"
+#include "src/tools/common/printable.h"
 
 namespace lidar::fleet {
 namespace {
@@ -36,7 +37,8 @@ Statistics::Statistics(const StatisticsSettings& settings,
   if (connection) reporter_.emplace(*connection);
   if (settings.http_port < 0) return;
   metrics_.emplace(settings.http_address, settings.http_port);
-  std::printf("metrics http://%s:%d/metrics\n", settings.http_address.c_str(), metrics_->port());
+  std::printf("metrics http://%s:%d/metrics\n", tools::HostInUrl(settings.http_address).c_str(),
+              metrics_->port());
   std::fflush(stdout);
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "src/tools/common/printable.h"
 #include "src/tools/common/program.h"
 
 namespace {
@@ -109,7 +110,7 @@ void Serve(const Options& options) {
   };
   g_unix_signal_add(SIGINT, quit, loop.get());
   g_unix_signal_add(SIGTERM, quit, loop.get());
-  std::printf("rtsp://%s:%d%s\n", options.address.c_str(),
+  std::printf("rtsp://%s:%d%s\n", lidar::tools::HostInUrl(options.address).c_str(),
               gst_rtsp_server_get_bound_port(server.get()), options.path.c_str());
   std::fflush(stdout);
   g_main_loop_run(loop.get());
