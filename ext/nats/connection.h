@@ -54,7 +54,7 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   natsConnection* get() const { return nc_; }
-  /// After this, the ends of subscriptions do not wait for the server.
+  /// Makes the ends of subscriptions, which follow, not wait for the server.
   void Close() { natsConnection_Close(nc_); }
   /// Never waits for the network.
   ConnectionState state() const;
