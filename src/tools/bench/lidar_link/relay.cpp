@@ -72,6 +72,8 @@ void Relay::OnMedia(std::size_t listener, const Datagram& datagram) {
   if (!there_) Start(arrival);
   if (const auto flow = FindFlow(listener, *datagram.from))
     Enqueue(&*there_, arrival, datagram, *flow);
+  else
+    recorder_->OnRefusedSend();
 }
 
 void Relay::OnFeedback(std::size_t flow, const Datagram& datagram) {
