@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "gst/lidar/gstlidar.h"
 #include "src/base/sequence.h"
@@ -96,6 +98,19 @@ constexpr DataSize kIpUdp = DataSize::Bytes(28);
 constexpr const char* kCaps =
     "application/x-rtp,media=application,encoding-name=X-SCREAM-BENCH,clock-rate=90000";
 
+/// `text` is "HOST:PORT" or "[IPV6]:PORT". Throws std::runtime_error.
+std::pair<std::string, gint> SplitFeedback(const std::string& text) {
+  const std::size_t colon = std::min(text.rfind(':'), text.size());
+  std::string host = text.substr(0, colon);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']')
+    host = host.substr(1, host.size() - 2);
+  guint64 port = 0;
+  if (host.empty() || colon == text.size() ||
+      !g_ascii_string_to_unsigned(&text[colon + 1], 10, 1, 65535, &port, nullptr))
+    throw std::runtime_error("--feedback wants HOST:PORT");
+  return {host, static_cast<gint>(port)};
+}
+
 class Receiver {
  public:
   explicit Receiver(const BenchOptions& options);
@@ -106,7 +121,7 @@ class Receiver {
   void Build();
   void OnBuffer(GstBuffer* buffer);
   void Tick();
-  void PrintLine(double seconds);
+  void PrintLine(Duration now);
   void Finish();
 
   const BenchOptions& options_;
@@ -114,11 +129,11 @@ class Receiver {
   OutputFile log_;
   std::mutex mutex_;  // guards the rest, which the streaming thread writes
   FrameMeter meter_;
-  Distribution second_;  // ages [ms] in this line's second
+  Distribution second_;  // ages [ms] of this line
   DataSize line_bytes_;
   Duration first_{0};
   Duration last_{0};
-  Duration next_line_{0};
+  Duration line_since_{0};
 };
 
 Receiver::Receiver(const BenchOptions& options)
@@ -143,13 +158,11 @@ void Receiver::Build() {
     gst_util_set_object_arg(G_OBJECT(source), "num-reports", o.num_reports.c_str());
     LinkPads(source, "src", sink, "sink");
   } else {
-    const std::size_t colon = o.feedback.rfind(':');
-    if (colon == std::string::npos) throw std::runtime_error("--feedback wants HOST:PORT");
+    const auto [host, port] = SplitFeedback(o.feedback);
     GstElement* rx = AddElement(bin, "screamrx", "screamrx");
     gst_util_set_object_arg(G_OBJECT(rx), "num-reports", o.num_reports.c_str());
     GstElement* back = AddElement(bin, "ecnudpsink", "feedback");
-    g_object_set(back, "host", o.feedback.substr(0, colon).c_str(), "port",
-                 std::stoi(o.feedback.substr(colon + 1)), "sync", FALSE, "async", FALSE, nullptr);
+    g_object_set(back, "host", host.c_str(), "port", port, "sync", FALSE, "async", FALSE, nullptr);
     GST_OBJECT_FLAGS(back) &= ~guint32{GST_ELEMENT_FLAG_SINK};  // the run ends with the media
     LinkPads(source, "src", rx, "sink");
     LinkPads(rx, "src", sink, "sink");
@@ -191,8 +204,7 @@ void Receiver::OnBuffer(GstBuffer* buffer) {
       GST_CLOCK_TIME_IS_VALID(arrival) ? Duration{static_cast<std::int64_t>(arrival)} : UnixNow();
   const std::lock_guard lock(mutex_);
   if (meter_.packets() == 0) {
-    first_ = packet.unix_time;
-    next_line_ = first_ + std::chrono::seconds{1};
+    first_ = line_since_ = packet.unix_time;
   }
   last_ = packet.unix_time;
   line_bytes_ += packet.size;
@@ -207,15 +219,17 @@ void Receiver::OnBuffer(GstBuffer* buffer) {
 void Receiver::Tick() {
   const Duration now = UnixNow();
   const std::lock_guard lock(mutex_);
-  if (meter_.packets() == 0 || now < next_line_) return;
-  PrintLine(Seconds(now - first_));
-  next_line_ = now + std::chrono::seconds{1};
+  if (meter_.packets() == 0 || now < line_since_ + std::chrono::seconds{1}) return;
+  PrintLine(now);
+  line_since_ = now;
 }
 
-void Receiver::PrintLine(double seconds) {
+/// A line lasts a second, and the time to the next check.
+void Receiver::PrintLine(Duration now) {
   std::printf(
       "%7.1f s  received %8.3f Mbit/s  frame age p50 %6.1f p95 %6.1f ms%s  CE %llu  lost %llu\n",
-      seconds, line_bytes_.bits() / 1e6, second_.Percentile(50), second_.Percentile(95),
+      Seconds(now - first_), line_bytes_.bits() / 1e6 / Seconds(now - line_since_),
+      second_.Percentile(50), second_.Percentile(95),
       meter_.is_relative() ? " (over the youngest)" : "",
       static_cast<unsigned long long>(meter_.ce_packets()),
       static_cast<unsigned long long>(meter_.lost()));
