@@ -20,17 +20,22 @@ inline void AddHelpAllFlag(CLI::App* app) {
   app->set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
 }
 
-/// Throws if a number is NaN, which CLI::Range lets pass.
-inline void RefuseNan(const CLI::App& app) {
+/// Throws if a number is NaN, which CLI::Range lets pass, or negative where CLI11 before 2.3 takes
+/// it modulo 2^64.
+inline void RefuseWrongNumbers(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
-    if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
+    const std::string type = option->get_type_name();
+    const bool is_float = type.find("FLOAT") != std::string::npos;
+    const bool is_unsigned = type.find("UINT") != std::string::npos;
     for (const std::string& text : option->results()) {
       double value = 0;
-      if (CLI::detail::lexical_cast(text, value) && std::isnan(value))
+      if (is_float && CLI::detail::lexical_cast(text, value) && std::isnan(value))
         throw CLI::ValidationError(option->get_name(), text + " is no number");
+      if (is_unsigned && text.find('-') != std::string::npos)
+        throw CLI::ValidationError(option->get_name(), text + " is negative");
     }
   }
-  for (const CLI::App* command : app.get_subcommands()) RefuseNan(*command);
+  for (const CLI::App* command : app.get_subcommands()) RefuseWrongNumbers(*command);
 }
 
 /// Parses the command line, and has `check` throw CLI::ParseError for options that contradict each
@@ -38,7 +43,7 @@ inline void RefuseNan(const CLI::App& app) {
 template <class Check>
 void Parse(CLI::App* app, int argc, char** argv, Check check) {
   try {
-    app->parse_complete_callback([app] { RefuseNan(*app); });  // before any command runs
+    app->parse_complete_callback([app] { RefuseWrongNumbers(*app); });  // before any command runs
     app->parse(argc, argv);
     check();
   } catch (const CLI::ParseError& e) {
