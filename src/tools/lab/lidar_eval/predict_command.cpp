@@ -112,7 +112,11 @@ void AddPredictCommand(CLI::App* app) {
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
   command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
   command->add_option("--seed", o->sampling.seed, "Of the random settings");
-  command->callback([o] { RunPredict(*o); });
+  command->callback([o] {
+    if (o->min_step_m >= o->max_step_m)
+      throw CLI::ValidationError("--min-step", "must be below --max-step");
+    RunPredict(*o);
+  });
 }
 
 }  // namespace lidar::tools
