@@ -7,6 +7,7 @@
 #include <map>
 
 #include "src/tools/bench/ouster_replay/faults.h"
+#include "src/tools/bench/ouster_replay/sensor.h"
 #include "src/tools/common/program.h"
 
 namespace lidar::tools {
@@ -63,7 +64,9 @@ void AddSending(CLI::App* app, ReplayOptions* o) {
   app->add_option("--lidar-port", o->lidar_port, "0: as in the metadata")->check(port);
   app->add_option("--imu-port", o->imu_port, "0: as in the metadata")->check(port);
   app->add_option("--timestamp-mode", o->timestamp_mode,
-                  "TIME_FROM_INTERNAL_OSC, or TIME_FROM_PTP_1588 (this machine's time as TAI)");
+                  "TIME_FROM_INTERNAL_OSC, or TIME_FROM_PTP_1588 (this machine's time as TAI)")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(kTimestampModes.begin(), kTimestampModes.end())));
   app->add_option("--http-address", o->http_address, "Address of the HTTP API");
   app->add_option("--http-port", o->http_port, "Port of the HTTP API; 0: any free one")
       ->check(port);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "src/tools/bench/ouster_replay/sensor.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -31,8 +32,8 @@ bool IsValid(const std::string& key, const json& value) {
   if (key == "signal_multiplier")
     return value == 0.25 || value == 0.5 || value == 1 || value == 2 || value == 3;
   if (key == "timestamp_mode")
-    return value == "TIME_FROM_INTERNAL_OSC" || value == "TIME_FROM_SYNC_PULSE_IN" ||
-           value == "TIME_FROM_PTP_1588";
+    return std::find(kTimestampModes.begin(), kTimestampModes.end(), value) !=
+           kTimestampModes.end();
   if (key.rfind("udp_port", 0) == 0)
     return value.is_number_unsigned() && value.get<std::uint64_t>() < 65536;
   if (key == "azimuth_window")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A sensor's configuration, metadata and state. All threads may call it.
 #pragma once
+#include <array>
 #include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,9 @@
 #include "src/tools/bench/ouster_replay/faults.h"
 
 namespace lidar::tools {
+
+inline constexpr std::array<const char*, 3> kTimestampModes = {
+    "TIME_FROM_INTERNAL_OSC", "TIME_FROM_SYNC_PULSE_IN", "TIME_FROM_PTP_1588"};
 
 class Sensor {
  public:
