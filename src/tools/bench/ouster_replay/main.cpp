@@ -92,12 +92,13 @@ std::unique_ptr<PacketStream> MakeStream(const ReplayOptions& o, const ouster::M
 
 int WriteFiles(const ReplayOptions& options, const ouster::Metadata& metadata) {
   const auto stream = MakeStream(options, metadata);
-  stream->Restart({metadata.init_id, 3'000'000'000});
+  const Time now = Now();
+  stream->Restart({metadata.init_id, ClockAtStart(metadata.timestamp_mode, now)});
   std::string error;
   const auto writer = ouster::PcapWriter::Open(options.write_pcap, &error);
   if (!writer) throw std::runtime_error("cannot write " + options.write_pcap + ": " + error);
   const Duration end = metadata.scan_period() * options.scans;
-  const Duration start = Now().time_since_epoch() + UnixOffset();
+  const Duration start = now.time_since_epoch() + UnixOffset();
   Faults faults;
   faults.Merge(options.faults);
   FaultInjector injector(options.seed);

@@ -12,7 +12,8 @@ namespace {
 constexpr Duration kTaiMinusUtc = std::chrono::seconds(37);
 constexpr Duration kRequestPoll = std::chrono::milliseconds(5);  // between checks
 
-/// Returns the sensor's clock when it starts to scan.
+}  // namespace
+
 std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now) {
   const Duration since_boot = std::chrono::seconds(3);
   const Duration utc = now.time_since_epoch() + UnixOffset();
@@ -21,8 +22,6 @@ std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now) {
   if (timestamp_mode == "TIME_FROM_SYNC_PULSE_IN") return static_cast<std::uint64_t>(utc.count());
   return static_cast<std::uint64_t>(since_boot.count());
 }
-
-}  // namespace
 
 Player::Player(const ReplayOptions& options, const ouster::Metadata& metadata, Sensor* sensor,
                MakeStream make_stream)

@@ -15,6 +15,9 @@
 
 namespace lidar::tools {
 
+/// Returns the sensor's clock when it starts to scan.
+std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now);
+
 class Player {
  public:
   using MakeStream = std::function<std::unique_ptr<PacketStream>(const ouster::Metadata&)>;
