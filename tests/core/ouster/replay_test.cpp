@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "src/base/byte_reader.h"
 #include "src/base/crc.h"
@@ -301,7 +302,36 @@ TEST(PlayerFaults, KeepNoPacketBackAtTheEnd) {
   Player player(options, metadata, &sensor,
                 [](const ouster::Metadata&) { return std::make_unique<FewPackets>(3); });
   player.Pump(Now());
+  player.Finish();
   EXPECT_EQ(player.counts().sent, 3U);
+}
+
+/// A sensor that sends one packet now, and the next much later.
+class OnePacketNow final : public PacketStream {
+ public:
+  void Restart(const Start&) override {}
+  std::optional<OutPacket> Next() override {
+    const bool first = std::exchange(first_, false);
+    return OutPacket{first ? Duration{} : std::chrono::hours(1), false, {1}};
+  }
+
+ private:
+  bool first_ = true;
+};
+
+TEST(PlayerFaults, KeepNoPacketBackForAfterARestart) {
+  ReplayOptions options;
+  const ouster::Metadata metadata = MakeSynthMetadata(options.synth, options.format);
+  Sensor sensor(metadata, "", [&](const nlohmann::json&) { return metadata; });
+  sensor.MergeFaults({{"reorder", 1}});
+  Player player(options, metadata, &sensor,
+                [](const ouster::Metadata&) { return std::make_unique<OnePacketNow>(); });
+  const Time now = Now();
+  player.Pump(now);
+  EXPECT_EQ(player.counts().sent, 0U);
+  sensor.Restart();
+  player.Pump(now);
+  EXPECT_EQ(player.counts().sent, 1U);
 }
 
 TEST(PlayerEvents, ComeAtTimesSinceTheProgramBeganWhateverRestarts) {

@@ -146,6 +146,7 @@ int Serve(const ReplayOptions& options, const ouster::Metadata& metadata) {
     if (!wake_up || now >= end) return loop.Stop();
     loop.SetWakeUp(std::min(*wake_up, end));
   });
+  player.Finish();
   http.reset();
   std::cout << stats() << std::endl;
   return 0;

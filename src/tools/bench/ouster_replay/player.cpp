@@ -60,8 +60,7 @@ void Player::SetDestination(const Sensor::Destination& to) {
   destination_ = to;
 }
 
-void Player::Send(const std::vector<OutPacket>& packets) {
-  const Sensor::Destination to = sensor_.destination();
+void Player::Send(const Sensor::Destination& to, const std::vector<OutPacket>& packets) {
   if (to.host.empty()) return;
   if (to != destination_) SetDestination(to);
   for (const OutPacket& packet : packets)
@@ -69,9 +68,20 @@ void Player::Send(const std::vector<OutPacket>& packets) {
                   packet.imu ? &imu_address_ : &lidar_address_);
 }
 
+void Player::SendHeld(const Sensor::Destination& to) {
+  Send(to, injector_.Finish());
+  CopyCounts();
+}
+
+void Player::CopyCounts() {
+  std::lock_guard lock(mutex_);
+  counts_ = injector_.counts();
+}
+
 std::optional<Time> Player::Pump(Time now) {
   RunEvents(now);
   if (auto metadata = sensor_.TakeRestart()) {
+    SendHeld(destination_);  // it left before the restart
     boots_until_ = now + FromSeconds(options_.boot_s);
     Start(*metadata, boots_until_);
   }
@@ -79,14 +89,10 @@ std::optional<Time> Player::Pump(Time now) {
   sensor_.SetRunning(true);
   const Faults faults = sensor_.faults();
   while (next_ && origin_ + next_->due <= now) {
-    Send(injector_.Apply(faults, *std::move(next_)));
+    Send(sensor_.destination(), injector_.Apply(faults, *std::move(next_)));
     next_ = stream_->Next();
   }
-  if (!next_) Send(injector_.Finish());
-  {
-    std::lock_guard lock(mutex_);
-    counts_ = injector_.counts();
-  }
+  CopyCounts();
   if (!next_) return std::nullopt;
   return std::min(origin_ + next_->due, now + kRequestPoll);
 }

@@ -28,13 +28,17 @@ class Player {
 
   /// Sends what is due; returns the time of the next call, or nothing at the end.
   std::optional<Time> Pump(Time now);
+  /// Sends the packet that waits for the next one.
+  void Finish() { SendHeld(sensor_.destination()); }
   /// Any thread may call this.
   FaultCounts counts() const;
 
  private:
   void Start(const ouster::Metadata& metadata, Time now);
   void RunEvents(Time now);
-  void Send(const std::vector<OutPacket>& packets);
+  void Send(const Sensor::Destination& to, const std::vector<OutPacket>& packets);
+  void SendHeld(const Sensor::Destination& to);
+  void CopyCounts();
   void SetDestination(const Sensor::Destination& to);
 
   const ReplayOptions options_;
