@@ -280,6 +280,37 @@ TEST_F(Capture, BeginsAnewAfterARestartAndEndsOnceIfAsked) {
   }
 }
 
+TEST(CaptureOfAccelGyro, HasTheNewSensorInItsImuPackets) {
+  const test::TempFolder folder;
+  const std::string path = folder.path() + "/a.pcap";
+  ouster::Metadata metadata = MakeSynthMetadata({}, {});
+  metadata.imu_profile = ouster::ImuProfile::kAccel32Gyro32Nmea;
+  metadata.imu_measurements_per_packet = 1;
+  SynthStream sensor({}, metadata);
+  auto lidar = sensor.Next();
+  while (lidar->imu) lidar = sensor.Next();
+  std::string error;
+  const auto writer = ouster::PcapWriter::Open(path, &error);
+  ASSERT_TRUE(writer->Write(Time{}, 7502, {lidar->bytes.data(), lidar->bytes.size()}));
+  const std::vector<std::uint8_t> imu(metadata.imu_packet_size());
+  ASSERT_TRUE(writer->Write(Time{}, 7503, {imu.data(), imu.size()}));
+  ASSERT_TRUE(writer->Close());
+  PcapStream::Options options;
+  options.serial = 9;
+  PcapStream stream(path, metadata, options);
+  stream.Restart({7, 0});
+  stream.Next();
+  const auto sent = stream.Next();
+  ASSERT_TRUE(sent->imu);
+  const auto header = [&](std::size_t at) { return static_cast<unsigned>(sent->bytes[at]); };
+  EXPECT_EQ(header(ouster::kStandardHeader.init_id), 7U);
+  EXPECT_EQ(header(ouster::kStandardHeader.serial), 9U);
+  stream.Next();
+  const auto again = stream.Next();
+  ASSERT_TRUE(again->imu);
+  EXPECT_EQ(again->bytes[ouster::kStandardHeader.frame_id], 1U) << "of the second round";
+}
+
 /// A sensor that sends some packets at once.
 class FewPackets final : public PacketStream {
  public:

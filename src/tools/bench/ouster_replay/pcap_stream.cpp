@@ -54,16 +54,20 @@ void PutTime(const PacketPatch& patch, std::uint8_t* at) {
       8);
 }
 
+/// Lidar packets, and IMU packets of ACCEL32_GYRO32_NMEA, have the same header.
+void ApplyToHeader(const PacketPatch& patch, const ouster::PacketFormat& format,
+                   std::uint8_t* bytes) {
+  const auto& at = format.is_fusa() ? ouster::kFusaHeader : ouster::kStandardHeader;
+  if (patch.init_id != 0) Put(bytes + at.init_id, patch.init_id, 3);
+  if (patch.serial != 0) Put(bytes + at.serial, patch.serial, 5);
+  const std::uint64_t frame = Get(bytes + at.frame_id, at.frame_id_bytes) + patch.add_frames;
+  Put(bytes + at.frame_id, frame, at.frame_id_bytes);
+}
+
 /// `bytes` must have `format`.
 void ApplyToLidar(const PacketPatch& patch, const ouster::PacketFormat& format,
                   std::uint8_t* bytes) {
-  if (!format.is_legacy()) {
-    const auto& at = format.is_fusa() ? ouster::kFusaHeader : ouster::kStandardHeader;
-    if (patch.init_id != 0) Put(bytes + at.init_id, patch.init_id, 3);
-    if (patch.serial != 0) Put(bytes + at.serial, patch.serial, 5);
-    const std::uint64_t frame = Get(bytes + at.frame_id, at.frame_id_bytes) + patch.add_frames;
-    Put(bytes + at.frame_id, frame, at.frame_id_bytes);
-  }
+  if (!format.is_legacy()) ApplyToHeader(patch, format, bytes);
   for (std::uint32_t i = 0; i < format.columns_per_packet; ++i) {
     std::uint8_t* column = bytes + format.packet_header_size() + i * format.column_size();
     PutTime(patch, column);
@@ -87,7 +91,10 @@ void KeepCrc(bool has_crc, std::vector<std::uint8_t>* packet, const Change& chan
 
 PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata,
                        const Options& options)
-    : format_(metadata.format), imu_times_(ouster::ImuTimestamps(metadata)), options_(options) {
+    : format_(metadata.format),
+      imu_times_(ouster::ImuTimestamps(metadata)),
+      imu_has_header_(metadata.imu_profile == ouster::ImuProfile::kAccel32Gyro32Nmea),
+      options_(options) {
   std::string error;
   const auto reader = ouster::PcapReader::Open(path, &error);
   if (!reader) throw std::runtime_error("cannot read " + path + ": " + error);
@@ -145,6 +152,7 @@ std::optional<OutPacket> PcapStream::Next() {
   patch.speed = options_.speed;
   KeepCrc(packet.imu || !format_.is_legacy(), &packet.bytes, [&](std::uint8_t* bytes) {
     if (!packet.imu) return ApplyToLidar(patch, format_, bytes);
+    if (imu_has_header_) ApplyToHeader(patch, format_, bytes);
     for (const std::size_t at : imu_times_) PutTime(patch, bytes + at);
   });
   return packet;

@@ -25,6 +25,7 @@ class PcapStream : public PacketStream {
   std::vector<OutPacket> packets_;
   ouster::PacketFormat format_;
   std::vector<std::size_t> imu_times_;  // places in an IMU packet
+  bool imu_has_header_;
   Options options_;
   Duration round_{};  // duration of the capture's scans
   std::uint32_t scans_ = 0;
