@@ -110,7 +110,10 @@ void ClientService::OnRequest(SoupServer*, SoupServerMessage* request, const cha
   auto* self = static_cast<ClientService*>(data);
   if (WantsWebSocket(request)) {
     auto grant = self->Admit(request, query);
-    if (!grant) return;
+    if (!grant) {
+      ++self->counters_.clients_refused;
+      return;
+    }
     g_object_set_data_full(G_OBJECT(request), kGrant, new Grant(*std::move(grant)),
                            [](gpointer g) { delete static_cast<Grant*>(g); });
     self->Upgrade(request);
@@ -130,7 +133,6 @@ std::optional<Grant> ClientService::Admit(SoupServerMessage* request, GHashTable
     grant.reset();
   }
   if (grant) return grant;
-  ++counters_.clients_refused;
   Answer(request, refusal.status, refusal.text);
   return std::nullopt;
 }
