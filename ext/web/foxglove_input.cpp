@@ -7,6 +7,7 @@
 #include "ext/web/poses.h"
 #include "ext/web/slice_stream.h"
 #include "gst/common/buffer_map.h"
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/element_class.h"
 #include "gst/common/properties.h"
 #include "gst/common/refused_caps.h"
@@ -50,6 +51,8 @@ struct State {
   SharedTopic data;
   SharedTopic transforms;
   SharedTopic poses;
+  std::string parent_frame;  // of kOdometry
+  std::string child_frame;
   bool no_poses = false;  // another stream has their topics
 };
 
@@ -210,6 +213,9 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   }
   state.refused.Reset();
   if (info) state.info = std::move(*info);
+  const GstStructure* s = gst_caps_get_structure(caps, 0);
+  state.parent_frame = FrameIn(s, GST_LIDAR_FRAME_ID, lidar::web::kFixedFrame);
+  state.child_frame = FrameIn(s, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame);
   if (kind != Kind::kOdometry && !IsVideo(kind)) state.used->scan_duration = ScanDurationOf(caps);
   // Clouds of another width stay in the channel; coded slices with other caps are another stream.
   if (kind == state.kind && kind != Kind::kSlices) return TRUE;
@@ -238,12 +244,12 @@ guint64 TimeOf(GstBaseSink* sink, GstBuffer* buffer) {
   return static_cast<guint64>(g_get_real_time()) * GST_USECOND - AgeOf(sink, buffer);
 }
 
-void PublishPose(State* state, guint64 unix_ns, const std::string& frame_id, const Pose& pose) {
+void PublishPose(State* state, const Header& header, const std::string& child, const Pose& pose) {
   auto& server = *state->used->server;
-  const Header header{unix_ns, lidar::web::kFixedFrame};
+  const guint64 unix_ns = header.unix_ns;
   if (state->transforms->wanted())
     server.Publish(state->transforms,
-                   {unix_ns, lidar::foxglove::EncodeTransform(header, frame_id, pose)});
+                   {unix_ns, lidar::foxglove::EncodeTransform(header, child, pose)});
   if (state->poses->wanted())
     server.Publish(state->poses, {unix_ns, lidar::foxglove::EncodePose(header, pose)});
 }
@@ -270,7 +276,8 @@ void PublishPoseOfCloud(GstBaseSink* sink, GstBuffer* buffer, const Header& head
     }
     state.transforms->set_depth(kMaxDepth);
   }
-  PublishPose(&state, header.unix_ns, header.frame_id, lidar::web::PoseOf(meta));
+  PublishPose(&state, {header.unix_ns, lidar::web::kFixedFrame}, header.frame_id,
+              lidar::web::PoseOf(meta));
 }
 
 bool RenderCloud(State* state, const Header& header, const BufferMap& map) {
@@ -325,7 +332,10 @@ bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   for (double& value : pose.position) value = in.LeF64();
   for (double& value : pose.orientation) value = in.LeF64();
   if (!in.ok()) return false;
-  PublishPose(state, header.unix_ns, header.frame_id, pose);
+  // The pad's frame-id, if set, goes before the caps.
+  const bool from_caps = header.frame_id == InputSettings{}.frame_id;
+  PublishPose(state, {header.unix_ns, state->parent_frame},
+              from_caps ? state->child_frame : header.frame_id, pose);
   return true;
 }
 

@@ -47,6 +47,31 @@ TEST(FoxgloveSink, SendsCloudsToWhoeverSubscribes) {
   EXPECT_EQ(sink.Stat("points-sent"), 4U);
 }
 
+struct FramesCase {
+  const char* caps;
+  const char* properties;
+  const char* parent;
+  const char* child;
+};
+class FoxgloveFrames : public ::testing::TestWithParam<FramesCase> {};
+TEST_P(FoxgloveFrames, OfATransformAreThoseOfThePadElseOfTheCaps) {
+  Sink sink(GetParam().properties);
+  const std::string caps = std::string("application/x-odometry") + GetParam().caps;
+  gst_harness_set_src_caps_str(sink.harness(), caps.c_str());
+  Peer peer(&sink);
+  peer.Subscribe("/tf", 1);
+  ASSERT_EQ(gst_harness_push(sink.harness(), gst_buffer_new_allocate(nullptr, 64, nullptr)),
+            GST_FLOW_OK);
+  const Received transform = peer.Next();
+  EXPECT_EQ(Parse(transform).Text(2), GetParam().parent);
+  EXPECT_EQ(Parse(transform).Text(3), GetParam().child);
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, FoxgloveFrames,
+    ::testing::Values(FramesCase{"", "", "odom", "lidar"},
+                      FramesCase{",frame-id=map,child-frame-id=odom", "", "map", "odom"},
+                      FramesCase{",child-frame-id=os", "sink_0::frame-id=os1", "odom", "os1"}));
+
 TEST(FoxgloveSink, SpeaksBothSubprotocolsWithoutCompression) {
   Sink sink;
   for (const char* protocol : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) {
