@@ -21,6 +21,7 @@
 #include "gst/common/enum_type.h"
 #include "gst/common/stats.h"
 #include "gst/lidar/gstlidar.h"
+#include "src/base/imu_sample.h"
 
 GST_DEBUG_CATEGORY_STATIC(gst_lidar_ros2_sink_debug);
 #define GST_CAT_DEFAULT gst_lidar_ros2_sink_debug
@@ -278,8 +279,9 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   if (!writer || !state.messages) return GST_FLOW_NOT_NEGOTIATED;
   NoteIncompatible(self, writer->TakeIncompatible());
   if (writer->subscribers() == 0) {
+    const bool is_imu = state.messages->type() == RosType::kImu;  // a message for each sample
     const std::lock_guard lock(state.mutex);
-    ++state.counters.unread;
+    state.counters.unread += is_imu ? gst_buffer_get_size(buffer) / lidar::kImuSampleSize : 1;
     return GST_FLOW_OK;
   }
   const Time now = Time{} + Duration{g_get_real_time() * 1000};

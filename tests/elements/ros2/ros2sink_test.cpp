@@ -170,8 +170,8 @@ TEST_F(Ros2Sink, TakesAnotherTypeWithTheCaps) {
   gst_harness_set_src_caps(h_.get(), CloudCaps(TestCloud(2, 1)).release());
   ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(TestCloud(2, 1))), GST_FLOW_OK);
   gst_harness_set_src_caps_str(h_.get(), "application/x-imu,sample-size=32");
-  ASSERT_EQ(gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, 32, nullptr)), GST_FLOW_OK);
-  EXPECT_EQ(Stat("messages-without-subscriber"), 2u);
+  ASSERT_EQ(gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, 64, nullptr)), GST_FLOW_OK);
+  EXPECT_EQ(Stat("messages-without-subscriber"), 3u) << "a message for each of the two samples";
 }
 
 TEST_F(Ros2Sink, RefusesSamplesOfOtherFields) {
