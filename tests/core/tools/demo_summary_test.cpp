@@ -117,13 +117,15 @@ TEST(DemoLinkLog, OfTwoLinksIsInTheOrderOfTime) {
   const auto write = [&](std::size_t link, const char* lines) {
     std::ofstream(LinkFile(options, "packets.csv", link)) << "names of the columns\n" << lines;
   };
-  write(0, "0.1,1,0,1,7,8,1,1,3,delivered,1,9\n0.3,1,0,3,7,8,1,1,3,delivered,1,9\n");
-  write(1, "0.2,1,0,2,7,8,1,1,3,delivered,1,9\n0.4,1,0,4,7,8,1,1,3,delivered,1,9\n");
+  // Each link counts time_s from its own first packet.
+  write(0, "0,5000,0,1,7,8,1,1,3,delivered,1,9\n2,2000005000,0,3,7,8,1,1,3,delivered,1,9\n");
+  write(1, "0,1000005000,0,2,7,8,1,1,3,delivered,1,9\n2,3000005000,0,4,7,8,1,1,3,delivered,1,9\n");
   const auto packets = ReadLinkLogs(options);
   ASSERT_EQ(packets.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(packets[i].size, static_cast<std::int64_t>(i) + 1);
     EXPECT_EQ(packets[i].link, i % 2);
+    EXPECT_EQ(packets[i].time_s, static_cast<double>(i));
   }
 }
 

@@ -2,9 +2,12 @@
 #include "src/tools/bench/demo/measurements.h"
 
 #include <algorithm>
+#include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <optional>
 
 namespace lidar::demo {
 namespace {
@@ -57,9 +60,10 @@ std::vector<LinkPacket> ReadLinkLog(const std::string& file) {
     char fate[16] = "";
     int ecn_in = 0;
     int ecn_out = 0;
-    const int fields = std::sscanf(line.c_str(), "%lf,%*d,%*d,%ld,%*d,%*d,%*d,%d,%d,%15[^,],%lf",
-                                   &p.time_s, &p.size, &ecn_in, &ecn_out, fate, &p.sojourn_ms);
-    if (fields != 6) continue;
+    const int fields =
+        std::sscanf(line.c_str(), "%lf,%" SCNd64 ",%*d,%ld,%*d,%*d,%*d,%d,%d,%15[^,],%lf",
+                    &p.time_s, &p.unix_ns, &p.size, &ecn_in, &ecn_out, fate, &p.sojourn_ms);
+    if (fields != 7) continue;
     p.delivered = std::strcmp(fate, "delivered") == 0;
     p.marked = ecn_in != ecn_out;
     packets.push_back(p);
@@ -69,9 +73,13 @@ std::vector<LinkPacket> ReadLinkLog(const std::string& file) {
 
 std::vector<LinkPacket> ReadLinkLogs(const RunOptions& options) {
   std::vector<LinkPacket> packets;
+  std::optional<std::int64_t> origin_ns;
   for (std::size_t i = 0; i < options.links; ++i) {
     for (LinkPacket p : ReadLinkLog(LinkFile(options, "packets.csv", i))) {
       p.link = i;
+      const std::int64_t since_first_ns = std::llround(p.time_s * 1e9);
+      if (!origin_ns) origin_ns = p.unix_ns - since_first_ns;
+      p.time_s = static_cast<double>(p.unix_ns - *origin_ns) / 1e9;
       packets.push_back(p);
     }
   }

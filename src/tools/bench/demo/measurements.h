@@ -19,6 +19,7 @@ struct LinkPacket {
   bool marked = false;
   double sojourn_ms = 0;
   std::size_t link = 0;
+  std::int64_t unix_ns = 0;  // the same time
 };
 
 /// Statistics of the sender and the encoder at one time.
@@ -40,7 +41,8 @@ SenderSample ReadSample(const nlohmann::json& record);
 
 /// Reads a link's log. Lines that are cut off or malformed are left out.
 std::vector<LinkPacket> ReadLinkLog(const std::string& file);
-/// Packets of all links, in the order of their arrival.
+/// Packets of all links, in the order of their arrival. Their time_s counts from the origin of the
+/// first link that has any.
 std::vector<LinkPacket> ReadLinkLogs(const RunOptions& options);
 
 struct Measurements {
