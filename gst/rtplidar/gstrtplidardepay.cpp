@@ -106,8 +106,10 @@ struct State {
   std::optional<gint> payload_type;  // of the caps
   bool warned_of_type = false;
   bool warned_of_rival = false;
-  bool readable = false;  // a packet was readable, or the warning was posted
-  lidar::Time now;
+  bool readable = false;     // a packet was readable, or the warning was posted
+  lidar::Time now;           // goes on in a segment whose PTS begin anew
+  lidar::Duration shift{0};  // from PTS to `now`
+  bool new_segment = false;
   GstPadChainFunction base_chain = nullptr;
 };
 
@@ -214,6 +216,18 @@ static GstFlowReturn ChainList(GstPad* pad, GstObject* parent, GstBufferList* li
   return flow;
 }
 
+/// Advances `now` to the PTS.
+static void Advance(State& state, lidar::Time pts) {
+  if (std::exchange(state.new_segment, false)) state.shift = std::max(state.shift, state.now - pts);
+  state.now = std::max(state.now, pts + state.shift);
+}
+
+static void ResetTime(State& state) {
+  state.output.ResetTime();
+  state.now = {};
+  state.shift = {};
+}
+
 static GstBuffer* Process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
   State& state = *GST_LIDAR_RTP_DEPAY(base)->state;
   const GstClockTime pts = GST_BUFFER_PTS(rtp->buffer);
@@ -224,7 +238,7 @@ static GstBuffer* Process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
                     gst_rtp_buffer_get_payload_len(rtp)};
   if (GST_CLOCK_TIME_IS_VALID(pts)) {
     packet.pts = lidar::Time{lidar::Duration{static_cast<gint64>(pts)}};
-    state.now = std::max(state.now, *packet.pts);
+    Advance(state, *packet.pts);
   }
   packet.arrival = state.now;
   std::vector<ReceivedSlice> slices;
@@ -262,9 +276,9 @@ static gboolean HandleEvent(GstRTPBaseDepayload* base, GstEvent* event) {
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS || GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
     std::lock_guard lock(state.mutex);
     state.receiver.Finish();
-    state.output.ResetTime();
-    state.now = {};
+    ResetTime(state);
   }
+  if (GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT) state.new_segment = true;
   return GST_RTP_BASE_DEPAYLOAD_CLASS(gst_lidar_rtp_depay_parent_class)->handle_event(base, event);
 }
 
@@ -280,7 +294,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
     state.warned_of_type = state.warned_of_rival = state.readable = false;
     state.payload_type.reset();
     state.output.Reset();
-    state.now = {};
+    ResetTime(state);
   }
   const auto result =
       GST_ELEMENT_CLASS(gst_lidar_rtp_depay_parent_class)->change_state(element, transition);

@@ -262,6 +262,21 @@ TEST(RtpLidarDepay, StartsAnewAfterAFlush) {
   EXPECT_EQ(Pull(h.get()).size(), 8U);
 }
 
+TEST(RtpLidarDepay, ItsTimeGoesOnWhereANewSegmentBeginsAtZero) {
+  const Harness h = Depay();
+  auto packets = Packets(8);
+  const std::size_t half = packets.size() / 2;
+  const GstClockTime start = GST_BUFFER_PTS(packets[half].get());
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    if (i == half) gst_harness_push_event(h.get(), NewSegment());
+    if (i == half + 2) continue;
+    GstBuffer* packet = gst_buffer_copy_deep(packets[i].get());
+    if (i >= half) GST_BUFFER_PTS(packet) -= start;
+    gst_harness_push(h.get(), packet);
+  }
+  EXPECT_EQ(Stat(h.get(), "slices-lost"), 1U) << "without a wait for the old times";
+}
+
 TEST(RtpLidarDepay, KeepsTheBaseClassStatistics) {
   const Harness h = Depay();
   Push(h.get(), Packets(1));
