@@ -90,9 +90,8 @@ void Run(gpointer data) {
   const bool first = !std::exchange(state.rtcp_started, true);
   lock.unlock();
   if (first) StartStream(self);
-  // The media continue even if the feedback pad is not linked.
-  const GstFlowReturn flow = gst_pad_push(self->rtcp_src, buffer);
-  if (flow == GST_FLOW_FLUSHING || flow == GST_FLOW_EOS) gst_pad_pause_task(self->rtcp_src);
+  // A refused report is lost, but the next one may have another sink.
+  gst_pad_push(self->rtcp_src, buffer);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // screamrx under a test clock: what it reports, to which addresses, and which packets it accepts.
+#include <atomic>
 #include <set>
 
 #include "gst/net/udp_socket.h"
@@ -451,6 +452,30 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
     const EventPtr event(gst_harness_pull_event(rtcp.get()));
     ASSERT_TRUE(event) << gst_event_type_get_name(type);
     EXPECT_EQ(GST_EVENT_TYPE(event.get()), type);
+  }
+}
+
+TEST_F(ScreamRx, ReportsToTheNextSinkAfterOneThatStopped) {
+  Start();
+  Rtp r;
+  r.marker = true;
+  for (const GstFlowReturn flow : {GST_FLOW_FLUSHING, GST_FLOW_EOS}) {
+    std::atomic<int> refusal = flow;
+    const auto refuse = [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+      gst_buffer_unref(GST_PAD_PROBE_INFO_BUFFER(info));
+      auto& value = *static_cast<std::atomic<int>*>(data);
+      GST_PAD_PROBE_INFO_FLOW_RETURN(info) = static_cast<GstFlowReturn>(value.exchange(0));
+      return GST_PAD_PROBE_HANDLED;
+    };
+    const gulong probe =
+        gst_pad_add_probe(rtcp->sinkpad, GST_PAD_PROBE_TYPE_BUFFER, refuse, &refusal, nullptr);
+    ++r.seq;
+    ASSERT_EQ(Push(r), GST_FLOW_OK);
+    ASSERT_TRUE(Eventually([&] { return refusal == 0; }));
+    gst_pad_remove_probe(rtcp->sinkpad, probe);
+    ++r.seq;
+    ASSERT_EQ(Push(r), GST_FLOW_OK);
+    ASSERT_EQ(Report().blocks.size(), 1U) << gst_flow_get_name(flow);
   }
 }
 
