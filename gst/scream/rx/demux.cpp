@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Several streams behind screamrx: each SSRC has its own pad, with caps from pt-map.
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <utility>
@@ -103,9 +104,8 @@ bool LeadsToSomebody(GstPad* pad) {
 
 /// Returns the packet's pad. `src` takes the first stream that its peer accepts; payload types that
 /// pt-map lacks (retransmission, FEC) go to `src`, too.
-GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header) {
+GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header, const CapsPtr& caps) {
   RxState& state = *self->state;
-  const CapsPtr caps(CapsOf(self, header));
   if (!caps) {
     if (!state.src_started) StartSrc(self, CapsPtr(gst_caps_new_empty_simple("application/x-rtp")));
     return self->src;
@@ -188,12 +188,33 @@ static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPa
                        GST_PAD_NAME(pad)));
 }
 
-/// Returns the pad of a new SSRC. A flush that began before the pad had its route continues here.
-static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header) {
-  GstPad* pad = Route(self, header);
+/// Returns an ended route of the payload type whose pad has a taker, or the end of the routes.
+static auto FindEnded(RxState& state, guint payload_type) {
+  return std::find_if(state.routes.begin(), state.routes.end(), [&](const auto& r) {
+    return r.second.ended && r.second.payload_type == payload_type && LeadsToSomebody(r.second.pad);
+  });
+}
+
+/// Returns the pad of a new SSRC. A restarted sender gets the pad of its earlier SSRC, because an
+/// application links a pad once. The pad's stream goes on: with a STREAM_START, sinks would wait
+/// for those of the other pads. A flush that began before the pad had its route continues here.
+static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer** buffer) {
+  RxState& state = *self->state;
+  const CapsPtr caps(CapsOf(self, header));
+  const auto ended = caps ? FindEnded(state, header.payload_type) : state.routes.end();
+  GstPad* pad = nullptr;
+  if (ended != state.routes.end()) {
+    pad = ended->second.pad;
+    gst_pad_push_event(pad, gst_event_new_caps(caps.get()));
+    *buffer = gst_buffer_make_writable(*buffer);
+    GST_BUFFER_FLAG_SET(*buffer, GST_BUFFER_FLAG_DISCONT);
+  } else {
+    pad = Route(self, header, caps);
+  }
   {
-    const RxLock lock(self->state->mutex);
-    self->state->routes.emplace(header.ssrc, pad);
+    const RxLock lock(state.mutex);
+    if (ended != state.routes.end()) state.routes.erase(ended);
+    state.routes.emplace(header.ssrc, RxRoute{pad, header.payload_type});
   }
   if (GST_PAD_IS_FLUSHING(self->sink)) gst_pad_push_event(pad, gst_event_new_flush_start());
   return pad;
@@ -201,11 +222,12 @@ static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header) {
 
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer) {
   RxState& state = *self->state;
-  auto found = state.routes.find(header.ssrc);
+  const auto found = state.routes.find(header.ssrc);
   if (found == state.routes.end() && state.routes.size() >= kMaxRoutes) {
     return Refuse(self, buffer);
   }
-  GstPad* pad = found == state.routes.end() ? AddRoute(self, header) : found->second;
+  if (found != state.routes.end()) found->second.ended = false;
+  GstPad* pad = found == state.routes.end() ? AddRoute(self, header, &buffer) : found->second.pad;
   const GstFlowReturn flow = gst_pad_push(pad, buffer);
   if (flow == GST_FLOW_NOT_LINKED) WarnOfUntaken(self, header, pad);
   return gst_flow_combiner_update_pad_flow(state.combiner, pad, flow);
@@ -215,8 +237,8 @@ gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
   std::vector<PadPtr> pads;
   {
     const RxLock lock(self->state->mutex);
-    for (const auto& [ssrc, pad] : self->state->routes)
-      if (pad != self->src) pads.emplace_back(GST_PAD(gst_object_ref(pad)));
+    for (const auto& [ssrc, route] : self->state->routes)
+      if (route.pad != self->src) pads.emplace_back(GST_PAD(gst_object_ref(route.pad)));
   }
   for (const PadPtr& pad : pads) gst_pad_push_event(pad.get(), gst_event_ref(event));
   if (HasPtMap(self) && GST_EVENT_IS_STICKY(event) && GST_EVENT_TYPE(event) != GST_EVENT_EOS &&
@@ -229,16 +251,16 @@ gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
 
 void RemoveRoutes(GstLidarScreamRx* self) {
   RxState& state = *self->state;
-  std::map<guint32, GstPad*> routes;
+  std::map<guint32, RxRoute> routes;
   {
     const RxLock lock(state.mutex);
     routes.swap(state.routes);
   }
-  for (const auto& [ssrc, pad] : routes) {
-    if (pad == self->src) continue;
-    gst_flow_combiner_remove_pad(state.combiner, pad);
-    gst_pad_set_active(pad, FALSE);
-    gst_element_remove_pad(GST_ELEMENT(self), pad);
+  for (const auto& [ssrc, route] : routes) {
+    if (route.pad == self->src) continue;
+    gst_flow_combiner_remove_pad(state.combiner, route.pad);
+    gst_pad_set_active(route.pad, FALSE);
+    gst_element_remove_pad(GST_ELEMENT(self), route.pad);
   }
   state.src_taken = state.src_started = state.routes_full = state.warned_of_untaken = false;
 }

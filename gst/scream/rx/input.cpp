@@ -106,6 +106,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
     state.seen = {};
     state.sender.Reset();
     state.ssrcs.clear();
+    for (auto& [ssrc, route] : state.routes) route.ended = true;
     GST_INFO_OBJECT(self, "the media now comes from %s",
                     AddressToString(state.latch.peer()).c_str());
   }
@@ -154,7 +155,11 @@ Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& ma
   const auto report = rtcp::ParseSenderReport(map.view());
   if (report && state.ssrcs.count(report->ssrc) > 0) state.sender.OnReport(now, *report);
   bool known = false;
-  for (const guint32 ssrc : goodbyes) known = state.ssrcs.erase(ssrc) > 0 || known;
+  for (const guint32 ssrc : goodbyes) {
+    known = state.ssrcs.erase(ssrc) > 0 || known;
+    const auto route = state.routes.find(ssrc);
+    if (route != state.routes.end()) route->second.ended = true;
+  }
   if (known) ++state.counters.goodbyes;
   const bool end = known && state.settings.eos_on_bye && !AnyAlive(state, now);
   return end ? Fate::kEnd : Fate::kDrop;

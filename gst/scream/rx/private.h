@@ -55,6 +55,13 @@ struct RxCounters {
   guint ssrcs = 0;
 };
 
+/// The pad of an SSRC.
+struct RxRoute {
+  GstPad* pad = nullptr;
+  guint payload_type = 0;
+  bool ended = false;  // by a goodbye, or by a move of the peer
+};
+
 struct RxState {
   std::mutex mutex;
   RxSettings settings;
@@ -79,7 +86,7 @@ struct RxState {
   std::set<std::pair<guint32, std::size_t>> key_requests;
 
   // Pads by SSRC, with a pt-map. Only the streaming thread changes it; a flush reads it.
-  std::map<guint32, GstPad*> routes;
+  std::map<guint32, RxRoute> routes;
 
   // Used by the streaming thread only:
   bool eos = false;

@@ -188,6 +188,37 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
                "TEST");
 }
 
+TEST_F(ScreamRx, ARestartedSenderGetsThePadOfItsEarlierSsrc) {
+  SetPtMap(
+      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
+  g_object_set(element, "eos-on-bye", FALSE, nullptr);
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  const auto passes = [&](guint32 ssrc, const char* host) {
+    Rtp r;
+    r.ssrc = ssrc;
+    for (; r.seq < 6; ++r.seq) EXPECT_EQ(Push(r, GST_LIDAR_ECN_ECT1, host), GST_FLOW_OK);
+    const char* how = "not";
+    while (const BufferPtr buffer{gst_harness_try_pull(rtp.get())}) {
+      if (*how == 'n') how = "on";
+      if (GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT)) how = "anew";
+    }
+    return how;
+  };
+  EXPECT_STREQ(passes(1, "10.0.0.1"), "on");
+  EXPECT_STREQ(passes(2, "10.0.0.1"), "not") << "a second stream";
+  EXPECT_EQ(PushBye({1}, "10.0.0.1"), GST_FLOW_OK);
+  EXPECT_STREQ(passes(3, "10.0.0.1"), "anew");
+  const CapsPtr caps(gst_pad_get_current_caps(rtp->sinkpad));
+  guint ssrc = 0;
+  gst_structure_get_uint(gst_caps_get_structure(caps.get(), 0), "ssrc", &ssrc);
+  EXPECT_EQ(ssrc, 3U);
+  EXPECT_STREQ(passes(1, "10.0.0.1"), "not") << "its pad is taken";
+  time.Settle();
+  time.Advance(20 * GST_SECOND);
+  EXPECT_STREQ(passes(4, "10.0.0.2"), "anew") << "another peer";
+}
+
 TEST_F(ScreamRx, RtcpIsNoStreamOfPtMap) {
   SetPtMap(
       "0=(string)\"application/x-rtp,media=audio,clock-rate=8000,encoding-name=PCMU\","
