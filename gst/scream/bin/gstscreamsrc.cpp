@@ -147,12 +147,22 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
+/// Returns true if the error is that a pad is not linked.
+static bool SaysNotLinked(GstMessage* error) {
+  const GstStructure* details = nullptr;
+  gst_message_parse_error_details(error, &details);
+  gint flow = GST_FLOW_OK;
+  return details != nullptr && gst_structure_get_int(details, "flow-return", &flow) &&
+         flow == GST_FLOW_NOT_LINKED;
+}
+
 /// Replaces a source's general error about its unlinked pad by one that names what to link.
 static void HandleMessage(GstBin* bin, GstMessage* message) {
   auto* self = GST_LIDAR_SCREAM_SRC(bin);
   const PadPtr src(gst_element_get_static_pad(GST_ELEMENT(bin), "src"));
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR &&
-      GST_MESSAGE_SRC(message) == GST_OBJECT(self->src) && !gst_pad_is_linked(src.get())) {
+      GST_MESSAGE_SRC(message) == GST_OBJECT(self->src) && SaysNotLinked(message) &&
+      !gst_pad_is_linked(src.get())) {
     gst_message_unref(message);
     GST_ELEMENT_ERROR(bin, CORE, PAD, ("No element takes the stream, which is application/x-rtp."),
                       ("link a depayloader, such as rtplidardepay"));

@@ -228,18 +228,22 @@ TEST_F(ScreamBin, TheSourceNamesAMissingNextElementOnlyWhereThereIsNone) {
   ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
   const ElementBus bus(bin_.get());
   const ElementPtr udp = Child("ecnudpsrc");
-  const auto text_of_error = [&] {
+  const auto text_of_error = [&](GstFlowReturn flow) {
     const gst::ErrorPtr error(
         g_error_new_literal(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ, "Receiving failed"));
     gst_element_post_message(
-        udp.get(), gst_message_new_error(GST_OBJECT(udp.get()), error.get(), "of the test"));
+        udp.get(), gst_message_new_error_with_details(
+                       GST_OBJECT(udp.get()), error.get(), "of the test",
+                       gst_structure_new("details", "flow-return", G_TYPE_INT, flow, nullptr)));
     return bus.Text(GST_MESSAGE_ERROR);
   };
-  EXPECT_EQ(text_of_error(), "No element takes the stream, which is application/x-rtp.");
+  EXPECT_EQ(text_of_error(GST_FLOW_NOT_LINKED),
+            "No element takes the stream, which is application/x-rtp.");
+  EXPECT_EQ(text_of_error(GST_FLOW_ERROR), "Receiving failed");
   const gst::PadPtr src(gst_element_get_static_pad(bin_.get(), "src"));
   const gst::PadPtr next(GST_PAD(gst_object_ref_sink(gst_pad_new("sink", GST_PAD_SINK))));
   ASSERT_EQ(gst_pad_link(src.get(), next.get()), GST_PAD_LINK_OK);
-  EXPECT_EQ(text_of_error(), "Receiving failed");
+  EXPECT_EQ(text_of_error(GST_FLOW_NOT_LINKED), "Receiving failed");
   gst_pad_unlink(src.get(), next.get());
 }
 
