@@ -113,7 +113,10 @@ static std::string NewPadName(TxState& state, const gchar* wanted) {
 
 static void RemoveStream(TxState& state, GstPad* pad) {
   TxStream* stream = PadStream(pad);
-  if (state.controller) state.controller->RemoveStream(stream->id);
+  if (state.controller) {
+    ClearQueue(state, *stream, TxNow(state));
+    state.controller->RemoveStream(stream->id);
+  }
   state.streams.erase(std::find_if(state.streams.begin(), state.streams.end(),
                                    [&](const auto& s) { return s.get() == stream; }));
   SetPadStream(pad, nullptr);
@@ -200,7 +203,7 @@ static void Prepare(TxState& state) {
   state.reports = {};
   state.pacing.ForgetEnd();
   state.reporter.notices().Reset(*state.controller, TxNow(state));
-  state.malformed_rtcp = state.reports_of_others = 0;
+  state.malformed_rtcp = state.reports_of_others = state.frames_dropped = 0;
 }
 
 static void BeforeChange(TxState& state, GstStateChange change) {

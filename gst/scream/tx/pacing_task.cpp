@@ -130,7 +130,10 @@ void PacingTask::DropLate(TxStream& stream, Time now) {
       ++it;
       continue;
     }
-    if (frame != it->header.timestamp) ++stream.counters.frames_dropped;
+    if (frame != it->header.timestamp) {
+      ++stream.counters.frames_dropped;
+      ++state().frames_dropped;
+    }
     frame = it->header.timestamp;
     if (state().link) state().link->OnDropped(now, it->header.ssrc, it->header.seq);
     it = stream.queue.erase(it);

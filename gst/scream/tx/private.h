@@ -49,6 +49,7 @@ struct TxState {
   rtcp::CcfbParser parser;
   FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
+  guint64 frames_dropped = 0;     // of all streams, those of released pads included
   guint64 reports_of_others = 0;  // of packets that this link never sent
   std::shared_ptr<TxLink> link;   // null for a single link
 

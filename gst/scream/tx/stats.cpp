@@ -107,18 +107,16 @@ StructurePtr StatsOf(TxState& state) {
   scream::Statistics statistics = state.controller->statistics(now);
   statistics.feedback_ignored += state.reports_of_others;
   StructurePtr out = ControllerStats(statistics);
-  guint64 frames_dropped = 0;
   GValue streams = G_VALUE_INIT;
   gst_value_array_init(&streams, static_cast<guint>(state.streams.size()));
   for (const auto& stream : state.streams) {
-    frames_dropped += stream->counters.frames_dropped;
     GValue value = G_VALUE_INIT;
     g_value_init(&value, GST_TYPE_STRUCTURE);
     g_value_take_boxed(&value, StreamStats(state, *stream, now).release());
     gst_value_array_append_and_take_value(&streams, &value);
   }
-  gst_structure_set(out.get(), "frames-dropped", G_TYPE_UINT64, frames_dropped, "rtcp-malformed",
-                    G_TYPE_UINT64, state.malformed_rtcp, nullptr);
+  gst_structure_set(out.get(), "frames-dropped", G_TYPE_UINT64, state.frames_dropped,
+                    "rtcp-malformed", G_TYPE_UINT64, state.malformed_rtcp, nullptr);
   gst_structure_take_value(out.get(), "streams", &streams);
   return out;
 }

@@ -46,6 +46,32 @@ TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
   EXPECT_EQ(stats["packets-dropped"], 120U);
 }
 
+TEST_F(ScreamTx, AReleasedPadLeavesItsDropsInTheCounts) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start();
+  const gst::PadPtr pad(gst_element_request_pad_simple(element, "sink_%u"));
+  Harness other(gst_harness_new_with_element(element, GST_PAD_NAME(pad.get()), nullptr));
+  gst_harness_set_src_caps_str(other.get(), kRtpCaps);
+  const auto push = [&](guint32 frame) {
+    Rtp r;
+    r.ssrc = 0x5678;
+    r.timestamp = frame;
+    for (int i = 0; i < 30; ++i, ++r.seq)
+      ASSERT_EQ(gst_harness_push(other.get(), NewRtp(r)), GST_FLOW_OK);
+  };
+  push(0);
+  push(1);
+  time.Advance(210 * GST_MSECOND);
+  push(2);
+  const Stats before(element);
+  EXPECT_EQ(before["frames-dropped"], 1U);
+  EXPECT_EQ(before["packets-dropped"], 30U);
+  other.reset();  // releases the pad
+  const Stats after(element);
+  EXPECT_EQ(after["frames-dropped"], 1U);
+  EXPECT_EQ(after["packets-dropped"] + after["packets-sent"], 90U);
+}
+
 TEST_F(ScreamTx, GivesUpTheRestOfAFrameThatStuckOnItsWay) {
   g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
   Start();
