@@ -167,6 +167,11 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
                    GError** error) {
   const InetAddressPtr address(Resolve(WithoutBrackets(group), error));
   if (!address) return false;
+  if (!g_inet_address_get_is_multicast(address.get())) {
+    g_set_error(error, G_IO_ERROR, G_IO_ERROR_INVALID_ARGUMENT, "%s is no multicast group",
+                group.c_str());
+    return false;
+  }
   // GLib would let the kernel choose an interface if there is none of that name.
   if (!interface.empty() && if_nametoindex(interface.c_str()) == 0) {
     g_set_error(error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND, "there is no network interface \"%s\"",
