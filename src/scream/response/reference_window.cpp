@@ -26,7 +26,7 @@ ReferenceWindow::ReferenceWindow(const Parameters& parameters)
 void ReferenceWindow::Set(DataSize window) { ref_wnd_ = Bytes(std::max(window, p_.min_ref_wnd)); }
 
 void ReferenceWindow::Start(DataRate rate, Duration s_rtt) {
-  Set(rate * s_rtt * p_.target_rate_divisor * ((p_.mss + p_.packet_overhead) / p_.mss));
+  Restart(rate * s_rtt * p_.target_rate_divisor * ((p_.mss + p_.packet_overhead) / p_.mss));
 }
 
 void ReferenceWindow::Drop(Time now, DataSize window) {

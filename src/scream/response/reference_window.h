@@ -56,7 +56,8 @@ class ReferenceWindow {
   RateReason Update(Time now, const CongestionSignals& signals);
   /// Sets the window outside of the draft's rules; never below MIN_REF_WND.
   void Set(DataSize window);
-  /// Sets the window whose target is `rate`, for the start that the draft leaves open.
+  /// Sets the window whose target is `rate`, for the start that the draft leaves open. Signs of the
+  /// route before do not count.
   void Start(DataRate rate, Duration s_rtt);
   /// Call it when the link's capacity has fallen to what `window` fills. The draft's own reaction
   /// then waits.

@@ -55,6 +55,15 @@ TEST_F(ReferenceWindowTest, GivesATargetOverTheRoundTripWithTheDraftsReserves) {
               1);
 }
 
+TEST_F(ReferenceWindowTest, AStartForgetsTheSignsOfTheRouteBefore) {
+  signals_.loss_detected = signals_.data_units_marked = true;
+  Factor();
+  Factor(1ms);  // too soon for another reaction
+  signals_.loss_detected = signals_.data_units_marked = false;
+  window_.Start(Mbps(5), 25ms);
+  EXPECT_EQ(Factor(), 1);
+}
+
 TEST_F(ReferenceWindowTest, LossScalesByBetaLoss) {
   signals_.loss_detected = true;
   EXPECT_NEAR(Factor(), 0.7, 1e-4);
