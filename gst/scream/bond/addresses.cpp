@@ -24,11 +24,15 @@ std::optional<guint> ParsePort(const std::string& text) {
   return port >= 1 && port <= 65535 ? std::optional(static_cast<guint>(port)) : std::nullopt;
 }
 
-/// Returns the address as GLib writes it, or nothing if the text is none.
+/// Returns the address as GLib writes it, with the interface of a link-local one (fe80::1%eth0), or
+/// nothing if the text is none.
 std::string AddressOf(const std::string& text) {
+  const std::string host = WithoutBrackets(text);
+  const auto scope = std::min(host.find('%'), host.size());
   const std::unique_ptr<GInetAddress, GObjectUnref> address(
-      g_inet_address_new_from_string(WithoutBrackets(text).c_str()));
-  return address ? StringPtr(g_inet_address_to_string(address.get())).get() : "";
+      g_inet_address_new_from_string(host.substr(0, scope).c_str()));
+  return address ? StringPtr(g_inet_address_to_string(address.get())).get() + host.substr(scope)
+                 : "";
 }
 
 std::optional<BondAddress> ParseOne(const std::string& text, std::string* error) {

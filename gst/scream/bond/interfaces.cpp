@@ -22,10 +22,10 @@ Interfaces Interfaces::Now() {
     interface.families.insert(v4 ? G_SOCKET_FAMILY_IPV4 : G_SOCKET_FAMILY_IPV6);
     const SocketAddressPtr address(g_socket_address_new_from_native(
         a->ifa_addr, v4 ? sizeof(sockaddr_in) : sizeof(sockaddr_in6)));
-    gchar* text = g_inet_address_to_string(
-        g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address.get())));
-    now.addresses.insert(text);
-    g_free(text);
+    const std::string host = HostOf(address.get());
+    const auto scope = host.find('%');
+    now.addresses.insert(host);
+    if (scope != std::string::npos) now.addresses.insert(host.substr(0, scope + 1) + a->ifa_name);
   }
   return now;
 }

@@ -448,6 +448,16 @@ TEST(BondAddresses, AreKeptInOneForm) {
   }
 }
 
+TEST(BondAddresses, KeepTheInterfaceOfALinkLocalAddress) {
+  for (const char* local : {"fe80::2%wwan0", "[FE80::2%wwan0]"}) {
+    std::string error;
+    const auto links = ParseBondAddresses(std::string("edge:7@") + local, &error);
+    ASSERT_TRUE(links) << error;
+    EXPECT_EQ(links->front().target.bind_address, "fe80::2%wwan0");
+    EXPECT_EQ(links->front().interface, "");
+  }
+}
+
 TEST(BondAddresses, RefuseAllElseWithAWord) {
   for (const char* text :
        {"", ",", "edge", "edge:", "edge:0", "edge:65536", "edge:99999999999999999999", "edge:5004@",
