@@ -10,6 +10,12 @@ void ReferenceKeeper::Release(const std::vector<BlockMemoryPtr>& blocks) {
   for (const BlockMemoryPtr& block : blocks) bytes_ -= block->bytes();
 }
 
+/// Turns of another interval would make many slices of a scan stand alone.
+void ReferenceKeeper::set_key_interval(Duration interval) {
+  if (std::exchange(key_interval_, interval) == interval) return;
+  for (auto& [index, slot] : slots_) slot.last_key.reset();
+}
+
 void ReferenceKeeper::Forget() {
   for (auto& [index, slot] : slots_) Restart(&slot);
 }

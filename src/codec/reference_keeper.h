@@ -25,7 +25,7 @@ struct SliceName {
 class ReferenceKeeper {
  public:
   /// Longest time between slices that stand alone, for late receivers; 0: no limit.
-  void set_key_interval(Duration interval) { key_interval_ = interval; }
+  void set_key_interval(Duration interval);
 
   /// Notes that `receiver` has all of the slice.
   void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id, std::uint32_t index);

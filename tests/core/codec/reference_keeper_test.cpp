@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "src/codec/standstill.h"
@@ -80,6 +81,34 @@ TEST(ReferenceKeeper, RefersToNoSliceWhoseNameCameTwice) {
     EXPECT_EQ(keeper.HasReference(), !twice);
     EXPECT_EQ(keeper.bytes() > 0, !twice);
   }
+}
+
+TEST(ReferenceKeeper, KeysComeInTurnAfterTheIntervalHasChanged) {
+  constexpr std::uint32_t kSlices = 8;
+  ReferenceKeeper keeper;
+  keeper.OnAcknowledged(Time{0s}, kOneReceiver, 0, UINT32_MAX);
+  std::uint32_t scan = 0;
+  // The largest number of slices of a scan that stand alone.
+  const auto most_keys = [&](Duration interval) {
+    std::uint32_t most = 0;
+    for (int i = 0; i < 40; ++i) {
+      const Time now{++scan * 100ms};
+      std::uint32_t keys = 0;
+      for (std::uint32_t index = 0; index < kSlices; ++index) {
+        keeper.set_key_interval(interval);
+        EXPECT_TRUE(keeper.Begin(now, {scan, index, kSlices}));
+        keys += keeper.HasReference() ? 0U : 1U;
+        keeper.OnEncoded({Block(8)});
+        keeper.OnAcknowledged(now, kOneReceiver, scan, index);
+      }
+      most = std::max(most, keys);
+    }
+    return most;
+  };
+  EXPECT_EQ(most_keys(2s), kSlices) << "in the first scan";
+  EXPECT_EQ(most_keys({}), 0U);
+  EXPECT_EQ(most_keys(2s), 1U);
+  EXPECT_EQ(most_keys(1s), 1U);
 }
 
 TEST(Standstill, ForgetsASourceThatBeginsInMoreColumnsThanASensorHasSectors) {
