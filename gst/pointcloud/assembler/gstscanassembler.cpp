@@ -72,6 +72,19 @@ static void PushCaps(GstLidarScanAssembler* self, guint width) {
   if (segment) gst_pad_push_event(self->srcpad, segment.release());
 }
 
+/// Pushes the segment that waits for the first scan, which does not come, behind likely caps.
+static void PushEarlySegment(GstLidarScanAssembler* self) {
+  State& state = *self->state;
+  guint width = 0;
+  {
+    std::lock_guard lock(state.mutex);
+    if (!state.early_segment || !state.info) return;
+    const auto& model = state.info->sensor_model;
+    width = model ? model->columns_per_scan : state.info->width;
+  }
+  PushCaps(self, width);
+}
+
 /// The streaming lock must be held, and the mutex must not.
 static GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
   GstFlowReturn flow = GST_FLOW_OK;
@@ -281,6 +294,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       break;
     case GST_EVENT_EOS:
       PushAll(self);
+      PushEarlySegment(self);
       break;
     case GST_EVENT_GAP: {
       // The open scan is flagged when it leaves, which marks the gap. Before the first scan there

@@ -252,6 +252,16 @@ TEST_F(Assembler, LetsThePartialScanGoAtTheEnd) {
   EXPECT_EQ(last, GST_EVENT_EOS);
 }
 
+TEST_F(Assembler, AnEndWithoutAnyScanComesAfterCapsAndSegment) {
+  EXPECT_TRUE(gst_harness_push_event(h_.get(), gst_event_new_eos()));
+  std::vector<GstEventType> types;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    types.push_back(GST_EVENT_TYPE(event.get()));
+  EXPECT_EQ(types, (std::vector<GstEventType>{GST_EVENT_STREAM_START, GST_EVENT_CAPS,
+                                              GST_EVENT_SEGMENT, GST_EVENT_EOS}));
+  EXPECT_EQ(OutInfo().width, kColumns);
+}
+
 TEST_F(Assembler, ForgetsOnFlush) {
   Push(Slice(7, 0));
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
