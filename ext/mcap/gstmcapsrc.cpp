@@ -275,8 +275,6 @@ static void Loop(gpointer user_data) {
   const std::uint64_t start = run.playback->start_time();
   const std::uint64_t log_time = std::max(item->message.header.log_time, start);
   const GstClockTime pts = std::min<guint64>(log_time - start, G_MAXINT64);
-  const GstClockTime stop = run.streams->segment().stop;
-  if (GST_CLOCK_TIME_IS_VALID(stop) && pts >= stop) return Stop(self, GST_FLOW_EOS);
   const GstFlowReturn flow = PlayItem(self, *item, pts);
   if (flow != GST_FLOW_OK) Stop(self, flow);
 }
@@ -303,7 +301,9 @@ static void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment)
     segment = state.segment = seek.Begun(segment, state.segment);
   }
   if (seek.flushes()) state.end_wanted = false;  // the flush drops it
-  run.playback->Seek(run.playback->start_time() + segment.position);
+  const std::uint64_t start = run.playback->start_time();
+  const bool ends = GST_CLOCK_TIME_IS_VALID(segment.stop) && segment.stop < UINT64_MAX - start;
+  run.playback->Seek(start + segment.position, ends ? start + segment.stop : UINT64_MAX);
   run.streams->Restart(segment, seek.seqnum());
 }
 

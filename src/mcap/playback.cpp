@@ -84,9 +84,10 @@ std::uint64_t Playback::damaged_chunks() const {
   return damaged_before_ + (reader_ ? reader_->damaged_chunks() : 0);
 }
 
-void Playback::Seek(std::uint64_t log_time) {
+void Playback::Seek(std::uint64_t begin, std::uint64_t end) {
   damaged_before_ = damaged_chunks();
-  from_ = log_time;
+  begin_ = begin;
+  end_ = end;
   next_file_ = 0;
   reader_.reset();
 }
@@ -96,14 +97,14 @@ bool Playback::OpenNextFile() {
   reader_.reset();
   while (next_file_ < files_.size()) {
     const File& file = files_[next_file_++];
-    if (file.end_time < from_) continue;
+    if (file.end_time < begin_ || file.start_time >= end_) continue;
     reader_ = OpenReader(file.path, file.known, cancelled_, &why_unreadable_);
     if (reader_ == nullptr) {
       ++unreadable_files_;
       files_.erase(files_.begin() + static_cast<std::ptrdiff_t>(--next_file_));
       continue;
     }
-    reader_->Seek(from_);
+    reader_->Seek(begin_);
     return true;
   }
   return false;
@@ -112,7 +113,7 @@ bool Playback::OpenNextFile() {
 std::optional<Playback::Item> Playback::Next() {
   while (reader_ || OpenNextFile()) {
     const auto message = reader_->Next();
-    if (!message) {
+    if (!message || message->header.log_time >= end_) {
       if (!OpenNextFile()) return std::nullopt;
       continue;
     }

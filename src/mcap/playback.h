@@ -54,7 +54,8 @@ class Playback {
   /// Chunks that were left out so far.
   std::uint64_t damaged_chunks() const;
 
-  void Seek(std::uint64_t log_time);
+  /// Next() gives the messages of log times from `begin` to before `end`. Files may overlap.
+  void Seek(std::uint64_t begin, std::uint64_t end = UINT64_MAX);
   std::optional<Item> Next();
 
  private:
@@ -85,7 +86,8 @@ class Playback {
   std::uint64_t unreadable_files_ = 0;
   std::string why_unreadable_;
   // Place in the file.
-  std::uint64_t from_ = 0;
+  std::uint64_t begin_ = 0;
+  std::uint64_t end_ = UINT64_MAX;
   std::size_t next_file_ = 0;
   std::unique_ptr<Reader> reader_;
   std::uint64_t damaged_before_ = 0;  // in files before the one that is open

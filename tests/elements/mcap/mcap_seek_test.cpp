@@ -77,6 +77,32 @@ TEST_F(McapSeek, SeeksByTime) {
                                 GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
 }
 
+/// Streams differ in their delay, so a file begins before the end of the one before it.
+TEST_F(McapSeek, PlaysAllBeforeTheEndWhereFilesOverlap) {
+  for (const int file : {0, 1}) {
+    const Harness h = RecordingTo(Path("rec-" + std::to_string(file) + ".mcap"));
+    gst_harness_set_src_caps_str(h.get(), "application/x-lidar-slice,alignment=slice");
+    for (const guint ms : {0U, 10U, 200U}) {
+      GstBuffer* buffer = gst_buffer_new_memdup("s", 1);
+      GST_BUFFER_PTS(buffer) = (ms + (file == 0 ? 0 : 100)) * GST_MSECOND;
+      gst_lidar_buffer_set_capture_time(buffer, kCapture + GST_BUFFER_PTS(buffer));
+      EXPECT_EQ(gst_harness_push(h.get(), buffer), GST_FLOW_OK);
+    }
+    gst_harness_push_event(h.get(), gst_event_new_eos());
+  }
+  Pipeline p("mcapsrc" + At("rec-%d.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PAUSED);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
+  p.Forget();
+  ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET,
+                               0, GST_SEEK_TYPE_SET, 110 * GST_MSECOND));
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  std::vector<GstClockTime> shown;
+  for (const Kept& kept : p.outcome().buffers.at("see")) shown.push_back(kept.pts / GST_MSECOND);
+  EXPECT_EQ(shown, (std::vector<GstClockTime>{0, 10, 100}));
+}
+
 TEST_F(McapSeek, RefusesToEndBeforeItBegins) {
   Play(kSensor + " num-buffers=80 ! lidarenc ! mcapsink" + At("a.mcap"));
   Pipeline p("mcapsrc" + At("a.mcap") + " ! fakesink name=see");
