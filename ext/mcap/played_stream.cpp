@@ -16,10 +16,11 @@ GstEvent* WithSeqnum(const PlaybackGroup& group, GstEvent* event) {
 
 bool PlayedStream::Follow(const mcap::Schema& schema, const mcap::Channel& channel) {
   // Each file has channels of its own, usually with the same content as in other files.
-  if (reader_ && metadata_ == channel.metadata) return true;
+  if (reader_ && schema_ == schema.name && metadata_ == channel.metadata) return true;
   auto reader = MessageReader::Make(schema, channel);
   if (!reader) return false;
   reader_ = std::move(reader);
+  schema_ = schema.name;
   metadata_ = channel.metadata;
   return true;
 }

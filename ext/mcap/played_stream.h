@@ -54,7 +54,8 @@ class PlayedStream {
   GstPad* const pad_;  // of the element, once it is added
   const std::string topic_;
   std::unique_ptr<MessageReader> reader_;
-  mcap::Metadata metadata_;  // of the channel that is read
+  std::string schema_;       // of the channel that is read
+  mcap::Metadata metadata_;  // likewise
   CapsPtr pushed_caps_;
   bool added_ = false;
   bool needs_segment_ = true;

@@ -179,6 +179,23 @@ TEST_F(McapErrors, ATopicInAnotherEncodingIsNoDamage) {
   EXPECT_EQ(played.stats.at("messages-dropped"), 0U);
 }
 
+TEST_F(McapErrors, MessagesOfTwoTypesInOneTopicAreNoDamage) {
+  mcap::test::FileMaker maker(mcap::WriterSettings{});
+  const auto add = [&](gst::MessageType type, const std::vector<std::uint8_t>& bytes) {
+    mcap::Channel channel;
+    channel.topic = "/motion";
+    channel.message_encoding = "cdr";
+    ASSERT_TRUE(maker.Add(maker.AddChannel(gst::SchemaOf(type), std::move(channel)), 1,
+                          std::string(bytes.begin(), bytes.end())));
+  };
+  add(gst::MessageType::kOdometry, cdr::WriteOdometry({}));
+  add(gst::MessageType::kImu, cdr::WriteImu({}));
+  Save(&maker);
+  const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.buffers.at("see").size(), 2U);
+  EXPECT_EQ(played.stats.at("messages-dropped"), 0U);
+}
+
 TEST_F(McapErrors, APlayerSaysWhatTheNextElementDoesNotTake) {
   Record(1, "", "a.mcap");
   EXPECT_EQ(Play("mcapsrc" + At("a.mcap") + " ! pointcloudview ! fakesink").error,
