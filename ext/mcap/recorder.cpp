@@ -71,8 +71,9 @@ std::optional<RecorderFault> Recorder::Add(const mcap::MessageHeader& header, By
     BeginFile();
     file_start_ = header.log_time;
   }
-  if (writer_->Add(header, data)) return std::nullopt;
-  const auto fault = Fault();
+  const bool fits = data.size <= mcap::kMaxMessage;
+  if (fits && writer_->Add(header, data)) return std::nullopt;
+  const auto fault = fits ? Fault() : RecorderFault{file_->path(), EMSGSIZE};
   Finish();
   return fault;
 }

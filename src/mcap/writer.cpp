@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "src/base/crc.h"
-#include "src/mcap/record_input.h"
 
 namespace lidar::mcap {
 namespace {
@@ -57,11 +56,12 @@ std::uint16_t Catalogue::AddChannel(Channel channel) {
 Writer::Writer(const WriterSettings& settings, const Catalogue* catalogue, Write write)
     : settings_(settings), catalogue_(*catalogue), write_(std::move(write)) {}
 
-bool Writer::IsFull(std::uint64_t log_time) const {
+/// Returns true if a message of `size` bytes begins another chunk.
+bool Writer::IsFull(std::uint64_t log_time, std::size_t size) const {
   if (chunk_.empty()) return false;
   const auto longest = static_cast<std::uint64_t>(settings_.chunk_duration.count());
   const bool old = longest > 0 && log_time > chunk_start_ && log_time - chunk_start_ >= longest;
-  return old || chunk_.size() >= settings_.chunk_size;
+  return old || chunk_.size() >= settings_.chunk_size || chunk_.size() + size > kMaxMessage;
 }
 
 void Writer::AddChannelOnce(std::uint16_t id) {
@@ -74,7 +74,7 @@ void Writer::AddChannelOnce(std::uint16_t id) {
 }
 
 bool Writer::Add(const MessageHeader& header, ByteView data) {
-  const bool written = !IsFull(header.log_time) || Flush();
+  const bool written = !IsFull(header.log_time, data.size) || Flush();
   if (chunk_.empty()) chunk_start_ = chunk_end_ = header.log_time;
   chunk_start_ = std::min(chunk_start_, header.log_time);
   chunk_end_ = std::max(chunk_end_, header.log_time);

@@ -8,9 +8,13 @@
 
 #include "src/base/time.h"
 #include "src/mcap/compression.h"
+#include "src/mcap/record_input.h"
 #include "src/mcap/records.h"
 
 namespace lidar::mcap {
+
+/// The largest message. Readers take chunks up to a limit, which leaves room for the channels.
+constexpr std::size_t kMaxMessage = kMaxChunk - (std::size_t{1} << 20);  // bytes
 
 struct WriterSettings {
   Compression compression = Compression::kZstd;
@@ -42,7 +46,8 @@ class Writer {
   /// `catalogue` outlives this object, and may grow.
   Writer(const WriterSettings& settings, const Catalogue* catalogue, Write write);
 
-  /// Takes a message, and writes a chunk if one is full. After false, Finish() may still work.
+  /// Takes a message of kMaxMessage at most, and writes a chunk if one is full. After false,
+  /// Finish() may still work.
   bool Add(const MessageHeader& header, ByteView data);
   /// Writes the open chunk.
   bool Flush();
@@ -56,7 +61,7 @@ class Writer {
   const Statistics& statistics() const { return statistics_; }
 
  private:
-  bool IsFull(std::uint64_t log_time) const;
+  bool IsFull(std::uint64_t log_time, std::size_t size) const;
   void AddChannelOnce(std::uint16_t id);
   Bytes BeginFile() const;
   bool WriteChunk();

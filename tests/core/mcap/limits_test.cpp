@@ -360,6 +360,20 @@ TEST(Mcap, AChunkHoldsTheTimesOfItsMessagesWhateverTheirOrder) {
                                         10 * kSecond + 500}));
 }
 
+TEST(Mcap, AChunkIsNoLargerThanAReaderTakes) {
+  WriterSettings settings;
+  settings.chunk_size = std::size_t{64} << 20;
+  FileMaker maker(settings);
+  const auto a = maker.AddChannel("a");
+  const std::string cloud(std::size_t{70} << 20, 'x');
+  ASSERT_TRUE(maker.Add(a, 1, std::string(std::size_t{60} << 20, 'x')));
+  ASSERT_TRUE(maker.Add(a, 2, cloud));
+  ASSERT_TRUE(maker.writer().Finish());
+  const auto reader = Open(maker.file());
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(reader->damaged_chunks(), 0U);
+}
+
 TEST(Mcap, AnEndThatLostItsLastChunkIsAFailure) {
   Catalogue catalogue;
   Channel channel;

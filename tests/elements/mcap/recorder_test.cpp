@@ -86,6 +86,17 @@ TEST_F(Pieces, EndAtTheirAgeWithTheNextScanOrAnEighthLaterWithAnyMessage) {
   EXPECT_EQ(Files(), (std::vector<std::string>{"r00.mcap", "r01.mcap", "r02.mcap"}));
 }
 
+TEST_F(Pieces, AMessageThatNoReaderTakesEndsTheRecording) {
+  const auto recorder = Make({});
+  Add(recorder.get(), 1000, true);
+  const std::vector<std::uint8_t> data(std::size_t{128} << 20);
+  const auto fault = recorder->Add({channel_, 0, 1001, 1001}, {data.data(), data.size()}, false);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->path, folder_ + "/r00.mcap");
+  EXPECT_EQ(fault->error, EMSGSIZE);
+  EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{1})) << "the file is complete";
+}
+
 TEST_F(Pieces, AMessageOfThePastMakesNoFileOld) {
   RecorderSettings settings;
   settings.max_file_duration = Duration{800};
