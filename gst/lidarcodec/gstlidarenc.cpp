@@ -132,6 +132,7 @@ static lidar::codec::cloud::ExactChoice ExactChoiceOf(const LidarEncSettings& se
   choice.keeps_order = settings.keeps_order;
   std::istringstream names(settings.fields);
   for (std::string name; std::getline(names >> std::ws, name, ',');) {
+    name.erase(name.find_last_not_of(' ') + 1);
     const lidar::PointField* field = fields.Find(name);
     if (field == nullptr) *missing += (missing->empty() ? "" : ", ") + name;
     if (field == nullptr || known.Find(name) != nullptr) continue;

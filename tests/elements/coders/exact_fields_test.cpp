@@ -74,8 +74,8 @@ void ExpectSame(const std::vector<std::uint8_t>& before, GstBuffer* after, const
 class ExactFieldsByEffort : public ::testing::TestWithParam<const char*> {};
 TEST_P(ExactFieldsByEffort, ComeBackInTheirOrder) {
   const CoderCase coder{"exact", GetParam(), "lidardec"};
-  CheckedCodec codec(coder,
-                     "max-error=0.02 error-check=1 keep-order=true fields=\"ring, timestamp,tag\"");
+  CheckedCodec codec(
+      coder, "max-error=0.02 error-check=1 keep-order=true fields=\" ring , timestamp,tag \"");
   for (const std::size_t points : {500U, 77U}) {
     const auto raw = DriverCloud(RandomPoints(points, 40));
     codec.SetCaps(DriverInfo(points));
