@@ -10,12 +10,6 @@ void ReferenceKeeper::Release(const std::vector<BlockMemoryPtr>& blocks) {
   for (const BlockMemoryPtr& block : blocks) bytes_ -= block->bytes();
 }
 
-/// Turns of another interval would make many slices of a scan stand alone.
-void ReferenceKeeper::set_key_interval(Duration interval) {
-  if (std::exchange(key_interval_, interval) == interval) return;
-  for (auto& [index, slot] : slots_) slot.last_key.reset();
-}
-
 void ReferenceKeeper::Forget() {
   for (auto& [index, slot] : slots_) Restart(&slot);
 }
@@ -64,12 +58,10 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
   if (key_interval_ > Duration{0}) {
     // Slices stand alone in turn: all of one scan together would make it much larger than others.
     const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
-    if (!slot.last_key) slot.last_key = now - head_start;
-    if (now - *slot.last_key >= key_interval_) {
-      Restart(&slot);
-      slot.last_key = now;
-    }
+    const auto turn = [&](Time t) { return (t.time_since_epoch() + head_start) / key_interval_; };
+    if (turn(now) != turn(slot.begun.value_or(now))) Restart(&slot);
   }
+  slot.begun = now;
   if (slot.sent.size() >= kMostOfSlice || bytes_ >= kMostBytes) Restart(&slot);
   current_ = &slot;
   name_ = slice;

@@ -25,7 +25,7 @@ struct SliceName {
 class ReferenceKeeper {
  public:
   /// Longest time between slices that stand alone, for late receivers; 0: no limit.
-  void set_key_interval(Duration interval);
+  void set_key_interval(Duration interval) { key_interval_ = interval; }
 
   /// Notes that `receiver` has all of the slice.
   void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id, std::uint32_t index);
@@ -63,7 +63,7 @@ class ReferenceKeeper {
   struct Slot {
     std::deque<Sent> sent;                  // slices since the reference, the oldest first
     std::vector<BlockMemoryPtr> reference;  // empty: none
-    std::optional<Time> last_key;
+    std::optional<Time> begun;              // the newest slice
   };
   void Forget();
   void Release(const std::vector<BlockMemoryPtr>& blocks);
