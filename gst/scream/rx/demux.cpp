@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several streams behind screamrx: each SSRC has its own pad, with caps from pt-map.
+// Several streams behind screamrx: each SSRC has a pad, with caps from pt-map.
 #include <algorithm>
 #include <charconv>
 #include <string_view>
@@ -13,7 +13,7 @@
 namespace lidar::gst {
 namespace {
 
-// Each new SSRC creates a pad, even if it is forged or belongs to a restarted sender.
+// Each new SSRC creates a pad, even if it is forged.
 constexpr std::size_t kMaxRoutes = 1'024;
 
 bool IsLidar(const GstCaps* caps) {
@@ -68,9 +68,17 @@ gboolean CopyExceptCaps(GstPad*, GstEvent** event, gpointer to) {
   return TRUE;
 }
 
+/// Returns the SSRC, or the next number if the pad of that name has another SSRC now.
+guint32 FreePadNumber(GstLidarScreamRx* self, guint32 ssrc) {
+  for (guint32 number = ssrc;; ++number) {
+    const StringPtr name(g_strdup_printf("src_%u", number));
+    if (!PadPtr(gst_element_get_static_pad(GST_ELEMENT(self), name.get()))) return number;
+  }
+}
+
 GstPad* NewPad(GstLidarScreamRx* self, guint32 ssrc, GstCaps* caps) {
   GstPadTemplate* templ = gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(self), "src_%u");
-  const StringPtr name(g_strdup_printf("src_%u", ssrc));
+  const StringPtr name(g_strdup_printf("src_%u", FreePadNumber(self, ssrc)));
   GstPad* pad = gst_pad_new_from_template(templ, name.get());
   gst_pad_use_fixed_caps(pad);
   gst_pad_set_event_function(pad, RxSrcEvent);
@@ -188,11 +196,18 @@ static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPa
                        GST_PAD_NAME(pad)));
 }
 
-/// Returns an ended route of the payload type whose pad has a taker, or the end of the routes.
-static auto FindEnded(RxState& state, guint payload_type) {
-  return std::find_if(state.routes.begin(), state.routes.end(), [&](const auto& r) {
-    return r.second.ended && r.second.payload_type == payload_type && LeadsToSomebody(r.second.pad);
-  });
+/// Returns the ended route that began first of those that the stream fits, or the end of the
+/// routes: a restarted sender begins its streams in the same order.
+static auto FindEnded(RxState& state, guint payload_type, GstCaps* caps) {
+  auto first = state.routes.end();
+  for (auto at = state.routes.begin(); at != state.routes.end(); ++at) {
+    const RxRoute& route = at->second;
+    if (!route.ended || route.payload_type != payload_type || !LeadsToSomebody(route.pad) ||
+        gst_pad_peer_query_accept_caps(route.pad, caps) == FALSE)
+      continue;
+    if (first == state.routes.end() || route.number < first->second.number) first = at;
+  }
+  return first;
 }
 
 /// Returns the pad of a new SSRC. A restarted sender gets the pad of its earlier SSRC, because an
@@ -201,7 +216,7 @@ static auto FindEnded(RxState& state, guint payload_type) {
 static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer** buffer) {
   RxState& state = *self->state;
   const CapsPtr caps(CapsOf(self, header));
-  const auto ended = caps ? FindEnded(state, header.payload_type) : state.routes.end();
+  const auto ended = caps ? FindEnded(state, header.payload_type, caps.get()) : state.routes.end();
   GstPad* pad = nullptr;
   if (ended != state.routes.end()) {
     pad = ended->second.pad;
@@ -214,7 +229,7 @@ static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header, GstBuff
   {
     const RxLock lock(state.mutex);
     if (ended != state.routes.end()) state.routes.erase(ended);
-    state.routes.emplace(header.ssrc, RxRoute{pad, header.payload_type});
+    state.routes.emplace(header.ssrc, RxRoute{pad, header.payload_type, ++state.routes_begun});
   }
   if (GST_PAD_IS_FLUSHING(self->sink)) gst_pad_push_event(pad, gst_event_new_flush_start());
   return pad;

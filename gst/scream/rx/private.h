@@ -59,6 +59,7 @@ struct RxCounters {
 struct RxRoute {
   GstPad* pad = nullptr;
   guint payload_type = 0;
+  guint64 number = 0;  // grows with each route
   bool ended = false;  // by a goodbye, or by a move of the peer
 };
 
@@ -87,6 +88,7 @@ struct RxState {
 
   // Pads by SSRC, with a pt-map. Only the streaming thread changes it; a flush reads it.
   std::map<guint32, RxRoute> routes;
+  guint64 routes_begun = 0;
 
   // Used by the streaming thread only:
   bool eos = false;

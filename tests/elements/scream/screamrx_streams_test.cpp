@@ -219,6 +219,52 @@ TEST_F(ScreamRx, ARestartedSenderGetsThePadOfItsEarlierSsrc) {
   EXPECT_STREQ(passes(4, "10.0.0.2"), "anew") << "another peer";
 }
 
+TEST_F(ScreamRx, RestartedStreamsKeepTheirOrderOfPads) {
+  SetPtMap(
+      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
+  g_object_set(element, "eos-on-bye", FALSE, nullptr);
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  const auto push = [&](guint32 ssrc) {
+    Rtp r;
+    r.ssrc = ssrc;
+    for (; r.seq < 6; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK) << ssrc;
+  };
+  push(20);  // takes `src`
+  push(10);
+  Harness second(gst_harness_new_with_element(element, nullptr, "src_10"));
+  push(10);
+  const auto received = [&] {
+    return std::pair(gst_harness_buffers_received(rtp.get()),
+                     gst_harness_buffers_received(second.get()));
+  };
+  EXPECT_EQ(received(), std::pair(6U, 6U));
+  EXPECT_EQ(PushBye({10, 20}), GST_FLOW_OK);
+  push(30);
+  EXPECT_EQ(received(), std::pair(12U, 6U));
+  push(40);
+  EXPECT_EQ(received(), std::pair(12U, 12U));
+  push(10);  // its pad has another stream now
+  EXPECT_EQ(received(), std::pair(12U, 12U));
+  EXPECT_TRUE(gst::PadPtr(gst_element_get_static_pad(element, "src_11")));
+}
+
+TEST_F(ScreamRx, AStreamThatThePadOfAnEndedOneRefusesGetsItsOwn) {
+  SetPtMap(
+      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
+  g_object_set(element, "eos-on-bye", FALSE, nullptr);
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,ssrc=(uint)1");
+  Rtp r;
+  r.ssrc = 1;
+  for (; r.seq < 6; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK);
+  EXPECT_EQ(PushBye({1}), GST_FLOW_OK);
+  r.ssrc = 2;
+  for (r.seq = 0; r.seq < 5; ++r.seq) Push(r);
+  EXPECT_EQ(Passed(), 6U);
+  EXPECT_TRUE(gst::PadPtr(gst_element_get_static_pad(element, "src_2")));
+}
+
 TEST_F(ScreamRx, RtcpIsNoStreamOfPtMap) {
   SetPtMap(
       "0=(string)\"application/x-rtp,media=audio,clock-rate=8000,encoding-name=PCMU\","
