@@ -62,6 +62,11 @@ void Recorder::BeginFile() {
 
 std::optional<RecorderFault> Recorder::Add(const mcap::MessageHeader& header, ByteView data,
                                            bool begins_scan) {
+  if (data.size > mcap::kMaxMessage) {
+    const std::string path = file_ ? file_->path() : names_.Name(next_number_);
+    Finish();
+    return RecorderFault{path, EMSGSIZE};
+  }
   if (writer_ && IsOver(header.log_time, begins_scan)) {
     if (auto fault = Finish()) return fault;
   }
@@ -71,9 +76,8 @@ std::optional<RecorderFault> Recorder::Add(const mcap::MessageHeader& header, By
     BeginFile();
     file_start_ = header.log_time;
   }
-  const bool fits = data.size <= mcap::kMaxMessage;
-  if (fits && writer_->Add(header, data)) return std::nullopt;
-  const auto fault = fits ? Fault() : RecorderFault{file_->path(), EMSGSIZE};
+  if (writer_->Add(header, data)) return std::nullopt;
+  const auto fault = Fault();
   Finish();
   return fault;
 }

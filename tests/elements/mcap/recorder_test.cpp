@@ -87,7 +87,9 @@ TEST_F(Pieces, EndAtTheirAgeWithTheNextScanOrAnEighthLaterWithAnyMessage) {
 }
 
 TEST_F(Pieces, AMessageThatNoReaderTakesEndsTheRecording) {
-  const auto recorder = Make({});
+  RecorderSettings settings;
+  settings.max_files = 1;
+  const auto recorder = Make(settings);
   Add(recorder.get(), 1000, true);
   const std::vector<std::uint8_t> data(std::size_t{128} << 20);
   const auto fault = recorder->Add({channel_, 0, 1001, 1001}, {data.data(), data.size()}, false);
@@ -95,6 +97,8 @@ TEST_F(Pieces, AMessageThatNoReaderTakesEndsTheRecording) {
   EXPECT_EQ(fault->path, folder_ + "/r00.mcap");
   EXPECT_EQ(fault->error, EMSGSIZE);
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{1})) << "the file is complete";
+  EXPECT_TRUE(recorder->Add({channel_, 1, 1002, 1002}, {data.data(), data.size()}, true));
+  EXPECT_TRUE(std::filesystem::exists(folder_ + "/r00.mcap")) << "it is not replaced";
 }
 
 TEST_F(Pieces, AMessageOfThePastMakesNoFileOld) {
