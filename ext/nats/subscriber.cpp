@@ -191,6 +191,11 @@ void Subscriber::NoteStream() {
   if (before != 0 && before != created_) next_ = 1;
 }
 
+/// The end of each subscription, and each request, would wait in turn for a server that hangs.
+bool Subscriber::Answers() const {
+  return natsConnection_FlushTimeout(connection_->get(), kRequestTimeoutMs) == NATS_OK;
+}
+
 /// Makes the consumer of JetStream anew after each connect, because the server may have lost it.
 Subscriber::Event Subscriber::Renew() {
   const auto now = steady_clock::now();
@@ -201,7 +206,7 @@ Subscriber::Event Subscriber::Renew() {
   }
   renew_at_ = now + kRenewInterval;
   const ConnectionState state = connection_->state();
-  if (!state.connected()) return Event::kNothing;
+  if (!state.connected() || !Answers()) return Event::kNothing;
   messages_.reset();
   configs_.reset();
   last_number_ = 0;

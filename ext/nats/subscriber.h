@@ -83,6 +83,7 @@ class Subscriber {
   natsStatus SubscribeDurable(jsErrCode* code);
   natsStatus AddDurable(jsErrCode* code);
   void SetStart(jsConsumerConfig* config) const;
+  bool Answers() const;
   void NoteStream();
   Event NoteStored(Delivery* delivery);
   bool IsDone();
