@@ -98,8 +98,9 @@ TEST_F(McapSeek, PlaysAllBeforeTheEndWhereFilesOverlap) {
                                0, GST_SEEK_TYPE_SET, 110 * GST_MSECOND));
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  const Outcome outcome = p.outcome();
   std::vector<GstClockTime> shown;
-  for (const Kept& kept : p.outcome().buffers.at("see")) shown.push_back(kept.pts / GST_MSECOND);
+  for (const Kept& kept : outcome.buffers.at("see")) shown.push_back(kept.pts / GST_MSECOND);
   EXPECT_EQ(shown, (std::vector<GstClockTime>{0, 10, 100}));
 }
 

@@ -123,7 +123,8 @@ TEST_F(NatsStream, SubscriptionsEndWhileMessagesCome) {
     std::string why;
     const auto subscriber = nats::Subscriber::Open(
         settings, [](const auto&) {}, &why);
-    ASSERT_TRUE(subscriber) << why;
+    EXPECT_TRUE(subscriber) << why;
+    if (!subscriber) break;
     nats::Delivery delivery;
     EXPECT_TRUE(Eventually([&] {
       return subscriber->Next(std::chrono::milliseconds(100), &delivery) ==
