@@ -21,10 +21,7 @@ constexpr std::size_t kControlSize = 256;
   throw std::runtime_error(what + ": " + std::strerror(errno));
 }
 
-struct HostPort {
-  std::string host;
-  std::string port;
-};
+}  // namespace
 
 HostPort Split(const std::string& text, const std::string& default_host) {
   const auto colon = text.rfind(':');
@@ -34,8 +31,6 @@ HostPort Split(const std::string& text, const std::string& default_host) {
     host = host.substr(1, host.size() - 2);
   return {host.empty() ? default_host : host, text.substr(colon + 1)};
 }
-
-}  // namespace
 
 std::string ToString(const Address& address) {
   char host[NI_MAXHOST] = "";

@@ -15,8 +15,13 @@ namespace lidar::tools {
 using Address = net::NativeAddress;
 std::string ToString(const Address& address);
 
-/// "HOST:PORT", "[IPV6]:PORT" or "PORT" (then `default_host`). Throws std::runtime_error with a
-/// text for the user.
+struct HostPort {
+  std::string host;
+  std::string port;
+};
+/// Splits "HOST:PORT", "[IPV6]:PORT" or "PORT" (then `default_host`).
+HostPort Split(const std::string& text, const std::string& default_host);
+/// Resolves a text that Split() takes. Throws std::runtime_error with a text for the user.
 Address ResolveAddress(const std::string& text, const std::string& default_host);
 
 struct Datagram {

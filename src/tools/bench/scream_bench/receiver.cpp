@@ -21,6 +21,7 @@
 #include "src/tools/bench/scream_bench/pipeline.h"
 #include "src/tools/common/distribution.h"
 #include "src/tools/common/output_file.h"
+#include "src/tools/common/udp_socket.h"
 
 namespace lidar::tools {
 namespace {
@@ -98,17 +99,13 @@ constexpr DataSize kIpUdp = DataSize::Bytes(28);
 constexpr const char* kCaps =
     "application/x-rtp,media=application,encoding-name=X-SCREAM-BENCH,clock-rate=90000";
 
-/// `text` is "HOST:PORT" or "[IPV6]:PORT". Throws std::runtime_error.
-std::pair<std::string, gint> SplitFeedback(const std::string& text) {
-  const std::size_t colon = std::min(text.rfind(':'), text.size());
-  std::string host = text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']')
-    host = host.substr(1, host.size() - 2);
+/// Throws std::runtime_error.
+std::pair<std::string, gint> ParseFeedback(const std::string& text) {
+  const HostPort to = Split(text, "");
   guint64 port = 0;
-  if (host.empty() || colon == text.size() ||
-      !g_ascii_string_to_unsigned(&text[colon + 1], 10, 1, 65535, &port, nullptr))
+  if (to.host.empty() || !g_ascii_string_to_unsigned(to.port.c_str(), 10, 1, 65535, &port, nullptr))
     throw std::runtime_error("--feedback wants HOST:PORT");
-  return {host, static_cast<gint>(port)};
+  return {to.host, static_cast<gint>(port)};
 }
 
 class Receiver {
@@ -158,7 +155,7 @@ void Receiver::Build() {
     gst_util_set_object_arg(G_OBJECT(source), "num-reports", o.num_reports.c_str());
     LinkPads(source, "src", sink, "sink");
   } else {
-    const auto [host, port] = SplitFeedback(o.feedback);
+    const auto [host, port] = ParseFeedback(o.feedback);
     GstElement* rx = AddElement(bin, "screamrx", "screamrx");
     gst_util_set_object_arg(G_OBJECT(rx), "num-reports", o.num_reports.c_str());
     GstElement* back = AddElement(bin, "ecnudpsink", "feedback");
