@@ -45,6 +45,14 @@ class ScreamRx : public ::testing::Test {
     if (host != nullptr) SetSource(buffer, host, port);
     return gst_harness_push(rtp.get(), buffer);
   }
+  /// Starts with payload type 96 in pt-map, behind a `src` that takes `caps`.
+  void StartAndOutliveByes(const char* caps) {
+    SetPtMap(
+        "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
+    g_object_set(element, "eos-on-bye", FALSE, nullptr);
+    Start();
+    gst_harness_set_sink_caps_str(rtp.get(), caps);
+  }
   GstFlowReturn PushBye(std::vector<guint32> ssrcs, const char* host = nullptr) {
     GstBuffer* buffer = FromBytes(gst::BuildBye(ssrcs));
     if (host != nullptr) SetSource(buffer, host, 5000);

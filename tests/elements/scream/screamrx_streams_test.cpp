@@ -189,11 +189,7 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
 }
 
 TEST_F(ScreamRx, ARestartedSenderGetsThePadOfItsEarlierSsrc) {
-  SetPtMap(
-      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
-  g_object_set(element, "eos-on-bye", FALSE, nullptr);
-  Start();
-  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  StartAndOutliveByes("application/x-rtp,media=application");
   const auto passes = [&](guint32 ssrc, const char* host) {
     Rtp r;
     r.ssrc = ssrc;
@@ -220,11 +216,7 @@ TEST_F(ScreamRx, ARestartedSenderGetsThePadOfItsEarlierSsrc) {
 }
 
 TEST_F(ScreamRx, RestartedStreamsKeepTheirOrderOfPads) {
-  SetPtMap(
-      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
-  g_object_set(element, "eos-on-bye", FALSE, nullptr);
-  Start();
-  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  StartAndOutliveByes("application/x-rtp,media=application");
   const auto push = [&](guint32 ssrc) {
     Rtp r;
     r.ssrc = ssrc;
@@ -250,11 +242,7 @@ TEST_F(ScreamRx, RestartedStreamsKeepTheirOrderOfPads) {
 }
 
 TEST_F(ScreamRx, AStreamThatThePadOfAnEndedOneRefusesGetsItsOwn) {
-  SetPtMap(
-      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
-  g_object_set(element, "eos-on-bye", FALSE, nullptr);
-  Start();
-  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,ssrc=(uint)1");
+  StartAndOutliveByes("application/x-rtp,ssrc=(uint)1");
   Rtp r;
   r.ssrc = 1;
   for (; r.seq < 6; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK);

@@ -14,6 +14,17 @@
 namespace lidar::test {
 namespace {
 
+/// Returns a second pad of screamtx, whose segment begins at `start`.
+Harness AddVideoFrom(GstElement* element, GstClockTime start) {
+  Harness video(gst_harness_new_with_element(element, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(video.get(), kVideoCaps);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.start = segment.time = segment.position = start;
+  EXPECT_TRUE(gst_harness_push_event(video.get(), gst_event_new_segment(&segment)));
+  return video;
+}
+
 /// Pushes frame `i` of another stream, in one packet.
 void PushSmallFrame(GstHarness* stream, int i) {
   Rtp r;
@@ -241,12 +252,7 @@ TEST_F(ScreamTx, BitratesOfAPadWinOverThoseOfTheElement) {
 
 TEST_F(ScreamTx, SeveralStreamsHaveOneStartOneSegmentAndTheEventsOfTheFirst) {
   Start();
-  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
-  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  segment.start = segment.time = segment.position = 5 * GST_SECOND;
-  ASSERT_TRUE(gst_harness_push_event(second.get(), gst_event_new_segment(&segment)));
+  Harness second = AddVideoFrom(element, 5 * GST_SECOND);
   gst_harness_push_event(second.get(), gst_event_new_tag(gst_tag_list_new_empty()));
   Rtp r;
   r.ssrc = 0x5678;
@@ -441,12 +447,7 @@ TEST_F(ScreamTx, ASegmentFollowsAFlushThoughAPadIsAddedMeanwhile) {
 
 TEST_F(ScreamTx, AStreamKeepsItsTimesWhenTheOtherPadLeaves) {
   Start();
-  Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));
-  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  segment.start = segment.time = segment.position = 5 * GST_SECOND;
-  ASSERT_TRUE(gst_harness_push_event(second.get(), gst_event_new_segment(&segment)));
+  Harness second = AddVideoFrom(element, 5 * GST_SECOND);
   for (guint16 seq = 0; seq < 2; ++seq) {
     GstBuffer* in = NewRtp({seq, seq, true});
     GST_BUFFER_PTS(in) = 5'500 * GST_MSECOND;
