@@ -89,9 +89,9 @@ class Writer : public Node {
   /// Waits for slow reliable subscribers, but no longer than kMaxBlockingNs.
   Result Publish(const std::vector<ByteView>& pieces);
   unsigned subscribers() const;
-  /// What a subscriber wants that this writer does not give.
+  /// The kind of setting that a subscriber wants and this writer lacks.
   enum class Want { kNothing, kReliability, kOther };
-  /// Returns once what new incompatible subscribers want: of several, the last one.
+  /// Returns what a new incompatible subscriber wants: of several, the last one.
   Want TakeIncompatible();
 
   static constexpr std::int64_t kMaxBlockingNs = 100'000'000;  // as ROS 2 has it

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Several streams behind screamrx: each SSRC has a pad, with caps from pt-map.
-#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <utility>
