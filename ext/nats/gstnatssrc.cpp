@@ -240,17 +240,39 @@ static void NoteDamaged(GstLidarNatsSrc* self) {
                         (nullptr));
 }
 
-/// Returns the format with that id. Returns null if there is none, and counts the message, which
-/// the caller drops.
+/// Returns true while no server is there, and warns once if that lasts.
+static bool IsAway(State& state) {
+  const lidar::nats::ConnectionState connection = state.subscriber->connection();
+  const gint64 now = g_get_monotonic_time();
+  if (connection.connected()) {
+    state.here_at_us = now;
+    state.warned_absent = false;
+  } else if (!connection.refused() &&
+             now - state.here_at_us > std::chrono::microseconds(lidar::nats::kAbsence).count() &&
+             !std::exchange(state.warned_absent, true)) {
+    state.watch->Warn("No NATS server answers at " +
+                      lidar::nats::WithoutUser(state.now.nats.connection.url) +
+                      "; it is tried again.");
+  }
+  return !connection.connected() && !connection.closed;
+}
+
+/// Returns the format with that id; waits for a server that is away. Returns null if there is none,
+/// and counts the message, which the caller drops, unless the source is flushing.
 static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
   State& state = StateOf(self);
   if (state.format && state.format->id() == id) return state.format;
-  const bool wait = g_get_monotonic_time() >= state.no_wait_until_us;
-  StreamFormat::Ptr format = state.subscriber->Format(id, wait ? kFormatWait : milliseconds{});
-  if (format) return format;
-  // The next messages do not wait, because they may have known formats.
-  if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
-  state.account.Count(&SourceCounters::without_caps);
+  while (!state.flushing) {
+    const bool away = IsAway(state);
+    const bool wait = away || g_get_monotonic_time() >= state.no_wait_until_us;
+    StreamFormat::Ptr format = state.subscriber->Format(id, wait ? kFormatWait : milliseconds{});
+    if (format) return format;
+    if (away || IsAway(state)) continue;
+    // The next messages do not wait, because they may have known formats.
+    if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
+    state.account.Count(&SourceCounters::without_caps);
+    return nullptr;
+  }
   return nullptr;
 }
 
@@ -298,6 +320,7 @@ static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBu
     return GST_FLOW_CUSTOM_SUCCESS;
   }
   const StreamFormat::Ptr format = FormatOf(self, read->format_id);
+  if (!format && state.flushing) return GST_FLOW_FLUSHING;
   if (!format) {
     NoteLeftOut(state, *read);
     return GST_FLOW_CUSTOM_SUCCESS;
@@ -368,22 +391,6 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   return state.at_end ? GST_FLOW_EOS : flow;
 }
 
-/// Warns once until a server is there again.
-static void NoteAbsence(State& state) {
-  const lidar::nats::ConnectionState connection = state.subscriber->connection();
-  const gint64 now = g_get_monotonic_time();
-  if (connection.connected()) {
-    state.here_at_us = now;
-    state.warned_absent = false;
-  } else if (!connection.refused() &&
-             now - state.here_at_us > std::chrono::microseconds(lidar::nats::kAbsence).count() &&
-             !std::exchange(state.warned_absent, true)) {
-    state.watch->Warn("No NATS server answers at " +
-                      lidar::nats::WithoutUser(state.now.nats.connection.url) +
-                      "; it is tried again.");
-  }
-}
-
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_NATS_SRC(push);
   State& state = StateOf(self);
@@ -393,7 +400,7 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
     Delivery delivery;
     const Subscriber::Event event = state.subscriber->Next(kPoll, &delivery);
     state.account.NoteSubscriber(*state.subscriber);
-    NoteAbsence(state);
+    IsAway(state);
     const GstFlowReturn flow = Handle(self, event, std::move(delivery), out);
     if (flow != GST_FLOW_CUSTOM_SUCCESS) return flow;
   }

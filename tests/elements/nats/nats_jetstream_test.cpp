@@ -181,15 +181,36 @@ TEST_F(NatsJetStream, AReplayBeginsAtItsNumber) {
   EXPECT_EQ(Replay(0, "start-sequence=900").size(), 0U);
 }
 
-TEST_F(NatsJetStream, AStreamOfManyFormatsIsReplayedWhole) {
-  const NatsClient client(server_.url());
+/// Puts `count` messages into the stream, each with caps that no other has.
+void FillWithOwnCaps(const NatsServer& server, int count) {
+  const NatsClient client(server.url());
   std::string why;
   ASSERT_TRUE(nats::EnsureStream(client.js(), {"box", {}, 0, 1, ""},
                                  {"r1.front", "r1.front.config.*"}, &why))
       << why;
-  constexpr int kFormats = 20;  // more than a source knows at a time
-  for (int i = 0; i < kFormats; ++i) PutInOwnCaps(client, i);
-  EXPECT_EQ(Replay(0).size(), std::size_t{kFormats});
+  for (int i = 0; i < count; ++i) PutInOwnCaps(client, i);
+}
+
+constexpr int kManyFormats = 20;  // more than a source knows at a time
+
+TEST_F(NatsJetStream, AStreamOfManyFormatsIsReplayedWhole) {
+  FillWithOwnCaps(server_, kManyFormats);
+  EXPECT_EQ(Replay(0).size(), std::size_t{kManyFormats});
+}
+
+TEST_F(NatsJetStream, AMessageOfUnknownCapsWaitsForAServerThatIsAway) {
+  FillWithOwnCaps(server_, kManyFormats);
+  NatsPipeline receiver("natssrc name=n start-time=0" + At(kBox) +
+                        "! fakesink name=see sync=false");
+  receiver.Hold(true);
+  receiver.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(1));
+  server_.Kill();
+  receiver.Hold(false);
+  ASSERT_NE(receiver.WaitForWarning("No NATS server answers"), "");
+  server_.Restart();
+  EXPECT_TRUE(receiver.WaitForBuffers(kManyFormats));
+  EXPECT_EQ(receiver.stat("messages-without-caps"), 0U);
 }
 
 TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
