@@ -555,6 +555,32 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_TRUE(last.ended);
 }
 
+/// docs/fleet.md names these rights.
+TEST_F(NatsJetStream, AReceiverNeedsTheRightsOfItsStreamAlone) {
+  std::ofstream(server_.folder() + "/conf") << R"(authorization { users = [
+    { user: edge, password: pw },
+    { user: viewer, password: pw, permissions: {
+        publish: ["r1.front.get-config", "$JS.API.STREAM.NAMES", "$JS.API.STREAM.INFO.box",
+                  "$JS.API.STREAM.MSG.GET.box", "$JS.API.CONSUMER.CREATE.box",
+                  "$JS.API.CONSUMER.*.box.>", "$JS.API.CONSUMER.MSG.NEXT.box.>"],
+        subscribe: ["r1.front", "r1.front.config.*", "_INBOX.>"] } }] })";
+  server_.Start({"-c", server_.folder() + "/conf"});
+  const auto sent = PublishSlices(64, "url=" + server_.url("nats", "edge:pw@") + " " + kBox);
+  const std::string viewer = "natssrc name=n url=" + server_.url("nats", "viewer:pw@");
+  NatsPipeline player(viewer + " start-time=0 eos-at-end=true " + kBox +
+                      " ! fakesink name=see sync=false");
+  player.Play();
+  EXPECT_EQ(player.WaitForEnd(), "");
+  ExpectSameStream(player.buffers(), sent);
+  NatsPipeline live(viewer + " subject=r1.front ! fakesink name=see");
+  live.Play();
+  gst::HistoryAnswer last;
+  ExpectSameStream(AskForHistory(live, {0, 0, 100'000}, &last), sent);
+  player.Stop();
+  live.Stop();
+  EXPECT_EQ(server_.Logged("Violation"), 0U);
+}
+
 TEST_F(NatsJetStream, HasNoPastOfAStreamThatItDoesNotKeep) {
   PublishSlices(8, At(kBox));
   NatsPipeline receiver("natssrc name=n" + At("subject=r2.front") + "! fakesink name=see");
