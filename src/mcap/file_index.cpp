@@ -19,6 +19,7 @@ struct SummaryPlace {
   std::uint32_t crc = 0;
 };
 
+/// Returns nothing for a file that was not closed. A closed file's summary may be empty.
 std::optional<SummaryPlace> FindSummary(Input* input) {
   const std::uint64_t size = input->size();
   if (size < kMagic.size() + kFileEnd || !HasMagic(input, size - kMagic.size()))
@@ -29,6 +30,7 @@ std::optional<SummaryPlace> FindSummary(Input* input) {
   if (!place || place->op != Op::kFooter || !ReadContent(input, *place, Footer::kSize, &content))
     return std::nullopt;
   const auto footer = ParseFooter({content.data(), content.size()});
+  if (footer && footer->summary_start == 0) return SummaryPlace{footer_at, footer_at, 0};
   if (!footer || footer->summary_start < kMagic.size() || footer->summary_start > footer_at ||
       footer_at - footer->summary_start > kMaxSummary)
     return std::nullopt;

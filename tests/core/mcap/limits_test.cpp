@@ -209,6 +209,17 @@ TEST(McapOfOthers, ASummaryWithoutChunksOrWithoutChannelsIsNoIndex) {
   }
 }
 
+TEST(McapOfOthers, AFileMayBeClosedWithoutASummary) {
+  Bytes file = Begin();
+  AppendChunk(ChannelWithMessage(1, 5), 5, &file);
+  Append(Footer{}, &file);
+  file.insert(file.end(), kMagic.begin(), kMagic.end());
+  MemoryInput input(file);
+  const FileIndex found = ReadFileIndex(&input);
+  EXPECT_TRUE(found.complete);
+  EXPECT_EQ(found.chunks.size(), 1U);
+}
+
 TEST(McapOfOthers, AnIndexThatPointsOutOfTheFileIsNotTaken) {
   Bytes file = Begin();
   const std::uint64_t at = file.size();
