@@ -152,10 +152,9 @@ static const std::array<Property<SinkSettings>, 16> kProperties = {{
     {"stats", "packets-sent, bytes-sent [bytes], send-errors, dropped-no-peer", Stats},
 }};
 
-static guint8 SocketTos(int fd, GSocketFamily family) {
+static guint8 SocketTos(int fd, bool v6) {
   int tos = 0;
   socklen_t size = sizeof tos;
-  const bool v6 = family == G_SOCKET_FAMILY_IPV6;
   if (getsockopt(fd, v6 ? IPPROTO_IPV6 : IPPROTO_IP, v6 ? IPV6_TCLASS : IP_TOS, &tos, &size) != 0)
     return 0;
   return static_cast<guint8>(tos & ~kEcnMask);
@@ -187,8 +186,9 @@ static gboolean Start(GstBaseSink* base) {
   GSocket* socket = used.socket.get();
   ConfigureSocket(self, socket, s);
   state.family = g_socket_get_family(socket);
-  state.socket_tos = SocketTos(g_socket_get_fd(socket), state.family);
   state.to = peer ? ToNative(peer.get(), state.family) : NativeAddress{};
+  state.socket_tos = SocketTos(g_socket_get_fd(socket),
+                               state.family == G_SOCKET_FAMILY_IPV6 && !state.to.IsIpv4());
   state.warned_errno = 0;
   state.wake.Clear();
   if (peer && !state.to.valid()) {

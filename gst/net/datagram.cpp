@@ -108,10 +108,11 @@ bool SendMulticastFrom(int fd, const std::string& interface) {
   if (getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) != 0) return false;
   ip_mreqn v4{};
   v4.imr_ifindex = index;
-  // A socket of IPv6 accepts the option for IPv4, which does nothing there.
+  // A socket of IPv6 may send to groups of IPv4, too, for which the option of IPv4 counts.
+  const int v4_result = setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4);
   return (local.ss_family == AF_INET6
               ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index)
-              : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4)) == 0;
+              : v4_result) == 0;
 }
 
 unsigned SetReceiveBuffer(int fd, unsigned bytes) {

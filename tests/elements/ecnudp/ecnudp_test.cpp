@@ -307,20 +307,25 @@ TEST_P(Loopback, PacketsLeaveByTheInterfaceAndByNoOther) {
   EXPECT_EQ(Text(got.get()), "sent");
 }
 
-Object<GSocket> LoopbackSocket() {
-  const Object<GInetAddress> loopback(g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4));
-  const Object<GSocketAddress> local(g_inet_socket_address_new(loopback.get(), 0));
+/// Of IPv6 for both address families: bound to any address.
+Object<GSocket> LoopbackSocket(GSocketFamily family = G_SOCKET_FAMILY_IPV4) {
+  const Object<GInetAddress> address(family == G_SOCKET_FAMILY_IPV4
+                                         ? g_inet_address_new_loopback(family)
+                                         : g_inet_address_new_any(family));
+  const Object<GSocketAddress> local(g_inet_socket_address_new(address.get(), 0));
   Object<GSocket> socket(
-      g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
+      g_socket_new(family, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
   EXPECT_TRUE(g_socket_bind(socket.get(), local.get(), FALSE, nullptr));
   return socket;
 }
 
-TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
+class EcnUdpSinkOn : public ::testing::TestWithParam<GSocketFamily> {};
+
+TEST_P(EcnUdpSinkOn, KeepsTheDscpBesideTheEcnBits) {
   const auto receiver = LoopbackSocket();
   ASSERT_TRUE(g_socket_set_option(receiver.get(), IPPROTO_IP, IP_RECVTOS, 1, nullptr));
   const Object<GSocketAddress> bound(g_socket_get_local_address(receiver.get(), nullptr));
-  const auto given = LoopbackSocket();
+  const auto given = LoopbackSocket(GetParam());
   ASSERT_TRUE(g_socket_set_option(given.get(), IPPROTO_IP, IP_TOS, 18 << 2 | 2, nullptr));
   GstElement* element = SinkElement();
   g_object_set(element, "socket", given.get(), "host", "127.0.0.1", "port",
@@ -336,6 +341,9 @@ TEST(EcnUdpSink, KeepsTheDscpBesideTheEcnBits) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(ASocket, EcnUdpSinkOn,
+                         ::testing::Values(G_SOCKET_FAMILY_IPV4, G_SOCKET_FAMILY_IPV6));
 
 /// A socket for both address families sends to an IPv4 host through the IPv4 stack.
 TEST(EcnUdpSink, MarksWhatLeavesThroughTheIpv4StackOfAnIpv6Socket) {
@@ -475,11 +483,24 @@ TEST(EcnUdpSrc, SeveralOfAMachineReceiveAMulticastGroup) {
   EXPECT_NE(gst_element_set_state(second->element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
 }
 
-void SendToGroup(const char* group, guint port, const std::string& text) {
+void SendToGroup(const char* group, guint port, const std::string& text,
+                 GSocket* socket = nullptr) {
   GstElement* sink = SinkElement();
-  g_object_set(sink, "host", group, "port", port, "multicast-iface", "lo", nullptr);
+  g_object_set(sink, "host", group, "port", port, "multicast-iface", "lo", "socket", socket,
+               nullptr);
   const Harness harness = Wrap(sink);
   EXPECT_EQ(gst_harness_push(harness.get(), Payload(text)), GST_FLOW_OK);
+}
+
+TEST(EcnUdpSink, ASocketOfIpv6SendsToAGroupOfIpv4ByItsInterface) {
+  const Harness src = ListenerOf("239.201.7.3", 0);
+  if (gst_element_set_state(src->element, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE)
+    GTEST_SKIP() << "no multicast here";
+  SendToGroup("239.201.7.3", LocalPort(src.get()), "dual",
+              LoopbackSocket(G_SOCKET_FAMILY_IPV6).get());
+  const BufferPtr got(gst_harness_pull(src.get()));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(Text(got.get()), "dual");
 }
 
 /// The kernel gives a socket the groups of all programs, unless it is told otherwise.
