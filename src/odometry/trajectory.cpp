@@ -21,18 +21,21 @@ struct Row {
   std::size_t count = 0;
 };
 
+bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
 /// Reads the numbers of a line. Returns false for a word that is no finite number, and for too many
 /// words.
 bool ParseRow(const std::string& line, Row* row) {
   const char* at = line.data();
   const char* const end = at + line.size();
   for (;;) {
-    while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
+    while (at < end && IsSpace(*at)) ++at;
     if (at == end) return true;
     if (row->count == kKittiColumns) return false;
     double& value = row->values[row->count++];
     const auto [next, failed] = std::from_chars(at, end, value);
     if (failed != std::errc{} || !std::isfinite(value)) return false;
+    if (next < end && !IsSpace(*next)) return false;
     at = next;
   }
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <locale>
 #include <sstream>
 
 #include "src/odometry/trajectory_error.h"
@@ -55,6 +56,28 @@ TEST(TumFiles, HaveNineDigitsBehindThePoint) {
   EXPECT_EQ(out.str().rfind("0.000000042 ", 0), 0U) << out.str();
 }
 
+/// German numbers: a comma instead of the point, and points between thousands.
+struct GermanNumbers : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(TrajectoryFiles, AreTheSameInAnyLocale) {
+  const StampedPose before_1970{Time{} - milliseconds(1'700'250), At(1234.5, -2.25, 0)};
+  std::ostringstream german;
+  german.imbue(std::locale(std::locale::classic(), new GermanNumbers));
+  WriteTumLine(german, before_1970);
+  EXPECT_EQ(german.str(),
+            "-1700.250000000 1234.500000 -2.250000 0.000000 0.000000000 0.000000000 0.000000000 "
+            "1.000000000\n");
+  std::ostringstream kitti;
+  kitti.imbue(std::locale(std::locale::classic(), new GermanNumbers));
+  WriteKittiLine(kitti, before_1970.pose);
+  EXPECT_EQ(kitti.str().substr(0, 64),
+            "1.000000000e+00 0.000000000e+00 0.000000000e+00 1.234500000e+03 ");
+}
+
 TEST(KittiFiles, GetTheirTimesFromThePeriod) {
   std::ostringstream out;
   WriteKittiLine(out, At(1, 2, 0.5));
@@ -71,6 +94,7 @@ TEST(TrajectoryFiles, AreReadWithoutALineThatWasCut) {
   EXPECT_EQ(Read("# time x y z\n1.0 0 0 0 0 0 0 1\n2.0 0 0 0 0 0 0 1\n3.0 0 0 0 0", &error).size(),
             2U);
   EXPECT_EQ(Read("1.0 0 0 0 0 0 0 1\n2.0 0 0 0 0 0 0 1", &error).size(), 2U);
+  EXPECT_EQ(Read("1.0 0 0 0 0 0 0 1\n2.0 0 0 0 0 0 -", &error).size(), 1U) << error;
 }
 
 class BadTrajectoryFiles : public testing::TestWithParam<const char*> {};
@@ -85,7 +109,10 @@ INSTANTIATE_TEST_SUITE_P(
     Trajectory, BadTrajectoryFiles,
     testing::Values("", "# nothing\n", "hello world\n", "1 2 3\n", "1.0 0 0 0 0 0 0 0\n",
                     "1.0 nan 0 0 0 0 0 1\n", "2.0 0 0 0 0 0 0 1\n1.0 0 0 0 0 0 0 1\n",
-                    "1e300 0 0 0 0 0 0 1\n", "0 0 0 0 0 0 0 1\n1 0 0 0 0 1 0 0 0 0 1 0\n",
+                    "1e300 0 0 0 0 0 0 1\n", "9000000001 0 0 0 0 0 0 1\n",
+                    "-9000000001.5 0 0 0 0 0 0 1\n", "99999999999999999999 0 0 0 0 0 0 1\n",
+                    "0 0 0 0 0 0 0 1\n1 0 0 0 0 1 0 0 0 0 1 0\n", "1 0 0 0 0 1 0 0 0 0 1 0 5\n",
+                    "1 0 0 0 0 1 0 0 0 0 1 x\n", "1.0-2.0 0 0 0 0 0 1\n",
                     "1 2 3 4 5 6 7 8 9 10 11 12 13\n", "9 9 9 0 9 9 9 0 9 9 9 0\n"));
 
 TEST(TrajectoryErrors, AreZeroForTheTruthInAnotherFrame) {
