@@ -101,6 +101,12 @@ void FileIndex::LearnAll(ByteView records) {
   while (const auto record = NextRecord(records, &offset)) Learn(*record);
 }
 
+bool LacksASchema(const FileIndex& index) {
+  return std::any_of(index.channels.begin(), index.channels.end(), [&](const auto& c) {
+    return c.second.schema_id != 0 && index.schemas.count(c.second.schema_id) == 0;
+  });
+}
+
 FileIndex ReadFileIndex(Input* input, FileIndex known) {
   const auto place = FindSummary(input);
   const auto summary = place ? ReadSummary(input, *place) : std::nullopt;
@@ -113,8 +119,9 @@ FileIndex ReadFileIndex(Input* input, FileIndex known) {
     else
       index.Learn(*record);
   }
-  // Other writers may leave the indexes out.
-  if (index.chunks.empty() || index.channels.empty()) index = ScanFile(input);
+  // Other writers may leave the indexes out, or the schemas.
+  if (index.chunks.empty() || index.channels.empty() || LacksASchema(index))
+    index = ScanFile(input);
   index.complete = true;
   DropOverlaps(&index.chunks);
   std::stable_sort(
