@@ -86,7 +86,7 @@ std::optional<RecorderFault> Recorder::Finish() {
   if (!writer_) return std::nullopt;
   const bool written = writer_->Finish();
   const bool closed = file_->Close();
-  if (writer_->chunks() > 0)
+  if (writer_->ended())
     finished_.push_back({file_->path(), writer_->statistics(), writer_->size()});
   std::optional<RecorderFault> fault;
   if (!written || !closed) fault = Fault();

@@ -185,7 +185,8 @@ bool Writer::Finish() {
   const Bytes summary = Summary(offset_ + out.size());
   out.insert(out.end(), summary.begin(), summary.end());
   out.insert(out.end(), kMagic.begin(), kMagic.end());
-  return Put(out) && flushed;
+  ended_ = Put(out);
+  return ended_ && flushed;
 }
 
 }  // namespace lidar::mcap

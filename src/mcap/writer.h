@@ -58,6 +58,8 @@ class Writer {
   std::uint64_t size() const { return offset_ + chunk_.size(); }
   /// Chunks that have been written.
   std::size_t chunks() const { return chunk_indexes_.size(); }
+  /// Returns true once the file's end is written.
+  bool ended() const { return ended_; }
   const Statistics& statistics() const { return statistics_; }
 
  private:
@@ -76,6 +78,7 @@ class Writer {
 
   std::uint64_t offset_ = 0;    // of the end of the file
   std::uint32_t data_crc_ = 0;  // of the file up to offset_
+  bool ended_ = false;
   // The open chunk.
   Bytes chunk_;
   std::uint64_t chunk_start_ = 0;

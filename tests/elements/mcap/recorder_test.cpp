@@ -2,6 +2,7 @@
 // Where one file of a recording ends and the next begins, and which files stay.
 #include "ext/mcap/recorder.h"
 #include "tests/support/files.h"
+#include "tests/support/small_disk.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -84,6 +85,16 @@ TEST_F(Pieces, EndAtTheirAgeWithTheNextScanOrAnEighthLaterWithAnyMessage) {
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{1}));
   EXPECT_EQ(recorder->chunks(), 3U);
   EXPECT_EQ(Files(), (std::vector<std::string>{"r00.mcap", "r01.mcap", "r02.mcap"}));
+}
+
+TEST_F(Pieces, AFileWhoseEndDoesNotFitOnTheDiskIsNotComplete) {
+  const auto recorder = Make({});
+  Add(recorder.get(), 0, true);
+  Add(recorder.get(), 10'000'000'000, true);  // after the first chunk
+  const test::SmallDisk disk(1);
+  EXPECT_TRUE(recorder->Finish());
+  EXPECT_EQ(recorder->chunks(), 1U);
+  EXPECT_TRUE(Messages(recorder.get()).empty());
 }
 
 TEST_F(Pieces, AMessageThatNoReaderTakesEndsTheRecording) {
