@@ -146,13 +146,14 @@ TEST(McapOfOthers, ChecksumsMayBeLeftOut) {
   const std::uint64_t at = file.size();
   AppendChunk(records, 5, &file);
   Bytes summary;
+  Append(Schema{1, "of the summary", "ros2msg", ""}, &summary);
   Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
   Append(IndexOf(at, file), &summary);
   Close(summary, &file);
   MemoryInput input(file);
   const FileIndex found = ReadFileIndex(&input);
   EXPECT_TRUE(found.complete);
-  EXPECT_TRUE(found.schemas.empty());  // so it was read from the summary
+  EXPECT_EQ(found.schemas.at(1).name, "of the summary");
   const auto reader = Open(file);
   EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{5}));
   EXPECT_EQ(reader->damaged_chunks(), 0U);
@@ -163,6 +164,7 @@ TEST(McapOfOthers, AChunkIsReadOnceHoweverOftenItIsIndexed) {
   const std::uint64_t at = file.size();
   AppendChunk(ChannelWithMessage(1, 5), 5, &file);
   Bytes summary;
+  Append(Schema{1, "s", "ros2msg", ""}, &summary);
   Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
   ChunkIndex index = IndexOf(at, file);
   for (std::uint64_t i = 0; i < 60; ++i) {
@@ -180,6 +182,7 @@ TEST(McapOfOthers, AChunkIsReadOnceHoweverOftenItIsIndexed) {
   Bytes liar = Begin();
   AppendChunk(ChannelWithMessage(1, 5), 5, &liar);
   summary.clear();
+  Append(Schema{1, "s", "ros2msg", ""}, &summary);
   Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
   index = IndexOf(at, liar);
   index.size = 10;
@@ -190,22 +193,23 @@ TEST(McapOfOthers, AChunkIsReadOnceHoweverOftenItIsIndexed) {
   EXPECT_EQ(lied_to->damaged_chunks(), 1U);
 }
 
-TEST(McapOfOthers, ASummaryWithoutChunksOrWithoutChannelsIsNoIndex) {
+TEST(McapOfOthers, ASummaryThatLacksChunksChannelsOrSchemasIsNoIndex) {
   for (const bool channels : {false, true}) {
-    Bytes file = Begin();
-    const std::uint64_t at = file.size();
-    AppendChunk(ChannelWithMessage(1, 5), 5, &file);
-    Bytes summary;
-    if (channels)
-      Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
-    else
-      Append(IndexOf(at, file), &summary);
-    Close(summary, &file);
-    MemoryInput input(file);
-    const FileIndex found = ReadFileIndex(&input);
-    EXPECT_TRUE(found.complete);
-    EXPECT_EQ(found.chunks.size(), 1U);
-    EXPECT_EQ(found.channels.size(), 1U);
+    for (const bool chunks : {false, true}) {
+      Bytes file = Begin();
+      const std::uint64_t at = file.size();
+      AppendChunk(ChannelWithMessage(1, 5), 5, &file);
+      Bytes summary;
+      if (channels) Append(Channel{1, 1, "topic 1", "cdr", {}}, &summary);
+      if (chunks) Append(IndexOf(at, file), &summary);
+      Close(summary, &file);
+      MemoryInput input(file);
+      const FileIndex found = ReadFileIndex(&input);
+      EXPECT_TRUE(found.complete);
+      EXPECT_EQ(found.chunks.size(), 1U);
+      EXPECT_EQ(found.channels.size(), 1U);
+      EXPECT_EQ(found.schemas.size(), 1U);
+    }
   }
 }
 
@@ -291,6 +295,31 @@ TEST(McapOfOthers, MessagesOutsideOfChunksMayBeInAnyOrder) {
   EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{3, 5, 7, 9}));
   reader->Seek(8);
   EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{9}));
+}
+
+TEST(McapOfOthers, ManyMessagesOutsideOfChunksAreReadInPiecesOfAMebibyte) {
+  Bytes file = Begin();
+  Append(Schema{1, "s", "ros2msg", ""}, &file);
+  Append(Channel{1, 1, "t", "cdr", {}}, &file);
+  for (std::uint64_t time = 1; time <= 8; ++time)
+    Append(MessageHeader{1, 0, time, time}, View(std::string(300'000, 'x')), &file);
+  const auto reader = Open(file);
+  ASSERT_EQ(reader->index().chunks.size(), 3U);
+  for (const ChunkPlace& piece : reader->index().chunks) EXPECT_LE(piece.size, 1U << 20);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6, 7, 8}));
+}
+
+TEST(McapOfOthers, AMessageThatIsTooShortIsPassedOver) {
+  Bytes file = Begin();
+  Append(Schema{1, "s", "ros2msg", ""}, &file);
+  Append(Channel{1, 1, "t", "cdr", {}}, &file);
+  for (const std::uint64_t time : {5U, 7U}) {
+    const Bytes three = {static_cast<std::uint8_t>(Op::kMessage), 3, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3};
+    file.insert(file.end(), three.begin(), three.end());
+    Append(MessageHeader{1, 0, time, time}, View("x"), &file);
+  }
+  const auto reader = Open(file);
+  EXPECT_EQ(Times(reader.get()), (std::vector<std::uint64_t>{5, 7}));
 }
 
 TEST(McapOfOthers, TheChannelsOfTheFirstChunksAreKnownAtOnceOthersWithTheirMessages) {
