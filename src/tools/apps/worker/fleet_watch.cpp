@@ -79,10 +79,10 @@ FleetWatch::News FleetWatch::Take() {
   return std::exchange(news_, {});
 }
 
-void FleetWatch::Tell(const std::string& trouble) {
-  if (std::exchange(told_, trouble) == trouble || trouble.empty()) return;
+void FleetWatch::Tell(std::string* last, const std::string& trouble) {
+  if (std::exchange(*last, trouble) == trouble || trouble.empty()) return;
   const std::lock_guard lock(mutex_);
-  news_.trouble = trouble;
+  news_.troubles.push_back(trouble);
 }
 
 void FleetWatch::Run() {
@@ -143,7 +143,8 @@ void FleetWatch::Step() {
     renew_at_ = now + kRenewInterval;
     const natsStatus s = Subscribe();
     stale_ = s != NATS_OK;
-    if (stale_) Tell("the bucket " + settings_.bucket + " cannot be used: " + nats::ErrorText(s));
+    Tell(&bucket_trouble_,
+         stale_ ? "the bucket " + settings_.bucket + " cannot be used: " + nats::ErrorText(s) : "");
     connections_ = state.connections;
     missed_heartbeats_ = state.missed_heartbeats;
   }
@@ -198,7 +199,8 @@ void FleetWatch::ListRobots() {
       js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), &options, nullptr);
   const nats::StreamInfoPtr info(raw);
   if (s != NATS_OK)
-    return Tell(s == NATS_NOT_FOUND
+    return Tell(&stream_trouble_,
+                s == NATS_NOT_FOUND
                     ? "there is no stream " + settings_.stream + " yet"
                     : "the stream " + settings_.stream + " says nothing: " + nats::ErrorText(s));
   std::set<std::string> all;
@@ -209,11 +211,10 @@ void FleetWatch::ListRobots() {
   }
   auto robots = WithinBounds(all);
   const std::size_t left_out = all.size() - robots.size();
-  if (left_out > 0)
-    Tell("sensors are left out: a robot may have " + std::to_string(kMostSensors) +
-         ", and a worker follows " + std::to_string(kMostRobots) + " robots");
-  else if (!stale_)
-    Tell("");
+  Tell(&stream_trouble_,
+       left_out > 0 ? "sensors are left out: a robot may have " + std::to_string(kMostSensors) +
+                          ", and a worker follows " + std::to_string(kMostRobots) + " robots"
+                    : "");
   const std::lock_guard lock(mutex_);
   news_.robots = std::move(robots);
   news_.left_out = left_out;

@@ -36,11 +36,11 @@ class FleetWatch {
     std::vector<Entry> entries;
     std::optional<std::set<std::string>> robots;  // "robot.sensor"; all within the bounds
     std::size_t left_out = 0;                     // number of sensors beyond the bounds
-    std::uint64_t stream = 0;  // id of the stream with the robots, as in Progress
-    std::uint64_t first = 0;   // number of its oldest message
-    std::uint64_t last = 0;    // number of its newest message
-    Time asked_at{};           // time of the request: the answer is newer
-    std::string trouble;       // empty: no trouble, or reported already
+    std::uint64_t stream = 0;           // id of the stream with the robots, as in Progress
+    std::uint64_t first = 0;            // number of its oldest message
+    std::uint64_t last = 0;             // number of its newest message
+    Time asked_at{};                    // time of the request: the answer is newer
+    std::vector<std::string> troubles;  // that were not reported yet
   };
 
   FleetWatch(nats::Connection* connection, const FleetSettings& settings);
@@ -60,7 +60,8 @@ class FleetWatch {
   natsStatus Subscribe();
   void TakeEntry(natsMsg* message);
   void ListRobots();
-  void Tell(const std::string& trouble);
+  /// Reports `trouble` if it differs from the last of its kind; empty: there is none.
+  void Tell(std::string* last, const std::string& trouble);
 
   nats::Connection* const connection_;
   const FleetSettings settings_;
@@ -72,7 +73,8 @@ class FleetWatch {
   bool stale_ = true;              // the subscription has a gap, or there is none
   std::chrono::steady_clock::time_point renew_at_{};
   std::chrono::steady_clock::time_point list_at_{};
-  std::string told_;
+  std::string bucket_trouble_;
+  std::string stream_trouble_;
 
   std::atomic<bool> stopping_{false};
   std::atomic<bool> renew_{false};

@@ -68,7 +68,8 @@ void Worker::Step() {
 
 void Worker::TakeNews() {
   const FleetWatch::News news = watch_.Take();
-  if (!news.trouble.empty()) std::fprintf(stderr, "%s\n", tools::Printable(news.trouble).c_str());
+  for (const std::string& trouble : news.troubles)
+    std::fprintf(stderr, "%s\n", tools::Printable(trouble).c_str());
   if (news.robots) {
     table_.SetRobots(*news.robots, Now());
     left_out_ = news.left_out;
