@@ -35,9 +35,16 @@ std::string NumbersText(const std::array<double, count>& numbers) {
 void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
                  const std::optional<Progress>& begin) {
   for (const auto& [name, value] : settings.odometry) {
-    if (g_object_class_find_property(G_OBJECT_GET_CLASS(odometry), name.c_str()) == nullptr)
-      throw std::runtime_error("lidarodometry has no property " + name);
-    gst_util_set_object_arg(G_OBJECT(odometry), name.c_str(), value.c_str());
+    GParamSpec* const spec =
+        g_object_class_find_property(G_OBJECT_GET_CLASS(odometry), name.c_str());
+    if (spec == nullptr) throw std::runtime_error("lidarodometry has no property " + name);
+    GValue read = G_VALUE_INIT;
+    g_value_init(&read, spec->value_type);
+    const bool taken =
+        gst_value_deserialize(&read, value.c_str()) && !g_param_value_validate(spec, &read);
+    if (taken) g_object_set_property(G_OBJECT(odometry), name.c_str(), &read);
+    g_value_unset(&read);
+    if (!taken) throw std::runtime_error("lidarodometry takes no " + name + "=" + value);
   }
   g_object_set(odometry, "post-messages", FALSE, nullptr);
   if (!begin) return;
