@@ -5,6 +5,8 @@
 #include <draco/compression/encode.h>
 
 #include <algorithm>
+#include <cstring>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -17,13 +19,16 @@ using Attribute = ::draco::GeometryAttribute;
 
 // The default of both speeds in draco_point_cloud_transport is 7.
 constexpr int kSpeed = 7;
+// Draco's coder of integers takes memory and time in proportion to the range of their differences.
+constexpr std::int64_t kWidestRange = 1 << 20;
 // Draco counts them in a byte.
 constexpr std::uint32_t kMostNumbers = 255;  // of a field
 
+/// Draco converts integers to int32, so it refuses large unsigned ones. Their bits are the same.
 ::draco::DataType DracoTypeOf(FieldType type) {
   constexpr ::draco::DataType kTypes[] = {
-      ::draco::DT_INT8,  ::draco::DT_UINT8,  ::draco::DT_INT16,   ::draco::DT_UINT16,
-      ::draco::DT_INT32, ::draco::DT_UINT32, ::draco::DT_FLOAT32, ::draco::DT_FLOAT64};
+      ::draco::DT_INT8,  ::draco::DT_UINT8, ::draco::DT_INT16,   ::draco::DT_UINT16,
+      ::draco::DT_INT32, ::draco::DT_INT32, ::draco::DT_FLOAT32, ::draco::DT_FLOAT64};
   return kTypes[static_cast<std::size_t>(type)];
 }
 
@@ -76,6 +81,21 @@ bool CopyField(const ::draco::PointAttribute& attribute, const FieldOfPoints& fi
   return true;
 }
 
+template <typename Integer>
+std::int64_t RangeOf(const FieldOfPoints& field, ByteView points, std::uint32_t point_step) {
+  Integer low = std::numeric_limits<Integer>::max();
+  Integer high = std::numeric_limits<Integer>::min();
+  for (std::size_t at = field.offset; at + BytesOf(field) <= points.size; at += point_step) {
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      Integer value;
+      std::memcpy(&value, points.data + at + i * sizeof value, sizeof value);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  return std::int64_t{high} - std::int64_t{low};
+}
+
 bool CopyPoints(const ::draco::PointCloud& cloud, const FieldLayout& layout,
                 std::vector<std::uint8_t>* points) {
   if (static_cast<std::size_t>(cloud.num_attributes()) != layout.fields.size()) return false;
@@ -86,9 +106,19 @@ bool CopyPoints(const ::draco::PointCloud& cloud, const FieldLayout& layout,
   return true;
 }
 
+/// Returns true if a field of integers spans more than kWidestRange.
+bool HasWideIntegers(ByteView points, const FieldLayout& layout) {
+  return std::any_of(layout.fields.begin(), layout.fields.end(), [&](const FieldOfPoints& field) {
+    if (field.type == FieldType::kI32)
+      return RangeOf<std::int32_t>(field, points, layout.point_step) > kWidestRange;
+    return field.type == FieldType::kU32 &&
+           RangeOf<std::uint32_t>(field, points, layout.point_step) > kWidestRange;
+  });
+}
+
 }  // namespace
 
-bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::uint8_t>* out) {
+bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::uint8_t>* out) try {
   if (!FitsPoint(layout) || points.size < layout.point_step) return false;
   ::draco::PointCloud cloud;
   cloud.set_num_points(static_cast<std::uint32_t>(points.size / layout.point_step));
@@ -97,10 +127,18 @@ bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::u
   ::draco::Encoder encoder;
   encoder.SetSpeedOptions(kSpeed, kSpeed);
   encoder.SetEncodingMethod(::draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+  if (HasWideIntegers(points, layout)) {
+    // Any stock decoder reads integers that are stored as they are.
+    encoder.options().SetGlobalBool("use_built_in_attribute_compression", false);
+    for (const auto type : {Attribute::POSITION, Attribute::GENERIC})
+      encoder.SetAttributePredictionScheme(type, ::draco::PREDICTION_NONE);
+  }
   ::draco::EncoderBuffer buffer;
   if (!encoder.EncodePointCloudToBuffer(cloud, &buffer).ok()) return false;
   out->assign(buffer.data(), buffer.data() + buffer.size());
   return true;
+} catch (const std::bad_alloc&) {
+  return false;
 }
 
 bool DecodeFields(ByteView stream, const FieldLayout& layout, std::uint32_t max_points,
