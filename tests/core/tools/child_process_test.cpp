@@ -8,11 +8,13 @@
 
 #include <csignal>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "src/tools/common/async_writer.h"
+#include "tests/support/files.h"
 #include "tests/support/patience.h"
 
 namespace lidar::tools {
@@ -43,6 +45,18 @@ TEST(ChildProcess, EndsWithItsExitCodeOrItsSignal) {
   child.Signal(SIGTERM);
   EXPECT_TRUE(test::Eventually([&] { return child.Ended(); }));
   EXPECT_EQ(child.Wait(), 128 + SIGTERM) << "known to have ended";
+}
+
+TEST(ChildProcess, MayHaveASecondPipeAndAFileForItsErrors) {
+  const std::string log = ::testing::TempDir() + "child_process_errors";
+  ChildProcess child({{"/bin/sh", "-c", "echo cloud >&3; echo trouble >&2"}, log, true});
+  EXPECT_EQ(child.Wait(), 0);
+  char cloud[16] = "";
+  EXPECT_EQ(read(child.clouds_fd(), cloud, sizeof cloud), 6);
+  EXPECT_STREQ(cloud, "cloud\n");
+  EXPECT_EQ(test::ReadFile(log), "trouble\n");
+  unlink(log.c_str());
+  EXPECT_THROW(ChildProcess({{"/bin/true"}, "/no/such/folder/log", false}), std::runtime_error);
 }
 
 TEST(ChildProcess, GivesWholeLines) {

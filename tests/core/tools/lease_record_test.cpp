@@ -41,6 +41,12 @@ TEST(LeaseRecord, KeepsAVelocityThatMakesSense) {
   const auto read = ParseLeaseRecord(ToJson({"", {}, progress}));
   ASSERT_TRUE(read && read->progress);
   EXPECT_FALSE(read->progress->velocity);
+  const auto text = [](const std::string& velocity) {
+    return R"({"worker":"a","lease-ms":1,"pose":[1,2,3,0,0,0,1],"velocity":)" + velocity +
+           R"(,"time":1,"stream":4,"scan":5,"from":3})";
+  };
+  EXPECT_TRUE(ParseLeaseRecord(text("[0,0,0,0,0,0]"))->progress->velocity);
+  EXPECT_FALSE(ParseLeaseRecord(text(R"(["0",0,0,0,0,0])"))->progress->velocity);
   progress.velocity = {10, 0, 0, 0, 0, 101};
   EXPECT_FALSE(ParseLeaseRecord(ToJson({"", {}, progress}))->progress->velocity);
 }
@@ -116,6 +122,7 @@ TEST(LeaseRecord, IsDamagedWhereItSaysWhatCannotBe) {
         begin + R"(,"pose":[1,2,3,0,0,0])" + rest, begin + R"(,"pose":[1,2,3,0,0,0,0])" + rest,
         begin + R"(,"pose":[1,2,1e300,0,0,0,1])" + rest,
         begin + R"(,"pose":[1,2,"3",0,0,0,1])" + rest,
+        begin + R"(,"pose":[1,2,3,0,0,1,"0"])" + rest,
         begin + R"(,"pose":[1,2,3,0,0,0,1],"time":1,"stream":4,"scan":5,"from":9})",
         begin + R"(,"pose":[1,2,3,0,0,0,1],"time":1,"stream":4,"scan":5})"})
     EXPECT_FALSE(ParseLeaseRecord(text)) << text.substr(0, 100);

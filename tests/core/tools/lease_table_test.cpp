@@ -129,6 +129,16 @@ TEST_F(Lease, OfARobotWithMadeUpSensorsLeavesPlacesToOthers) {
   for (const auto& [name, held] : table_.HeldAt(now)) EXPECT_EQ(before.count(name), 1U) << name;
 }
 
+TEST_F(Lease, OfOneOfTwoSensorsEndsWhereARobotHasNoPlace) {
+  table_.SetRobots({"a.1", "a.2", "b.1", "b.2"}, At(0));
+  Time now = Pass(At(0), 3'000);
+  EXPECT_EQ(table_.HeldAt(now).size(), 4U);
+  table_.SetRobots({"a.1", "a.2", "b.1", "b.2", "c.1"}, now);
+  now = Pass(now, 3'000);
+  EXPECT_TRUE(Has("c.1", now));
+  EXPECT_EQ(table_.HeldAt(now).size(), 4U);
+}
+
 TEST_F(Lease, StaysWhereRobotsCannotAllHaveAsManyPlaces) {
   table_.SetRobots({"a.1", "a.2", "a.3", "b.1", "b.2", "b.3", "c.1", "c.2", "c.3"}, At(0));
   Time now = Pass(At(0), 3'000);
@@ -152,6 +162,22 @@ TEST_F(Lease, OfASensorWithoutProgressEndsWhereAnotherWaits) {
   table_.SetRobots({"a", "b", "c", "d", "e"}, now);
   work(5'000);
   for (const char* robot : {"a", "b", "c", "e"}) EXPECT_TRUE(Has(robot, now)) << robot;
+}
+
+TEST_F(Lease, OfASensorWithoutProgressEndsThoughAnotherRobotHasMorePlaces) {
+  table_.SetRobots({"a.1", "a.2", "b.1", "c.1"}, At(0));
+  Time now = Pass(At(0), 3'000);
+  const auto work = [&](int ms) {
+    for (std::uint64_t scan = 1; ms > 0 && !Has("b.2", now); ms -= 100) {
+      for (const char* live : {"a.1", "a.2", "b.1"}) table_.SetProgress(live, Scan(++scan));
+      now = Pass(now, 100);
+    }
+  };
+  work(60'000);
+  table_.SetRobots({"a.1", "a.2", "b.1", "b.2", "c.1"}, now);
+  work(5'000);
+  EXPECT_FALSE(Has("c.1", now));
+  for (const char* sensor : {"a.1", "a.2", "b.1", "b.2"}) EXPECT_TRUE(Has(sensor, now)) << sensor;
 }
 
 TEST_F(Lease, IsLostToWhoeverWritesInItsPlace) {
@@ -187,17 +213,33 @@ TEST_F(Lease, BeginsAnewInABucketThatWasDeleted) {
   EXPECT_TRUE(Has("r", now));
 }
 
-TEST_F(Lease, OfAnotherInABucketThatWasDeletedIsTakenOnceItIsOver) {
+class LeaseOfAnother : public Lease, public ::testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(OfMilliseconds, LeaseOfAnother, ::testing::Values(200, 1000, 3000));
+TEST_P(LeaseOfAnother, InABucketThatWasDeletedIsTakenOnceItIsOver) {
   table_.SetRobots({"r"}, At(0));
-  table_.OnEntry("r", 5, LeaseRecord{"other", seconds(1), Scan(3)}, At(0));
-  const auto writes = table_.Poll(At(1100));
+  table_.OnEntry("r", 5, LeaseRecord{"other", milliseconds(GetParam()), Scan(3)}, At(0));
+  const auto writes = table_.Poll(At(3200));
   ASSERT_EQ(writes.size(), 1U);
   // The other worker may have renewed its lease a moment ago, unseen by us.
-  table_.OnRefused(writes[0].ticket, 0, At(1110));
-  Time now = Pass(At(1110), 1000);
+  table_.OnRefused(writes[0].ticket, 0, At(3210));
+  const int longest_ms = std::max(GetParam(), 1000);
+  Time now = Pass(At(3210), longest_ms);
   EXPECT_FALSE(Has("r", now));
-  now = Pass(now, 100);
+  now = Pass(now, longest_ms / 10);
   ASSERT_TRUE(Has("r", now));
+  EXPECT_EQ(table_.HeldAt(now).at("r").progress->scan, 3U);
+}
+
+TEST_F(Lease, OfAnotherIsRememberedThoughTheRobotIsAwayForAMoment) {
+  table_.SetRobots({"r"}, At(0));
+  table_.OnEntry("r", 5, LeaseRecord{"other", seconds(1), Scan(3)}, At(0));
+  revision_ = 5;
+  table_.SetRobots({}, At(10));
+  table_.SetRobots({"r"}, At(20));
+  EXPECT_FALSE(Has("r", Pass(At(20), 950)));
+  const Time now = Pass(At(970), 130);
+  ASSERT_TRUE(Has("r", now));
+  EXPECT_EQ(written_.replaces, 5U);
   EXPECT_EQ(table_.HeldAt(now).at("r").progress->scan, 3U);
 }
 

@@ -89,10 +89,12 @@ TEST(Feed, ForgetsWhatTheDecoderForgot) {
   }
   stream.Add(Own(scan, 0, 2'000));
   EXPECT_NE(stream.Take(&feed), "");
-  ++scan;
-  stream.Add(Own(scan, 0, 2'101));
-  EXPECT_EQ(stream.Take(&feed), "");
-  EXPECT_TRUE(feed.wants_recoded());
+  for (const std::uint32_t first : {1U, 20U}) {  // of the scans that are forgotten
+    ++scan;
+    stream.Add(Own(scan, 0, scan - first));
+    EXPECT_EQ(stream.Take(&feed), "") << first;
+    EXPECT_TRUE(feed.wants_recoded());
+  }
 }
 
 TEST(Feed, FinishesAScanBesideTheNext) {
@@ -181,6 +183,8 @@ TEST(RecentScans, AreTwoWithABoundedNumberOfSlices) {
   ASSERT_EQ(recent.scans().size(), 2U);
   EXPECT_EQ(recent.scans().front().number, 3U);
   EXPECT_LE(recent.scans().back().slices.size(), 1024U);
+  recent.Add(Recoded(4, 0));
+  EXPECT_TRUE(recent.scans().back().slices.at(0).recoded) << "it is in the place of its own form";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netdb.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -33,8 +34,8 @@ TEST(FleetExposition, HasNumbersByTheirNames) {
       "s", "packets-lost", G_TYPE_UINT64, guint64{7}, "connected", G_TYPE_BOOLEAN, TRUE, "drained",
       G_TYPE_BOOLEAN, FALSE, "age", G_TYPE_UINT64, G_MAXUINT64, "reason", G_TYPE_STRING, "x", "no",
       G_TYPE_STRING, nullptr, "rate", G_TYPE_DOUBLE, 0.5, "int", G_TYPE_INT, -3, "int64",
-      G_TYPE_INT64, gint64{-4}, "uint", G_TYPE_UINT, 5U, "inner", GST_TYPE_STRUCTURE, inner,
-      nullptr));
+      G_TYPE_INT64, gint64{-4}, "uint", G_TYPE_UINT, 5U, "inner", GST_TYPE_STRUCTURE, inner, "none",
+      GST_TYPE_STRUCTURE, nullptr, nullptr));
   fleet::Exposition exposition;
   exposition.Add("natssink", "{robot=\"a\"}", stats.get());
   exposition.Add("lidar_edge_x", "", 1);
@@ -66,19 +67,26 @@ TEST(Printable, IsALineThatGivesATerminalNoOrders) {
   EXPECT_EQ(tools::Printable(""), "");
 }
 
-/// Returns clients that connect to a port and send `request`.
-std::vector<tools::FileDescriptor> Clients(int port, std::size_t count,
-                                           const std::string& request) {
-  std::vector<tools::FileDescriptor> clients;
+tools::FileDescriptor NewSocket() {
+  return tools::FileDescriptor(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+}
+
+void Ask(const tools::FileDescriptor& client, int port, const std::string& request) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  EXPECT_EQ(connect(client.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  send(client.get(), request.data(), request.size(), MSG_NOSIGNAL);
+}
+
+/// Returns clients that connect to a port and send `request`.
+std::vector<tools::FileDescriptor> Clients(int port, std::size_t count,
+                                           const std::string& request) {
+  std::vector<tools::FileDescriptor> clients;
   for (std::size_t i = 0; i < count; ++i) {
-    clients.emplace_back(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    EXPECT_EQ(connect(clients.back().get(), reinterpret_cast<sockaddr*>(&address), sizeof address),
-              0);
-    send(clients.back().get(), request.data(), request.size(), MSG_NOSIGNAL);
+    clients.push_back(NewSocket());
+    Ask(clients.back(), port, request);
   }
   return clients;
 }
@@ -112,6 +120,36 @@ TEST(FleetMetrics, CutOffWhoSaysNothingOrTooMuch) {
   for (const auto& request : {std::string(), std::string(100'000, 'x')})
     EXPECT_EQ(Received(Clients(server.port(), 1, request)[0].get()), "");
   EXPECT_GE(server.cut(), 1U) << "the silent one";
+}
+
+TEST(FleetMetrics, CutOffTheOthersWhereNoFileDescriptorIsLeftForAnother) {
+  fleet::MetricsServer server("127.0.0.1", 0);
+  server.Publish("lidar_edge_x 1\n");
+  const auto silent = Clients(server.port(), 1, "");
+  const auto answered = Clients(server.port(), 1, "GET /metrics HTTP/1.1\r\n\r\n");
+  EXPECT_NE(Received(answered[0].get()), "");  // the server has taken the silent one before
+  const tools::FileDescriptor next = NewSocket();
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit none = before;
+  none.rlim_cur = static_cast<rlim_t>(tools::FileDescriptor(dup(0)).get());
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  Ask(next, server.port(), "GET /metrics HTTP/1.1\r\n\r\n");
+  EXPECT_EQ(Received(silent[0].get()), "");
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(Received(next.get()).substr(0, 15), "HTTP/1.1 200 OK");
+  EXPECT_EQ(server.cut(), 1U);
+}
+
+TEST(FleetMetrics, NameTheAddressThatAnotherProgramHas) {
+  const fleet::MetricsServer first("127.0.0.1", 0);
+  try {
+    const fleet::MetricsServer second("127.0.0.1", first.port());
+    FAIL() << "two have one port";
+  } catch (const std::runtime_error& e) {
+    EXPECT_EQ(e.what(), "cannot serve HTTP on 127.0.0.1:" + std::to_string(first.port()));
+  }
+  EXPECT_THROW(fleet::MetricsServer("192.0.2.1", 0), std::runtime_error) << "no address of ours";
 }
 
 TEST(FleetMetrics, AreAtTheirPathWithAndWithoutAQuery) {

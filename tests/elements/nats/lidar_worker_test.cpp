@@ -410,8 +410,8 @@ TEST_F(LidarWorker, PrintsNoControlCharactersOfARecord) {
 
 TEST_F(LidarWorker, TellsOfItsRobots) {
   const auto robot = Robot();
-  WorkerProcess worker(
-      {"r*", "--url", server_.url(), "--lease", "2000", "--interval", "0.2", "--http-port", "0"});
+  WorkerProcess worker({"r*", "--url", server_.url(), "--lease", "2000", "--interval", "0.2",
+                        "--http-port", "0", "--odometry", "voxel-size=5"});
   const NatsClient client(server_.url());
   auto reports = client.Subscribe("fleet.*.worker.*");
   const auto counts_poses = [&] {
@@ -421,7 +421,11 @@ TEST_F(LidarWorker, TellsOfItsRobots) {
     EXPECT_STREQ(natsMsg_GetSubject(raw_report), "fleet.r1.worker.front");
     const auto report = nlohmann::json::parse(natsMsg_GetData(raw_report));
     EXPECT_GT(report["time"], gint64{1'600'000'000} * 1'000'000'000) << "[ns]";
-    return report["robot"] == "r1" && report["natssink"]["messages"] > 3;
+    if (report["robot"] != "r1" || report["natssink"]["messages"] <= 3) return false;
+    EXPECT_GT(report["lidarodometry"]["map-voxels"], 0);
+    EXPECT_LT(report["lidarodometry"]["map-voxels"], 400)
+        << "they have the size that was asked for";
+    return true;
   };
   EXPECT_TRUE(Eventually(counts_poses));
   std::string address;
@@ -558,6 +562,113 @@ TEST_F(LidarWorker, SeesAllRecordsAgainWhereItAsksForThem) {
     watch.Renew();
     ASSERT_TRUE(sees(text)) << "again";
   }
+}
+
+worker::WorkerSettings SettingsOf(const std::string& url) {
+  worker::WorkerSettings settings;
+  settings.lease.worker = "me";
+  settings.fleet.patterns = {"r*"};
+  settings.pipeline.connection.url = url;
+  return settings;
+}
+
+/// Lets the worker work until it has written `text` to stderr.
+::testing::AssertionResult Warns(const std::function<void()>& works, const std::string& text) {
+  std::string said;
+  const bool warned = Eventually([&] {
+    ::testing::internal::CaptureStderr();
+    works();
+    said += ::testing::internal::GetCapturedStderr();
+    return said.find(text) != std::string::npos;
+  });
+  return (warned ? ::testing::AssertionSuccess() : ::testing::AssertionFailure()) << said;
+}
+
+TEST_F(LidarWorker, SaysThatThereIsNoStreamAndThatARobotHasTooManySensors) {
+  worker::WorkerSettings settings = SettingsOf(server_.url());
+  settings.lease.most = 1;
+  worker::Worker worker(settings);
+  const auto works = [&] { worker.Step(); };
+  EXPECT_TRUE(Warns(works, "there is no stream fleet yet\n"));
+  WithJetStream([](jsCtx* js) {
+    std::string why;
+    ASSERT_TRUE(nats::EnsureStream(js, {"fleet", {}, 0, 1, ""}, {"fleet.>"}, &why)) << why;
+    for (std::size_t i = 0; i < worker::kMostSensors + 3; ++i) {
+      const std::string subject = "fleet.r1.lidar.s" + std::to_string(i);
+      EXPECT_EQ(js_Publish(nullptr, js, subject.c_str(), "x", 1, nullptr, nullptr), NATS_OK);
+    }
+  });
+  EXPECT_TRUE(Warns(works,
+                    "sensors are left out: a robot may have 16, and a worker follows 4096 "
+                    "robots\n"));
+  fleet::Exposition exposition;
+  fleet::Reporter::Reports reports;
+  worker.Tell(&exposition, &reports);
+  EXPECT_NE(exposition.text().find("\nlidar_worker_sensors_left_out 3\n"), std::string::npos);
+}
+
+/// The worker looks for its bucket and for robots every second.
+TEST_F(LidarWorker, SaysOnceWhatTroublesItForALongTime) {
+  server_.Start({"-js=false"});
+  worker::Worker worker(SettingsOf(server_.url()));
+  const gint64 late = g_get_monotonic_time() + 4 * G_USEC_PER_SEC;
+  ::testing::internal::CaptureStderr();
+  while (g_get_monotonic_time() < late) worker.Step();
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  const auto lines = std::count(said.begin(), said.end(), '\n');
+  EXPECT_EQ(lines, 2) << "of the bucket and of the stream: " << said;
+}
+
+TEST_F(LidarWorker, PrintsTheWarningsOfARobotsPipeline) {
+  WithJetStream([](jsCtx* js) {
+    std::string why;
+    ASSERT_TRUE(nats::EnsureStream(js, {"fleet", {}, 0, 1, ""}, {"fleet.>"}, &why)) << why;
+    EXPECT_EQ(js_Publish(nullptr, js, "fleet.r1.lidar.front", "x", 1, nullptr, nullptr), NATS_OK);
+  });
+  worker::Progress begin;
+  begin.pose = {0, 0, 0, 0, 0, 0, 1};
+  begin.stream = CreationOf("fleet");
+  begin.scan = begin.from = 1;
+  worker::RobotPipeline pipeline(SettingsOf(server_.url()).pipeline, "r1.front", begin.stream,
+                                 begin);
+  pipeline.Play();
+  EXPECT_TRUE(
+      Warns([&] { EXPECT_EQ(pipeline.Poll(), ""); },
+            "r1.front: natssrc: A message is none of natssink's, or damaged. Such messages are "
+            "dropped and counted.\n"));
+}
+
+TEST_F(LidarWorker, EndsWithTheReasonForWhichAServerRefusesIt) {
+  server_.Start({"--auth", "other"});
+  worker::Worker worker(SettingsOf(server_.url("nats", "s3cret@")));
+  std::string why;
+  EXPECT_TRUE(Eventually([&] {
+    try {
+      worker.Step();
+    } catch (const std::runtime_error& e) {
+      why = e.what();
+    }
+    return !why.empty();
+  }));
+  EXPECT_EQ(why, "the NATS server refuses us: Authorization Violation");
+}
+
+TEST_F(LidarWorker, MakesABucketAnewThatWasDeletedAndWritesToIt) {
+  const auto robot = Robot();
+  const auto worker = Worker();
+  ASSERT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
+  const NatsClient client(server_.url());
+  const char* const kBucket = "KV_lidar-workers";
+  ASSERT_EQ(js_DeleteStream(client.js(), kBucket, nullptr, nullptr), NATS_OK);
+  ASSERT_TRUE(Eventually([&] {
+    jsStreamInfo* raw = nullptr;
+    js_GetStreamInfo(&raw, client.js(), kBucket, nullptr, nullptr);
+    const nats::StreamInfoPtr info(raw);
+    return info && info->State.Msgs > 0;
+  }));
+  const auto record = worker::ParseLeaseRecord(Record());
+  ASSERT_TRUE(record);
+  EXPECT_NE(record->worker, "");
 }
 
 TEST_F(LidarWorker, BeginsAnewWhereTheRecordIsDamaged) {

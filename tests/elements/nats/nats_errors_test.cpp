@@ -154,6 +154,19 @@ TEST_F(NatsErrors, AStreamWhoseBuffersAllExceedTheBufferSizeEndsWithAnError) {
             "None of 8 messages reached the NATS server: they exceed its max_payload, or "
             "buffer-size.");
   EXPECT_EQ(sender.stat("messages-dropped"), 8U);
+  NatsPipeline patient(kQuick + "slices-per-scan=1 num-buffers=8" + kSee +
+                       "! natssink name=n sync=false buffer-size=65536 keep-trying=true" + At());
+  patient.Play();
+  EXPECT_EQ(patient.WaitForEnd(), "");
+  EXPECT_EQ(patient.stat("messages-dropped"), 8U);
+}
+
+TEST_F(NatsErrors, AnEmptyStreamIsNoError) {
+  server_.Start();
+  NatsPipeline sender(kQuick + "num-buffers=0 ! lidarenc" + kSee + "! natssink name=n sync=false" +
+                      At());
+  sender.Play();
+  EXPECT_EQ(sender.WaitForEnd(), "");
 }
 
 TEST_F(NatsErrors, AServerThatIsNotThereIsToldOfByBothEnds) {
@@ -340,6 +353,25 @@ TEST_F(NatsErrors, TlsChecksTheServersCertificate) {
   EXPECT_EQ(wary.stat("connected"), 0U);
 }
 
+TEST_F(NatsErrors, AServerThatWantsACertificateGetsOurs) {
+  const std::string f = server_.folder();
+  if (!MakeCertificate(f, "cert") || !MakeCertificate(f, "own"))
+    GTEST_SKIP() << "openssl is not installed";
+  server_.Start({"--tls", "--tlscert", f + "/cert.pem", "--tlskey", f + "/cert-key.pem",
+                 "--tlsverify", "--tlscacert", f + "/own.pem"});
+  const std::string without = " url=" + server_.url("tls") + " tls-ca-file=" + f + "/cert.pem ";
+  const std::string with =
+      without + "tls-cert-file=" + f + "/own.pem tls-key-file=" + f + "/own-key.pem ";
+  NatsPipeline receiver("natssrc name=n" + with + "! fakesink name=see sync=false");
+  Listen(server_, &receiver);
+  PublishSlices(8, with);
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
+  NatsPipeline stranger("natssrc name=n" + without + "! fakesink name=see sync=false");
+  stranger.Play();
+  EXPECT_TRUE(Eventually([&] { return server_.Logged("TLS handshake error") > 0; }));
+  EXPECT_EQ(stranger.stat("connected"), 0U);
+}
+
 struct WrongSetting {
   const char* element;
   const char* message;
@@ -384,7 +416,7 @@ TEST_P(NatsWrongSetting, IsNamed) {
   const bool sink = element.find("natssink") == 0;
   NatsPipeline pipeline(sink ? kLive + "! lidarenc" + kSee + "! " + element
                              : element.substr(0, element.find('!')) + kSee + "! fakesink");
-  pipeline.Play();
+  EXPECT_FALSE(pipeline.Play());
   EXPECT_EQ(pipeline.WaitForEnd(), GetParam().message);
 }
 

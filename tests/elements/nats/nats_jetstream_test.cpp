@@ -285,6 +285,26 @@ std::vector<Kept> TakeRest(const std::string& at) {
   return rest.buffers();
 }
 
+TEST_F(NatsJetStream, ADurableConsumerBeginsAtTheTimeAndNumberThatItWasMadeWith) {
+  PublishSlices(8, At(kBox));
+  guint64 between = 0;
+  ASSERT_TRUE(Eventually([&] {  // libnats writes earlier times in whole seconds
+    between = static_cast<guint64>(g_get_real_time()) * 1000;
+    return between % GST_SECOND > 100 * GST_MSECOND;
+  }));
+  const auto second = PublishSlices(8, At(kBox));
+  const auto takes = [&](const std::string& more) {
+    NatsPipeline source("natssrc name=n eos-at-end=true" + At(kBox + " " + more) +
+                        "! fakesink name=see sync=false");
+    source.Play();
+    EXPECT_EQ(source.WaitForEnd(), "");
+    return source.buffers();
+  };
+  ExpectSameStream(takes("durable=slam start-time=" + std::to_string(between)), second);
+  // Each sender puts its caps before its eight slices.
+  ExpectSameStream(takes("durable=other start-sequence=13"), {second.begin() + 2, second.end()});
+}
+
 TEST_F(NatsJetStream, ADurableConsumerThatHasHadAllEndsAtOnce) {
   const auto sent = PublishSlices(8, At(kBox));
   ExpectSameStream(TakeRest(At(kBox)), sent);
@@ -423,6 +443,29 @@ TEST_F(NatsJetStream, ASourceBeginsAnotherStreamOfTheSameNameAtItsFirstMessage) 
   ExpectSameStream({got.begin() + 80, got.end()}, sent);
 }
 
+TEST_F(NatsJetStream, ASinkWhoseStreamIsDeletedSaysSoAndMakesItAnew) {
+  NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n " + kPatientDrain +
+                      At(kBox));
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= 20; }));
+  const NatsClient client(server_.url());
+  ASSERT_EQ(js_DeleteStream(client.js(), "box", nullptr, nullptr), NATS_OK);
+  EXPECT_EQ(sender.WaitForWarning("JetStream"),
+            "no stream of JetStream takes the subject; messages wait, then they are dropped and "
+            "counted.");
+  const guint64 before = sender.stat("messages-acknowledged");
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= before + 20; }));
+  sender.SendEos();
+  EXPECT_EQ(sender.WaitForEnd(), "");
+  const auto sent = sender.buffers();
+  EXPECT_EQ(sender.stat("messages-acknowledged"), sent.size());
+  EXPECT_EQ(sender.stat("messages-dropped"), 0U);
+  const auto kept = Replay(0);
+  ASSERT_GE(kept.size(), 20U);
+  ASSERT_LT(kept.size(), sent.size());
+  ExpectSameStream(kept, {sent.end() - static_cast<std::ptrdiff_t>(kept.size()), sent.end()});
+}
+
 /// Makes the box, which takes no message larger than `most` bytes.
 void MakeBoxForSmallMessages(const std::string& url, std::int32_t most) {
   const NatsClient client(url);
@@ -455,6 +498,7 @@ TEST_F(NatsJetStream, AStreamThatTakesNoMessageEndsWithAnError) {
   NatsPipeline sender(kQuick + "num-buffers=8 ! lidarenc" + kSee + "! natssink name=n sync=false" +
                       kPatientDrain + At(kBox));
   sender.Play();
+  EXPECT_NE(sender.WaitForWarning("The caps are larger than the stream takes (max_msg_size)"), "");
   EXPECT_EQ(sender.WaitForEnd(),
             "None of 8 messages reached the NATS server: they exceed its max_payload, the stream's "
             "max_msg_size, or buffer-size.");
@@ -524,14 +568,34 @@ TEST_F(NatsJetStream, AStreamThatAnswersForTheServerIsToldOf) {
   EXPECT_NE(why, "");
 }
 
+TEST_F(NatsJetStream, AStreamThatCannotBeMadeIsToldOfWithTheReasonAndItsNumber) {
+  PublishSlices(1, At(kBox));
+  NatsPipeline sender(kLive + "! lidarenc" + kSee +
+                      "! natssink name=n subject=r1.front jetstream=other" + At());
+  sender.Play();
+  const std::string warning = sender.WaitForWarning("The stream other cannot be made: ");
+  EXPECT_NE(warning.find("overlap"), warning.npos) << warning;
+  EXPECT_NE(warning.find(" (10065); messages wait"), warning.npos) << warning;
+}
+
 TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {
   NatsServer plain;
   std::ofstream(plain.folder() + "/conf") << "jetstream: disabled\n";
   plain.Start({"-c", plain.folder() + "/conf", "-js=false"});
   NatsPipeline sender(kLive + "! lidarenc" + kSee +
                       "! natssink name=n jetstream=box url=" + plain.url());
+  NatsPipeline receiver("natssrc name=n jetstream=box url=" + plain.url() + " ! fakesink name=see");
   sender.Play();
-  EXPECT_NE(sender.WaitForWarning("The stream box cannot be made"), "");
+  receiver.Play();
+  EXPECT_EQ(sender.WaitForWarning("The stream box"),
+            "The stream box cannot be made: the server has no JetStream; messages wait, then they "
+            "are dropped and counted.");
+  EXPECT_EQ(receiver.WaitForWarning("JetStream"),
+            "JetStream gives nothing: the server has no JetStream; it is tried again.");
+  // Both try it twice a second, and this takes two seconds.
+  ASSERT_TRUE(Eventually([&] { return sender.stat("messages-waiting") >= 160; }));
+  EXPECT_EQ(sender.Warnings("cannot be made") + receiver.Warnings("gives nothing"), 0U)
+      << "said again";
 }
 
 TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {

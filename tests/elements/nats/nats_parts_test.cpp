@@ -141,7 +141,11 @@ INSTANTIATE_TEST_SUITE_P(
                       BadHeader{"Lidar-Slice", "4294967296 0 1 0"},
                       BadHeader{"Lidar-Pose", "nan 0 0 0 0 0 1 1" + kZeros},
                       BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 4" + kZeros},
-                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1e999 1" + kZeros}));
+                      BadHeader{"Lidar-Pose", "0 0 0 nan 0 0 0 1" + kZeros},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1e999 1" + kZeros},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 1" + kZeros + "x"},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 1 nan" + kZeros.substr(2)},
+                      BadHeader{"Lidar-Pose", "0 0 0 0 0 0 1 1 1e39" + kZeros.substr(2)}));
 
 TEST_F(NatsParts, APoseOfTheRightLengthIsRead) {
   const gst::BufferPtr buffer = Bytes(10);
@@ -215,6 +219,7 @@ TEST_F(NatsParts, AFormatKnowsHowLargeItsBuffersAre) {
     EXPECT_EQ(read->Fits(size), pose->Fits(size)) << size;
   }
   EXPECT_FALSE(FormatOf("application/x-imu", &why));
+  EXPECT_EQ(why, "the samples of the IMU have no sample-size");
   EXPECT_FALSE(FormatOf("application/x-pointcloud2, width=(int)4", &why));
   EXPECT_FALSE(FormatOf("video/x-raw", &why));
   EXPECT_EQ(why,
@@ -493,7 +498,9 @@ TEST_F(NatsParts, NamesThatTheServerWouldMisreadAreRefused) {
   EXPECT_EQ(CheckName("black-box_2"), "");
   EXPECT_EQ(CheckName(std::string(64, 'a')), "");
   EXPECT_NE(CheckName(std::string(65, 'a')), "");
-  for (const char* bad : {"a.b", "a b", "a*", "a/b", "a>"}) EXPECT_NE(CheckName(bad), "") << bad;
+  EXPECT_EQ(CheckName("azAZ09"), "");
+  for (const char* bad : {"a.b", "a b", "a*", "a/b", "a>", "a:", "a@", "a[", "a`", "a{"})
+    EXPECT_NE(CheckName(bad), "") << bad;
 }
 
 TEST_F(NatsParts, AnswersAreKnownByTheirWords) {

@@ -35,7 +35,10 @@ class NatsPipeline {
   }
   ~NatsPipeline() { Stop(); }
 
-  void Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
+  /// Returns false if the pipeline cannot start.
+  bool Play() {
+    return gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING) != GST_STATE_CHANGE_FAILURE;
+  }
   void Stop() {
     Hold(false);
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);

@@ -18,6 +18,7 @@ TEST(LeaseStore, ReadsWhatTheServerAnswers) {
   EXPECT_FALSE(refused->revision);
   EXPECT_EQ(refused->newest, 5U);
   EXPECT_FALSE(ParseAnswer(R"({"error":{"code":503,"err_code":10008}})")->newest);
+  EXPECT_FALSE(ParseAnswer(R"({"error":{"err_code":10077,"description":"more than 5"}})")->newest);
   for (const char* text : {"", "x", "[]", "{}", R"({"seq":-1})", R"({"seq":"1"})"})
     EXPECT_FALSE(ParseAnswer(text)) << text;
   EXPECT_FALSE(ParseAnswer(R"({"error":7})")->revision);
@@ -45,12 +46,21 @@ TEST(FleetWatch, FollowsSomeSensorsOfARobotAndEachOtherRobot) {
   all.clear();
   for (int i = 0; i < 65'000; ++i) all.insert("r" + std::to_string(i) + ".front");
   EXPECT_EQ(worker::WithinBounds(all).size(), worker::kMostRobots);
+  const auto last = std::next(all.begin(), worker::kMostRobots - 1);
+  const std::string rear = last->substr(0, last->find('.')) + ".rear";
+  all.insert(rear);
+  EXPECT_EQ(worker::WithinBounds(all).count(rear), 1U) << "of the last robot";
 }
 
 TEST(RobotPipeline, RefusesWhatItHasNot) {
   worker::PipelineSettings settings;
-  settings.odometry = {{"voxel-sise", "1"}};
-  EXPECT_THROW(worker::RobotPipeline(settings, "r1.front", 0, std::nullopt), std::runtime_error);
+  const std::pair<std::string, std::string> wrong[] = {
+      {"voxel-sise", "1"}, {"voxel-size", "abc"}, {"voxel-size", "500"}};
+  for (const auto& property : wrong) {
+    settings.odometry = {property};
+    EXPECT_THROW(worker::RobotPipeline(settings, "r1.front", 0, std::nullopt), std::runtime_error)
+        << property.second;
+  }
   settings.odometry.clear();
   settings.decoder = "nosuchdecoder";
   EXPECT_THROW(worker::RobotPipeline(settings, "r1.front", 0, std::nullopt), std::runtime_error);

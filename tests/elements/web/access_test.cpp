@@ -21,9 +21,15 @@ TEST(FoxgloveSink, ServesItsPageAndNothingElse) {
   EXPECT_NE(page.body.find("<title>"), std::string::npos);
   EXPECT_EQ(HttpGet(sink.Url("http", "/etc/passwd")).status, 404U);
   EXPECT_EQ(HttpGet(sink.Url("http", "/..%2f..%2fetc/passwd")).status, 400U);
+  const HttpAnswer head = HttpGet(sink.Url("http"), "HEAD");
+  EXPECT_EQ(head.status, 200U);
+  EXPECT_EQ(head.type, page.type);
+  EXPECT_EQ(head.body, "");
+  EXPECT_EQ(sink.Stat("malformed"), 0U);
   const HttpAnswer posted = HttpGet(sink.Url("http"), "POST");
   EXPECT_EQ(posted.status, 405U);
   EXPECT_EQ(posted.allow, "GET, HEAD");
+  EXPECT_EQ(sink.Stat("malformed"), 1U);
 }
 
 TEST(FoxgloveSink, NamesTheTypeOfEachFileOfItsPage) {
@@ -45,6 +51,9 @@ TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {
   const HttpAnswer refused = HttpGet(sink.Url("http", "/session"));
   EXPECT_EQ(refused.status, 401U);
   EXPECT_EQ(refused.challenge, "Bearer");
+  EXPECT_EQ(refused.body, "A token is needed.\n");
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secre")).body,
+            "The token is wrong, or has run out.\n");
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 200U);
   EXPECT_TRUE(Peer(sink.Url("ws", "/?token=secret"), {"foxglove.sdk.v1"}).connected());
   EXPECT_EQ(sink.Stat("clients-refused"), 5U) << "a page that asks why is no other client";
@@ -104,7 +113,7 @@ struct Asks {
 };
 class Origins : public ::testing::TestWithParam<Asks> {};
 TEST_P(Origins, OfOtherSitesNeedATokenOrToBeAllowed) {
-  Sink open("allowed-origins=\"https://a.example, https://app.foxglove.dev\"");
+  Sink open("allowed-origins=\"https://a.example, https://app.foxglove.dev, \"");
   Peer peer(open.Url("ws"), {"foxglove.sdk.v1"}, GetParam().origin);
   EXPECT_EQ(peer.connected(), GetParam().enters);
   if (!GetParam().enters) {
@@ -146,6 +155,20 @@ TEST(WrongTokens, AreForgivenOneByOneAndRememberedOfTheNewestAddresses) {
   EXPECT_TRUE(wrong.MayTry("a", now_us));
   wrong.Note("a", now_us);
   EXPECT_FALSE(wrong.MayTry("a", now_us));
+  now_us += 100 * web::WrongTokens::kForgive_us;
+  for (int i = 0; i < 10; ++i) wrong.Note("a", now_us);
+  EXPECT_FALSE(wrong.MayTry("a", now_us)) << "who waited long has no more tries";
+}
+
+TEST(WrongTokens, OfTheOldestAddressAreForgottenWhereThereAreTooMany) {
+  web::WrongTokens wrong;
+  gint64 now_us = 0;
+  for (const char* address : {"old", "newer"})
+    for (int i = 0; i < 11; ++i) wrong.Note(address, ++now_us);
+  for (std::size_t i = 0; i < web::WrongTokens::kMostAddresses - 1; ++i)
+    wrong.Note(std::to_string(i), ++now_us);
+  EXPECT_TRUE(wrong.MayTry("old", now_us));
+  EXPECT_FALSE(wrong.MayTry("newer", now_us));
 }
 
 TEST(ClientAddress, IsTheLastThatAProxyOfThisMachineNames) {

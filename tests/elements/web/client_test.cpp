@@ -7,6 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <utility>
+
 namespace lidar::web {
 namespace {
 
@@ -58,9 +60,19 @@ TEST_F(Connection, ThatSaysNothingIsAskedAndEnds) {
   EXPECT_EQ(Read(), "");
   TickAt(11);
   EXPECT_EQ(Read(), std::string("\x89\0", 2));  // a ping, before proxies close what is idle
-  TickAt(29);
+  for (const gint64 seconds : {12, 21, 29}) {
+    TickAt(seconds);
+    EXPECT_EQ(Read(), "") << "it was asked";
+  }
   EXPECT_EQ(closed_, 0);
   TickAt(31);
+  EXPECT_EQ(closed_, 1);
+}
+
+TEST_F(Connection, ThatThePeerBreaksOffEndsAtOnce) {
+  client_->SendText("that nobody reads");
+  close(std::exchange(peer_, -1));
+  for (int i = 0; i < 100 && closed_ == 0; ++i) g_main_context_iteration(nullptr, FALSE);
   EXPECT_EQ(closed_, 1);
 }
 

@@ -261,8 +261,11 @@ TEST(FoxgloveSink, TellsTheStatisticsOfThePipelineAroundIt) {
   Peer peer(UrlOf(pipeline.Get("web").get()), {"foxglove.sdk.v1"});
   peer.Subscribe("/statistics", 3);
   nlohmann::json message = nlohmann::json::object();
-  for (int i = 0; i < 20 && message.value("step", 0.0) <= 0; ++i)
-    message = nlohmann::json::parse(peer.Next().payload);
+  for (int i = 0; i < 20 && message.value("step", 0.0) <= 0; ++i) {
+    const Received received = peer.Next();
+    message = nlohmann::json::parse(received.payload);
+    EXPECT_NEAR(1e-9 * static_cast<double>(received.unix_ns), message["timestamp"]["sec"], 60);
+  }
   EXPECT_GT(message["step"], 0);
   EXPECT_GT(message["timestamp"]["sec"], 0);
   EXPECT_EQ(message["elements"]["enc"]["factory"], "lidarenc");
@@ -341,22 +344,47 @@ TEST(FoxgloveSink, AsksASourceWithoutBufferForNone) {
 }
 
 TEST(FoxgloveSink, RefusesOneTopicForTwoKindsOfMessages) {
-  Sink sink("sink_1::topic=/points");
-  sink.SetCloudCaps();
-  sink.PushCloud(1);
-  const ElementBus bus(sink.element());
-  Harness second(gst_harness_new_with_element(sink.element(), "sink_1", nullptr));
-  gst_harness_set_src_caps_str(second.get(), GST_LIDAR_ODOMETRY_MEDIA_TYPE);
-  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
-            "Cannot show this stream: the topic \"/points\" is already used for something else; "
-            "set the property topic of one of its pads.");
-  const std::array<double, 8> words = {};
-  EXPECT_EQ(gst_harness_push(second.get(), gst_buffer_new_memdup(words.data(), sizeof words)),
-            GST_FLOW_NOT_NEGOTIATED);
+  for (const char* caps : {GST_LIDAR_ODOMETRY_MEDIA_TYPE, "video/x-vp8",
+                           "application/x-draco,geometry=xyz,alignment=slice"}) {
+    Sink sink("sink_1::topic=/points");
+    sink.SetCloudCaps();
+    sink.PushCloud(1);
+    const ElementBus bus(sink.element());
+    Harness second(gst_harness_new_with_element(sink.element(), "sink_1", nullptr));
+    gst_harness_set_src_caps_str(second.get(), caps);
+    EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
+              "Cannot show this stream: the topic \"/points\" is already used for something else; "
+              "set the property topic of one of its pads.");
+    const std::array<double, 8> words = {};
+    EXPECT_EQ(gst_harness_push(second.get(), gst_buffer_new_memdup(words.data(), sizeof words)),
+              GST_FLOW_NOT_NEGOTIATED);
+  }
 }
 
-TEST(FoxgloveSink, SaysOnceThatItDoesNotShowPosesWhoseTopicIsInUse) {
-  Sink sink("sink_1::topic=/pose");
+TEST(FoxgloveSink, APadTellsItsPropertiesAsTheyWereSet) {
+  Sink sink("sink_1::topic=/r7/points sink_1::frame-id=os1 sink_1::recording=/tmp/r7.mcap");
+  const auto texts_of = [](GstPad* pad) {
+    std::string texts;
+    for (const char* property : {"topic", "frame-id", "recording"}) {
+      gchar* raw = nullptr;
+      g_object_get(pad, property, &raw, nullptr);
+      const gst::StringPtr text(raw);
+      texts += std::string(text ? text.get() : "NULL") + " ";
+    }
+    return texts;
+  };
+  const gst::PadPtr first(gst_element_get_static_pad(sink.element(), "sink_0"));
+  const gst::PadPtr second(gst_element_request_pad_simple(sink.element(), "sink_1"));
+  EXPECT_EQ(texts_of(first.get()), "NULL lidar NULL ");
+  EXPECT_EQ(texts_of(second.get()), "/r7/points os1 /tmp/r7.mcap ");
+  gst_element_release_request_pad(sink.element(), second.get());
+}
+
+class PosesOfClouds : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(All, PosesOfClouds, ::testing::Values("/pose", "/tf"));
+TEST_P(PosesOfClouds, AreNotShownIfTheirTopicIsInUseWhichIsSaidOnce) {
+  const std::string topic = GetParam();
+  Sink sink("sink_1::topic=" + topic);
   sink.SetCloudCaps();
   sink.PushCloud(1);
   const ElementBus bus(sink.element());
@@ -372,8 +400,9 @@ TEST(FoxgloveSink, SaysOnceThatItDoesNotShowPosesWhoseTopicIsInUse) {
   }
   EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING),
             std::vector<std::string>{
-                "The poses of the clouds are not shown: the topic \"/pose\" is already used for "
-                "something else; set the property topic of one of its pads."});
+                "The poses of the clouds are not shown: the topic \"" + topic +
+                "\" is already used for something else; set the property topic of one of its "
+                "pads."});
 }
 
 TEST(FoxgloveSink, GoesOnAfterFlushesAndNewStarts) {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <set>
 #include <vector>
@@ -59,6 +60,44 @@ TEST(FrontDoor, EndsAfterAMinuteWhatAsksForNothing) {
     return door.evicted() == 1;
   }));
   EXPECT_TRUE(test::WaitUntil([&] { return HasEnded(silent); }));
+}
+
+TEST(FrontDoor, SaysWhyItCannotListen) {
+  const ObjectPtr<SoupServer> server(
+      SOUP_SERVER(g_object_new(SOUP_TYPE_SERVER, "server-header", "test", nullptr)));
+  FrontDoor first(server.get(), nullptr, {});
+  FrontDoor second(server.get(), nullptr, {});
+  const ObjectPtr<GInetAddress> address(g_inet_address_new_from_string("127.0.0.1"));
+  std::string error;
+  const guint16 port = first.Listen(address.get(), 0, &error);
+  EXPECT_EQ(error, "");
+  EXPECT_EQ(second.Listen(address.get(), port, &error), 0);
+  EXPECT_NE(error, "");
+}
+
+TEST(FrontDoor, EndsTheOldestConnectionOfAllWhereThereAreTooMany) {
+  const ObjectPtr<SoupServer> server(
+      SOUP_SERVER(g_object_new(SOUP_TYPE_SERVER, "server-header", "test", nullptr)));
+  FrontDoor door(server.get(), nullptr, {3, 2});
+  const ObjectPtr<GInetAddress> address(g_inet_address_new_from_string("127.0.0.1"));
+  std::string error;
+  const guint16 port = door.Listen(address.get(), 0, &error);
+  ASSERT_NE(port, 0) << error;
+  std::vector<ObjectPtr<GSocketConnection>> peers;
+  const auto ended_after = [&](const char* from, guint64 evicted) {
+    peers.push_back(Connect(port, from));
+    EXPECT_TRUE(test::WaitUntil([&] { return door.evicted() >= evicted; }));
+    for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
+    std::string ended;
+    for (const auto& peer : peers) ended += HasEnded(peer) ? '1' : '0';
+    return ended;
+  };
+  EXPECT_EQ(ended_after("127.0.0.2", 0), "0");
+  EXPECT_EQ(ended_after("127.0.0.3", 0), "00");
+  EXPECT_EQ(ended_after("127.0.0.3", 0), "000");
+  EXPECT_EQ(ended_after("127.0.0.3", 1), "0100") << "the oldest of an address that has too many";
+  EXPECT_EQ(ended_after("127.0.0.4", 2), "11000") << "the oldest of all";
+  EXPECT_EQ(door.evicted(), 2U);
 }
 
 /// Peers that begin a handshake and stop.
@@ -211,6 +250,38 @@ TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
   EXPECT_FALSE(deliver(20));
   viewer.Request(Kind::kLive);
   EXPECT_TRUE(deliver(30));
+}
+
+/// A recording on a disk that does not answer.
+class HangingArchive final : public Archive {
+ public:
+  struct State {
+    std::atomic<bool> is_read{false};
+    std::atomic<bool> gave_up{false};
+  };
+  explicit HangingArchive(State* state) : state_(state) {}
+  std::optional<Times> Look(std::string*) override {
+    state_->is_read = true;
+    if (!test::Eventually([this] { return cancelled_.load(); })) state_->gave_up = true;
+    return {};
+  }
+  void Seek(std::uint64_t) override {}
+  void GoOn(std::uint64_t) override {}
+  std::optional<Item> Next() override { return {}; }
+  void Rest() override {}
+  std::uint64_t damaged() const override { return 0; }
+
+ private:
+  State* const state_;
+};
+
+TEST(SliceService, EndsThoughARecordingIsBeingRead) {
+  HangingArchive::State state;
+  {
+    const RecordingViewer viewer(std::make_unique<HangingArchive>(&state));
+    ASSERT_TRUE(test::WaitUntil([&] { return state.is_read.load(); }));
+  }
+  EXPECT_FALSE(state.gave_up) << "it told the recording to stop";
 }
 
 /// A recording of one slice. It claims to have read so much that a piece ends with the slice.

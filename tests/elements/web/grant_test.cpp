@@ -65,6 +65,8 @@ TEST(SignedToken, OpensTheTopicsThatItNames) {
   for (const char* topic : {"/r70/points", "/r8/points", "/r7", "/statistics/x", ""})
     EXPECT_FALSE(grant->Allows(topic)) << topic;
   EXPECT_TRUE(ReadSignedToken(Sign(R"({"exp":1800000100})"), kSecret, kNow_s)->Allows("/any"));
+  EXPECT_TRUE(ReadSignedToken(Sign(R"({"exp":1800000100,"nbf":1800000000})"), kSecret, kNow_s))
+      << "from now on";
   EXPECT_FALSE(
       ReadSignedToken(Sign(R"({"exp":1800000100,"topics":[]})"), kSecret, kNow_s)->Allows("/any"));
 }
@@ -89,7 +91,7 @@ TEST(SignedToken, ThatIsDamagedOrOverIsRefused) {
       Sign(R"({"exp":"1800000100"})"),
       Sign(R"({"exp":-1})"),
       Sign(R"({"exp":1e300})"),
-      Sign(R"({"exp":1800000100,"nbf":1800000050})"),
+      Sign(R"({"exp":1800000100,"nbf":1800000001})"),
       Sign(R"({"exp":1800000100,"nbf":"x"})"),
       Sign(R"({"exp":1800000100,"topics":"/r7/*"})"),
       Sign(R"({"exp":1800000100,"topics":[7]})"),

@@ -267,6 +267,7 @@ struct Nonsense {
   const char* name;
   bool upgrade;
   std::string bytes;
+  guint64 malformed = 0;  // how often the server counts it
 };
 
 class NonsenseClient : public ::testing::TestWithParam<Nonsense> {};
@@ -283,21 +284,24 @@ TEST_P(NonsenseClient, IsDisconnectedAndOthersAreServed) {
     for (int i = 0; i < 1000 && !client.Read(65'536).empty(); ++i) continue;
   }
   ASSERT_TRUE(WaitUntil([&] { return sink.Stat("clients") == 1; }));
+  EXPECT_EQ(sink.Stat("malformed"), GetParam().malformed);
   sink.PushCloud(1);
   EXPECT_EQ(peer.Next().subscription, 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, NonsenseClient,
-    ::testing::Values(Nonsense{"not_http", false, std::string(1000, '\x16') + "\r\n\r\n"},
-                      Nonsense{"endless_header", false,
-                               "GET / HTTP/1.1\r\nX: " + std::string(300'000, 'a')},
-                      Nonsense{"unmasked_frame", true, "\x81\x02hi"},
-                      Nonsense{"huge_frame", true,
-                               "\x82\xFF\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF"
-                               "1234"},
-                      Nonsense{"garbage_frames", true, std::string(100'000, '\xAA')},
-                      Nonsense{"close", true, std::string("\x88\x80\0\0\0\0", 6)}),
+    ::testing::Values(
+        Nonsense{"not_http", false, std::string(1000, '\x16') + "\r\n\r\n"},
+        Nonsense{"endless_header", false, "GET / HTTP/1.1\r\nX: " + std::string(300'000, 'a')},
+        Nonsense{"unmasked_frame", true, "\x81\x02hi", 1},
+        Nonsense{"huge_frame", true,
+                 "\x82\xFF\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF"
+                 "1234",
+                 1},
+        Nonsense{"garbage_frames", true, std::string(100'000, '\xAA'), 1},
+        Nonsense{"data_and_close", true, std::string("\x82\x80\0\0\0\0\x88\x80\0\0\0\0", 12), 1},
+        Nonsense{"close", true, std::string("\x88\x80\0\0\0\0", 6)}),
     [](const auto& bad) { return std::string(bad.param.name); });
 
 TEST(Flood, OfPingsIsAnsweredWithoutAQueue) {

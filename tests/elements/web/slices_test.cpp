@@ -256,11 +256,35 @@ TEST(Slices, OfATopicInUseAreRefused) {
   EXPECT_EQ(gst_harness_push(edge.sink.harness(), slice.release()), GST_FLOW_NOT_NEGOTIATED);
 }
 
-TEST(Slices, WithoutASensorModelAreRefused) {
+TEST(Slices, WhoseCapsLackSomethingAreRefused) {
+  const std::string begin = "Cannot show these slices: ";
+  const std::string fields =
+      "their fields lack x, y and z as F32 side by side, or have gaps between them.";
+  for (const auto& [caps, error] :
+       {std::pair<std::string, std::string>{"geometry=range",
+                                            "with geometry=range they lack a sensor-model."},
+        {"geometry=xyz,fields=\"x:F32:0,y:F32:4\"", fields},
+        {"geometry=xyz,fields=\"x:F32:0,y:F32:4,z:F64:8\"", fields},
+        {"geometry=xyz,fields=\"x:F32:0,y:F32:4,z:F32:8,t:U32:16\"", fields}}) {
+    Sink sink;
+    const ElementBus bus(sink.element());
+    gst_harness_set_src_caps_str(sink.harness(), ("application/x-lidar-slice," + caps).c_str());
+    EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), begin + error);
+    EXPECT_EQ(gst_harness_push(sink.harness(), gst_buffer_new_memdup("slice", 5)),
+              GST_FLOW_NOT_NEGOTIATED);
+  }
+}
+
+TEST(Slices, OfPointsNeedNoSensorModel) {
   Sink sink;
-  gst_harness_set_src_caps_str(sink.harness(), "application/x-lidar-slice,geometry=range");
-  EXPECT_EQ(gst_harness_push(sink.harness(), gst_buffer_new_memdup("slice", 5)),
-            GST_FLOW_NOT_NEGOTIATED);
+  gst_harness_set_src_caps_str(
+      sink.harness(),
+      "application/x-lidar-slice,geometry=xyz,fields=\"x:F32:0,y:F32:4,z:F32:8,t:U32:12\"");
+  Peer peer(&sink);
+  peer.Channel("/points/slices");
+  const auto stream =
+      nlohmann::json::parse(peer.channels["/points/slices"]["schema"].get<std::string>());
+  EXPECT_EQ(stream["fields"], "x:F32:0,y:F32:4,z:F32:8,t:U32:12");
 }
 
 }  // namespace
