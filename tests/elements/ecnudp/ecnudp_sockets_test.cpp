@@ -4,6 +4,7 @@
 
 #include "gst/net/datagram.h"
 #include "tests/elements/ecnudp/ecnudp_support.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::gst {
 namespace {
@@ -27,6 +28,19 @@ TEST(EcnUdpSockets, TheReceiveBufferHasTheSizeThatTheKernelGrants) {
   for (const unsigned bytes : {8'192U, 65'536U, 131'072U})
     EXPECT_EQ(lidar::net::SetReceiveBuffer(g_socket_get_fd(socket.get()), bytes), bytes);
   EXPECT_EQ(lidar::net::SetReceiveBuffer(-1, 8'192), 0U);
+}
+
+TEST(EcnUdpSockets, ASinkWhoseLocalAddressIsNotTheMachinesSaysSo) {
+  const ElementPtr sink(gst_element_factory_make("ecnudpsink", nullptr));
+  const test::ElementBus bus(sink.get());
+  g_object_set(sink.get(), "host", "127.0.0.1", "port", 9, "bind-address", "203.0.113.9", nullptr);
+  EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  const MessagePtr error = bus.Pop(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(test::MessageText(error.get()).find("Cannot open a UDP socket: Error binding"), 0U);
+  EXPECT_NE(test::MessageDetails(error.get()).find("bind-address '203.0.113.9' bind-port 0"),
+            std::string::npos);
+  gst_element_set_state(sink.get(), GST_STATE_NULL);
 }
 
 TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {

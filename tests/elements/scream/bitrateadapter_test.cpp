@@ -177,6 +177,8 @@ TEST(BitrateAdapter, ChangesOneOfTheControlsOfAV4l2EncoderAndLeavesTheOthers) {
   EXPECT_TRUE(gst_structure_get_int(controls, "h264_profile", &profile));
   EXPECT_EQ(bitrate, 1'500'000);
   EXPECT_EQ(profile, 4);
+  EXPECT_TRUE(chain.Send(4'000'000'000));
+  EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 2'147'483'647U) << "the most that a control holds";
 }
 
 TEST(BitrateAdapter, KeepsToItsLimitsAndItsFraction) {
@@ -269,6 +271,46 @@ TEST(BitrateAdapter, ObeysWhatTheUserSaysOfAnUnknownEncoder) {
   Chain chain("foreignenc name=e ! bitrateadapter name=a encoder=e property=bps scale=0.01");
   EXPECT_TRUE(chain.Send(1'000'000));
   EXPECT_EQ(Uint(chain.Find("e"), "bps"), 10'000U);
+}
+
+TEST(BitrateAdapter, FindsTheEncoderInFrontOfItsBin) {
+  RegisterStandIn("mpph264enc");
+  Chain chain("mpph264enc name=e ! ( identity ! bitrateadapter name=a )");
+  const ElementPtr bin(GST_ELEMENT(gst_object_get_parent(GST_OBJECT(chain.Find("a").get()))));
+  gst_element_set_state(bin.get(), GST_STATE_PAUSED);
+  EXPECT_TRUE(chain.Send(700'000));
+  EXPECT_EQ(Uint(chain.Find("e"), "bps"), 700'000U);
+}
+
+TEST(BitrateAdapter, LetsTheEventPassAndSaysSoWhereTheEncoderTakesNoBitrate) {
+  RegisterStandIn("foreignenc");
+  for (const char* said : {"", " property=nothing", " property=extra-controls"}) {
+    Chain chain(std::string("foreignenc name=e ! bitrateadapter name=a") + said);
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(chain.get(), bus);
+    const PadPtr pad(gst_element_get_static_pad(chain.Find("a").get(), "sink"));
+    guint passed = 0;
+    gst_pad_add_probe(
+        pad.get(), GST_PAD_PROBE_TYPE_EVENT_UPSTREAM,
+        [](GstPad*, GstPadProbeInfo* info, gpointer count) {
+          const bool target = GST_EVENT_TYPE(info->data) == GST_EVENT_CUSTOM_UPSTREAM;
+          *static_cast<guint*>(count) += target ? 1U : 0U;
+          return GST_PAD_PROBE_OK;
+        },
+        &passed, nullptr);
+    for (int i = 0; i < 2; ++i) chain.Send(1'000'000);
+    EXPECT_EQ(passed, 2U) << said;
+    const lidar::gst::MessagePtr first(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+    const lidar::gst::MessagePtr second(gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING));
+    ASSERT_TRUE(first) << said;
+    EXPECT_FALSE(second) << said;
+    GError* error = nullptr;
+    gst_message_parse_warning(first.get(), &error, nullptr);
+    EXPECT_STREQ(error->message, "The bitrate of this encoder cannot be set.");
+    g_error_free(error);
+    gst_element_set_bus(chain.get(), nullptr);
+    gst_object_unref(bus);
+  }
 }
 
 TEST(BitrateAdapter, LetsTheEventPassAndWarnsOnceWhereThereIsNoEncoder) {

@@ -357,6 +357,30 @@ TEST_F(BondedSink, KeepsALinkThatSendsSomePacketsAndGivesUpOneThatSendsNone) {
   EXPECT_EQ(changed, "127.0.0.1:5006@127.0.0.2");
   EXPECT_EQ(OfLink("send-errors", 0), 1U);
   EXPECT_TRUE(Stats(sink_).Of("links", 0).True("usable"));
+  EXPECT_FALSE(Stats(sink_).Of("links", 1).True("usable"));
+  EXPECT_EQ(Send(2), std::set<std::size_t>{0});
+}
+
+TEST_F(BondedSink, APadThatComesWhileItPlaysSendsOverAllLinks) {
+  g_object_set(sink_, "bonding-method", 1, nullptr);  // broadcast
+  Start();
+  EXPECT_EQ(Send(1), (std::set<std::size_t>{0, 1}));
+  Harness other(gst_harness_new_with_element(sink_, "sink_1", nullptr));
+  gst_harness_set_src_caps_str(other.get(), kRtpCaps);
+  Rtp packet;
+  packet.ssrc = 0x5678;
+  packet.marker = true;
+  EXPECT_EQ(gst_harness_push(other.get(), NewRtp(packet)), GST_FLOW_OK);
+  EXPECT_EQ(OfAllLinks(sink_, "packets-first"), 2U);
+  EXPECT_EQ(OfAllLinks(sink_, "packets-copies"), 2U);
+  for (const char* tx : {"screamtx", "screamtx1"}) {
+    const PadPtr pad = PadOf(tx, "sink_1");
+    ASSERT_TRUE(pad) << tx;
+    EXPECT_TRUE(gst_pad_is_active(pad.get())) << tx;
+  }
+  other.reset();
+  for (const char* tx : {"screamtx", "screamtx1"}) EXPECT_FALSE(PadOf(tx, "sink_1")) << tx;
+  EXPECT_EQ(Send(2), (std::set<std::size_t>{0, 1})) << "the first pad goes on";
 }
 
 TEST_F(BondedSink, GoesOnWhereALinkTakesNothing) {

@@ -11,8 +11,10 @@
 #include "gst/scream/bond/addresses.h"
 #include "tests/elements/scream/bonded_ends.h"
 #include "tests/elements/scream/rtp_support.h"
+#include "tests/support/ipv6.h"
 
-static std::atomic<bool> loopback_has_carrier{true}, loopback_has_ipv4{true};
+static std::atomic<bool> loopback_has_carrier{true}, loopback_has_ipv4{true},
+    loopback_has_ipv6{true};
 
 /// Replaces libc's function in this program and in its plugins.
 extern "C" int getifaddrs(ifaddrs** first) noexcept {
@@ -22,8 +24,9 @@ extern "C" int getifaddrs(ifaddrs** first) noexcept {
   for (ifaddrs* a = *first; a != nullptr; a = a->ifa_next) {
     if (std::string(a->ifa_name) != "lo") continue;
     if (!loopback_has_carrier) a->ifa_flags &= ~static_cast<unsigned>(IFF_RUNNING);
-    const bool is_ipv4 = a->ifa_addr != nullptr && a->ifa_addr->sa_family == AF_INET;
-    if (!loopback_has_ipv4 && is_ipv4) a->ifa_addr = nullptr;
+    const int family = a->ifa_addr != nullptr ? a->ifa_addr->sa_family : AF_UNSPEC;
+    if (!loopback_has_ipv4 && family == AF_INET) a->ifa_addr = nullptr;
+    if (!loopback_has_ipv6 && family == AF_INET6) a->ifa_addr = nullptr;
   }
   return 0;
 }
@@ -119,6 +122,23 @@ TEST(Bonding, SaysWhatTheInterfaceOfALinkLacks) {
     gst_element_set_state(sink.get(), GST_STATE_NULL);
   }
   loopback_has_carrier = loopback_has_ipv4 = true;
+}
+
+TEST(Bonding, SaysThatNoInterfaceHasTheLocalAddressOfALink) {
+  if (!HasIpv6()) GTEST_SKIP() << "no IPv6 here";
+  const ElementPtr sink(gst_element_factory_make("screamsink", nullptr));
+  gst_object_ref_sink(sink.get());
+  const ElementBus bus(sink.get());
+  g_object_set(sink.get(), "bonding-addresses", "127.0.0.1:9@127.0.0.1,[::1]:9@::1", nullptr);
+  for (const bool has_it : {true, false}) {
+    loopback_has_ipv6 = has_it;
+    EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    EXPECT_EQ(
+        bus.Text(GST_MESSAGE_WARNING),
+        has_it ? "" : "The link [::1]:9@::1 cannot be used: no interface has the address ::1");
+    gst_element_set_state(sink.get(), GST_STATE_NULL);
+  }
+  loopback_has_ipv6 = true;
 }
 
 TEST(Bonding, GoesOnWhereTheFeedbackOfTwoLinksIsSwapped) {
@@ -298,6 +318,13 @@ TEST(Bonding, FailsWhereNoLinkCanBeUsed) {
   EXPECT_TRUE(Warns(sender, "none0"));
   EXPECT_TRUE(Warns(sender, "none1"));
   EXPECT_TRUE(Warns(sender, "No link"));
+}
+
+TEST(Bonding, SaysWhyTheSocketOfALinkDoesNotOpen) {
+  Pipeline sender(Bonded("127.0.0.1:5004@203.0.113.9"));  // no machine has that address
+  sender.Play();
+  EXPECT_TRUE(Warns(sender, "The link 127.0.0.1:5004@203.0.113.9 cannot be used: Error binding"));
+  EXPECT_TRUE(Warns(sender, "No link can be used: Error binding"));
 }
 
 class BondedSrtp : public ::testing::TestWithParam<const char*> {};

@@ -126,22 +126,30 @@ TEST_F(ScreamBin, AKeyThatIsRefusedWhileItRunsLeavesTheOneBefore) {
 TEST_F(ScreamBin, AKeyThatWasInUseIsRefusedAndSoIsAThirdThatWaits) {
   const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
   if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
-  const auto refuses = [this](char digit) {
+  const auto refusal = [this](char digit) {
     const ElementBus bus(bin_.get());
     g_object_set(bin_.get(), "srtp-key", std::string(60, digit).c_str(), nullptr);
-    const MessagePtr warning = bus.Pop(GST_MESSAGE_WARNING);
-    return warning != nullptr;
+    return bus.Text(GST_MESSAGE_WARNING);
   };
+  const std::string stays = "The SRTP key stays as it is: ";
   for (const char* factory : {"screamsink", "screamsrc"}) {
     const bool receives = std::string(factory) == "screamsrc";
     Make(factory);
     g_object_set(bin_.get(), "srtp-key", std::string(60, '5').c_str(), nullptr);
     if (receives) g_object_set(bin_.get(), "port", 0, nullptr);
     ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
-    EXPECT_FALSE(refuses('6')) << factory;
-    EXPECT_FALSE(refuses('7')) << factory;
-    EXPECT_TRUE(refuses('6')) << factory << ": it was in use";
-    EXPECT_EQ(refuses('8'), receives) << factory << ": two wait for the sender already";
+    EXPECT_EQ(refusal('6'), "") << factory;
+    EXPECT_EQ(refusal('7'), "") << factory;
+    EXPECT_EQ(refusal('7'), "") << factory << ": it is the newest";
+    EXPECT_EQ(refusal('6'), stays + "this key was in use before; a key must be new.") << factory;
+    EXPECT_EQ(refusal('8'),
+              receives ? stays + "two new keys wait already for the sender to use them." : "")
+        << factory;
+    const char newest = receives ? '7' : '8';
+    To(GST_STATE_NULL);
+    ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+    EXPECT_EQ(refusal(newest), "") << factory;
+    EXPECT_EQ(refusal('5'), "") << factory << " starts with the newest key, not with the first";
     To(GST_STATE_NULL);
   }
 }
@@ -207,19 +215,54 @@ TEST_F(ScreamBin, SocketsStayWhileTheBinIsReadyAndGoWithIt) {
   EXPECT_TRUE(g_socket_is_closed(sending.get()));
 }
 
-TEST_F(ScreamBin, WhatCannotBeSecuredKeepsNoSocket) {
+TEST_F(ScreamBin, WhatCannotBeSecuredIsAnErrorThatSaysWhyAndKeepsNoSocket) {
   const std::string digits(59, '5');
+  const std::string wrong = "the SRTP key must be 60 hexadecimal digits (master key and salt) for ";
+  struct Case {
+    std::string key, why;
+    const char* cipher = "aes-128-icm";
+    const char* auth = "hmac-sha1-80";
+  };
+  const Case cases[] = {
+      {"env:LIDAR_NO_SUCH_KEY", "the environment has no variable LIDAR_NO_SUCH_KEY"},
+      {"file:/no-such-folder/key", "No such file or directory"},
+      {digits, wrong + "aes-128-icm"},
+      {digits + "g", wrong + "aes-128-icm"},
+      {"g" + digits, wrong + "aes-128-icm"},
+      {digits + "5", "must be 88 hexadecimal digits (master key and salt) for aes-256-gcm",
+       "aes-256-gcm"},
+      {digits + "5", "srtp-cipher is none of aes-128-icm, aes-256-icm, aes-128-gcm, aes-256-gcm",
+       "aes"},
+      {digits + "5", "srtp-auth is neither hmac-sha1-80 nor hmac-sha1-32", "aes-128-icm", "null"},
+  };
   for (const char* factory : {"screamsink", "screamsrc"})
-    for (const std::string& key :
-         {std::string("env:LIDAR_NO_SUCH_KEY"), digits, digits + "g", "g" + digits}) {
+    for (const Case& c : cases) {
       Make(factory);
-      g_object_set(bin_.get(), "srtp-key", key.c_str(), nullptr);
+      const ElementBus bus(bin_.get());
+      g_object_set(bin_.get(), "srtp-key", c.key.c_str(), "srtp-cipher", c.cipher, "srtp-auth",
+                   c.auth, nullptr);
       if (std::string(factory) == "screamsrc") g_object_set(bin_.get(), "port", 0, nullptr);
-      EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE) << key;
+      EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE) << c.why;
+      const std::string text = bus.Text(GST_MESSAGE_ERROR);
+      EXPECT_EQ(text.find("SRTP cannot be used: "), 0U) << text;
+      EXPECT_NE(text.find(c.why + "."), std::string::npos) << text;
       EXPECT_FALSE(SocketOf(Child("ecnudpsink").get())) << factory;
       EXPECT_FALSE(SocketOf(Child("ecnudpsrc").get())) << factory;
       To(GST_STATE_NULL);
     }
+}
+
+TEST_F(ScreamBin, TheSourceDoesNotStartWhereItsPortIsTaken) {
+  Make("screamsrc");
+  g_object_set(bin_.get(), "port", 0, nullptr);
+  ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  const OwnedElement first = std::move(bin_);
+  Make("screamsrc");
+  g_object_set(bin_.get(), "port", PortOf(first.get()), nullptr);
+  EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
+  EXPECT_FALSE(SocketOf(bin_.get(), "used-socket"));
+  gst_element_set_state(first.get(), GST_STATE_NULL);
+  EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
 }
 
 TEST_F(ScreamBin, TheSourceNamesAMissingNextElementOnlyWhereThereIsNone) {
@@ -228,9 +271,9 @@ TEST_F(ScreamBin, TheSourceNamesAMissingNextElementOnlyWhereThereIsNone) {
   ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
   const ElementBus bus(bin_.get());
   const ElementPtr udp = Child("ecnudpsrc");
+  const gst::ErrorPtr error(
+      g_error_new_literal(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ, "Receiving failed"));
   const auto text_of_error = [&](GstFlowReturn flow) {
-    const gst::ErrorPtr error(
-        g_error_new_literal(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ, "Receiving failed"));
     gst_element_post_message(
         udp.get(), gst_message_new_error_with_details(
                        GST_OBJECT(udp.get()), error.get(), "of the test",
@@ -240,6 +283,9 @@ TEST_F(ScreamBin, TheSourceNamesAMissingNextElementOnlyWhereThereIsNone) {
   EXPECT_EQ(text_of_error(GST_FLOW_NOT_LINKED),
             "No element takes the stream, which is application/x-rtp.");
   EXPECT_EQ(text_of_error(GST_FLOW_ERROR), "Receiving failed");
+  gst_element_post_message(udp.get(),
+                           gst_message_new_error(GST_OBJECT(udp.get()), error.get(), ""));
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), "Receiving failed") << "without details";
   const gst::PadPtr src(gst_element_get_static_pad(bin_.get(), "src"));
   const gst::PadPtr next(GST_PAD(gst_object_ref_sink(gst_pad_new("sink", GST_PAD_SINK))));
   ASSERT_EQ(gst_pad_link(src.get(), next.get()), GST_PAD_LINK_OK);

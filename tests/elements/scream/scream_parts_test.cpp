@@ -2,10 +2,17 @@
 // The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
 #include <gtest/gtest.h>
 #include <net/if.h>
+#include <netinet/in.h>
+#include <sys/un.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <limits>
+#include <optional>
 #include <variant>
 
+#include "gst/net/udp_batch.h"
 #include "gst/scream/feedback_peer.h"
 #include "gst/scream/key_request.h"
 #include "gst/scream/peer_latch.h"
@@ -187,6 +194,84 @@ TEST(UdpAddress, ALinkLocalOneKeepsItsInterface) {
   }
 }
 
+struct Destination {
+  const char* address;
+  GSocketFamily of_socket;
+  bool is_v4;  // which stack sends
+};
+class UdpControl : public ::testing::TestWithParam<Destination> {};
+
+/// Returns the value of the control message of that kind, if there is one.
+template <class Value>
+std::optional<Value> ControlOf(msghdr* message, int level, int type) {
+  for (cmsghdr* c = CMSG_FIRSTHDR(message); c != nullptr; c = CMSG_NXTHDR(message, c)) {
+    if (c->cmsg_level != level || c->cmsg_type != type) continue;
+    Value value{};
+    EXPECT_EQ(c->cmsg_len, CMSG_LEN(sizeof value));
+    std::memcpy(&value, CMSG_DATA(c), sizeof value);
+    return value;
+  }
+  return std::nullopt;
+}
+
+TEST_P(UdpControl, HasTheCodepointAndTheInterfaceOfTheStackThatSends) {
+  const Destination& d = GetParam();
+  const SocketAddressPtr to(test::Address(d.address, 5004));
+  const NativeAddress native = ToNative(to.get(), d.of_socket);
+  for (const unsigned interface : {0U, 7U}) {
+    net::SendControl control;
+    msghdr message{};
+    net::SetControl(0xb9, native, interface, &control, &message);
+    EXPECT_EQ(message.msg_control, control.bytes);
+    EXPECT_LE(message.msg_controllen, sizeof control.bytes);
+    const auto tos = ControlOf<int>(&message, IPPROTO_IP, IP_TOS);
+    const auto traffic_class = ControlOf<int>(&message, IPPROTO_IPV6, IPV6_TCLASS);
+    const auto v4 = ControlOf<in_pktinfo>(&message, IPPROTO_IP, IP_PKTINFO);
+    const auto v6 = ControlOf<in6_pktinfo>(&message, IPPROTO_IPV6, IPV6_PKTINFO);
+    EXPECT_EQ(d.is_v4 ? tos : traffic_class, 0xb9);
+    EXPECT_FALSE(d.is_v4 ? traffic_class : tos);
+    EXPECT_EQ(v4 ? v4->ipi_ifindex : 0, d.is_v4 ? static_cast<int>(interface) : 0);
+    EXPECT_EQ(v6 ? v6->ipi6_ifindex : 0, d.is_v4 ? 0 : interface);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, UdpControl,
+                         ::testing::Values(Destination{"10.0.0.1", G_SOCKET_FAMILY_IPV4, true},
+                                           Destination{"10.0.0.1", G_SOCKET_FAMILY_IPV6, true},
+                                           Destination{"fd00::1", G_SOCKET_FAMILY_IPV6, false}));
+
+/// The receiving queue of a Unix socket can fill up, unlike that of UDP, which drops.
+TEST(UdpBatch, WhatWaitsForAFullSocketIsGivenUpWhenTheElementStops) {
+  const auto unix_socket = [] { return socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0); };
+  const int receiver = unix_socket(), sender = unix_socket();
+  NativeAddress to;
+  sockaddr_un any{};
+  any.sun_family = AF_UNIX;
+  ASSERT_EQ(bind(receiver, reinterpret_cast<sockaddr*>(&any), sizeof any.sun_family), 0);
+  to.length = sizeof to.storage;
+  ASSERT_EQ(getsockname(receiver, to.get(), &to.length), 0);
+  while (sendto(sender, "?", 1, MSG_DONTWAIT, to.get(), to.length) == 1) continue;
+  ASSERT_EQ(errno, EAGAIN);
+  char byte = 0;
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(recv(receiver, &byte, 1, MSG_DONTWAIT), 1);
+  WakeFd wake;
+  wake.Wake();
+  UdpBatchSender batch;
+  const BufferPtr buffer(test::FromBytes({'f', 'o', 'u', 'r'}));
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(batch.Add(buffer.get(), 0, to));
+  const UdpBatchSender::Result result = batch.Flush(sender, wake);
+  EXPECT_EQ(result.packets, 2U);
+  EXPECT_EQ(result.bytes, 8U);
+  EXPECT_EQ(result.errors, 3U);
+  EXPECT_TRUE(result.woken);
+  EXPECT_EQ(result.last_errno, 0);
+  while (recv(receiver, &byte, 1, MSG_DONTWAIT) == 1) continue;
+  const UdpBatchSender::Result next = batch.Flush(sender, wake);
+  EXPECT_EQ(next.packets + next.errors, 0U) << "nothing is sent later";
+  EXPECT_FALSE(next.woken);
+  close(receiver);
+  close(sender);
+}
+
 TEST_F(Latch, CannotBeStolenWhileThePeerSends) {
   Stream(robot, 1, 0, 10);
   for (std::uint16_t seq = 10; seq < 1000; ++seq, now += 10ms) {
@@ -321,6 +406,14 @@ TEST_F(Latch, RemembersSoManySsrcsOfAPeer) {
   now += 1s;
   EXPECT_FALSE(Stream(thief, 1, 10, 20));
   EXPECT_TRUE(Stream(other, 499, 11, 8));
+}
+
+TEST_F(Latch, ForgetsNoSsrcOfAPeerThatHasAsManyAsItRemembers) {
+  Stream(robot, 1, 0, 10, true);
+  for (std::uint16_t seq = 0; seq < 3; ++seq, now += 10ms)
+    for (std::uint32_t ssrc = 2; ssrc <= 64; ++ssrc) Send(robot, ssrc, seq);
+  now += 1s;
+  EXPECT_TRUE(Stream(other, 1, 10, 8));
 }
 
 TEST_F(Latch, APacketNowAndThenIsNoStream) {

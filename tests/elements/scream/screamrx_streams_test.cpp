@@ -250,7 +250,61 @@ TEST_F(ScreamRx, AStreamThatThePadOfAnEndedOneRefusesGetsItsOwn) {
   r.ssrc = 2;
   for (r.seq = 0; r.seq < 5; ++r.seq) Push(r);
   EXPECT_EQ(Passed(), 6U);
-  EXPECT_TRUE(gst::PadPtr(gst_element_get_static_pad(element, "src_2")));
+  const auto has = [&](const char* name) {
+    return gst::PadPtr(gst_element_get_static_pad(element, name)) != nullptr;
+  };
+  EXPECT_TRUE(has("src_2"));
+  PushBye({2});
+  r.ssrc = 3;
+  Push(r);
+  EXPECT_TRUE(has("src_3")) << "nobody took src_2";
+}
+
+TEST_F(ScreamRx, TheStreamsOfAListLeaveByTheirPadsBehindTheirCapsUntilTheLastGoodbye) {
+  SetPtMap(
+      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
+  guint16 seq = 0;
+  const auto push = [&](const std::vector<guint32>& ssrcs, const std::vector<guint32>& byes) {
+    GstBufferList* list = gst_buffer_list_new();
+    for (guint16 i = 0; i < 2; ++i)
+      for (const guint32 ssrc : ssrcs) {
+        Rtp r;
+        r.ssrc = ssrc;
+        r.seq = seq++;
+        gst_buffer_list_add(list, NewRtp(r));
+      }
+    if (!byes.empty()) gst_buffer_list_insert(list, 1, FromBytes(gst::BuildBye(byes)));
+    return gst_pad_push_list(rtp->srcpad, list);
+  };
+  EXPECT_EQ(push({1}, {}), GST_FLOW_OK);
+  std::vector<GstEventType> events;
+  while (const EventPtr event{gst_harness_try_pull_event(rtp.get())})
+    events.push_back(GST_EVENT_TYPE(event.get()));
+  EXPECT_EQ(events,
+            (std::vector<GstEventType>{GST_EVENT_STREAM_START, GST_EVENT_CAPS, GST_EVENT_SEGMENT}));
+  push({2}, {});
+  const Harness second(gst_harness_new_with_element(element, nullptr, "src_2"));
+  EXPECT_EQ(push({2, 1}, {2}), GST_FLOW_OK);
+  EXPECT_EQ(Passed(), 4U);
+  EXPECT_EQ(gst_harness_buffers_received(second.get()), 2U);
+  EXPECT_EQ(push({1}, {1, 2}), GST_FLOW_EOS);
+  EXPECT_EQ(Passed(), 5U) << "nothing behind the last goodbye";
+}
+
+TEST_F(ScreamRx, MarksTheFirstPacketOfARestartedSenderNotTheBufferThatOthersHold) {
+  StartAndOutliveByes("application/x-rtp,media=application");
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  ASSERT_EQ(PushBye({0x1234}), GST_FLOW_OK);
+  Rtp r;
+  r.ssrc = 2;
+  const BufferPtr held(NewRtp(r));
+  ASSERT_EQ(gst_harness_push(rtp.get(), gst_buffer_ref(held.get())), GST_FLOW_OK);
+  gst_buffer_unref(gst_harness_pull(rtp.get()));
+  const BufferPtr passed(gst_harness_pull(rtp.get()));
+  EXPECT_TRUE(GST_BUFFER_FLAG_IS_SET(passed.get(), GST_BUFFER_FLAG_DISCONT));
+  EXPECT_FALSE(GST_BUFFER_FLAG_IS_SET(held.get(), GST_BUFFER_FLAG_DISCONT));
 }
 
 TEST_F(ScreamRx, RtcpIsNoStreamOfPtMap) {
@@ -306,7 +360,10 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     camera.payload_type = 72;  // would be RTCP with its marker: not in the map
     Push(camera);
     camera.payload_type = 97;
-    for (camera.ssrc = 1; camera.ssrc <= 1'100; ++camera.ssrc) Push(camera);
+    for (camera.ssrc = 1; camera.ssrc < 1'100; ++camera.ssrc) Push(camera);
+    const BufferPtr refused(NewRtp(camera));
+    gst_harness_push(rtp.get(), gst_buffer_ref(refused.get()));
+    EXPECT_EQ(GST_MINI_OBJECT_REFCOUNT_VALUE(refused.get()), 1) << "it is freed";
     EXPECT_EQ(Passed(), 2 * static_cast<guint>(round) + 2);  // `src` takes the first stream, too
     EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 1'024);      // rtcp_src and `src` among them
     EXPECT_EQ(Stats(element)["packets-foreign"], 77U);

@@ -551,6 +551,32 @@ TEST_F(ScreamTxEnds, TooSoonForAnAnswerWithoutAWarning) {
   EXPECT_EQ(WarningsOf(20 * GST_MSECOND, false), 0);
 }
 
+TEST_F(ScreamTx, NamesWhereNobodyAnswersThoughElementsStandBeforeTheSink) {
+  const ElementBus bus(element);
+  rtp.reset(gst_harness_new_with_element(element, "sink_0", nullptr));
+  const gst::ElementPtr first(gst_element_factory_make("identity", nullptr));
+  const gst::ElementPtr second(gst_element_factory_make("identity", nullptr));
+  const gst::ElementPtr sink(gst_element_factory_make("ecnudpsink", nullptr));
+  g_object_set(sink.get(), "host", "127.0.0.1", "port", 9, "sync", FALSE, "async", FALSE, nullptr);
+  ASSERT_TRUE(gst_element_link_pads(element, "src", first.get(), "sink"));
+  ASSERT_TRUE(gst_element_link_many(first.get(), second.get(), sink.get(), nullptr));
+  for (const auto* e : {&sink, &second, &first}) gst_element_set_state(e->get(), GST_STATE_PLAYING);
+  gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+  for (int i = 0; i < 50; ++i) {
+    PushFrame(static_cast<guint32>(next_seq_) * 900, 1);
+    time.Advance(50 * GST_MSECOND);
+  }
+  std::string text;
+  while (text.find("No feedback") == std::string::npos) {
+    const gst::MessagePtr warning = bus.Wait(GST_MESSAGE_WARNING);
+    ASSERT_TRUE(warning);
+    text = MessageText(warning.get());
+  }
+  EXPECT_EQ(text.find("No feedback from 127.0.0.1:9 for 2 s"), 0U) << text;
+  gst_element_set_state(element, GST_STATE_NULL);
+  for (const auto* e : {&sink, &second, &first}) gst_element_set_state(e->get(), GST_STATE_NULL);
+}
+
 TEST_F(ScreamTx, TestsThePathAnewWhenTheReceiverHasMoved) {
   Start();
   const auto run = [&](const char* host, Ecn ecn) {

@@ -178,6 +178,17 @@ TEST_F(ScreamTx, PadsThatAreAskedForByAllAtOnceAreGivenOnce) {
   EXPECT_EQ(GST_ELEMENT(element)->numsinkpads, 1);
 }
 
+TEST_F(ScreamTx, HasNoChildBehindItsLastPad) {
+  auto* proxy = GST_CHILD_PROXY(element);
+  EXPECT_EQ(gst_child_proxy_get_child_by_index(proxy, 0), nullptr);
+  Start();
+  EXPECT_EQ(gst_child_proxy_get_children_count(proxy), 1U);
+  const std::unique_ptr<GObject, gst::GObjectUnref> child(
+      gst_child_proxy_get_child_by_index(proxy, 0));
+  EXPECT_EQ(child.get(), G_OBJECT(gst::PadPtr(gst_pad_get_peer(rtp->srcpad)).get()));
+  EXPECT_EQ(gst_child_proxy_get_child_by_index(proxy, 1), nullptr);
+}
+
 TEST_F(ScreamTx, APadWithoutANameGetsTheOneBehindAllBefore) {
   for (const char* name : {"sink_5", "sink_%u", "sink_2", "sink_%u"})
     EXPECT_TRUE(gst::PadPtr(gst_element_request_pad_simple(element, name))) << name;

@@ -285,7 +285,7 @@ TEST_F(SrtpIn, FindsAStreamThatComesAfterMoreForgersThanItRemembers) {
   for (int turns = 0; turns < 20; ++turns) sender.Wrap(99);
   for (guint32 ssrc = 1'000; ssrc < 3'200; ++ssrc) {
     if (ssrc % 100 == 0) Wait(1);
-    Forge(3, ssrc);
+    Forge(2, ssrc);
   }
   int refused = 0;
   for (guint16 seq = 100; !Passes(sender.Protect(seq, 99)); ++seq) {
@@ -308,12 +308,35 @@ TEST_F(SrtpIn, KnowsItsStreamsAmongAnyNumberOfOthers) {
   const BufferPtr recorded = sender.Protect(5);
   for (int turns = 0; turns < 20; ++turns) sender.Wrap();  // beyond the 4 and 16 values tried first
   for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(seq, 300);
-  for (guint32 ssrc = 0; ssrc < 2'000; ++ssrc) {
+  for (guint32 ssrc = 0; ssrc < 2'200; ++ssrc) {
     if (ssrc % 100 == 0) Wait(1);
-    Forge(1, 100'000 + ssrc);
+    Forge(2, 100'000 + ssrc);
   }
   EXPECT_FALSE(Passes(recorded));
   EXPECT_TRUE(Passes(sender.Protect(400)));  // with the rollover count of the known stream
+}
+
+/// A packet tries 32 values: three packets try all 4, 16 and 64 of the first rounds.
+TEST_F(SrtpIn, GoesOnWithItsSearchWhereGarbageComesFromMoreSsrcsThanItRemembers) {
+  constexpr guint32 kStreams = 16;
+  Protector sender(Key(5));
+  for (guint32 ssrc = 1; ssrc <= kStreams; ++ssrc)
+    for (int turns = 0; turns < 50; ++turns) sender.Wrap(ssrc);
+  std::set<guint32> found;
+  const auto send = [&](guint16 seq) {
+    for (guint32 ssrc = 1; ssrc <= kStreams; ++ssrc) {
+      Wait(1);
+      if (Passes(sender.Protect(seq, ssrc))) found.insert(ssrc);
+    }
+  };
+  send(100);
+  send(101);
+  for (guint32 ssrc = 0; ssrc < 2'100; ++ssrc) {
+    if (ssrc % 100 == 0) Wait(1);
+    Forge(1, 100'000 + ssrc);
+  }
+  send(102);
+  EXPECT_EQ(found.size(), kStreams);
 }
 
 TEST_F(SrtpIn, TakesANewKeyAndForgetsTheOldOne) {
@@ -334,6 +357,21 @@ TEST_F(SrtpIn, TakesANewKeyAndForgetsTheOldOne) {
   Wait(2);
   EXPECT_FALSE(Passes(before.Protect(5)));
   EXPECT_TRUE(Passes(after.Protect(6)));
+}
+
+TEST_F(SrtpIn, FindsAStreamThatHasWrappedLessOftenUnderItsNewKeyThanUnderTheOldOne) {
+  Protector before(Key(5));
+  for (int turns = 0; turns < 5; ++turns)
+    for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5})
+      EXPECT_TRUE(Passes(before.Protect(seq)));
+  EXPECT_TRUE(input_->AddKey(Key(6)));
+  Protector after(Key(6));
+  for (int turns = 0; turns < 2; ++turns) after.Wrap();
+  Wait(3);
+  int refused = 0;
+  for (guint16 seq = 10; !Passes(after.Protect(seq)); ++seq) ASSERT_LT(++refused, 40);
+  EXPECT_EQ(new_keys_, (std::vector<SrtpKey>{Key(6)}));
+  EXPECT_TRUE(Passes(after.Protect(1'000)));
 }
 
 TEST_F(SrtpIn, RefusesARecordingOfTheKeyBefore) {
