@@ -191,6 +191,8 @@ TEST(OddScans, BeginsANewMapAfterALongGap) {
   const Estimate later = odometry.OnScan(street.StartOf(100), kPeriod, street.Scan(100));
   EXPECT_EQ(later.tracking, Tracking::kStarted);
   EXPECT_TRUE(later.map_restarted);
+  const Pose predicted = odometry.PredictAt(later.time + std::chrono::seconds(1));
+  EXPECT_LT((predicted.position - later.pose.position).norm(), 1e-9) << "no velocity is known";
   const Estimate earlier = odometry.OnScan(street.StartOf(2), kPeriod, street.Scan(2));
   EXPECT_TRUE(earlier.map_restarted);
 }

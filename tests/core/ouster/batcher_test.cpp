@@ -83,6 +83,7 @@ TEST_F(Batcher, TakesNoTimeFromColumnsThatTheSensorMarksAsInvalid) {
     EXPECT_NEAR(static_cast<double>(slices[i].start), static_cast<double>(whole[i].start), 1e5)
         << i;
   EXPECT_EQ(stats_.incomplete_slices, 0U);
+  EXPECT_EQ(stats_.duplicate_packets, 0U);
 }
 
 TEST_F(Batcher, GivesASliceWithThePacketThatCompletesIt) {
@@ -124,6 +125,17 @@ TEST_F(Batcher, FillsLostColumnsWithMissingReturnsAndCountsTheirPackets) {
       EXPECT_TRUE(std::all_of(point, point + step, [](std::uint8_t b) { return b == 0; }));
     else
       EXPECT_EQ(std::memcmp(point, &whole[10].points[i * step], step), 0);
+  }
+}
+
+TEST_F(Batcher, GivesASliceWithItsLastPacketAlsoWhereTheOneBeforeIsMissing) {
+  Packets lossy = packets_;
+  lossy.erase(lossy.begin() + 16, lossy.begin() + 24);  // slice 2
+  std::string error;
+  ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {8, 4});
+  for (std::size_t i = 0; i < 32; ++i) {
+    batcher.Push(*LidarPacket::Parse({lossy[i].data(), lossy[i].size()}, metadata_.format));
+    EXPECT_EQ(batcher.Pop().has_value(), i % 8 == 7) << "packet " << i;
   }
 }
 
@@ -215,6 +227,19 @@ TEST_F(Batcher, FrameIdsThatStartOverAreARestart) {
   twice.insert(twice.end(), packets_.begin(), packets_.begin() + 64);
   const auto slices = Run(twice);
   EXPECT_EQ(stats_.restarts, 1U);
+  EXPECT_EQ(stats_.stray_packets, 4U);
+  EXPECT_EQ(stats_.lost_packets, 0U) << "the fourth packet counts already";
+  EXPECT_EQ(slices.back().scan_id, 1U);
+  EXPECT_EQ(slices.back().index, 7U);
+}
+
+TEST_F(Batcher, FrameIdsFarAheadAreARestart) {
+  Packets ahead(packets_.begin(), packets_.begin() + 128);
+  for (std::size_t i = kPacketsPerScan; i < ahead.size(); ++i) ahead[i][3] ^= 0x40;
+  const auto slices = Run(ahead);
+  EXPECT_EQ(stats_.restarts, 1U);
+  EXPECT_EQ(stats_.lost_packets, 0U);
+  ASSERT_EQ(slices.size(), 16U);
   EXPECT_EQ(slices.back().scan_id, 1U);
   EXPECT_EQ(slices.back().index, 7U);
 }
@@ -225,6 +250,7 @@ TEST_F(Batcher, FrameIdsWrapAround) {
     const auto id = static_cast<std::uint16_t>(0xffff + i / kPacketsPerScan);
     std::memcpy(&wrapping[i][2], &id, sizeof id);
   }
+  std::swap(wrapping[kPacketsPerScan - 1], wrapping[kPacketsPerScan]);
   ExpectSamePoints(Run(wrapping), Run(packets_));
 }
 

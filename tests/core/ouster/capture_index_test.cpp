@@ -3,7 +3,9 @@
 #include "src/ouster/capture_index.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <vector>
@@ -92,6 +94,55 @@ TEST_F(CaptureIndexTest, EndsWhereTheFileIsDamaged) {
   CaptureIndex index(OpenFile());
   EXPECT_TRUE(index.ReadUntil(Duration::max(), Always));
   EXPECT_NEAR(static_cast<double>(index.duration().count()), 2.5e9, 1e7);
+}
+
+class PcapWriterTest : public CaptureIndexTest {
+ protected:
+  std::unique_ptr<PcapWriter> Open() const {
+    std::string error;
+    auto writer = PcapWriter::Open(path_, &error);
+    EXPECT_TRUE(writer) << error;
+    return writer;
+  }
+};
+
+TEST_F(PcapWriterTest, TellsWhyAFileCannotBeWritten) {
+  std::string error;
+  EXPECT_FALSE(PcapWriter::Open("/no/such/folder/a.pcap", &error));
+  EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
+}
+
+TEST_F(PcapWriterTest, WritesPayloadsAsLargeAsUdpCarriesAndNoLarger) {
+  const auto writer = Open();
+  const std::vector<std::uint8_t> payload(65'508, 7);
+  EXPECT_TRUE(writer->Write(kStart, 7502, {payload.data(), 65'507}));
+  EXPECT_FALSE(writer->Write(kStart, 7502, {payload.data(), 65'508}));
+  EXPECT_TRUE(writer->Close());
+  EXPECT_TRUE(writer->Close()) << "again";
+  const auto reader = OpenFile();
+  const auto only = reader->Next();
+  ASSERT_TRUE(only);
+  EXPECT_EQ(only->datagram.payload.size(), 65'507U);
+  EXPECT_FALSE(reader->Next());
+  EXPECT_EQ(reader->error(), "");
+}
+
+/// The end of the file is still in a buffer when the limit is reached.
+TEST_F(PcapWriterTest, LeavesNoFileThatIsCutShort) {
+  auto* const before = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  rlimit small = limit;
+  small.rlim_cur = 100;
+  const auto writer = Open();
+  const std::vector<std::uint8_t> payload(1'000, 7);
+  EXPECT_TRUE(writer->Write(kStart, 7502, {payload.data(), payload.size()}));
+  setrlimit(RLIMIT_FSIZE, &small);
+  const bool whole = writer->Close();
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, before);
+  EXPECT_FALSE(whole);
+  EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
 }  // namespace

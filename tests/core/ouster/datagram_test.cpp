@@ -276,7 +276,72 @@ TEST_P(Fragments, BehindTheEndDiscardTheirDatagram) {
   EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(shorter[0])));
 }
 
+TEST_P(Fragments, AreWholeUnitsOfEightBytesButForTheLast) {
+  auto packets = Cut(Udp(Payload(4000)), 1476);
+  UdpExtractor extractor;
+  for (const Bytes& packet : packets) EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packet)));
+  // The next datagram of the same identifier is not disturbed.
+  const Bytes next = Payload(2000);
+  std::optional<UdpDatagram> datagram;
+  UdpExtractor other;
+  EXPECT_FALSE(other.Extract(LinkType::kRaw, View(packets[0])));
+  for (const Bytes& packet : Cut(Udp(next), 1480))
+    datagram = other.Extract(LinkType::kRaw, View(packet));
+  ASSERT_TRUE(datagram);
+  EXPECT_EQ(datagram->payload, next);
+}
+
+TEST_P(Fragments, OfAnIdentifierThatComesAgainMakeAnotherDatagram) {
+  UdpExtractor extractor;
+  for (const std::size_t size : {4000U, 2000U, 3000U}) {
+    std::optional<UdpDatagram> datagram;
+    for (const Bytes& packet : Cut(Udp(Payload(size)), 1480))
+      datagram = extractor.Extract(LinkType::kRaw, View(packet));
+    ASSERT_TRUE(datagram) << size;
+    EXPECT_EQ(datagram->payload, Payload(size));
+  }
+}
+
+/// A last fragment that was cut, and came before, contradicts the whole one.
+TEST_P(Fragments, ThatOverlapInPartDiscardTheirDatagram) {
+  const Bytes udp = Udp(Payload(4000));
+  const auto packets = Cut(udp, 1480);
+  const auto longer = Cut(udp, 2960);
+  UdpExtractor extractor;
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packets[0])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(longer[0])));
+  EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(longer[1])));
+}
+
 INSTANTIATE_TEST_SUITE_P(BothVersions, Fragments, ::testing::Bool());
+
+TEST(Datagrams, OfIpv6AreToldFromOtherPackets) {
+  const Bytes whole = Ipv6(Udp(Payload(100)));
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    UdpExtractor extractor;
+    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
+    EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(cut))) << n;
+  }
+  constexpr std::uint8_t kTcp = 6;
+  Bytes tcp = whole;
+  tcp[6] = kTcp;
+  Bytes extended = Ipv6(Udp(Payload(100)));
+  extended[6] = 60;
+  extended[40] = kTcp;  // after an extension of destination options
+  extended[41] = 0;
+  Bytes endless = Ipv6(Bytes(80));  // ten extensions, each of which announces another
+  endless[6] = 0;
+  Bytes beyond = Ipv6({17, 200, 0, 0, 0, 0, 0, 0});  // an extension that the packet cannot hold
+  beyond[6] = 60;
+  for (const Bytes& packet : {tcp, extended, endless, beyond}) {
+    UdpExtractor extractor;
+    EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packet)));
+  }
+  UdpExtractor extractor;
+  const auto datagram = extractor.Extract(LinkType::kRaw, View(whole));
+  ASSERT_TRUE(datagram);
+  EXPECT_TRUE(datagram->addresses.is_ipv6);
+}
 
 TEST(Datagrams, StandBehindTheExtensionsOfIpv6) {
   const Bytes payload = Payload(100);

@@ -33,6 +33,7 @@ TEST(Metadata, ReadsTheFlatLayoutOfOldClients) {
   EXPECT_EQ(m.model.columns_per_scan, 1024U);
   EXPECT_NEAR(m.model.beam_to_lidar_x_m, 0.015806, 1e-9);
   EXPECT_NEAR(m.model.lidar_to_sensor[11], 0.03618, 1e-9);
+  EXPECT_DOUBLE_EQ(m.model.lidar_to_sensor[15], 1);
   EXPECT_EQ(m.model.beams[5].pixel_shift, 16);
   EXPECT_NEAR(m.model.beams[0].altitude_deg, 12.75, 1e-5);
 }
@@ -81,14 +82,58 @@ TEST(Metadata, TellsThatTheStreamIsSentNowhere) {
   EXPECT_NE(error.find("switched off"), std::string::npos);
 }
 
-TEST(Metadata, TakesTheRateOfTheModeWhereItHasNone) {
+TEST(Metadata, TakesRateAndColumnsOfTheModeWhereItHasNone) {
   json root = Load("windowed_frame1_0.json");
-  root["config_params"]["lidar_mode"] = "512x20";
+  root["config_params"]["lidar_mode"] = "1024x20";
   root["lidar_data_format"]["fps"] = 0;
+  root["lidar_data_format"].erase("columns_per_frame");
   std::string error;
   const auto m = Parse(root, &error);
   ASSERT_TRUE(m) << error;
   EXPECT_DOUBLE_EQ(m->scans_per_second, 20);
+  EXPECT_EQ(m->model.columns_per_scan, 1024U);
+}
+
+TEST(Metadata, MayLackBeamsWindowAndShifts) {
+  const json whole = Load("windowed_frame1_0.json");
+  const std::size_t beams = whole["beam_intrinsics"]["beam_altitude_angles"].size();
+  for (const char* empty : {"", "null"}) {
+    json root = whole;
+    json& format = root["lidar_data_format"];
+    for (const char* key : {"pixels_per_column", "column_window", "pixel_shift_by_row"})
+      format.erase(key);
+    if (*empty != '\0') format["column_window"] = nullptr;
+    std::string error;
+    const auto m = Parse(root, &error);
+    ASSERT_TRUE(m) << error;
+    EXPECT_EQ(m->format.beams, beams);
+    EXPECT_EQ(m->window.first, 0U);
+    EXPECT_EQ(m->window.count, m->model.columns_per_scan);
+    for (const Beam& beam : m->model.beams) EXPECT_EQ(beam.pixel_shift, 0);
+  }
+}
+
+TEST(Metadata, TellsTheSizeOfPacketsOfTheImu) {
+  json root = Load("windowed_frame1_0.json");
+  root["imu_data_format"]["imu_measurements_per_packet"] = 8;
+  struct Case {
+    const char* profile;
+    ImuProfile imu;
+    std::size_t packet_size;
+  };
+  for (const auto& [profile, imu, packet_size] :
+       {Case{"LEGACY", ImuProfile::kLegacy, 48}, Case{"OFF", ImuProfile::kOff, 0},
+        Case{"ACCEL32_GYRO32_NMEA", ImuProfile::kAccel32Gyro32Nmea, 64 + 100 + 8 * 36}}) {
+    root["lidar_data_format"]["udp_profile_imu"] = profile;
+    std::string error;
+    const auto m = Parse(root, &error);
+    ASSERT_TRUE(m) << error;
+    EXPECT_EQ(m->imu_profile, imu) << profile;
+    EXPECT_EQ(m->imu_packet_size(), packet_size) << profile;
+    const auto again = ParseMetadata(WriteMetadata(*m), &error);
+    ASSERT_TRUE(again) << error;
+    EXPECT_EQ(again->imu_profile, imu) << profile;
+  }
 }
 
 TEST(Metadata, KnowsWhereTheBeamsOfEachSensorBegin) {

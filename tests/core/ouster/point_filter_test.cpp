@@ -2,6 +2,7 @@
 // Which pixels become points: limits of the range, for each return, and masks.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -84,6 +85,88 @@ TEST(MissingPoints, AreZeroesButForCoordinatesThatAreNoNumbers) {
     }
   }
 }
+
+/// The azimuths, from -180 to 180 degrees, of the first beam's points in a scan that measures 20 m
+/// everywhere.
+std::vector<double> AzimuthsWithin(const char* sectors) {
+  const Metadata m = test::LoadMetadata("OS-1-128_v2.3.0_1024x10.json");
+  const std::uint32_t columns = m.model.columns_per_scan;
+  PointOptions options;
+  options.sectors = ParseSectors(sectors).value();
+  std::string error;
+  const auto writer = PointWriter::Create(m, options, &error);
+  EXPECT_TRUE(writer) << error;
+  const std::uint32_t step = writer->point_step();
+  std::vector<std::uint8_t> points(std::size_t{m.format.beams} * columns * step);
+  PacketWriter packet(m.format, {m.init_id, m.serial});
+  for (std::uint32_t first = 0; first < columns; first += m.format.columns_per_packet) {
+    packet.Begin(1);
+    for (std::uint32_t i = 0; i < m.format.columns_per_packet; ++i) {
+      packet.SetColumn(i, {1'000'000'000, static_cast<std::uint16_t>(first + i), true});
+      packet.SetPixel({i, 0}, Channel::kRange, 20'000);
+    }
+    const auto bytes = packet.Finish();
+    const auto parsed = LidarPacket::Parse({bytes.data(), bytes.size()}, m.format);
+    for (std::uint32_t i = 0; i < parsed->columns(); ++i)
+      writer->WriteColumn(parsed->Column(i), {points.data(), columns, 0, 1'000'000'000});
+  }
+  std::vector<double> azimuths;
+  for (std::uint32_t column = 0; column < columns; ++column) {
+    std::array<float, 3> xyz{};
+    std::memcpy(xyz.data(), &points[std::size_t{column} * step], sizeof xyz);
+    if (xyz[0] != 0 || xyz[1] != 0)
+      azimuths.push_back(std::atan2(static_cast<double>(xyz[1]), static_cast<double>(xyz[0])) *
+                         180 / M_PI);
+  }
+  return azimuths;
+}
+
+TEST(Sectors, MayContainTheDirectionAhead) {
+  // A scan has 1024 columns, 57 of which look into 20 degrees.
+  const auto ahead = AzimuthsWithin("350-10");
+  EXPECT_NEAR(static_cast<double>(ahead.size()), 57, 1);
+  for (const double azimuth : ahead) EXPECT_LT(std::abs(azimuth), 10.1);
+  const auto left_and_ahead = AzimuthsWithin("80-100, 350-10");
+  EXPECT_NEAR(static_cast<double>(left_and_ahead.size()), 2 * 57, 2);
+  for (const double azimuth : left_and_ahead)
+    EXPECT_TRUE(std::abs(azimuth) < 10.1 || std::abs(azimuth - 90) < 10.1) << azimuth;
+}
+
+TEST(Sectors, AreFromZeroTo360Degrees) {
+  for (const char* good : {"", "0-360", "350-10", " 1.5 - 2 , 3-4"})
+    EXPECT_TRUE(ParseSectors(good)) << good;
+  for (const char* bad : {"5", "0-361", "361-0", "-5-5", "0-x", "x-0", "0-", "0-9x"})
+    EXPECT_FALSE(ParseSectors(bad)) << bad;
+}
+
+struct Mask {
+  const char* header;
+  std::size_t pixels;
+  const char* error;
+};
+class Masks : public ::testing::TestWithParam<Mask> {};
+TEST_P(Masks, AreBinaryPgmOfTheSizeOfAScan) {
+  const Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  const auto& [header, pixels, expected] = GetParam();
+  const std::string pgm = header + std::string(pixels, '\xff');
+  std::string error;
+  const auto mask =
+      ParseMaskImage({reinterpret_cast<const std::uint8_t*>(pgm.data()), pgm.size()}, m, &error);
+  EXPECT_EQ(mask.has_value(), *expected == '\0');
+  EXPECT_EQ(error, expected);
+}
+constexpr std::size_t kPixels = std::size_t{32} * 1024;
+constexpr const char* kNoPgm = "the mask is no binary PGM of 8 bit";
+constexpr const char* kNoScan = "the mask is not 1024 x 32 pixels, as the sensor's scans are";
+INSTANTIATE_TEST_SUITE_P(
+    All, Masks,
+    ::testing::Values(
+        Mask{"P5 1024 32 255\n", kPixels, ""}, Mask{"P5 1024 32 1\n", kPixels, ""},
+        Mask{"P5 1024 32 0\n", kPixels, kNoPgm}, Mask{"P5 1024 32 256\n", kPixels, kNoPgm},
+        Mask{"P5 1024 32\n", kPixels, kNoPgm}, Mask{"P2 1024 32 255\n", kPixels, kNoPgm},
+        Mask{"Q5 1024 32 255\n", kPixels, kNoPgm}, Mask{"P5", 0, kNoPgm},
+        Mask{"P5 1024 32 255\n", kPixels - 1, kNoScan}, Mask{"P5 32 1024 255\n", kPixels, kNoScan},
+        Mask{"P5 1024 31 255\n", kPixels, kNoScan}, Mask{"P5 512 32 255\n", kPixels, kNoScan}));
 
 TEST(MaskImage, PixelsAreShiftedAsTheBeamsAre) {
   Metadata m = test::LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");

@@ -2,6 +2,7 @@
 // Times, foreign packets and IMU: what the stream adds to parser and batcher.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "src/base/byte_writer.h"
@@ -316,6 +317,11 @@ TEST_F(Stream, APacketOfAnotherSizeIsForeignWhereItSaysSo) {
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kWrongSize);
   packet[kStandardHeader.serial] ^= 1;
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kForeign);
+  auto no_lidar = packet;
+  no_lidar[0] ^= 0x40;  // the packet's type
+  EXPECT_EQ(stream->Push({no_lidar.data(), no_lidar.size()}, now), PacketVerdict::kWrongSize);
+  std::fill_n(packet.begin() + kStandardHeader.serial, 5, std::uint8_t{0});
+  EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kWrongSize);
 }
 
 TEST_F(Stream, AnEmptyPacketIsNoneOfAnImuThatIsOff) {

@@ -127,6 +127,34 @@ TEST(ImuInput, TakesNothingOnceTheLayoutIsAnother) {
   EXPECT_TRUE(input.Take().empty());
 }
 
+/// The caps of ImuCaps() with another `imu-to-sensor`: zeros and three ones of a rotation.
+template <class Number>
+CapsPtr CapsWith(GType type, guint count, Number one, void (*set)(GValue*, Number)) {
+  GValue list = G_VALUE_INIT;
+  g_value_init(&list, GST_TYPE_ARRAY);
+  for (guint i = 0; i < count; ++i) {
+    GValue number = G_VALUE_INIT;
+    g_value_init(&number, type);
+    set(&number, i % 5 == 0 ? one : Number{0});
+    gst_value_array_append_and_take_value(&list, &number);
+  }
+  CapsPtr caps(gst_caps_copy(ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
+  gst_structure_take_value(gst_caps_get_structure(caps.get(), 0), "imu-to-sensor", &list);
+  return caps;
+}
+
+TEST(ImuInput, RefusesWhatIsNoRotation) {
+  ImuInput input;
+  EXPECT_TRUE(input.SetCaps(CapsWith<gdouble>(G_TYPE_DOUBLE, 16, 1, g_value_set_double).get()));
+  EXPECT_FALSE(input.SetCaps(CapsWith<gdouble>(G_TYPE_DOUBLE, 15, 1, g_value_set_double).get()));
+  EXPECT_FALSE(input.SetCaps(CapsWith<gdouble>(G_TYPE_DOUBLE, 16, 2, g_value_set_double).get()));
+  EXPECT_FALSE(input.SetCaps(CapsWith<gint>(G_TYPE_INT, 16, 1, g_value_set_int).get()));
+  const CapsPtr text(
+      gst_caps_copy(ImuCaps({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}).get()));
+  gst_caps_set_simple(text.get(), "imu-to-sensor", G_TYPE_STRING, "1", nullptr);
+  EXPECT_FALSE(input.SetCaps(text.get()));
+}
+
 TEST_F(ImuPad, IsRequestedOnce) {
   GstPadTemplate* imu =
       gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(h_->element), "imu");

@@ -134,6 +134,10 @@ TEST(LateMapPad, HasTheEventsOfTheStreamAndItsOwnCaps) {
   ASSERT_TRUE(caps);
   const GstStructure* s = gst_caps_get_structure(caps.get(), 0);
   EXPECT_STREQ(gst_structure_get_string(s, "frame-id"), "map");
+  for (const GstEventType type : {GST_EVENT_STREAM_START, GST_EVENT_SEGMENT}) {
+    const EventPtr event(gst_pad_get_sticky_event(map->sinkpad, type, 0));
+    EXPECT_TRUE(event) << gst_event_type_get_name(type);
+  }
   const BufferPtr pose(gst_harness_pull(map.get()));
   EXPECT_EQ(GST_BUFFER_PTS(pose.get()), 100 * GST_MSECOND);
 }

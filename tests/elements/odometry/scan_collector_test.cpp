@@ -191,6 +191,20 @@ TEST(Rings, OfCloudsOfOneRowComeFromTheirField) {
   }
 }
 
+TEST(Rings, AreLeftOutWhereTheirFieldHoldsNoSmallNumbers) {
+  CloudInfo info;
+  info.fields.Add("x", FieldType::kF32).Add("y", FieldType::kF32).Add("z", FieldType::kF32);
+  info.fields.Add("ring", FieldType::kF32);
+  info.point_step = 16;
+  ScanCollector collector;
+  ASSERT_TRUE(collector.SetInfo(info));
+  const float points[] = {1, 0, 0, 3, 1, 0, 0, 1e30F};
+  collector.Add({7, 0, 1, 0}, kStart, reinterpret_cast<const guint8*>(points), sizeof points);
+  const auto scan = collector.Take();
+  EXPECT_EQ(scan->points.points.size(), 2U);
+  EXPECT_TRUE(scan->points.rings.empty());
+}
+
 TEST_F(Collector, ANewScanBeginsWithItsIdOrWithASliceThatCameAlready) {
   Prepare(2);
   EXPECT_FALSE(collector_.BeginsNewScan({7, 0, 4, 0}));  // none is open

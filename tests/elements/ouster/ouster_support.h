@@ -40,10 +40,16 @@ inline std::vector<Time> TimesOf(const std::string& name) {
 /// Sends to a port of this machine.
 class UdpSender {
  public:
-  explicit UdpSender(guint16 port)
+  /// An empty `from` leaves the address to the kernel.
+  explicit UdpSender(guint16 port, const char* from = "")
       : socket_(g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP,
                              nullptr)),
-        to_(g_inet_socket_address_new_from_string("127.0.0.1", port)) {}
+        to_(g_inet_socket_address_new_from_string("127.0.0.1", port)) {
+    if (*from == '\0') return;
+    GSocketAddress* own = g_inet_socket_address_new_from_string(from, 0);
+    EXPECT_TRUE(g_socket_bind(socket_, own, FALSE, nullptr));
+    g_object_unref(own);
+  }
   ~UdpSender() {
     g_object_unref(socket_);
     g_object_unref(to_);

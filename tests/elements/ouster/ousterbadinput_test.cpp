@@ -72,6 +72,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"location=@crc_test.pcap mask-location=/nowhere.pgm", "Cannot read the mask"},
         BadInput{"hostname=\"bad host/x?y\"", "is no name or address"},
         BadInput{"hostname=127.0.0.1:1 azimuth-window=5", "azimuth-window is not like"},
+        BadInput{"hostname=127.0.0.1:1 azimuth-window=left", "azimuth-window is not like"},
+        BadInput{"hostname=127.0.0.1:1 azimuth-window=-1,9", "azimuth-window is not like"},
+        BadInput{"hostname=127.0.0.1:1 azimuth-window=9,-1", "azimuth-window is not like"},
+        BadInput{"hostname=127.0.0.1:1 azimuth-window=1,2,3", "azimuth-window is not like"},
         BadInput{"metadata=@crc_test.json lidar-port=47503 multicast-group=239.1.1.1 "
                  "multicast-iface=nope0",
                  "no network interface \"nope0\""},

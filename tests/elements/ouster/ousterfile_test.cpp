@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/elements/ouster/ouster_support.h"
 #include "tests/support/clock_wait.h"
@@ -273,6 +274,23 @@ TEST(OusterFile, DestaggersWholeScans) {
                             to.data() + (beam * 1024 + (column + shift) % 1024) * step, step),
                 0);
   }
+}
+
+TEST(OusterFile, AScanRateThatIsNoSimpleFractionIsGivenInThousandths) {
+  auto root = nlohmann::json::parse(ReadFile(DataPath(kThreeScansMetadata)));
+  root["data_format"]["fps"] = 9.87654;
+  const std::string path = ::testing::TempDir() + "ouster_rate.json";
+  std::ofstream(path) << root;
+  const Harness h(gst_harness_new_parse(
+      ("ouster_src location=" + DataPath(kThreeScans) + " metadata=" + path).c_str()));
+  SetPlaying(h.get());
+  const BufferPtr buffer(gst_harness_pull(h.get()));
+  const CapsPtr caps(gst_pad_get_current_caps(h->sinkpad));
+  const auto info = CloudInfo::FromCaps(caps.get());
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->framerate_n, 9877);
+  EXPECT_EQ(info->framerate_d, 1000);
+  std::remove(path.c_str());
 }
 
 TEST(OusterFile, KeepsThePixelsThatAMaskKeeps) {

@@ -355,6 +355,7 @@ TEST(OusterLive, WithoutReconnectAnApiThatFailsIsAnError) {
   Receiver receiver(sensor.host(), "reconnect=false");
   const std::string error = receiver.AwaitError();
   EXPECT_NE(error.find("503"), std::string::npos) << error;
+  EXPECT_EQ(error.find("firmware"), std::string::npos) << error;
 }
 
 TEST(OusterLive, PacketsOfARestartedSensorAreTakenWhereItsApiIsDown) {
@@ -425,6 +426,36 @@ TEST(OusterLive, MetadataThatMakesNoSenseIsAClearError) {
   const std::string error =
       RunToEnd("ouster_src reconnect=false hostname=" + impostor.host() + " ! fakesink");
   EXPECT_NE(error.find("the sensor's metadata cannot be used"), std::string::npos) << error;
+}
+
+TEST(OusterLive, ASensorThatDoesNotSayWhereItSendsIsAClearError) {
+  const Impostor impostor([](const tools::HttpRequest&) {
+    return tools::HttpReply{200, R"({"udp_port_lidar": 7502})", {}};
+  });
+  Receiver receiver(impostor.host(), "udp-dest=@auto reconnect=false");
+  const std::string error = receiver.AwaitError();
+  EXPECT_NE(error.find("does not say which udp_dest it found"), std::string::npos) << error;
+}
+
+/// Sensors of other firmware than ouster-replay's take texts without quotes only.
+TEST(OusterLive, AsksOldFirmwareForWhatIsActiveAndSetsTextsWithoutQuotes) {
+  std::string config;
+  std::string set;
+  const Impostor impostor([&](const tools::HttpRequest& request) {
+    const auto args = request.query.find("args");
+    if (args == request.query.end()) return tools::HttpReply{404, {}, {}};
+    const bool sets = request.path.find("set_config_param") != std::string::npos;
+    (sets ? set : config) = args->second;
+    return tools::HttpReply{sets ? 400 : 200, "{}", {}};
+  });
+  std::string error;
+  {
+    Receiver receiver(impostor.host(), "lidar-mode=512x10");
+    error = receiver.AwaitError();
+  }
+  EXPECT_NE(error.find("the sensor does not take the configuration"), std::string::npos) << error;
+  EXPECT_EQ(config, "active");
+  EXPECT_EQ(set, "lidar_mode 512x10");
 }
 
 TEST(OusterLive, FollowsNoRedirect) {

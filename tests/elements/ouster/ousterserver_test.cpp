@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -150,6 +151,70 @@ TEST(OusterQuestions, AreAsFewAsSeconds) {
   send(500);
   const gint64 seconds = (g_get_monotonic_time() - begin) / G_USEC_PER_SEC + 1;
   EXPECT_LE(server.requests(), of_a_question * (1 + seconds));
+}
+
+/// A sensor whose API says for a time that it sends nothing.
+class ChangingAnswers {
+ public:
+  explicit ChangingAnswers(const Receiver::Ports& ports) : sender_(ports.lidar) {
+    std::ifstream file(DataPath(kThreeScansMetadata));
+    auto answer = nlohmann::json::parse(file);
+    answer["udp_port_lidar"] = ports.lidar;
+    answer["udp_port_imu"] = ports.imu;
+    texts_[0] = answer.dump();
+    answer["udp_dest"] = "";
+    texts_[1] = answer.dump();
+  }
+  enum Answer { kWhole, kSwitchedOff };
+  void Say(Answer answer) { answer_ = answer; }
+  std::string host() const { return server_.host(); }
+  void SendLidar() {
+    for (const auto& packet : packets_) sender_.Send(packet);
+  }
+  /// Four packets of another size make the element ask.
+  void SendWrongSizes() {
+    for (int i = 0; i < 4; ++i) sender_.Send(std::vector<std::uint8_t>(1'000));
+  }
+
+ private:
+  std::string texts_[2];
+  std::atomic<int> answer_{kWhole};
+  const HostileServer server_{[this](const Exchange& e) { e.Answer(texts_[answer_]); }};
+  UdpSender sender_;
+  const std::vector<std::vector<std::uint8_t>> packets_ =
+      LoadPackets(kThreeScans, LoadMetadata(kThreeScansMetadata));
+};
+
+TEST(OusterAnswers, OfASensorThatWasSwitchedOffAreAnErrorOnlyWithoutReconnect) {
+  for (const bool reconnect : {true, false}) {
+    const Receiver::Ports ports{FreePort(), FreePort()};
+    ChangingAnswers sensor(ports);
+    Receiver receiver(sensor.host(), reconnect ? "" : "reconnect=false", ports);
+    ASSERT_TRUE(receiver.Await("ouster-metadata-changed"));
+    sensor.SendLidar();
+    ASSERT_TRUE(receiver.AwaitConnected(true));
+    sensor.Say(ChangingAnswers::kSwitchedOff);
+    sensor.SendWrongSizes();
+    if (!reconnect) {
+      EXPECT_EQ(receiver.AwaitError(), "the sensor's lidar stream is switched off");
+      continue;
+    }
+    const gst::MessagePtr lost = receiver.Await("ouster-connection-changed");
+    ASSERT_TRUE(lost);
+    EXPECT_STREQ(gst_structure_get_string(gst_message_get_structure(lost.get()), "reason"),
+                 "the sensor's lidar stream is switched off");
+    sensor.SendLidar();
+    EXPECT_TRUE(receiver.AwaitConnected(true));
+  }
+}
+
+TEST(OusterHostname, MayNameAnInterfaceOrAskForTls) {
+  const HostileServer server([](const Exchange& e) { e.Answer("no TLS"); });
+  for (const std::string& host : {"https://" + server.host(), std::string("[fe80::1%lo]:1")}) {
+    Receiver receiver(host, "reconnect=false", {0, 0});
+    const std::string error = receiver.AwaitError();
+    EXPECT_EQ(error.rfind("Cannot talk to the sensor " + host + ": ", 0), 0U) << error;
+  }
 }
 
 /// Returns the error of ouster_src if it cannot start; `scarcity` is created before it tries.

@@ -123,6 +123,23 @@ TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
   EXPECT_NE(text.find("sysctl -w net.core.rmem_max=2147483647"), std::string::npos) << text;
 }
 
+/// Packets of old firmware have no serial number; each sensor has an address of its own.
+TEST_F(OusterUdp, TellsSensorsWithoutSerialNumbersByTheirAddresses) {
+  const ouster::Metadata legacy = LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
+  const auto packets = LoadPackets("OS-1-32-G_v2.1.1_1024x10.pcap", legacy);
+  for (const char* address : {"", "address=0.0.0.0"}) {
+    const Harness h = Play("OS-1-32-G_v2.1.1_1024x10.json", address);
+    const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(h->element), "src"));
+    UdpSender other(port_, "127.0.0.2");
+    const auto stat = [&](const char* name) { return StatOf(source.get(), name); };
+    sender_->Send(packets[0]);
+    EXPECT_TRUE(Eventually([&] { return stat("packets") == 1; }));
+    other.Send(packets[0]);
+    EXPECT_TRUE(Eventually([&] { return stat("packets-foreign") == 1; })) << address;
+    EXPECT_EQ(stat("packets"), 1U);
+  }
+}
+
 TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
   const Harness h = Play(kJson);
   EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
