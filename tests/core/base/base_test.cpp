@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <locale>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,12 @@ TEST(RateMeter, AveragesOverItsWindow) {
   EXPECT_NEAR(meter.Rate(kBegin + 2'900ms).bits_per_second(), 100e3, 1);
   EXPECT_NEAR(meter.Rate(kBegin + 3'400ms).bits_per_second(), 50e3, 1);
   EXPECT_EQ(meter.Rate(kBegin + 4s), DataRate());
+  RateMeter first(1s);
+  first.Add(kBegin, DataSize::Bytes(1'250));
+  EXPECT_NEAR(first.Rate(kBegin).bits_per_second(), 1e6, 1) << "over ten milliseconds at least";
+  meter.set_window(200ms);
+  for (int i = 0; i < 5; ++i) meter.Add(kBegin + 5s + i * 100ms, DataSize::Bytes(1'250));
+  EXPECT_NEAR(meter.Rate(kBegin + 5'450ms).bits_per_second(), 100e3, 1);
 }
 
 TEST(Crc, MatchesThePublishedCheckValues) {
@@ -105,6 +112,14 @@ TEST(Sequence, UnwrapsNextToTheNewestAndNotToTheLast) {
   EXPECT_EQ(u.Unwrap(100), 65636);
 }
 
+TEST(Sequence, FollowsTheNewestOverManyWraps) {
+  SequenceUnwrapper<std::uint16_t> u;
+  for (std::int64_t n = 0; n < 300'000; n += 30'000) {
+    EXPECT_EQ(u.Unwrap(static_cast<std::uint16_t>(n)), n);
+    EXPECT_EQ(u.newest(), n);
+  }
+}
+
 TEST(Sequence, ANewerNumberIsAPositiveDistanceAway) {
   EXPECT_EQ(SequenceDistance<std::uint16_t>(7, 7), 0);
   EXPECT_EQ(SequenceDistance<std::uint16_t>(0, 65535), 1);
@@ -141,8 +156,8 @@ TEST(Units, AreOrderedByTheirAmounts) {
   const DataRate fast = DataRate::BitsPerSecond(2);
   EXPECT_TRUE(slow == DataRate::BitsPerSecond(1) && slow != fast && slow < fast && fast > slow);
   EXPECT_TRUE(slow <= slow && slow >= slow && slow <= fast && fast >= slow);
-  EXPECT_FALSE(slow == fast || slow != slow || slow < slow || slow > slow || fast <= slow ||
-               slow >= fast);
+  EXPECT_FALSE(slow == fast || fast == slow || slow != slow || slow < slow || slow > slow ||
+               fast <= slow || slow >= fast);
 }
 
 TEST(Units, AreAddedAndTakenAway) {
@@ -181,6 +196,8 @@ TEST(TargetNotifier, TellsMovesOfTwoPercentAtOnceAndAllElseEvery200Milliseconds)
   EXPECT_TRUE(notifier.ShouldNotify(start + 201ms, mbps(10.21)));
   EXPECT_FALSE(notifier.ShouldNotify(start + 202ms, mbps(10.01)));
   EXPECT_TRUE(notifier.ShouldNotify(start + 202ms, mbps(9.99)));
+  notifier.Reset();
+  EXPECT_TRUE(notifier.ShouldNotify(start + 203ms, mbps(9.99)));
 }
 
 TEST(RowFile, KeepsItsRowsAndNothingThatIsEmpty) {
@@ -204,6 +221,29 @@ TEST(RowFile, KeepsItsRowsAndNothingThatIsEmpty) {
   EXPECT_FALSE(RowFile("/nonexistent/file").ok());
 }
 
+TEST(RowFile, KeepsRowsThatAreWrittenAsItCloses) {
+  const std::string path = ::testing::TempDir() + "row_file_closed.txt";
+  { RowFile(path).stream() << "row\n"; }
+  ASSERT_TRUE(std::filesystem::exists(path));
+  EXPECT_EQ(std::filesystem::file_size(path), 4U);
+  std::filesystem::remove(path);
+}
+
+struct CommaLocale : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+TEST(RowFile, HasTheNumbersOfTheCLocaleWhateverTheProgramSets) {
+  const std::string path = ::testing::TempDir() + "row_file_locale.txt";
+  const std::locale before = std::locale::global({std::locale(), new CommaLocale});
+  { RowFile(path).stream() << 0.5 << '\n'; }
+  std::locale::global(before);
+  std::string line;
+  std::getline(std::ifstream(path) >> std::ws, line);
+  EXPECT_EQ(line, "0.5");
+  std::filesystem::remove(path);
+}
+
 TEST(RowFile, MovesWithItsFile) {
   const std::string path = ::testing::TempDir() + "row_file_moved.txt";
   const std::string other = ::testing::TempDir() + "row_file_other.txt";
@@ -217,8 +257,13 @@ TEST(RowFile, MovesWithItsFile) {
   EXPECT_TRUE(to.ok());
   EXPECT_TRUE(to.Flush());
   EXPECT_EQ(std::filesystem::file_size(path), 4U);
-  const RowFile last(std::move(to));
+  RowFile last(std::move(to));
   EXPECT_TRUE(last.ok());
+  last = RowFile(other);
+  EXPECT_TRUE(std::filesystem::exists(other));
+  last.Close();
+  EXPECT_FALSE(std::filesystem::exists(other));  // this one is empty, too
+  EXPECT_TRUE(std::filesystem::exists(path));
   std::filesystem::remove(path);
 }
 

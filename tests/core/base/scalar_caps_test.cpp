@@ -39,6 +39,8 @@ TEST(ScalarCaps, EachTypeComesBackAtItsLimits) {
                  {"b", std::string("NULL")},
                  {"c", std::string("r\xC3\xBC"
                                    "ck \"\\\xF4\x8F\xBF\xBF")},
+                 {"least-of_3.bytes", std::string("\xE0\xA0\x80 \xE2\x82\xAC")},
+                 {"least-of_4.bytes", std::string("\xF0\x90\x80\x80 \xF0\x9F\x9A\x97")},
                  {"d", false},
                  {"e", std::numeric_limits<std::int32_t>::min()},
                  {"f", std::numeric_limits<std::uint32_t>::max()},
@@ -49,10 +51,21 @@ TEST(ScalarCaps, EachTypeComesBackAtItsLimits) {
                  {"k", ScalarCaps::Fraction{-2'147'483'647, 2'147'483'647}},
                  {"l", ScalarCaps::Bytes()},
                  {"m", ScalarCaps::Doubles(16, -1.0 / 3)},
-                 {"n", ScalarCaps::Doubles{0.5}}};
+                 {"n", ScalarCaps::Doubles{0.5}},
+                 {"Zz-aA_0.9", std::string("AZaz09_-+/:.")}};
   const auto text = caps.ToText();
   ASSERT_TRUE(text);
   EXPECT_EQ(ScalarCaps::Parse(*text), caps);
+}
+
+TEST(ScalarCaps, DifferInTypeOfMediaNameTypeOrValueOfAField) {
+  const auto caps = ScalarCaps::Parse("application/x-a, n=(fraction)10/1");
+  EXPECT_EQ(caps, ScalarCaps::Parse("application/x-a, n=(fraction)10/1"));
+  for (const char* other :
+       {"application/x-b, n=(fraction)10/1", "application/x-a", "application/x-a, m=(fraction)10/1",
+        "application/x-a, n=(int)10", "application/x-a, n=(fraction)20/1",
+        "application/x-a, n=(fraction)10/2", "application/x-a, n=(fraction)10/1, m=(int)1"})
+    EXPECT_FALSE(caps == ScalarCaps::Parse(other)) << other;
 }
 
 class OutsideOfTheGrammar : public ::testing::TestWithParam<std::string> {};
@@ -72,7 +85,8 @@ INSTANTIATE_TEST_SUITE_P(
                       With("n=(int)< 1 >"), With("n=(structure)a"), With("n=(int)2147483648"),
                       With("n=(int)1x"), With("n=(uint)-1"), With("n=(boolean)yes"),
                       With("n=(double)inf"), With("n=(double)nan"), With("n=(float)1e39"),
-                      With("n=(fraction)1"), With("n=(fraction)1/0"), With("n=(fraction)1/-1"),
+                      With("n=(fraction)1"), With("n=(fraction)x/1"), With("n=(fraction)1/x"),
+                      With("n=(fraction)1/0"), With("n=(fraction)1/-1"),
                       With("n=(fraction)-2147483648/1"), With("n=(buffer)abc"),
                       With("n=(buffer)ag"), With("n=(buffer)\"ab\"")));
 INSTANTIATE_TEST_SUITE_P(Arrays, OutsideOfTheGrammar,
@@ -83,14 +97,17 @@ INSTANTIATE_TEST_SUITE_P(Arrays, OutsideOfTheGrammar,
                                            With("n=(string)< a >")));
 INSTANTIATE_TEST_SUITE_P(
     Strings, OutsideOfTheGrammar,
-    ::testing::Values(With("n=(string)"), With("n=(string)NULL"), With("n=(string)\""),
-                      With("n=(string)\"a"), With("n=(string)\"a\\"), With("n=(string)\"\\1\""),
-                      With("n=(string)\"\\189\""), With("n=(string)\"\\777\""),
-                      With("n=(string)\"\\000\""), With("n=(string)\"\\012\""),
-                      With("n=(string)\"\\177\""), With("n=(string)\"\\300\\200\""),
-                      With("n=(string)\"\\355\\240\\200\""),
-                      With("n=(string)\"\\364\\220\\200\\200\""), With("n=(string)\"\\303\""),
-                      With("n=(string)\"a\"b"), With("n=(string)\"\xC3\xBC\"")));
+    ::testing::Values(
+        With("n=(string)"), With("n=(string)NULL"), With("n=(string)\""), With("n=(string)\"a"),
+        With("n=(string)\"a\\"), With("n=(string)\"\\1\""), With("n=(string)\"\\189\""),
+        With("n=(string)\"\\777\""), With("n=(string)\"\\000\""), With("n=(string)\"\\012\""),
+        With("n=(string)\"\\177\""), With("n=(string)\"\\300\\200\""),
+        With("n=(string)\"\\355\\240\\200\""), With("n=(string)\"\\364\\220\\200\\200\""),
+        With("n=(string)\"\\303\""), With("n=(string)\"\\360\\237\\232\""),
+        With("n=(string)\"\\303a\""), With("n=(string)\"\\340\\200\\200\""),
+        With("n=(string)\"\\360\\200\\200\\200\""), With("n=(string)\"\\355\\277\\277\""),
+        With("n=(string)\"\\370\\220\\200\\200\""), With("n=(string)\"\\608\""),
+        With("n=(string)[a]"), With("n=(string)\"a\"b"), With("n=(string)\"\xC3\xBC\"")));
 
 TEST(ScalarCaps, AnArrayHasAtMostSixteenDoubles) {
   const auto text = [](std::size_t count) {
@@ -143,6 +160,8 @@ TEST(ScalarCaps, WhatCannotBeWrittenSaysWhy) {
   EXPECT_EQ(why("application/x-a", {"a:b", 1}), "the name of the field a:b is not plain");
   EXPECT_EQ(why("application/x-a", {"n", std::numeric_limits<double>::infinity()}),
             "n is not finite");
+  EXPECT_EQ(why("application/x-a", {"n", std::numeric_limits<float>::infinity()}),
+            "n is not finite");
   EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Fraction{1, 0}}), "n is no fraction");
   for (const auto count : {0U, 17U})
     EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Doubles(count)}),
@@ -152,6 +171,14 @@ TEST(ScalarCaps, WhatCannotBeWrittenSaysWhy) {
             "n has characters that cannot be printed");
   EXPECT_EQ(why("application/x-a", {"n", std::string(1U << 20, 'a')}),
             "their text has more than 131072 bytes");
+  ScalarCaps many;
+  many.media_type = "application/x-a";
+  for (int i = 0; i < 64; ++i) many.fields.push_back({"n" + std::to_string(i), i});
+  std::string reason;
+  EXPECT_TRUE(many.ToText(&reason)) << reason;
+  many.fields.push_back({"n", 64});
+  EXPECT_FALSE(many.ToText(&reason));
+  EXPECT_EQ(reason, "more than 64 fields");
 }
 
 }  // namespace

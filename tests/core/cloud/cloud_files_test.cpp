@@ -8,6 +8,7 @@
 #include <random>
 
 #include "src/base/byte_writer.h"
+#include "src/cloud/field_number.h"
 
 namespace lidar {
 namespace {
@@ -147,16 +148,32 @@ TEST(Pcd, SaysWhyItCannotBeRead) {
       {PcdHeader("zip"), "DATA is neither ascii, binary nor binary_compressed"},
       {PcdHeader("binary"), "the file ends before its last point"},
       {PcdHeader("binary", 2'000'000'000), "the cloud is larger than 1 GiB"},
+      {PcdHeader("ascii", 2'000'000'000), "the cloud is larger than 1 GiB"},
+      {PcdHeader("binary_compressed", 2'000'000'000), "the cloud is larger than 1 GiB"},
+      {"FIELDS x a\nSIZE 4 1\nTYPE F U\nCOUNT 1 65533\nPOINTS 1\nDATA ascii\n",
+       "a point has too many fields"},
+      {"FIELDS x a\nSIZE 4 1\nTYPE F U\nCOUNT 1 32\nPOINTS 1\nDATA ascii\n",
+       "a point has too many fields"},
       {PcdHeader("ascii") + "1 2 3", "the file ends before its last point"},
       {PcdHeader("ascii") + "1 2 3 0 0 1 1 2 three 0 0 1 1", "\"three\" is no number"},
       {PcdHeader("ascii") + "1 1e400 3 0 0 1 4 5 6 0 0 1", "\"1e400\" is no number"},
       {PcdHeader("ascii") + "1 2,5 3 0 0 1 4 5 6 0 0 1", "\"2,5\" is no number"},
       {PcdHeader("ascii") + "1 1.#QNAN 3 0 0 1 4 5 6 0 0 1", "\"1.#QNAN\" is no number"},
       {PcdHeader("ascii") + "1 2 \x80\x3F\x01 0 0 1 4 5 6 0 0 1", "\"???\" is no number"},
+      {PcdHeader("ascii") + "1 2 ~\x7F 0 0 1 4 5 6 0 0 1", "\"~?\" is no number"},
+      {PcdHeader("binary_compressed") + Text({4, 0, 0, 0, 32, 0, 0, 0, 255, 255, 255, 255}),
+       "the compressed points are damaged"},
       {"FIELDS x\nSIZE 4 4\nTYPE F\nDATA ascii\n",
        "FIELDS, SIZE, TYPE and COUNT do not fit together"},
       {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n",
        "WIDTH, HEIGHT and POINTS do not fit together"},
+      {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 4294967296\nHEIGHT 1\nDATA ascii\n",
+       "WIDTH, HEIGHT and POINTS do not fit together"},
+      {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 4294967297\nDATA ascii\n1\n",
+       "WIDTH, HEIGHT and POINTS do not fit together"},
+      {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 0\nDATA ascii\n1\n",
+       "WIDTH, HEIGHT and POINTS do not fit together"},
+      {"FIELDS x\nSIZE 4\nTYPE F\nPOINTS 1\nDATA\n1\n", "its header has no line DATA"},
   };
   for (const auto& [file, reason] : bad) {
     std::string why;
@@ -197,6 +214,28 @@ TEST(Ply, NumbersHaveTheTypesThatTheirNamesSay) {
     }
 }
 
+TEST(Ply, NumbersThatTheirTypeCannotHoldBecomeTheNearestThatItCan) {
+  struct Row {
+    const char* type;
+    FieldType field;
+    const char* text;
+    double number;
+  };
+  for (const Row& row :
+       {Row{"char", FieldType::kI8, "300", 127}, Row{"char", FieldType::kI8, "-300", -128},
+        Row{"uchar", FieldType::kU8, "256", 255}, Row{"uchar", FieldType::kU8, "-1", 0},
+        Row{"short", FieldType::kI16, "-4e4", -32'768},
+        Row{"ushort", FieldType::kU16, "7e4", 65'535},
+        Row{"int", FieldType::kI32, "3e9", 2'147'483'647}, Row{"uint", FieldType::kU32, "-5", 0},
+        Row{"uint", FieldType::kU32, "1e300", 4'294'967'295}, Row{"int", FieldType::kI32, "nan", 0},
+        Row{"uchar", FieldType::kU8, "6.7", 7}, Row{"float", FieldType::kF32, "6.5", 6.5}}) {
+    const auto cloud = Ply("ply\nformat ascii 1.0\nelement vertex 1\nproperty " +
+                           std::string(row.type) + " a\nend_header\n" + row.text + "\n");
+    ASSERT_TRUE(cloud) << row.text;
+    EXPECT_EQ(ReadNumber(cloud->points.data(), row.field), row.number) << row.type << row.text;
+  }
+}
+
 TEST(Ply, BinaryOfBothByteOrdersIsRead) {
   for (const bool big : {false, true}) {
     const auto cloud =
@@ -211,6 +250,13 @@ TEST(Ply, SaysWhyItCannotBeRead) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"ply\nformat ascii 1.0\n", "its header does not end"},
       {"ply\nelement vertex 1\nend_header\n", "its header has no format that we read"},
+      {"ply\nformat\nelement vertex 1\nproperty float x\nend_header\n1\n",
+       "its header has no format that we read"},
+      {"ply\nformat ascii 1.0\nelement vertex\nend_header\n",
+       "its vertices are not its first element"},
+      {"ply\nformat ascii 1.0\nend_header\n", "its vertices are not its first element"},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float\nend_header\n1\n",
+       "a property of its vertices is a list or of an unknown type"},
       {"ply\nformat ascii 1.0\nelement face 1\nelement vertex 1\nend_header\n",
        "its vertices are not its first element"},
       {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n",
@@ -369,6 +415,20 @@ TEST(Las, EachAxisHasAScaleOfItsOwn) {
   EXPECT_EQ(FloatAt(*cloud, 8), -2.5F);
 }
 
+TEST(Las, OfNoPointIsItsHeaderAlone) {
+  for (const auto& [minor, size] : {std::pair(2, 227U), std::pair(4, 375U)}) {
+    Las las;
+    las.minor = static_cast<std::uint8_t>(minor);
+    las.points = 0;
+    const std::string header = las.File().substr(0, size);
+    const auto cloud = ReadLasFile(header);
+    ASSERT_TRUE(cloud) << minor;
+    EXPECT_EQ(cloud->width, 0U);
+    EXPECT_TRUE(cloud->points.empty());
+    EXPECT_FALSE(ReadLasFile(header.substr(0, size - 1))) << minor;
+  }
+}
+
 TEST(Las, SaysWhyItCannotBeRead) {
   const auto with = [](auto change) {
     Las las;
@@ -404,9 +464,12 @@ TEST(Kitti, IsKnownByPlausiblePoints) {
   const std::vector<float> point = {70.5F, -3.25F, -1.7F, 0.5F};
   EXPECT_EQ(TypeOfCloudFile(View(Floats(point))), CloudFileType::kKitti);
   EXPECT_EQ(TypeOfCloudFile(View(Floats({0, 0, 0, 0}))), std::nullopt);
+  for (const auto& on_an_axis :
+       {Floats({0, 5, 0, 0}), Floats({0, 0, -5, 1}), Floats({70.5F, 0, 0, 1, 0, 0, 0, 0})})
+    EXPECT_EQ(TypeOfCloudFile(View(on_an_axis)), CloudFileType::kKitti);
   EXPECT_EQ(TypeOfCloudFile(View(std::string(64, 'a'))), std::nullopt);
-  for (const auto& [at, bad] :
-       std::vector<std::pair<std::size_t, float>>{{0, 1e6F}, {1, 1e-41F}, {2, NAN}, {3, -1}}) {
+  for (const auto& [at, bad] : std::vector<std::pair<std::size_t, float>>{
+           {0, 1e6F}, {1, 1e-41F}, {2, NAN}, {3, -1}, {3, 300.0F}, {3, 1e-41F}}) {
     std::vector<float> points = point;
     points.insert(points.end(), point.begin(), point.end());
     points[4 + at] = bad;
@@ -424,6 +487,29 @@ TEST(Kitti, IsRead) {
   EXPECT_EQ(FloatAt(*cloud, 28), 8);
   EXPECT_FALSE(ReadKitti(View(std::string(17, 'a')), &why));
   EXPECT_EQ(why, "its size is no multiple of 16 bytes");
+  EXPECT_FALSE(ReadKitti({cloud->points.data(), (std::size_t{1} << 30) + 16}, &why));
+  EXPECT_EQ(why, "the cloud is larger than 1 GiB");
+}
+
+TEST(CloudFiles, LeaveOutFieldsOfNamesOrTypesThatCloudsCannotHave) {
+  const auto expect = [](const std::optional<FileCloud>& cloud) {
+    ASSERT_TRUE(cloud);
+    EXPECT_EQ(cloud->fields,
+              (std::vector<PointField>{{"x", FieldType::kF32, 8}, {"~", FieldType::kF32, 16}}));
+    EXPECT_EQ(cloud->point_step, 24U);
+    EXPECT_EQ(FloatAt(*cloud, 8), 3);
+    EXPECT_EQ(FloatAt(*cloud, 16), 5);
+  };
+  expect(
+      Ply("ply\nformat ascii 1.0\nobj_info by hand\nelement vertex 1\nobj_info of six numbers\n"
+          "property float a,b\nproperty float c:d\nproperty float x\nproperty float n\x80m\n"
+          "property float ~\nproperty float n\x7Fm\nend_header\n1 2 3 4 5 6\n"));
+  expect(
+      Pcd("FIELDS a,b c:d x n\x80m ~ n\x01m\nSIZE 4 4 4 4 4 4\nTYPE F F F F F F\nPOINTS 1\n"
+          "DATA ascii\n1 2 3 4 5 6\n"));
+  expect(
+      Pcd("FIELDS long half x _ ~ z\nSIZE 4 4 4 4 4 4\nTYPE FLOAT X F F F f\nPOINTS 1\n"
+          "DATA ascii\n1 2 3 4 5 6\n"));
 }
 
 TEST(CloudFiles, AreKnownByHowTheyBegin) {
@@ -436,7 +522,8 @@ TEST(CloudFiles, AreKnownByHowTheyBegin) {
   EXPECT_EQ(TypeOfCloudFile(View("# .PCD v.5")), CloudFileType::kPcd);
   EXPECT_EQ(TypeOfCloudFile(View("#.PCD v.7")), CloudFileType::kPcd);
   EXPECT_EQ(TypeOfCloudFile(View("ply\n")), CloudFileType::kPly);
-  for (const char* none : {"ply", "ply format", " ply\n", "# PCD", "LASV", "las", "FIELDS x"})
+  for (const char* none :
+       {"ply", "ply format", " ply\n", "# PCD", "LASV", "las", "FIELDS x", "text\nFIELDS x"})
     EXPECT_EQ(TypeOfCloudFile(View(none)), std::nullopt) << none;
 }
 

@@ -37,22 +37,36 @@ TEST(PointFields, RoundTripThroughTheCapsString) {
   EXPECT_EQ(fields->Find("ring"), nullptr);
 }
 
+TEST(PointFields, DifferInNameTypeOrPlaceOfAField) {
+  const auto fields = PointFields::Parse("x:F32:0,a ~:U16:4");
+  ASSERT_TRUE(fields);
+  EXPECT_EQ(fields, PointFields::Parse("x:F32:0,a ~:U16:4"));
+  for (const char* other : {"x:F32:0", "x:F32:0,b:U16:4", "x:F32:0,a ~:I16:4", "x:F32:0,a ~:U16:6",
+                            "x:F32:0,a ~:U16:4,b:U8:6"})
+    EXPECT_FALSE(fields == PointFields::Parse(other)) << other;
+  std::string why;
+  EXPECT_FALSE(PointFields::Parse("", &why));
+  EXPECT_EQ(why, "there are no fields");
+}
+
 class BadFields : public ::testing::TestWithParam<const char*> {};
 TEST_P(BadFields, AreRefused) { EXPECT_FALSE(PointFields::Parse(GetParam())); }
 INSTANTIATE_TEST_SUITE_P(All, BadFields,
                          ::testing::Values("", "x", "x:F32", "x:F99:0", ":F32:0", "x:F32:-1",
                                            "x:F32:0,x:F32:4", "x:F32:4294967295", "x:F32:0,,",
-                                           "x:F32:0z", "x\xff:F32:0", "x\n:F32:0"));
+                                           "x:F32:0z", "x\xff:F32:0", "x\x7f:F32:0", "x\n:F32:0"));
 TEST(PointFields, MayReachTheirLimitsAndNotPassThem) {
-  const auto of = [](std::size_t count) {
+  std::string why;
+  const auto of = [&](std::size_t count) {
     std::string text;
     for (std::size_t i = 0; i < count; ++i)
       text += (i > 0 ? ",f" : "f") + std::to_string(i) + ":U8:" + std::to_string(i);
-    return PointFields::Parse(text);
+    return PointFields::Parse(text, &why);
   };
   ASSERT_TRUE(of(PointFields::kMaxFields));
   EXPECT_EQ(of(PointFields::kMaxFields)->all().size(), PointFields::kMaxFields);
   EXPECT_FALSE(of(PointFields::kMaxFields + 1));
+  EXPECT_EQ(why, "there are more than 32 fields");
   const auto at = [](const char* type, std::size_t offset) {
     return PointFields::Parse(std::string("x:") + type + ":" + std::to_string(offset));
   };
@@ -101,7 +115,9 @@ TEST(PointFields, CoordinatesArePackedInTheirOrderOnly) {
   EXPECT_FALSE(packed("x:F32:0,y:F32:4,z:F32:12"));
   EXPECT_FALSE(packed("x:F32:0,y:F32:8,z:F32:12"));
   EXPECT_FALSE(packed("x:F32:4,y:F32:0,z:F32:8"));
-  EXPECT_FALSE(packed("x:F32:0,y:F32:4,z:U32:8"));
+  for (const char* other : {"x:U32:0,y:F32:4,z:F32:8", "x:F32:0,y:I32:4,z:F32:8",
+                            "x:F32:0,y:F32:4,z:U32:8", "y:F32:4,z:F32:8", "x:F32:0,z:F32:8"})
+    EXPECT_FALSE(packed(other)) << other;
   EXPECT_FALSE(packed("x:F32:0,y:F32:4"));
 }
 
@@ -138,6 +154,9 @@ TEST(SensorModel, TakesWhatLiesOnALimit) {
       m.beam_to_lidar_z_m = sign * (past ? 100.5 : 100);
       EXPECT_EQ(parses(m), !past);
       m = SmallSensor();
+      m.beam_to_lidar_x_m = sign * (past ? 100.5 : 100);
+      EXPECT_EQ(parses(m), !past);
+      m = SmallSensor();
       m.lidar_to_sensor[11] = sign * (past ? 10'001 : 10'000);
       EXPECT_EQ(parses(m), !past);
     }
@@ -157,12 +176,27 @@ TEST(SensorModel, TakesWhatLiesOnALimit) {
   EXPECT_TRUE(parses(m));
   m.beams.push_back(m.beams[0]);
   EXPECT_FALSE(parses(m));
+  m.beams.clear();
+  EXPECT_FALSE(parses(m));
+  m = SmallSensor();
+  m.columns_per_scan = 0;
+  EXPECT_FALSE(parses(m));
+  m = SmallSensor();
+  m.range_unit_mm = 0;
+  EXPECT_FALSE(parses(m));
 }
 
 TEST(SensorModel, RefusesEveryTruncationAndForeignVersions) {
   auto bytes = SmallSensor().Serialise();
   for (std::size_t n = 0; n < bytes.size(); ++n)
     EXPECT_FALSE(SensorModel::Parse({bytes.data(), n}));
+  bytes.push_back(0);
+  EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
+  bytes.pop_back();
+  bytes[1] = 1;  // flags of a later version
+  EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
+  bytes[1] = 0;
+  ASSERT_TRUE(SensorModel::Parse({bytes.data(), bytes.size()}));
   bytes[0] = 99;
   EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
 }

@@ -58,6 +58,16 @@ TEST_P(AnyOrder, SeesOneStrayPointInEitherCloud) {
   EXPECT_EQ(Measure(cloud, cloud, GetParam()).points, 500U);
 }
 
+TEST(PointErrors, SeeAPointThatNoRawPointIsNear) {
+  auto more = Lattice();
+  more.push_back({{1, 0, -0.75F}, 0});
+  const PointErrors errors = Measure(Lattice(), more, PointOrder::kAny);
+  EXPECT_DOUBLE_EQ(errors.max_m, 0.75);
+  EXPECT_EQ(errors.mean_m, 0);
+  EXPECT_EQ(errors.points, 500U);
+  EXPECT_EQ(errors.missing, 0U);
+}
+
 TEST(PointErrors, CountPointsThatAreGone) {
   const auto cloud = Lattice();
   const std::vector<DecodedPoint> fewer(cloud.begin(), cloud.end() - 2);
@@ -182,14 +192,15 @@ TEST(PointErrors, RangesHaveRoundingToo) {
 
 TEST(PointErrors, TakeRangesWhereThereAreNoPositions) {
   const auto fields = *PointFields::Parse("range:U32:0");
-  const std::uint32_t ranges[] = {1'000, 0, 2'000, 3'000};
-  const std::vector<DecodedPoint> decoded = {{{1, 0, 0}, 1'004}, {}, {}, {{3, 0, 0}, 3'000}};
+  const std::uint32_t ranges[] = {1'000, 0, 2'000, 3'000, 0};
+  const std::vector<DecodedPoint> decoded = {
+      {{1, 0, 0}, 1'004}, {}, {}, {{3, 0, 0}, 3'000}, {{4, 0, 0}, 4'000}};
   const auto errors = MeasureErrors({reinterpret_cast<const std::uint8_t*>(ranges), sizeof ranges},
                                     fields, 4, decoded, PointOrder::kPixels);
   ASSERT_TRUE(errors);
   EXPECT_NEAR(errors->max_m, 0.004, 1e-9);
   EXPECT_EQ(errors->points, 2U);
-  EXPECT_EQ(errors->missing, 1U);
+  EXPECT_EQ(errors->missing, 2U) << "one is gone, and one came from nowhere";
 }
 
 TEST(PointErrors, AreNoneWhereThereIsNothingToCompare) {

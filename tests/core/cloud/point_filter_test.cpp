@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <locale>
 
 namespace lidar {
 namespace {
@@ -92,6 +93,18 @@ TEST(PointFilter, KeepsOnePointOfEachVoxel) {
   settings.invalid = InvalidPoints::kRemove;
   settings.voxel_size_m = 2;
   EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 1, 3, 11}));
+}
+
+TEST(PointFilter, CountsAllThatIsFarAwayOnOneSideAsOneVoxel) {
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  settings.voxel_size_m = 0.01;
+  std::vector<Point> cloud(12);
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const float far = static_cast<float>(i % 4 + 1) * (i % 2 == 0 ? 1e5F : -1e5F);
+    cloud[i] = {i < 4 ? far : 0, i / 4 == 1 ? far : 0, i < 8 ? 0 : far, i};
+  }
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{0, 1, 4, 5, 8, 9}));
 }
 
 TEST(PointFilter, KeepsWhatLiesOnALimit) {
@@ -240,8 +253,21 @@ TEST(PointFilter, PointsWithoutAReturnFollowThePolicy) {
   const auto nan = Filter(settings, cloud);
   EXPECT_TRUE(std::isnan(nan.points[0].x) && std::isnan(nan.points[5].z));
   EXPECT_EQ(nan.points[5].id, 0U);
+  EXPECT_EQ(nan.points[6].x, 1);
+  EXPECT_EQ(nan.points[6].id, 6U);
   settings.invalid = InvalidPoints::kRemove;
   EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1, 2, 3, 4, 6, 7, 8, 9, 10, 11}));
+}
+
+TEST(PointFilter, APointIsAReturnUnlessACoordinateIsNoNumberOrAllAreZero) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float far = std::numeric_limits<float>::infinity();
+  PointFilterSettings settings;
+  settings.invalid = InvalidPoints::kRemove;
+  const std::vector<Point> cloud = {{nan, 1, 1, 0}, {1, nan, 1, 1}, {1, 1, nan, 2}, {far, 1, 1, 3},
+                                    {1, far, 1, 4}, {1, 1, far, 5}, {1, 0, 0, 6},   {0, 1, 0, 7},
+                                    {0, 0, 1, 8},   {0, 0, 0, 9},   {-1, 0, 0, 10}, {0, 0, -1, 11}};
+  EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{6, 7, 8, 10, 11}));
 }
 
 TEST(PointFilter, NeedsCoordinatesForWhatIsAboutThem) {
@@ -249,12 +275,36 @@ TEST(PointFilter, NeedsCoordinatesForWhatIsAboutThem) {
   PointFilterSettings settings;
   settings.column_step = 2;
   EXPECT_TRUE(PointFilter::Make(settings, fields, 4));
-  settings.max_range_m = 5;
-  EXPECT_FALSE(PointFilter::Make(settings, fields, 4));
+  std::vector<PointFilterSettings> about_them(7);
+  about_them[0].max_range_m = 5;
+  about_them[1].min_range_m = 1;
+  about_them[2].has_pose = true;
+  about_them[3].transform = kIdentity;
+  about_them[4].crop_box = {{-1, -1, -1, 1, 1, 1}};
+  about_them[5].voxel_size_m = 0.1;
+  about_them[6].invalid = InvalidPoints::kZero;
+  for (std::size_t i = 0; i < about_them.size(); ++i) {
+    EXPECT_FALSE(PointFilter::Make(about_them[i], fields, 4)) << i;
+    EXPECT_TRUE(PointFilter::Make(about_them[i], Fields(), 16)) << i;
+  }
+}
+
+struct CommaNumbers : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(PointFilter, NumbersAreReadWithAPointWhateverLocaleTheProgramSets) {
+  const std::locale before = std::locale::global({std::locale(), new CommaNumbers});
+  const auto numbers = ParseNumbers("0.5,-1.25 1000");
+  std::locale::global(before);
+  EXPECT_EQ(numbers, (std::vector<double>{0.5, -1.25, 1000}));
 }
 
 TEST(PointFilter, TransformsAreReadStrictly) {
-  EXPECT_TRUE(ParseTransform("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"));
+  const auto rows = ParseTransform("1 2 3 4,5 6 7 8,9 10 11 12,0 0 0 1");
+  EXPECT_EQ(rows, (Transform{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0, 1}));
   // Metres, then degrees about x, y and z; the turn about z comes last.
   const auto turned = ParseTransform("1,2,3, 90,0,90");
   ASSERT_TRUE(turned);

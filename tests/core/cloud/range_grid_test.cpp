@@ -33,6 +33,23 @@ TEST(RangeGrids, FindTheBinsOfManyRangesAsThoseOfOne) {
     }
 }
 
+TEST(RangeGrids, TurnManyBinsToRangesAsOneUpToTheLongestRange) {
+  for (const std::uint32_t unit : {1U, 8U, 1'000U})
+    for (const std::uint32_t parts : {256U, 257U, 41U * 256, 65'535U * 256}) {
+      const RangeGrid grid = RangeGrid::OfParts(unit, parts);
+      const std::uint32_t last = grid.BinOf(RangeGrid::kMaxRangeMm);
+      const auto range_of = [&](std::uint32_t bin) {
+        std::vector<std::int32_t> bins = {0, static_cast<std::int32_t>(bin)};
+        return grid.ToRanges(&bins) ? static_cast<std::uint32_t>(bins[1]) : UINT32_MAX;
+      };
+      for (std::uint32_t bin = 1; bin < last; bin = 3 * bin + 1)
+        ASSERT_EQ(range_of(bin), grid.RangeOf(bin)) << bin << " of " << unit << ", " << parts;
+      EXPECT_EQ(range_of(last), grid.RangeOf(last)) << unit << ", " << parts;
+      for (const std::uint32_t beyond : {last + 1, 2 * last, UINT32_MAX / 2, UINT32_MAX})
+        EXPECT_EQ(range_of(beyond), UINT32_MAX) << beyond << " of " << unit << ", " << parts;
+    }
+}
+
 class GridErrors : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(GridErrors, AreReachedAndNeverPassed) {

@@ -124,9 +124,20 @@ TEST_F(Tree, SaysWhatIsMissingAndWhetherItMayCome) {
 
 TEST_F(Tree, KeepsPosesInTheOrderOfTheirTimes) {
   TransformTree tree;
-  for (const int ms : {0, 20, 10, 20})
-    ASSERT_TRUE(tree.Set("a", "b", kStart + milliseconds(ms), At(ms), false));
-  ExpectNear(Place(tree.Find("a", "b", kStart + milliseconds(15)), {0, 0, 0}), {15, 0, 0});
+  const auto set = [&](int ms, double x) {
+    ASSERT_TRUE(tree.Set("a", "b", kStart + milliseconds(ms), At(x), false));
+  };
+  const auto x_at = [&](int ms) {
+    return Place(tree.Find("a", "b", kStart + milliseconds(ms)), {0, 0, 0})[0];
+  };
+  for (const int ms : {0, 20, 10}) set(ms, ms * ms);
+  for (const auto& [ms, x] :
+       {std::pair(5, 50), std::pair(10, 100), std::pair(15, 250), std::pair(20, 400)})
+    EXPECT_NEAR(x_at(ms), x, 1e-9) << ms;
+  set(10, 200);  // in place of the first pose of that time
+  for (const auto& [ms, x] :
+       {std::pair(5, 100), std::pair(10, 200), std::pair(15, 300), std::pair(20, 400)})
+    EXPECT_NEAR(x_at(ms), x, 1e-9) << ms;
 }
 
 TEST_F(Tree, ForgetsWhatIsOld) {
@@ -192,6 +203,32 @@ TEST_F(Tree, AClockThatWentBackIsSeenWhateverThePosesHold) {
     EXPECT_EQ(tree_.Set("map", "odom", earlier - seconds(11 * (i % 5)), At(i), false),
               i == kAgain - 1 || (i >= kAgain && i % 5 == 0))
         << i;
+}
+
+TEST_F(Tree, AClockThatWentBackTwiceLeavesNoPoseOfTheFirstTime) {
+  constexpr auto kAgain = static_cast<int>(TransformTree::kRestart);
+  const auto set_old = [&](Time begin, int count, double x) {
+    for (int i = 0; i < count; ++i) tree_.Set("map", "odom", begin + milliseconds(i), At(x), false);
+  };
+  const Time first = kStart - seconds(20);
+  set_old(first, kAgain - 1, 3);
+  ASSERT_TRUE(tree_.Set("map", "odom", kStart, At(100), false));  // the clock goes on
+  set_old(first + seconds(5), kAgain, 7);
+  ExpectNear(Place(tree_.Find("map", "odom", first + seconds(5)), {0, 0, 0}), {7, 0, 0});
+  EXPECT_FALSE(tree_.Find("map", "odom", first + seconds(1)).transform);
+}
+
+TEST_F(Tree, APoseForGoodTakesThePlaceOfAnyOther) {
+  // A driver that starts again may stamp its pose earlier.
+  ASSERT_TRUE(tree_.Set("base", "lidar", kStart, At(2), true));
+  ASSERT_TRUE(tree_.Set("base", "lidar", kStart - seconds(5), At(3), true));
+  ExpectNear(Place(tree_.Find("base", "lidar", kStart), {0, 0, 0}), {3, 0, 0});
+  // A frame that begins to move has no pose before its first one.
+  ASSERT_TRUE(tree_.Set("base", "lidar", kStart, At(4), false));
+  ExpectNear(Place(tree_.Find("base", "lidar", kStart), {0, 0, 0}), {4, 0, 0});
+  EXPECT_FALSE(tree_.Find("base", "lidar", kStart - seconds(1)).transform);
+  ASSERT_TRUE(tree_.Set("base", "lidar", kStart - seconds(1), At(5), true));
+  ExpectNear(Place(tree_.Find("base", "lidar", kStart + seconds(1)), {0, 0, 0}), {5, 0, 0});
 }
 
 TEST_F(Tree, AFrameThatMovesToAnotherParentLeavesTheFirst) {

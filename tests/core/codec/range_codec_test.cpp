@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "src/base/byte_writer.h"
+#include "src/codec/varint.h"
 #include "tests/core/codec/round_trips.h"
 
 namespace lidar::codec {
@@ -147,6 +149,29 @@ TEST(RangeGrids, MakeSizesThatFallAsTheStepGrows) {
   }
 }
 
+TEST(Varints, HoldNumbersBelow2ToThe28InFourBytesAtMost) {
+  for (const auto& [number, size] :
+       {std::pair(0U, 1U), std::pair(127U, 1U), std::pair(128U, 2U), std::pair(16'383U, 2U),
+        std::pair(16'384U, 3U), std::pair((1U << 28) - 1, 4U)}) {
+    std::vector<std::uint8_t> bytes;
+    ByteWriter writer(&bytes);
+    WriteVarint(number, &writer);
+    EXPECT_EQ(bytes.size(), size) << number;
+    ByteReader reader(bytes.data(), bytes.size());
+    bool ok = true;
+    EXPECT_EQ(ReadVarint(&reader, &ok), number);
+    EXPECT_TRUE(ok && reader.ok() && reader.remaining() == 0) << number;
+  }
+  for (const std::vector<std::uint8_t>& longer :
+       {std::vector<std::uint8_t>{128, 128, 128, 128, 0},
+        std::vector<std::uint8_t>{255, 255, 255, 255, 1}}) {
+    ByteReader reader(longer.data(), longer.size());
+    bool ok = true;
+    ReadVarint(&reader, &ok);
+    EXPECT_FALSE(ok);
+  }
+}
+
 class HostileHeaders : public ::testing::Test {
  protected:
   /// Returns true if a header can be read from `bytes`.
@@ -173,6 +198,37 @@ TEST_F(HostileHeaders, OfOtherVersionsAreRefused) {
     bytes[0] = static_cast<std::uint8_t>(version << 4 | (bytes[0] & 15U));
     EXPECT_FALSE(Reads(bytes)) << version;
   }
+}
+
+TEST_F(HostileHeaders, AreReadUpToTheirLimitsAndNotBeyond) {
+  struct Numbers {
+    unsigned bits = 5, full = 1;
+    std::uint32_t beams = 32, first_column = 0, columns = 64, payload = 0;
+  };
+  const auto reads = [](const Numbers& n) {
+    std::vector<std::uint8_t> bytes;
+    ByteWriter writer(&bytes);
+    writer.U8(static_cast<std::uint8_t>(RangeHeader::kVersion << 4 |
+                                        static_cast<unsigned>(RangeCoder::kAdaptive)));
+    writer.U8(static_cast<std::uint8_t>(n.bits | n.full << 4));
+    for (const std::uint32_t number :
+         {n.beams, n.first_column, n.columns, 1U, RangeGrid::kParts, n.payload})
+      WriteVarint(number, &writer);
+    writer.U8(0);  // the payload
+    return Reads(bytes);
+  };
+  constexpr std::uint32_t kBeams = RangeHeader::kMaxBeams;
+  constexpr std::uint32_t kColumns = RangeHeader::kMaxColumns;
+  for (const Numbers& n :
+       {Numbers{}, Numbers{0}, Numbers{8}, Numbers{5, 0}, Numbers{5, 2}, Numbers{5, 1, 1},
+        Numbers{5, 1, kBeams}, Numbers{5, 1, 32, kColumns - 1}, Numbers{5, 1, 32, 0, 1},
+        Numbers{5, 1, 32, 0, kColumns}, Numbers{5, 1, 32, 0, 64, 1}})
+    EXPECT_TRUE(reads(n)) << n.bits << n.full << ' ' << n.beams << ' ' << n.columns;
+  for (const Numbers& n :
+       {Numbers{9}, Numbers{15}, Numbers{5, 3}, Numbers{5, 1, 0}, Numbers{5, 1, kBeams + 1},
+        Numbers{5, 1, 32, kColumns}, Numbers{5, 1, 32, 0, 0}, Numbers{5, 1, 32, 0, kColumns + 1},
+        Numbers{5, 1, 32, 0, 64, 2}, Numbers{5, 1, 32, 0, 64, 1U << 28}})
+    EXPECT_FALSE(reads(n)) << n.bits << n.full << ' ' << n.beams << ' ' << n.columns;
 }
 
 TEST_F(HostileHeaders, WithAMaskThatTheyDoNotNeedOrLackAreRefused) {

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 
+#include "src/codec/block_store.h"
 #include "src/codec/standstill.h"
 
 namespace lidar::codec {
@@ -66,6 +68,15 @@ TEST(ReferenceKeeper, HoldsNoMemoryForAReceiverThatIsGone) {
   EXPECT_GT(keeper.bytes(), 0U);
   EXPECT_FALSE(keeper.Begin(Time{3s}, {2, 0, 1}));
   EXPECT_EQ(keeper.bytes(), 0U);
+  // Another one takes its place at once, and has no slice of it.
+  keeper.OnAcknowledged(Time{3s}, kOneReceiver + 1, 1, 0);
+  EXPECT_TRUE(keeper.Begin(Time{3s}, {3, 0, 1}));
+  EXPECT_FALSE(keeper.HasReference());
+  keeper.OnEncoded({Block(64)});
+  EXPECT_EQ(keeper.bytes(), Block(64)->bytes());
+  keeper.OnAcknowledged(Time{3s}, kOneReceiver + 1, 3, 0);
+  EXPECT_TRUE(keeper.Begin(Time{3s}, {4, 0, 1}));
+  EXPECT_TRUE(keeper.HasReference());
 }
 
 TEST(ReferenceKeeper, RefersToNoSliceWhoseNameCameTwice) {
@@ -81,6 +92,94 @@ TEST(ReferenceKeeper, RefersToNoSliceWhoseNameCameTwice) {
     EXPECT_EQ(keeper.HasReference(), !twice);
     EXPECT_EQ(keeper.bytes() > 0, !twice);
   }
+}
+
+TEST(ReferenceKeeper, RefersToTheBlockOfTheSamePlace) {
+  std::vector<BlockMemoryPtr> blocks;
+  for (const std::uint32_t first_column : {0U, 64U}) {
+    auto block = std::make_shared<BlockMemory>(*Block(64));
+    block->first_column = first_column;
+    blocks.push_back(block);
+  }
+  ReferenceKeeper keeper;
+  keeper.OnAcknowledged(Time{0s}, kOneReceiver, 0, UINT32_MAX);
+  ASSERT_TRUE(keeper.Begin(Time{0s}, {1, 0, 1}));
+  EXPECT_TRUE(keeper.references().empty());
+  keeper.OnEncoded(blocks);
+  keeper.OnAcknowledged(Time{0s}, kOneReceiver, 1, 0);
+  ASSERT_TRUE(keeper.Begin(Time{100ms}, {2, 0, 1}));
+  EXPECT_EQ(keeper.references(), blocks);
+  const auto reference = [&](std::uint32_t beams, std::uint32_t columns, std::uint32_t first) {
+    RangeImage image;
+    image.beams = beams;
+    image.columns = columns;
+    image.first_column = first;
+    return keeper.Reference(image);
+  };
+  EXPECT_EQ(reference(128, 64, 0), blocks[0]);
+  EXPECT_EQ(reference(128, 64, 64), blocks[1]);
+  EXPECT_EQ(reference(128, 64, 32), nullptr);
+  EXPECT_EQ(reference(128, 32, 0), nullptr);
+  EXPECT_EQ(reference(64, 64, 0), nullptr);
+}
+
+TEST(PixelMemory, AveragesTheRangesNearItsMeanAndBeginsAnewBeyond) {
+  constexpr std::int64_t kStep = 328;  // 41 mm
+  PixelMemory pixel;
+  const auto expect = [&](std::uint32_t range_mm, const std::array<unsigned, 4>& after) {
+    pixel.See(range_mm, kStep);
+    EXPECT_EQ((std::array<unsigned, 4>{pixel.mean, pixel.spread, pixel.count, pixel.returns}),
+              after)
+        << range_mm;
+  };
+  expect(0, {0, 0, 0, 0b0});
+  expect(1'000, {8'000, 82, 1, 0b1});
+  expect(0, {8'000, 82, 1, 0b10});
+  expect(1'020, {8'080, 121, 2, 0b101});
+  expect(2'000, {16'000, 82, 1, 0b1011});
+  expect(2'123, {16'492, 533, 2, 0b10111});  // as far as a range of this mean may be
+  expect(1'000, {8'000, 82, 1, 0b101111});
+  for (int i = 0; i < 20; ++i) pixel.See(1'000, kStep);
+  EXPECT_EQ(pixel.mean, 8'000U);
+  EXPECT_EQ(pixel.count, PixelMemory::kMostCount);
+  EXPECT_EQ(pixel.returns, 0xFF);
+  PixelMemory wide;
+  for (const std::uint32_t range_mm : {200'000U, 300'000U}) wide.See(range_mm, 1'000'000);
+  EXPECT_EQ(wide.mean, 2'000'000U);
+  EXPECT_EQ(wide.spread, 65'535);
+}
+
+TEST(BlockStore, CountsAndForgetsTheBlocksOfEachSectorAlone) {
+  struct Sector {
+    std::uint32_t beams, columns, first_column;
+  };
+  BlockStore store;
+  std::uint32_t crc = 0;
+  for (std::size_t i = 0; i < BlockStore::kMostOfSector + 5; ++i)
+    for (const Sector& s :
+         {Sector{128, 8, 0}, Sector{128, 8, 8}, Sector{128, 4, 0}, Sector{64, 8, 0}}) {
+      auto block = std::make_shared<BlockMemory>();
+      block->beams = s.beams;
+      block->columns = s.columns;
+      block->first_column = s.first_column;
+      block->crc = crc++;
+      block->pixels.resize(std::size_t{s.beams} * s.columns);
+      store.Add(block);
+      store.Add(block);  // comes twice, and counts once
+    }
+  EXPECT_EQ(store.size(), 4 * BlockStore::kMostOfSector);
+  RangeImage place;
+  place.beams = 128;
+  place.columns = 8;
+  place.first_column = 8;
+  EXPECT_EQ(store.Recall(1, place), nullptr) << "forgotten";
+  EXPECT_EQ(store.Recall(crc - 4, place), nullptr) << "of another sector";
+  const BlockMemoryPtr newest = store.Recall(crc - 3, place);
+  ASSERT_NE(newest, nullptr);
+  EXPECT_EQ(newest->crc, crc - 3);
+  EXPECT_EQ(store.size(), 3 * BlockStore::kMostOfSector + BlockStore::kOvertaking + 1);
+  place.first_column = 0;
+  EXPECT_NE(store.Recall(4 * 5, place), nullptr) << "the oldest that the first sector has";
 }
 
 TEST(ReferenceKeeper, KeysComeInTurnAfterTheIntervalHasChanged) {

@@ -105,13 +105,22 @@ TEST_P(Efforts, KeepBinsThatOnlyTheFastCoderCanCount) {
   RangeSettings settings;
   settings.coder = GetParam() > 0 ? RangeCoder::kMixing : RangeCoder::kAdaptive;
   settings.effort = GetParam();
-  ASSERT_TRUE(encoder.Encode(image, settings, &bytes));
-  RangeDecoder decoder(model);
-  ByteReader reader(bytes.data(), bytes.size());
-  RangeImage back;
-  IntensityScale scale;
-  ASSERT_TRUE(decoder.Decode(&reader, kMaxPoints, &back, &scale));
-  EXPECT_EQ(back.ranges, image.ranges);
+  // Each coder can count the bins of 9 mm, but not those of the finer grid that a choice takes.
+  for (const RangeGrid& grid : {RangeGrid(), RangeGrid(1, 9)}) {
+    settings.grid = grid;
+    bytes.clear();
+    ASSERT_TRUE(encoder.Encode(image, settings, &bytes));
+    RangeDecoder decoder(model);
+    ByteReader reader(bytes.data(), bytes.size());
+    RangeImage back;
+    IntensityScale scale;
+    ASSERT_TRUE(decoder.Decode(&reader, kMaxPoints, &back, &scale));
+    EXPECT_EQ(decoder.error_m(), grid.error_m());
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      const std::uint32_t range = image.ranges[i];
+      ASSERT_EQ(back.ranges[i], range == 0 ? 0 : grid.RangeOf(grid.BinOf(range))) << i;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Efforts, ::testing::Range(0U, EffortControl::kHighest + 1));
@@ -222,6 +231,32 @@ TEST(IntensityScale, IsTheSmallestThatHoldsTheLargestIntensity) {
       {65'535.0F, FullScale::kWord}};
   for (const auto& [largest, full] : cases)
     EXPECT_EQ(IntensityScale::Fitting(largest), full) << largest;
+}
+
+TEST(IntensityScale, HasEvenLevelsOfWhichEachDecodesToTheMeanOfItsIntegers) {
+  struct Row {
+    FullScale full;
+    unsigned bits;
+    float intensity;
+    unsigned level;
+    float value;
+  };
+  for (const Row& row :
+       {Row{FullScale::kOne, 3, 0, 0, 0}, Row{FullScale::kOne, 3, 0.07F, 0, 0},
+        Row{FullScale::kOne, 3, 0.08F, 1, 1.0F / 7}, Row{FullScale::kOne, 3, 0.51F, 4, 4.0F / 7},
+        Row{FullScale::kOne, 3, 1, 7, 1}, Row{FullScale::kOne, 3, 2, 7, 1},
+        Row{FullScale::kByte, 5, 0, 0, 3.5F}, Row{FullScale::kByte, 5, 7, 0, 3.5F},
+        Row{FullScale::kByte, 5, 8, 1, 11.5F}, Row{FullScale::kByte, 5, 255, 31, 251.5F},
+        Row{FullScale::kByte, 5, 300, 31, 251.5F}, Row{FullScale::kByte, 8, 100, 100, 100},
+        Row{FullScale::kWord, 8, 255, 0, 127.5F}, Row{FullScale::kWord, 8, 256, 1, 383.5F},
+        Row{FullScale::kWord, 8, 65'535, 255, 65'407.5F}, Row{FullScale::kByte, 5, -9, 0, 3.5F},
+        Row{FullScale::kOne, 3, std::nanf(""), 0, 0}}) {
+    const IntensityScale scale(row.full, row.bits);
+    EXPECT_EQ(scale.LevelOf(row.intensity), row.level) << row.intensity << ", " << row.bits;
+    EXPECT_FLOAT_EQ(scale.ValueOf(static_cast<std::uint8_t>(row.level)), row.value) << row.level;
+    const auto fine = IntensityScale(row.full, 8).LevelOf(row.intensity);
+    EXPECT_EQ(scale.Coarsen(fine), row.level) << row.intensity << ", " << row.bits;
+  }
 }
 
 /// Two blocks of a slice. The second begins at `second`, with `bits` of intensity up to `full`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Slices in xyz geometry, from raw points to raw points, the odd ones above all.
 #include <draco/compression/decode.h>
+#include <draco/compression/encode.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -291,6 +292,30 @@ void ExpectAttribute(const ::draco::PointCloud& cloud, ::draco::GeometryAttribut
   ASSERT_EQ(values.size(), expected.size());
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1e-5) << i;
 #endif
+}
+
+TEST(XyzSlices, WithoutAGridAreTheirFloatsIfThoseAreNumbers) {
+  for (const float odd : {3e-7F, -1e20F, kNan, kInfinity}) {
+    const std::vector<float> xyz = {1, -2.5F, odd, 0.1F, -0.0F, 7};
+    ::draco::GeometryAttribute attribute;
+    attribute.Init(::draco::GeometryAttribute::POSITION, nullptr, 3, ::draco::DT_FLOAT32, false, 12,
+                   0);
+    ::draco::PointCloud points;
+    points.set_num_points(2);
+    const int id = points.AddAttribute(attribute, true, 2);
+    points.attribute(id)->buffer()->Write(0, xyz.data(), xyz.size() * sizeof(float));
+    ::draco::Encoder encoder;
+    encoder.SetEncodingMethod(::draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+    ::draco::EncoderBuffer buffer;
+    ASSERT_TRUE(encoder.EncodePointCloudToBuffer(points, &buffer).ok());
+    const ByteView stream{reinterpret_cast<const std::uint8_t*>(buffer.data()), buffer.size()};
+    XyzCloud cloud;
+    EXPECT_EQ(DecodeXyz(stream, 2, &cloud), std::isfinite(odd)) << odd;
+    if (std::isfinite(odd)) {
+      EXPECT_EQ(cloud.xyz, xyz);
+    }
+    EXPECT_FALSE(DecodeXyz(stream, 1, &cloud));
+  }
 }
 
 TEST(XyzSlices, AreTheFloatsThatDracoItselfDecodes) {

@@ -14,6 +14,7 @@
 #include "src/codec/cloud/beam_part.h"
 #include "src/codec/cloud/path_fit.h"
 #include "src/codec/mixing/binary_coder.h"
+#include "src/codec/varint.h"
 #include "tests/core/codec/cloud/beam_clouds.h"
 
 namespace lidar::codec::cloud {
@@ -72,6 +73,34 @@ TEST(BeamTable, TakesFewBytesForPatterns) {
               std::tie(b.elevation, b.offset, b.height_um, b.side_um, b.reach_um))
         << i;
   }
+}
+
+// The first encoders wrote the beams behind the flags, instead of by CodeBeams().
+TEST(BeamTable, ReadsTheBeamsOfTheFirstEncoders) {
+  std::vector<std::uint8_t> bytes;
+  ByteWriter writer(&bytes);
+  const auto write = [&](std::uint32_t number) { WriteVarint(number, &writer); };
+  const auto write_signed = [&](std::int32_t number) {
+    write(static_cast<std::uint32_t>(std::abs(number)) << 1 | (number < 0 ? 1U : 0U));
+  };
+  write(1'024 * BeamTable::kParts);
+  write(2);
+  writer.U8(1 | 4);  // beams have heights and sides, and reaches
+  for (const auto& [below, offset, higher, aside, reach] :
+       {std::tuple(8'000U, 300U, 600, -50, -500), std::tuple(9'000U, 40'000U, 5, 100, 250)}) {
+    write(below);
+    write(offset);
+    for (const std::int32_t number : {higher, aside, reach}) write_signed(number);
+  }
+  ByteReader reader(bytes.data(), bytes.size());
+  const auto table = BeamTable::Read(&reader);
+  ASSERT_TRUE(table && table->rows() == 2);
+  EXPECT_TRUE(!table->beams_follow && reader.ok() && reader.remaining() == 0);
+  const auto numbers = [](const BeamTable::Beam& b) {
+    return std::tuple(b.elevation, b.offset, b.height_um, b.side_um, b.reach_um);
+  };
+  EXPECT_EQ(numbers(table->beams[0]), std::tuple(kTurn / 4 - 8'000, 300, 600, -50, -500));
+  EXPECT_EQ(numbers(table->beams[1]), std::tuple(kTurn / 4 - 17'000, 40'000, 605, 50, 250));
 }
 
 TEST(BeamTable, IsRefusedWithBeamsThatNoEncoderWrites) {

@@ -402,6 +402,11 @@ TEST(ExactPart, RefusesAnOrderByAFieldThatItDoesNotHave) {
   }
 }
 
+TEST(ExactPart, RefusesAnOrderThatPutsTwoPointsInOnePlace) {
+  EXPECT_TRUE(Decodes(SectionOf({2, 0, 1}), 3, 1U << 20));
+  EXPECT_FALSE(Decodes(SectionOf({0, 0, 0}), 3, 1U << 20));
+}
+
 // Each place in the order is coded as a step to a long run of taken places. A search from place to
 // place would take minutes.
 TEST(ExactPart, DecodesAnOrderFullOfStepsBackInTime) {
@@ -431,6 +436,10 @@ TEST(ExactDecoder, GivesACloudWithinTheLimitsOrNoneForDamagedSlices) {
         static_cast<std::uint8_t>(1U << random() % 8);
     if (!decoder.Decode({damaged.data(), damaged.size()})) continue;
     ASSERT_LE(decoder.size(), 800U);
+    std::vector<std::uint32_t> order = decoder.part().order;
+    ASSERT_EQ(order.size(), decoder.size());
+    std::sort(order.begin(), order.end());
+    for (std::size_t k = 0; k < order.size(); ++k) ASSERT_EQ(order[k], k);
     decoder.Write(cloud.layout, written.data());
   }
   EXPECT_TRUE(decoder.Decode({bytes.data(), bytes.size()}));
