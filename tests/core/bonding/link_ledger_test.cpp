@@ -89,6 +89,16 @@ TEST(LinkLedger, RefusesWholeWhatTellsOfAPacketThatWentAnotherWay) {
   EXPECT_TRUE(foreign->arrived.empty());
 }
 
+TEST(LinkLedger, TakesAReportInWhichNothingArrivedAsNoNews) {
+  LinkLedger ledger;
+  ledger.OnSent(kStart, {kSsrc, 1});
+  const auto report = ledger.OnFeedback(ReportOf(1, {false, false}));
+  ASSERT_TRUE(report) << "it names no packet of another link";
+  EXPECT_TRUE(report->arrived.empty());
+  EXPECT_TRUE(report->missing.empty());
+  EXPECT_EQ(ledger.waiting_since(), kStart);
+}
+
 TEST(LinkLedger, WaitsForWhatLeftFirst) {
   LinkLedger ledger;
   EXPECT_FALSE(ledger.waiting_since());

@@ -367,6 +367,34 @@ TEST(Scheduler, SumsUpTargetsOfLinksThatWork) {
   EXPECT_EQ(scheduler.Target(kStart, {Mbps(10), Mbps(3)}), Mbps(13));
   scheduler.SetUsable(kStart, 0, false);
   EXPECT_EQ(scheduler.Target(kStart, {Mbps(10), Mbps(3)}), Mbps(3));
+  scheduler.SetUsable(kStart, 1, false);
+  EXPECT_EQ(scheduler.Target(kStart, {Mbps(10), Mbps(3)}), Mbps(10)) << "not a sum of dead links";
+}
+
+TEST(Scheduler, ProvesALinkThatCameBackForASecondWithCopiesOfAllPackets) {
+  Scheduler scheduler(2, Method::kBackup);
+  for (std::size_t i = 0; i < 2; ++i) scheduler.OnPath(i, {Mbps(8), 40ms});
+  Time now = kStart;
+  std::uint16_t seq = 0;
+  const auto send = [&](bool second_reports) {
+    const PacketId id{kMedia, ++seq};
+    const LinkSet links = scheduler.OnPacket(now, {id, kSize, seq});
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!links[i]) continue;
+      scheduler.OnSent(now, i, id);
+      if (i == 0 || second_reports) scheduler.OnFeedback(now, i, Arrived(seq));
+    }
+    now += 12500us;
+    return links;
+  };
+  for (int i = 0; i < 200; ++i) send(true);
+  scheduler.SetUsable(now, 1, false);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(send(false), SetOf({0}));
+  scheduler.SetUsable(now, 1, true);
+  for (int i = 0; i < 80; ++i) EXPECT_EQ(send(false), SetOf({0, 1})) << i;
+  int copies = 0;
+  for (int i = 0; i < 80; ++i) copies += send(false)[1];
+  EXPECT_EQ(copies, 10) << "one of eight";
 }
 
 TEST(Scheduler, BroadcastsEveryPacketAndBacksUpOnlyWhatWaits) {

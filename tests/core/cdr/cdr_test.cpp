@@ -20,6 +20,15 @@ TEST(CdrWriter, AlignsEachNumberToItsSizeFromBehindTheHeader) {
                           0, 0, 0, 0, 0,   0,   0xF0, 0x3F,  // 1.0
                           7, 0, 0, 0, 4,   3,   2,    1};
   EXPECT_EQ(bytes, expected);
+  for (const bool wide : {false, true}) {
+    Bytes more;
+    CdrWriter behind(&more);
+    behind.U8(7);
+    wide ? behind.U64(1) : behind.F32(1);
+    const Bytes f32 = {0, 1, 0, 0, 7, 0, 0, 0, 0, 0, 0x80, 0x3F};
+    const Bytes u64 = {0, 1, 0, 0, 7, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
+    EXPECT_EQ(more, wide ? u64 : f32);
+  }
 }
 
 TEST(CdrReader, ReadsWhatWasWritten) {
@@ -53,6 +62,14 @@ TEST(CdrReader, ReadsBigEndian) {
 
 TEST(CdrReader, AlignsDoublesOfCdr2ToFourBytes) {
   const Bytes bytes = {0, 7, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xF0, 0x3F};
+  CdrReader r(View(bytes));
+  EXPECT_EQ(r.U32(), 1u);
+  EXPECT_EQ(r.F64(), 1);
+  EXPECT_TRUE(r.ok());
+}
+
+TEST(CdrReader, ReadsCdr2OfBigEndian) {
+  const Bytes bytes = {0, 6, 0, 0, 0, 0, 0, 1, 0x3F, 0xF0, 0, 0, 0, 0, 0, 0};
   CdrReader r(View(bytes));
   EXPECT_EQ(r.U32(), 1u);
   EXPECT_EQ(r.F64(), 1);

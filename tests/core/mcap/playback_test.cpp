@@ -179,6 +179,14 @@ TEST_F(Growing, CountsFilesThatBreakOffAndThoseThatCannotBeRead) {
   }
 }
 
+TEST_F(Growing, SaysWhyItsFolderCannotBeListed) {
+  Save("a.mcap", maker_.file());
+  EXPECT_EQ(Playback::Open(folder_ + "/a.mcap/r%d.mcap", &cancelled_, &why_), nullptr);
+  EXPECT_EQ(why_, "Not a directory");
+  EXPECT_EQ(Playback::Open(folder_ + "/none/r%d.mcap", &cancelled_, &why_), nullptr);
+  EXPECT_EQ(why_, "there is no such file");
+}
+
 TEST_F(Growing, LastsFromItsEarliestToItsLatestFileWhateverTheirOrder) {
   Record(5, 8);
   Save("a1.mcap", maker_.file());

@@ -200,5 +200,21 @@ TEST(PaperModel, ChoosesTheGridPointNearestToTheTarget) {
   EXPECT_NEAR(BitsOfStep(100, model.Choose(slice, 1, limits).step_m), 12, 1e-9);
 }
 
+TEST(PaperModel, PredictsAGeometryThatItLacksAsOneThatItHas) {
+  PaperPolynomial p;
+  p.alpha[0] = 1000;  // bytes = 1000 q
+  const PaperModel model({{{"xyz", p}}});
+  SliceFeatures slice;
+  slice.extent_m = 100;
+  slice.returns = 1000;
+  Settings settings;
+  settings.step_m = StepOfBits(100, 7);
+  for (const char* mode : {"xyz-kd6", "range-adaptive"}) {
+    slice.mode = mode;
+    EXPECT_NEAR(model.Predict(slice, settings).total(), 7000, 1e-6) << mode;
+  }
+  EXPECT_EQ(PaperModel(PaperCoefficients{}).Predict(slice, settings).total(), 0) << "it has none";
+}
+
 }  // namespace
 }  // namespace lidar::rate

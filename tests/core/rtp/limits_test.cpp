@@ -185,6 +185,9 @@ class Rivals : public ::testing::Test {
     }
   }
 
+  /// The next slices of a stream do not arrive.
+  void Miss(std::uint32_t ssrc, unsigned slices) { sent_[ssrc] += slices; }
+
   using milliseconds = std::chrono::milliseconds;
   Receiver receiver{test::kReorder};
 
@@ -239,6 +242,18 @@ TEST_F(Rivals, TakeOverOnceTheStreamWasSilentForTheTimeOfAScan) {
   // The silence of stream 2 begins with its own last packet.
   Push(3, Receiver::kProbation, 210);
   EXPECT_EQ(receiver.ssrc(), 2U);
+}
+
+TEST_F(Rivals, DoNotTakeOverWhereTheStreamGoesOnBehindAGap) {
+  Push(1, 8);
+  Push(2, Receiver::kProbation - 1);
+  Miss(1, 20);
+  Push(1, 1);
+  EXPECT_EQ(receiver.ssrc(), 1U);
+  Push(1, Receiver::kProbation - 1);
+  EXPECT_EQ(receiver.ssrc(), 1U);
+  EXPECT_EQ(receiver.accounts().outages, 1U);
+  EXPECT_EQ(receiver.accounts().restarts, 0U);
 }
 
 TEST_F(Rivals, ThatGiveUpLeaveTheirPacketsAsInvalid) {

@@ -362,5 +362,48 @@ TEST(Memory, IsBoundedAgainstSlicesThatNeverEnd) {
   EXPECT_GT(reassembler.pending_bytes(), Reassembler::kMaxPendingBytes / 2);
 }
 
+TEST(Memory, KeepsNoMoreOfAConfigThanAUnitMayHold) {
+  Reassembler reassembler(kReorder);
+  std::vector<ReceivedSlice> out;
+  const std::vector<std::uint8_t> body(60'000, 7);
+  const auto push = [&](PacketType type, std::uint16_t sequence) {
+    Unit unit;
+    unit.type = type;
+    unit.unit = UnitType::kStreamConfig;
+    unit.body = {body.data(), body.size()};
+    RtpPacket packet;
+    packet.sequence = sequence;
+    reassembler.Push(packet, {unit}, &out);
+  };
+  for (std::uint16_t i = 1; i <= 80; ++i) push(PacketType::kMiddleFragment, i);
+  push(PacketType::kFirstFragment, 0);
+  push(PacketType::kLastFragment, 81);
+  EXPECT_EQ(reassembler.packets().config_damaged, 0U) << "the config is whole";
+}
+
+TEST(Memory, ThatASliceHadToLeaveIsALoss) {
+  constexpr std::uint16_t kMost = Reassembler::kMaxPendingSlices;
+  Reassembler reassembler(std::chrono::hours(1));
+  std::vector<ReceivedSlice> out;
+  const std::vector<std::uint8_t> body(10, 7);
+  const auto begin = [&](std::uint16_t index) {
+    Unit unit;
+    unit.type = PacketType::kFirstFragment;
+    unit.slice = {0, index, 4'096};
+    unit.length = 1'000;
+    unit.body = {body.data(), body.size()};
+    RtpPacket packet;
+    packet.sequence = index;
+    reassembler.Push(packet, {unit}, &out);
+  };
+  for (std::uint16_t i = 0; i < kMost + 6; ++i) begin(i);
+  EXPECT_EQ(reassembler.slices().slices_lost, 6U);
+  begin(5);
+  EXPECT_EQ(reassembler.packets().late, 1U);
+  begin(6);
+  EXPECT_EQ(reassembler.packets().duplicate, 1U);
+  EXPECT_EQ(reassembler.slices().slices_lost, 6U);
+}
+
 }  // namespace
 }  // namespace lidar::rtp

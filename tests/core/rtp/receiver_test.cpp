@@ -218,11 +218,17 @@ TEST(Receiver, IsNotMovedByAWholeStreamOfAnotherWhileItsOwnGoesOn) {
   EXPECT_EQ(receiver.accounts().restarts, 0U);
 }
 
-TEST(Receiver, HoldsNoSlicesOfAnotherStreamWhileItsOwnGoesOn) {
+class AnotherStream : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Reordered, AnotherStream, ::testing::Bool());
+
+TEST_P(AnotherStream, IsNotHeldWhileTheStreamGoesOn) {
   SenderOptions foreign;
   foreign.ssrc = 1;
   const auto own = Sender().Scans(0, 60);
-  const auto other = Sender(foreign).Scans(0, 70);
+  auto other = Sender(foreign).Scans(0, 70);
+  // The end of each slice comes behind the begin of the next, so that a slice is always open.
+  for (std::size_t end = 3; GetParam() && end + 1 < other.size(); end += 3)
+    std::swap(other[end], other[end + 1]);
   Receiver receiver(milliseconds(100));
   for (std::size_t i = 0; i < own.size(); ++i) DeliverAll(&receiver, {own[i], other[i]});
   std::vector<ReceivedSlice> moved;
@@ -296,6 +302,25 @@ TEST(Receiver, WaitsForLatePacketsAsLongAsWasSetBeforeAFlush) {
   DeliverAll(&receiver, packets);
   EXPECT_EQ(receiver.accounts().slices.slices_received, 35U);
   EXPECT_EQ(DeliverAll(&receiver, {packet}), Names{"1.1"});
+}
+
+TEST(Receiver, WaitsForLatePacketsOfAStreamThatIsAboutToBeFollowedAsLongAsWasSet) {
+  SenderOptions second;
+  second.ssrc = 0x99;
+  Receiver receiver(milliseconds(100));
+  DeliverAll(&receiver, Sender().Scans(0, 1));
+  auto packets = Sender(second).Scans(10, 8);
+  const auto late = std::find_if(packets.begin(), packets.end(),
+                                 [](const Wire& w) { return w.scan == 11 && w.index == 1; });
+  ASSERT_NE(late, packets.end());
+  const Wire packet = *late;
+  packets.erase(late);
+  DeliverAll(&receiver, {packets.front()});
+  receiver.set_max_reorder_time(milliseconds(1'000));
+  DeliverAll(&receiver, {packets.begin() + 1, packets.end()});
+  EXPECT_EQ(receiver.ssrc(), second.ssrc);
+  EXPECT_EQ(receiver.accounts().slices.slices_received, 4U + 31);
+  EXPECT_EQ(DeliverAll(&receiver, {packet}), Names{"11.1"});
 }
 
 }  // namespace

@@ -82,6 +82,27 @@ TEST_F(Ledger, ASkippedSliceStaysSkippedIfItsScanBeginsLater) {
   EXPECT_EQ(accounts().scans_complete, 2U);
 }
 
+TEST_F(Ledger, AScanThatBeginsLateHasItsOwnCountOfSlices) {
+  Receive(1, 0, 1);
+  Receive(4, 0);  // scans 2 and 3 have four slices, too, as far as is known
+  Receive(2, 7, 8);
+  Receive(3, 1, 2);
+  EXPECT_EQ(Admit(2, 3, 4), Admission::kContradiction);
+  ledger.CloseBefore({4, 0});
+  EXPECT_EQ(accounts().slices_received, 4U);
+  EXPECT_EQ(accounts().slices_lost, 7U + 1);
+  EXPECT_EQ(accounts().scans_complete, 1U);
+  EXPECT_EQ(accounts().scans_incomplete, 2U);
+}
+
+TEST_F(Ledger, AScanKeepsItsCountOnceOneOfItsSlicesIsCounted) {
+  Receive(1, 0, 1);
+  Receive(3, 0);
+  ledger.Skip({2, 3});
+  EXPECT_EQ(Admit(2, 0, 8), Admission::kContradiction);
+  EXPECT_EQ(Admit(2, 0, 4), Admission::kOpen);
+}
+
 TEST_F(Ledger, ASliceBeforeAnotherMayBeOfTheScanBefore) {
   Receive(1, 0);
   Receive(2, 1);

@@ -112,6 +112,25 @@ TEST(UnitCheck, KeepsNoMoreThanASliceMayHold) {
   EXPECT_FALSE(check.Push(1, View(Fragments(2)[1])));
 }
 
+TEST(UnitCheck, ASliceThatOutgrowsItsLengthIsNone) {
+  UnitCheck check;
+  const std::vector<std::uint8_t> bytes(150, 42);
+  Unit unit;
+  unit.length = static_cast<std::uint32_t>(bytes.size());
+  unit.crc = UnitCrc(unit, View(bytes));
+  std::uint16_t seq = 0;
+  // Without the second packet the slice would be whole.
+  for (const auto& [type, size] :
+       {std::pair(PacketType::kFirstFragment, 100), std::pair(PacketType::kMiddleFragment, 100),
+        std::pair(PacketType::kLastFragment, 50)}) {
+    unit.type = type;
+    std::vector<std::uint8_t> payload;
+    WriteHeader(unit, &payload);
+    payload.insert(payload.end(), bytes.begin(), bytes.begin() + size);
+    EXPECT_FALSE(check.Push(seq++, View(payload))) << size;
+  }
+}
+
 TEST(UnitCheck, GarbageProvesNothing) {
   UnitCheck check;
   for (std::uint16_t i = 0; i < 1000; ++i)

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
+
 #include "src/rtcp/report_clock.h"
 #include "src/sim/scenarios.h"
 #include "src/sim/simulated_time.h"
@@ -56,6 +58,48 @@ TEST(Controller, ExpectsNothingOfAnOldRoute) {
   c.OnSent(kStart, id, {1, 0, DataSize::Bytes(1000), Ecn::kEct1});
   c.OnRouteChange(kStart + 1ms);
   EXPECT_EQ(c.statistics(kStart + 1ms).bytes_in_flight.bytes(), 0);
+}
+
+TEST(Controller, RestartsFromTheStartBitrateOnANewRoute) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(50)});
+  const DataSize size = DataSize::Bytes(1200);
+  Time now = kStart;
+  std::uint16_t seq = 0, reported = 0;
+  std::deque<Time> under_way;  // when packets left, from `reported` on
+  DataSize due;
+  // The stream sends at its target in frames of 20 ms, and each packet is reported after 30 ms.
+  const auto run = [&](Duration time) {
+    for (const Time end = now + time; now < end; now += 20ms) {
+      rtcp::CongestionFeedback report;
+      report.report_timestamp = rtcp::ReportClock::ToTimestamp(now);
+      report.blocks.push_back({1, reported, {}});
+      for (; !under_way.empty() && now - under_way.front() >= 30ms; ++reported) {
+        report.blocks[0].metrics.push_back({true, Ecn::kEct1, 0ms});
+        under_way.pop_front();
+      }
+      if (!report.blocks[0].metrics.empty()) {
+        EXPECT_EQ(c.OnFeedback(now, report), FeedbackResult::kAccepted);
+      }
+      c.OnTimer(now);
+      for (due += c.target_bitrate(id) * 20ms; due > size; due -= size) {
+        const bool last = due - size <= size;
+        c.OnQueued(now, id,
+                   {1, size, last, static_cast<std::uint32_t>(Seconds(now - kStart) * 9e4)});
+        c.OnSent(now, id, {1, seq++, size, Ecn::kEct1});
+        under_way.push_back(now);
+      }
+    }
+  };
+  run(5s);
+  ASSERT_GT(c.target_bitrate(id), Mbps(8));
+  c.OnRouteChange(now);
+  under_way.clear();
+  reported = seq;
+  run(40ms);  // the first report comes later
+  EXPECT_LT(c.target_bitrate(id), Mbps(2));
+  run(200ms);
+  EXPECT_EQ(c.statistics(now).loss_events, 0U) << "packets of the old route are not lost";
 }
 
 TEST(Controller, FindsTheStreamOfASource) {

@@ -151,8 +151,15 @@ TEST_F(QueueDelayTest, ResetForgetsAllAverages) {
   }
   delay_.Reset();
   EXPECT_EQ(delay_.qdelay_avg(), Duration(0));
-  const double fresh = QueueDelay(parameters_).ref_wnd_delay_scale();
-  EXPECT_EQ(delay_.ref_wnd_delay_scale(), fresh);
+  QueueDelay fresh(parameters_);
+  EXPECT_EQ(delay_.ref_wnd_delay_scale(), fresh.ref_wnd_delay_scale());
+  for (int i = 0; i < 200; ++i, now_ += 1ms) {
+    for (QueueDelay* delay : {&delay_, &fresh}) {
+      delay->Add(now_, {now_ - 20ms, now_, 0ms, 20ms});
+      delay->Update(now_, 40ms);
+    }
+    ASSERT_EQ(delay_.ref_wnd_delay_scale(), fresh.ref_wnd_delay_scale()) << i;
+  }
 }
 
 TEST_F(QueueDelayTest, JitterLowersTheScale) {

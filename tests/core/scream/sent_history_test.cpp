@@ -204,6 +204,13 @@ TEST_F(SentHistoryTest, NumbersThatGoBackAreThoseOfASenderThatStartedAgain) {
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 5000);
 }
 
+TEST_F(SentHistoryTest, IsNotFullAfterARestartAtAHighNumber) {
+  Send(60000, 60020);
+  Send(50000, 50010);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 9000);
+  EXPECT_FALSE(history_.full());
+}
+
 TEST_F(SentHistoryTest, ReportsOfBeforeARestartAreForgivenForTwoSeconds) {
   Send(40480, 40500);
   Send(10000, 10010);
@@ -229,6 +236,8 @@ TEST_F(SentHistoryTest, ALonePacketFarBehindIsNoRestart) {
   Send(10000, 10001);
   Send(40500, 40501);
   Send(10001, 10002);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 21000);
+  Send(12000, 12001);  // nor are two that do not follow each other
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 21000);
 }
 
@@ -286,6 +295,12 @@ TEST_F(SentHistoryTest, ARepeatedPacketIsNoRestart) {
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 100000);
   Send(100, 101);
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 101000);
+}
+
+TEST_F(SentHistoryTest, SomeRepeatedPacketsFarBehindAreNoRestart) {
+  Send(0, 3100);
+  Send(10, 30);
+  EXPECT_EQ(history_.bytes_in_flight().bytes(), 3'100'000);
 }
 
 TEST_F(SentHistoryTest, PacketsThatOvertookEachOtherBeforeTheyWereSentAllCount) {

@@ -6,6 +6,7 @@
 
 #include "ext/mcap/message_types.h"
 #include "ext/mcap/output_file.h"
+#include "src/base/imu_sample.h"
 #include "src/cdr/messages.h"
 #include "tests/core/mcap/memory_file.h"
 #include "tests/elements/mcap/recording.h"
@@ -69,6 +70,28 @@ TEST_F(McapErrors, WhatDoesNotFitIsTakenBackAndTheFileGoesOn) {
             std::string(40, 'a') + std::string(40, 'b') + std::string(10, 'd'));
 }
 
+TEST_F(McapErrors, AFileLeavesNoDescriptorOpen) {
+  const auto open = [] {
+    const std::filesystem::directory_iterator all("/proc/self/fd");
+    return std::distance(begin(all), end(all));
+  };
+  const std::string data(50, 'a');
+  const ByteView view{reinterpret_cast<const std::uint8_t*>(data.data()), data.size()};
+  const auto before = open();
+  {
+    gst::OutputFile file(Path("a"), false, gst::OutputFile::Existing::kKeep);
+    EXPECT_TRUE(file.Append(view));
+    EXPECT_EQ(open(), before + 1);
+  }
+  EXPECT_EQ(open(), before) << "it was not closed before it went";
+  gst::OutputFile full(Path("b"), false, gst::OutputFile::Existing::kKeep);
+  {
+    const SmallDisk disk(20);
+    EXPECT_FALSE(full.Append(view));
+  }
+  EXPECT_EQ(open(), before) << "the disk is full";
+}
+
 TEST_F(McapErrors, ADeviceWithoutSpaceStays) {
   EXPECT_EQ(RecordError("location=/dev/full"), "No space is left for \"/dev/full\".");
   EXPECT_TRUE(std::filesystem::exists("/dev/full"));
@@ -114,6 +137,42 @@ TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
     p.Forget();
     EXPECT_EQ(p.Run().error.rfind("Cannot be recorded", 0), 0U) << round;
   }
+}
+
+TEST_F(McapErrors, SamplesOfOtherFieldsAreRefusedByName) {
+  const Harness h = RecordingTo(Path("a.mcap"));
+  const ElementBus bus(h->element);
+  gst_harness_set_src_caps_str(h.get(), "application/x-imu,sample-size=8,fields=(string)t:U64:0");
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
+            "Cannot be recorded: the samples of the IMU are not "
+            "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28.");
+}
+
+TEST_F(McapErrors, CapsThatChangeTooOftenAreRefusedAndWhatWasRecordedStays) {
+  guint64 recorded = 0;
+  {
+    const Harness h = RecordingTo(Path("a.mcap"));
+    const ElementBus bus(h->element);
+    SetPlaying(h.get());
+    const auto push = [&](guint64 number) {
+      const std::string caps = "application/x-lidar-slice,alignment=slice,codec-data=(buffer)" +
+                               std::to_string(10'000 + number * 2) + std::string(100'001, '0');
+      gst_harness_set_src_caps_str(h.get(), caps.c_str());
+      GstBuffer* slice = gst_buffer_new_memdup("x", 1);
+      gst_lidar_buffer_set_capture_time(slice, kCapture);
+      return gst_harness_push(h.get(), slice);
+    };
+    while (recorded < 200 && push(recorded) == GST_FLOW_OK) ++recorded;
+    const std::string why = "The caps of \"/slices\" change too often for one recording.";
+    EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), why);
+    EXPECT_NE(push(recorded), GST_FLOW_OK) << "again";
+    EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), why);
+    gst_harness_push_event(h.get(), gst_event_new_eos());
+  }
+  EXPECT_GE(recorded, 50U);
+  const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.error + played.warning, "");
+  EXPECT_EQ(played.buffers.at("see").size(), recorded);
 }
 
 TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
@@ -177,6 +236,56 @@ TEST_F(McapErrors, ATopicInAnotherEncodingIsNoDamage) {
   EXPECT_EQ(played.buffers.at("see").size(), 1U);
   EXPECT_EQ(played.stats.at("messages"), 1U);
   EXPECT_EQ(played.stats.at("messages-dropped"), 0U);
+}
+
+TEST_F(McapErrors, MessagesThatAreCutCostThemselvesOnly) {
+  const auto imu = cdr::WriteImu({});
+  const auto odometry = cdr::WriteOdometry({});
+  for (const bool is_imu : {false, true}) {
+    mcap::test::FileMaker maker(mcap::WriterSettings{});
+    mcap::Channel channel;
+    channel.topic = "/motion";
+    channel.message_encoding = "cdr";
+    const auto id = maker.AddChannel(
+        gst::SchemaOf(is_imu ? gst::MessageType::kImu : gst::MessageType::kOdometry), channel);
+    const auto& bytes = is_imu ? imu : odometry;
+    ASSERT_TRUE(maker.Add(id, 1, std::string(bytes.begin(), bytes.end() - 8)));
+    ASSERT_TRUE(maker.Add(id, 2, std::string(bytes.begin(), bytes.end())));
+    Save(&maker);
+    const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+    EXPECT_EQ(played.buffers.at("see").size(), 1U) << is_imu;
+    EXPECT_EQ(played.stats.at("messages-dropped"), 1U) << is_imu;
+    EXPECT_EQ(played.warning, "The recording is damaged: 0 chunks and 1 messages are left out.");
+  }
+}
+
+/// Without caps, slices cannot be decoded, and a stranger's caps may not be of our samples.
+TEST_F(McapErrors, AStrangersChannelsDoNotKeepOthersFromBeingPlayed) {
+  const auto imu = cdr::WriteImu({});
+  const std::string ours = "fields=(string)\"" + std::string(kImuFields) + '"';
+  for (const std::string& caps :
+       {"sample-size=32,fields=(string)t:U64:0" + std::string(), "sample-size=8," + ours, ours}) {
+    mcap::test::FileMaker maker(mcap::WriterSettings{});
+    const auto add = [&](const std::string& topic, gst::MessageType type, const std::string& text,
+                         const std::string& data) {
+      mcap::Channel channel;
+      channel.topic = topic;
+      channel.message_encoding = "cdr";
+      if (!text.empty()) channel.metadata = {{mcap::kCapsKey, text}};
+      ASSERT_TRUE(maker.Add(maker.AddChannel(gst::SchemaOf(type), std::move(channel)), 1, data));
+    };
+    add("/slices", gst::MessageType::kSlice, "", "x");
+    add("/imu", gst::MessageType::kImu, "application/x-imu," + caps,
+        std::string(imu.begin(), imu.end()));
+    Save(&maker);
+    const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+    EXPECT_EQ(played.error, "");
+    ASSERT_EQ(played.buffers.at("see").size(), 1U);
+    EXPECT_EQ(played.buffers.at("see")[0].bytes.size(), 32U);
+    const std::string& seen = played.caps.at("see");
+    EXPECT_NE(seen.find("sample-size=(int)32"), std::string::npos) << seen;
+    EXPECT_NE(seen.find("ax:F32:8"), std::string::npos) << seen;
+  }
 }
 
 TEST_F(McapErrors, MessagesOfTwoTypesInOneTopicAreNoDamage) {

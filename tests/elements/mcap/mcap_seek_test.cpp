@@ -231,6 +231,12 @@ TEST_F(McapSeek, SaysHowFarOneMaySeekAndWhatIsPlayed) {
   EXPECT_TRUE(seekable);
   EXPECT_EQ(start, 0);
   EXPECT_EQ(stop, length);
+  for (GstQuery* query :
+       {gst_query_new_seeking(GST_FORMAT_BYTES), gst_query_new_duration(GST_FORMAT_BYTES),
+        gst_query_new_position(GST_FORMAT_BYTES)}) {
+    const gst::QueryPtr owner(query);
+    EXPECT_FALSE(gst_pad_query(pad.get(), query)) << GST_QUERY_TYPE_NAME(query);
+  }
   for (const gint64 end : {gint64{-1}, gint64{500 * GST_MSECOND}}) {
     ASSERT_TRUE(gst_element_seek(p.get(), 2, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
                                  GST_SEEK_TYPE_SET, 300 * GST_MSECOND, GST_SEEK_TYPE_SET, end));

@@ -264,12 +264,13 @@ TEST_F(Mcap, PlaysAgainAfterReady) {
 /// A recording of another program: clouds of one layout, with big-endian doubles.
 class McapOfOthers : public Mcap {
  protected:
-  void Record(const std::vector<cdr::PointCloud2>& clouds) {
+  void Record(const std::vector<cdr::PointCloud2>& clouds, const std::string& caps = "") {
     mcap::Catalogue catalogue;
     mcap::Channel channel;
     channel.schema_id = catalogue.AddSchema({0, "sensor_msgs/msg/PointCloud2", "ros2msg", ""});
     channel.topic = "/velodyne_points";
     channel.message_encoding = "cdr";
+    if (!caps.empty()) channel.metadata = {{mcap::kCapsKey, caps}};
     const auto id = catalogue.AddChannel(channel);
     std::ofstream file(Path("other.mcap"), std::ios::binary);
     mcap::Writer writer({}, &catalogue, [&](ByteView v) {
@@ -343,6 +344,25 @@ TEST_F(McapOfOthers, CloudsHaveTheFieldsOfTheirOwnMessages) {
   ASSERT_EQ(played.buffers.at("see").size(), 2U);
   EXPECT_NE(played.caps.at("see").find("intensity:F32"), std::string::npos)
       << played.caps.at("see");
+}
+
+/// A program may reduce our clouds and copy the rest of the channel.
+TEST_F(McapOfOthers, CloudsOfAnotherLayoutThanTheRecordedCapsAreThoseOfTheirMessages) {
+  const auto recorded = Play(kSensor + " num-buffers=1 slices-per-scan=1 ! fakesink name=see");
+  const std::string ours = recorded.caps.at("see");
+  ASSERT_NE(ours.find("sensor-model"), std::string::npos) << ours;
+  const std::vector<std::uint8_t> points(48);
+  cdr::PointCloud2 cloud = Cloud(2);
+  cloud.data = {points.data(), points.size()};
+  Record({cloud}, ours);
+  const auto played = Play("mcapsrc" + At("other.mcap") + " ! fakesink name=see");
+  EXPECT_EQ(played.error, "");
+  ASSERT_EQ(played.buffers.at("see").size(), 1U);
+  EXPECT_EQ(played.buffers.at("see")[0].bytes.size(), 24U);
+  const std::string& caps = played.caps.at("see");
+  for (const char* field : {"width=(int)2", "height=(int)1", "point-step=(int)12", "z:F32:8\""})
+    EXPECT_NE(caps.find(field), std::string::npos) << caps;
+  EXPECT_EQ(caps.find("sensor-model"), std::string::npos) << "it has 32 beams";
 }
 
 TEST_F(McapOfOthers, NoMorePadsComeOnceAllAreThere) {

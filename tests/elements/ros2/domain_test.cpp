@@ -6,10 +6,38 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "tests/support/files.h"
 
 namespace lidar::dds {
 namespace {
+
+/// Sets variables of the environment while it lives.
+class Variables {
+ public:
+  using Values = std::map<std::string, std::string>;
+  explicit Variables(const Values& values) {
+    for (const auto& [name, value] : values) {
+      const char* before = std::getenv(name.c_str());
+      before_[name] = before != nullptr ? std::optional<std::string>(before) : std::nullopt;
+      setenv(name.c_str(), value.c_str(), 1);
+    }
+  }
+  ~Variables() {
+    for (const auto& [name, value] : before_)
+      value ? setenv(name.c_str(), value->c_str(), 1) : unsetenv(name.c_str());
+  }
+  Variables(const Variables&) = delete;
+  Variables& operator=(const Variables&) = delete;
+
+ private:
+  std::map<std::string, std::optional<std::string>> before_;
+};
 
 // No element uses this domain.
 constexpr std::uint32_t kDomain = 231;
@@ -48,6 +76,37 @@ TEST(RosDomain, OfSomebodyElseIsUsedAndStays) {
   EXPECT_FALSE(IsFree());
   dds_delete(made);
   EXPECT_TRUE(IsFree());
+}
+
+class RosDomainFiles : public test::FolderTest {};
+
+TEST_F(RosDomainFiles, UseOnlyThisMachineIfRosSaysSo) {
+  for (const std::string local : {"1", "0"}) {
+    const std::string trace = folder_ + "/trace" + local;
+    const Variables variables({{"ROS_LOCALHOST_ONLY", local},
+                               {"CYCLONEDDS_URI",
+                                "<Tracing><Category>config</Category>"
+                                "<OutputFile>" +
+                                    trace + "</OutputFile></Tracing>"}});
+    Join().reset();
+    const std::string config = test::ReadFile(trace);
+    EXPECT_NE(config.find("Domain/General/MaxMessageSize/#text: 65500 B"), std::string::npos)
+        << config;
+    for (const char* line : {"NetworkInterface[@address]: 127.0.0.1", "Peer[@Address]: 127.0.0.1",
+                             "AllowMulticast/#text: false"})
+      EXPECT_EQ(config.find(line) != std::string::npos, local == "1") << line << "\n" << config;
+  }
+}
+
+TEST(RosDomain, NamesTheVariableWhereItsConfigurationIsWrong) {
+  {
+    const Variables wrong(
+        Variables::Values{{"CYCLONEDDS_URI", "<General><NoSuchThing>1</NoSuchThing></General>"}});
+    std::string why;
+    EXPECT_FALSE(Domain::Join(kDomain, &why));
+    EXPECT_NE(why.find("; is the variable CYCLONEDDS_URI right?"), std::string::npos) << why;
+  }
+  EXPECT_TRUE(Join());
 }
 
 TEST(RosDomain, TellsTheReceiveBufferWithoutWhatTheKernelAddsForItself) {

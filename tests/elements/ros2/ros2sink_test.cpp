@@ -284,6 +284,31 @@ TEST_F(Ros2Sink, PublishesTransforms) {
   EXPECT_TRUE(std::equal(transform.transform.begin(), transform.transform.end(), kPose));
 }
 
+/// Returns the text of the error if the element does not start.
+std::string StartError(const std::string& line) {
+  const std::unique_ptr<GstElement, gst::Unref> element(gst_parse_launch(line.c_str(), nullptr));
+  const ElementBus bus(element.get());
+  const bool fails =
+      gst_element_set_state(element.get(), GST_STATE_PAUSED) == GST_STATE_CHANGE_FAILURE;
+  gst_element_set_state(element.get(), GST_STATE_NULL);
+  return fails ? bus.Text(GST_MESSAGE_ERROR) : "it starts";
+}
+
+TEST_F(Ros2Sink, FailsAtTheStartWhereItsTypeIsKnownAndItCannotPublish) {
+  EXPECT_NE(StartError("ros2sink type=pointcloud2 topic=\"/a b\"").find("takes no topic \"/a b\""),
+            std::string::npos);
+  const std::string before = g_getenv("CYCLONEDDS_URI");
+  g_setenv("CYCLONEDDS_URI", "<General><NoSuchThing>1</NoSuchThing></General>", TRUE);
+  for (const auto& [element, work] :
+       {std::pair("ros2sink type=pointcloud2 topic=/points", "publish"),
+        std::pair("ros2src type=pointcloud2 topic=/points", "subscribe to")}) {
+    const std::string text = StartError(std::string(element) + " domain-id=230");
+    EXPECT_EQ(text.rfind("DDS cannot " + std::string(work) + " /points: ", 0), 0U) << text;
+    EXPECT_NE(text.find("is the variable CYCLONEDDS_URI right?"), std::string::npos) << text;
+  }
+  g_setenv("CYCLONEDDS_URI", before.c_str(), TRUE);
+}
+
 TEST_F(Ros2Sink, RefusesCapsOfAnotherTypeThanAskedFor) {
   Start("ros2sink", "topic=/points type=imu");
   gst_harness_set_src_caps(h_.get(), CloudCaps(TestCloud(1, 1)).release());

@@ -134,6 +134,26 @@ TEST_F(WrittenMessages, OfCloudsAreAsLargeAsTheirCapsSayOfOneRowAnySize) {
   EXPECT_FALSE(written(open, 25));
 }
 
+TEST_F(WrittenMessages, AreNotMadeOfCapsOrBuffersThatCannotBe) {
+  for (const char* caps :
+       {"width=2,height=1,point-step=12",
+        "width=2,height=1,point-step=8,fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"",
+        "width=2,height=0,point-step=12,fields=(string)\"x:F32:0\""}) {
+    why_.clear();
+    EXPECT_FALSE(Make(cdr::RosType::kPointCloud2, std::string("application/x-pointcloud2,") + caps))
+        << caps;
+    EXPECT_FALSE(why_.empty()) << caps;
+  }
+  for (const auto type : {cdr::RosType::kOdometry, cdr::RosType::kTransforms}) {
+    const auto writer = Make(type, "application/x-odometry");
+    ASSERT_TRUE(writer);
+    for (const gsize size : {0U, 63U, 65U}) {
+      EXPECT_FALSE(Write(writer.get(), Zeros(size))) << size;
+      EXPECT_TRUE(messages_.empty()) << size;
+    }
+  }
+}
+
 TEST_F(WrittenMessages, OfOdometryNameFramesBySettingElseByCapsElseAsUsual) {
   const auto writer = Make(cdr::RosType::kOdometry, "application/x-odometry");
   ASSERT_TRUE(writer);
@@ -176,6 +196,23 @@ TEST_F(WrittenMessages, OfPosesHaveTheVarianceOfTheSettingsWhereTheyAreTracked) 
   }
   EXPECT_EQ(WritePose(writer.get(), GST_LIDAR_TRACKING_DEGENERATE).pose_covariance[0], 1e3);
   EXPECT_EQ(WritePose(writer.get(), GST_LIDAR_TRACKING_LOST).pose_covariance[35], 1e6);
+  settings_.position_variance = 0;
+  auto pose = WritePose(writer.get(), GST_LIDAR_TRACKING_OK);
+  EXPECT_EQ(pose.pose_covariance[0], 0) << "it is not known";
+  EXPECT_EQ(pose.pose_covariance[35], 0.5);
+  settings_.position_variance = 0.25;
+  settings_.orientation_variance = 0;
+  pose = WritePose(writer.get(), GST_LIDAR_TRACKING_OK);
+  EXPECT_EQ(pose.pose_covariance[0], 0.25);
+  EXPECT_EQ(pose.pose_covariance[35], 0) << "it is not known";
+  GstBuffer* measured = Zeros(64 + 36 * sizeof(double));
+  const double correlation = 3;
+  gst_buffer_fill(measured, 64 + sizeof(double), &correlation, sizeof correlation);
+  ASSERT_TRUE(Write(writer.get(), measured));
+  const auto set = cdr::ReadOdometry(Whole(messages_.at(0)));
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->pose_covariance[0], 0.25);
+  EXPECT_EQ(set->pose_covariance[1], 0) << "the setting replaces what the pose came with";
 }
 
 class RosOptions : public ::testing::Test {
