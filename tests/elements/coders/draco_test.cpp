@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/elements/coders/plain_clouds.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/files.h"
 
 namespace lidar::gst {
@@ -48,6 +49,20 @@ TEST(DracoEnc, CloudsOfAnotherWidthGoOnWithTheMethodThatWasTheSmallerOne) {
     constexpr std::size_t kMethod = 8;  // in Draco's header; 0 is the sequential coder
     EXPECT_EQ(map.data()[kMethod], 0) << width;
   }
+}
+
+TEST(DracoEnc, LeavesOutCloudsThatAreTooLargeForTheirErrorAndSaysSoOnce) {
+  const Harness h(gst_harness_new("dracoenc"));
+  const test::ElementBus bus(h->element);
+  g_object_set(h->element, "max-error", 0.0005, nullptr);
+  SetCaps(h.get(), XyzInfo(2));
+  for (guint scan = 0; scan < 2; ++scan)
+    EXPECT_EQ(gst_harness_push(h.get(), PlainBuffer({1, 2, 3, 10'000, 0, 0})), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U);
+  EXPECT_EQ(test::StatOf(h->element, "slices-out-of-reach"), 2U);
+  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING),
+            std::vector<std::string>{"A cloud is too large for max-error and was left out. Raise "
+                                     "max-error, or crop the cloud."});
 }
 
 TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {

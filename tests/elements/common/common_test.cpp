@@ -102,6 +102,26 @@ TEST(Metas, ThatLackAFieldAreNone) {
   });
 }
 
+TEST(Metas, WhoseCovarianceIsNot36DoublesAreNone) {
+  const BufferPtr buffer(gst_buffer_new());
+  for (const auto& [size, type] : {std::pair(36, G_TYPE_DOUBLE), std::pair(35, G_TYPE_DOUBLE),
+                                   std::pair(37, G_TYPE_DOUBLE), std::pair(36, G_TYPE_INT)}) {
+    GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
+    gst_lidar_buffer_set_pose(buffer.get(), &pose);
+    GValue numbers = G_VALUE_INIT;
+    g_value_init(&numbers, GST_TYPE_ARRAY);
+    for (int i = 0; i < size; ++i) {
+      GValue number = G_VALUE_INIT;
+      g_value_init(&number, type);
+      gst_value_array_append_and_take_value(&numbers, &number);
+    }
+    gst_structure_take_value(FieldsOfMeta(buffer.get(), GST_LIDAR_POSE_META_NAME), "covariance",
+                             &numbers);
+    EXPECT_EQ(gst_lidar_buffer_get_pose(buffer.get(), &pose), size == 36 && type == G_TYPE_DOUBLE)
+        << size << " " << g_type_name(type);
+  }
+}
+
 TEST(Metas, OfAnUnknownTrackingAreLost) {
   const BufferPtr buffer(gst_buffer_new());
   for (const guint tracking : {0U, 1U, 2U, 3U, 4U, G_MAXUINT}) {
@@ -195,6 +215,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadCaps{CLOUD "fields=(string)\"x:F32\"", "has no offset"},
         BadCaps{CLOUD "fields=(string)\"x:F32:4000000000\"", "past the 1024 bytes"},
         BadCaps{CLOUD "fields=(string)\"x:F32:0,x:F32:4\"", "two fields x"}));
+
+TEST(CloudInfo, HasAsManyRowsAsItsSensorModelHasBeams) {
+  CloudInfo info = SmallCloud();
+  info.height = 3;
+  std::string why;
+  EXPECT_FALSE(CloudInfo::FromCaps(CapsPtr(info.ToCaps()).get(), &why));
+  EXPECT_EQ(why, "sensor-model has 2 beams where height=3");
+}
 
 TEST(CloudInfo, MayHaveAGibibyteAndNoMore) {
   constexpr guint kGibibyte = 1U << 30;

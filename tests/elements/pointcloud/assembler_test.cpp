@@ -262,6 +262,44 @@ TEST_F(Assembler, AnEndWithoutAnyScanComesAfterCapsAndSegment) {
   EXPECT_EQ(OutInfo().width, kColumns);
 }
 
+TEST_F(Assembler, AnEndWithoutAnyScanComesAfterTheCapsOfACloudWithoutAModel) {
+  CloudInfo info = SliceInfo();
+  info.sensor_model.reset();
+  SetCaps(info);
+  EXPECT_TRUE(gst_harness_push_event(h_.get(), gst_event_new_eos()));
+  EXPECT_EQ(OutInfo().width, kWidth);
+}
+
+TEST_F(Assembler, KeepsNoBufferThatDownstreamRefuses) {
+  Push(Slice(0, 0));
+  gst_pad_set_active(h_->sinkpad, FALSE);
+  const BufferPtr whole = MakeSlice({1, 0, 1, 0});
+  EXPECT_EQ(gst_harness_push(h_.get(), gst_buffer_ref(whole.get())), GST_FLOW_FLUSHING);
+  EXPECT_EQ(GST_MINI_OBJECT_REFCOUNT_VALUE(whole.get()), 1);
+}
+
+TEST(AssemblerWithoutCaps, RefusesBuffersWithAnError) {
+  const Harness h(gst_harness_new("scanassembler"));
+  const test::ElementBus bus(h->element);
+  gst_harness_play(h.get());
+  gst_pad_push_event(h->srcpad, gst_event_new_stream_start("test"));
+  gst_pad_push_event(h->srcpad, test::NewSegment());
+  const BufferPtr slice = Slice(0, 0);
+  EXPECT_EQ(gst_pad_push(h->srcpad, gst_buffer_ref(slice.get())), GST_FLOW_NOT_NEGOTIATED);
+  EXPECT_EQ(GST_MINI_OBJECT_REFCOUNT_VALUE(slice.get()), 1);
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), "No point cloud caps before the first buffer.");
+}
+
+TEST_F(Assembler, OtherCapsOfTheSameLayoutLeaveAScanOpen) {
+  CloudInfo faster = SliceInfo();
+  faster.framerate_n = 20;
+  Push(Slice(0, 0));
+  SetCaps(faster);
+  EXPECT_EQ(Waiting(), 0U);
+  for (guint i = 1; i < kSlices; ++i) Push(Slice(0, i));
+  EXPECT_FALSE(IsCorrupted(Pull()));
+}
+
 TEST_F(Assembler, ForgetsOnFlush) {
   Push(Slice(7, 0));
   gst_harness_push_event(h_.get(), gst_event_new_flush_start());
@@ -287,6 +325,18 @@ TEST_F(Assembler, WarnsOnceOfSlicesThatLostTheirMeta) {
     EXPECT_TRUE(Pull());
   }
   EXPECT_NE(bus.Text(GST_MESSAGE_WARNING).find("8 of the sensor's 32 columns"), std::string::npos);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING));
+}
+
+TEST_F(Assembler, WarnsOfNoScanWithoutAMeta) {
+  const test::ElementBus bus(h_->element);
+  for (const bool model : {true, false}) {
+    CloudInfo info = SliceInfo(kColumns);
+    if (!model) info.sensor_model.reset();
+    SetCaps(info);
+    Push(BufferPtr(gst_buffer_new_allocate(nullptr, info.FrameSize(), nullptr)));
+    EXPECT_TRUE(Pull());
+  }
   EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING));
 }
 
@@ -428,6 +478,17 @@ TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
   EXPECT_TRUE(IsCorrupted(scan));
   Push(Slice(0, 3));
   EXPECT_EQ(Stat("late-slices"), 1U);
+}
+
+TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineAlsoBehindAFlush) {
+  Push(Slice(0, 0));
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(h_.get(), test::NewSegment());
+  for (guint i = 0; i < 3; ++i) Push(Slice(1, i));
+  ASSERT_TRUE(test::AwaitClockWait(h_.get(), test::kClockStart + 245 * GST_MSECOND));
+  ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));
+  EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 2, 3, 0}));
 }
 
 /// Returns true once the thread of the element's timer sleeps.

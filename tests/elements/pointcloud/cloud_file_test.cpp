@@ -133,6 +133,13 @@ TEST(CloudFiles, AScanWithoutReturnsIsAFileWithoutPoints) {
   EXPECT_NE(Encode("pcdenc", Info(3, 1), none).find("POINTS 0\n"), std::string::npos);
 }
 
+TEST(CloudFiles, KeepAllPointsOfACloudWithoutCoordinates) {
+  CloudInfo info = Info(3, 1);
+  info.fields = *PointFields::Parse("x:F32:0,y:F32:4,ring:U16:20");
+  EXPECT_NE(Encode("pcdenc binary=false", info).find("POINTS 3\n"), std::string::npos);
+  EXPECT_NE(Encode("plyenc", info).find("element vertex 3\n"), std::string::npos);
+}
+
 TEST(CloudFiles, NamesOfFieldsCannotBreakTheHeader) {
   CloudInfo info = Info(3, 1);
   info.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,a b\"c:U8:20");

@@ -186,11 +186,18 @@ TEST_F(FilterByTransforms, TakesThePosesOfAnOdometry) {
   ByteWriter w(&bytes);
   for (const double v : {5., 0., 0., 0., 0., 0., 1.}) w.LeF64(v);
   w.Le64(GST_LIDAR_TRACKING_OK);
-  GstBuffer* pose = gst_buffer_new_memdup(bytes.data(), bytes.size());
-  gst_lidar_buffer_set_capture_time(pose, 100 * GST_SECOND);
-  EXPECT_EQ(gst_harness_push(poses.get(), pose), GST_FLOW_OK);
+  const auto push = [&](GstClockTime second) {
+    GstBuffer* pose = gst_buffer_new_memdup(bytes.data(), bytes.size());
+    gst_lidar_buffer_set_capture_time(pose, second * GST_SECOND);
+    EXPECT_EQ(gst_harness_push(poses.get(), pose), GST_FLOW_OK);
+  };
+  push(100);
   EXPECT_EQ(PushAt(100), GST_FLOW_OK);
   EXPECT_EQ(PulledX(), 6);
+  bytes[6] = 0x1C;  // of 5.0 makes 7.0
+  push(102);
+  EXPECT_EQ(PushAt(101), GST_FLOW_OK);
+  EXPECT_EQ(PulledX(), 7) << "a pose is of its time";
 }
 
 TEST_F(FilterByTransforms, WhatIsNoTransformIsCounted) {
@@ -311,7 +318,22 @@ TEST_F(FilterByTransforms, APoseWithoutATimeIsRefused) {
   EXPECT_EQ(gst_harness_push(poses.get(), gst_buffer_new_memdup(bytes.data(), bytes.size())),
             GST_FLOW_OK);
   EXPECT_EQ(Stat("transforms-refused"), 1U);
+  GstBuffer* garbage = gst_buffer_new_memdup("garbage", 7);
+  gst_lidar_buffer_set_capture_time(garbage, 100 * GST_SECOND);
+  EXPECT_EQ(gst_harness_push(poses.get(), garbage), GST_FLOW_OK);
+  EXPECT_EQ(Stat("transforms-refused"), 2U);
   EXPECT_EQ(Stat("transforms"), 0U);
+}
+
+TEST_F(FilterByTransforms, ACloudDoesNotWaitForWhatTheOneBeforeWaitedForInVain) {
+  Start("target-frame=map tf-timeout=1000000");
+  Tell(moving_.get(), "map", "os", 100, 1);
+  EXPECT_EQ(PushAt(101), GST_FLOW_OK);
+  gst_util_set_object_arg(G_OBJECT(h_->element), "tf-timeout", "60000000000");
+  const gint64 begin = g_get_monotonic_time();
+  EXPECT_EQ(PushAt(102), GST_FLOW_OK);
+  EXPECT_EQ(Stat("clouds-without-transform"), 2U);
+  EXPECT_LT(g_get_monotonic_time() - begin, 50 * G_USEC_PER_SEC);
 }
 
 TEST_F(FilterByTransforms, APadWithoutANameIsNumberedBehindAllOthers) {

@@ -228,6 +228,16 @@ TEST_F(MergedByHand, ATurnInWhichNoSensorSeesAnythingIsAGap) {
   ExpectGap(100);
 }
 
+TEST_F(MergedByHand, NoGapComesBeforeTheFirstCloud) {
+  for (const float x : {NAN, 1.F}) {
+    Push(first_, x, 100);
+    Push(second_, x, 100);
+  }
+  ExpectCloud({1, 1}, 100);
+  while (const gst::EventPtr event{gst_harness_try_pull_event(first_.get())})
+    EXPECT_NE(GST_EVENT_TYPE(event.get()), GST_EVENT_GAP);
+}
+
 /// Sends a gap, as pointcloudfilter does if no point stays.
 TEST_F(MergedByHand, ATurnOfGapsIsAGapOfTheEarliersTime) {
   const auto push_gap = [](const Harness& h, GstClockTime time_ms) {

@@ -124,6 +124,49 @@ TEST_F(ParseUnderWay, CannotBeSoughtWhereItsSourceCannot) {
   EXPECT_FALSE(seekable);
 }
 
+TEST_F(ParseUnderWay, ASeekThatItsSourceRefusesFails) {
+  PushClouds(3);
+  gst_pad_set_event_function(h_->srcpad, [](GstPad*, GstObject*, GstEvent* event) -> gboolean {
+    gst_event_unref(event);
+    return FALSE;
+  });
+  EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, 2 * gint64{GST_SECOND}));
+  PushClouds(1);
+  EXPECT_EQ(RunningTime(), 300 * GST_MSECOND);
+}
+
+TEST_F(ParseUnderWay, ASeekBeyondTheLargestFileFails) {
+  PushCaps(
+      "application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\","
+      "framerate=2147483647/1");
+  PushClouds(1);
+  EXPECT_FALSE(Seek(GST_SEEK_FLAG_FLUSH, gint64{1'000'000'000} * gint64{GST_SECOND}));
+}
+
+TEST_F(ParseUnderWay, TheEndOfASegmentComesBehindItAndTellsOfWhatIsLeft) {
+  const test::ElementBus bus(h_->element);
+  Push(Bytes(100));
+  gst_pad_push_event(h_->srcpad, gst_event_new_segment_done(GST_FORMAT_BYTES, 100));
+  std::vector<GstEventType> types;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    if (GST_EVENT_TYPE(event.get()) >= GST_EVENT_SEGMENT)
+      types.push_back(GST_EVENT_TYPE(event.get()));
+  EXPECT_EQ(types, (std::vector<GstEventType>{GST_EVENT_SEGMENT, GST_EVENT_SEGMENT_DONE}));
+  EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING),
+            "The stream ends within a cloud: 100 bytes are left over.");
+}
+
+TEST_F(ParseUnderWay, TheEndOfASegmentInTimeStaysAsItIs) {
+  PushSegment(GST_FORMAT_TIME);
+  PushClouds(1);
+  gst_pad_push_event(h_->srcpad, gst_event_new_segment_done(GST_FORMAT_TIME, 4'711));
+  gint64 end = 0;
+  while (const EventPtr event{gst_harness_try_pull_event(h_.get())})
+    if (GST_EVENT_TYPE(event.get()) == GST_EVENT_SEGMENT_DONE)
+      gst_event_parse_segment_done(event.get(), nullptr, &end);
+  EXPECT_EQ(end, 4'711);
+}
+
 TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   PushClouds(3);
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_NONE, 0, GST_SEEK_TYPE_NONE));
@@ -165,6 +208,10 @@ TEST_P(ParseAnyCloud, IsFoundByItsTimeAndKnowsItsOffset) {
       EXPECT_EQ(GST_BUFFER_OFFSET_END(last.get()), expected + 1);
       EXPECT_EQ(GST_BUFFER_PTS(last.get()), time_of(expected));
       EXPECT_EQ(GST_BUFFER_DURATION(last.get()), time_of(expected + 1) - time_of(expected));
+      const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
+      const GstSegment* segment = nullptr;
+      gst_event_parse_segment(event.get(), &segment);
+      EXPECT_EQ(segment->start, time_of(expected)) << "the cloud is the key unit";
     }
   }
 }
@@ -285,6 +332,9 @@ TEST_F(ParseSeek, KnowsHowLongTheFileIsAndThatItCanBeSought) {
   gint64 duration = 0;
   ASSERT_TRUE(gst_element_query_duration(pipeline_.get(), GST_FORMAT_TIME, &duration));
   EXPECT_EQ(duration, gint64{GST_SECOND});
+  gint64 bytes = 10 * 8 * 16;
+  gst_element_query_duration(pipeline_.get(), GST_FORMAT_BYTES, &bytes);
+  EXPECT_EQ(bytes, 10 * 8 * 16);
   const QueryPtr query(gst_query_new_seeking(GST_FORMAT_TIME));
   ASSERT_TRUE(gst_element_query(pipeline_.get(), query.get()));
   gboolean seekable = FALSE;

@@ -45,6 +45,12 @@ TEST_F(Parse, ThePropertyGoesBeforeTheFrameRateOfTheCaps) {
   EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 50 * GST_MSECOND);
   const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
   EXPECT_EQ(CloudInfo::FromCaps(caps.get())->framerate_n, 20);
+  const ElementPtr parse(gst_harness_find_element(h_.get(), "pointcloudparse"));
+  gint n = 0;
+  gint d = 0;
+  g_object_get(parse.get(), "framerate", &n, &d, nullptr);
+  EXPECT_EQ(n, 20);
+  EXPECT_EQ(d, 1);
 }
 
 TEST_F(Parse, ANewFrameRateGoesOnWhereTheLastCloudEnded) {
@@ -138,6 +144,11 @@ TEST_F(Parse, StampsFilesByTheFrameRateOfTheirCaps) {
     Push(BufferPtr(gst_buffer_new_memdup(file.data(), file.size())));
     EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), i * 50 * GST_MSECOND);
   }
+  const CapsPtr faster(gst_caps_from_string("application/x-ply,framerate=30/1"));
+  gst_pad_push_event(h_->srcpad, gst_event_new_caps(faster.get()));
+  Push(BufferPtr(gst_buffer_new_memdup(file.data(), file.size())));
+  const CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
+  EXPECT_EQ(CloudInfo::FromCaps(caps.get())->framerate_n, 30);
 }
 
 TEST_F(Parse, CutsAStreamOfAnySplitWhereTheCapsGiveTheWidth) {

@@ -209,6 +209,23 @@ TEST(RtpLidarDepay, SlicesOfACoderThatNobodyHereKnowsComeWithTheirCaps) {
       << gst::StringPtr(gst_caps_to_string(caps.get())).get();
 }
 
+TEST(RtpLidarDepay, NamesTheDecoderThatTheStreamIsFor) {
+  for (const auto& [type, decoder] : {std::pair(GST_LIDAR_SLICE_MEDIA_TYPE, "lidardec"),
+                                      std::pair(GST_LIDAR_DRACO_MEDIA_TYPE, "dracodec")}) {
+    const Harness pay(gst_harness_new("rtplidarpay"));
+    gst_harness_set_src_caps_str(pay.get(), EncodedCaps("range", 10, type).c_str());
+    gst_harness_push(pay.get(), EncodedSlice(0, 0));
+    const Harness h(gst_harness_new("rtplidardepay"));
+    gst_harness_set_sink_caps_str(h.get(), "application/x-voxels");
+    gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+    const ElementBus bus(h->element);
+    Push(h.get(), Pull(pay.get()));
+    EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING),
+              std::string("The slices of this stream are for ") + decoder +
+                  ", and the next element does not take them. They are dropped.");
+  }
+}
+
 TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
   const Harness h(gst_harness_new("rtplidardepay"));
   gst_harness_set_sink_caps_str(h.get(), GST_LIDAR_SLICE_MEDIA_TYPE);

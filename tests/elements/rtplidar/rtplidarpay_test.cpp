@@ -330,6 +330,16 @@ TEST(RtpLidarPay, SaysThatASliceIsTooLarge) {
   EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), "A slice of 4194305 bytes cannot be sent.");
 }
 
+TEST(RtpLidarPay, RefusesASensorModelThatIsTooLongForAConfig) {
+  const Harness h(gst_harness_new("rtplidarpay"));
+  const gst::CapsPtr caps(gst_caps_from_string(EncodedCaps("xyz").c_str()));
+  const gst::BufferPtr model(gst_buffer_new_allocate(nullptr, 0x1'0000, nullptr));
+  gst_buffer_memset(model.get(), 0, 1, 0x1'0000);
+  gst_caps_set_simple(caps.get(), "sensor-model", GST_TYPE_BUFFER, model.get(), nullptr);
+  gst_harness_set_src_caps(h.get(), gst_caps_ref(caps.get()));
+  EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
+}
+
 TEST(RtpLidarPay, RefusesASensorModelThatIsNone) {
   Harness h(gst_harness_new("rtplidarpay"));
   gst_harness_set_src_caps_str(

@@ -74,6 +74,17 @@ TEST(LidarTestSrc, CapsDescribeTheSlicesOfTheSensor) {
   EXPECT_EQ(gst_buffer_get_size(buffer.get()), info.FrameSize());
 }
 
+TEST(LidarTestSrc, TellsOnlyTheCapsThatAreAskedFor) {
+  const ElementPtr source(gst_parse_launch("lidartestsrc model=os1-32", nullptr));
+  const PadPtr pad(gst_element_get_static_pad(source.get(), "src"));
+  for (const gint height : {32, 64}) {
+    const CapsPtr filter(
+        gst_caps_new_simple("application/x-pointcloud2", "height", G_TYPE_INT, height, nullptr));
+    const CapsPtr caps(gst_pad_query_caps(pad.get(), filter.get()));
+    EXPECT_EQ(gst_caps_is_empty(caps.get()) != FALSE, height != 32) << height;
+  }
+}
+
 TEST(LidarTestSrc, StampsAreTheSweepOfEachSlice) {
   const Harness h = Launch("model=os1-32 mode=512x20");
   SetPlaying(h.get());

@@ -144,6 +144,24 @@ TEST_F(View, TheRangeImageHasForwardInTheMiddleAndNothingWhereNothingReturned) {
   EXPECT_TRUE(IsPoint(125, 75));
 }
 
+TEST_F(View, TheRangeImageOfAPlainCloudHasTheHighestPointAboveAndTheLowestBelow) {
+  Start("view=range color-by=range", Info(3));
+  Push(Cloud({{10, 0, 10, 1}, {0, 10, -10, 1}, {0, -10, 0, 1}}));
+  Pull();
+  EXPECT_TRUE(IsPoint(100, 0));
+  EXPECT_TRUE(IsPoint(50, 99));
+  EXPECT_TRUE(IsPoint(150, 49));
+  EXPECT_FALSE(IsPoint(100, 49) || IsPoint(50, 49) || IsPoint(150, 0) || IsPoint(150, 99));
+}
+
+TEST_F(View, PixelsAreSquareWhereDownstreamLeavesThatOpen) {
+  Start("", Info(1), "RGB,pixel-aspect-ratio=(fraction)[1/2,2/1]");
+  Push(Cloud({{25, 0, 0, 1}}));
+  Pull();
+  EXPECT_EQ(GST_VIDEO_INFO_PAR_N(&video_), 1);
+  EXPECT_EQ(GST_VIDEO_INFO_PAR_D(&video_), 1);
+}
+
 TEST_F(View, AScanIsOnePictureHoweverItIsCut) {
   Start("view=top point-size=1", Info(1));
   for (guint scan = 0; scan < 3; ++scan) {
@@ -269,6 +287,30 @@ TEST_F(View, TheWholeWayIsInALowPictureToo) {
   EXPECT_FALSE(IsDrawn(100, 95));
 }
 
+TEST_F(View, InPerspectiveTheMapReaches300MetresToEachSide) {
+  const std::vector<Point> places = {
+      {10, 5, 5, 1}, {290, 60, 30, 1}, {310, 96, 32, 1}, {290, 290, 30, 1}, {290, -310, 30, 1}};
+  Start("map=true eye-x=-10 eye-y=0 eye-z=0 target-x=20 target-y=0 target-z=0 field-of-view=120",
+        Info(5));
+  // The sensor looks along y of the map.
+  const double half = std::sqrt(0.5);
+  const GstLidarPose pose{{100, 50, 3}, {0, 0, half, half}, GST_LIDAR_TRACKING_OK, {}};
+  for (guint scan = 0; scan < 4; ++scan) {
+    BufferPtr cloud = Cloud(scan < 3 ? places : std::vector<Point>(5));
+    gst_lidar_buffer_set_pose(cloud.get(), &pose);
+    Push(std::move(cloud), scan * 100 * GST_MSECOND);
+    Pull();
+    if (scan == 0) {
+      EXPECT_TRUE(IsPoint(85, 35));
+    }
+  }
+  EXPECT_TRUE(IsDrawn(85, 35));
+  EXPECT_TRUE(IsDrawn(88, 44));
+  EXPECT_TRUE(IsDrawn(44, 44));
+  EXPECT_FALSE(IsDrawn(82, 44)) << "310 m ahead";
+  EXPECT_FALSE(IsDrawn(159, 44)) << "310 m aside";
+}
+
 TEST_F(View, WithoutPosesThereIsNoMapAndAWarning) {
   Start("map=true view=top extent=100 point-size=1", Info(1));
   const test::ElementBus bus(h_->element);
@@ -278,6 +320,45 @@ TEST_F(View, WithoutPosesThereIsNoMapAndAWarning) {
     EXPECT_TRUE(IsPoint(150, 50));
   }
   EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING).size(), 1U);
+  PushSlice({{0, 15, 0, 1}}, {3, 0, 1, 0});
+  Pull();
+  EXPECT_FALSE(IsDrawn(150, 50)) << "the map of no place";
+}
+
+TEST_F(View, ACloudWithoutReturnsOrIntensityIsAPictureToo) {
+  Start("view=top point-size=1 color-by=intensity", Info(1));
+  EXPECT_EQ(Push(Cloud({{0, 0, 0, 0}})), GST_FLOW_OK);
+  Pull();
+  CloudInfo plain = Info(1);
+  plain.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
+  Start("view=top point-size=1 color-by=intensity", plain);
+  EXPECT_EQ(Push(Cloud({{25, 0, 0, 1000}})), GST_FLOW_OK);
+  Pull();
+  EXPECT_FALSE(IsPoint(150, 50));
+}
+
+TEST_F(View, OneBrightPointDoesNotDimThePictureNorOneDimPointBrightenIt) {
+  for (const bool dim : {false, true}) {
+    Start("view=top point-size=1 color-by=intensity", Info(100));
+    std::vector<Point> points(100, Point{0, 15, 0, 100});
+    points[98] = {25, 0, 0, dim ? 1.0F : 1e9F};
+    Push(Cloud(points));
+    Pull();
+    EXPECT_TRUE(IsPoint(100, 20));
+    EXPECT_EQ(IsPoint(150, 50), !dim);
+  }
+}
+
+TEST_F(View, TheRangeImageOfASensorOfOneBeamHasItsColumns) {
+  CloudInfo info = Info(4);
+  info.sensor_model.emplace();
+  info.sensor_model->columns_per_scan = 4;
+  info.sensor_model->beams = {{0, 5, 0}};
+  Start("view=range color-by=range", info);
+  Push(Cloud({{0, 0, 0, 0}, {20, 0, 0, 1}, {0, 0, 0, 0}, {0, 0, 0, 0}}));
+  Pull();
+  EXPECT_TRUE(IsPoint(52, 2) && IsPoint(98, 97));
+  EXPECT_FALSE(IsPoint(48, 50) || IsPoint(102, 50));
 }
 
 TEST_F(View, TakesPosesThatMakeNoSense) {
@@ -322,11 +403,36 @@ TEST(TrailMap, CountsTheScansThatSawAPlaceNotTheirPoints) {
   TrailMap map(1000);
   map.MoveTo({{0, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 0);
   for (std::uint16_t scan = 1; scan <= 2; ++scan) {
-    for (int i = 0; i < 5; ++i) map.Add({3.1F, 0.1F, 0.1F}, 0);
+    for (int i = 0; i < 5; ++i) map.Add({3.1F, 0.1F, 0.1F}, scan == 1 ? 0.0F : 10.0F);
     map.EndScan();
     ASSERT_EQ(map.points().size(), 1U);
     EXPECT_EQ(map.points()[0].scans, scan);
   }
+  EXPECT_GT(map.points()[0].value, 0);
+  EXPECT_LT(map.points()[0].value, 5) << "later values may be of farther away";
+}
+
+TEST(TrailMap, KnowsAPlaceHoweverOftenItWasSeen) {
+  TrailMap map(1000);
+  for (int scan = 0; scan < 70'000; ++scan) {
+    map.Add({3.1F, 0.1F, 0.1F}, 0);
+    map.EndScan();
+  }
+  ASSERT_EQ(map.points().size(), 1U);
+  EXPECT_EQ(map.points()[0].scans, UINT16_MAX);
+}
+
+TEST(TrailMap, AGrownCubeWasSeenAsOftenAsAnyCubeInIt) {
+  TrailMap map(4);
+  map.Add({0.1F, 0.1F, 0.1F}, 0);
+  for (int scan = 0; scan < 3; ++scan) {
+    map.EndScan();
+    map.Add({0.25F, 0.1F, 0.1F}, 0);
+  }
+  for (const float x : {10.0F, 20.0F}) map.Add({x, 0.1F, 0.1F}, 0);
+  ASSERT_EQ(map.points().size(), 3U);
+  EXPECT_EQ(map.points()[0].scans, 3U);
+  EXPECT_EQ(map.points()[1].scans, 1U);
 }
 
 TEST(TrailMap, FollowsTheVelocityWithinAScan) {
