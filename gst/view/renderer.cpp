@@ -155,8 +155,8 @@ void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
 
 /// Draws an unorganised cloud by azimuth and elevation.
 void Renderer::DrawPanorama(const CloudInfo& info, const std::uint8_t* points) {
-  float low = 1;
-  float high = -1;
+  float low = kPi / 2;
+  float high = -kPi / 2;
   ForEachPoint(info, points, [&](const Point& p) {
     low = std::min(low, std::asin(p.p.z / p.range));
     high = std::max(high, std::asin(p.p.z / p.range));

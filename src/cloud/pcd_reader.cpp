@@ -128,6 +128,7 @@ bool ReadCompressed(ByteView rest, const std::vector<FileField>& fields, FileClo
   if (!size) return false;
   *why = "the compressed points are damaged";
   if (!r.ok() || uncompressed != *size) return false;
+  if (*size == 0) return true;
   const auto planes = DecompressLzf(data, *size);
   if (!planes) return false;
   cloud->points.resize(*size);

@@ -94,6 +94,15 @@ TEST(Pcd, CompressedIsRead) {
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf.substr(0, 20)));
 }
 
+TEST(Pcd, WithoutAPointIsReadInEachForm) {
+  for (const std::string form : {"ascii", "binary", "binary_compressed"}) {
+    const auto cloud =
+        Pcd(PcdHeader(form, 0) + (form == "binary_compressed" ? std::string(8, 0) : ""));
+    ASSERT_TRUE(cloud) << form;
+    EXPECT_TRUE(cloud->points.empty());
+  }
+}
+
 TEST(Pcd, CompressedPointsRepeatWhatCameBefore) {
   // A literal zero, then 79 copies of the byte before.
   const std::vector<std::uint8_t> lzf = {0, 0, 7 << 5, 70, 0};

@@ -154,6 +154,14 @@ TEST_F(View, TheRangeImageOfAPlainCloudHasTheHighestPointAboveAndTheLowestBelow)
   EXPECT_FALSE(IsPoint(100, 49) || IsPoint(50, 49) || IsPoint(150, 0) || IsPoint(150, 99));
 }
 
+TEST_F(View, TheRangeImageOfASensorThatLooksUpHasNoEmptyBand) {
+  Start("view=range color-by=range", Info(2));
+  Push(Cloud({{10, 0, 100, 1}, {0, 10, 20, 1}}));
+  Pull();
+  EXPECT_TRUE(IsPoint(100, 0));
+  EXPECT_TRUE(IsPoint(50, 99));
+}
+
 TEST_F(View, PixelsAreSquareWhereDownstreamLeavesThatOpen) {
   Start("", Info(1), "RGB,pixel-aspect-ratio=(fraction)[1/2,2/1]");
   Push(Cloud({{25, 0, 0, 1}}));
