@@ -40,7 +40,6 @@ class TrailMap {
   void MoveTo(const GstLidarPose& pose, double seconds);
   /// Place of the sensor, `later_s` after the last pose.
   Rigid PoseAfter(double later_s) const;
-  bool has_pose() const { return poses_ > 0; }
 
   /// Points that were added since the last call belong to one scan.
   void EndScan() { ++scan_; }
