@@ -5,12 +5,12 @@
 #include <draco/compression/encode.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <new>
 #include <stdexcept>
 
 #include "ext/draco/draco_check.h"
+#include "src/cloud/field_number.h"
 
 namespace lidar::draco {
 namespace {
@@ -20,7 +20,7 @@ using Attribute = ::draco::GeometryAttribute;
 // The default of both speeds in draco_point_cloud_transport is 7.
 constexpr int kSpeed = 7;
 // Draco's coder of integers takes memory and time in proportion to the range of their differences.
-constexpr std::int64_t kWidestRange = 1 << 20;
+constexpr double kWidestRange = 1 << 20;
 // Draco counts them in a byte.
 constexpr std::uint32_t kMostNumbers = 255;  // of a field
 
@@ -81,21 +81,6 @@ bool CopyField(const ::draco::PointAttribute& attribute, const FieldOfPoints& fi
   return true;
 }
 
-template <typename Integer>
-std::int64_t RangeOf(const FieldOfPoints& field, ByteView points, std::uint32_t point_step) {
-  Integer low = std::numeric_limits<Integer>::max();
-  Integer high = std::numeric_limits<Integer>::min();
-  for (std::size_t at = field.offset; at + BytesOf(field) <= points.size; at += point_step) {
-    for (std::uint32_t i = 0; i < field.count; ++i) {
-      Integer value;
-      std::memcpy(&value, points.data + at + i * sizeof value, sizeof value);
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  }
-  return std::int64_t{high} - std::int64_t{low};
-}
-
 bool CopyPoints(const ::draco::PointCloud& cloud, const FieldLayout& layout,
                 std::vector<std::uint8_t>* points) {
   if (static_cast<std::size_t>(cloud.num_attributes()) != layout.fields.size()) return false;
@@ -106,13 +91,25 @@ bool CopyPoints(const ::draco::PointCloud& cloud, const FieldLayout& layout,
   return true;
 }
 
+/// Returns the largest minus the smallest number of the field.
+double RangeOf(const FieldOfPoints& field, ByteView points, std::uint32_t point_step) {
+  double low = std::numeric_limits<double>::max();
+  double high = std::numeric_limits<double>::lowest();
+  for (std::size_t at = field.offset; at + BytesOf(field) <= points.size; at += point_step) {
+    for (std::uint32_t i = 0; i < field.count; ++i) {
+      const double value = ReadNumber(points.data + at + i * SizeOf(field.type), field.type);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  return high - low;
+}
+
 /// Returns true if a field of integers spans more than kWidestRange.
 bool HasWideIntegers(ByteView points, const FieldLayout& layout) {
-  return std::any_of(layout.fields.begin(), layout.fields.end(), [&](const FieldOfPoints& field) {
-    if (field.type == FieldType::kI32)
-      return RangeOf<std::int32_t>(field, points, layout.point_step) > kWidestRange;
-    return field.type == FieldType::kU32 &&
-           RangeOf<std::uint32_t>(field, points, layout.point_step) > kWidestRange;
+  return std::any_of(layout.fields.begin(), layout.fields.end(), [&](const FieldOfPoints& f) {
+    return (f.type == FieldType::kI32 || f.type == FieldType::kU32) &&
+           RangeOf(f, points, layout.point_step) > kWidestRange;
   });
 }
 
