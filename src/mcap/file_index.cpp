@@ -67,6 +67,12 @@ void DropOverlaps(std::vector<ChunkPlace>* chunks) {
   chunks->erase(std::remove_if(chunks->begin(), chunks->end(), overlaps), chunks->end());
 }
 
+bool LacksASchema(const FileIndex& index) {
+  return std::any_of(index.channels.begin(), index.channels.end(), [&](const auto& c) {
+    return c.second.schema_id != 0 && index.schemas.count(c.second.schema_id) == 0;
+  });
+}
+
 }  // namespace
 
 std::uint64_t FileIndex::start_time() const {
@@ -99,12 +105,6 @@ bool FileIndex::Learn(const Record& record) {
 void FileIndex::LearnAll(ByteView records) {
   std::size_t offset = 0;
   while (const auto record = NextRecord(records, &offset)) Learn(*record);
-}
-
-bool LacksASchema(const FileIndex& index) {
-  return std::any_of(index.channels.begin(), index.channels.end(), [&](const auto& c) {
-    return c.second.schema_id != 0 && index.schemas.count(c.second.schema_id) == 0;
-  });
 }
 
 FileIndex ReadFileIndex(Input* input, FileIndex known) {
