@@ -17,6 +17,7 @@
 #include "src/base/sequence.h"
 #include "src/base/target_notifier.h"
 #include "src/base/units.h"
+#include "tests/support/german_numbers.h"
 
 namespace lidar {
 namespace {
@@ -229,13 +230,9 @@ TEST(RowFile, KeepsRowsThatAreWrittenAsItCloses) {
   std::filesystem::remove(path);
 }
 
-struct CommaLocale : std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-};
-
 TEST(RowFile, HasTheNumbersOfTheCLocaleWhateverTheProgramSets) {
   const std::string path = ::testing::TempDir() + "row_file_locale.txt";
-  const std::locale before = std::locale::global({std::locale(), new CommaLocale});
+  const std::locale before = std::locale::global({std::locale(), new test::GermanNumbers});
   { RowFile(path).stream() << 0.5 << '\n'; }
   std::locale::global(before);
   std::string line;

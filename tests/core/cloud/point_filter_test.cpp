@@ -8,6 +8,8 @@
 #include <limits>
 #include <locale>
 
+#include "tests/support/german_numbers.h"
+
 namespace lidar {
 namespace {
 
@@ -289,14 +291,8 @@ TEST(PointFilter, NeedsCoordinatesForWhatIsAboutThem) {
   }
 }
 
-struct CommaNumbers : std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-  char do_thousands_sep() const override { return '.'; }
-  std::string do_grouping() const override { return "\3"; }
-};
-
 TEST(PointFilter, NumbersAreReadWithAPointWhateverLocaleTheProgramSets) {
-  const std::locale before = std::locale::global({std::locale(), new CommaNumbers});
+  const std::locale before = std::locale::global({std::locale(), new test::GermanNumbers});
   const auto numbers = ParseNumbers("0.5,-1.25 1000");
   std::locale::global(before);
   EXPECT_EQ(numbers, (std::vector<double>{0.5, -1.25, 1000}));

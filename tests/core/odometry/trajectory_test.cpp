@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "src/odometry/trajectory_error.h"
+#include "tests/support/german_numbers.h"
 
 namespace lidar::odometry {
 namespace {
@@ -56,23 +57,16 @@ TEST(TumFiles, HaveNineDigitsBehindThePoint) {
   EXPECT_EQ(out.str().rfind("0.000000042 ", 0), 0U) << out.str();
 }
 
-/// German numbers: a comma instead of the point, and points between thousands.
-struct GermanNumbers : std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-  char do_thousands_sep() const override { return '.'; }
-  std::string do_grouping() const override { return "\3"; }
-};
-
 TEST(TrajectoryFiles, AreTheSameInAnyLocale) {
   const StampedPose before_1970{Time{} - milliseconds(1'700'250), At(1234.5, -2.25, 0)};
   std::ostringstream german;
-  german.imbue(std::locale(std::locale::classic(), new GermanNumbers));
+  german.imbue(std::locale(std::locale::classic(), new test::GermanNumbers));
   WriteTumLine(german, before_1970);
   EXPECT_EQ(german.str(),
             "-1700.250000000 1234.500000 -2.250000 0.000000 0.000000000 0.000000000 0.000000000 "
             "1.000000000\n");
   std::ostringstream kitti;
-  kitti.imbue(std::locale(std::locale::classic(), new GermanNumbers));
+  kitti.imbue(std::locale(std::locale::classic(), new test::GermanNumbers));
   WriteKittiLine(kitti, before_1970.pose);
   EXPECT_EQ(kitti.str().substr(0, 64),
             "1.000000000e+00 0.000000000e+00 0.000000000e+00 1.234500000e+03 ");

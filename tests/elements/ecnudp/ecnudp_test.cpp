@@ -307,7 +307,7 @@ TEST_P(Loopback, PacketsLeaveByTheInterfaceAndByNoOther) {
   EXPECT_EQ(Text(got.get()), "sent");
 }
 
-/// Of IPv6 for both address families: bound to any address.
+/// A socket of IPv6 is for both address families and is bound to any address.
 Object<GSocket> LoopbackSocket(GSocketFamily family = G_SOCKET_FAMILY_IPV4) {
   const Object<GInetAddress> address(family == G_SOCKET_FAMILY_IPV4
                                          ? g_inet_address_new_loopback(family)
