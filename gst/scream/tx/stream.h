@@ -11,6 +11,7 @@
 #include "gst/common/refs.h"
 #include "gst/lidar/gstlidar.h"
 #include "gst/scream/rtp_packet.h"
+#include "gst/scream/tx/figures.h"
 #include "gst/scream/tx/gstscreamtxpad.h"
 #include "gst/scream/tx/receipts.h"
 #include "src/base/target_notifier.h"
@@ -42,12 +43,6 @@ class OverheadMeter {
   // Starts with the share of packets of 1200 bytes.
   double payload_ = 1188;
   double wire_ = 1228;
-};
-
-struct StreamCounters {
-  guint64 packets_queued = 0;
-  guint64 frames_dropped = 0;
-  guint64 malformed = 0;
 };
 
 /// A flush restarts the running time, but without a preroll the base time stays. Entry times are
