@@ -64,8 +64,10 @@ inline GstBuffer* NewRtp(const Rtp& r) {
   gst_rtp_buffer_set_marker(&rtp, r.marker);
   gst_rtp_buffer_set_ssrc(&rtp, r.ssrc);
   gst_rtp_buffer_set_payload_type(&rtp, r.payload_type);
-  std::copy(r.payload.begin(), r.payload.end(),
-            static_cast<std::uint8_t*>(gst_rtp_buffer_get_payload(&rtp)));
+  // Packets with equal fields are equal byte for byte.
+  auto* payload = static_cast<std::uint8_t*>(gst_rtp_buffer_get_payload(&rtp));
+  std::fill_n(payload, size, std::uint8_t{0});
+  std::copy(r.payload.begin(), r.payload.end(), payload);
   gst_rtp_buffer_unmap(&rtp);
   return buffer;
 }
