@@ -69,13 +69,13 @@ TEST(Controller, RestartsFromTheStartBitrateOnANewRoute) {
   std::deque<Time> under_way;  // when packets left, from `reported` on
   DataSize due;
   // The stream sends at its target in frames of 20 ms, and each packet is reported after 30 ms.
-  const auto run = [&](Duration time) {
+  const auto run = [&](Duration time, Ecn ecn = Ecn::kEct1) {
     for (const Time end = now + time; now < end; now += 20ms) {
       rtcp::CongestionFeedback report;
       report.report_timestamp = rtcp::ReportClock::ToTimestamp(now);
       report.blocks.push_back({1, reported, {}});
       for (; !under_way.empty() && now - under_way.front() >= 30ms; ++reported) {
-        report.blocks[0].metrics.push_back({true, Ecn::kEct1, 0ms});
+        report.blocks[0].metrics.push_back({true, ecn, 0ms});
         under_way.pop_front();
       }
       if (!report.blocks[0].metrics.empty()) {
@@ -93,6 +93,7 @@ TEST(Controller, RestartsFromTheStartBitrateOnANewRoute) {
   };
   run(5s);
   ASSERT_GT(c.target_bitrate(id), Mbps(8));
+  run(100ms, Ecn::kCe);
   c.OnRouteChange(now);
   under_way.clear();
   reported = seq;
@@ -100,6 +101,44 @@ TEST(Controller, RestartsFromTheStartBitrateOnANewRoute) {
   EXPECT_LT(c.target_bitrate(id), Mbps(2));
   run(200ms);
   EXPECT_EQ(c.statistics(now).loss_events, 0U) << "packets of the old route are not lost";
+  EXPECT_GT(c.target_bitrate(id), Mbps(3)) << "it grows as at the start, in spite of the marks";
+}
+
+TEST(Controller, ShowsWhatWaitsAndWhatItAimsAt) {
+  Parameters p;
+  p.qdelay_target_lo = 33ms;
+  Controller c{p};
+  const StreamId a = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
+  const StreamId b = c.AddStream({1, Mbps(0.1), Mbps(3), Mbps(10)});
+  c.OnQueued(kStart, a, {11, DataSize::Bytes(1000), true, 0});
+  for (int i = 0; i < 2; ++i) c.OnQueued(kStart + 5ms, b, {22, DataSize::Bytes(700), true, 0});
+  c.OnSent(kStart + 5ms, b, {22, 0, DataSize::Bytes(700), Ecn::kEct1});
+  c.OnDropped(kStart + 5ms, b, 1);
+  const Statistics s = c.statistics(kStart + 25ms);
+  EXPECT_EQ(s.qdelay_target, Duration(33ms));
+  EXPECT_EQ(s.queued.bytes(), 1000);
+  EXPECT_EQ(s.media_qdelay, Duration(25ms));
+  EXPECT_EQ(s.bytes_in_flight.bytes(), 700);
+  EXPECT_EQ(s.packets_sent, 1U);
+  EXPECT_EQ(s.bytes_sent.bytes(), 700);
+  EXPECT_EQ(s.packets_dropped, 1U);
+  EXPECT_NEAR(s.target_bitrate.bits_per_second(), 4e6, 1);
+  EXPECT_GE(s.pace_bitrate, s.target_bitrate);
+  EXPECT_GE(s.ref_wnd, p.min_ref_wnd);
+  EXPECT_EQ(s.reason, RateReason::kStart);
+  const StreamStatistics of_a = c.stream_statistics(kStart + 25ms, a);
+  EXPECT_EQ(of_a.queued.bytes(), 1000);
+  EXPECT_EQ(of_a.media_qdelay, Duration(25ms));
+  EXPECT_EQ(of_a.target_bitrate, c.target_bitrate(a));
+  EXPECT_EQ(of_a.packets_sent, 0U);
+  const StreamStatistics of_b = c.stream_statistics(kStart + 25ms, b);
+  EXPECT_EQ(of_b.packets_sent, 1U);
+  EXPECT_EQ(of_b.packets_dropped, 1U);
+  EXPECT_EQ(of_b.bytes_sent.bytes(), 700);
+  EXPECT_GT(of_b.sent_bitrate, DataRate());
+  c.RemoveStream(a);
+  EXPECT_EQ(c.stream_statistics(kStart + 25ms, a).target_bitrate, DataRate());
+  EXPECT_EQ(c.target_bitrate(a), DataRate());
 }
 
 TEST(Controller, FindsTheStreamOfASource) {
@@ -236,6 +275,36 @@ TEST_F(FullLink, AMarkOfAGapIsNotObeyedAfterIt) {
   ReportTrain(10, Ecn::kEct1);
   EXPECT_EQ(c_.statistics(now_).ce_events, restarted.ce_events);
   EXPECT_GE(c_.statistics(now_).ref_wnd, restarted.ref_wnd);
+}
+
+TEST_F(FullLink, AGapOfTheOldRouteGivesNothingBackOnTheNewOne) {
+  now_ += 300ms;
+  ReportTrain(1, Ecn::kCe);  // behind a gap
+  c_.OnRouteChange(now_);
+  reported_ = seq_;
+  for (int round = 0; round < 5; ++round, now_ += 50ms) {
+    for (int i = 0; i < 3; ++i)
+      c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
+    now_ += 40ms;
+    ReportNext(3, Ecn::kEct1, now_ - 20ms, 0ms);
+  }
+  EXPECT_EQ(c_.statistics(now_).gaps, 0U);
+}
+
+TEST_F(FullLink, AGapInWhichTheMachineStoodStillGivesNothingBack) {
+  now_ += 300ms;
+  ReportTrain(1, Ecn::kCe);  // behind a gap
+  now_ += 1s;
+  c_.OnTimer(now_);
+  ASSERT_EQ(c_.statistics(now_).bytes_in_flight.bytes(), 0);
+  reported_ = seq_;
+  for (int round = 0; round < 5; ++round, now_ += 50ms) {
+    for (int i = 0; i < 3; ++i)
+      c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
+    now_ += 40ms;
+    ReportNext(3, Ecn::kEct1, now_ - 20ms, 0ms);
+  }
+  EXPECT_EQ(c_.statistics(now_).gaps, 0U);
 }
 
 TEST_F(FullLink, WaitsForAllThatIsInFlightForHalfOfTheDelayAtMost) {

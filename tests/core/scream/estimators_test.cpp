@@ -53,6 +53,50 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_EQ(path.model.report_gap(), Duration{0});
 }
 
+TEST(PathModel, DescribesEachMeasurementAsItIs) {
+  const Parameters p;
+  Path path(p);
+  path.Arrive(50, 1ms, 0ms, Ecn::kEct1);
+  for (int i = 0; i < 40; ++i) path.Arrive(1, 5ms, 30ms, i % 4 == 0 ? Ecn::kCe : Ecn::kEct1);
+  AckSummary loss;
+  loss.lost.emplace_back();
+  path.model.OnReport(path.now, loss, kSender);
+  path.model.OnSent(path.now, DataSize::Bytes(777), Ecn::kEct1, DataSize());
+  Statistics s;
+  path.model.Describe(path.now, &s);
+  EXPECT_EQ(s.s_rtt, path.model.rtt().smoothed());
+  EXPECT_EQ(s.min_rtt, kRtt);
+  EXPECT_GT(s.s_rtt, s.min_rtt);
+  EXPECT_EQ(s.qdelay, Duration(30ms));
+  EXPECT_EQ(s.qdelay_avg, path.model.queue_delay().qdelay_avg());
+  EXPECT_GT(s.qdelay_avg, Duration{0});
+  EXPECT_LT(s.qdelay_avg, s.qdelay);
+  EXPECT_EQ(s.l4s_alpha, path.model.l4s_alpha().value());
+  EXPECT_GT(s.l4s_alpha, 0);
+  EXPECT_EQ(s.loss_rate, path.model.loss_rate());
+  EXPECT_GT(s.loss_rate, 0);
+  EXPECT_EQ(s.ref_wnd_delay_scale, path.model.queue_delay().ref_wnd_delay_scale());
+  EXPECT_EQ(s.acked_bitrate, path.model.acked_rate(path.now));
+  EXPECT_GT(s.acked_bitrate, DataRate());
+  EXPECT_EQ(s.sent_bitrate.bits_per_second(), 777 * 8 / 0.01) << "over 10 ms at least";
+  EXPECT_GE(s.estimated_capacity, path.model.measured_capacity());
+  EXPECT_EQ(s.cross_traffic, 0);
+  EXPECT_EQ(s.clock_resets, 0U);
+  EXPECT_EQ(s.ecn_state, EcnState::kCapable);
+}
+
+TEST(PathModel, DescribesNoRoundTripBeforeTheFirst) {
+  const Parameters p;
+  const PathModel model(p);
+  Statistics s;
+  model.Describe(kStart, &s);
+  EXPECT_EQ(s.s_rtt, Duration{0});
+  EXPECT_EQ(s.min_rtt, Duration{0});
+  EXPECT_EQ(s.sent_bitrate, DataRate());
+  EXPECT_EQ(s.acked_bitrate, DataRate());
+  EXPECT_EQ(s.estimated_capacity, DataRate());
+}
+
 TEST(PathModel, AveragesLossesByTheDraftsFilter) {
   const Parameters p = Parameters::Draft();
   PathModel model(p);
