@@ -221,6 +221,37 @@ TEST(ThreeLinks, GetOneCopyOfWhatWasLostUntilThatIsOverdue) {
   EXPECT_EQ(scheduler.TakeCopies(kStart + 100ms).size(), 1U) << "on the third link";
 }
 
+/// Any link may leave its gap first.
+TEST(ThreeLinks, AllGetACopyOfWhatWaitsWhereEachIsInAGap) {
+  for (const bool in_gap : {false, true}) {
+    Scheduler scheduler(3, Method::kBackup);
+    for (std::size_t i = 0; i < 3; ++i) scheduler.OnPath(i, {Mbps(8), 40ms});
+    Time now = kStart;
+    std::uint16_t seq = 0;
+    const auto send = [&](bool arrives) {
+      const PacketId id{kMedia, ++seq};
+      const LinkSet links = scheduler.OnPacket(now, {id, kSize, seq, true});
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!links[i]) continue;
+        scheduler.OnSent(now, i, id);
+        if (arrives) scheduler.OnFeedback(now, i, Arrived(seq));
+      }
+      return links;
+    };
+    while (send(true).count() > 1) ASSERT_LT(seq, 100);
+    const LinkSet first = send(false);
+    ASSERT_EQ(first.count(), 1U);
+    const PacketId waits{kMedia, seq};
+    // The other links carry something that is not reported, too.
+    for (std::size_t i = 0; i < 3 && in_gap; ++i)
+      if (!first[i]) scheduler.OnSent(now, i, {kMedia + 1, static_cast<std::uint16_t>(i)});
+    now += 61ms;
+    std::size_t copies = 0;
+    for (const Scheduler::Copy& copy : scheduler.TakeCopies(now)) copies += copy.id == waits;
+    EXPECT_EQ(copies, in_gap ? 2U : 1U);
+  }
+}
+
 TEST_F(TwoLinks, SendsNothingThatArrivedOnTheOtherLink) {
   const PacketId id{kMedia, 1};
   ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, 1}), SetOf({0, 1}));

@@ -189,6 +189,19 @@ TEST_F(FeedbackGeneratorTest, OwesNothingForTheNumbersOfBeforeARestart) {
   EXPECT_EQ(generator_.NextDue(), Time::max());
 }
 
+TEST_F(FeedbackGeneratorTest, OwesNothingForASourceThatItWasToForget) {
+  Begin();
+  for (std::uint16_t seq = 1; seq <= 10; ++seq) Arrive(seq);
+  generator_.Forget(99);  // there is none
+  generator_.Forget(1);
+  Arrive(500, true);
+  const auto report = generator_.Take(now_);
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->blocks.size(), 1U);
+  EXPECT_EQ(report->blocks[0].begin_seq, 500);
+  EXPECT_EQ(generator_.NextDue(), Time::max());
+}
+
 TEST_F(FeedbackGeneratorTest, ReportsSixtyFourSourcesAtMost) {
   std::set<std::uint32_t> reported;
   for (std::uint32_t ssrc = 1; ssrc <= 70; ++ssrc) Arrive(5, true, Ecn::kEct1, ssrc);

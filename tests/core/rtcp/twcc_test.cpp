@@ -106,6 +106,20 @@ TEST_F(Mapper, AReportOfLossesAloneHasTheTimeOfTheNewestArrival) {
   EXPECT_EQ(after->report_timestamp, before->report_timestamp);
 }
 
+TEST_F(Mapper, AReportThatWasOvertakenIsNotTheNewestArrival) {
+  for (std::uint16_t i = 0; i < 3; ++i)
+    mapper.OnSent(static_cast<std::uint16_t>(65534 + i), 100, i);
+  TwccFeedback next = Report({20s});
+  next.base_number = 65535;
+  const auto newest = mapper.Map(next);
+  mapper.Map(Report({10s}));
+  TwccFeedback lost = Report({std::nullopt});
+  lost.base_number = 0;
+  const auto after = mapper.Map(lost);
+  ASSERT_TRUE(newest && after);
+  EXPECT_EQ(after->report_timestamp, newest->report_timestamp);
+}
+
 TEST_F(Mapper, AReportThatWasOvertakenAcrossTheWrapIsTheEarlierOne) {
   mapper.OnSent(65534, 100, 1);
   mapper.OnSent(65535, 100, 2);
