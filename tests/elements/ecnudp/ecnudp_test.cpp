@@ -230,6 +230,20 @@ TEST(EcnUdp, TellsOnceOfAnErrorUntilDatagramsLeaveAgain) {
   }
 }
 
+TEST(EcnUdpSink, TellsOfAnErrorInEachRun) {
+  GstElement* element = SinkElement();
+  g_object_set(element, "host", "127.0.0.1", "port", 9, nullptr);
+  const test::ElementBus bus(element);
+  for (int run = 0; run < 2; ++run) {
+    const Harness sink(gst_harness_new_with_element(element, "sink", nullptr));
+    gst_harness_set_src_caps_str(sink.get(), "application/x-rtp");
+    for (int i = 0; i < 2; ++i) gst_harness_push(sink.get(), Payload(std::string(70'000, 'x')));
+    EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING).size(), 1U) << run;
+  }
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_object_unref(element);
+}
+
 TEST(EcnUdp, BuffersOfManyMemoriesAreOneDatagram) {
   const Harness src = NewSource();
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
@@ -266,6 +280,7 @@ TEST(EcnUdp, ReplyGoesToThePeerThatTheBufferNames) {
         g_inet_socket_address_new_from_string("127.0.0.1", LocalPort(robot)));
     gst_buffer_add_net_address_meta(named, address.get());
     ASSERT_EQ(gst_harness_push(reply.get(), named), GST_FLOW_OK);
+    EXPECT_EQ(GetObject<GSocketAddress>(reply.get(), "peer-address"), address);
     ASSERT_EQ(gst_harness_push(reply.get(), Payload("to the last")), GST_FLOW_OK);
     for (const char* text : {"named", "to the last"}) {
       const BufferPtr got(gst_harness_pull(robot));
@@ -442,6 +457,14 @@ TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
   EXPECT_NE(std::string(error->message).find(std::to_string(LocalPort(first.get()))),
             std::string::npos);
   g_error_free(error);
+  EXPECT_NE(test::MessageDetails(message.get()).find("is another program using the port?"),
+            std::string::npos);
+  // An address of another machine is no reason to look for other programs.
+  g_object_set(second.get(), "address", "203.0.113.9", nullptr);
+  EXPECT_EQ(gst_element_set_state(second.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  const MessagePtr elsewhere = bus.Pop(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(elsewhere);
+  EXPECT_EQ(test::MessageDetails(elsewhere.get()).find("another program"), std::string::npos);
   gst_element_set_state(second.get(), GST_STATE_NULL);
 }
 
@@ -605,6 +628,34 @@ TEST(EcnUdpSrc, SilenceIsReportedAfterTheTimeout) {
   EXPECT_GE(static_cast<guint64>(g_get_monotonic_time() - begin_us) * GST_USECOND, kTimeout)
       << "and no sooner";
   gst_element_set_state(src->element, GST_STATE_NULL);
+}
+
+TEST(EcnUdpSrc, SilenceIsReportedInNoRunWithoutATimeout) {
+  Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
+  g_object_set(src->element, "port", 0, "timeout", guint64{GST_MSECOND}, nullptr);
+  const test::ElementBus bus(src->element);
+  SetPlaying(src.get());
+  ASSERT_TRUE(bus.Wait(GST_MESSAGE_ELEMENT));
+  gst_element_set_state(src->element, GST_STATE_READY);
+  while (bus.Pop()) continue;
+  g_object_set(src->element, "timeout", guint64{0}, nullptr);
+  SetPlaying(src.get());
+  g_usleep(50'000);
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ELEMENT));
+  gst_element_set_state(src->element, GST_STATE_NULL);
+}
+
+TEST(EcnUdpSink, GivesItsSocketWhatItsPropertiesSay) {
+  GstElement* element = SinkElement();
+  g_object_set(element, "host", "127.0.0.1", "port", 9, "ttl-mc", 7, "buffer-size", 8'192U,
+               nullptr);
+  const Harness sink = Wrap(element);
+  const auto socket = GetObject<GSocket>(sink.get(), "used-socket");
+  ASSERT_TRUE(socket);
+  EXPECT_EQ(g_socket_get_multicast_ttl(socket.get()), 7U);
+  gint granted = 0;
+  ASSERT_TRUE(g_socket_get_option(socket.get(), SOL_SOCKET, SO_SNDBUF, &granted, nullptr));
+  EXPECT_EQ(granted, 2 * 8'192) << "the kernel doubles it";
 }
 
 TEST(EcnUdp, WorksAgainAfterEveryStateCycle) {
