@@ -160,6 +160,34 @@ TEST_F(ScreamTxFates, AreCountedEachByItsName) {
   EXPECT_EQ(stream["bytes-sent"], stats["bytes-sent"]);
 }
 
+TEST_F(ScreamTx, ShowsThePadAndTheQueueOfEachStream) {
+  g_object_set(element, "min-bitrate", 111'111, "start-bitrate", 222'222, "max-bitrate", 333'333,
+               nullptr);
+  Start();
+  Harness second(gst_harness_new_with_element(element, "sink_7", nullptr));
+  gst_harness_set_src_caps_str(second.get(), kVideoCaps);
+  const gst::PadPtr pad(gst_element_get_static_pad(element, "sink_7"));
+  g_object_set(pad.get(), "max-bitrate", 300'000U, nullptr);
+  PushFrame(0, 100);
+  time.Advance(50 * GST_MSECOND);
+  const Stats stats(element), first = stats.Of("streams", 0), other = stats.Of("streams", 1);
+  EXPECT_EQ(first.Text("pad"), "sink_0");
+  EXPECT_EQ(other.Text("pad"), "sink_7");
+  EXPECT_EQ(first["min-bitrate"], 111'111U);
+  EXPECT_EQ(first["max-bitrate"], 333'333U);
+  EXPECT_EQ(other["max-bitrate"], 300'000U);
+  EXPECT_EQ(first["target-bitrate"] + other["target-bitrate"], stats["target-bitrate"]);
+  EXPECT_NEAR(
+      static_cast<double>(first["encoder-bitrate"]) / static_cast<double>(first["target-bitrate"]),
+      1188.0 / 1228, 1e-3);
+  EXPECT_EQ(first["queued-bytes"], (100 - first["packets-sent"]) * 1228);
+  EXPECT_EQ(stats["queued-bytes"], first["queued-bytes"]);
+  EXPECT_EQ(first["sender-queue-delay"], 50 * GST_MSECOND);
+  EXPECT_EQ(stats["sender-queue-delay"], 50 * GST_MSECOND);
+  EXPECT_EQ(other["sender-queue-delay"] + other["queued-bytes"] + other["packets-queued"], 0U);
+  EXPECT_EQ(stats["bytes-sent"], stats["packets-sent"] * 1228);
+}
+
 TEST_F(ScreamTx, TellsTheEncoderTheRoundTripAndTheQueueThatItShows) {
   Start();
   // The path is empty at first and takes 40 ms. Then a queue adds 30 ms.
@@ -227,6 +255,23 @@ TEST_F(ScreamTx, TellsThePayloaderOfNoPacketThatHasNotArrived) {
   EXPECT_EQ(received.ranges[1].last, 3);
 }
 
+TEST_F(ScreamTxFates, OfMoreRangesThanAReceiptHoldsAreToldFromTheFirstOn) {
+  g_object_set(element, "min-bitrate", 10'000'000, "start-bitrate", 10'000'000, nullptr);
+  Start(kLidarCaps);
+  Run(2 * GST_LIDAR_MAX_RECEIVED + 8, [](guint16 seq) {
+    return rtcp::PacketMetric{seq % 2 == 0, Ecn::kEct1, Duration{0}};
+  });
+  GstLidarPacketsReceived received{};
+  while (received.count < GST_LIDAR_MAX_RECEIVED) {
+    const EventPtr event(WaitForUpstream(rtp.get(), "packets-received"));
+    ASSERT_TRUE(event && gst_lidar_event_parse_packets_received(event.get(), &received));
+  }
+  for (guint i = 0; i < received.count; ++i) {
+    EXPECT_EQ(received.ranges[i].first, 2 * i);
+    EXPECT_EQ(received.ranges[i].last, 2 * i);
+  }
+}
+
 TEST_F(ScreamTx, TakesNoReceiptsFromReportsThatNameNoReceiver) {
   Start(kLidarCaps);
   // Transport-wide feedback names no receiver, and the packets that it reports may still be
@@ -255,6 +300,22 @@ TEST_F(ScreamTx, LeavesTheReceiptsOutOfOtherMedia) {
     Acknowledge();
   }
   EXPECT_EQ(NamesUpstream(rtp.get()).count("packets-received"), 0U);
+}
+
+TEST_F(ScreamTx, GivesReceiptsByThePresentCaps) {
+  Start(kLidarCaps);
+  gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+  const auto run = [&] {
+    PushFrame(next_seq_ * 900U, 2);
+    for (int i = 0; i < 10; ++i) {
+      time.Advance(50 * GST_MSECOND);
+      Acknowledge();
+    }
+    return NamesUpstream(rtp.get()).count("packets-received");
+  };
+  EXPECT_EQ(run(), 0U);
+  gst_harness_set_src_caps_str(rtp.get(), kLidarCaps);
+  EXPECT_GE(run(), 1U);
 }
 
 TEST_F(ScreamTx, AsksTheEncoderOfLidarForAKeyUnitWhereAReceiverDoes) {

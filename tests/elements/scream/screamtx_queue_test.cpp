@@ -105,6 +105,7 @@ TEST_F(ScreamTx, EosDrainsTheQueue) {
   Collect();
   EXPECT_EQ(sent.size(), 20U);
   EXPECT_TRUE(HasEos());
+  EXPECT_EQ(Push({}), GST_FLOW_EOS);
   ASSERT_GE(byes.size(), 2U);  // one may be lost
   EXPECT_EQ(gst::ParseBye({byes[0].data(), byes[0].size()}), std::vector<guint32>{0x1234});
 }
@@ -195,6 +196,19 @@ TEST_F(ScreamTx, AStreamThatBeginsAfterTheEndPassesAndEnds) {
       [&] { ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("next"))); });
 }
 
+TEST_F(ScreamTx, AStreamOfTheNextRunPassesAndEnds) {
+  StreamTwice([&] {
+    gst_element_set_state(element, GST_STATE_READY);
+    gst_element_set_state(element, GST_STATE_PLAYING);
+    for (GstHarness* h : {rtp.get(), rtcp.get()}) {
+      gst_harness_play(h);
+      gst_harness_push_event(h, gst_event_new_stream_start("again"));
+    }
+    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  });
+}
+
 TEST_F(ScreamTx, AnswersNoQueryThatWouldOvertakeThePackets) {
   Start();
   const gst::QueryPtr drain(gst_query_new_drain());
@@ -272,6 +286,16 @@ TEST_F(ScreamTxOf, AFileKeepsItsTimeBehindAFlushThroughAPauseButNotThroughAPrero
   EXPECT_EQ(EntryOf(3, 2 * GST_SECOND), 17 * GST_SECOND);
   gst_element_set_base_time(element, 17 * GST_SECOND);  // of a preroll elsewhere
   EXPECT_EQ(EntryOf(4, 3 * GST_SECOND), 20 * GST_SECOND);
+}
+
+TEST_F(ScreamTxOf, AFlushThatKeepsTheTimeShiftsNothing) {
+  StartLive(false);
+  EXPECT_EQ(EntryOf(0, 10 * GST_SECOND), 10 * GST_SECOND);
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
+  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(FALSE));
+  ASSERT_TRUE(gst_harness_push_event(rtp.get(), NewSegment()));
+  for (const guint16 seq : std::initializer_list<guint16>{5, 6, 11})
+    EXPECT_EQ(EntryOf(seq, seq * GST_SECOND), seq * GST_SECOND);
 }
 
 TEST_F(ScreamTxOf, AFileWaitsForRoomAndLosesNothing) {
@@ -382,6 +406,17 @@ TEST_F(ScreamTx, AsksNoOtherEncoderForKeyFrames) {
   PushFrame(900, 30);
   time.Advance(300 * GST_MSECOND);
   EXPECT_EQ(Stats(element)["frames-dropped"], 1U);
+  EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), 0U);
+}
+
+TEST_F(ScreamTx, AsksForNoKeyFrameOnceTheStreamIsNoVideoAnyMore) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
+  Start(kVideoCaps);
+  gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+  PushFrame(0, 30);
+  PushFrame(900, 30);
+  time.Advance(600 * GST_MSECOND);
+  EXPECT_GE(Stats(element)["frames-dropped"], 1U);
   EXPECT_EQ(NamesUpstream(rtp.get()).count("GstForceKeyUnit"), 0U);
 }
 

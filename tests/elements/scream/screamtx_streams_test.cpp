@@ -189,6 +189,32 @@ TEST_F(ScreamTx, HasNoChildBehindItsLastPad) {
   EXPECT_EQ(gst_child_proxy_get_child_by_index(proxy, 1), nullptr);
 }
 
+TEST_F(ScreamTx, TellsOfEachPadThatComesAndGoes) {
+  std::string told;
+  const auto note = +[](GstChildProxy*, GObject* child, const gchar* name, std::string* to) {
+    EXPECT_STREQ(GST_PAD_NAME(child), name);
+    *to += std::string(name) + " ";
+  };
+  g_signal_connect(element, "child-added", G_CALLBACK(note), &told);
+  g_signal_connect(element, "child-removed", G_CALLBACK(note), &told);
+  const gst::PadPtr first(gst_element_request_pad_simple(element, "sink_3"));
+  const gst::PadPtr second(gst_element_request_pad_simple(element, "sink_%u"));
+  EXPECT_EQ(told, "sink_3 sink_4 ");
+  gst_element_release_request_pad(element, first.get());
+  EXPECT_EQ(told, "sink_3 sink_4 sink_3 ");
+  gst_element_release_request_pad(element, second.get());
+  EXPECT_EQ(told, "sink_3 sink_4 sink_3 sink_4 ");
+}
+
+TEST_F(ScreamTx, TakesTheSourceAndThePayloadTypeOfItsMediaFromTheCaps) {
+  Start((std::string(kRtpCaps) + ",ssrc=(uint)77").c_str());
+  const auto targets = Targets(rtp.get());
+  ASSERT_GE(targets.size(), 1U);
+  EXPECT_EQ(targets[0].ssrc, 77U) << "before its first packet";
+  PushFrame(0, 1);  // of another source: a repair packet
+  EXPECT_EQ(Stats(element).Of("streams", 0)["ssrc"], 77U);
+}
+
 TEST_F(ScreamTx, APadWithoutANameGetsTheOneBehindAllBefore) {
   for (const char* name : {"sink_5", "sink_%u", "sink_2", "sink_%u"})
     EXPECT_TRUE(gst::PadPtr(gst_element_request_pad_simple(element, name))) << name;
@@ -270,10 +296,18 @@ TEST_F(ScreamTx, SeveralStreamsHaveOneStartOneSegmentAndTheEventsOfTheFirst) {
   r.marker = true;
   GstBuffer* in = NewRtp(r);
   GST_BUFFER_PTS(in) = 5'500 * GST_MSECOND;
+  GST_BUFFER_DTS(in) = 5'400 * GST_MSECOND;
   ASSERT_EQ(gst_harness_push(second.get(), in), GST_FLOW_OK);
   const BufferPtr out(gst_harness_pull(rtp.get()));
   ASSERT_TRUE(out);
   EXPECT_EQ(GST_BUFFER_PTS(out.get()), 500 * GST_MSECOND);
+  EXPECT_EQ(GST_BUFFER_DTS(out.get()), 400 * GST_MSECOND);
+  time.Advance(GST_SECOND);
+  ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
+  const BufferPtr untimed(gst_harness_pull(rtp.get()));
+  ASSERT_TRUE(untimed);
+  EXPECT_FALSE(GST_BUFFER_PTS_IS_VALID(untimed.get()));
+  EXPECT_FALSE(GST_BUFFER_DTS_IS_VALID(untimed.get()));
   std::multiset<GstEventType> events;
   while (EventPtr event{gst_harness_try_pull_event(rtp.get())})
     events.insert(GST_EVENT_TYPE(event.get()));
@@ -403,6 +437,18 @@ TEST_F(ScreamTx, APacketThatWaitsKeepsTheTimeOfItsSegment) {
   }
   EXPECT_EQ(times.count(500 * GST_MSECOND), kPackets);
   EXPECT_EQ(times.count(1'500 * GST_MSECOND), 1U);
+}
+
+TEST_F(ScreamTx, KeepsNoCapsThatWereReplaced) {
+  Start();
+  const gst::CapsPtr caps(gst_caps_from_string(kVideoCaps));
+  const EventPtr old(gst_event_new_caps(caps.get()));
+  ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_ref(old.get())));
+  gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+  PushFrame(0, 1);
+  ASSERT_TRUE(Leaves());
+  while (EventPtr{gst_harness_try_pull_event(rtp.get())}) continue;
+  EXPECT_TRUE(Eventually([&] { return GST_MINI_OBJECT_REFCOUNT_VALUE(old.get()) == 1; }));
 }
 
 TEST_F(ScreamTx, AStreamOfANewPadMayBeginAndEndAfterTheEndOfAll) {

@@ -120,14 +120,37 @@ TEST_F(ScreamTx, TellsTheEncoderItsOwnBoundsAndStartsWithinThem) {
 }
 
 TEST_F(ScreamTx, StartsAfreshAfterEveryStateCycle) {
+  g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
   Start();
-  PushFrame(0, 1);
+  PushFrame(0, 30);
+  PushFrame(900, 30);
+  time.Advance(600 * GST_MSECOND);  // both are late
+  PushFrame(1800, 30);
+  ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes({1, 2, 3})), GST_FLOW_OK);
   const std::vector<std::uint8_t> malformed{0x8b, 205, 0, 1, 0, 0, 0, 1};
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(malformed)), GST_FLOW_OK);
+  rtcp::CongestionFeedback report;
+  report.blocks.push_back({0x1234, 30000, {{true, Ecn::kCe, Duration{0}}}});  // was never sent
+  report.blocks.push_back({0x9999, 0, {{true, Ecn::kCe, Duration{0}}}});
+  for (const bool ours : {true, false}) {
+    Feed(report);
+    if (ours) report.blocks.erase(report.blocks.begin());
+  }
+  constexpr const char* kOfRun[] = {
+      "packets-sent",     "bytes-sent",     "packets-dropped",
+      "frames-dropped",   "queued-bytes",   "bytes-in-flight",
+      "feedback-ignored", "rtcp-malformed", "feedback-foreign-blocks"};
+  constexpr const char* kOfStream[] = {"packets-queued", "packets-sent", "bytes-sent",
+                                       "queued-bytes",   "malformed",    "packets-dropped",
+                                       "frames-dropped", "ssrc"};
+  for (const char* field : kOfRun) EXPECT_GT(Stats(element)[field], 0U) << field;
+  for (const char* field : kOfStream)
+    EXPECT_GT(Stats(element).Of("streams", 0)[field], 0U) << field;
   gst_element_set_state(element, GST_STATE_NULL);
   gst_element_set_state(element, GST_STATE_PLAYING);
-  EXPECT_EQ(Stats(element)["packets-sent"], 0U);
-  EXPECT_EQ(Stats(element)["rtcp-malformed"], 0U);
+  for (const char* field : kOfRun) EXPECT_EQ(Stats(element)[field], 0U) << field;
+  for (const char* field : kOfStream)
+    EXPECT_EQ(Stats(element).Of("streams", 0)[field], 0U) << field;
 }
 
 TEST_F(ScreamTx, NotifiesTheEstimatedBitrateOnTheWire) {
@@ -138,6 +161,12 @@ TEST_F(ScreamTx, NotifiesTheEstimatedBitrateOnTheWire) {
   guint bps = 0;
   g_object_get(element, "estimated-bitrate", &bps, nullptr);
   EXPECT_EQ(bps, 3'000'000U);
+  gst_element_set_state(element, GST_STATE_NULL);
+  g_object_get(element, "estimated-bitrate", &bps, nullptr);
+  EXPECT_EQ(bps, 3'000'000U);
+  gst_element_set_state(element, GST_STATE_PAUSED);
+  g_object_get(element, "estimated-bitrate", &bps, nullptr);
+  EXPECT_EQ(bps, 3'000'000U) << "until there is another";
 }
 
 /// Sends and acknowledges packets, one each 100 ms unless set otherwise.
