@@ -93,6 +93,39 @@ TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
   EXPECT_EQ(Stats(element)["sender-packets-lost"], 0U);
 }
 
+TEST_F(ScreamRx, ShowsEachFigureOfTheSendersReportByItsName) {
+  Start();
+  ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
+  rtcp::SenderReport report;
+  report.ssrc = 0x1234;
+  report.target_bitrate = DataRate::BitsPerSecond(1001);
+  report.estimated_capacity = DataRate::BitsPerSecond(1002);
+  report.sent_bitrate = DataRate::BitsPerSecond(1003);
+  report.ref_wnd = DataSize::Bytes(1004);
+  report.bytes_in_flight = DataSize::Bytes(1005);
+  report.queue_delay = std::chrono::microseconds(1006);
+  report.rtt = std::chrono::microseconds(1007);
+  report.sender_queue_delay = std::chrono::microseconds(1008);
+  report.packets_sent = 1009;
+  report.packets_lost = 1010;
+  report.packets_ce = 1011;
+  report.packets_dropped = 1012;
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);
+  const Stats stats(element);
+  EXPECT_EQ(stats["sender-target-bitrate"], 1001U);
+  EXPECT_EQ(stats["sender-estimated-capacity"], 1002U);
+  EXPECT_EQ(stats["sender-sent-bitrate"], 1003U);
+  EXPECT_EQ(stats["sender-ref-wnd"], 1004U);
+  EXPECT_EQ(stats["sender-bytes-in-flight"], 1005U);
+  EXPECT_EQ(stats["sender-queue-delay"], 1006 * GST_USECOND);
+  EXPECT_EQ(stats["sender-rtt"], 1007 * GST_USECOND);
+  EXPECT_EQ(stats["sender-own-queue-delay"], 1008 * GST_USECOND);
+  EXPECT_EQ(stats["sender-packets-sent"], 1009U);
+  EXPECT_EQ(stats["sender-packets-lost"], 1010U);
+  EXPECT_EQ(stats["sender-packets-ce"], 1011U);
+  EXPECT_EQ(stats["sender-packets-dropped"], 1012U);
+}
+
 TEST_F(ScreamRx, BelievesNoReportThatIsOldOrOfSomebodyElse) {
   Start();
   ASSERT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
@@ -239,6 +272,32 @@ TEST_F(ScreamRx, RestartedStreamsKeepTheirOrderOfPads) {
   push(10);  // its pad has another stream now
   EXPECT_EQ(received(), std::pair(12U, 12U));
   EXPECT_TRUE(gst::PadPtr(gst_element_get_static_pad(element, "src_11")));
+}
+
+TEST_F(ScreamRx, ARestartedStreamGetsAPadThatHadItsPayloadType) {
+  SetPtMap(
+      "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\","
+      "97=(string)\"application/x-rtp,media=video,clock-rate=90000,encoding-name=H264\"");
+  g_object_set(element, "eos-on-bye", FALSE, nullptr);
+  Start();
+  gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp");
+  const auto push = [&](guint32 ssrc, guint8 type) {
+    Rtp r;
+    r.ssrc = ssrc;
+    r.payload_type = type;
+    for (; r.seq < 3; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK) << ssrc;
+  };
+  push(1, 96);  // takes `src`
+  push(2, 97);
+  Harness video(gst_harness_new_with_element(element, nullptr, "src_2"));
+  push(2, 97);
+  const guint before = gst_harness_buffers_received(video.get());
+  EXPECT_EQ(PushBye({1, 2}), GST_FLOW_OK);
+  push(4, 97);
+  EXPECT_EQ(Passed(), 3U) << "src would take the caps, but had another type";
+  EXPECT_EQ(gst_harness_buffers_received(video.get()), before + 3);
+  push(3, 96);
+  EXPECT_EQ(Passed(), 6U);
 }
 
 TEST_F(ScreamRx, AStreamThatThePadOfAnEndedOneRefusesGetsItsOwn) {

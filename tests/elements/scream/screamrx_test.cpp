@@ -168,7 +168,8 @@ TEST_F(ScreamRx, PassesOnceWhatCameByTwoLinksAndAnswersBoth) {
       r.seq = seq;
       r.marker = true;
       ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1", 4711), GST_FLOW_OK);
-      ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.1.0.1", 4712), GST_FLOW_OK);
+      const GstLidarEcn ecn = seq == 19 ? GST_LIDAR_ECN_CE : GST_LIDAR_ECN_ECT1;
+      ASSERT_EQ(Push(r, ecn, "10.1.0.1", 4712), GST_FLOW_OK);
       time.Advance(20 * GST_MSECOND);
     }
     EXPECT_EQ(Passed(), run * 20);
@@ -181,6 +182,13 @@ TEST_F(ScreamRx, PassesOnceWhatCameByTwoLinksAndAnswersBoth) {
     answered.insert(g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(meta->addr)));
   }
   EXPECT_EQ(answered, (std::set<guint16>{4711, 4712}));
+  const Stats links[] = {Stats(element).Of("links", 0), Stats(element).Of("links", 1)};
+  EXPECT_EQ(links[0].Text("address"), "10.0.0.1:4711");
+  EXPECT_EQ(links[1].Text("address"), "10.1.0.1:4712");
+  EXPECT_EQ(links[0]["packets-received"], 20U);
+  EXPECT_EQ(links[1]["packets-received"], 17U);
+  EXPECT_EQ(links[1]["bytes-received"], 17U * 1228);
+  EXPECT_EQ(links[1]["packets-ce"], 1U);
   // The first copies only showed that the second address is a link.
   EXPECT_EQ(Stats(element)["packets-foreign"], 3U);
   EXPECT_EQ(Stats(element)["packets-copies"], 17U);
@@ -364,6 +372,29 @@ TEST_F(ScreamRx, CountsBytesAsTheyAreOnTheWire) {
   EXPECT_EQ(Stats(element)["bytes-received"], 1200U + 100);
 }
 
+TEST_F(ScreamRx, CountsItsReportsAndWhatNoReportCanTell) {
+  Start();
+  PushFirst(0);
+  EXPECT_EQ(Stats(element)["reports-sent"], 1U);
+  EXPECT_EQ(Stats(element)["report-bytes"], 28U + 12 + 8 + 4) << "with all headers";
+  Rtp r;
+  for (const guint16 far : std::initializer_list<guint16>{20'000, 40'000}) {
+    r.seq = far;
+    ASSERT_EQ(Push(r), GST_FLOW_OK);
+  }
+  r.seq = 0;
+  ASSERT_EQ(Push(r), GST_FLOW_OK);
+  const Stats stats(element);
+  EXPECT_FALSE(gst_structure_has_field(StatsOf(element).get(), "links")) << "there is one";
+  EXPECT_EQ(stats["packets-stale"], 2U);
+  EXPECT_EQ(stats["packets-duplicate"], 1U);
+  EXPECT_EQ(stats["packets-received"], 4U);
+  for (const char* field :
+       {"packets-ce", "packets-lost", "packets-reordered", "packets-copies", "packets-foreign",
+        "malformed", "packets-old", "peer-moves", "goodbyes"})
+    EXPECT_EQ(stats[field], 0U) << field;
+}
+
 TEST_F(ScreamRx, RemembersSoManySsrcsAtMost) {
   Start();
   Rtp r;
@@ -453,6 +484,34 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
     ASSERT_TRUE(event) << gst_event_type_get_name(type);
     EXPECT_EQ(GST_EVENT_TYPE(event.get()), type);
   }
+}
+
+TEST_F(ScreamRx, AsksForNoKeyUnitOfTheRunBefore) {
+  Start();
+  std::atomic<bool> blocked{false};
+  const gst::PadPtr pad(gst_element_get_static_pad(element, "rtcp_src"));
+  const gulong probe = gst_pad_add_probe(
+      pad.get(), static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_BUFFER),
+      [](GstPad*, GstPadProbeInfo*, gpointer flag) -> GstPadProbeReturn {
+        *static_cast<std::atomic<bool>*>(flag) = true;
+        return GST_PAD_PROBE_OK;
+      },
+      &blocked, nullptr);
+  ASSERT_EQ(Push({}), GST_FLOW_OK);
+  ASSERT_TRUE(Eventually([&] { return blocked.load(); }));
+  Rtp r;  // of so many sources that some requests are still to be sent at the stop
+  for (r.ssrc = 1; r.ssrc <= 60; ++r.ssrc) ASSERT_EQ(Push(r), GST_FLOW_OK);
+  GstStructure* wish = gst_structure_new_empty("GstForceKeyUnit");
+  ASSERT_TRUE(gst_harness_push_upstream_event(
+      rtp.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, wish)));
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_pad_remove_probe(pad.get(), probe);
+  while (BufferPtr{gst_harness_try_pull(rtcp.get())}) continue;
+  gst_harness_play(rtp.get());
+  gst_harness_play(rtcp.get());
+  r.ssrc = 0x5678;
+  ASSERT_EQ(Push(r), GST_FLOW_OK);
+  ASSERT_EQ(Report().blocks.size(), 1U) << "nothing comes before the report";
 }
 
 TEST_F(ScreamRx, ReportsToTheNextSinkAfterOneThatStopped) {
