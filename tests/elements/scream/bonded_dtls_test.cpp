@@ -114,6 +114,7 @@ TEST(Dtls, ARobotRefusesAnotherEdge) {
   EXPECT_EQ(Stats(sender.Get("out").get())["dtls-handshakes"], 0U);
   EXPECT_EQ(Stats(sender.Get("out").get())["packets-sent"], 0U) << "nothing leaves without a key";
   EXPECT_GT(Stats(sender.Get("out").get())["packets-unkeyed"], 0U);
+  EXPECT_EQ(Stats(sender.Get("out").get())["dtls-dropped"], 0U);
 }
 
 TEST(Dtls, ShakesHandsWhileItPlaysOnly) {
@@ -138,6 +139,27 @@ TEST(Dtls, ShakesHandsWhileItPlaysOnly) {
   while (heard()) continue;
   g_usleep(1'500'000);
   EXPECT_FALSE(heard()) << "a hello that is repeated after 1 s";
+}
+
+TEST(Dtls, NoHelloOfALinkLeavesByAnotherInterface) {
+  std::vector<gst::SocketPtr> edges;
+  std::string links;
+  for (const std::string interface : {"none0", "lo"}) {
+    edges.emplace_back(
+        gst::OpenUdpSocket({"127.0.0.1", 0, G_SOCKET_FAMILY_INVALID, false}, nullptr));
+    const gst::SocketAddressPtr address(g_socket_get_local_address(edges.back().get(), nullptr));
+    const auto port = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(address.get()));
+    links +=
+        (links.empty() ? "127.0.0.1:" : ",127.0.0.1:") + std::to_string(port) + "@" + interface;
+  }
+  Pipeline sender(Bonded(links, OfRobot()));
+  char bytes[2'000];
+  const auto heard = [&](const gst::SocketPtr& edge) {
+    return g_socket_receive(edge.get(), bytes, sizeof bytes, nullptr, nullptr) > 0;
+  };
+  sender.Play();
+  ASSERT_TRUE(Eventually([&] { return heard(edges[1]); }));
+  EXPECT_FALSE(heard(edges[0])) << "it would have left first";
 }
 
 TEST(Dtls, WhatIsNotLiveWaitsForTheKeyAndLosesNothing) {

@@ -94,14 +94,17 @@ class BondedSink : public ::testing::Test {
     Bring(link, From(rtcp::BuildCcfb(report), "127.0.0.1", kPorts[link]));
   }
   /// Sends a slice of one packet, and returns the links by which it left.
-  std::set<std::size_t> Send(guint16 seq) {
+  std::set<std::size_t> Send(guint16 seq, std::optional<guint> scan = std::nullopt) {
     const std::array<int, 2> before{packets_[0], packets_[1]};
     Rtp packet;
     packet.seq = seq;
     packet.timestamp = seq;
     packet.marker = true;
     packet.size = 100;
-    EXPECT_EQ(gst_harness_push(h_.get(), NewRtp(packet)), GST_FLOW_OK);
+    GstBuffer* buffer = NewRtp(packet);
+    const GstLidarSlice slice{scan.value_or(0), seq, 100, 0};
+    if (scan) gst_lidar_buffer_set_slice(buffer, &slice);
+    EXPECT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
     std::set<std::size_t> links;
     for (std::size_t i = 0; i < 2; ++i)
       if (packets_[i] > before[i]) links.insert(i);
@@ -131,11 +134,14 @@ class BondedSink : public ::testing::Test {
     EXPECT_EQ(gst_pad_chain_list(PadOf(NameOf("ecnudpsink", link), "sink").get(), list),
               GST_FLOW_OK);
   }
-  /// Returns the next link that changed, or an empty text.
+  /// Returns the next link that changed and how, or an empty text.
   std::string ChangedLink() {
-    while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT))
-      if (gst_message_has_name(message.get(), "scream-link-changed"))
-        return gst_structure_get_string(gst_message_get_structure(message.get()), "link");
+    while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT)) {
+      if (!gst_message_has_name(message.get(), "scream-link-changed")) continue;
+      const Stats change(gst_message_get_structure(message.get()));
+      return change.Text("link") + (change.True("usable") ? " is usable: " : " is not usable: ") +
+             change.Text("reason");
+    }
     return "";
   }
   int Warnings(const char* text) {
@@ -316,6 +322,65 @@ TEST_F(BondedSink, CopiesNothingOfBeforeAFlush) {
   EXPECT_EQ(OfAllLinks(sink_, "packets-copies"), copies + 1);
 }
 
+/// The second link is blocked until the first one has delivered a slice of the scan.
+TEST_F(BondedSink, SendsTheRestOfAScanOfWhichAnotherLinkDeliveredASlice) {
+  g_object_set(sink_, "bonding-method", 1, "max-queue-delay", guint64{5 * GST_SECOND}, nullptr);
+  Start();
+  std::atomic<bool> blocked{false};
+  const PadPtr src = PadOf("screamtx1", "src");
+  const gulong probe = gst_pad_add_probe(
+      src.get(),
+      static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_BUFFER |
+                                   GST_PAD_PROBE_TYPE_BUFFER_LIST),
+      [](GstPad*, GstPadProbeInfo*, gpointer flag) -> GstPadProbeReturn {
+        *static_cast<std::atomic<bool>*>(flag) = true;
+        return GST_PAD_PROBE_OK;
+      },
+      &blocked, nullptr);
+  EXPECT_EQ(Send(1), (std::set<std::size_t>{0, 1}));
+  ASSERT_TRUE(Eventually([&] { return blocked.load(); }));
+  constexpr guint16 kLast = 16;  // more than leave at once
+  for (guint16 seq = 2; seq <= kLast; ++seq) Send(seq, 7);
+  ASSERT_TRUE(HasLeft(0));
+  Report(0, 2);
+  gst_pad_remove_probe(src.get(), probe);
+  ASSERT_TRUE(HasLeft(1));
+  EXPECT_EQ(OfLink("copies-cancelled", 1), 1U);
+  EXPECT_EQ(OfLink("packets-sent", 1), kLast - 1U);
+}
+
+TEST_F(BondedSink, KeepsNoPacketThatIsTooOldToBeCopied) {
+  Start();
+  Rtp packet;
+  packet.marker = true;
+  const BufferPtr held(NewRtp(packet));
+  ASSERT_EQ(gst_harness_push(h_.get(), gst_buffer_ref(held.get())), GST_FLOW_OK);
+  for (const std::size_t link : {0U, 1U}) ASSERT_TRUE(HasLeft(link));
+  EXPECT_GT(GST_MINI_OBJECT_REFCOUNT_VALUE(held.get()), 1) << "another link may need it";
+  Advance(300 * GST_MSECOND);
+  Send(1);
+  EXPECT_TRUE(Eventually([&] { return GST_MINI_OBJECT_REFCOUNT_VALUE(held.get()) == 1; }));
+}
+
+TEST_F(BondedSink, TakesNoTargetOfTheRunBefore) {
+  const auto first_target = [this] {
+    GstLidarTargetBitrate target{};
+    EXPECT_TRUE(Eventually([&] {
+      const EventPtr event(gst_harness_try_pull_upstream_event(h_.get()));
+      return event && gst_lidar_event_parse_target_bitrate(event.get(), &target);
+    }));
+    return target.bitrate;
+  };
+  g_object_set(sink_, "start-bitrate", 4'000'000, nullptr);
+  Start();
+  EXPECT_GT(first_target(), 3'500'000U);
+  gst_element_set_state(sink_, GST_STATE_READY);
+  while (const EventPtr late{gst_harness_try_pull_upstream_event(h_.get())}) continue;
+  g_object_set(sink_, "start-bitrate", 800'000, nullptr);
+  Restart();
+  EXPECT_LT(first_target(), 900'000U);
+}
+
 TEST_F(BondedSink, AsksForNoMoreThanTheEncoderMayHaveWhereLinksAddUp) {
   g_object_set(sink_, "bonding-target", 1, "start-bitrate", 800'000, "max-bitrate", 900'000,
                nullptr);
@@ -325,6 +390,43 @@ TEST_F(BondedSink, AsksForNoMoreThanTheEncoderMayHaveWhereLinksAddUp) {
     gst_lidar_event_parse_target_bitrate(event.get(), &target);
   EXPECT_GT(target.max_bitrate, 850'000U);
   EXPECT_EQ(target.bitrate, target.max_bitrate);
+}
+
+TEST_F(BondedSink, TellsTheEncoderWhatTheLinkShowsThatHasTheTarget) {
+  g_object_set(sink_, "start-bitrate", 800'000, nullptr);
+  gst_element_set_state(sink_, GST_STATE_READY);
+  for (const auto& [tx, max] : {std::pair("screamtx", 300'000U), {"screamtx1", 900'000U}})
+    g_object_set(Child(tx).get(), "max-bitrate", max, nullptr);
+  Start();
+  GstLidarTargetBitrate target{};
+  EXPECT_TRUE(Eventually([&] {
+    const EventPtr event(gst_harness_try_pull_upstream_event(h_.get()));
+    if (event) gst_lidar_event_parse_target_bitrate(event.get(), &target);
+    return target.bitrate > 500'000;
+  }));
+  EXPECT_GT(target.max_bitrate, 800'000U);
+}
+
+/// A message scream-link-changed says more.
+TEST_F(BondedSink, WarnsOfNoErrorOfALink) {
+  Start();
+  for (const std::size_t link : {0U, 1U}) {
+    SendDatagrams(link, {70'000});
+    EXPECT_EQ(OfLink("send-errors", link), 1U);
+  }
+  EXPECT_EQ(Warnings("Sending failed"), 0);
+}
+
+TEST_F(BondedSink, CountsWhatSrtpRefusesOnAnyLink) {
+  const gst::ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
+  g_object_set(sink_, "srtp-key", std::string(60, '5').c_str(), nullptr);
+  Start();
+  const std::vector<std::uint8_t> no_srtp(12, 0);
+  for (const std::size_t link : {0U, 1U, 1U}) Bring(link, From(no_srtp, "127.0.0.1", kPorts[link]));
+  EXPECT_EQ(Stats(sink_)["srtp-refused"], 3U);
+  EXPECT_EQ(Stats(sink_)["srtp-received"], 3U);
+  EXPECT_EQ(Stats(sink_)["srtp-copies"] + Stats(sink_)["srtp-key-changes"], 0U);
 }
 
 TEST_F(BondedSink, CountsTheErrorsOfEachLinkAsItsOwn) {
@@ -354,11 +456,18 @@ TEST_F(BondedSink, KeepsALinkThatSendsSomePacketsAndGivesUpOneThatSendsNone) {
     changed = ChangedLink();
     return !changed.empty();
   }));
-  EXPECT_EQ(changed, "127.0.0.1:5006@127.0.0.2");
+  EXPECT_EQ(changed, "127.0.0.1:5006@127.0.0.2 is not usable: its packets cannot leave");
   EXPECT_EQ(OfLink("send-errors", 0), 1U);
   EXPECT_TRUE(Stats(sink_).Of("links", 0).True("usable"));
   EXPECT_FALSE(Stats(sink_).Of("links", 1).True("usable"));
   EXPECT_EQ(Send(2), std::set<std::size_t>{0});
+  EXPECT_TRUE(Eventually([&] {
+    Advance(100 * GST_MSECOND);
+    changed = ChangedLink();
+    return !changed.empty();
+  })) << "it is tried again";
+  EXPECT_EQ(changed, "127.0.0.1:5006@127.0.0.2 is usable: it can be used again");
+  EXPECT_EQ(Send(3), (std::set<std::size_t>{0, 1}));
 }
 
 TEST_F(BondedSink, APadThatComesWhileItPlaysSendsOverAllLinks) {
@@ -476,7 +585,11 @@ TEST_F(BondedSink, BeginsAnewInEachRun) {
     EXPECT_TRUE(Eventually([&] {
       Advance(10 * GST_MSECOND);
       const EventPtr event(gst_harness_try_pull_upstream_event(h_.get()));
-      return event && gst_lidar_event_parse_target_bitrate(event.get(), &target);
+      const bool told = event && gst_lidar_event_parse_target_bitrate(event.get(), &target);
+      if (told) {
+        EXPECT_STREQ(target.reason, "start") << run;
+      }
+      return told;
     })) << "the encoder is told in run "
         << run;
     first_targets.insert(target.bitrate);
@@ -494,6 +607,7 @@ TEST_F(BondedSink, TellsOnceOfSwappedFeedbackAndInTheNextRunAgain) {
   Start();
   guint16 seq = 1;
   for (int run = 0; run < 2; ++run) {
+    EXPECT_EQ(OfAllLinks(sink_, "feedback-ignored"), 0U) << run;
     for (const std::size_t link : Send(seq++)) ASSERT_TRUE(HasLeft(link));
     Advance(2 * GST_SECOND);  // the copies that prove a link have ended
     for (int swapped = 0; swapped < 4; ++seq) {

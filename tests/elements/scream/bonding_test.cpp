@@ -343,6 +343,8 @@ TEST_P(BondedSrtp, EachPacketPassesOnceAndEachLinkIsHeardOf) {
   ExpectAllPassed(receiver, sender, PacketsOf(out.get()));
   EXPECT_EQ(OfLinks(out.get(), "packets-lost"), (std::vector<guint64>{0, 0}));
   EXPECT_EQ(Stats(out.get())["srtp-refused"], 0U);
+  EXPECT_GE(Stats(out.get())["srtp-received"], OfAllLinks(out.get(), "feedback-accepted"));
+  EXPECT_GE(Stats(in.get())["srtp-received"], Stats(in.get())["packets-received"]);
   EXPECT_LE(Stats(in.get())["srtp-refused"], 5U) << "copies from before a second address sent";
   EXPECT_EQ(Stats(in.get())["goodbyes"], 1U);
 }
@@ -462,6 +464,15 @@ TEST(BondAddresses, AreHostPortAndWhatPacketsLeaveBy) {
   EXPECT_EQ((*links)[1].target.host, "[2001:db8::1]");
   EXPECT_EQ((*links)[1].target.bind_address, "2001:db8::2");
   EXPECT_EQ((*links)[2].interface + (*links)[2].target.bind_address, "");
+}
+
+TEST(BondAddresses, MayHaveBlanksAroundEach) {
+  std::string error;
+  const auto links = ParseBondAddresses("  edge:1@lo  ,edge:2@lo ", &error);
+  ASSERT_TRUE(links) << error;
+  ASSERT_EQ(links->size(), 2U);
+  for (const gst::BondAddress& link : *links) EXPECT_EQ(link.interface, "lo");
+  EXPECT_EQ(links->front().text, "edge:1@lo") << "as it is shown";
 }
 
 // The addresses of interfaces are compared in this form.

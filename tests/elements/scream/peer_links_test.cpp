@@ -253,6 +253,33 @@ TEST(LinkReports, TellEachLinkWhatCameByIt) {
   EXPECT_EQ(reports.stats().size(), 2U);
 }
 
+TEST(LinkReports, FollowChangedSettingsOnLinksOfBeforeAndOnNewOnes) {
+  const LinkAddress a(Address("10.0.0.1", 5000)), b(Address("10.1.0.1", 5000));
+  LinkReports reports;
+  reports.Reset({});
+  Time now{1s};
+  std::uint16_t seq = 0;
+  const auto due_after = [&](const LinkAddress& link, int packets) {
+    for (int i = 0; i < packets; ++i)
+      reports.OnPacket(link.get(), now, {7, seq++, Ecn::kEct1, false, DataSize::Bytes(1200)});
+    return reports.Take(now).has_value();
+  };
+  EXPECT_TRUE(due_after(a, 1)) << "the first packet of all";
+  rtcp::FeedbackConfig config;
+  config.sender_ssrc = 77;
+  config.packets_per_feedback = 3;
+  reports.set_config(config);
+  EXPECT_TRUE(due_after(b, 1));
+  for (const LinkAddress* link : {&a, &b}) {
+    EXPECT_FALSE(due_after(*link, 2));
+    now += 1ms;
+    reports.OnPacket(link->get(), now, {7, seq++, Ecn::kEct1, false, DataSize::Bytes(1200)});
+    const auto report = reports.Take(now);
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->feedback.sender_ssrc, 77U);
+  }
+}
+
 TEST(LinkReports, SumUpEachCountOfAllLinks) {
   const LinkAddress a(Address("10.0.0.1", 5000)), b(Address("10.1.0.1", 5000));
   LinkReports reports;
@@ -276,6 +303,10 @@ TEST(LinkReports, SumUpEachCountOfAllLinks) {
     EXPECT_GT(all[0].feedback.*count, 0U);
     EXPECT_EQ(reports.Sum().*count, all[0].feedback.*count + all[1].feedback.*count);
   }
+  for (const auto size : {&Stats::received, &Stats::sent}) {
+    EXPECT_GT(all[0].feedback.*size, DataSize());
+    EXPECT_EQ(reports.Sum().*size, all[0].feedback.*size + all[1].feedback.*size);
+  }
 }
 
 TEST(LinkReports, KeepFewLinksWhereAddressesChangeAllTheTime) {
@@ -288,6 +319,9 @@ TEST(LinkReports, KeepFewLinksWhereAddressesChangeAllTheTime) {
   }
   EXPECT_EQ(reports.stats().size(), LinkReports::kMaxLinks);
   EXPECT_EQ(reports.Sum().packets, 249U);
+  reports.Reset({});
+  EXPECT_TRUE(reports.stats().empty());
+  EXPECT_EQ(reports.Sum().packets, 0U) << "of links that were replaced, either";
 }
 
 TEST(LinkReports, KeepTheLinkInUse) {

@@ -252,6 +252,26 @@ TEST_F(ScreamBin, WhatCannotBeSecuredIsAnErrorThatSaysWhyAndKeepsNoSocket) {
     }
 }
 
+TEST_F(ScreamBin, TheSinkKeepsNoLinkOfAStartThatFailed) {
+  Make("screamsink");
+  g_object_set(bin_.get(), "bonding-addresses", "127.0.0.1:9@127.0.0.1,127.0.0.1:9@127.0.0.2",
+               "srtp-key", "env:LIDAR_NO_SUCH_KEY", nullptr);
+  const gst::PadPtr pad(gst_element_request_pad_simple(bin_.get(), "sink_%u"));
+  for (int start = 0; start < 2; ++start) {
+    EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_FAILURE);
+    EXPECT_EQ(GST_BIN_NUMCHILDREN(bin_.get()), 3) << "one link, and no bond";
+    const gst::PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad.get())));
+    ASSERT_TRUE(target);
+    EXPECT_EQ(GST_OBJECT_PARENT(target.get()), GST_OBJECT(Child("screamtx").get()));
+    To(GST_STATE_NULL);
+  }
+  g_object_set(bin_.get(), "srtp-key", "", nullptr);
+  EXPECT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
+  EXPECT_EQ(GST_BIN_NUMCHILDREN(bin_.get()), 7);
+  To(GST_STATE_NULL);
+  gst_element_release_request_pad(bin_.get(), pad.get());
+}
+
 TEST_F(ScreamBin, TheSourceDoesNotStartWhereItsPortIsTaken) {
   Make("screamsrc");
   g_object_set(bin_.get(), "port", 0, nullptr);

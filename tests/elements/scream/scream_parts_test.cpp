@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -18,6 +20,7 @@
 #include "gst/scream/peer_latch.h"
 #include "gst/scream/rtp_packet.h"
 #include "gst/scream/srtp/key_gate.h"
+#include "gst/scream/tx/figures.h"
 #include "gst/scream/tx/settings.h"
 #include "src/scream/tuning.h"
 #include "tests/elements/scream/rtp_support.h"
@@ -26,6 +29,7 @@ namespace lidar::gst {
 namespace {
 
 using namespace std::chrono_literals;
+using AddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
 
 TEST(RtpHeader, IsReadWithItsExtensionAndSources) {
   test::Rtp r;
@@ -49,6 +53,17 @@ TEST(RtpHeader, IsReadWithItsExtensionAndSources) {
   const auto header = ReadRtpHeader(extended.get());
   ASSERT_TRUE(header);
   EXPECT_EQ(header->header_size, 28U);
+}
+
+TEST(RtpHeader, IsReadWithoutAPayload) {
+  for (const std::vector<std::uint8_t>& bytes :
+       {std::vector<std::uint8_t>{0x80, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7},
+        {0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0xbe, 0xde, 0, 1, 0, 0, 0, 0}}) {
+    const BufferPtr buffer(test::FromBytes(bytes));
+    const auto header = ReadRtpHeader(buffer.get());
+    ASSERT_TRUE(header) << bytes.size();
+    EXPECT_EQ(header->header_size, bytes.size());
+  }
 }
 
 class NotRtp : public ::testing::TestWithParam<std::vector<std::uint8_t>> {};
@@ -145,7 +160,6 @@ TEST(Bye, NamesNoMoreSourcesThanItsCountCanSay) {
   EXPECT_EQ(ParseBye({bye.data(), bye.size()}).size(), 31U);
 }
 
-using AddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
 constexpr auto kAccepted = PeerLatch::Verdict::kAccepted;
 constexpr auto kMoved = PeerLatch::Verdict::kMoved;
 constexpr auto kForeign = PeerLatch::Verdict::kForeign;
@@ -192,6 +206,59 @@ TEST(UdpAddress, ALinkLocalOneKeepsItsInterface) {
         gst::ResolveUdpAddress(gst::HostOf(address.get()), 5004, nullptr));
     EXPECT_TRUE(gst::SameAddress(address.get(), again.get()));
   }
+}
+
+TEST(UdpAddress, IsTheSameInEitherFamilyAndItsHostAtAnyPort) {
+  const SocketAddressPtr robot(test::Address("10.0.0.1", 5004)),
+      mapped(test::Address("::ffff:10.0.0.1", 5004)), port(test::Address("10.0.0.1", 5005)),
+      host(test::Address("10.0.0.2", 5004)), v6(test::Address("fd00::1", 5004));
+  EXPECT_TRUE(SameAddress(robot.get(), mapped.get()));
+  EXPECT_TRUE(SameHost(robot.get(), mapped.get()));
+  EXPECT_FALSE(SameAddress(robot.get(), port.get()));
+  EXPECT_TRUE(SameHost(robot.get(), port.get()));
+  for (const SocketAddressPtr* other : {&host, &v6}) {
+    EXPECT_FALSE(SameAddress(robot.get(), other->get()));
+    EXPECT_FALSE(SameHost(robot.get(), other->get()));
+  }
+  EXPECT_FALSE(SameAddress(robot.get(), nullptr));
+  EXPECT_FALSE(SameAddress(nullptr, robot.get()));
+  EXPECT_FALSE(SameHost(robot.get(), nullptr));
+  EXPECT_FALSE(SameHost(nullptr, robot.get()));
+  EXPECT_TRUE(SameAddress(nullptr, nullptr));
+  EXPECT_FALSE(ToNative(v6.get(), G_SOCKET_FAMILY_IPV4).valid());
+}
+
+TEST(UdpAddress, IsShownAsUsersWriteIt) {
+  const SocketAddressPtr v4(test::Address("10.0.0.1", 5004)), v6(test::Address("fd00::1", 5004));
+  EXPECT_EQ(AddressToString(v4.get()), "10.0.0.1:5004");
+  EXPECT_EQ(AddressToString(v6.get()), "[fd00::1]:5004");
+  EXPECT_EQ(AddressToString(nullptr), "(none)");
+  EXPECT_EQ(HostOf(v4.get()), "10.0.0.1");
+  EXPECT_EQ(HostOf(v6.get()), "fd00::1");
+  EXPECT_EQ(WithoutBrackets("[fd00::1]"), "fd00::1");
+  for (const char* host : {"", "[]", "[x", "x]", "fd00::1", "edge"})
+    EXPECT_EQ(WithoutBrackets(host), host);
+}
+
+TEST(WakeFd, StaysWokenUntilItIsClearedAndComesBeforeData) {
+  int data[2];
+  ASSERT_EQ(pipe2(data, O_CLOEXEC), 0);
+  WakeFd wake;
+  const auto outcome = [&](gint64 timeout_ns) { return wake.Wait(data[0], POLLIN, timeout_ns); };
+  using Outcome = WakeFd::Outcome;
+  EXPECT_EQ(outcome(0), Outcome::kTimeout);
+  const gint64 before = g_get_monotonic_time();
+  EXPECT_EQ(outcome(20'000'000), Outcome::kTimeout);
+  EXPECT_GE(g_get_monotonic_time() - before, 20'000) << "nanoseconds";
+  ASSERT_EQ(write(data[1], "x", 1), 1);
+  EXPECT_EQ(outcome(-1), Outcome::kReady);
+  for (int i = 0; i < 2; ++i) wake.Wake();
+  EXPECT_EQ(outcome(-1), Outcome::kWoken);
+  EXPECT_EQ(outcome(0), Outcome::kWoken);
+  for (int i = 0; i < 2; ++i) wake.Clear();
+  EXPECT_EQ(outcome(0), Outcome::kReady);
+  close(data[0]);
+  close(data[1]);
 }
 
 struct Destination {
@@ -358,6 +425,15 @@ TEST_F(Latch, AKnownSenderMayHaveLostMuchOnTheWay) {
   EXPECT_TRUE(Stream(other, 1, 5'000, 8));
 }
 
+TEST_F(Latch, NumbersOfBeforeAMoveAreKnownNoMore) {
+  Stream(robot, 1, 0, 100, true);
+  now += 1s;
+  EXPECT_TRUE(Stream(other, 1, 5'000, 100, true));
+  now += 1s;
+  EXPECT_FALSE(Stream(thief, 1, 101, 20));
+  EXPECT_TRUE(Stream(robot, 1, 5'101, 8));
+}
+
 TEST_F(Latch, WhoWasOutweighedWhileItSentIsNotKnown) {
   Stream(robot, 1, 0, 100, true);
   now += 6s;
@@ -453,6 +529,141 @@ TEST_F(Latch, FeedbackFromAnotherAddressIsANewPathOnceTheOldOneIsSilent) {
   EXPECT_TRUE(peer.OnFeedback(now + 1s, thief.get()));
   EXPECT_FALSE(peer.OnFeedback(now + 1s, nullptr));
   EXPECT_TRUE(peer.OnFeedback(now - 1h, robot.get()));  // the clock was set back
+}
+
+DataRate Bps(int n) { return DataRate::BitsPerSecond(n); }
+
+/// Expects the field names of `shown` with the values 1, 2, ... in this order.
+void ExpectInOrder(const StructurePtr& shown, const std::vector<const char*>& names) {
+  const test::Stats stats(shown.get());
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(stats[names[i]], i + 1) << names[i];
+}
+
+TEST(TxFigures, OfTheControllerHaveEachItsOwnName) {
+  scream::Statistics s;
+  s.target_bitrate = Bps(1);
+  s.sent_bitrate = Bps(2);
+  s.acked_bitrate = Bps(3);
+  s.estimated_capacity = Bps(4);
+  s.pace_bitrate = Bps(5);
+  s.qdelay = 6ns;
+  s.qdelay_avg = 7ns;
+  s.qdelay_target = 8ns;
+  s.s_rtt = 9ns;
+  s.min_rtt = 10ns;
+  s.ref_wnd = DataSize::Bytes(11);
+  s.bytes_in_flight = DataSize::Bytes(12);
+  s.queued = DataSize::Bytes(13);
+  s.media_qdelay = 14ns;
+  s.packets_sent = 15;
+  s.packets_acked = 16;
+  s.packets_lost = 17;
+  s.packets_late = 18;
+  s.packets_ce = 19;
+  s.packets_dropped = 20;
+  s.bytes_sent = DataSize::Bytes(21);
+  s.bytes_acked = DataSize::Bytes(22);
+  s.feedback_accepted = 23;
+  s.feedback_ignored = 24;
+  s.foreign_blocks = 25;
+  s.feedback_timeouts = 26;
+  s.loss_events = 27;
+  s.ce_events = 28;
+  s.delay_events = 29;
+  s.capacity_drops = 30;
+  s.gaps = 31;
+  s.clock_resets = 32;
+  s.l4s_alpha = 0.25;
+  s.loss_rate = 0.5;
+  s.cross_traffic = 0.75;
+  s.ecn_state = scream::EcnState::kBleached;
+  s.reason = scream::RateReason::kDrop;
+  const StructurePtr shown = ShowController(s);
+  ExpectInOrder(shown, {"target-bitrate",
+                        "sent-bitrate",
+                        "acked-bitrate",
+                        "estimated-capacity",
+                        "pace-bitrate",
+                        "queue-delay",
+                        "queue-delay-avg",
+                        "queue-delay-target",
+                        "rtt",
+                        "min-rtt",
+                        "ref-wnd",
+                        "bytes-in-flight",
+                        "queued-bytes",
+                        "sender-queue-delay",
+                        "packets-sent",
+                        "packets-acked",
+                        "packets-lost",
+                        "packets-late",
+                        "packets-ce",
+                        "packets-dropped",
+                        "bytes-sent",
+                        "bytes-acked",
+                        "feedback-accepted",
+                        "feedback-ignored",
+                        "feedback-foreign-blocks",
+                        "feedback-timeouts",
+                        "loss-events",
+                        "ce-events",
+                        "delay-events",
+                        "capacity-drops",
+                        "gaps",
+                        "clock-resets"});
+  for (const auto& [name, value] :
+       {std::pair("l4s-alpha", 0.25), {"loss-rate", 0.5}, {"cross-traffic", 0.75}}) {
+    gdouble number = 0;
+    EXPECT_TRUE(gst_structure_get_double(shown.get(), name, &number));
+    EXPECT_EQ(number, value) << name;
+  }
+  EXPECT_EQ(test::Stats(shown.get()).Text("ecn-state"), "bleached");
+  EXPECT_EQ(test::Stats(shown.get()).Text("reason"), "capacity-drop");
+}
+
+TEST(TxFigures, OfAStreamHaveEachItsOwnName) {
+  ShownStream s;
+  s.ssrc = 1;
+  s.core.target_bitrate = Bps(2);
+  s.encoder_bps = 3;
+  s.config.needed_bitrate = Bps(4);
+  s.config.max_bitrate = Bps(5);
+  s.core.sent_bitrate = Bps(6);
+  s.core.queued = DataSize::Bytes(7);
+  s.core.media_qdelay = 8ns;
+  s.own = {9, 13, 17};
+  s.core.packets_sent = 10;
+  s.core.packets_dropped = 11;
+  s.core.packets_lost = 12;
+  s.core.packets_ce = 14;
+  s.core.bytes_sent = DataSize::Bytes(15);
+  s.pad = "sink_7";
+  const StructurePtr shown = ShowStream(s);
+  ExpectInOrder(shown, {"ssrc", "target-bitrate", "encoder-bitrate", "min-bitrate", "max-bitrate",
+                        "sent-bitrate", "queued-bytes", "sender-queue-delay", "packets-queued",
+                        "packets-sent", "packets-dropped", "packets-lost", "frames-dropped",
+                        "packets-ce", "bytes-sent"});
+  EXPECT_EQ(test::Stats(shown.get())["malformed"], 17U);
+  EXPECT_EQ(test::Stats(shown.get()).Text("pad"), "sink_7");
+}
+
+TEST(TxFigures, TellReasonsAndEcnStatesInWords) {
+  using Ecn = scream::EcnState;
+  using Why = scream::RateReason;
+  for (const auto& [state, word] : {std::pair(Ecn::kOff, "off"),
+                                    {Ecn::kTesting, "testing"},
+                                    {Ecn::kCapable, "capable"},
+                                    {Ecn::kBleached, "bleached"},
+                                    {Ecn::kSilent, "silent"}})
+    EXPECT_STREQ(scream::ToString(state), word);
+  for (const auto& [reason, word] : {std::pair(Why::kStart, "start"),
+                                     {Why::kIncrease, "increase"},
+                                     {Why::kCe, "ce"},
+                                     {Why::kLoss, "loss"},
+                                     {Why::kDelay, "delay"},
+                                     {Why::kDrop, "capacity-drop"},
+                                     {Why::kTimeout, "no-feedback"}})
+    EXPECT_STREQ(scream::ToString(reason), word);
 }
 
 TxSettings Tuned(const char* tuning) {
