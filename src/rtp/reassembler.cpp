@@ -22,7 +22,7 @@ std::int64_t Reassembler::Extend(std::uint32_t scan_number) const {
 }
 
 bool Reassembler::Continues(const std::vector<Unit>& units) const {
-  if (!any_slice_) return true;
+  if (!ledger_.started()) return true;
   return std::all_of(units.begin(), units.end(), [&](const Unit& u) {
     const std::int64_t ahead = Extend(u.slice.scan_number) - newest_scan_;
     return !IsSlice(u.unit) || (ahead >= -kMaxScanBack && ahead <= kMaxScanJump);
@@ -65,9 +65,9 @@ bool Reassembler::Admit(SlicePosition p, const RtpPacket& packet, const Unit& un
 void Reassembler::PushSlice(const RtpPacket& packet, const Unit& unit,
                             std::vector<ReceivedSlice>* out) {
   const SlicePosition p{Extend(unit.slice.scan_number), unit.slice.index};
+  const bool was_started = ledger_.started();
   if (!Admit(p, packet, unit)) return;
-  newest_scan_ = any_slice_ ? std::max(newest_scan_, p.scan) : p.scan;
-  any_slice_ = true;
+  newest_scan_ = was_started ? std::max(newest_scan_, p.scan) : p.scan;
   for (KnownConfig& known : configs_) known.after_slices = false;
   const auto it = pending_.try_emplace(p).first;
   Pending& slice = it->second;

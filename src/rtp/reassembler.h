@@ -50,8 +50,8 @@ class Reassembler {
   Reassembler(Duration max_reorder_time, const Reassembler& before)
       : ledger_(max_reorder_time), newest_scan_(before.newest_scan_) {}
 
-  /// Returns true if the packet's scan numbers continue this stream. One damaged header must not
-  /// move the stream to another place.
+  /// Returns true if the packet's scan numbers continue this stream, or if no slice has begun. One
+  /// damaged header must not move the stream to another place.
   bool Continues(const std::vector<Unit>& units) const;
   /// Takes the units of `packet` and appends the slices that are now whole to `out`, in the order
   /// of their completion: no slice waits for another.
@@ -121,7 +121,6 @@ class Reassembler {
 
   SliceLedger ledger_;
   std::int64_t newest_scan_ = 0;  // unwrapped
-  bool any_slice_ = false;
   bool has_whole_slice_ = false;
   PendingMap pending_;
   std::size_t pending_bytes_ = 0;

@@ -177,6 +177,31 @@ TEST(Receiver, GivesOutSlicesFromFarApartThatComeAllAtOnce) {
   EXPECT_EQ(receiver.accounts().restarts, 0U);
 }
 
+TEST(Receiver, JoinsWithinASliceAndGoesOnAfterALossOfScans) {
+  std::vector<Wire> through;
+  for (const Wire& w : Sender().Scans(0, 10))
+    if (w.config || (w.scan == 0 && w.index == 3 && w.marker) || w.scan >= 5) through.push_back(w);
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, through), AllSlices(5, 5));
+  receiver.Finish();
+  const auto a = receiver.accounts();
+  EXPECT_EQ(a.restarts, 0U);
+  EXPECT_EQ(a.outages, 0U);
+  EXPECT_EQ(a.slices.slices_lost, 0U);
+  EXPECT_EQ(a.packets.invalid, 0U);
+}
+
+TEST(Receiver, IsNotMovedByADamagedPacketBeforeItsFirstSlice) {
+  auto packets = Sender().Scans(0, 10);
+  SenderOptions far;
+  far.scan_number += 0x4000'0000;
+  Wire wild = Sender(far).Scans(0, 1).back();  // no start of a slice
+  packets.insert(packets.begin() + 1, wild);
+  Receiver receiver(milliseconds(100));
+  EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 10));
+  EXPECT_EQ(receiver.accounts().restarts, 0U);
+}
+
 TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
   SenderOptions real;
   real.scan_number = 1'000;
