@@ -125,8 +125,25 @@ TEST_F(Files, AFolderIsReadInTheOrderOfItsNames) {
 TEST_F(Files, RecordedTargetsHoldUntilTheNextLine) {
   const auto path = Write("t.txt", "# time rate\n0 4\n0.25 2\n\n0.5 8 # more\n");
   EXPECT_EQ(ReadTargets(path, 10), (std::vector<double>{4e6, 4e6, 4e6, 2e6, 2e6, 8e6}));
-  EXPECT_THROW(ReadTargets(Write("bad.txt", "0 4\n1 x\n"), 10), std::runtime_error);
-  EXPECT_THROW(ReadTargets(Write("empty.txt", "# nothing\n"), 10), std::runtime_error);
+}
+
+TEST_F(Files, TargetsThatAreNoneAreRefusedWithTheirLine) {
+  for (const auto& [text, why] :
+       {std::pair{"0 4\n1 x\n", "line 2 is not 'time_s rate_mbps'"},
+        std::pair{"# a\n0 4\n1\n", "line 3 is not 'time_s rate_mbps'"},
+        std::pair{"0 0\n", "line 1 is not 'time_s rate_mbps'"},
+        std::pair{"0 4\n1 0 # silent\n", "line 2 is not 'time_s rate_mbps'"},
+        std::pair{"0 -4\n", "line 1 is not 'time_s rate_mbps'"},
+        std::pair{"# nothing\n", "no target in it"}, std::pair{"", "no target in it"}}) {
+    const std::string path = Write("bad.txt", text);
+    try {
+      ReadTargets(path, 10);
+      ADD_FAILURE() << text;
+    } catch (const std::runtime_error& e) {
+      EXPECT_EQ(e.what(), path + ": " + why) << text;
+    }
+  }
+  EXPECT_THROW(ReadTargets(folder_ + "/none.txt", 10), std::runtime_error);
 }
 
 TEST_F(Files, AModelFileThatIsNoneIsRefusedByName) {
