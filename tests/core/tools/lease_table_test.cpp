@@ -188,6 +188,22 @@ TEST_F(Lease, IsLostToWhoeverWritesInItsPlace) {
   EXPECT_FALSE(Has("r", now));
 }
 
+TEST_F(Lease, KeepsANewerPoseThanThatOfItsOwnEntry) {
+  table_.SetRobots({"r"}, At(0));
+  Time now = Pass(At(0), 400);
+  table_.SetProgress("r", Scan(5));
+  std::vector<LeaseTable::Write> writes;
+  for (int ms = 0; writes.empty() && ms < 1'000; ++ms) writes = table_.Poll(now += milliseconds(1));
+  ASSERT_EQ(writes.size(), 1U);
+  table_.SetProgress("r", Scan(6));
+  // The store sends the entry before the answer.
+  table_.OnEntry("r", revision_ + 1, ParseLeaseRecord(writes[0].text), now);
+  EXPECT_EQ(table_.HeldAt(now).at("r").progress->scan, 6U);
+  Answer(writes, now);
+  EXPECT_EQ(table_.HeldAt(now).at("r").progress->scan, 6U);
+  EXPECT_EQ(ParseLeaseRecord(table_.HandOver(now).at(0).text)->progress->scan, 6U);
+}
+
 TEST_F(Lease, OfWhichTheRecordIsDamagedIsTakenWithoutAPose) {
   table_.SetRobots({"r"}, At(0));
   table_.OnEntry("r", 5, std::nullopt, At(0));

@@ -399,6 +399,45 @@ TEST_F(LidarWorker, BeginsItsMapWithAWholeScan) {
   EXPECT_EQ(report["lidarodometry"]["scans"], 9) << "of ten, of which the first is not whole";
 }
 
+/// The stream has one scan.
+TEST_F(LidarWorker, HandsOnTheVelocityOfTheRecordUnlessTheScanOfItsPoseIsMissing) {
+  NatsPipeline sender(
+      "lidartestsrc model=os0-32 mode=512x10 speed=10 slices-per-scan=1 num-buffers=1 ! lidarenc "
+      "effort=0" +
+      kSee + "! natssink name=n sync=false subject=fleet.r1.lidar.front jetstream=fleet" +
+      kPatientDrain + At());
+  sender.Play();
+  ASSERT_EQ(sender.WaitForEnd(), "");
+  const std::uint64_t scan = LastOf("fleet");
+  const Kept scanned = sender.buffers().at(0);
+  worker::Progress begin;
+  begin.pose = {5, 0, 0, 0, 0, 0, 1};
+  begin.velocity = {10, 0, 0, 0, 0, 0.25};
+  begin.time = scanned.capture_time - 2 * GST_SECOND;
+  begin.stream = CreationOf("fleet");
+  worker::PipelineSettings settings;
+  settings.connection.url = server_.url();
+  for (const bool is_missing : {false, true}) {
+    begin.scan = begin.from = is_missing ? scan - 1 : scan;
+    worker::RobotPipeline pipeline(settings, "r1.front", begin.stream, begin);
+    pipeline.SetEnd(Time::max());
+    pipeline.Play();
+    ASSERT_TRUE(Eventually([&] { return pipeline.progress().has_value(); }));
+    const worker::Progress progress = *pipeline.progress();
+    EXPECT_EQ(progress.velocity, is_missing ? std::nullopt : begin.velocity);
+    EXPECT_EQ(progress.pose[0], 5);
+    EXPECT_EQ(progress.time, scanned.capture_time + scanned.duration / 2);
+    EXPECT_EQ(progress.scan, scan);
+    EXPECT_EQ(progress.from, scan);
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(pipeline.Poll(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+              is_missing ? "r1.front: the scan of its last pose cannot be decoded; its poses are "
+                           "off by what it moved in 2.00 s\n"
+                         : "");
+  }
+}
+
 TEST_F(LidarWorker, PrintsNoControlCharactersOfARecord) {
   PutRecord(worker::ToJson({"a\x1b[2J\nr2.front: taken", milliseconds(300), std::nullopt}));
   const auto robot = Robot();
