@@ -179,6 +179,8 @@ TEST_F(NatsJetStream, AReplayBeginsAtItsNumber) {
   // The first message of the stream is the caps.
   ExpectSameStream(Replay(0, "start-sequence=6"), {sent.begin() + 4, sent.end()});
   EXPECT_EQ(Replay(0, "start-sequence=900").size(), 0U);
+  const auto later = static_cast<guint64>(g_get_real_time()) * 1000 + 3600 * GST_SECOND;
+  ExpectSameStream(Replay(later, "start-sequence=6"), {sent.begin() + 4, sent.end()});
 }
 
 /// Puts `count` messages into the stream, each with caps that no other has.

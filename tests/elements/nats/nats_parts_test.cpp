@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <regex>
 #include <set>
@@ -17,11 +18,13 @@
 #include "ext/nats/format_book.h"
 #include "ext/nats/jetstream.h"
 #include "ext/nats/message.h"
+#include "ext/nats/nats_settings.h"
 #include "ext/nats/outbox.h"
 #include "ext/nats/place_book.h"
 #include "ext/nats/source_account.h"
 #include "gst/lidar/gstlidar.h"
 #include "tests/elements/mcap/recording.h"
+#include "tests/support/element_bus.h"
 
 namespace lidar::nats {
 namespace {
@@ -553,6 +556,124 @@ TEST(NatsUrls, AreShownWithoutTheirUsers) {
   EXPECT_EQ(WithoutUser("nats://me:p@ss@host:4222,tls://you@other"),
             "nats://host:4222, tls://other");
   EXPECT_EQ(WithoutUser("me:secret@host"), "host");
+}
+
+/// What a natssink or natssrc posts of its connection.
+class NatsWatch : public NatsParts {
+ protected:
+  void Make(bool keeps_trying) {
+    element_.reset(GST_ELEMENT(gst_object_ref_sink(gst_bin_new("n"))));
+    bus_.emplace(element_.get());
+    watch_.emplace(element_.get(), keeps_trying);
+  }
+  /// Returns what the watch posts of the state as it is now.
+  std::string Posted() {
+    watch_->Note(state_);
+    std::string posted;
+    while (const gst::MessagePtr message = bus_->Pop()) {
+      if (!posted.empty()) posted += " ";
+      const bool is_state = GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_ELEMENT;
+      gboolean connected = FALSE;
+      if (is_state)
+        gst_structure_get_boolean(gst_message_get_structure(message.get()), "connected",
+                                  &connected);
+      posted += is_state ? (connected ? "here" : "away")
+                         : std::string(GST_MESSAGE_TYPE_NAME(message.get())) + ": " +
+                               test::MessageText(message.get());
+    }
+    return posted;
+  }
+  std::string Complains(const std::string& text) {
+    ++state_.errors;
+    state_.last_error = text;
+    return Posted();
+  }
+  static std::string Complaint(const std::string& text) {
+    return "warning: The NATS server complains: " + text + ".";
+  }
+
+  gst::ElementPtr element_;
+  std::optional<test::ElementBus> bus_;
+  std::optional<gst::ConnectionWatch> watch_;
+  ConnectionState state_;
+};
+
+TEST_F(NatsWatch, TellsOfEachChangeOnce) {
+  Make(false);
+  EXPECT_EQ(Posted(), "");
+  for (int round = 0; round < 2; ++round) {
+    ++state_.connections;
+    EXPECT_EQ(Posted(), "here");
+    EXPECT_EQ(Posted(), "");
+    ++state_.disconnections;
+    EXPECT_EQ(Posted(), "away");
+    EXPECT_EQ(Posted(), "");
+  }
+}
+
+TEST_F(NatsWatch, TellsOfEachComplaintOnceInAConnection) {
+  Make(false);
+  for (int round = 0; round < 2; ++round) {
+    ++state_.connections;
+    EXPECT_EQ(Posted(), "here");
+    EXPECT_EQ(Complains("one"), Complaint("one"));
+    EXPECT_EQ(Posted(), "");
+    EXPECT_EQ(Complains("another"), Complaint("another"));
+    EXPECT_EQ(Complains("one"), "");
+    ++state_.disconnections;
+    EXPECT_EQ(Posted(), "away");
+  }
+}
+
+TEST_F(NatsWatch, TellsOfSoManyComplaintsOnlyAndThoseInUtf8) {
+  Make(false);
+  ++state_.connections;
+  Posted();
+  int told = 0;
+  for (int i = 0; i < 100; ++i)
+    if (!Complains("of subject " + std::to_string(i)).empty()) ++told;
+  EXPECT_EQ(told, 8);
+  ++state_.connections;
+  ++state_.disconnections;
+  EXPECT_EQ(Complains("new"), "") << "it is the same connection still";
+  ++state_.disconnections;
+  Posted();
+  EXPECT_EQ(Complains("\xff"), Complaint("\xef\xbf\xbd"));
+}
+
+TEST_F(NatsWatch, TellsOfARefusalAsAnErrorOrOfEachAsAWarning) {
+  for (const bool keeps_trying : {false, true}) {
+    Make(keeps_trying);
+    state_ = {};
+    state_.last_error = "Authorization Violation";
+    state_.closed = state_.unanswered = true;
+    EXPECT_EQ(Posted(), "") << "no server has answered";
+    state_.unanswered = false;
+    EXPECT_EQ(Posted(), keeps_trying ? "warning: The NATS server refuses us: Authorization "
+                                       "Violation; it is tried again."
+                                     : "error: The NATS server refuses us: Authorization "
+                                       "Violation.");
+    EXPECT_EQ(Posted(), "");
+    if (!keeps_trying) continue;
+    state_ = {};  // of the next connection
+    state_.connections = 1;
+    EXPECT_EQ(Posted(), "here");
+    state_.closed = true;
+    state_.last_error = "Permissions";
+    EXPECT_EQ(Posted(),
+              "away warning: The NATS server refuses us: Permissions; it is tried again.");
+  }
+}
+
+TEST_F(NatsWatch, TellsNothingOnceItIsSilent) {
+  Make(true);
+  watch_->Silence();
+  ++state_.connections;
+  EXPECT_EQ(Complains("one"), "");
+  state_.closed = true;
+  EXPECT_EQ(Posted(), "");
+  watch_->Warn("something");
+  EXPECT_EQ(bus_->Pop(), nullptr);
 }
 
 TEST(SourceAccount, CountsWhatIsMissingUntilItComes) {
