@@ -251,6 +251,27 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
   }
 }
 
+TEST_F(McapContent, EachRecordingOfASinkHasTheUsualTopics) {
+  const Harness h = RecordingTo(Path("r-%d.mcap"));
+  const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));
+  SetPlaying(h.get());
+  for (const char* file : {"r-0.mcap", "r-1.mcap"}) {
+    for (GstHarness* stream : {h.get(), other.get()}) {
+      Begin(stream, kSlices);
+      EXPECT_EQ(gst_harness_push(stream, Slice(1, 0, kCapture)), GST_FLOW_OK);
+    }
+    for (GstHarness* stream : {h.get(), other.get()}) End(stream);
+    EXPECT_EQ(StatOf(h->element, "files"), 1U);
+    gst_element_set_state(h->element, GST_STATE_READY);
+    gst_element_set_state(h->element, GST_STATE_PLAYING);
+    std::vector<std::string> topics;
+    for (const Logged& message : MessagesOf(Path(file))) topics.push_back(message.topic);
+    EXPECT_EQ(topics, (std::vector<std::string>{"/slices", "/slices_1"})) << file;
+    for (const char* count : {"messages", "bytes", "files", "chunks"})
+      EXPECT_EQ(StatOf(h->element, count), 0U) << count;
+  }
+}
+
 TEST_F(McapContent, AFlushedStreamGoesOnWhereItWas) {
   const Harness h = RecordingTo(Path("a.mcap"));
   const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));

@@ -4,10 +4,12 @@
 
 #include <fstream>
 
+#include "ext/mcap/message_reader.h"
 #include "ext/mcap/message_types.h"
 #include "ext/mcap/output_file.h"
 #include "src/base/imu_sample.h"
 #include "src/cdr/messages.h"
+#include "src/cdr/point_cloud2.h"
 #include "tests/core/mcap/memory_file.h"
 #include "tests/elements/mcap/recording.h"
 #include "tests/support/small_disk.h"
@@ -236,6 +238,44 @@ TEST_F(McapErrors, ATopicInAnotherEncodingIsNoDamage) {
   EXPECT_EQ(played.buffers.at("see").size(), 1U);
   EXPECT_EQ(played.stats.at("messages"), 1U);
   EXPECT_EQ(played.stats.at("messages-dropped"), 0U);
+}
+
+TEST_F(McapErrors, TopicsBeyondTwoHundredAndFiftySixHaveNoPad) {
+  mcap::test::FileMaker maker(mcap::WriterSettings{});
+  const auto bytes = cdr::WriteImu({});
+  for (int i = 0; i < 258; ++i) {
+    mcap::Channel channel;
+    channel.topic = "/imu_" + std::to_string(i);
+    channel.message_encoding = "cdr";
+    const auto id = maker.AddChannel(gst::SchemaOf(gst::MessageType::kImu), std::move(channel));
+    ASSERT_TRUE(maker.Add(id, 1, std::string(bytes.begin(), bytes.end())));
+  }
+  Save(&maker);
+  Pipeline p("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  EXPECT_EQ(p.Find("m")->numsrcpads, 256U);
+  EXPECT_EQ(StatOf(p.Find("m").get(), "messages"), 258U);
+  EXPECT_EQ(StatOf(p.Find("m").get(), "messages-dropped"), 2U);
+  EXPECT_EQ(p.outcome().warning, "The recording is damaged: 0 chunks and 2 messages are left out.");
+}
+
+TEST_F(McapErrors, CloudsThatWouldBecomeHugeAreRefused) {
+  mcap::Channel channel;
+  channel.message_encoding = "cdr";
+  const auto reader = gst::MessageReader::Make(gst::SchemaOf(gst::MessageType::kCloud), channel);
+  ASSERT_TRUE(reader);
+  // A point of a byte becomes a point of twelve.
+  const auto reads = [&](std::uint32_t width) {
+    const std::vector<std::uint8_t> points(width);
+    cdr::PointCloud2 cloud;
+    cloud.layout = {1, width, {{"x", 0, 2, 1}, {"y", 0, 2, 1}, {"z", 0, 2, 1}}, false, 1, width};
+    cloud.data = {points.data(), points.size()};
+    const auto message = cdr::WritePointCloud2(cloud);
+    return reader->Read({message.data(), message.size()}) != nullptr;
+  };
+  EXPECT_TRUE(reads(1'000));
+  EXPECT_FALSE(reads((256U << 20) / 12 + 1));
 }
 
 TEST_F(McapErrors, MessagesThatAreCutCostThemselvesOnly) {

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <fstream>
+#include <set>
 #include <thread>
 
 namespace lidar::test {
@@ -191,6 +192,21 @@ TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
   EXPECT_EQ(played.error, "");
   EXPECT_EQ(played.buffers.at("see0").size(), 100U);
   EXPECT_EQ(played.buffers.at("see1").size(), 1U);
+}
+
+TEST_F(Mcap, PadsGetNamesThatAreFree) {
+  const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
+  std::vector<gst::PadPtr> pads;
+  std::set<std::string> names;
+  for (const char* wanted : {"sink_1", "sink_%u", "sink_%u", "sink_7", "sink_%u"}) {
+    pads.emplace_back(gst_element_request_pad_simple(sink.get(), wanted));
+    ASSERT_TRUE(pads.back()) << wanted;
+    names.insert(GST_OBJECT_NAME(pads.back().get()));
+  }
+  EXPECT_EQ(names.size(), pads.size());
+  EXPECT_EQ(names.count("sink_1") + names.count("sink_7"), 2U);
+  for (const gst::PadPtr& pad : pads) gst_element_release_request_pad(sink.get(), pad.get());
+  EXPECT_EQ(GST_BIN_NUMCHILDREN(sink.get()), 0) << "streams go with their pads";
 }
 
 TEST_F(Mcap, APadMayGoWhileABufferWaitsInItsStream) {
