@@ -135,9 +135,22 @@ TEST(FoxgloveSink, StopsListeningToAnAddressThatGuessesTokens) {
   Sink sink("token=secret");
   for (int i = 0; i < 10; ++i)
     EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=no")).status, 401U);
-  EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=no")).status, 429U);
+  const HttpAnswer refused = HttpGet(sink.Url("http", "/session?token=no"));
+  EXPECT_EQ(refused.status, 429U);
+  EXPECT_EQ(refused.body, "Too many wrong tokens came from this address: wait a minute.\n");
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 429U);
   EXPECT_EQ(HttpGet(sink.Url("http")).status, 200U);
+}
+
+TEST(FoxgloveSink, AsksForATokenHoweverOftenNoneComes) {
+  Sink sink("token=secret");
+  for (int i = 0; i < 20; ++i) {
+    const HttpAnswer refused =
+        HttpGet(sink.Url("http", i % 2 == 0 ? "/session" : "/session?token="));
+    EXPECT_EQ(refused.status, 401U);
+    EXPECT_EQ(refused.body, "A token is needed.\n");
+  }
+  EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 200U);
 }
 
 TEST(WrongTokens, AreForgivenOneByOneAndRememberedOfTheNewestAddresses) {
@@ -181,6 +194,7 @@ TEST(ClientAddress, IsTheLastThatAProxyOfThisMachineNames) {
   EXPECT_EQ(address("127.0.0.1", ""), "127.0.0.1");
   EXPECT_EQ(address("127.0.0.1", "10.0.0.7"), "10.0.0.7");
   EXPECT_EQ(address("::1", "10.0.0.6,10.0.0.7"), "10.0.0.7");
+  EXPECT_EQ(address("127.0.0.1", "10.0.0.5,10.0.0.6,10.0.0.7"), "10.0.0.7");
   EXPECT_EQ(address("127.0.0.1", std::string(100, 'x').c_str()), std::string(64, 'x'));
   EXPECT_EQ(address("10.0.0.5", "10.0.0.7"), "10.0.0.5") << "anyone may write that";
 }

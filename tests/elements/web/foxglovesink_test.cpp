@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <set>
 
 #include "gst/common/latency.h"
 #include "src/rtcp/sender_report.h"
@@ -109,6 +110,22 @@ TEST(FoxgloveSink, EncodesNothingThatNobodyWants) {
   sink.PushCloud(1);
   EXPECT_EQ(sink.Stat("clouds"), 1U);
   EXPECT_EQ(sink.Stat("points-sent"), 0U);
+}
+
+TEST(FoxgloveSink, TellsTheScanDurationOfTheNewestCapsOfScans) {
+  Sink sink;
+  EXPECT_EQ(sink.Stat("scan-duration"), 0U);
+  sink.SetCloudCaps();
+  EXPECT_EQ(sink.Stat("scan-duration"), 100 * GST_MSECOND);
+  for (const char* caps : {GST_LIDAR_ODOMETRY_MEDIA_TYPE, "video/x-vp8,framerate=(fraction)30/1"}) {
+    Harness other(gst_harness_new_with_element(sink.element(), "sink_%u", nullptr));
+    gst_harness_set_src_caps_str(other.get(), caps);
+    EXPECT_EQ(sink.Stat("scan-duration"), 100 * GST_MSECOND) << caps;
+  }
+  Harness draco(gst_harness_new_with_element(sink.element(), "sink_%u", nullptr));
+  gst_harness_set_src_caps_str(
+      draco.get(), "application/x-draco,geometry=xyz,alignment=slice,framerate=(fraction)20/1");
+  EXPECT_EQ(sink.Stat("scan-duration"), 50 * GST_MSECOND);
 }
 
 TEST(FoxgloveSink, OfTwoSubscriptionsOfATopicTheNewestCounts) {
@@ -392,17 +409,32 @@ TEST_P(PosesOfClouds, AreNotShownIfTheirTopicIsInUseWhichIsSaidOnce) {
   const gst::CapsPtr caps(gst_pad_get_current_caps(sink.harness()->srcpad));
   gst_harness_set_src_caps(second.get(), gst_caps_ref(caps.get()));
   const GstLidarPose pose = {{4, 5, 6}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
-  for (int i = 0; i < 2; ++i) {
+  const auto push = [&] {
     GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 64, nullptr);
     gst_buffer_memset(buffer, 0, 0, 64);
     gst_lidar_buffer_set_pose(buffer, &pose);
     EXPECT_EQ(gst_harness_push(sink.harness(), buffer), GST_FLOW_OK);
-  }
+  };
+  for (int i = 0; i < 2; ++i) push();
   EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING),
             std::vector<std::string>{
                 "The poses of the clouds are not shown: the topic \"" + topic +
                 "\" is already used for something else; set the property topic of one of its "
                 "pads."});
+  // The next run has them: the other stream has not begun.
+  gst_element_set_state(sink.element(), GST_STATE_NULL);
+  gst_element_set_state(sink.element(), GST_STATE_PLAYING);
+  gst_harness_push_event(sink.harness(), gst_event_new_stream_start("again"));
+  sink.SetCloudCaps();
+  push();
+  Peer peer(&sink);
+  peer.Subscribe("/pose", 1);
+  peer.Subscribe("/tf", 2);
+  push();
+  std::set<std::uint32_t> shown;
+  for (int i = 0; i < 2; ++i) shown.insert(peer.Next().subscription);
+  EXPECT_EQ(shown, (std::set<std::uint32_t>{1, 2}));
+  EXPECT_TRUE(bus.Texts(GST_MESSAGE_WARNING).empty());
 }
 
 TEST(FoxgloveSink, GoesOnAfterFlushesAndNewStarts) {

@@ -107,6 +107,15 @@ TEST(SignedToken, ThatIsDamagedOrOverIsRefused) {
     EXPECT_FALSE(ReadSignedToken(token, kSecret, kNow_s)) << token;
 }
 
+TEST(SignedToken, ThatIsLongerThan4096LettersIsRefused) {
+  bool is_long = false;
+  for (std::size_t blanks = 2'900; !is_long; ++blanks) {
+    const std::string token = Sign(R"({"exp":1800000100})" + std::string(blanks, ' '));
+    is_long = token.size() > 4'096;
+    EXPECT_EQ(ReadSignedToken(token, kSecret, kNow_s).has_value(), !is_long) << token.size();
+  }
+}
+
 std::string Claims(int seconds, const std::string& topics) {
   return R"({"exp":)" + std::to_string(g_get_real_time() / G_USEC_PER_SEC + seconds) +
          R"(,"topics":)" + topics + "}";

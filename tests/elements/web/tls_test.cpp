@@ -122,6 +122,24 @@ TEST_F(Tls, SaysOnceThatACertificateRunsOutMeanwhile) {
   EXPECT_NE(certificate.NoticeOfEnd(now_s + 3 * 86'400), "");
 }
 
+TEST_F(Tls, KeepsItsCertificateAndSaysOnceWhyARenewalIsNone) {
+  web::Certificate certificate(folder_ + "/cert.pem", folder_ + "/key.pem");
+  std::string why;
+  ASSERT_TRUE(certificate.Load(&why)) << why;
+  for (const std::string file : {"/cert.pem", "/key.pem"}) {
+    GTlsCertificate* const before = certificate.get();
+    ASSERT_EQ(std::system(("echo damaged > " + folder_ + file).c_str()), 0);
+    why.clear();
+    EXPECT_FALSE(certificate.Renew(&why)) << file;
+    EXPECT_NE(why, "");
+    EXPECT_TRUE(certificate.Renew(&why)) << "nothing has changed since";
+    EXPECT_EQ(certificate.get(), before);
+    ASSERT_TRUE(Make("renewed"));
+    EXPECT_TRUE(certificate.Renew(&why)) << why;
+    EXPECT_NE(certificate.get(), before);
+  }
+}
+
 /// Connects from any address of this machine, such as 127.0.0.7.
 GSocketConnection* ConnectFrom(const std::string& address, guint port) {
   GSocketClient* client = g_socket_client_new();
