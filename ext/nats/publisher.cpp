@@ -251,6 +251,7 @@ void Publisher::NoteConnection(const ConnectionState& state) {
   if (connections == connections_ || !state.connected()) return;
   connections_ = connections;
   refusals_.Reset();
+  open_at_ = Clock::now() + refusals_.Next();
 }
 
 /// Sends messages in flight again before waiting ones, so that all are stored in order.

@@ -53,6 +53,7 @@ bool Reporter::Connected(Clock::time_point now) {
   if (state.refused()) Tell("the server refuses us: " + state.last_error);
   if (!state.connected()) return false;
   refusals_.Reset();
+  open_at_ = now + refusals_.Next();
   told_.clear();
   return true;
 }
