@@ -120,6 +120,25 @@ TEST(EffortControl, WaitsLongerEachTimeThatAnEffortFailed) {
     EXPECT_GT(raised_at[i] - raised_at[i - 1], 1.5 * (raised_at[i - 1] - raised_at[i - 2]));
 }
 
+/// Slices of 1,000 returns that take a tenth of the sweep at effort 2, and 2.7 times that at
+/// effort 3.
+TEST(EffortControl, LearnsWhatALevelCostsFromTheFirstWindowOfItAlone) {
+  EffortControl control;
+  const auto play = [&](double seconds, Duration at_effort_1, Duration at_effort_2) {
+    for (int i = 0; i < seconds * 80; ++i)
+      control.OnSlice(Duration{12'500'000}, 1'000,
+                      control.effort() == 1 ? at_effort_1 : at_effort_2);
+  };
+  play(3, Duration{735'000}, Duration{1'250'000});
+  ASSERT_EQ(control.effort(), 2U);
+  play(12, Duration{1'470'000}, Duration{2'500'000});
+  ASSERT_EQ(control.effort(), 2U) << "a slower machine is still fast enough";
+  for (int i = 0; i < 3; ++i) control.OnSlice(Duration{12'500'000}, 1'000, Duration{9'000'000});
+  ASSERT_EQ(control.effort(), 1U);
+  play(10, Duration{735'000}, Duration{1'250'000});
+  EXPECT_EQ(control.effort(), 2U) << "it costs what it cost at first";
+}
+
 TEST(EffortControl, LetsSingleSlicesBeLate) {
   EffortControl control;
   Play({}, {}, 10, &control);

@@ -43,6 +43,8 @@ TEST(RangeEncoders, PutRangesAtTheEdgesOfBinsWhereTheGridPutsThem) {
   }
 }
 
+class CodersByRans : public ::testing::TestWithParam<RangeCoder> {};
+
 struct Piece {
   unsigned lane;
   unsigned symbol;
@@ -114,6 +116,12 @@ TEST(Rans, NoticesAStreamThatEndsTooEarly) {
     }
     EXPECT_FALSE(decoder.AtEnd()) << missing;
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CodersByRans,
+                         ::testing::Values(RangeCoder::kAdaptive, RangeCoder::kBlended));
+TEST_P(CodersByRans, RefuseAWordBehindTheEnd) {
+  test::ExpectNoWordBehind(GetParam(), nullptr, &RangeHeader::payload_size);
 }
 
 class Rows : public ::testing::TestWithParam<std::size_t> {};

@@ -47,6 +47,38 @@ inline void ExpectRoundTrip(const codec::RangeImage& image, const codec::RangeSe
   }
 }
 
+/// Expects that a block is refused that has a word more than `coder` wrote in its mask or payload,
+/// whose size is `part` of the header.
+inline void ExpectNoWordBehind(codec::RangeCoder coder, const codec::IntegerCoder* integers,
+                               std::uint32_t codec::RangeHeader::*part) {
+  const SensorModel model = RoomSensor();
+  Codec codec(model, integers);
+  codec::RangeSettings settings;
+  settings.coder = coder;
+  settings.grid = RangeGrid(1, 41);
+  std::vector<std::uint8_t> bytes;
+  ASSERT_TRUE(codec.encoder.Encode(RoomScan(model, 0, 64), settings, &bytes));
+  for (const std::uint32_t more : {0U, 4U}) {
+    ByteReader reader(bytes.data(), bytes.size());
+    auto header = codec::RangeHeader::Read(&reader);
+    ASSERT_TRUE(header);
+    std::vector<std::vector<std::uint8_t>> parts;
+    for (const auto size : {&codec::RangeHeader::mask_size, &codec::RangeHeader::payload_size}) {
+      const ByteView view = reader.Bytes(*header.*size);
+      parts.emplace_back(view.begin(), view.end());
+      if (size == part) parts.back().resize(view.size + more);
+    }
+    *header.*part += more;
+    std::vector<std::uint8_t> changed;
+    header->Write(&changed);
+    for (const auto& each : parts) changed.insert(changed.end(), each.begin(), each.end());
+    ByteReader again(changed.data(), changed.size());
+    codec::RangeImage back;
+    codec::IntensityScale scale;
+    EXPECT_EQ(codec.decoder.Decode(&again, 1U << 20, &back, &scale), more == 0);
+  }
+}
+
 /// Expects that blocks of a room, of several widths, keep their bins.
 inline void ExpectBinsOfRooms(const CodingCase& c, const codec::IntegerCoder* integers) {
   const SensorModel model = RoomSensor();

@@ -348,6 +348,29 @@ TEST(RangeSlices, AreNeverCoarserThanTheirErrorAllowsWhateverTheStep) {
   }
 }
 
+TEST(RangeSlices, MayBeginBehindTheEndOfATurn) {
+  const RangeImage image = test::RoomScan(test::RoomSensor(128), 64, 128);
+  const auto raw = test::RawCloud(test::RoomSensor(128), image);
+  const CloudFormat format{test::OrganisedLayout(), 128, test::RoomSensor(128)};
+  for (const unsigned threads : {1U, 2U}) {
+    std::vector<std::vector<std::uint8_t>> coded;
+    for (const std::uint32_t first_column : {448U, 512U + 448U, 512U * 1'000 + 448U}) {
+      auto encoder = *SliceEncoder::Create(format);
+      encoder.set_threads(threads);
+      encoder.Load({raw.data(), raw.size()}, first_column, true);
+      EncodedSlice slice;
+      ASSERT_EQ(encoder.Encode({}, &slice), SliceResult::kEncoded) << first_column;
+      coded.push_back(slice.bytes);
+      SliceDecoder decoder(format, kMaxPoints);
+      const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});
+      ASSERT_TRUE(shape);
+      EXPECT_EQ(shape->first_column, 448U);
+    }
+    EXPECT_EQ(coded[1], coded[0]);
+    EXPECT_EQ(coded[2], coded[0]);
+  }
+}
+
 TEST(CommonUnits, AreWhatAllRangesAreMultiplesOf) {
   const auto unit = [](const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit) {
     return CommonUnit(ranges, sensor_unit);

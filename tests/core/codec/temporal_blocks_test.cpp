@@ -103,6 +103,22 @@ TEST(SliceLinks, AreTheNamesThatBlocksHaveForDecoders) {
   EXPECT_EQ(LinksOf({both.data(), both.size()})->size(), 2U);
 }
 
+TEST(SliceLinks, LeaveOutBlocksToWhichNoneCanRefer) {
+  const Pair pair;
+  RangeImage image = test::GoldenImage({16, 128, 64, 1, 10});
+  RangeEncoder encoder(pair.model);
+  std::vector<std::uint8_t> alone;
+  ASSERT_TRUE(encoder.Encode(image, pair.settings, &alone));
+  EXPECT_TRUE(LinksOf({alone.data(), alone.size()})->empty());
+  std::vector<std::uint8_t> all;
+  for (const auto& block : {alone, pair.key, alone, pair.dependent, alone})
+    all.insert(all.end(), block.begin(), block.end());
+  const auto links = LinksOf({all.data(), all.size()});
+  ASSERT_TRUE(links && links->size() == 2);
+  EXPECT_EQ(links->front().crc, LinksOf({pair.key.data(), pair.key.size()})->front().crc);
+  EXPECT_EQ(links->back().reference, links->front().crc);
+}
+
 TEST(SliceLinks, OfDamagedBytesAreNone) {
   const Pair pair;
   for (std::size_t size = 0; size < pair.dependent.size(); ++size)

@@ -313,6 +313,30 @@ TEST(Temporal, SlicesFollowASensorThatStopsAndGoesOn) {
   }
 }
 
+TEST(Temporal, SlicesOfAChangedSceneDoNotReferToTheOldOne) {
+  LinkTest test;
+  test.effort = 1;
+  test.delay = 4;
+  test.scene = [](const SensorModel& model, std::uint32_t scan) {
+    RangeImage image = test::RoomScan(model, 0, kColumns, scan + 1);
+    for (std::uint32_t& range : image.ranges)
+      if (range > 0 && scan >= 10) range = range / 2 + 700;
+    return image;
+  };
+  Loop loop(test);
+  loop.Scans(8);
+  EXPECT_TRUE(AnyRefers(loop.Scans(2)));
+  EXPECT_TRUE(AllPlain(loop.Scan())) << "it has changed";
+  for (int scan = 0; scan < 2; ++scan) {
+    const auto standing = loop.Scan();  // the receiver has said nothing of the new scene yet
+    EXPECT_TRUE(AllDecoded(standing));
+    for (const Sent& sent : standing) EXPECT_EQ(sent.bytes, sent.plain_bytes + 1) << scan;
+  }
+  loop.Scans(4);
+  const auto later = loop.Scans(2);
+  EXPECT_LT(Bytes(later, &Sent::bytes), Bytes(later, &Sent::plain_bytes));
+}
+
 TEST(Temporal, MemoryIsBoundedOverALongRoundTrip) {
   LinkTest test;
   test.delay = 60;

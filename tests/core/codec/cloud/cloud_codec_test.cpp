@@ -487,6 +487,58 @@ TEST(CloudCodec, KeepsPointsThatNoGridHoldsAsTheyAre) {
   EXPECT_EQ(coded.cloud.intensity, (std::vector<float>{100, 200, 50}));
 }
 
+TEST(CloudCodec, HasTheExtentOfItsLongestSide) {
+  auto encoder = CloudEncoder::Create(PlainLayout());
+  for (std::size_t longest = 0; longest < 3; ++longest) {
+    PlainPoints points = {{1, 2, 3, 0}, {2, 3, 4, 0}, {1.5F, 2.5F, 3.5F, 0}};
+    points[1][longest] += 7;
+    points[2][longest] -= 20;
+    encoder->Load(BytesOf(points), false);
+    EXPECT_DOUBLE_EQ(encoder->extent_m(), 27.5) << longest;
+  }
+  encoder->Load({}, false);
+  EXPECT_EQ(encoder->extent_m(), 0);
+}
+
+/// Clouds with and without far points, intensities and beams, coded one after the other.
+TEST(CloudCodec, KeepsNothingOfTheCloudBefore) {
+  const PlainPoints far = {{1e30F, 1, 2, 200}, {1, 2, 3, 100}, {-5e9F, 5e9F, 7, 50}, {4, 4, 4, 9}};
+  const PlainPoints near = {{1, 2, 3, 10}, {4, 5, 6, 255}};
+  const PlainPoints one = {{2e20F, 0, 0, 80}};
+  const PlainPoints beams = SpinningScan(0);
+  for (const unsigned effort : {0U, 1U}) {
+    auto encoder = CloudEncoder::Create(PlainLayout());
+    encoder->set_effort(effort);
+    CloudDecoder decoder(kMaxPoints);
+    for (const PlainPoints* points : {&far, &near, &beams, &one, &far, &beams, &near})
+      for (const unsigned bits : {8U, 0U}) {
+        encoder->Load(BytesOf(*points), bits > 0);
+        EXPECT_EQ(encoder->returns(), points->size());
+        EncodedSlice slice;
+        ASSERT_EQ(encoder->Encode({0.01, 0, bits}, &slice), SliceResult::kEncoded);
+        EXPECT_EQ(slice.returns, points->size());
+        ASSERT_TRUE(decoder.Decode({slice.bytes.data(), slice.bytes.size()}));
+        ASSERT_EQ(decoder.cloud().size(), points->size());
+        EXPECT_EQ(decoder.cloud().intensity.size(), bits > 0 ? points->size() : 0);
+        if (points == &beams) {
+          EXPECT_LE(LargestDistance(*points, decoder.cloud()), 0.01 + 1e-5);
+        } else if (points != &near) {
+          EXPECT_EQ(decoder.cloud().xyz[decoder.cloud().xyz.size() - 3],
+                    points == &one ? 2e20F : -5e9F);
+        }
+      }
+  }
+}
+
+TEST(CloudCodec, CountsFarPointsAmongThoseThatASliceMayHave) {
+  const PlainPoints points = {{1e30F, 1, 2, 200}, {1, 2, 3, 100}, {-5e9F, 5e9F, 7, 50}};
+  const Coded coded = RoundTrip(points, {0.001, 0, 8}, 1);
+  for (const std::uint32_t most : {3U, 2U, 1U})
+    EXPECT_EQ(CloudDecoder(most).Decode({coded.slice.bytes.data(), coded.slice.bytes.size()}),
+              most == 3)
+        << most;
+}
+
 TEST(CloudCodec, RefusesFarPointsWithoutAPlaceAndBytesBehindTheEnd) {
   const auto decodes = [](float x, std::vector<std::uint8_t> behind) {
     CloudHeader header;
