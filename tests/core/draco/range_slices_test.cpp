@@ -24,6 +24,11 @@ INSTANTIATE_TEST_SUITE_P(All, RangeCoders,
                                            test::CodingCase{RangeCoder::kResidual, 1, 8},
                                            test::CodingCase{RangeCoder::kDraco, 2.75, 0}));
 
+TEST_P(RangeCoders, RefuseAWordBehindTheEndOfTheMask) {
+  test::ExpectNoWordBehind(GetParam().coder, DracoIntegers::Shared(),
+                           &codec::RangeHeader::mask_size);
+}
+
 TEST(CoderOfIntegers, IsOneForAll) { EXPECT_EQ(DracoIntegers::Shared(), DracoIntegers::Shared()); }
 
 TEST(RangeSlices, OfDracosCodersAreRefusedWhereDracoIsNot) {

@@ -144,6 +144,20 @@ TEST(XyzSlices, OfASinglePointComeBack) {
   }
 }
 
+TEST(XyzSlices, OfIntensitiesThatAreAllZeroComeBackAsSuch) {
+  Points points = Rings(500);
+  for (Point& p : points) p[3] = 0;
+  for (const unsigned level : {0U, 1U, 7U, 10U}) {
+    SliceSettings settings;
+    settings.level = level;
+    settings.intensity_bits = 5;
+    const Result coded = Coded(points, settings);
+    ASSERT_EQ(coded.result, SliceResult::kEncoded) << level;
+    ASSERT_EQ(coded.points.size(), points.size()) << level;
+    for (const Point& p : coded.points) ASSERT_EQ(p[3], 0) << level;
+  }
+}
+
 TEST(XyzSlices, WithoutAnyPointGiveNoStream) {
   EXPECT_EQ(Coded({}, {}).result, SliceResult::kEmpty);
   EXPECT_EQ(Coded(Points(50, Point{}), {}).result, SliceResult::kEmpty);
