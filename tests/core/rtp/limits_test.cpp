@@ -220,6 +220,16 @@ TEST_F(Rivals, AreToldOfAfterAHundredPackets) {
   EXPECT_EQ(receiver.rival(), std::nullopt);
 }
 
+TEST_F(Rivals, AreNotToldOfWhereThereAreMoreThanAreCounted) {
+  Push(1, 1);
+  for (unsigned i = 0; i < 2 * Receiver::kRivalPackets; ++i) {
+    for (std::uint32_t other = 2; other <= 2 + Receiver::kMaxRivals; ++other) Push(other, 1);
+    Push(1, 1);
+  }
+  EXPECT_EQ(receiver.rival(), std::nullopt) << "their counts begin anew each time";
+  EXPECT_EQ(receiver.ssrc(), 1U);
+}
+
 TEST_F(Rivals, AreForgottenAtAFlush) {
   for (unsigned i = 0; i <= Receiver::kRivalPackets; ++i) {
     Push(1, 1);

@@ -95,6 +95,40 @@ TEST_F(Ledger, AScanThatBeginsLateHasItsOwnCountOfSlices) {
   EXPECT_EQ(accounts().scans_incomplete, 2U);
 }
 
+/// A slice may announce 64 skipped ones, at worst of as many scans.
+TEST_F(Ledger, NewsOfAScanAreTakenForSixtyFourScansAndNoLonger) {
+  for (const std::int64_t end : {66, 67}) {
+    ledger.StartAnew();
+    Receive(1, 0);
+    Receive(2, 0);
+    for (std::int64_t scan = 3; scan <= end; ++scan) {
+      for (std::uint32_t i = 0; i < 4; ++i) Receive(scan, i);
+      ledger.CloseBefore({scan, 0});
+    }
+    EXPECT_EQ(accounts().slices_lost, 6U) << end;
+    EXPECT_EQ(accounts().scans_incomplete, 2U) << end;
+    for (const std::uint32_t index : {1U, 2U, 3U}) ledger.Skip({2, index});
+    const bool known = end == 66;
+    EXPECT_EQ(accounts().slices_skipped, known ? 3U : 0U) << end;
+    EXPECT_EQ(accounts().slices_lost, known ? 3U : 6U) << end;
+    EXPECT_EQ(accounts().scans_incomplete, known ? 1U : 2U) << end;
+  }
+}
+
+TEST_F(Ledger, CountsScansThatTheSourceSkippedOnceThoughAScanComesLate) {
+  ledger.BookScanId(1, 10);
+  ledger.BookScanId(3, 14);  // one of 11 to 13 is scan 2
+  EXPECT_EQ(accounts().scans_skipped, 2U);
+  ledger.BookScanId(2, 11);
+  EXPECT_EQ(accounts().scans_skipped, 2U);
+  ledger.BookScanId(4, 15);
+  EXPECT_EQ(accounts().scans_skipped, 2U);
+  ledger.BookScanId(4, 15);  // a second slice of it
+  ledger.BookScanId(5, 2);   // the source began anew
+  ledger.BookScanId(6, 4);
+  EXPECT_EQ(accounts().scans_skipped, 3U);
+}
+
 TEST_F(Ledger, AScanKeepsItsCountOnceOneOfItsSlicesIsCounted) {
   Receive(1, 0, 1);
   Receive(3, 0);
