@@ -177,5 +177,19 @@ TEST_P(AnyCoder, RefusesAModelFileThatIsTruncatedForeignOrFromTheFuture) {
   EXPECT_NE(other.find("no coefficients of the model \"paper\""), std::string::npos) << other;
 }
 
+TEST_P(AnyCoder, CodesNothingWithoutTheModelFileThatItIsToUse) {
+  const Harness h = Encoder(GetParam(), "model-location=/nonexistent/model.json");
+  const test::ElementBus bus(h->element);
+  SetCaps(h.get(), OrganisedInfo(test::RoomSensor(), kColumns));
+  const MessagePtr message = bus.Pop(GST_MESSAGE_ERROR);
+  ASSERT_TRUE(message);
+  const std::string text = test::MessageText(message.get());
+  EXPECT_NE(text.find("\"/nonexistent/model.json\""), std::string::npos) << text;
+  EXPECT_EQ(gst_harness_push(
+                h.get(), OrganisedBuffer(test::RoomSensor(), kColumns, {0, 0, 512 / kColumns, 0})),
+            GST_FLOW_NOT_NEGOTIATED);
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U);
+}
+
 }  // namespace
 }  // namespace lidar::gst

@@ -369,10 +369,29 @@ TEST_P(AnyCoder, PostsItsStatsOnceTheIntervalHasPassed) {
   const Harness h = Encoder(GetParam(), "stats-interval=1000000000");
   const test::ElementBus bus(h->element);
   SetCaps(h.get(), OrganisedInfo(model, 64));
-  for (guint i = 0; i < 3; ++i) {  // a slice each half a second
+  for (guint i = 0; i < 7; ++i) {  // a slice each half a second
     gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
-    EXPECT_EQ(bus.Pop(GST_MESSAGE_ELEMENT) != nullptr, i == 2) << i;
+    EXPECT_EQ(bus.Pop(GST_MESSAGE_ELEMENT) != nullptr, i > 0 && i % 2 == 0) << i;
     clock.Advance(G_USEC_PER_SEC / 2);
+  }
+}
+
+TEST_P(AnyCoder, TellsTheTimeOfTheLastSliceAndTheMean) {
+  const test::StoppedClock clock;  // each look at it takes a microsecond
+  const SensorModel model = test::RoomSensor();
+  const Harness h = Codec(GetParam());
+  SetCaps(h.get(), OrganisedInfo(model, 64));
+  std::map<std::string, guint64> sums;
+  for (guint i = 0; i < 5; ++i) {
+    gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
+    for (const auto& [name, stat] : {std::pair("enc", std::string("encode-time")),
+                                     std::pair("dec", std::string("decode-time"))}) {
+      const ElementPtr element(gst_bin_get_by_name(GST_BIN(h->element), name));
+      const guint64 last = test::StatOf(element.get(), stat.c_str());
+      EXPECT_GE(last, GST_USECOND);
+      sums[name] += last;
+      EXPECT_EQ(test::StatOf(element.get(), ("mean-" + stat).c_str()), sums[name] / (i + 1)) << i;
+    }
   }
 }
 

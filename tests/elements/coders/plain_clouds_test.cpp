@@ -60,6 +60,21 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(std::get<0>(c.param).name) + "_" + std::get<1>(c.param).name;
     });
 
+class SizesOfClouds : public ::testing::TestWithParam<CoderCase> {};
+TEST_P(SizesOfClouds, DoNotChangeTheCapsOfSlices) {
+  const Harness h = Encoder(GetParam());
+  unsigned caps = 0;
+  for (const guint points : {100U, 200U, 100U}) {
+    SetCaps(h.get(), XyzInfo(points));
+    ASSERT_EQ(gst_harness_push(h.get(), PlainBuffer(RandomPoints(points, 40))), GST_FLOW_OK);
+    while (const EventPtr event{gst_harness_try_pull_event(h.get())})
+      caps += GST_EVENT_TYPE(event.get()) == GST_EVENT_CAPS ? 1U : 0U;
+  }
+  EXPECT_EQ(caps, 1U) << "each time costs elements downstream a negotiation";
+}
+INSTANTIATE_TEST_SUITE_P(All, SizesOfClouds, ::testing::ValuesIn(XyzCoders()),
+                         [](const auto& coder) { return coder.param.name; });
+
 class DriverFields : public ::testing::TestWithParam<CoderCase> {};
 
 // Rings past 65,535 that jump, and times that go back.

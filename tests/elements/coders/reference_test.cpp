@@ -84,6 +84,7 @@ class StaticSensor : public ::testing::Test {
   static ElementPtr Get(const char* name, const Harness& harness) {
     return ElementPtr(gst_bin_get_by_name(GST_BIN(harness->element), name));
   }
+  ElementPtr AtSender(const char* name) { return Get(name, sender_); }
   /// Makes the decoder forget its slices, but not the caps.
   void RestartDecoder() {
     const ElementPtr dec = Get("dec", receiver_);
@@ -200,6 +201,34 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceABranchOfATeeIsAdded) {
   clock_.Advance(G_USEC_PER_SEC / 10);  // the encoder looks at its downstream this often
   Scan();
   EXPECT_EQ(Mode(), "range-mixing1") << "the new branch has none of what was sent before";
+}
+
+TEST_F(StaticSensor, IsCodedByItsScansThoughAPadOfATeeIsNotLinked) {
+  Start("", "tee name=t ! ");
+  const ElementPtr tee = AtSender("t");
+  const PadPtr pad(gst_element_request_pad_simple(tee.get(), "src_%u"));
+  ASSERT_TRUE(pad);
+  Scans(4);
+  EXPECT_EQ(Mode(), "range-temporal1") << "no second receiver is there";
+  gst_element_release_request_pad(tee.get(), pad.get());
+}
+
+TEST_F(StaticSensor, IsCodedSliceBySliceOnceInEachKeyInterval) {
+  Start("key-interval=1000000000");
+  const auto alone = [&] {
+    unsigned scans = 0;
+    for (int i = 0; i < 30; ++i) {
+      clock_.Advance(G_USEC_PER_SEC / 10);
+      Scan();
+      scans += Mode() == "range-mixing1" ? 1U : 0U;
+    }
+    return scans;
+  };
+  Scans(2);
+  EXPECT_NEAR(alone(), 3, 1) << "of three seconds";
+  g_object_set(AtSender("enc").get(), "key-interval", guint64{0}, nullptr);
+  Scan();
+  EXPECT_EQ(alone(), 0U);
 }
 
 TEST_F(StaticSensor, IsCodedByWhatIsThereWhateverWasLost) {
