@@ -131,6 +131,30 @@ TEST(RtpLidarDepay, ChangesCapsNoMoreThanOnceASecondForAStreamThatTakesTurns) {
   EXPECT_EQ(pushed + Stat(h.get(), "slices-changing-format"), 3'200U) << "each is counted";
 }
 
+TEST(RtpLidarDepay, TellsInEachRunAnewOfAStreamThatTakesTurns) {
+  const Harness h = Depay();
+  const ElementBus bus(h->element);
+  std::vector<std::uint8_t> ids(2);
+  const char* fields[] = {"x:F32:0,y:F32:4,z:F32:8", "x:F32:0,y:F32:4,z:F32:8,range:U32:12"};
+  for (int run = 0; run < 2; ++run) {
+    std::uint16_t sequence = 0;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      gst_harness_push(h.get(), RtpOf(ConfigPayload(fields[i], &ids[i]), 7, sequence++));
+    for (std::uint32_t scan = 0; scan < 2; ++scan)
+      gst_harness_push(h.get(), RtpOf(TakingTurns(ids, scan, 32), 7, sequence++));
+    const std::size_t pushed = Pull(h.get()).size();
+    EXPECT_GE(pushed, 8U) << run;
+    EXPECT_EQ(pushed + Stat(h.get(), "slices-changing-format"), 64U) << run;
+    EXPECT_TRUE(bus.Pop(GST_MESSAGE_WARNING)) << run;
+    EXPECT_FALSE(bus.Pop(GST_MESSAGE_WARNING)) << run;
+    gst_element_set_state(h->element, GST_STATE_READY);
+    gst_element_set_state(h->element, GST_STATE_PLAYING);
+    EXPECT_EQ(Stat(h.get(), "slices-changing-format"), 0U) << run;
+    gst_harness_push_event(h.get(), gst_event_new_stream_start("again"));
+    gst_harness_set_src_caps_str(h.get(), kRtpCaps);
+  }
+}
+
 TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
   Harness pay(gst_harness_new("rtplidarpay"));
   const Harness h(gst_harness_new("rtplidardepay"));

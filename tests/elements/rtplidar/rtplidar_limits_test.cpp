@@ -86,6 +86,24 @@ TEST_F(PayLimits, TheConfigComesAgainAfterAFlushAndWhereTheSsrcChanges) {
   EXPECT_EQ(Configs(), 1U);
 }
 
+TEST_F(PayLimits, BoundsAreThoseOfTheirRunAlone) {
+  const auto bounds_sent = [this] {
+    std::size_t n = 0;
+    GstLidarBitrateBounds bounds{};
+    while (const gst::EventPtr event{gst_harness_try_pull_event(h_.get())})
+      n += gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds) != FALSE ? 1U : 0U;
+    return n;
+  };
+  const GstLidarBitrateBounds bounds{1'000'000, 8'000'000, 2'000'000};
+  gst_harness_push_event(h_.get(), gst_lidar_event_new_bitrate_bounds(&bounds));
+  for (guint scan = 0; scan < 50; ++scan) Push(scan, 0, 30);
+  EXPECT_GE(bounds_sent(), 2U) << "headers are more than was guessed";
+  for (const bool active : {false, true}) gst_pad_set_active(h_->srcpad, active);  // forgets events
+  Restart();
+  for (guint scan = 0; scan < 50; ++scan) Push(scan, 0, 30);
+  EXPECT_EQ(bounds_sent(), 0U) << "the encoder has told none in this run";
+}
+
 TEST_F(PayLimits, AMetaMayBeAsLargeAsTheFormat) {
   EXPECT_EQ(PushAt(G_MAXUINT16, 4'096), GST_FLOW_OK);
   EXPECT_EQ(PushAt(0, 4'097), GST_FLOW_ERROR);
@@ -130,7 +148,12 @@ TEST_F(PayLimits, EachRateOfTheTargetIsWithoutHeaders) {
     GstLidarTargetBitrate t{};
     if (!gst_lidar_event_parse_target_bitrate(seen.get(), &t)) continue;
     EXPECT_NEAR(t.max_bitrate, 2.0 * t.bitrate, 2);
+    EXPECT_NEAR(t.min_bitrate, 0.2 * t.bitrate, 2);
     EXPECT_LT(t.max_bitrate, 10'000'000U);
+    EXPECT_EQ(t.ssrc, 42U);
+    EXPECT_EQ(t.rtt, 7U);
+    EXPECT_EQ(t.queue_delay, 8U);
+    EXPECT_STREQ(t.reason, "update");
     EXPECT_EQ(gst_event_get_seqnum(seen.get()), seqnum);
     return;
   }
