@@ -3,7 +3,9 @@
 #include <gst/base/gstbasetransform.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "gst/lidar/gstlidar.h"
 #include "tests/support/harness.h"
@@ -196,6 +198,23 @@ TEST(BitrateAdapter, KeepsToItsLimitsAndItsFraction) {
   EXPECT_EQ(target(), 300'000);
 }
 
+TEST(BitrateAdapter, SaysThatItsBitrateHasChangedWhereItHas) {
+  Chain chain("vp8enc name=e ! bitrateadapter name=a max=3000000");
+  unsigned changes = 0;
+  const ElementPtr adapter = chain.Find("a");
+  g_signal_connect(
+      adapter.get(), "notify::bitrate",
+      G_CALLBACK(+[](GObject*, GParamSpec*, gpointer n) { ++*static_cast<unsigned*>(n); }),
+      &changes);
+  for (const auto& [bps, expected] :
+       {std::pair(2'000'000U, 1U), std::pair(2'000'000U, 1U), std::pair(5'000'000U, 2U),
+        std::pair(6'000'000U, 2U), std::pair(1'000'000U, 3U)}) {
+    chain.Send(bps);
+    EXPECT_EQ(changes, expected) << bps;
+    EXPECT_EQ(Uint(adapter, "bitrate"), std::min(bps, 3'000'000U));
+  }
+}
+
 TEST(BitrateAdapter, LeavesNoEncoderToItsOwnChoice) {
   RegisterStandIn("mpph264enc");
   Chain chain("mpph264enc name=e ! bitrateadapter name=a fraction=0.001");
@@ -271,6 +290,19 @@ TEST(BitrateAdapter, ObeysWhatTheUserSaysOfAnUnknownEncoder) {
   Chain chain("foreignenc name=e ! bitrateadapter name=a encoder=e property=bps scale=0.01");
   EXPECT_TRUE(chain.Send(1'000'000));
   EXPECT_EQ(Uint(chain.Find("e"), "bps"), 10'000U);
+}
+
+TEST(BitrateAdapter, FindsNoEncoderBehindAnElementOfSeveralStreams) {
+  Chain chain("vp8enc name=e ! f. vp8enc name=other ! f. funnel name=f ! bitrateadapter name=a");
+  gint before = 0;
+  g_object_get(chain.Find("e").get(), "target-bitrate", &before, nullptr);
+  chain.Send(700'000);
+  EXPECT_EQ(Uint(chain.Find("a"), "bitrate"), 0U);
+  for (const char* name : {"e", "other"}) {
+    gint after = 0;
+    g_object_get(chain.Find(name).get(), "target-bitrate", &after, nullptr);
+    EXPECT_EQ(after, before) << name;
+  }
 }
 
 TEST(BitrateAdapter, FindsTheEncoderInFrontOfItsBin) {
