@@ -5,11 +5,13 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "gst/common/latency.h"
 #include "gst/common/refs.h"
 #include "gst/lidar/cloud_info.h"
 #include "gst/lidar/gstlidar.h"
+#include "gst/lidar/gstlidarcloud.h"
 #include "gst/lidar/gstlidarcloudinfo.h"
 
 namespace lidar::gst {
@@ -134,26 +136,6 @@ TEST(Metas, OfAnUnknownTrackingAreLost) {
   }
 }
 
-TEST(Events, CarryTheTargetAndTheBounds) {
-  const GstLidarTargetBitrate target{5'000'000,        42,          100'000, 20'000'000,
-                                     40 * GST_MSECOND, GST_MSECOND, "update"};
-  const EventPtr up(gst_lidar_event_new_target_bitrate(&target));
-  GstLidarTargetBitrate read{};
-  ASSERT_TRUE(gst_lidar_event_parse_target_bitrate(up.get(), &read));
-  EXPECT_EQ(read.bitrate, 5'000'000U);
-  EXPECT_EQ(read.ssrc, 42U);
-  EXPECT_EQ(read.rtt, 40 * GST_MSECOND);
-  EXPECT_STREQ(read.reason, "update");
-
-  const GstLidarBitrateBounds bounds{1, 2, 3};
-  const EventPtr down(gst_lidar_event_new_bitrate_bounds(&bounds));
-  EXPECT_TRUE(GST_EVENT_IS_STICKY(down.get()));
-  GstLidarBitrateBounds got{};
-  ASSERT_TRUE(gst_lidar_event_parse_bitrate_bounds(down.get(), &got));
-  EXPECT_EQ(got.max_bitrate, 2U);
-  EXPECT_FALSE(gst_lidar_event_parse_bitrate_bounds(up.get(), &got));
-}
-
 TEST(LatencyQueries, GrowByWhatAnElementHoldsBack) {
   const QueryPtr query(gst_query_new_latency());
   gst_query_set_latency(query.get(), TRUE, 10, 50);
@@ -171,9 +153,18 @@ TEST(LatencyQueries, GrowByWhatAnElementHoldsBack) {
 }
 
 TEST(CloudInfo, RoundTripsThroughCaps) {
-  const CapsPtr caps(SmallCloud().ToCaps());
+  CloudInfo info = SmallCloud();
+  info.is_dense = true;
+  const CapsPtr caps(info.ToCaps());
   const auto back = CloudInfo::FromCaps(caps.get());
   ASSERT_TRUE(back);
+  EXPECT_EQ(back->width, 64U);
+  EXPECT_EQ(back->height, 2U);
+  EXPECT_EQ(back->point_step, 20U);
+  EXPECT_EQ(back->fields, info.fields);
+  EXPECT_EQ(back->framerate_n, 10);
+  EXPECT_EQ(back->framerate_d, 1);
+  EXPECT_TRUE(back->is_dense);
   EXPECT_EQ(back->FrameSize(), 64U * 2 * 20);
   EXPECT_EQ(back->ScanDuration(), 100 * GST_MSECOND);
   ASSERT_TRUE(back->sensor_model);
@@ -247,15 +238,38 @@ TEST(CloudInfo, OfFramesNeedsAWidth) {
   EXPECT_NE(why.find("width is missing"), std::string::npos) << why;
 }
 
+TEST(CloudFormats, GiveTheOffsetOfAFieldOfItsTypeOnly) {
+  GstLidarCloudFormat format{};
+  EXPECT_EQ(gst_lidar_cloud_format_get_offset(&format, "x", "F32"), -1);
+  format.fields = "x:F32:0,ring:U16:12,t:F64:16";
+  EXPECT_EQ(gst_lidar_cloud_format_get_offset(&format, "x", "F32"), 0);
+  EXPECT_EQ(gst_lidar_cloud_format_get_offset(&format, "ring", "U16"), 12);
+  EXPECT_EQ(gst_lidar_cloud_format_get_offset(&format, "t", "F64"), 16);
+  for (const auto& [name, type] :
+       {std::pair("ring", "I16"), std::pair("ring", "U8"), std::pair("t", "F32"),
+        std::pair("intensity", "F32"), std::pair("x", "F16")})
+    EXPECT_EQ(gst_lidar_cloud_format_get_offset(&format, name, type), -1) << name << ' ' << type;
+}
+
 TEST(Clouds, GiveTheNumbersOfFieldsByName) {
   CloudInfo parsed;
   parsed.width = 3;
   parsed.point_step = 16;
   parsed.fields = *PointFields::Parse("a:I8:0,b:U16:2,c:F64:8,d:I32:4");
+  parsed.framerate_n = 30;
+  parsed.framerate_d = 4;
+  parsed.is_dense = true;
   const CapsPtr caps(parsed.ToCaps());
   GstLidarCloudInfo info;
   ASSERT_TRUE(gst_lidar_cloud_info_from_caps(&info, caps.get()));
+  EXPECT_EQ(info.width, 3U);
+  EXPECT_EQ(info.height, 1U);
+  EXPECT_EQ(info.point_step, 16U);
+  EXPECT_EQ(info.framerate_n * 2, info.framerate_d * 15);
+  EXPECT_TRUE(info.is_dense);
   EXPECT_EQ(info.n_fields, 4U);
+  EXPECT_EQ(info.fields[2].type, GST_LIDAR_FIELD_F64);
+  EXPECT_EQ(info.fields[2].offset, 8U);
   EXPECT_EQ(gst_lidar_cloud_info_find(&info, "e"), nullptr);
   const BufferPtr buffer(gst_buffer_new_allocate(nullptr, 48, nullptr));
   gst_buffer_memset(buffer.get(), 0, 0, 48);
