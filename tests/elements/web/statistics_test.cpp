@@ -102,6 +102,23 @@ TEST(Statistics, HaveNothingOfASenderThatHasReportedNothing) {
   EXPECT_TRUE(MessageOf(rtt + "1;").contains("rtt"));
 }
 
+/// Paths of Foxglove's plots have no dashes.
+TEST(Statistics, HaveNoDashInTheNameOfAFieldHoweverDeep) {
+  GValue links = G_VALUE_INIT;
+  gst_value_array_init(&links, 1);
+  GValue link = G_VALUE_INIT;
+  g_value_init(&link, GST_TYPE_STRUCTURE);
+  g_value_take_boxed(&link, gst_structure_new("link", "packets-lost", G_TYPE_INT, 7, nullptr));
+  const gst::StructurePtr stats(gst_structure_new("s", "the-best", GST_TYPE_STRUCTURE,
+                                                  gst_value_get_structure(&link), nullptr));
+  gst_value_array_append_and_take_value(&links, &link);
+  gst_structure_take_value(stats.get(), "all-links", &links);
+  const gst::StringPtr text(gst_structure_to_string(stats.get()));
+  auto element = MessageOf(text.get())["elements"]["a"];
+  EXPECT_EQ(element["the_best"]["packets_lost"], 7) << element.dump();
+  EXPECT_EQ(element["all_links"][0]["packets_lost"], 7) << element.dump();
+}
+
 TEST(Statistics, HaveACovarianceOf36FiniteNumbersOnly) {
   const auto message = MessageOf(StatsWithCovariance("0.25", 35));
   ASSERT_TRUE(message.contains("pose_covariance"));
