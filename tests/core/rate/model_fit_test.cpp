@@ -149,6 +149,22 @@ TEST(FitPaper, FindsThePolynomialThatMadeTheSamples) {
   EXPECT_LT(ErrorOf(PaperModel(*fit), samples).mean, 1e-6);
 }
 
+TEST(FitPaper, LearnsNothingFromSamplesWithoutAnExtent) {
+  auto samples = Samples(400, [](Sample* s) {
+    s->geometry_bytes = 5000 + 30 * BitsOfStep(s->slice.extent_m, s->settings.step_m);
+  });
+  const auto usual = samples;
+  for (Sample odd : Samples(100, [](Sample* s) { s->geometry_bytes = 1e6; })) {
+    odd.slice.extent_m = 0;
+    samples.push_back(odd);
+  }
+  const auto fit = FitPaper(samples);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(ErrorOf(PaperModel(*fit), usual).mean, 1e-6);
+  for (Sample& sample : samples) sample.slice.extent_m = 0;
+  EXPECT_FALSE(FitPaper(samples));
+}
+
 TEST(FitPaper, GivesAFeatureThatNeverVariesNoPart) {
   const auto samples = Samples(400, [](Sample* s) {
     s->settings.level = 7;
