@@ -107,6 +107,26 @@ TEST_F(Batcher, PutsReorderedAndDuplicatedPacketsRight) {
   EXPECT_EQ(stats_.late_packets, 0U);
 }
 
+TEST_F(Batcher, DuplicatesDoNotShortenTheWaitForAPacketThatIsUnderWay) {
+  Packets repeated = packets_;
+  std::swap(repeated[7], repeated[8]);  // the last packet of a slice comes behind the next one
+  repeated.insert(repeated.begin() + 8, 4, Packets::value_type(repeated[7]));
+  const auto straight = Run(packets_);
+  ExpectSamePoints(Run(repeated), straight);
+  EXPECT_EQ(stats_.duplicate_packets, 4U);
+  EXPECT_EQ(stats_.late_packets, 0U);
+  EXPECT_EQ(stats_.incomplete_slices, 0U);
+}
+
+TEST_F(Batcher, ASliceWaitsForTheOneBeforeOfWhichNothingCameYet) {
+  const auto straight = Run(packets_, 64);
+  Packets swapped = packets_;
+  for (std::size_t i = 5; i + 3 < swapped.size(); i += 10) std::swap(swapped[i], swapped[i + 3]);
+  ExpectSamePoints(Run(swapped, 64), straight);
+  EXPECT_EQ(stats_.lost_packets, 0U);
+  EXPECT_EQ(stats_.late_packets, 0U);
+}
+
 TEST_F(Batcher, FillsLostColumnsWithMissingReturnsAndCountsTheirPackets) {
   Packets lossy = packets_;
   lossy.erase(lossy.begin() + 83);  // columns 304 to 319 of the second scan: slice 2

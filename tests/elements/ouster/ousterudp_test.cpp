@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // ouster_src on sockets.
 
+#include <filesystem>
+#include <iterator>
+
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/clock_wait.h"
 #include "tests/support/element_stats.h"
 #include "tests/support/patience.h"
 
@@ -143,6 +147,102 @@ TEST_F(OusterUdp, TellsSensorsWithoutSerialNumbersByTheirAddresses) {
 TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
   const Harness h = Play(kJson);
   EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+}
+
+/// A sensor whose silence goes by a test clock.
+class OusterSilence : public OusterUdp {
+ protected:
+  OusterSilence() : imu_(imu_port_) {
+    port_ = FreePort();
+    h_.reset(gst_harness_new_parse(("ouster_src name=src lidar-port=" + std::to_string(port_) +
+                                    " imu-port=" + std::to_string(imu_port_) +
+                                    " metadata=" + DataPath(kJson))
+                                       .c_str()));
+    source_.reset(gst_bin_get_by_name(GST_BIN(h_->element), "src"));
+    bus_.emplace(h_->element);
+    UseTestClock(h_.get());
+    Pass(3600 * GST_SECOND);  // packets before running time 0 are dropped
+    SetPlaying(h_.get());
+    sender_ = std::make_unique<UdpSender>(port_);
+  }
+  void Pass(GstClockTime time) { gst_harness_set_time(h_.get(), now_ += time); }
+  void SendSlice() {
+    for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[sent_++]);
+    EXPECT_TRUE(Eventually([this] { return StatOf(source_.get(), "packets") == sent_; }));
+  }
+  /// Returns true if no silence is reported after a packet of the IMU, which ends none.
+  bool IsNotReported() {
+    const auto taken = [this] { return StatOf(source_.get(), "packets-imu"); };
+    const guint64 before = taken();
+    const std::vector<std::uint8_t> packet(metadata_.imu_packet_size());
+    EXPECT_TRUE(Eventually([&] {
+      imu_.Send(packet);
+      return taken() > before;
+    }));
+    bool reported = false;
+    while (const gst::MessagePtr message = bus_->Pop(GST_MESSAGE_WARNING | GST_MESSAGE_ELEMENT)) {
+      gboolean connected = TRUE;
+      const GstStructure* s = gst_message_get_structure(message.get());
+      if (gst_message_has_name(message.get(), "ouster-connection-changed"))
+        gst_structure_get_boolean(s, "connected", &connected);
+      reported = reported || !connected || GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING;
+    }
+    return !reported;
+  }
+  bool IsReported() {
+    const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING);
+    return message && MessageText(message.get()).rfind("No packets from the sensor", 0) == 0;
+  }
+
+  const guint16 imu_port_ = FreePort();
+  GstClockTime now_ = kClockStart;
+  std::size_t sent_ = 0;
+  Harness h_;
+  gst::ElementPtr source_;
+  std::optional<ElementBus> bus_;
+  UdpSender imu_;
+};
+
+TEST_F(OusterSilence, IsReportedAfterThreeSecondsAtTheStartAndOneLaterOn) {
+  Pass(2'900 * GST_MSECOND);
+  EXPECT_TRUE(IsNotReported());
+  SendSlice();
+  Pass(900 * GST_MSECOND);
+  EXPECT_TRUE(IsNotReported());
+  Pass(100 * GST_MSECOND);
+  EXPECT_TRUE(IsReported());
+}
+
+TEST_F(OusterSilence, AtTheStartIsReportedToo) {
+  EXPECT_TRUE(IsNotReported());
+  Pass(3 * GST_SECOND);
+  EXPECT_TRUE(IsReported());
+}
+
+TEST_F(OusterSilence, DoesNotBeginInAPause) {
+  SendSlice();
+  gst_element_set_state(h_->element, GST_STATE_PAUSED);
+  SendSlice();  // with which the source waits for the end of the pause
+  Pass(10 * GST_SECOND);
+  SetPlaying(h_.get());
+  EXPECT_TRUE(IsNotReported());
+  Pass(900 * GST_MSECOND);
+  EXPECT_TRUE(IsNotReported());
+  Pass(100 * GST_MSECOND);
+  EXPECT_TRUE(IsReported());
+}
+
+TEST_F(OusterUdp, LeavesNoFileOpen) {
+  const auto open_files = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+  };
+  const Harness h = Play(kJson);
+  const auto before = open_files();
+  for (int i = 0; i < 3; ++i) {
+    gst_element_set_state(h->element, GST_STATE_NULL);
+    SetPlaying(h.get());
+  }
+  EXPECT_EQ(open_files(), before);
 }
 
 TEST_F(OusterUdp, APortInUseIsAClearError) {
