@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -114,6 +116,21 @@ TEST(RosDomain, TellsTheReceiveBufferWithoutWhatTheKernelAddsForItself) {
   std::uint32_t most = 0;
   if (!(file >> most)) GTEST_SKIP() << "nobody tells the limit";
   EXPECT_EQ(Domain::GrantedReceiveBuffer(), std::min(most, Domain::kReceiveBuffer));
+}
+
+std::ptrdiff_t OpenFiles() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
+TEST(RosDomain, LeavesNoFileOpen) {
+  Join().reset();
+  Domain::GrantedReceiveBuffer();
+  const std::ptrdiff_t before = OpenFiles();
+  for (int i = 0; i < 5; ++i) {
+    Join().reset();
+    Domain::GrantedReceiveBuffer();
+  }
+  EXPECT_EQ(OpenFiles(), before);
 }
 
 }  // namespace

@@ -106,6 +106,15 @@ class Ros2Test : public ::testing::Test {
                                        : GST_ELEMENT(gst_object_ref(h_->element)));
     SetPlaying(h_.get());
   }
+  /// Stops and starts the element. Sends it the events of a new stream if it is a sink.
+  void StartAgain(const char* caps = nullptr) {
+    gst_element_set_state(h_->element, GST_STATE_NULL);
+    while (NextComplaint(0) != "") continue;
+    SetPlaying(h_.get());
+    if (caps == nullptr) return;
+    gst_harness_push_event(h_.get(), gst_event_new_stream_start("again"));
+    gst_harness_set_src_caps_str(h_.get(), caps);
+  }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
   /// Returns a field of the received caps, as text.
   std::string Field(const char* name) {

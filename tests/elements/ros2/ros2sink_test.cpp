@@ -140,6 +140,36 @@ TEST_F(Ros2Sink, TellsOfSubscribersThatItsReliabilityDoesNotFit) {
   EXPECT_EQ(NextComplaint(0), "");  // one warning for each
 }
 
+TEST_F(Ros2Sink, TellsInEachRunOfWhatDoesNotFit) {
+  const PeerCloud cloud = TestCloud(2, 1);
+  const gst::StringPtr caps(gst_caps_to_string(CloudCaps(cloud).get()));
+  peer_ = std::make_unique<FastPeer>(TestDomain());
+  peer_->Subscribe<PeerCloud>("rt/points", kCloudType, Qos::kReliable);
+  Start("ros2sink", "topic=/points sync=false qos=sensor-data");
+  for (int run = 0; run < 2; ++run) {
+    StartAgain(caps.get());
+    std::string text;
+    for (int i = 0; i < 100 && text.empty(); ++i) {
+      ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
+      text = NextComplaint(50 * GST_MSECOND);
+    }
+    EXPECT_NE(text.find("qos=sensor-data"), std::string::npos) << run;
+  }
+}
+
+TEST_F(Ros2Sink, TellsInEachRunOfBuffersThatAreNotAsTheirCapsSay) {
+  const PeerCloud cloud = TestCloud(2, 1);
+  const gst::StringPtr caps(gst_caps_to_string(CloudCaps(cloud).get()));
+  StartWithCloudPeer(cloud);
+  for (int run = 0; run < 2; ++run) {
+    gst_harness_push(h_.get(), gst_buffer_new_allocate(nullptr, 47, nullptr));
+    EXPECT_NE(NextComplaint().find("not as its caps say"), std::string::npos) << run;
+    EXPECT_EQ(Stat("buffers-refused"), 1U) << run;
+    StartAgain(caps.get());
+    ASSERT_TRUE(WaitForStat("subscribers", 1));
+  }
+}
+
 TEST_F(Ros2Sink, BlamesNoReliabilityForSubscribersThatWantEarlierMessages) {
   Start("ros2sink", "topic=/points sync=false qos=reliable");
   const PeerCloud cloud = TestCloud(2, 1);
