@@ -2,6 +2,7 @@
 #include "src/odometry/local_map.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <random>
 
@@ -69,6 +70,26 @@ TEST(LocalMap, ForgetsWhatIsFarAndUsesItsPlaceAgain) {
   }
   EXPECT_TRUE(map.FindNearest({9995, 0.5, 0.5}, 1));
   EXPECT_FALSE(map.FindNearest({0, 0.5, 0.5}, 1));
+}
+
+/// Bytes of the heap that are in use; constant with an allocator that is not glibc's.
+std::size_t HeapInUse() {
+  const auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST(LocalMap, NeedsNoMoreMemoryAfterALongerWay) {
+  LocalMap map({1, 20});
+  const auto drive = [&map](int from, int to) {
+    for (int x = from; x < to; ++x) {
+      map.Add({{double(x), 0.5, 0.5}, {double(x), 3.5, 0.5}});
+      map.Forget({double(x), 0, 0});
+    }
+  };
+  drive(0, 1'000);
+  const std::size_t before = HeapInUse();
+  drive(1'000, 10'000);
+  EXPECT_LT(HeapInUse(), before + 100'000);
 }
 
 TEST(LocalMap, APlaceThatIsUsedAgainHasNoneOfItsOldPoints) {

@@ -13,6 +13,7 @@
 #include "gst/lidar/gstlidar.h"
 #include "src/cdr/motion_samples.h"
 #include "tests/support/block_drive.h"
+#include "tests/support/element_bus.h"
 #include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
 
@@ -162,6 +163,7 @@ class Laps : public ::testing::Test {
         "lidarodometry local-maps=100 deskew=false initial-velocity=\"19.8 0 0 0 0 0.33\"",
         nullptr));
     h_.reset(gst_harness_new_with_element(element.get(), "sink", "src"));
+    bus_.emplace(element.get());
     poses_.reset(gst_harness_new_with_element(element.get(), nullptr, "odometry"));
     map_.reset(gst_harness_new_with_element(element.get(), nullptr, "map"));
     gst_harness_set_src_caps_str(h_.get(),
@@ -200,6 +202,25 @@ class Laps : public ::testing::Test {
     EXPECT_LE(tracking, GST_LIDAR_TRACKING_OK);
     return {Eigen::Quaterniond(pose.orientation.data()), Eigen::Vector3d(pose.position.data())};
   }
+  /// Takes the messages since the last call. Returns the number of those that tell of loops, of
+  /// which the last one tells the present pose of the map and the present number of loops.
+  unsigned CountLoopMessages() {
+    unsigned count = 0;
+    guint64 loops = 0;
+    Eigen::Vector3d position(0, 0, 0);
+    while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT)) {
+      if (!gst_message_has_name(message.get(), "loop-closed")) continue;
+      const GstStructure* s = gst_message_get_structure(message.get());
+      gst_structure_get(s, "x", G_TYPE_DOUBLE, &position.x(), "y", G_TYPE_DOUBLE, &position.y(),
+                        "z", G_TYPE_DOUBLE, &position.z(), "loops", G_TYPE_UINT64, &loops, nullptr);
+      ++count;
+    }
+    if (count > 0) {
+      EXPECT_EQ(loops, test::StatOf(h_->element, "loops"));
+      EXPECT_LT((position - map_from_odometry_.position).norm(), 1e-9);
+    }
+    return count;
+  }
   /// Distance of the last pose from the true one.
   double ErrorOf(const odometry::Pose& frame) const {
     const int scan = static_cast<int>(odometry_.size()) - 1;
@@ -218,6 +239,7 @@ class Laps : public ::testing::Test {
 
   const block::Points world_ = WorldWithoutGrid();
   Harness h_;
+  std::optional<test::ElementBus> bus_;
   Harness poses_;
   Harness map_;
   std::vector<Eigen::Vector3d> metas_;
@@ -230,8 +252,11 @@ TEST_F(Laps, MoveTheMapAndNeverTheOdometry) {
     DriveOn();
     if (metas_.size() % 50 == 0) FindLoops();  // so that no scan is dropped
   }
+  FindLoops();
   EXPECT_GT(map_from_odometry_.position.norm(), 0.5);
+  EXPECT_GE(CountLoopMessages(), 1U);
   for (int i = 0; i < 10; ++i) DriveOn();
+  EXPECT_EQ(CountLoopMessages(), 0U) << "of loops that were told before";
   EXPECT_GT(ErrorOf({}), 1);
   EXPECT_LT(ErrorOf(map_from_odometry_), 0.3);
   double most = 0;
