@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "src/slam/pose_graph.h"
@@ -119,6 +120,40 @@ TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
   EXPECT_EQ(closure.to, settings.most_maps - 1);
   // The middles of the two maps are half a map before and behind the corner.
   EXPECT_NEAR(closure.pose.position.norm(), std::sqrt(0.5) * kScansOfAMap * step_m, 5);
+}
+
+/// Laps of the block with room for so few maps that the maps of a closure are forgotten, too.
+TEST(LoopCloser, GoesOnSolvingWhereTheMapsOfAClosureAreForgotten) {
+  const Points world = MakeWorld();
+  const odometry::Trajectory drifted = Drive(3 * kScansOfALap);
+  LoopSettings settings;
+  settings.most_maps = 4;
+  LoopCloser closer(settings);
+  for (std::size_t i = 0; i < drifted.size(); ++i) {
+    const int scan = static_cast<int>(i);
+    closer.AddScan(drifted[i], SeenFrom(TrueAt(scan), world, scan));
+    for (const Closure& c : closer.closures()) {
+      ASSERT_LT(c.from, c.to) << i;
+      ASSERT_LT(c.to, closer.local_maps()) << i;
+    }
+  }
+  closer.Finish();
+  EXPECT_GT(closer.solved(), 3U);
+  EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
+}
+
+/// The odometry may have drifted so far that all maps are candidates, of which eight are searched.
+TEST(LoopCloser, SearchesTheNearestMaps) {
+  const odometry::Trajectory drifted = Drive(2 * kScansOfALap);
+  LoopSettings settings;
+  settings.drift_m = 1'000;
+  LoopCloser closer(settings);
+  AddDrive(drifted, &closer);
+  ASSERT_EQ(closer.local_maps(), 19U);  // a lap has 9
+  for (std::size_t map = 16; map < 19; ++map)
+    EXPECT_TRUE(std::any_of(closer.closures().begin(), closer.closures().end(),
+                            [map](const Closure& c) { return c.to == map && c.from == map - 9; }))
+        << map << " lies on the map of a lap before";
 }
 
 /// A sensor that stands sees nothing new, and its noise is no motion.
