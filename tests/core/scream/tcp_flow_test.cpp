@@ -140,6 +140,49 @@ TEST(Files, TakeARoundTripAtLeastThoughAcknowledgementsOfEarlierFilesComeLate) {
   EXPECT_GE(*std::max_element(times.begin(), times.end()), 1.0) << "no packet was late";
 }
 
+/// Files of one packet over an empty link.
+SimulationConfig SmallFiles() {
+  SimulationConfig config = Path(TcpKind::kCubic, Mbps(20), 40ms);
+  config.others[0].files = FileConfig{DataSize::Bytes(1500), DataSize::Bytes(1500)};
+  return config;
+}
+
+TEST(Files, FollowOneAnotherAtOnceAndEachTakesItsOwnTime) {
+  const std::vector<double> times = Simulate(SmallFiles()).others[0].file_s;
+  double sum = 0;
+  for (const double time : times) {
+    ASSERT_NEAR(time, 0.041, 0.001);
+    sum += time;
+  }
+  EXPECT_NEAR(sum, 60, 0.1);
+}
+
+TEST(Files, ComeAfterPausesThatAreNoTimeOfTheirs) {
+  SimulationConfig config = SmallFiles();
+  config.others[0].files->mean_pause = 1s;
+  const std::vector<double> times = Simulate(config).others[0].file_s;
+  for (const double time : times) ASSERT_NEAR(time, 0.041, 0.001);
+  EXPECT_NEAR(static_cast<double>(times.size()), 60 / 1.041, 20);
+}
+
+TEST(Files, HaveSizesBetweenTheirBounds) {
+  SimulationConfig config = SmallFiles();
+  config.others[0].files = FileConfig{DataSize::Bytes(15'000), DataSize::Bytes(30'000)};
+  const TcpResult result = Simulate(config).others[0];
+  const double packets = static_cast<double>(result.packets_sent);
+  EXPECT_NEAR(packets / static_cast<double>(result.file_s.size()), 15.5, 0.7);
+}
+
+TEST(Files, EndWithTheirFlow) {
+  SimulationConfig config = SmallFiles();
+  config.others[0].start = 10s;
+  config.others[0].stop = 20s;
+  const SimulationResult result = Simulate(config);
+  EXPECT_NEAR(static_cast<double>(result.others[0].file_s.size()), 10 / 0.041, 5);
+  EXPECT_EQ(result.DeliveredBytes(kStart, kStart + 10s), 0);
+  EXPECT_EQ(result.DeliveredBytes(kStart + 20s + 40ms, kStart + 60s), 0);
+}
+
 TEST(Classic, AnEcnMarkCountsAsALoss) {
   SimulationConfig config = Path(TcpKind::kCubic, Mbps(20), 40ms);
   config.others[0].ecn = Ecn::kEct0;
