@@ -223,6 +223,16 @@ class FullLink : public ::testing::Test {
     reported_ = static_cast<std::uint16_t>(reported_ + count);
     ASSERT_EQ(c_.OnFeedback(now_, f), FeedbackResult::kAccepted);
   }
+  /// Sends five trains over an empty path, and reports each.
+  void SendAfresh() {
+    reported_ = seq_;
+    for (int train = 0; train < 5; ++train, now_ += 50ms) {
+      for (int i = 0; i < 3; ++i)
+        c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
+      now_ += 40ms;
+      ReportNext(3, Ecn::kEct1, now_ - 20ms, 0ms);
+    }
+  }
   void QueueFrame() { c_.OnQueued(now_, id_, {1, DataSize::Bytes(1000), true, 7}); }
 
   static constexpr Duration kTick = 10ms;
@@ -281,13 +291,7 @@ TEST_F(FullLink, AGapOfTheOldRouteGivesNothingBackOnTheNewOne) {
   now_ += 300ms;
   ReportTrain(1, Ecn::kCe);  // behind a gap
   c_.OnRouteChange(now_);
-  reported_ = seq_;
-  for (int round = 0; round < 5; ++round, now_ += 50ms) {
-    for (int i = 0; i < 3; ++i)
-      c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
-    now_ += 40ms;
-    ReportNext(3, Ecn::kEct1, now_ - 20ms, 0ms);
-  }
+  SendAfresh();
   EXPECT_EQ(c_.statistics(now_).gaps, 0U);
 }
 
@@ -297,13 +301,7 @@ TEST_F(FullLink, AGapInWhichTheMachineStoodStillGivesNothingBack) {
   now_ += 1s;
   c_.OnTimer(now_);
   ASSERT_EQ(c_.statistics(now_).bytes_in_flight.bytes(), 0);
-  reported_ = seq_;
-  for (int round = 0; round < 5; ++round, now_ += 50ms) {
-    for (int i = 0; i < 3; ++i)
-      c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
-    now_ += 40ms;
-    ReportNext(3, Ecn::kEct1, now_ - 20ms, 0ms);
-  }
+  SendAfresh();
   EXPECT_EQ(c_.statistics(now_).gaps, 0U);
 }
 
