@@ -166,8 +166,8 @@ class OusterSilence : public OusterUdp {
     sender_ = std::make_unique<UdpSender>(port_);
   }
   void Pass(GstClockTime time) { gst_harness_set_time(h_.get(), now_ += time); }
-  void SendSlice() {
-    for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[sent_++]);
+  void Send(std::size_t packets) {
+    for (std::size_t i = 0; i < packets; ++i) sender_->Send(packets_[sent_++]);
     EXPECT_TRUE(Eventually([this] { return StatOf(source_.get(), "packets") == sent_; }));
   }
   /// Returns true if no silence is reported after a packet of the IMU, which ends none.
@@ -194,6 +194,7 @@ class OusterSilence : public OusterUdp {
     return message && MessageText(message.get()).rfind("No packets from the sensor", 0) == 0;
   }
 
+  static constexpr std::size_t kPacketsOfSlice = 8;
   const guint16 imu_port_ = FreePort();
   GstClockTime now_ = kClockStart;
   std::size_t sent_ = 0;
@@ -206,7 +207,7 @@ class OusterSilence : public OusterUdp {
 TEST_F(OusterSilence, IsReportedAfterThreeSecondsAtTheStartAndOneLaterOn) {
   Pass(2'900 * GST_MSECOND);
   EXPECT_TRUE(IsNotReported());
-  SendSlice();
+  Send(kPacketsOfSlice);
   Pass(900 * GST_MSECOND);
   EXPECT_TRUE(IsNotReported());
   Pass(100 * GST_MSECOND);
@@ -220,9 +221,9 @@ TEST_F(OusterSilence, AtTheStartIsReportedToo) {
 }
 
 TEST_F(OusterSilence, DoesNotBeginInAPause) {
-  SendSlice();
+  Send(kPacketsOfSlice / 2);
   gst_element_set_state(h_->element, GST_STATE_PAUSED);
-  SendSlice();  // with which the source waits for the end of the pause
+  Send(kPacketsOfSlice / 2);  // with which the source waits for the end of the pause
   Pass(10 * GST_SECOND);
   SetPlaying(h_.get());
   EXPECT_TRUE(IsNotReported());
@@ -237,10 +238,11 @@ TEST_F(OusterUdp, LeavesNoFileOpen) {
     return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
   };
   const Harness h = Play(kJson);
+  gst_element_set_state(h->element, GST_STATE_NULL);
   const auto before = open_files();
   for (int i = 0; i < 3; ++i) {
-    gst_element_set_state(h->element, GST_STATE_NULL);
     SetPlaying(h.get());
+    gst_element_set_state(h->element, GST_STATE_NULL);
   }
   EXPECT_EQ(open_files(), before);
 }
