@@ -48,9 +48,15 @@ void Reporter::Tell(const std::string& why) {
 
 /// libnats closes a refused connection, so a new one is made after a while.
 bool Reporter::Connected(Clock::time_point now) {
-  if ((!connection_ || connection_->state().closed) && now >= open_at_) Open(now);
-  const nats::ConnectionState state = connection_ ? connection_->state() : nats::ConnectionState();
+  const auto current = [this] {
+    return connection_ ? connection_->state() : nats::ConnectionState();
+  };
+  nats::ConnectionState state = current();
   if (state.refused()) Tell("the server refuses us: " + state.last_error);
+  if ((!connection_ || state.closed) && now >= open_at_) {
+    Open(now);
+    state = current();
+  }
   if (!state.connected()) return false;
   refusals_.Reset();
   open_at_ = now + refusals_.Next();
