@@ -125,6 +125,7 @@ TEST(Metas, WhoseCovarianceIsNot36DoublesAreNone) {
 }
 
 TEST(Metas, OfAnUnknownTrackingAreLost) {
+  gst_lidar_init();
   const BufferPtr buffer(gst_buffer_new());
   for (const guint tracking : {0U, 1U, 2U, 3U, 4U, G_MAXUINT}) {
     GstLidarPose pose{{1, 2, 3}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}};
