@@ -13,10 +13,11 @@ namespace lidar::test {
 
 constexpr double kSpeed = 10;  // of all robots [m/s]
 
-/// A robot that drives, with a sensor that costs little processor time.
+/// A robot that drives, with a sensor that costs little processor time. A live source would skip
+/// scans where the machine is busy.
 inline std::string DrivingRobot(int frames = -1) {
-  return "lidartestsrc is-live=true model=os0-32 mode=512x10 speed=10 num-buffers=" +
-         std::to_string(frames) + " ! lidarenc effort=0 key-interval=1000000000" + kSee;
+  return "lidartestsrc model=os0-32 mode=512x10 speed=10 num-buffers=" + std::to_string(frames) +
+         " ! clocksync ! lidarenc effort=0 key-interval=1000000000" + kSee;
 }
 
 class WorkerProcess {
