@@ -48,6 +48,8 @@ class NatsPipeline {
     hold_from_ = SIZE_MAX;
     held_ = on;
   }
+  /// Returns true while a buffer is held.
+  bool holds() const { return holds_; }
   /// As Hold(true), once `count` buffers have passed.
   void HoldFrom(std::size_t count) { hold_from_ = count; }
   /// Ends a live source.
@@ -103,7 +105,11 @@ class NatsPipeline {
     self->buffers_.push_back(kept);
     if (self->buffers_.size() > self->hold_from_) self->held_ = true;
     lock.unlock();
-    while (self->held_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (self->held_) {
+      self->holds_ = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    self->holds_ = false;
     return GST_PAD_PROBE_OK;
   }
 
@@ -111,6 +117,7 @@ class NatsPipeline {
   gst::ElementPtr nats_;
   std::optional<ElementBus> bus_;
   std::atomic<bool> held_{false};
+  std::atomic<bool> holds_{false};
   std::atomic<std::size_t> hold_from_{SIZE_MAX};
   mutable std::mutex mutex_;
   std::vector<Kept> buffers_;
