@@ -3,6 +3,7 @@
 #pragma once
 #include <libsoup/soup.h>
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <map>
@@ -203,10 +204,15 @@ class Peer {
     SendText(nlohmann::json{{"op", "subscribe"}, {"subscriptions", {item}}}.dump());
     Sync();
   }
+  /// Returns when the server has answered a request that it does not offer, and so all before it.
   void Sync() {
-    const std::size_t before = statuses.size();
+    const auto answers = [this] {
+      return std::count(statuses.begin(), statuses.end(),
+                        "This server does not offer that operation.");
+    };
+    const auto before = answers();
     SendText(R"({"op":"nothing"})");
-    EXPECT_TRUE(WaitUntil([&] { return statuses.size() > before; }));
+    EXPECT_TRUE(WaitUntil([&] { return answers() > before; }));
   }
   Received Next() {
     EXPECT_TRUE(WaitUntil([this] { return !received.empty(); }));
