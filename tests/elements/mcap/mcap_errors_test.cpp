@@ -73,25 +73,21 @@ TEST_F(McapErrors, WhatDoesNotFitIsTakenBackAndTheFileGoesOn) {
 }
 
 TEST_F(McapErrors, AFileLeavesNoDescriptorOpen) {
-  const auto open = [] {
-    const std::filesystem::directory_iterator all("/proc/self/fd");
-    return std::distance(begin(all), end(all));
-  };
   const std::string data(50, 'a');
   const ByteView view{reinterpret_cast<const std::uint8_t*>(data.data()), data.size()};
-  const auto before = open();
+  const auto before = OpenFiles();
   {
     gst::OutputFile file(Path("a"), false, gst::OutputFile::Existing::kKeep);
     EXPECT_TRUE(file.Append(view));
-    EXPECT_EQ(open(), before + 1);
+    EXPECT_EQ(OpenFiles(), before + 1);
   }
-  EXPECT_EQ(open(), before) << "it was not closed before it went";
+  EXPECT_EQ(OpenFiles(), before) << "it was not closed before it went";
   gst::OutputFile full(Path("b"), false, gst::OutputFile::Existing::kKeep);
   {
     const SmallDisk disk(20);
     EXPECT_FALSE(full.Append(view));
   }
-  EXPECT_EQ(open(), before) << "the disk is full";
+  EXPECT_EQ(OpenFiles(), before) << "the disk is full";
 }
 
 TEST_F(McapErrors, ADeviceWithoutSpaceStays) {

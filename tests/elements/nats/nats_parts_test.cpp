@@ -558,7 +558,7 @@ TEST(NatsUrls, AreShownWithoutTheirUsers) {
   EXPECT_EQ(WithoutUser("me:secret@host"), "host");
 }
 
-/// What a natssink or natssrc posts of its connection.
+/// A watch posts messages of a connection on the bus of its element.
 class NatsWatch : public NatsParts {
  protected:
   void Make(bool keeps_trying) {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // ouster_src on sockets.
 
-#include <filesystem>
-#include <iterator>
-
 #include "tests/elements/ouster/ouster_support.h"
 #include "tests/support/clock_wait.h"
 #include "tests/support/element_stats.h"
+#include "tests/support/files.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -234,17 +232,14 @@ TEST_F(OusterSilence, DoesNotBeginInAPause) {
 }
 
 TEST_F(OusterUdp, LeavesNoFileOpen) {
-  const auto open_files = [] {
-    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
-  };
   const Harness h = Play(kJson);
   gst_element_set_state(h->element, GST_STATE_NULL);
-  const auto before = open_files();
+  const auto before = OpenFiles();
   for (int i = 0; i < 3; ++i) {
     SetPlaying(h.get());
     gst_element_set_state(h->element, GST_STATE_NULL);
   }
-  EXPECT_EQ(open_files(), before);
+  EXPECT_EQ(OpenFiles(), before);
 }
 
 TEST_F(OusterUdp, APortInUseIsAClearError) {

@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -118,19 +116,15 @@ TEST(RosDomain, TellsTheReceiveBufferWithoutWhatTheKernelAddsForItself) {
   EXPECT_EQ(Domain::GrantedReceiveBuffer(), std::min(most, Domain::kReceiveBuffer));
 }
 
-std::ptrdiff_t OpenFiles() {
-  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
-}
-
 TEST(RosDomain, LeavesNoFileOpen) {
   Join().reset();
   Domain::GrantedReceiveBuffer();
-  const std::ptrdiff_t before = OpenFiles();
+  const std::ptrdiff_t before = test::OpenFiles();
   for (int i = 0; i < 5; ++i) {
     Join().reset();
     Domain::GrantedReceiveBuffer();
   }
-  EXPECT_EQ(OpenFiles(), before);
+  EXPECT_EQ(test::OpenFiles(), before);
 }
 
 }  // namespace
