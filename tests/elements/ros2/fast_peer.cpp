@@ -3,6 +3,7 @@
 
 #include <fastcdr/Cdr.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
@@ -270,6 +271,10 @@ struct FastPeer::Impl {
 };
 
 FastPeer::FastPeer(std::uint32_t domain) : impl_(std::make_unique<Impl>()) {
+  // If two peers are in one process, Fast DDS 2.9.1 may call a reader that is gone.
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
   impl_->participant = DomainParticipantFactory::get_instance()->create_participant(
       domain, ParticipantQos(), &impl_->listener, StatusMask::none());
 }
