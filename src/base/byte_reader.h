@@ -7,7 +7,7 @@
 
 namespace lidar {
 
-/// A view of bytes it does not own (std::span is C++20).
+/// A view of bytes that it does not own (std::span is C++20).
 struct ByteView {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
@@ -15,7 +15,7 @@ struct ByteView {
   const std::uint8_t* begin() const { return data; }
   const std::uint8_t* end() const { return data + size; }
   bool empty() const { return size == 0; }
-  /// Clamped to what there is.
+  /// Returns the bytes from `offset`, at most `n`: fewer if the view ends earlier.
   ByteView Sub(std::size_t offset, std::size_t n = SIZE_MAX) const {
     if (offset > size) offset = size;
     const std::size_t left = size - offset;

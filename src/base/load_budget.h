@@ -10,11 +10,11 @@ namespace lidar {
 
 class LoadBudget {
  public:
-  /// Unused time is kept for this period.
+  /// At most the unused time of this period is saved.
   static constexpr Duration kUnusedTimeKept = std::chrono::seconds(1);
 
-  /// `load` is the allowed processor time divided by elapsed time. Returns false while more than
-  /// that was spent up to `now`. Times must not go back.
+  /// `load` is the allowed processor time divided by elapsed time. Returns false while more
+  /// processor time than allowed was spent up to `now`. Times must not go back.
   bool Allows(double load, Time now) {
     if (last_) saved_ += FromSeconds(load * Seconds(now - *last_));
     last_ = now;

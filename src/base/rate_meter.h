@@ -19,7 +19,7 @@ class RateMeter {
     sum_ += size;
     Expire(now);
   }
-  /// Averages over the time that has passed, at most a window.
+  /// Averages over the time since the first event, at most a window.
   DataRate Rate(Time now) {
     Expire(now);
     if (first_ == Time::max()) return DataRate();

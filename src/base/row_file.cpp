@@ -22,8 +22,7 @@ RowFile& RowFile::operator=(RowFile&& other) noexcept {
   return *this;
 }
 
-/// Removes a file without rows if it is a regular one: others, such as /dev/full, are never
-/// removed.
+/// Removes an empty file if it is a regular one: a device such as /dev/full is never removed.
 void RowFile::Close() {
   if (!file_.is_open()) return;
   file_.close();

@@ -22,7 +22,7 @@ constexpr std::string_view kPrefix = "application/x-";
 constexpr std::array<std::string_view, std::variant_size_v<Value>> kTypeNames = {
     "string", "boolean", "int",      "uint",   "gint64", "guint64",
     "float",  "double",  "fraction", "buffer", "double"};
-constexpr std::size_t kDoubles = kTypeNames.size() - 1;  // the array, of the type of its values
+constexpr std::size_t kDoubles = kTypeNames.size() - 1;  // of Doubles, named like its elements
 
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
@@ -44,7 +44,7 @@ bool IsMediaType(std::string_view text) {
          IsName(text.substr(kPrefix.size()));
 }
 
-/// Length of the UTF-8 character that `text` begins with; 0 if there is none.
+/// Length of the UTF-8 character at the beginning of `text`; 0 if it is invalid.
 std::size_t SizeOfCharacter(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   if (byte(0) < 0x80) return 1;

@@ -31,7 +31,7 @@ struct ScalarCaps {
   };
 
   static constexpr std::size_t kMaxFields = 64;
-  static constexpr std::size_t kMaxDoubles = 16;       // of one field: a transform
+  static constexpr std::size_t kMaxDoubles = 16;       // of one field: enough for a transform
   static constexpr std::size_t kMaxName = 64;          // of a field, and of the media type [bytes]
   static constexpr std::size_t kMaxText = 128U << 10;  // [bytes]
 

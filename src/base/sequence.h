@@ -14,17 +14,17 @@ constexpr std::make_signed_t<U> SequenceDistance(U a, U b) {
   return static_cast<std::make_signed_t<U>>(static_cast<U>(a - b));
 }
 
-/// Extends numbers that wrap to 64 bits: each to the value nearest to the newest number so far.
+/// Extends wrapping numbers to 64 bits: to the value that is nearest to the newest number so far.
 template <class U>
 class SequenceUnwrapper {
  public:
-  /// Extends `n` and remembers it if it is the newest.
+  /// Extends `n`, and keeps the result if it is the newest.
   std::int64_t Unwrap(U n) {
     const std::int64_t extended = Peek(n);
     if (!newest_ || extended > *newest_) newest_ = extended;
     return extended;
   }
-  /// Extends `n` without remembering it.
+  /// Extends `n` without a change of state.
   std::int64_t Peek(U n) const {
     if (!newest_) return n;
     return *newest_ + SequenceDistance(n, static_cast<U>(*newest_));

@@ -8,7 +8,7 @@
 namespace lidar {
 
 /// Threads may pass their times slightly out of order. A time far before the latest one means that
-/// the clock was set: the steady time then continues from there.
+/// the clock was set: the steady time then continues from its latest value.
 class SteadyTime {
  public:
   Time From(Time caller) {

@@ -10,8 +10,8 @@
 
 namespace lidar {
 
-/// Serves one stream. Returns true if the target moved by more than kThreshold since the last true,
-/// or after kInterval.
+/// Serves one stream. ShouldNotify() returns true if the target has changed by more than
+/// kThreshold, or kInterval has passed, since it last returned true.
 class TargetNotifier {
  public:
   bool ShouldNotify(Time now, DataRate target) {
