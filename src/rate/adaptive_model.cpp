@@ -17,8 +17,8 @@ constexpr double kMostBytesAReturn = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;
 constexpr int kBisections = 40;
-// Only the sum of geometry and intensity is known. Without a bound the split drifts until one part
-// vanishes.
+// Codecs report only the sum of geometry and intensity. Without a bound the split drifts until one
+// part vanishes.
 constexpr double kMostOffFit = 4;
 
 double X(double step_m) { return std::log2(std::max(step_m, 1e-9) / kUnitStep); }
@@ -108,8 +108,8 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
     }
     settings.step_m = kUnitStep * std::exp2((low + high) / 2);
   }
-  // Takes the finer allowed step, unless it needs more than kMostOver times `bytes`, or the coarser
-  // step needs bytes nearer to `bytes`.
+  // Takes the finer allowed step unless its size exceeds kMostOver times `bytes`, or the size at
+  // the coarser step is nearer to `bytes`.
   constexpr double kMostOver = 1.06;
   const AllowedSteps steps = StepsAround(settings.step_m, limits);
   settings.step_m = steps.coarser_m;

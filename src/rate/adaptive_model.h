@@ -22,13 +22,13 @@ struct ModeCoefficients {
 
   double GeometryLog2(double x, double n) const;
   double IntensityLog2(double bits, double n) const;
-  /// Returns true if the size falls with the step over the whole range, as Choose() needs it.
+  /// Returns true if the size falls with the step over the whole range, as Choose() requires.
   bool Falls() const;
 };
 
 struct AdaptiveCoefficients {
   std::map<std::string, ModeCoefficients> modes;
-  /// For modes not in the file; sizes are then learned.
+  /// For modes that are not in the file. Their slices correct it.
   ModeCoefficients fallback;
 };
 
@@ -57,7 +57,7 @@ class AdaptiveModel : public SizeModel {
   /// returns what was learned of the last mode, because the scene is the same.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
-  /// Intensity's part of the bytes of a slice if the codec does not report it.
+  /// Estimates intensity's share of a slice's bytes: codecs report only the sum.
   double IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
                         const PredictedSize& predicted) const;
   /// `again`: the model has already learned from this slice.

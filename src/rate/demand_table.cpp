@@ -61,7 +61,7 @@ double DemandTable::EvenShare(std::uint32_t first, double surplus) const {
     if (*room >= share) return share;
     surplus -= *room;
   }
-  // The surplus exceeds what all slices can take.
+  // The surplus exceeds what all slices can use.
   return rooms.empty() ? surplus : rooms.back() + surplus / static_cast<double>(rooms.size());
 }
 

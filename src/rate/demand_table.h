@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The least need and the greatest use of each slice of the current turn.
+// The bytes that each slice of the current scan needs at least, and can use at most.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace lidar::rate {
 
 constexpr unsigned kMaxIntensityBits = 16;
 
-/// Predicted bytes.
+/// Predicted bytes of a slice or of several slices.
 struct Demand {
   double coarsest = 0;                                    // geometry at the coarsest step
   double finest = 0;                                      // geometry at the finest useful step
@@ -29,8 +29,8 @@ class DemandTable {
   /// the others.
   Demand Sum(std::uint32_t first = 0) const;
   /// Divides `surplus` bytes among the slices from `first` to the end of the scan. Each gets the
-  /// same, up to the difference between its coarsest and finest step. An unknown slice takes any
-  /// amount.
+  /// same, up to the difference of its sizes at the coarsest and finest step. An unknown slice has
+  /// no limit. Returns the share of a slice below its limit.
   double EvenShare(std::uint32_t first, double surplus) const;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 // Mean distance from the middle of a unit cube to its points.
 constexpr double kMeanInCube = 0.480296;
-// The finest grid of a sensor of unknown resolution: 1 mm of error, as good as any LiDAR.
+// The finest step if the sensor's resolution is unknown: no LiDAR is more accurate.
 constexpr double kFinestXyzStep = 0.001;
 constexpr double kFinestStepAtAll = 1e-6;
 

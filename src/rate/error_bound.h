@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The residual error optimizer: the largest motion of a point by a uniform grid, and the coarsest
-// grid within an error.
+// The residual error optimizer: the largest distance by which a uniform grid moves a point, and the
+// coarsest grid within an error.
 #pragma once
 #include "src/cloud/coded_geometry.h"
 #include "src/cloud/range_grid.h"
@@ -16,7 +16,7 @@ class ErrorBound {
 
   /// Largest distance [m] between a point and its decoded point.
   double MaxError(double step_m) const;
-  /// Expected distance [m] of points that fall evenly on the grid.
+  /// Mean distance [m] between points and decoded points if the points are spread evenly.
   double MeanError(double step_m) const;
   /// The coarsest step [m] whose MaxError is not above `error_m`. Errors below the sensor's
   /// resolution give the finest step.

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 constexpr const char* kFormat = "gst-lidar-rate-model";
 constexpr double kLargest = 1e12;  // larger coefficients are a mistake
 
-/// Returns the member, or null. Copies of deep JSON would exhaust the stack.
+/// Returns a reference to the member, or to null: a copy of deep JSON would exhaust the stack.
 const Json& Member(const Json& parent, const char* name) {
   static const Json kNone;
   const auto found = parent.find(name);
@@ -129,7 +129,7 @@ std::optional<ModelFile> ParseModelFile(std::string_view text, std::string* erro
   try {
     json = Json::parse(text);
   } catch (const Json::parse_error& e) {
-    // Its text quotes bytes of the file, and messages hold UTF-8 only.
+    // The exception's text quotes bytes of the file, but messages may hold only UTF-8.
     reader.Fail("not JSON, or cut off, at byte " + std::to_string(e.byte));
     return std::nullopt;
   } catch (const Json::exception& e) {

@@ -19,8 +19,8 @@ struct ModelFile {
   std::optional<PaperCoefficients> paper;
 };
 
-/// Returns nothing unless the file is valid and of this or an earlier version; `error` then has the
-/// fault for a user.
+/// Returns nothing if the file is invalid or of a later version; `error` then has the fault for a
+/// user.
 std::optional<ModelFile> ParseModelFile(std::string_view json, std::string* error);
 std::string WriteModelFile(const ModelFile& file);
 

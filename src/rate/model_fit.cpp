@@ -22,8 +22,8 @@ Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b)
   return a.colPivHouseholderQr().solve(b);
 }
 
-/// Returns how far the numbers of returns spread, in doublings. A small spread cannot show their
-/// exponent.
+/// Returns the spread of the slices' numbers of returns, in doublings. A small spread does not
+/// determine the exponent of the returns.
 double ReturnsSpread(const Samples& samples) {
   const auto [low, high] = std::minmax_element(
       samples.begin(), samples.end(),

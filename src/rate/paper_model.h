@@ -35,7 +35,8 @@ class PaperModel : public SizeModel {
  public:
   explicit PaperModel(PaperCoefficients coefficients) : coefficients_(std::move(coefficients)) {}
 
-  /// The polynomial has no term for intensity bits: the bytes include those of its training.
+  /// The polynomial has no term for intensity bits, so the bytes always include the intensity bits
+  /// of its training.
   PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const override;
   /// argmin |r - bytes| over q = 8..24 and, for xyz, c = 0..9, within the limits of the step.
   Settings Choose(const SliceFeatures& slice, double bytes,

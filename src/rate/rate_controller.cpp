@@ -7,18 +7,19 @@
 namespace lidar::rate {
 namespace {
 
-// A scan compensates for half of the last scans' excess: all of it at once would double the noise.
+// A scan compensates for half of the earlier scans' excess: all of it at once would double the
+// noise.
 constexpr double kRepayGain = 0.5;
-// Most that scans save, as a part of a scan's budget: the network does not keep unused capacity.
+// Limit of saved bytes, as a part of a scan's budget: the network does not keep unused capacity.
 constexpr double kMaxSaved = 0.05;
-// Excess over the budget that causes a second try: a part of the slice's budget, and at least this
-// part of the scan's budget, because later slices even out small errors.
+// A slice is encoded a second time if it exceeds its budget by more than kOver of this budget and
+// by more than kOverOfScan of the scan's budget: later slices even out small errors.
 constexpr double kOver = 0.015;
 constexpr double kOverOfScan = 0.01;
-constexpr double kUnder = 3;         // shortfall that causes a second try, relative to the excess
+constexpr double kUnder = 3;         // limit of a shortfall, relative to that of an excess
 constexpr double kSameStep = 0.004;  // steps closer than this are the same
-// A second try aims lower by this many doublings for each doubling between the first size and the
-// budget, because the model's slope may be wrong.
+// The second encoding aims lower by this many doublings for each doubling between the first size
+// and the budget, because the model's slope may be wrong.
 constexpr double kReencodeMargin = 0.02;
 constexpr double kBoundsChange = 0.03;
 constexpr double kMaxTarget = 1e12;
@@ -105,8 +106,9 @@ double RateController::SliceBudget() const {
   const std::uint32_t left = slice_.slice_count - slice_.slice_index;
   const double rest = repay_ + ledger_ + share * (left - 1);
   // Each slice gets what its error bound needs, and an equal share of the rest. So the quality is
-  // uniform near the minimum, and transmission times are uniform far from it. Slices with few or no
-  // returns, outside of the sensor's window, leave their unused share to others.
+  // uniform if the budget is near the minimum, and transmission times are uniform if it is far
+  // above. Slices with few or no returns, outside of the sensor's window, leave their unused share
+  // to others.
   const Demand needed = demand_.Sum(slice_.slice_index);
   const unsigned bits = plan_.intensity_bits;
   const double own = model_->Predict(slice_, {parameters_.limits.coarsest_step_m, bits, 0}).total();

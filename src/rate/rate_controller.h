@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Spends a target bitrate on slices: a budget for each, fitting settings, and one second try.
+// Spends a target bitrate on slices: each gets a budget, settings, and at most one second encoding.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -18,7 +18,7 @@ struct ControllerParameters {
   /// The controller lowers the intensity bits to this before it skips or thins.
   unsigned min_intensity_bits = 4;
   DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
-  /// false: the paper's open loop, without carry-over and second try.
+  /// false: the paper's open loop, without carry-over and second encoding.
   bool closed_loop = true;
 };
 
@@ -46,14 +46,14 @@ struct ControllerStats {
   double saved_bytes = 0;  // carried over; negative: a debt
 };
 
-/// Call NextSlice(), encode, OnEncoded(). If that returns settings, encode once more and call
-/// OnEncoded() again. Not thread-safe.
+/// Call NextSlice(), encode the slice, and call OnEncoded(). If OnEncoded() returns settings,
+/// encode once more and call it again. Not thread-safe.
 class RateController {
  public:
   RateController(ControllerParameters parameters, std::unique_ptr<SizeModel> model);
 
-  /// Bitrate for the encoded slices without transport overhead. Unset: constant quality at the
-  /// coarsest step.
+  /// Bitrate for the encoded slices without transport overhead. Without a target: constant quality
+  /// at the coarsest step.
   void SetTarget(std::optional<DataRate> target);
   /// Sets parameters from the next slice on.
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
@@ -64,8 +64,8 @@ class RateController {
 
   /// Zero before the first slice.
   RateBounds bounds() const;
-  /// Returns the bounds if one has moved by more than 3 % since the last call; at most once a scan,
-  /// after its last slice.
+  /// Returns the bounds if one has moved by more than 3 % since they were last returned. Returns
+  /// them at most once a scan, after its last slice.
   std::optional<RateBounds> TakeChangedBounds();
   const ControllerStats& stats() const { return stats_; }
 
@@ -83,7 +83,7 @@ class RateController {
   SliceFeatures slice_;
   Decision decision_;
   bool pending_ = false;    // NextSlice() was called, its OnEncoded() not yet
-  bool reencoded_ = false;  // this slice has had its second try
+  bool reencoded_ = false;  // the slice gets its second encoding
   bool started_ = false;
   bool measured_ = false;
   DemandTable demand_;

@@ -18,7 +18,7 @@ struct LoopSettings {
   DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
 };
 
-/// Place of a slice in the stream.
+/// Position of a slice in the stream.
 struct SlicePlace {
   std::uint32_t scan_id = 0;
   std::uint32_t slice_index = 0;

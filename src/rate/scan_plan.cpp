@@ -9,7 +9,7 @@ namespace {
 
 // A debt of a tenth of a scan causes no skip: the next scans' steps repay it.
 constexpr double kTolerance = 0.1;
-// A cloud that is thinned further is useless: then scans are skipped as well.
+// A cloud that is thinned further is useless, so scans are skipped in addition.
 constexpr double kMinKeep = 1.0 / 16;
 // Intensity bits rise again only with a margin, so that they do not flicker.
 constexpr double kRoomToRaise = 0.9;

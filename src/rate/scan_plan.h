@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The degradation below what the error bound needs: first intensity, then scans or points.
+// Degradation if the target is below what the error bound needs: first of intensity, then of scans
+// or points.
 #pragma once
 #include <vector>
 

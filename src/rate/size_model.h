@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A codec's report of a slice, and predictors that turn it into bytes.
+// The features of a slice, and the interface that predicts its encoded size.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -63,7 +63,8 @@ class SizeModel {
                          const EncodedSize& encoded) = 0;
 };
 
-/// The allowed steps on both sides of a step; equal at the ends, or if any step is allowed.
+/// The nearest allowed steps on both sides of a step. They are equal if the step itself is allowed,
+/// or if one side has no allowed step.
 struct AllowedSteps {
   double finer_m = 0;
   double coarser_m = 0;

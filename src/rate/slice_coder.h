@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A coder for the rate loop: a loaded slice, coded at a step, any number of times.
+// The interface of a coder for the rate loop: encodes a loaded slice at a step, any number of
+// times.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -19,7 +20,7 @@ struct LoadedSlice {
   std::string mode;            // SliceFeatures::mode
 };
 
-/// The grids that keep to an error.
+/// The steps of the grids that keep to an error.
 struct StepRange {
   double finest_step_m = 0.001;   // finer steps code meaningless digits
   double coarsest_step_m = 0.04;  // no point moves farther than the requested error
@@ -39,16 +40,16 @@ enum class CodingResult {
   kOutOfReach,  // no grid of this coder keeps to the error
 };
 
-/// Codes a stream. The coder keeps the bytes; the loop takes only their number.
+/// Codes a stream. The coder keeps the bytes; the loop reads only their number.
 class SliceCoder {
  public:
   virtual ~SliceCoder() = default;
 
   virtual LoadedSlice loaded() const = 0;
-  /// Returns the steps for the loaded slice. The coarsest step may be below the finest for a small
-  /// error.
+  /// Returns the steps for the loaded slice. For a small error the coarsest step may be below the
+  /// finest.
   virtual StepRange Steps(double max_error_m) const = 0;
-  /// Forgets the rows whose element of `kept` is false; `kept` has loaded().rows elements.
+  /// Drops the rows whose element of `kept` is false; `kept` has loaded().rows elements.
   virtual void Thin(const std::vector<bool>& kept) = 0;
   /// Encodes the loaded slice in place of an earlier encoding. The coder may use another step; the
   /// bound `max_error_m` always holds.

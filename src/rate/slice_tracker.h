@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Remembers the model's error in each sector of the last scan, to correct this scan.
+// Keeps the model's error in each sector of the last scan, to correct this scan.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,8 +13,8 @@ struct Anchor {
   double residual = 0;
 };
 
-/// Sector i of a scan resembles sector i of the last scan most. The common change of the sectors
-/// since then is added: a turn of the vehicle, or a wrong slope.
+/// Sector i of a scan resembles sector i of the last scan most. Predictions add the common change
+/// of the sectors since then, which comes from a turn of the vehicle or a wrong slope.
 class SliceTracker {
  public:
   /// Returns the observation from which a slice is predicted; nothing before the first one.
