@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the slices that arrived, by the sequence numbers of the packets that did.
+// Finds the slices that arrived, from the sequence numbers of the packets that arrived.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -8,7 +8,7 @@
 
 namespace lidar::rtp {
 
-/// Recent packets of an SSRC, and their slices, in bounded memory: the oldest packets without
+/// Keeps recent packets of an SSRC, and their slices, in bounded memory: the oldest packets without
 /// acknowledgement are dropped.
 class Delivery {
  public:

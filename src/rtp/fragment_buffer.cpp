@@ -6,7 +6,7 @@
 namespace lidar::rtp {
 namespace {
 
-// Size of a map node and its vector, so that tiny fragments cannot hide their memory.
+// Size of a map node and its vector. It counts as memory, too: a tiny fragment needs little else.
 constexpr std::size_t kFragmentOverhead = 96;
 
 }  // namespace

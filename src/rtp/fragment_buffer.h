@@ -21,7 +21,7 @@ class FragmentBuffer {
   /// Returns the unit's bytes if their number and CRC are right, else nothing. Call it if
   /// IsWhole().
   std::optional<std::vector<std::uint8_t>> Join() const;
-  /// The unit's first packet, without its body; null before it came.
+  /// The unit's first packet, without its body; null before it arrives.
   const Unit* start() const { return start_ ? &*start_ : nullptr; }
   std::optional<std::uint16_t> start_sequence() const;
   /// Memory that the fragments hold, roughly [bytes].

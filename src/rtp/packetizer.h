@@ -18,15 +18,16 @@ struct Packet {
   bool marker = false;  // the last packet of a slice
 };
 
-/// Packets of at most `max_payload` (kMinPayload at least) bytes for `unit`, whose type, length,
-/// CRC and body are set here. Returns no packets for an empty unit or one past kMaxUnitBytes.
+/// Cuts `bytes`, the body of `unit`, into packets of at most `max_payload` bytes. Sets type, length
+/// and CRC of the unit itself. Returns no packets if there are no bytes or more than kMaxUnitBytes,
+/// or if `max_payload` is below kMinPayload.
 std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload);
 
 /// Collects small slices into one aggregation packet.
 class Aggregator {
  public:
   /// Returns false and adds nothing if the unit does not fit into the packet, or if its `rtp_ticks`
-  /// (running time in 90 kHz) exceed those of the first unit by more than 16 bits.
+  /// (running time in 90 kHz) exceed those of the first unit by more than 16 bits can hold.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
   /// Returns the packet, which has the RTP timestamp of its first unit; it is a single unit packet
   /// if there is only one unit. Returns nothing if there is no unit.
@@ -44,8 +45,8 @@ class Aggregator {
 class ScanCounter {
  public:
   explicit ScanCounter(std::uint32_t first) : number_(first) {}
-  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to send. Its index,
-  /// count and scan id must be set.
+  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to send. The unit's
+  /// index, count and scan id must be set.
   void Place(Unit* unit);
 
  private:

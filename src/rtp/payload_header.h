@@ -35,7 +35,7 @@ constexpr bool EndsUnit(PacketType t) {
   return t == PacketType::kSingle || t == PacketType::kLastFragment;
 }
 
-/// Names the slice of a packet. Each packet of a slice has it.
+/// Identifies the slice of a packet. Each packet of a slice has it.
 struct SliceId {
   std::uint32_t scan_number = 0;  // counts the scans sent, without gaps; wraps
   std::uint16_t index = 0;
@@ -48,8 +48,8 @@ struct SliceInfo {
   std::uint16_t first_column = 0;
   std::uint32_t duration_ns = kUnknownDuration;
   std::uint64_t capture_ntp = 0;  // 0: not known
-  // Bit n: the sender skipped the slice that is n + 1 slices earlier, also of an earlier scan. For
-  // kSliceAfterSkip only.
+  // Bit n: the sender skipped the slice that is n + 1 slices earlier, which may be of an earlier
+  // scan. For kSliceAfterSkip only.
   std::uint64_t skipped = 0;
 
   static constexpr std::uint32_t kUnknownDuration = 0xFFFF'FFFF;

@@ -9,7 +9,7 @@
 namespace lidar::rtp {
 namespace {
 
-// Slices of the last config may still be under way when the next one comes.
+// Slices of the last config may still be under way when the next config arrives.
 constexpr std::size_t kMaxConfigs = 4;
 constexpr Duration kTick{100'000};  // 9 ticks of 90 kHz
 
@@ -43,7 +43,7 @@ void Reassembler::Push(const RtpPacket& packet, const std::vector<Unit>& units,
 }
 
 bool Reassembler::Admit(SlicePosition p, const RtpPacket& packet, const Unit& unit) {
-  if (!ledger_.started() && !StartsUnit(unit.type)) return true;  // may have overtaken its start
+  if (!ledger_.started() && !StartsUnit(unit.type)) return true;  // the unit's start may still come
   const bool first = !ledger_.started();
   switch (ledger_.Admit(p, unit.slice.count, packet.arrival)) {
     case Admission::kOpen:

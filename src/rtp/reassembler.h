@@ -29,48 +29,49 @@ struct RtpPacket {
 struct ReceivedSlice {
   SliceId id;
   SliceInfo info;
-  std::optional<Time> pts;  // of the packet of the slice that came first
+  std::optional<Time> pts;  // of the slice's packet that arrived first
   std::shared_ptr<const StreamConfig> config;
   std::vector<std::uint8_t> bytes;
-  bool discont = false;  // the first slice, or a loss since the last one
+  bool discont = false;  // the first slice, or slices before it are lost
 };
 
 struct PacketAccounts {
   std::uint64_t invalid = 0;    // malformed, or contradicting earlier packets
   std::uint64_t duplicate = 0;  // of a packet or slice that has arrived
-  std::uint64_t late = 0;       // of a slice counted as lost, or from before the join
+  std::uint64_t late = 0;       // of a slice that counts as lost, or that precedes the join
   std::uint64_t config_damaged = 0;
 };
 
-/// Memory is bounded: kMaxPendingBytes and kMaxPendingSlices; the oldest slices leave first.
+/// kMaxPendingBytes and kMaxPendingSlices bound the memory: the oldest slices are dropped first.
 class Reassembler {
  public:
   explicit Reassembler(Duration max_reorder_time) : ledger_(max_reorder_time) {}
-  /// For packets that may be of the same stream as `before`, with other scan numbers.
+  /// For packets that may be of the stream of `before`, but with other scan numbers. Unwraps them
+  /// from the newest number there.
   Reassembler(Duration max_reorder_time, const Reassembler& before)
       : ledger_(max_reorder_time), newest_scan_(before.newest_scan_) {}
 
   /// Returns true if the packet's scan numbers continue this stream, or if no slice has begun. One
-  /// damaged header must not move the stream to another place.
+  /// damaged header must not move the stream to other scan numbers.
   bool Continues(const std::vector<Unit>& units) const;
   /// Takes the units of `packet` and appends the slices that are now whole to `out`, in the order
   /// of their completion: no slice waits for another.
   void Push(const RtpPacket& packet, const std::vector<Unit>& units,
             std::vector<ReceivedSlice>* out);
-  /// Returns true if the first slice here is after the last one of `previous`, by at most
-  /// `max_scans`.
+  /// Returns true if the first slice here follows the last one of `previous` within `max_scans`
+  /// scans.
   bool IsAfter(const Reassembler& previous, std::int64_t max_scans) const;
   /// Returns true if a slice was whole and undamaged, with or without its config.
   bool has_whole_slice() const { return has_whole_slice_; }
   /// Returns true if a slice has begun.
   bool started() const { return ledger_.started(); }
-  /// Continues after `previous`, the same stream before an outage. Counts the slices of the outage,
-  /// takes over the configs, and appends the slices that waited for them.
+  /// Continues after `previous`, the same stream before an outage. Counts the slices of the outage
+  /// as lost, takes over the configs, and appends the slices that waited for them.
   void GoOn(const Reassembler& previous, std::vector<ReceivedSlice>* out);
   /// The sender of `previous` restarted with the same SSRC. Takes over only configs that came after
-  /// the last slice there, because older ids may have a new meaning.
+  /// its last slice, because older ids may have a new meaning.
   void StartAnew(const Reassembler& previous, std::vector<ReceivedSlice>* out);
-  /// The slices so far are not wanted: begins to count anew with the incomplete ones.
+  /// Discards the accounts of the slices so far, and counts anew from the incomplete slices on.
   void JoinAnew(Time now);
   /// End of stream: incomplete slices are lost.
   void Finish();

@@ -12,7 +12,7 @@ namespace {
 constexpr int kMaxSequenceStep = 64;  // between two packets of a candidate
 // No sensor turns faster, so a stream that advanced further in an outage is another stream.
 constexpr double kMostScansPerSecond = 1'000;
-constexpr std::int64_t kScansWithoutClock = 10'000;  // limit while arrival times stand still
+constexpr std::int64_t kScansWithoutClock = 10'000;  // limit if arrival times do not advance
 
 void AddPackets(const Reassembler& r, ReceiverAccounts* sum) {
   sum->packets.invalid += r.packets().invalid;
@@ -52,7 +52,8 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
     return;
   }
   if (packet.ssrc != active_->ssrc) NoteRival(packet.ssrc);
-  // A whole slice is enough here, because a throttled sender sends slices that are far apart.
+  // A single whole slice of the candidate is enough, because a throttled sender's slices are far
+  // apart.
   if (packet.ssrc == active_->ssrc && candidate_ && !GoesOnWithCandidate(packet, units) &&
       candidate_->reassembler.has_whole_slice() && CandidateGoesOn(packet.arrival)) {
     Promote(packet.arrival, out);
@@ -63,7 +64,7 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
   if (CandidateHasWon(packet.arrival)) Promote(packet.arrival, out);
 }
 
-/// A stream that goes on beside the active one is no restart: its slices so far are never wanted.
+/// A candidate that continues beside the active stream is no restart, so its slices are discarded.
 void Receiver::DropHeld() {
   if (candidate_->held.empty()) return;
   candidate_->held.clear();

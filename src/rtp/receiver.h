@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Follows one stream through outages and restarts of its sender, among other packets.
+// Follows one stream through outages and restarts of its sender, among packets of other streams.
 #pragma once
 #include <map>
 #include <optional>
@@ -19,10 +19,10 @@ struct ReceiverAccounts {
   std::uint64_t outages = 0;   // the same stream went on after a gap of several scans
 };
 
-/// Moves to other scan numbers after several packets in sequence with them, and to another SSRC if
-/// the old one is silent, too. A move loses no packet of a stream that began when the old one
-/// ended. During silence one whole later slice of the same stream is enough: a throttled sender may
-/// send only such slices, far apart.
+/// Moves to other scan numbers after several consecutive packets with them. Moves to another SSRC
+/// after as many of its packets, but only if the old SSRC is silent. A move loses no packet of a
+/// stream that began when the old one ended. During silence one whole slice that continues the
+/// stream is enough, because a throttled sender's slices may be far apart.
 class Receiver {
  public:
   explicit Receiver(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
@@ -33,11 +33,11 @@ class Receiver {
   void set_max_reorder_time(Duration t);
   ReceiverAccounts accounts() const;
   std::optional<std::uint32_t> ssrc() const;
-  /// Another SSRC, many packets of which were dropped during the stream.
+  /// Another SSRC, if kRivalPackets of its packets arrived during the stream.
   std::optional<std::uint32_t> rival() const { return rival_; }
 
   static constexpr unsigned kProbation = 3;          // packets
-  static constexpr unsigned kProbationNoClock = 64;  // packets, while arrival times stand still
+  static constexpr unsigned kProbationNoClock = 64;  // packets, if arrival times do not advance
   static constexpr Duration kSilentStream = std::chrono::milliseconds(100);
   static constexpr unsigned kRivalPackets = 100;
   static constexpr std::size_t kMaxRivals = 16;
@@ -50,7 +50,7 @@ class Receiver {
     std::vector<ReceivedSlice> held;  // slices of a candidate
     std::uint16_t last_sequence = 0;
     Time last_arrival;
-    unsigned streak = 0;  // packets since the active stream's last
+    unsigned streak = 0;  // packets since the active stream's last packet
     std::uint64_t packets = 0;
   };
 

@@ -9,7 +9,7 @@
 namespace lidar::rtp {
 namespace {
 
-// Bounds memory and time; the reassembler takes no jump as long as this (kMaxScanJump).
+// Bounds memory and time. The reassembler already refuses smaller jumps (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
 // A slice may announce 64 skipped slices, at worst of as many scans.
 constexpr std::int64_t kKeptScans = 64;
@@ -161,7 +161,7 @@ void SliceLedger::TakeBackLoss(Scan* scan, std::uint32_t index) {
   BookScan(scan);
 }
 
-/// Leaves slices before the origin out of the accounts, unless Continue() counts them.
+/// A slice before the origin is in the accounts only if Continue() counted it as lost.
 void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
   if (!skipped_before_origin_.insert(p).second || !previous_end_) return;
   if (!(*previous_end_ < p) && lost_before_end_.erase(p) == 0) return;
@@ -169,7 +169,7 @@ void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
   ++accounts_.slices_skipped;
 }
 
-/// Returns 0 for a source that restarted its numbers.
+/// Returns the number of skipped scans; 0 if the source restarted its numbers.
 std::uint64_t SliceLedger::SkippedBetween(ScanId before, ScanId after) {
   const std::int64_t skipped =
       std::int64_t{SequenceDistance(after.id, before.id)} - (after.scan - before.scan);
@@ -225,7 +225,8 @@ void SliceLedger::CloseBefore(SlicePosition limit) {
 void SliceLedger::Finish() {
   if (!started()) return;
   CloseBefore({frontier_->scan, frontier_->index + 1});
-  // Unsent slices of the last scan are not lost, but the scan ended here.
+  // Slices after the frontier may not have been sent, so they are not lost. Their scan ends here
+  // and is counted.
   Scan* scan = Find(frontier_->scan);
   if (scan != nullptr && scan->open > 0) {
     BookScan(scan);
@@ -248,7 +249,7 @@ void SliceLedger::Continue(const SliceLedger& previous) {
     const auto between = static_cast<std::uint64_t>(origin_.scan - last.scan - 1);
     accounts_.scans_lost += between;
     accounts_.slices_lost += between * count + origin_.index;
-    // Finish() keeps the frontier's scan, so this scan is the last one of `previous`.
+    // Finish() keeps the frontier's scan, so scans_.back() is the scan of `last`.
     accounts_.slices_lost += previous.scans_.back().slices.size() - last.index - 1;
     if (Scan* scan = Find(origin_.scan)) scan->joined_late = false;
   } else {

@@ -13,7 +13,7 @@
 
 namespace lidar::rtp {
 
-/// Place of a slice in its stream; `scan` is the unwrapped scan number.
+/// Position of a slice in its stream; `scan` is the unwrapped scan number.
 struct SlicePosition {
   std::int64_t scan = 0;
   std::uint32_t index = 0;
@@ -26,7 +26,7 @@ struct SlicePosition {
   }
 };
 
-/// Each slice and scan since the first one is in one of the counters once its fate is known.
+/// Each slice and scan since the first one is in one of the counters once its outcome is known.
 struct SliceAccounts {
   SliceAccounts& operator+=(const SliceAccounts& o);
 
@@ -58,29 +58,30 @@ class SliceLedger {
   explicit SliceLedger(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
 
   bool started() const { return frontier_.has_value(); }
-  /// Returns whether a packet of this slice is still useful. kOpen moves the frontier.
+  /// Returns whether a packet of this slice is still useful. A newer slice moves the frontier.
   Admission Admit(SlicePosition p, std::uint32_t count, Time now);
-  /// Sets the fate of an open slice.
+  /// Sets the outcome of an open slice.
   void Settle(SlicePosition p, SliceOutcome outcome);
   /// Counts the slice as skipped by the source, even if it was counted as lost.
   void Skip(SlicePosition p);
   /// Notes the source's number `id` of `scan`. These numbers have gaps for skipped scans.
   void BookScanId(std::int64_t scan, std::uint32_t id);
   /// Returns the slice before `p`, or nothing if its scan is forgotten. Scans before the first one
-  /// count as having equally many slices.
+  /// are assumed to have as many slices as it.
   std::optional<SlicePosition> Before(SlicePosition p) const;
 
   /// Returns the position before which slices are late at `now`; CloseBefore() counts them.
   std::optional<SlicePosition> Overdue(Time now) const;
   /// Counts all open slices before `limit` as lost.
   void CloseBefore(SlicePosition limit);
-  /// Forgets everything.
+  /// Forgets all slices and counters.
   void StartAnew() { *this = SliceLedger(max_reorder_time_); }
   /// End of stream: all open slices up to the frontier are lost.
   void Finish();
   /// Continues after a long outage of the same stream. `previous` is finished. Scans between it and
   /// this ledger's first slice are lost, and so is the beginning of the first scan here. The
-  /// accounts of `previous` are added, because news of its slices may still come.
+  /// accounts of `previous` are added, because later slices may still announce skipped slices of
+  /// `previous`.
   void Continue(const SliceLedger& previous);
 
   void set_max_reorder_time(Duration t) { max_reorder_time_ = t; }
@@ -98,7 +99,7 @@ class SliceLedger {
     std::uint32_t skipped = 0;
     bool count_known = false;  // false: guessed from a neighbour, without a packet
     bool joined_late = false;  // its beginning was sent before the receiver joined
-    std::uint64_t SliceAccounts::*booked = nullptr;  // its counter, once it is closed
+    std::uint64_t SliceAccounts::*booked = nullptr;  // counter to which the scan was added
   };
   struct ScanId {
     std::int64_t scan = 0;
@@ -125,16 +126,16 @@ class SliceLedger {
   Duration max_reorder_time_;
   std::deque<Scan> scans_;       // without gaps, from first_scan_
   std::int64_t first_scan_ = 0;  // number of scans_.front()
-  std::int64_t open_scan_ = 0;   // earlier scans are closed, and kept for news of skipped slices
+  std::int64_t open_scan_ = 0;   // earlier scans are closed; later slices may announce skipped ones
   SlicePosition origin_;         // the first slice
   std::uint32_t origin_count_ = 1;
   std::set<SlicePosition> skipped_before_origin_;
   // The end of the earlier stream that this one continues, if any. Slices after it and the slices
   // in lost_before_end_ are lost.
   std::optional<SlicePosition> previous_end_;
-  std::set<SlicePosition> lost_before_end_;  // lost slices among its last ones
+  std::set<SlicePosition> lost_before_end_;  // lost slices among the last ones of that stream
   std::optional<SlicePosition> frontier_;
-  ScanId first_id_{};  // if there was one
+  ScanId first_id_{};  // valid if latest_id_ is set
   std::optional<ScanId> latest_id_;
   std::deque<Cutoff> cutoffs_;  // both times and positions ascend
   SliceAccounts accounts_;

@@ -26,16 +26,17 @@ struct StreamConfig {
   std::vector<std::uint8_t> sensor_model;  // serialised and checked; may be empty
 
   std::vector<std::uint8_t> Serialise() const;
-  /// Returns nothing for another version or coder, a wrong length, or an invalid sensor model; for
-  /// fields that no decoder produces (decoders produce packed fields with x, y and z as adjacent
-  /// F32); and for caps that are not slices of a coder without a number.
+  /// Returns nothing for another version or coder, a wrong length, an invalid sensor model, or
+  /// fields that no decoder produces: decoders produce packed fields with x, y and z as adjacent
+  /// F32. Caps of kNamed must have alignment=slice, and a media type that is not one of this
+  /// project's.
   static std::optional<StreamConfig> Parse(ByteView bytes);
   bool operator==(const StreamConfig& o) const;
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }
 };
 
-/// Returns the id of a config that follows one with the id `previous`. It differs from that, and
-/// depends on the content, so that a restarted sender keeps its id.
+/// Returns the id of a config. It depends on the content, so that a restarted sender keeps its id,
+/// and differs from `previous`, the id of the last config.
 std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,
                       std::optional<std::uint8_t> previous);
 
