@@ -9,7 +9,7 @@ namespace {
 
 // An empty name and three numbers, without padding.
 constexpr std::size_t kSmallestField = 13;
-// ROS nodes would not accept more fields; it bounds the memory for a field list.
+// No driver sends so many fields. The limit bounds the memory for a field list.
 constexpr std::uint32_t kMaxRosFields = 1024;
 
 auto Tie(const RosField& f) { return std::tie(f.name, f.offset, f.datatype, f.count); }

@@ -67,7 +67,7 @@ std::vector<std::uint8_t> WriteCompressedCloud(const CompressedCloud& compressed
 /// packed rows are recognised by the size alone.
 std::optional<std::size_t> RowStride(const PointCloud2& cloud);
 
-/// A message in pieces, for writers that gather: the points stand between `head` and `tail`.
+/// A message in two parts, for a gathering write: the points go between `head` and `tail`.
 struct PointCloud2Frame {
   std::vector<std::uint8_t> head;
   std::vector<std::uint8_t> tail;
@@ -88,10 +88,10 @@ RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint3
 /// Converts points of messages of one layout to little-endian points in packed rows.
 class PointConverter {
  public:
-  /// `wanted` selects fields, which are converted to its types. Without it all fields stay; only x,
-  /// y and z become F32 side by side, as all elements need them. A field of n elements becomes n
-  /// fields a[0], a[1], ... A field is padding if it has no usable name, an earlier field's name,
-  /// an unknown type or more than kMaxFields elements. Returns nothing if the layout contradicts
+  /// `wanted` selects fields and their new types. Without it all fields stay; only x, y and z
+  /// become F32 side by side, as all elements need them. A field of n elements becomes n fields
+  /// a[0], a[1], ... A field is padding if it has no usable name, an earlier field's name, an
+  /// unknown type or more than kMaxFields elements. Returns nothing if the layout contradicts
   /// itself, is too large, or lacks a wanted field; `why` then has the reason.
   static std::optional<PointConverter> Make(const RosLayout& layout,
                                             const std::optional<PointLayout>& wanted = {},

@@ -21,8 +21,8 @@ bool IsUsable(const RosField& f) {
          !f.name.empty() && std::none_of(f.name.begin(), f.name.end(), bad);
 }
 
-/// Returns the fields that we keep, with a field for each element of an array. Returns false if a
-/// field ends past the point.
+/// Appends the fields that we keep, with a field for each element of an array. Returns false if a
+/// field ends past the point, or if there are no fields or too many.
 bool Expand(const RosLayout& layout, std::vector<PointField>* out, std::string* why) {
   for (const RosField& f : layout.fields) {
     if (!IsUsable(f)) continue;
@@ -53,7 +53,7 @@ bool HaveAxes(const std::vector<PointField>& fields) {
                      [&](const char* axis) { return FindField(fields, axis) != nullptr; });
 }
 
-/// Returns the same fields at the same places, if our elements can use them.
+/// Returns the same fields at the same offsets if our elements can use them, else nothing.
 std::optional<PointLayout> Same(const std::vector<PointField>& source, std::uint32_t step) {
   if (step > PointFields::kMaxPointStep) return std::nullopt;
   std::string text;

@@ -15,7 +15,8 @@ bool IsWordCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || IsDigit(c) || c == '_';
 }
 
-/// Words between single slashes, none of which begins with a digit; no slash at either end.
+/// Returns true for words between single slashes. No word begins with a digit, and no slash is at
+/// either end.
 bool IsPath(std::string_view text) {
   if (text.empty() || text.size() > kMaxName || text.back() == '/') return false;
   char before = '/';

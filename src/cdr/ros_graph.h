@@ -10,7 +10,7 @@
 
 namespace lidar::cdr {
 
-/// The topic on which every participant lists its nodes: reliable, transient-local.
+/// The topic on which every participant lists its nodes. Its QoS is reliable and transient-local.
 inline constexpr const char* kGraphTopic = "ros_discovery_info";
 inline constexpr const char* kGraphDdsName = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
 
