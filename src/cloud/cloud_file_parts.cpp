@@ -14,7 +14,7 @@ constexpr std::uint64_t kSecond = 1'000'000'000;
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/// Takes the next word of `text`; empty at its end.
+/// Removes the next word from `text` and returns it; empty if there is none.
 std::string_view TakeWord(std::string_view* text) {
   while (!text->empty() && IsSpace(text->front())) text->remove_prefix(1);
   std::size_t n = 0;
@@ -24,7 +24,7 @@ std::string_view TakeWord(std::string_view* text) {
   return word;
 }
 
-/// Returns the beginning of a word, for messages, which hold UTF-8 only.
+/// Returns the beginning of a word for a message. A message must be valid UTF-8.
 std::string Quoted(std::string_view word) {
   std::string text(word.substr(0, 20));
   std::replace_if(

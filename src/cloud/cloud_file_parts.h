@@ -20,9 +20,9 @@ class Lines {
   explicit Lines(ByteView file) : file_(file) {}
   /// The words of the next line; nothing at the end of the header.
   std::optional<std::vector<std::string_view>> Next();
-  /// What follows the last line.
+  /// The bytes after the last line that was read.
   ByteView Rest() const { return file_.Sub(position_); }
-  /// Text of the last line.
+  /// Text of the last line that was read.
   std::string_view text() const { return text_; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kKittiPoint = 16;  // bytes
 
-/// Text, integers and other structs read as huge, tiny or invalid F32.
+/// Text, integers and other structs have huge, tiny or invalid values if they are read as F32.
 bool IsPlausiblePoint(const float* p) {
   constexpr float kFarthest = 1000;  // [m]
   constexpr float kBrightest = 255;

@@ -32,8 +32,8 @@ struct FileCloud {
 /// a user. The sizes that the file claims are checked against its bytes.
 std::optional<FileCloud> ReadPcd(ByteView file, std::string* why);
 std::optional<FileCloud> ReadPly(ByteView file, std::string* why);
-/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. If a coordinate exceeds 16 km, beyond which
-/// F32 has no millimetres, x, y and z count from their least values in whole metres.
+/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. F32 has no millimetres beyond 16 km. If a
+/// coordinate exceeds this, the least x, y and z, in whole metres, are subtracted from all points.
 std::optional<FileCloud> ReadLas(ByteView file, std::string* why);
 /// Reads x, y, z and intensity as F32, the format of KITTI's sequences and their successors.
 std::optional<FileCloud> ReadKitti(ByteView file, std::string* why);

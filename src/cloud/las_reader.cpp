@@ -23,7 +23,7 @@ struct PointFormat {
   std::uint32_t size;
   std::uint32_t time, colour, infrared;
 };
-// Table 7 and after of the specification: formats from 6 on begin with a longer core.
+// Table 7 and later tables of the specification. Formats from 6 on begin with more fields.
 constexpr PointFormat kFormats[] = {{20, 0, 0, 0},   {28, 20, 0, 0},  {26, 0, 20, 0},
                                     {34, 20, 28, 0}, {57, 20, 0, 0},  {63, 20, 28, 0},
                                     {30, 22, 0, 0},  {36, 22, 30, 0}, {38, 22, 30, 36},

@@ -21,7 +21,7 @@ class NearestPoint {
   const float* At(std::size_t i) const { return xyz_ + 3 * std::size_t{order_[i]}; }
 
   const float* xyz_;
-  std::vector<std::uint32_t> order_;  // indices; the middle one of a range divides it
+  std::vector<std::uint32_t> order_;  // indices; the point in the middle of a range divides it
 };
 
 }  // namespace lidar

@@ -103,7 +103,7 @@ bool SetSize(const PcdHeader& h, FileCloud* cloud, std::string* why) {
   return true;
 }
 
-/// A back reference has three bytes and gives 264: no data can give more.
+/// A back reference of three bytes gives 264 bytes, the best ratio of the format.
 constexpr std::size_t kMostPerByte = 88;
 
 /// Decompresses to exactly `size` bytes; nothing if the data are damaged or give another size.

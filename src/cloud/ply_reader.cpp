@@ -28,7 +28,7 @@ std::optional<FieldType> TypeOf(std::string_view name) {
 
 enum class Format { kNone, kText, kLittle, kBig };
 
-/// Takes a header apart, a line at a time.
+/// Parses a header line by line.
 struct PlyHeader {
   Format format = Format::kNone;
   std::optional<std::uint64_t> vertices;

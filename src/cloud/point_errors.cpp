@@ -25,7 +25,7 @@ class Distances {
   void AddBack(double metres) { errors_.max_m = std::max(errors_.max_m, metres); }
   void AddMissing(std::uint64_t points) { errors_.missing += points; }
   void OnCoordinate(double metres) { largest_ = std::max(largest_, std::abs(metres)); }
-  /// Both positions of a distance are rounded, each in three coordinates.
+  /// Allows for rounding of both positions of a distance, each in three coordinates.
   PointErrors Take() {
     if (errors_.points > 0) errors_.mean_m = sum_ / static_cast<double>(errors_.points);
     errors_.rounding_m = 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest_;
@@ -78,7 +78,7 @@ std::vector<float> ReturnsOf(ByteView raw, const PointFields& fields, std::uint3
   return returns;
 }
 
-/// `may_merge`: a decoded point may stand for several raw ones.
+/// `may_merge`: a decoded point may be the result of several raw points.
 PointErrors CompareClouds(const std::vector<float>& before, const std::vector<float>& after,
                           bool in_order, bool may_merge) {
   Distances distances;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures how far the points of a cloud have moved on their way through a codec.
+// Measures how far a codec has moved the points of a cloud.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -27,15 +27,15 @@ struct DecodedPoint {
 
 /// Rule that assigns a raw point to a decoded point.
 enum class PointOrder {
-  kPixels,  // the point at the same place
+  kPixels,  // the point of the same pixel
   kKept,    // the return with the same number
   kAny,     // the nearest point, possibly shared; errors are distances in both directions
 };
 
 /// Measures the distances between `raw`, which has whole points, and its decoded points. Pixels
-/// without positions are compared by range. With `thinned`, points were removed on purpose: lacking
+/// without positions are compared by range. With `thinned`, points were removed on purpose: absent
 /// points are missing, not merged. Returns nothing if the numbers of pixels differ, or if `fields`
-/// lack what is compared.
+/// lack the values to compare.
 std::optional<PointErrors> MeasureErrors(ByteView raw, const PointFields& fields,
                                          std::uint32_t point_step,
                                          const std::vector<DecodedPoint>& decoded, PointOrder order,

@@ -33,7 +33,7 @@ std::string_view TakeUntil(char separator, std::string_view* text) {
   return head;
 }
 
-/// Names come from networks and go into caps, which need valid UTF-8, and into logs.
+/// Names come from networks and go into caps and logs, so they must be printable ASCII.
 bool IsName(std::string_view text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });

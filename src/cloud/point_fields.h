@@ -24,11 +24,11 @@ bool operator==(const PointField& a, const PointField& b);
 class PointFields {
  public:
   PointFields() = default;
-  /// Appends a field behind the last one.
+  /// Appends a field after the last one.
   PointFields& Add(std::string name, FieldType type);
 
   /// Parses the caps field `fields`: "x:F32:0,y:F32:4,z:F32:8". Returns nothing for an unknown
-  /// type, an empty or doubled name, more than kMaxFields, or an offset past kMaxPointStep; `why`
+  /// type, an empty or repeated name, more than kMaxFields, or an offset past kMaxPointStep; `why`
   /// then says which, for a user.
   static std::optional<PointFields> Parse(std::string_view text, std::string* why = nullptr);
   std::string ToString() const;
@@ -36,7 +36,7 @@ class PointFields {
   /// Null if there is no such field.
   const PointField* Find(std::string_view name) const;
   bool Has(std::string_view name, FieldType type) const;
-  /// Returns true if x, y and z are F32 and stand side by side, as all elements need them.
+  /// Returns true if x, y and z are adjacent F32 in this order, as all elements need them.
   bool HasPackedXyz() const;
   /// Returns true if the fields, in any order, fill the point from 0 without overlap or gaps, as
   /// decoders produce it.

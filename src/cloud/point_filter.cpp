@@ -114,7 +114,7 @@ bool PointFilter::IsFirstInVoxel(const std::array<float, 3>& xyz) {
   return voxels_.insert(key).second;
 }
 
-/// Moves the point. Returns true if it stays.
+/// Moves the point by pose and transform. Returns false if the point is to be removed.
 bool PointFilter::Keeps(std::array<float, 3>* xyz) {
   const PointFilterSettings& s = settings_;
   const auto square = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };

@@ -29,9 +29,9 @@ struct PointFilterSettings {
   double max_range_m = 0;                         // 0: no limit
   bool has_pose = false;                          // clouds have a pose that moves them
   std::optional<Transform> transform;             // applied after the pose
-  std::optional<std::array<double, 6>> crop_box;  // least and largest x, y, z, as transformed [m]
+  std::optional<std::array<double, 6>> crop_box;  // least, then largest x, y, z, transformed [m]
   bool crop_inside = false;                       // removes the inside of the box
-  double voxel_size_m = 0;                        // one point in each cube stays; 0: all
+  double voxel_size_m = 0;                        // one point in each cube is kept; 0: all
   InvalidPoints invalid = InvalidPoints::kKeep;
 
   bool needs_xyz() const {

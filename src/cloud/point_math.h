@@ -33,7 +33,7 @@ inline bool IsReturn(const std::array<float, 3>& p) {
   return IsFinite(p) && (p[0] != 0 || p[1] != 0 || p[2] != 0);
 }
 
-/// Distance between two points of three coordinates.
+/// Square of the distance between two points of three coordinates.
 inline double SquaredDistance(const float* a, const float* b) {
   double sum = 0;
   for (unsigned k = 0; k < 3; ++k) {

@@ -10,7 +10,7 @@ namespace lidar {
 namespace {
 
 constexpr double kFloatRounding = 1e-5;  // of the range
-constexpr std::size_t kLookAhead = 256;  // points in which a return is searched
+constexpr std::size_t kLookAhead = 256;  // points that are searched for a return
 
 }  // namespace
 

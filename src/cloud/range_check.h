@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Checks that points stand where their ranges and the sensor model put them.
+// Checks that the positions of points agree with their ranges and the sensor model.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace lidar {
 
-/// Detects points that an element behind the sensor has moved: coding only ranges would undo the
-/// motion.
+/// Detects points that an element between source and encoder has moved: coding only ranges would
+/// undo the motion.
 class RangeCheck {
  public:
-  /// Returns nothing if the fields lack the range, or x, y and z side by side.
+  /// Returns nothing if the fields lack the range, or x, y and z as adjacent F32.
   static std::optional<RangeCheck> Create(const PointFields& fields, std::uint32_t point_step,
                                           const SensorModel& model);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The grid for rounding ranges: any step, with an exact error in the sensor's unit.
+// The grid for rounding ranges: has any step, and an exact bound of the error.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -74,7 +74,7 @@ class RangeGrid {
         : per_mm_(1.0 / grid.unit_mm_), per_part_(1.0 / grid.parts_) {}
     /// `range_mm` is up to kMaxRangeMm.
     std::uint32_t Of(std::uint32_t range_mm) const {
-      // A half keeps quotients away from the next integer by more than rounding moves them.
+      // The half keeps a quotient farther from the next integer than rounding can move it.
       const auto cells =
           static_cast<std::int32_t>((static_cast<std::int32_t>(range_mm) + 0.5) * per_mm_);
       return static_cast<std::uint32_t>(
@@ -93,11 +93,11 @@ class RangeGrid {
     const std::uint32_t back = RangeOf(bin);
     return back > 0 && (back > range_mm ? back - range_mm : range_mm - back) <= error_mm;
   }
-  /// RangeOf() for all of a list of bins; false if a range is above kMaxRangeMm.
+  /// Replaces each bin by RangeOf(bin). Returns false if a range is above kMaxRangeMm.
   bool ToRanges(std::vector<std::int32_t>* bins) const {
     std::uint32_t last = 0;
     for (const std::int32_t bin : *bins) last |= static_cast<std::uint32_t>(bin);
-    // This `last` is at least the largest bin, and less than twice the largest bin.
+    // The OR of all bins is at least the largest bin, and less than twice the largest bin.
     const std::uint64_t parts = (last + std::uint64_t{1}) * parts_ + kParts;
     // Usually 32 bits suffice, and a processor can compute several numbers at once.
     if (parts <= UINT32_MAX && 2 * unit_mm_ * (parts / kParts + 1) <= kMaxRangeMm) {

@@ -30,7 +30,7 @@ V Load(const T* from) {
   return v;
 }
 
-/// Interleaves the coordinates of four points, each with the four bytes behind it.
+/// Writes four points: x, y and z of each, and the four bytes of `behind` if `bytes` includes them.
 void StorePoints(Floats x, Floats y, Floats z, Floats behind, std::size_t bytes, std::uint8_t* to,
                  std::size_t point_step) {
   const Floats xy_low = __builtin_shufflevector(x, y, 0, 4, 1, 5);
@@ -115,7 +115,7 @@ double RangeProjection::RangeOf(std::uint32_t beam, std::uint32_t column, const 
   return 1e3 * static_cast<double>(along + beam_origin_m_);
 }
 
-/// Computes four columns at a time as Point() does.
+/// Computes the same as Point(), for four columns at a time.
 template <bool kBehind>
 void RangeProjection::ProjectRun(const Run& run, const std::uint32_t* behind) const {
   constexpr std::uint32_t kAtOnce = 4;

@@ -43,7 +43,7 @@ class RangeProjection {
  private:
   using Vector = std::array<float, 3>;
   struct Column {
-    std::array<float, 9> rotation;  // lidar_to_sensor after the encoder's turn
+    std::array<float, 9> rotation;  // by the encoder, then by lidar_to_sensor
     Vector offset;                  // of the beams' origin, in metres
   };
 

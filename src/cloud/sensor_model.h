@@ -11,7 +11,7 @@
 namespace lidar {
 
 struct Beam {
-  double azimuth_deg = 0;   // Ouster's beam_azimuth_angles: clockwise, about the encoder's angle
+  double azimuth_deg = 0;   // Ouster's beam_azimuth_angles: clockwise from the encoder's angle
   double altitude_deg = 0;  // above the horizon
   int pixel_shift = 0;      // destaggered column = (column + pixel_shift) mod columns_per_scan
 };
@@ -31,7 +31,7 @@ struct SensorModel {
   /// The caps field `sensor-model` (docs/wire-format.md): little-endian, versioned.
   std::vector<std::uint8_t> Serialise() const;
   /// Returns nothing for a newer version, a wrong length, more than kMaxBeams or kMaxColumns, or
-  /// numbers that are not finite.
+  /// numbers that are not finite or implausibly large.
   static std::optional<SensorModel> Parse(ByteView bytes);
 
   static constexpr std::uint32_t kMaxBeams = 1024;

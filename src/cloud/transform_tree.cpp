@@ -16,9 +16,9 @@ using Position = std::array<double, 3>;
 
 /// tf2's tolerance for a unit quaternion.
 constexpr double kUnitTolerance = 0.01;
-/// No robot is farther away than the moon, so sums stay finite [m].
+/// A robot is never as far as the moon. The limit keeps sums finite [m].
 constexpr double kFarthest = 1e9;
-/// Greatest depth of frames; deeper ones form a circle.
+/// Greatest depth of frames: a longer path is assumed to be a circle.
 constexpr std::size_t kMaxDepth = 64;
 /// Orientations whose cosine is above this are interpolated along a straight line.
 constexpr double kNearlyParallel = 0.9995;
@@ -118,7 +118,7 @@ bool TransformTree::Set(std::string parent, std::string child, Time at, const Fr
     return true;
   }
   link.earlier.Add(parent, sample);
-  // too_old counts also poses that `earlier` has dropped because they are far from its newest.
+  // too_old counts also poses that `earlier` has dropped because they are far from its newest pose.
   if (++link.too_old < kRestart) return false;
   link.history = std::exchange(link.earlier, {});
   link.too_old = 0;
@@ -129,7 +129,7 @@ bool TransformTree::Link::IsTooOld(Time at) const {
   return !history.samples.empty() && history.samples.back().at - at > kHistory;
 }
 
-/// A frame has one parent: a pose in another one clears the history.
+/// A frame has one parent: a pose in another parent clears the history.
 void TransformTree::History::Add(const std::string& of, const Sample& sample) {
   if (parent != of) *this = {of, {}};
   const auto place = std::lower_bound(samples.begin(), samples.end(), sample.at,

@@ -37,10 +37,10 @@ class TransformTree {
   struct Answer {
     std::optional<Transform> transform;  // takes points of the source to the target
     std::string why;                     // why there is none, for a user
-    bool may_come = false;               // a later pose may give one
-    Time newest{};                       // newest pose of the frame that lacks a later one
+    bool may_come = false;               // a later pose may lead to a transform
+    Time newest{};                       // of the newest pose, if a later pose is needed
   };
-  /// Poses are interpolated between two times. Without a time the newest poses count.
+  /// Poses are interpolated between two times. Without a time the newest poses are used.
   Answer Find(const std::string& target, const std::string& source, std::optional<Time> at) const;
 
   std::size_t frames() const { return links_.size(); }
