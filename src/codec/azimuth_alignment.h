@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which pixels of neighbouring beams look into the same direction.
+// Finds the pixels of neighbouring beams that look into the same direction.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace lidar::codec {
 
 /// The beams of a spinning sensor fire together at different azimuths, so a column of the slice is
-/// skewed. Coding goes beam by beam, and remembers a value for each azimuth from the beams above:
-/// pixel i of beam b finds its neighbours at AlignedRow::At(b)[i - 1 .. i + 1].
+/// skewed. Coders go beam by beam, and keep a value of the beams above for each azimuth: the
+/// neighbours of pixel i of beam b are AlignedRow::At(b)[i - 1 .. i + 1].
 class AzimuthAlignment {
  public:
   AzimuthAlignment() = default;

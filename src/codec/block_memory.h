@@ -19,7 +19,7 @@ struct PixelMemory {
   std::uint32_t mean = 0;    // of the range, in 1/8 mm
   std::uint16_t spread = 0;  // mean distance from the mean, in 1/8 mm
   std::uint8_t count = 0;    // returns in the mean, up to kMostCount
-  std::uint8_t returns = 0;  // the last 8 scans, 1: with a return; the newest in bit 0
+  std::uint8_t returns = 0;  // bit n: the n-th scan before the newest one had a return
 
   static constexpr std::uint32_t kPerMm = 8;
   static constexpr std::uint8_t kMostCount = 16;
@@ -49,12 +49,12 @@ struct BlockMemory {
   }
   std::size_t bytes() const { return sizeof *this + pixels.size() * sizeof(PixelMemory); }
 };
-/// Encoders, decoders and stores hold the same memory, so it is constant.
+/// Encoders, decoders and stores share a memory, so it is constant.
 using BlockMemoryPtr = std::shared_ptr<const BlockMemory>;
 
-/// References of a block.
+/// The memories before and after a block.
 struct BlockLink {
-  BlockMemoryPtr reference;           // memory to code by; null: the block stands alone
+  BlockMemoryPtr reference;           // memory that the block is coded with; null: none
   std::shared_ptr<BlockMemory> left;  // the block's own memory; null: no block can refer to it
 };
 

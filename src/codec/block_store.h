@@ -9,15 +9,15 @@
 
 namespace lidar::codec {
 
-/// An encoder refers to newer and newer blocks of a sector, so blocks older than a reference can
-/// go.
+/// An encoder refers to newer and newer blocks of a sector, so blocks older than a reference can be
+/// dropped.
 class BlockStore {
  public:
-  /// Most blocks of a sector, and bytes of all blocks. Encoders keep to lower limits, so that their
-  /// references are still here.
+  /// Limits of the blocks of a sector, and of the bytes of all blocks. Encoders have lower limits,
+  /// so a block to which they refer is still here.
   static constexpr std::size_t kMostOfSector = 24;
   static constexpr std::size_t kMostBytes = 64U << 20;
-  /// Number of blocks kept before a reference, for late slices.
+  /// Number of blocks older than a reference that are kept for late slices.
   static constexpr std::size_t kOvertaking = 3;
 
   void Add(BlockMemoryPtr block);

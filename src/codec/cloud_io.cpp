@@ -74,7 +74,7 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
   for (std::size_t i = 0; i < count; ++i, point += layout.point_step)
     image->ranges[i] = Load<std::uint32_t>(point);
   if (!with_intensity || !HasIntensity(layout.fields)) return FullScale::kByte;
-  // Drivers leave any number at a missing return, which must not set the scale of the others.
+  // A driver may leave any number at a missing return. It must not set the scale of the others.
   const std::uint8_t* first = raw.data + layout.fields.Find("intensity")->offset;
   const auto intensity_of = [&](std::size_t i) {
     const auto value = Load<float>(first + i * layout.point_step);
@@ -109,7 +109,7 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
   const std::size_t count = raw.size / layout.point_step;
   const std::uint32_t xyz_offset = layout.fields.Find("x")->offset;
   const PointField* intensity = with_intensity ? layout.fields.Find("intensity") : nullptr;
-  cloud->xyz.resize(3 * count);  // a large cloud before this one leaves no zeros to write
+  cloud->xyz.resize(3 * count);  // writes no zeros if the last cloud was as large
   float* next = cloud->xyz.data();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* point = raw.data + i * layout.point_step;

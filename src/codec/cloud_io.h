@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts raw clouds, as they lie in buffers, to what the codecs work on, and back.
+// Converts the raw clouds of buffers to the input of the codecs, and back.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -35,13 +35,13 @@ struct CloudLayout {
   }
 };
 
-/// What the caps say of every raw slice of a stream.
+/// The contents of a stream's caps, which apply to each raw slice.
 struct CloudFormat {
   CloudLayout layout;
   std::uint32_t height = 1;  // beams, if the cloud is organised
   std::optional<SensorModel> sensor_model;
 
-  /// Whether slices can be coded in range geometry.
+  /// Returns true if slices can be coded in range geometry.
   bool HasRanges() const;
 };
 
@@ -58,21 +58,22 @@ std::vector<PointField> ExactFields(const PointFields& kept);
 bool HasIntensity(const PointFields& fields);
 
 /// Fills `image`, whose beams, columns and first_column are set, from the points of `raw`, one for
-/// each pixel. Intensities, if they are wanted and there, become levels of kFineIntensityBits.
+/// each pixel. Intensities, if they are wanted and present, become levels of kFineIntensityBits.
 /// Returns the full scale of the levels.
 FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
                          RangeImage* image);
 /// The common divisor of all ranges [mm]: coarser than the sensor's unit, or finer if the cloud was
-/// filtered. If it is above RangeGrid::kMaxUnitMm, or without returns, the result is the largest
-/// divisor of the sensor's unit that divides all ranges.
+/// filtered. If it is above RangeGrid::kMaxUnitMm, or if there are no returns, the result is the
+/// largest divisor of the sensor's unit that divides all ranges.
 std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm);
 
 /// Fills `cloud` with the points of `raw` that are finite and not all zero. Intensities that are
-/// negative or not finite become 0. `rows`, if not null, becomes each point's place in `raw`.
+/// negative or not finite become 0. `rows`, if not null, gets the index of each point in `raw`.
 void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud,
              std::vector<std::uint32_t>* rows = nullptr);
 
-/// Writes `image` as points, missing ones as zeros; `raw` has image.size() * point_step bytes.
+/// Writes the pixels of `image` as points, missing returns as zeros; `raw` has image.size() *
+/// point_step bytes.
 void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
                      const RangeProjection& projection, const CloudLayout& layout,
                      std::uint8_t* raw);

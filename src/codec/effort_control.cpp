@@ -38,7 +38,7 @@ void EffortControl::OnSlice(Duration sweep, std::size_t returns, Duration spent)
   much_too_late_ = 0;
 }
 
-/// `cost` is the window's, in seconds a return.
+/// `cost` is that of the window [s per return].
 void EffortControl::Reconsider(double cost) {
   LearnRatio(cost);
   if (much_too_late_ >= kMuchTooLate || window_.late > kLatePart * window_.slices) {
@@ -52,8 +52,8 @@ void EffortControl::Reconsider(double cost) {
   ++effort_;
 }
 
-/// Learns a level's ratio from the first window after a raise, within bounds: a busy machine must
-/// not spoil the ratio for long.
+/// Updates a level's ratio by the first window after a raise. Bounds limit the change, because the
+/// machine may have been busy.
 void EffortControl::LearnRatio(double cost) {
   if (cost_below_ > 0 && cost > 0) {
     double& ratio = levels_[effort_].ratio;

@@ -26,7 +26,7 @@ class EffortControl {
   struct Window {
     Duration swept{};
     unsigned slices = 0;
-    unsigned late = 0;  // slices beyond their time
+    unsigned late = 0;  // slices that took more than the allowed time
     double spent_s = 0;
     double returns = 0;
     double most_returns_per_s = 0;  // a second of sweep

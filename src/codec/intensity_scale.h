@@ -38,7 +38,7 @@ class IntensityScale {
     const float top = static_cast<float>((1U << bits_) - 1);
     return static_cast<std::uint8_t>(level > 0 ? std::min(level, top) : 0.0F);
   }
-  /// Returns this scale's level for a level of the 8-bit scale of the same size.
+  /// Returns this scale's level for a level of the 8-bit scale with the same full scale.
   std::uint8_t Coarsen(std::uint8_t fine) const {
     if (full_ != FullScale::kOne) return static_cast<std::uint8_t>(fine >> (kMaxBits - bits_));
     return static_cast<std::uint8_t>((fine * ((1U << bits_) - 1) + 127) / 255);

@@ -36,8 +36,8 @@ std::uint32_t ErrorMm(const RangeGrid& grid) {
   return static_cast<std::uint32_t>(std::lround(1e3 * grid.error_m()));
 }
 
-/// Several bins may decode to within the error. Each return takes the bin nearest to what its pixel
-/// has seen.
+/// Several bins may decode to within the error. Each return takes the bin that is nearest to the
+/// mean in its pixel's memory.
 RangeImage AsRecalled(const RangeImage& image, const BlockMemory& memory, const RangeGrid& grid,
                       std::uint32_t error_mm) {
   RangeImage chosen = image;
@@ -116,7 +116,8 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
     EncodeByRans(&blended_mask_, &blended_, image.columns);
     return settings.coder;
   }
-  // The adaptive coder takes slices with too long ranges or too few bits for the mixing coder.
+  // The adaptive coder codes slices whose ranges are too long, or whose bits are too few, for the
+  // mixing coder.
   EncodeByRans(&mask_coder_, &coder_, image.columns);
   return RangeCoder::kAdaptive;
 }
@@ -136,8 +137,8 @@ bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& se
 }
 
 /// Estimates by the adaptive coder, which is ten times as fast. If the bins of a grid are mostly
-/// noise, finer ones cost it log2(1.5) = 0.58 bits a return more, and a choice between them saves
-/// nothing; on smooth surfaces they cost less.
+/// noise, finer bins cost log2(1.5) = 0.58 bits a return more, and a choice between them saves
+/// nothing. On smooth surfaces finer bins cost less than that.
 bool RangeEncoder::ChoiceSaves(const RangeImage& image, const RangeGrid& grid) {
   const double bits = AdaptiveBits(image, grid);
   const double finer = AdaptiveBits(image, FinerGrid(grid));
@@ -157,7 +158,7 @@ double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid
 }
 
 /// Returns false if no later block can refer to this one: then kMixing codes it. If bins may be
-/// chosen, codes it a second time on a finer grid and takes the smaller one.
+/// chosen, codes it a second time on a finer grid and takes the smaller result.
 bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& settings,
                                 BlockLink* link) {
   const BlockMemory* reference = link->reference.get();
@@ -179,8 +180,8 @@ bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& se
   return true;
 }
 
-/// Writes one payload of kTemporal. An `error_mm` above 0 is the one within which the
-/// bins of `image` were chosen.
+/// Writes one payload of kTemporal. If `error_mm` is above 0, the bins of `image` were chosen
+/// within this error.
 bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const RangeImage& image,
                             const RangeSettings& settings, BlockLink* link) {
   const BlockMemory* reference = link->reference.get();
@@ -205,8 +206,8 @@ bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
   mask_.resize(image.size());
   lists_.values.resize(image.size());
-  // This is BinOf(), exact below 2^28. The half part keeps the quotient away from the next integer,
-  // by more than rounding moves it.
+  // This is BinOf(), exact below 2^28. The half part keeps the quotient farther from the next
+  // integer than rounding can move it.
   const RangeGrid& grid = settings.grid;
   const double per_mm = RangeGrid::kParts / (1.0 * grid.parts() * grid.unit_mm());
   const double half_part = 0.5 / grid.parts();
@@ -216,7 +217,7 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
   for (std::size_t i = 0; i < size; ++i) mask[i] = ranges[i] != 0 ? 1 : 0;
   std::int32_t* const values = lists_.values.data();
   std::size_t count = 0;
-  // Most pixels are empty in a cloud whose near points are in cells.
+  // Tests several pixels at once: most are empty in a cloud whose near points are in cells.
   constexpr std::size_t kAtOnce = 8;
   for (std::size_t first = 0; first < size; first += kAtOnce) {
     const std::size_t end = std::min(first + kAtOnce, size);
@@ -309,7 +310,7 @@ double RangeDecoder::error_m() const {
   return was_chosen ? 1e-3 * mixing_.error_mm() : header_.grid.error_m();
 }
 
-/// If there is a store, `left` is what the block leaves for it.
+/// If there is a store, `left` gets the block's memory for it.
 bool RangeDecoder::DecodeLinked(const RangeHeader& header, ByteView payload, BlockStore* store,
                                 RangeImage* image, std::shared_ptr<BlockMemory>* left) {
   ByteReader reader(payload);

@@ -32,7 +32,8 @@ struct RangeSettings {
 /// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
 class RangeEncoder {
  public:
-  /// `integers` codes the payloads that are not our own; it may be null, and must outlive this.
+  /// `integers` codes the payloads of external coders. It may be null, and must outlive the
+  /// encoder.
   explicit RangeEncoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
       : alignment_(model), integers_(integers), mixing_(model) {}
 
@@ -78,15 +79,15 @@ class RangeEncoder {
 /// Decodes blocks of one sensor; any bytes give an image or false.
 class RangeDecoder {
  public:
-  /// If `integers` is missing, blocks of coders that are not our own are refused.
+  /// If `integers` is null, blocks of external coders are refused.
   explicit RangeDecoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
       : alignment_(model), integers_(integers), mixing_(model) {}
 
   std::uint32_t columns_per_scan() const { return alignment_.columns_per_scan(); }
 
-  /// Decodes the next block of `reader`; `scale` is that of the levels. Returns false, with `image`
-  /// undefined, for a block that is damaged, of another sensor, or of more than `max_points`.
-  /// Blocks that others may refer to go into `store`, and references come from there.
+  /// Decodes the next block of `reader`; `scale` gets the scale of the levels. Returns false, with
+  /// `image` undefined, for a block that is damaged, of another sensor, or larger than
+  /// `max_points`. Blocks that others may refer to go into `store`, and references come from there.
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale,
               BlockStore* store = nullptr);
   /// Returns true if the last Decode() failed because a block that it refers to is missing.
@@ -104,7 +105,7 @@ class RangeDecoder {
                     RangeImage* image);
   bool DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
                       RangeImage* image);
-  /// Spreads the lists, which are ranges by now, over the pixels that have returns.
+  /// Spreads the lists, which now hold ranges, over the pixels that have returns.
   void Scatter(RangeImage* image);
 
   AzimuthAlignment alignment_;

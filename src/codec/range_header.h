@@ -29,12 +29,12 @@ struct RangeHeader {
   RangeGrid grid;
   IntensityScale intensity;        // 0 bits: geometry only
   std::uint32_t kept_beams = 0;    // number of beams if others were left out to save bits; 0: all
-  bool has_gaps = false;           // some pixels have no return; a mask says which
+  bool has_gaps = false;           // some pixels have no return; a mask marks the others
   std::uint32_t mask_size = 0;     // bytes of the mask, if it is a stream of its own
   std::uint32_t payload_size = 0;  // bytes of the payload, which follows the mask
 
   void Write(std::vector<std::uint8_t>* out) const;
-  /// Reads a header and leaves `reader` behind it. Returns nothing for an unknown version or coder,
+  /// Reads a header and moves `reader` past it. Returns nothing for an unknown version or coder,
   /// numbers outside of their limits, or lengths past the end.
   static std::optional<RangeHeader> Read(ByteReader* reader);
 

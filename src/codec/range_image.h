@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One slice of an organised scan as integers, as the range codec takes and gives it.
+// One slice of an organised scan as integers, the input and the output of the range codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace lidar::codec {
 
-/// Row-major, beam by beam: a return is [beam * columns + i].
+/// Row-major, beam by beam: pixel i of a beam is at [beam * columns + i].
 struct RangeImage {
   std::uint32_t beams = 0;
   std::uint32_t columns = 0;

@@ -56,7 +56,8 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
   if (now < alone_since_) return false;
   Slot& slot = slots_[slice.index];
   if (key_interval_ > Duration{0}) {
-    // Slices stand alone in turn: all of one scan together would make it much larger than others.
+    // The sectors stand alone in different scans: a scan of such slices only would be much larger
+    // than others.
     const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
     const auto turn = [&](Time t) { return (t.time_since_epoch() + head_start) / key_interval_; };
     if (turn(now) != turn(slot.begun.value_or(now))) Restart(&slot);
@@ -77,7 +78,7 @@ BlockMemoryPtr ReferenceKeeper::Reference(const RangeImage& image) const {
 
 void ReferenceKeeper::OnEncoded(std::vector<BlockMemoryPtr> blocks) {
   if (current_ == nullptr || blocks.empty()) return;
-  // An acknowledgement names a scan, so it cannot distinguish two slices of one scan.
+  // An acknowledgement has only scan id and index, which must not stand for two slices.
   const auto same = [&](const Sent& sent) { return sent.scan_id == name_.scan_id; };
   if (std::any_of(current_->sent.begin(), current_->sent.end(), same)) return Restart(current_);
   for (const BlockMemoryPtr& block : blocks) bytes_ += block->bytes();

@@ -40,9 +40,9 @@ class ReferenceKeeper {
   std::vector<BlockMemoryPtr> references() const {
     return HasReference() ? current_->reference : std::vector<BlockMemoryPtr>{};
   }
-  /// Returns the earlier slice's block at the place of `image`, or null.
+  /// Returns the earlier slice's block with the columns of `image`, or null.
   BlockMemoryPtr Reference(const RangeImage& image) const;
-  /// Takes the memories of the blocks of the slice that Begin() began, once at most.
+  /// Takes the memories of the blocks of the slice that Begin() began. Call it once at most.
   void OnEncoded(std::vector<BlockMemoryPtr> blocks);
 
   /// Bytes of all memories.
@@ -51,7 +51,7 @@ class ReferenceKeeper {
   /// Lower than the limits of BlockStore, because slices may be reordered.
   static constexpr std::size_t kMostOfSlice = 20;
   static constexpr std::size_t kMostBytes = 48U << 20;
-  /// Silence after which a receiver is gone.
+  /// Silence after which a receiver is assumed to be gone.
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
  private:

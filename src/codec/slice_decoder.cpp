@@ -25,7 +25,7 @@ std::optional<SliceDecoder::Shape> SliceDecoder::Decode(ByteView stream) {
   return Shape{image_.columns, image_.beams, image_.first_column, is_dense};
 }
 
-/// Decodes the blocks behind the first one and puts them to its right.
+/// Decodes the blocks after the first one and appends them on its right.
 bool SliceDecoder::AppendBlocks(ByteReader* reader) {
   const std::uint32_t turn = decoder_.columns_per_scan();
   std::uint32_t columns = image_.columns;

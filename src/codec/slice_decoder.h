@@ -15,7 +15,7 @@ namespace lidar::codec {
 class SliceDecoder {
  public:
   /// `format` must have a sensor model. `integers` must outlive the decoder; if it is null, slices
-  /// of coders that are not our own are refused.
+  /// of external coders are refused.
   SliceDecoder(const CloudFormat& format, std::uint32_t max_points,
                const IntegerCoder* integers = nullptr);
 

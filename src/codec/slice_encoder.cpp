@@ -26,7 +26,7 @@ void CopySector(const RangeImage& image, std::uint32_t first, RangeImage* sector
   }
 }
 
-/// Calls task(0 .. count - 1), each in a thread of its own while the system gives threads.
+/// Calls task(0 .. count - 1), each in a thread of its own as long as the system provides threads.
 template <class Task>
 void CallInThreads(std::uint32_t count, const Task& task) {
   std::vector<std::thread> workers;
@@ -35,7 +35,7 @@ void CallInThreads(std::uint32_t count, const Task& task) {
   try {
     for (; next < count; ++next) workers.emplace_back(std::cref(task), next);
   } catch (const std::system_error&) {
-    // This thread does the rest.
+    // This thread calls the other tasks.
   }
   task(0);
   for (; next < count; ++next) task(next);

@@ -42,8 +42,7 @@ class SliceEncoder {
                                             RangeCoder coder = RangeCoder::kAdaptive,
                                             const IntegerCoder* integers = nullptr);
 
-  /// Takes the ranges out of `raw`, which holds whole beams of the format, and keeps them for
-  /// Encode().
+  /// Loads the ranges of `raw`, which holds whole beams of the format, for Encode().
   void Load(ByteView raw, std::uint32_t first_column, bool with_intensity);
   /// Number of returns that are loaded.
   std::size_t returns() const { return returns_; }
@@ -52,23 +51,23 @@ class SliceEncoder {
   /// Resolution of the loaded ranges [mm]: their CommonUnit().
   std::uint32_t range_unit_mm() const { return unit_mm_; }
   bool has_intensity() const { return has_intensity_; }
-  /// Names the coder for statistics and predictors: "range-adaptive", "range-mixing2",
-  /// "range-temporal2".
+  /// Returns the name of the coder for statistics and predictors: "range-adaptive",
+  /// "range-mixing2", "range-temporal2".
   std::string Mode() const;
   /// Lets the loaded slice refer to those that the receiver has, if that saves bits and the effort
-  /// is above 0. `keeper` has begun this slice, and outlives its coding. Null: slices stand alone.
+  /// is above 0. `keeper` has begun this slice, and must outlive its coding. Null: slices stand
+  /// alone.
   void LinkBy(const ReferenceKeeper* keeper);
   /// Effort of our own coder: 0 is RangeCoder::kAdaptive, 1 to EffortControl::kHighest are kMixing,
-  /// each slower and smaller than the one below.
+  /// each slower than the one below, with smaller slices.
   void set_effort(unsigned effort);
 
-  /// Keeps `kept` of the loaded beams.
+  /// Keeps the loaded beams whose element of `kept` is true.
   void Thin(const std::vector<bool>& kept);
   /// Number of beams that Thin() chooses from.
   std::size_t rows() const { return image_.beams; }
 
-  /// Most blocks of a whole scan. Each has a thread of its own, and at least kMinBlockReturns
-  /// returns.
+  /// Most blocks of a slice. Each has a thread of its own, and at least kMinBlockReturns returns.
   void set_threads(unsigned threads) { threads_ = threads; }
 
   /// Encodes the loaded slice; may be called again.

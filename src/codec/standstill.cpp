@@ -6,10 +6,10 @@
 namespace lidar::codec {
 namespace {
 
-// Distance that a return without a prediction counts as [steps].
+// Assumed distance of a return without a prediction [steps].
 constexpr double kSurpriseSteps = 8;
 
-/// Distances cost about their logarithm.
+/// Returns the bits that a distance costs, roughly.
 double Cost(double steps) { return std::log2(1 + steps); }
 
 /// `recalled(i)` is the earlier range of pixel i [mm]; 0: unknown.

@@ -10,8 +10,8 @@
 
 namespace lidar::codec {
 
-/// Returns true if the memory predicts `image` better than its own pixels do, on a grid of
-/// `step_m`.
+/// Returns true if the memory predicts the pixels of `image` better than their left neighbours do,
+/// on a grid of `step_m`.
 bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m);
 
 /// Compares each slice with the last one of the same sector.

@@ -37,7 +37,7 @@ class Placer {
     placed_.resize(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) PlaceOnBeam(locator, points_[i], &placed_[i]);
   }
-  /// Places points that are on beams. Returns the part of them near their pixels.
+  /// Places points that are already on beams. Returns the part of the points near their pixels.
   double PlaceInColumns() {
     const ColumnFinder finder(table_);
     std::size_t near = 0;
@@ -100,7 +100,7 @@ double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>
   return PartOf(near, points.size());
 }
 
-/// Turns all beams by the most common distance of points from their columns.
+/// Turns all beams by the mean distance of the points from their columns.
 void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
   const double columns = 2 * M_PI * table->turn / BeamTable::kParts / kTurn;
   std::complex<double> phases;
@@ -112,7 +112,7 @@ void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
 
 }  // namespace
 
-/// Finds the path of the points. Returns false if most are not on it.
+/// Finds the path of the points. Returns false if too few of them are on it.
 bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points,
                                 const std::vector<Pulse>& pulses,
                                 std::vector<PlacedPoint>* placed) {
@@ -125,7 +125,7 @@ bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points,
   return true;
 }
 
-/// Returns false if the points fit worse than before.
+/// Places points by the beams of earlier clouds. Returns false if they fit worse than those clouds.
 bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
                             std::vector<PlacedPoint>* placed) {
   constexpr double kAlike = 0.97;
@@ -160,7 +160,7 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   constexpr unsigned kAtFirst = 4;
   const bool is_power = (fails_ & (fails_ - 1)) == 0;
   if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0) {
-    // A search that found no path has placed no point.
+    // If the beams are on a path, no points are placed, because the search has failed.
     return table_ && !table_->has_path() ? &*table_ : nullptr;
   }
   if (PlaceOnNewPath(points, pulses, placed)) {

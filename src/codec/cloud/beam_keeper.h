@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Keeps the beams of a stream's clouds: a search takes long, a check does not.
+// Keeps the beams of a stream from cloud to cloud: a check takes less time than a search.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,7 +13,7 @@ namespace lidar::codec::cloud {
 struct PlacedPoint {
   double along_m = 0;         // distance along the beam
   double above_m = 0;         // height of the point above it; 0 if beams bend
-  std::int32_t azimuth = 0;   // less what the side of the beam adds
+  std::int32_t azimuth = 0;   // without the angle that the beam's side adds
   std::int32_t residual = 0;  // distance from the column's azimuth
   std::int32_t bend = 0;      // elevation above the beam's, if beams bend or are on a path
   std::uint32_t beam = 0;
@@ -31,10 +31,10 @@ class BeamKeeper {
   /// Larger clouds exceed the pixels of an image, and a search in them takes seconds.
   static constexpr std::size_t kMostPoints = 1U << 20;
 
-  /// Places `points`, a part of the points of a cloud, in beams of earlier clouds if they fit, else
-  /// in new ones, found in `all` points. Returns null if there are no beams. After failures it
-  /// searches more rarely. `pulses`: one for each of `points`; if empty, beams on a path are not
-  /// found.
+  /// Places `points` on the beams of earlier clouds. If they do not fit, it finds new beams in
+  /// `all`, the points of the cloud to which `points` belong; after many failures, only in some
+  /// clouds. Returns null if there are no beams. `pulses` has one pulse for each of `points`; if it
+  /// is empty, no beams on a path are found.
   const BeamTable* Place(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
                          const std::vector<Point>& all, std::vector<PlacedPoint>* placed);
   /// The beams of the last cloud, or null.

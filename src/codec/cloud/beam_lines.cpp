@@ -10,7 +10,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Limits of a beam's elevations, in units: the gap to the next beam, and the width of a beam.
+/// Limits of elevations, in units: the least gap between two beams, and the greatest width of a
+/// beam.
 constexpr double kGap = 60;         // 0.005 degrees
 constexpr double kWidest = 350;     // 0.03 degrees
 constexpr std::size_t kFewest = 8;  // points
@@ -115,11 +116,11 @@ class NearestLine {
   }
   /// Returns the beam whose line is nearest within `reach_m`, except `other_than`; null: none.
   FoundBeam* Find(const Sighting& s, double reach_m, const FoundBeam* other_than = nullptr) const {
-    constexpr double kSteepest = 1.81;      // length of a line of kMostTangent by its rho
+    constexpr double kSteepest = 1.81;      // length of a line of kMostTangent, divided by its rho
     constexpr std::ptrdiff_t kAround = 32;  // bounds the time if many lines are near a point
     const double rho = std::max(s.rho_m, 1e-3);
-    // Lines with tangents outside of these limits pass the point at a larger distance, whatever
-    // their height.
+    // Lines with tangents outside of these limits pass the point at a distance above reach_m,
+    // whatever their height.
     const std::ptrdiff_t first = Below((s.z_m - low_ + kSteepest * reach_m) / rho);
     const std::ptrdiff_t end = Below((s.z_m - high_ - kSteepest * reach_m) / rho);
     const std::ptrdiff_t middle = Below((s.z_m - middle_) / rho);
@@ -160,7 +161,7 @@ void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* fou
   }
 }
 
-/// Drops beams whose points other lines hold as well, the smallest first.
+/// Drops a beam if other lines are near to most of its points, too. Begins with the smallest beam.
 void DropNeedless(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
   constexpr double kMost = 0.8;
   const NearestLine lines(&found->beams);
@@ -182,7 +183,7 @@ void DropNeedless(const std::vector<Sighting>& points, double reach_m, FoundBeam
 
 /// Fits a line by least squares. The old height is a prior.
 void Refit(const std::vector<Sighting>& points, FoundBeam* beam) {
-  constexpr double kPrior = 0.01;  // weight of a square metre, in points
+  constexpr double kPrior = 0.01;  // weight of the prior for each point [m^2]
   const auto n = static_cast<double>(beam->points.size());
   double rho = 0;
   double z = 0;
@@ -214,7 +215,7 @@ std::vector<Sighting> Others(const std::vector<Sighting>& points, const FoundBea
   return others;
 }
 
-/// Drops beams of too few points, and sorts the others.
+/// Drops beams with too few points or at an implausible height, and sorts the others.
 void DropWeakBeams(std::size_t fewest, FoundBeams* found) {
   auto& beams = found->beams;
   beams.erase(std::remove_if(beams.begin(), beams.end(),
@@ -227,7 +228,7 @@ void DropWeakBeams(std::size_t fewest, FoundBeams* found) {
             [](const FoundBeam& a, const FoundBeam& b) { return a.line.tangent > b.line.tangent; });
 }
 
-/// Finds bending beams as peaks of the elevations.
+/// Finds bending beams as peaks in the histogram of the elevations.
 class BendingBeams {
  public:
   explicit BendingBeams(const std::vector<Sighting>& points) : points_(points) {
@@ -279,7 +280,7 @@ class BendingBeams {
     if (i == 0) return 0;
     return i == peaks_.size() || peaks_[i - 1] - at < at - peaks_[i] ? i - 1 : i;
   }
-  /// Returns the tangent of the middle point.
+  /// Returns the tangent of the point with the median elevation.
   double MiddleOf(std::vector<std::uint32_t> beam) const {
     if (beam.empty()) return 0;
     const auto middle = beam.begin() + static_cast<std::ptrdiff_t>(beam.size() / 2);
@@ -291,7 +292,7 @@ class BendingBeams {
 
   const std::vector<Sighting>& points_;
   std::vector<double> classes_;  // of the points' elevations
-  std::vector<double> peaks_;    // falling
+  std::vector<double> peaks_;    // in falling order
 };
 
 }  // namespace
@@ -327,7 +328,7 @@ FoundBeams FindBendingBeams(const std::vector<Sighting>& points) {
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
   FoundBeams found;
   for (const BeamLine& line : FirstLines(points)) found.beams.push_back({line, {}});
-  // The lines found so far are fitted first, because further lines show only once their points are
+  // Fits the lines found so far first: further lines show only after the points of these lines are
   // left out.
   for (const double reach_m : {0.04, 0.02}) {
     Assign(points, reach_m, &found);

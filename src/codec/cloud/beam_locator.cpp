@@ -28,9 +28,9 @@ BeamLocator::BeamLocator(const BeamTable& table) {
   for (std::uint32_t beam = 0; beam < lines_.size(); ++beam) far_m_.push_back(FarFrom(beam));
 }
 
-/// Returns a distance along the ground. Each point farther away that has this guess is nearer to
-/// line `guess` or to the next one than to other lines around them. The point's slope, as seen from
-/// the middle height, is between those of the two lines, or less by the width of a bucket.
+/// Returns a distance along the ground. Line `guess` or the next one is the nearest line to each
+/// point that has this guess and is farther away. The point's slope, as seen from the middle
+/// height, is between the slopes of these two lines, or less by up to the width of a bucket.
 double BeamLocator::FarFrom(std::uint32_t guess) const {
   const auto beams = static_cast<std::uint32_t>(lines_.size());
   constexpr double kNever = std::numeric_limits<double>::infinity();

@@ -67,7 +67,7 @@ class BeamLocator {
   double middle_height_m_ = 0;
   std::uint32_t around_ = 0;            // beams on each side of the guess that may be nearer
   std::vector<std::uint16_t> buckets_;  // the last beam above each bucket
-  std::vector<double> far_m_;  // of each guess: from here on, no beams around it are nearer
+  std::vector<double> far_m_;           // FarFrom() of each guess
 };
 
 }  // namespace lidar::codec::cloud

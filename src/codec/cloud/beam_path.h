@@ -48,7 +48,7 @@ class BeamPath {
                                    std::uint32_t count) const;
 
  private:
-  std::int32_t rate_;  // units in 1/2^kRateBits
+  std::int32_t rate_;  // in 1/2^kRateBits units a column
   std::uint32_t columns_;
 };
 

@@ -51,7 +51,7 @@ class LogSum {
   double bits_ = 0;
 };
 
-/// Chooses the guess with the shorter residuals.
+/// Chooses the guess with which residuals need the fewest bits.
 ResidualGuess BestGuess(const RangeImage& image, std::uint32_t tangent_um,
                         const std::vector<std::int32_t>& residuals) {
   std::array<LogSum, kResidualGuesses> costs{};
@@ -291,7 +291,7 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
 /// Writes the points of pixels.
 class PixelWriter {
  public:
-  /// Makes room for all points of the section behind those of `cloud`.
+  /// Makes room for all points of the section after those of `cloud`.
   PixelWriter(const DecodedSection& section, XyzCloud* cloud, PointPlaces* places)
       : section_(section), angles_(section.table), cloud_(*cloud), places_(places) {
     const std::size_t before = cloud->xyz.size();

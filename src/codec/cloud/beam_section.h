@@ -47,8 +47,8 @@ class BeamSectionEncoder {
 class BeamSectionDecoder {
  public:
   /// Appends the points of the next section of `reader`: beam by beam, in the order of columns, the
-  /// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with both
-  /// undefined, for a section that is damaged or of more than `max_points`.
+  /// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with `cloud`
+  /// and `places` undefined, if the section is damaged or has more than `max_points`.
   bool Decode(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
               XyzCloud* cloud, PointPlaces* places = nullptr);
 

@@ -261,7 +261,7 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
     if (!ok || !reader->ok() || (flags & (kOffsetsFlag | kReachesFlag)) != 0) return std::nullopt;
     return table;
   }
-  // The rest reads beams as earlier encoders wrote them.
+  // The code below reads beams as earlier encoders wrote them.
   std::int64_t elevation = kTurn / 4;
   Beam beam;
   for (std::uint32_t i = 0; i < rows; ++i) {

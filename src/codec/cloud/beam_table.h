@@ -29,7 +29,7 @@ struct Sighting {
   double z_m = 0;
   std::int32_t azimuth = 0;  // counter-clockwise, below kTurn
 };
-/// Takes the first `count` points.
+/// Converts the first `count` points.
 void SightAll(const std::vector<Point>& points, std::size_t count,
               std::vector<Sighting>* sightings);
 
@@ -68,11 +68,11 @@ struct BeamTable {
   std::uint32_t turn = 0;             // columns of a turn, in 1/kParts
   std::uint32_t period = 1;           // of the swings; 1: no swings
   std::vector<Beam> beams;            // top to bottom
-  std::uint32_t grains = 0;           // of a turn; 0: the columns are even
+  std::uint32_t grains = 0;           // number in a turn; 0: the columns have equal steps
   std::vector<std::uint32_t> places;  // of the columns, in grains, rising
   bool bends = false;                 // each point has its own elevation
-  bool beams_follow = true;           // CodeBeams() codes them; false: an old table has them
-  // Beams on a path have no other fields than these.
+  bool beams_follow = true;           // CodeBeams() codes the beams; false: an old table has them
+  // A table with a path uses only these fields.
   std::int32_t rate = 0;       // of the turn, for BeamPath; 0: no path
   std::vector<PathBeam> path;  // as many as beams
 
@@ -103,7 +103,7 @@ struct BeamTable {
     if (period > 1) azimuth += beams[beam].swings[column % period];
     return azimuth;
   }
-  /// Direction of an angle [units].
+  /// Cosine and sine of an angle [units].
   struct Slope {
     explicit Slope(double angle);
     double cosine;
@@ -119,7 +119,7 @@ struct BeamTable {
   static std::optional<BeamTable> Read(ByteReader* reader);
 };
 
-/// Returns what a beam that passes the origin adds to the azimuth of a point.
+/// Returns the angle that a beam beside the origin adds to the azimuth of a point.
 inline double SideAngle(const BeamTable::Beam& beam, double rho_m) {
   constexpr double kUnits = 1e-6 / kRadians;
   return beam.side_um == 0 ? 0 : kUnits * beam.side_um / std::max(rho_m, 1e-3);
@@ -135,7 +135,7 @@ inline std::int32_t ToNearest(double value) {
   return static_cast<std::int32_t>(value + std::copysign(0.5, value));
 }
 
-/// Azimuths of a table's pixels without a division for each.
+/// Computes the azimuths of a table's pixels without a division for each.
 class ColumnAngles {
  public:
   explicit ColumnAngles(const BeamTable& table);
@@ -156,7 +156,7 @@ class ColumnAngles {
 /// Finds the column of an azimuth.
 class ColumnFinder {
  public:
-  /// A column, and how far the azimuth is off.
+  /// A column, and the distance of the azimuth from it.
   struct Found {
     std::uint32_t column = 0;
     std::int32_t residual = 0;
@@ -171,8 +171,8 @@ class ColumnFinder {
   static constexpr unsigned kShift = kTurnBits - 14;  // to buckets
   const BeamTable& table_;
   ColumnAngles angles_;
-  std::vector<std::int32_t> around_;    // angles from that of the last column on to the second
-  std::vector<std::uint16_t> buckets_;  // first place from each bucket on; empty: even columns
+  std::vector<std::int32_t> around_;    // angles of the last firing, all firings and the first two
+  std::vector<std::uint16_t> buckets_;  // first firing from each bucket on; empty: equal steps
   std::vector<bool> swings_;            // has the beam swings?
 };
 

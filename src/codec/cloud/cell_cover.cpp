@@ -11,7 +11,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Margin for the rounding of floats: grids are finer by this part, and errors count as larger.
+/// Margin for the rounding of floats: grids are finer by this part, and errors are assumed to be
+/// larger.
 constexpr double kRoom = 1e-4;
 
 /// Does what std::floor() does, without a call.
@@ -124,7 +125,7 @@ class NearCells {
     }
     return sides;
   }
-  /// Bits of `i` say along which axes the cell is the neighbour.
+  /// Bit k of `i` is set if the cell is the neighbour along axis k.
   bool IsNear(const Sides& sides, unsigned i) const {
     return !(sides.squares[i & 1][0] + sides.squares[i >> 1 & 1][1] + sides.squares[i >> 2][2] >
              square_bound_);
@@ -136,7 +137,7 @@ class NearCells {
   double square_bound_;  // of the distance from a cell's middle
 };
 
-/// Points by their own cells, which merge.
+/// Points, grouped by their own cells. Merge() joins cells.
 class OwnCells {
  public:
   OwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
@@ -149,12 +150,14 @@ class OwnCells {
       const std::uint32_t index = IndexOf(own.key);
       Cell& cell = cells_[index];
       ++cell.count;
-      // Most cells have points on all sides, so that soon no other cell is near to all of them.
+      // Most cells have points on all sides, so after a few points no other cell is near to all of
+      // them.
       if (cell.around != 0) cell.around &= near.AroundOf(point, own);
       cell_of_point_.push_back(index);
     }
   }
-  /// Gives a cell's points to the neighbour with the most points, if all are near enough to it.
+  /// Gives a cell's points to a neighbour that is near enough to all of them, the one with the most
+  /// points.
   void Merge() {
     for (std::uint32_t i = 0; i < cells_.size(); ++i) {
       std::uint32_t best = i;
@@ -216,7 +219,7 @@ class OwnCells {
   std::vector<std::uint32_t> cell_of_point_;
 };
 
-/// Points and the cells that they may take.
+/// Points, and the cells to which each of them may belong.
 class Choices {
  public:
   Choices(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
@@ -234,7 +237,7 @@ class Choices {
   std::uint64_t CodeOf(std::uint32_t cell) const {
     return MortonCode(NodeMap::PositionOf(keys_[cell]));
   }
-  /// Returns how many of the remaining points may take this cell.
+  /// Returns the number of remaining points that may belong to this cell.
   std::uint32_t left(std::uint32_t cell) const { return left_[cell]; }
   /// Gives the cell all its remaining points, and appends them to `order`.
   void Take(std::uint32_t cell, std::vector<std::uint32_t>* order) {
@@ -291,8 +294,7 @@ class Choices {
   std::vector<std::uint8_t> taken_;
 };
 
-/// Lists of cells by the number of points that they may take, last in, first out. The numbers only
-/// fall.
+/// Stacks of cells, by the number of points that a cell may still get. This number only falls.
 class CellQueues {
  public:
   explicit CellQueues(const Choices& choices) : next_(choices.size()) {

@@ -29,7 +29,7 @@ struct CellGrid {
   }
   /// Middle of a cell, as decoders compute it.
   Point Middle(const CellPosition& cell, unsigned depth) const;
-  /// Coordinate of the middle, a float.
+  /// Coordinate of the middle, rounded to a float.
   double Middle(std::uint32_t at, unsigned depth) const {
     return MiddleFromCentre(static_cast<double>(at) - HalfOf(depth));
   }
@@ -44,11 +44,11 @@ struct CellGrid {
   bool Reaches(double farthest_m) const;
   /// Returns true if floats are fine enough for the error at `point`. A tree must reach the point.
   bool Holds(const Point& point) const;
-  /// Sum of a point's distances along the axes, up to which floats are fine enough.
+  /// Limit of the sum of a point's coordinates: up to it, floats are fine enough.
   double SurelyHolds() const;
 };
 
-/// Points by cells.
+/// Points, grouped by cells.
 struct CoveredPoints {
   CellList cells;
   std::vector<std::uint32_t> order;  // indices of the points, cell by cell
@@ -57,12 +57,12 @@ struct CoveredPoints {
 /// Gives each point its own cell. A tree of `depth` must hold all points.
 void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered);
-/// Does the same, but then gives cells to a neighbour whose middle is within the error of all their
-/// points. Fast, and nearly as good as CoverByFewCells().
+/// Does the same, but then joins a cell with a neighbour whose middle is within the error of all
+/// points of the cell. Fast, and nearly as good as CoverByFewCells().
 void CoverByMergedCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                         CoveredPoints* covered);
 /// Gives all points to few cells. Most points are within the error of several middles; the cell
-/// with the most remaining points takes all of them.
+/// with the most remaining points gets all of these.
 void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered);
 

@@ -105,7 +105,7 @@ constexpr std::array<Neighbour, 27> FindNeighbours() {
 }
 constexpr std::array<Neighbour, 27> kNeighbours = FindNeighbours();
 
-/// The place of a node among the 27 around it.
+/// The place of a node among the 27 nodes of its neighbourhood.
 constexpr unsigned kOwnPlace = 13;
 
 /// A parent whose children may be neighbours of a node.
@@ -114,7 +114,8 @@ struct ParentBeside {
   unsigned near = 0;                     // which children may be neighbours
   std::array<std::uint8_t, 8> places{};  // their places among the 27 around the node
 };
-/// Returns those of each child of a parent.
+/// Returns the parents by the node's place in its own parent. Bit k of the second index is set if a
+/// parent differs from the own one along axis k.
 constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {
   std::array<std::array<ParentBeside, 8>, 8> all{};
   for (unsigned child = 0; child < 8; ++child)
@@ -125,7 +126,7 @@ constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {
       unsigned there = 0;
       unsigned scale = 1;
       for (unsigned k = 0; k < 3; ++k) {
-        const unsigned at = 1 + (child >> k & 1) + steps[k];  // 2 more than from the own parent
+        const unsigned at = 1 + (child >> k & 1) + steps[k];  // relative to the own parent, plus 2
         parent += at / 2 * scale;
         beside |= (at / 2 != 1 ? 1U : 0U) << k;
         there |= at % 2 << k;
@@ -141,7 +142,7 @@ constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {
 }
 constexpr auto kParentsBeside = FindParentsBeside();
 
-/// Bits read as the digits of a number in base 3, from the lowest bit or from the highest.
+/// Bits read as the digits of a number in base 3, beginning with the lowest bit or the highest.
 template <unsigned kDigits>
 constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
   std::array<std::uint32_t, 1U << kDigits> numbers{};
@@ -250,7 +251,7 @@ void CellTree::FillLevels(const CellList& cells) {
   }
 }
 
-/// Makes the parents ready to be found, and counts their children.
+/// Enters the parents in map_, and counts their children.
 void CellTree::ListParents(const Level& parents) {
   map_.Reset(parents.codes.size());
   first_children_.resize(parents.codes.size());

@@ -26,7 +26,7 @@ class CloudDecoder {
   const XyzCloud& cloud() const { return cloud_; }
   /// The section of exact fields within the stream, or null.
   ByteView exact_section() const { return exact_section_; }
-  /// The places of the points, if there is that section.
+  /// The places of the points, if there is an exact section.
   const PointPlaces& places() const { return places_; }
   double step_m() const { return static_cast<double>(header_.grid.step_m); }
   double error_m() const { return header_.grid.error_m(); }

@@ -37,7 +37,8 @@ bool HasPulses(const PointFields& fields) {
   return fields.Has("line", FieldType::kU8) && fields.Find("timestamp") != nullptr;
 }
 
-/// The largest coordinate. The bits of finite floats without sign are in the order of the floats.
+/// Returns the largest coordinate without sign. The bits of such floats are in the order of the
+/// floats.
 float FarthestOf(const std::vector<float>& xyz) {
   std::int32_t most = 0;
   for (const float v : xyz) {
@@ -99,8 +100,8 @@ RangeWay WayOf(unsigned effort) {
 }
 
 /// Returns the distance from the sensor, in multiples of the error, up to which cells are cheaper
-/// than ranges: the mean step between pixels is below kCloseTogether of the error. Many cells cost
-/// more time than ranges.
+/// than ranges: there the mean step between pixels is below kCloseTogether times the error. kMost
+/// limits the distance, because many cells take more time than ranges.
 double UsualReach(const BeamTable& table) {
   constexpr double kMost = 70;
   constexpr double kCloseTogether = 0.45;
@@ -183,7 +184,8 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
   pulses_ = std::move(pulses);
 }
 
-/// Returns the largest coordinate of the other points.
+/// Moves points that the grid cannot hold to far_ids_. Returns the largest coordinate of the
+/// others.
 float CloudEncoder::SortOutFarPoints(const CellGrid& grid) {
   float most = 0;
   const double surely = grid.SurelyHolds();
@@ -232,7 +234,7 @@ void CloudEncoder::SortOut(CloudHeader* header) {
   header->far_points = static_cast<std::uint32_t>(far_ids_.size());
 }
 
-/// Moves points nearer than `nearest_m` behind the others, which are the seen ones.
+/// Moves points nearer than `nearest_m` to the end of the lists. The others are the seen points.
 void CloudEncoder::PutNearestLast(double nearest_m) {
   seen_ = near_.size();
   if (nearest_m <= 0) return;
@@ -317,7 +319,7 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
   candidate->nodes = other.nodes;
 }
 
-/// Returns false if most points that are far enough lie in no pixel.
+/// Returns false if too few of the points that are far enough lie in pixels.
 bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                                const RangeWay& way, Candidate* candidate) {
   if (!FillPixels({&sightings_, &placed_, &table}, errors, nearest_m, &pixels_)) return false;
@@ -340,7 +342,8 @@ double CloudEncoder::ReachOf(const BeamTable& table) const {
   return choice_.empty() ? UsualReach(table) : 0;
 }
 
-/// Codes the exact fields of all points: of those in pixels_, by `table`, and of the others.
+/// Codes the exact fields of all points: of the points in pixels_ if there is a `table`, then of
+/// the others.
 void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) const {
   if (choice_.empty()) return;
   PointPlaces places;
@@ -388,7 +391,7 @@ bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelError
   const auto attempt = [&](unsigned lower, double reach) {
     Candidate candidate;
     candidate.header = header;
-    effort_ = std::max(lower, 2U);  // so that cells do not merge, which is larger
+    effort_ = std::max(lower, 2U);  // so that cells do not merge, which would be larger
     const bool coded = EncodeBeams(table, errors, reach * errors.error_m,
                                    {RangeCoder::kMixing, lower}, &candidate);
     effort_ = effort;

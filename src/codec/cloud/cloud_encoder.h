@@ -33,22 +33,22 @@ struct ExactChoice {
 /// Encodes a stream of one format. For one thread at a time.
 class CloudEncoder {
  public:
-  /// Returns nothing if `layout` lacks x, y and z as F32 side by side.
+  /// Returns nothing if `layout` lacks x, y and z as adjacent F32.
   static std::optional<CloudEncoder> Create(const CloudLayout& layout, ExactChoice exact = {});
 
-  /// Takes the points that are finite and not all zero, for Encode().
+  /// Loads the points that are finite and not all zero, for Encode().
   void Load(ByteView raw, bool with_intensity);
   /// Number of loaded points.
   std::size_t returns() const { return cloud_.size(); }
   /// Longest side of the points' box [m].
   double extent_m() const;
   bool has_intensity() const { return !cloud_.intensity.empty(); }
-  /// Names the coder for statistics and predictors.
+  /// Returns the name of the coder for statistics and predictors.
   std::string Mode() const { return "xyz-cloud" + std::to_string(effort_); }
   /// Effort: at 0 a point without a beam has its own cell, at 1 such cells merge, from 2 on points
   /// share few cells, and at EffortControl::kHighest all ways are tried.
   void set_effort(unsigned effort) { effort_ = std::min(effort, EffortControl::kHighest); }
-  /// Keeps `kept` of the loaded points.
+  /// Keeps the loaded points whose element of `kept` is true.
   void Thin(const std::vector<bool>& kept);
 
   /// Encodes the loaded points; may be called again.
@@ -97,12 +97,12 @@ class CloudEncoder {
   XyzCloud cloud_;
   std::vector<ExactField> exact_;        // fields of cloud_
   std::vector<Pulse> pulses_;            // of cloud_; empty: there is no line or time
-  std::vector<std::uint32_t> order_;     // of the last candidate
+  std::vector<std::uint32_t> order_;     // of the last slice
   std::vector<Point> near_;              // on the grid
   std::vector<std::uint8_t> levels_;     // of near_, at full resolution; empty: geometry only
   std::vector<std::uint32_t> near_ids_;  // of cloud_
   std::vector<std::uint32_t> far_ids_;
-  std::size_t seen_ = 0;             // points of near_, first to last, that may be in pixels
+  std::size_t seen_ = 0;             // number of the first points of near_ that may be in pixels
   std::vector<Sighting> sightings_;  // of the seen points
   std::vector<Pulse> sighted_;       // their pulses, or none
   std::vector<PlacedPoint> placed_;  // of the seen points

@@ -47,8 +47,8 @@ class Drift {
     const std::size_t sector = SectorOf(azimuth);
     return counts_[sector] == 0 ? 0 : sums_[sector] / static_cast<double>(counts_[sector]);
   }
-  /// Returns the drift of all sectors. An unknown sector has the drift of the last known one, or of
-  /// the first.
+  /// Returns the drift of all sectors. An unknown sector has the drift of the known sector before
+  /// it, or of the first known one.
   std::vector<double> Curve() const {
     std::vector<double> curve(kSectors);
     double last = 0;

@@ -9,10 +9,11 @@ namespace lidar::codec::cloud {
 
 /// Shifts the offset of each beam so that its points lie in the middle of their columns.
 void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table);
-/// Gives the columns places of their own if that saves more bits than it takes.
+/// Gives the columns places of their own if this saves more bits than it costs.
 void FindPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
-/// Finds places for azimuths that a sensor rounds to multiples of `quantum`, about as large as a
-/// step. All beams see the same multiples, each with a delay. Returns false if they do not.
+/// Finds places for azimuths that a sensor rounds to multiples of `quantum`, which is about as
+/// large as a step. All beams see the same multiples, each with a delay. Returns false if they do
+/// not.
 bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, double step,
                        BeamTable* table);
 /// Finds beams whose steps are uneven in a periodic way.
@@ -28,7 +29,7 @@ bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* tabl
 
 // Parts of the functions above:
 
-/// Adds the firings that saw nothing.
+/// Adds places for the firings without points.
 std::vector<std::uint32_t> WithGapsFilled(const std::vector<std::uint32_t>& places, double step,
                                           std::uint32_t grains);
 /// Sets the delays so that column 0 of each beam is the first one from azimuth 0 on.

@@ -34,7 +34,7 @@ std::int32_t UsualStep(const BeamAzimuths& azimuths) {
 
 std::complex<double> PhaseOf(double columns) { return std::polar(1.0, 2 * M_PI * columns); }
 
-/// Returns how well the points of all beams lie in columns, up to 1 for each point.
+/// Returns a measure of how well a sample of points lies in columns: up to 1 for each point.
 double Alignment(const std::vector<BeamAzimuths>& beams, double step) {
   constexpr std::size_t kSample = 150;  // of each beam
   double sum = 0;

@@ -16,10 +16,11 @@ struct BeamAzimuth {
 /// The azimuths of a beam, rising.
 using BeamAzimuths = std::vector<BeamAzimuth>;
 
-/// Returns the smallest step that is usual in beams which together have a tenth of all points; 0:
-/// none.
+/// Each beam has a most common step. Returns the smallest one whose beams have a tenth of all
+/// points together; 0: none.
 std::int32_t UsualStep(const std::vector<BeamAzimuths>& beams);
-/// Returns the mean step of neighbours that are one or a few steps apart; 0: none.
+/// Returns the mean step, from neighbouring points that are one or a few steps of about `usual`
+/// apart; 0: there are none.
 double MeanStep(const std::vector<BeamAzimuths>& beams, std::int32_t usual);
 /// Returns the step near `step` whose columns fit best all around the turn. A whole number of
 /// columns is preferred.
@@ -43,8 +44,8 @@ struct Side {
 /// Returns the distance at which the beam passes the origin, if its points lie at multiples of
 /// `step`.
 Side SideOf(const BeamAzimuths& azimuths, double step);
-/// Returns the angle whose multiples the azimuths are: the step of columns, or of the sensor's
-/// rounding.
+/// Returns the angle of which the azimuths are multiples: the step of the columns, or of the
+/// sensor's rounding.
 double QuantumOf(const std::vector<BeamAzimuths>& beams, std::int32_t usual, double step);
 
 }  // namespace lidar::codec::cloud

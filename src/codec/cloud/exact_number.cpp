@@ -52,7 +52,7 @@ std::uint64_t AtOrdinal(std::int64_t ordinal, FieldType type) {
   return sign | (static_cast<std::uint64_t>(-1 - ordinal) & (sign - 1));
 }
 
-/// Gives 0 for NaN and from 2^53 on, where doubles skip integers.
+/// Returns 0 for NaN and from 2^53 on, where doubles skip integers.
 std::int64_t NearestInteger(double value) {
   return std::abs(value) < kExact ? static_cast<std::int64_t>(std::floor(value + 0.5)) : 0;
 }

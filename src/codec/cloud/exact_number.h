@@ -8,7 +8,7 @@
 
 namespace lidar::codec::cloud {
 
-// Hostile numbers may overflow: arithmetic wraps.
+// Hostile numbers may overflow, so the arithmetic wraps.
 inline std::int64_t Plus(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }
@@ -32,7 +32,7 @@ struct NumberForm {
 
   FieldType type = FieldType::kU8;
   unsigned decimals = 0;  // of all numbers; 0: integers, or any floats
-  int scale = 0;          // of any floats
+  int scale = 0;          // for any floats: exponent of the levels
 
   bool is_float() const { return type == FieldType::kF32 || type == FieldType::kF64; }
   std::int64_t RankOf(std::uint64_t bits) const;

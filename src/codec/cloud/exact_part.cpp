@@ -89,7 +89,7 @@ class RankMeter {
   double bits_ = 0;
 };
 
-/// The points of a slice and the order of visits.
+/// The points of a slice, and the order in which they are coded.
 struct Visited {
   const PointPlaces& places;
   const FiringOrder& firing;
@@ -284,7 +284,7 @@ void WriteHeader(const ExactHeader& header, ByteWriter* writer) {
   if (!header.firing.slots.empty()) WriteVarint(header.firing.first, writer);
 }
 
-/// Reads the header up to its fields.
+/// Reads the header up to the end of its fields.
 bool ReadFields(ByteReader* reader, unsigned* flags, std::vector<FieldCode>* fields) {
   *flags = reader->U8();
   const unsigned count = reader->U8();
@@ -320,8 +320,8 @@ bool ReadHeader(ByteReader* reader, const PointPlaces& places, ExactHeader* head
   return ok && reader->ok() && (places.beams == 0 || header->firing.first < places.columns);
 }
 
-/// Finds the firing order by the order of the points or, if few keep to it, by the field that fits
-/// best.
+/// Finds the firing order by the order of the points or, if too few points fit this, by the field
+/// that fits best.
 FiringOrder BestFiringOrder(const PointPlaces& places, const ExactPart& part) {
   if (places.beams == 0) return {};
   std::vector<std::int64_t> clock(part.order.begin(), part.order.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The section behind the geometry of a cloud: exact fields, and the order of points.
+// The section after the geometry of a cloud: exact fields, and the order of points.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -24,7 +24,8 @@ struct ExactPart {
   std::vector<std::uint32_t> order;  // place of each point in the old cloud
 
   bool empty() const { return fields.empty() && !keeps_order; }
-  /// Cost for a decoder, in numbers. The models of a field cost as much as kModels numbers.
+  /// Cost for a decoder, as a count of numbers. The models of a field cost as much as kModels
+  /// numbers.
   std::size_t Numbers(std::size_t points) const {
     constexpr std::size_t kModels = 256;
     return (points + kModels) * (fields.size() + (keeps_order ? 1 : 0));
@@ -39,7 +40,7 @@ void EncodeExactPart(const PointPlaces& places, const ExactPart& part,
 std::optional<std::vector<FieldType>> ExactTypesOf(ByteView section);
 
 /// Decodes a section of at most `most_numbers`. Returns false, with `part` undefined, if it is
-/// damaged.
+/// damaged or larger.
 bool DecodeExactPart(ByteView section, const PointPlaces& places, std::size_t most_numbers,
                      ExactPart* part);
 

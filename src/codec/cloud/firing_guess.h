@@ -11,7 +11,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Guesses a level as the sum of a base of the firing and an offset of the beam, which it learns.
+/// Guesses a level as the sum of a base of the firing and an offset of the beam, and learns both.
 class FiringGuess {
  public:
   explicit FiringGuess(std::uint32_t beams) : beams_(beams) {}
@@ -70,8 +70,7 @@ class FiringGuess {
   bool starts_ = true;  // the point is the first of its firing
 };
 
-/// Remembers the last level of each beam in each firing of a period. Without a period it remembers
-/// nothing.
+/// Keeps the last level of each beam in each firing of a period. Without a period it keeps nothing.
 class RepeatGuess {
  public:
   RepeatGuess(std::uint32_t beams, std::uint32_t period)

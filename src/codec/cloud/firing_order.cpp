@@ -42,8 +42,8 @@ const Shot& LastAt(const Shots& shots, std::int64_t clock) {
   return after == shots.begin() ? shots.front() : *(after - 1);
 }
 
-/// Returns by how many columns most firings of `shots` are behind those of `reference`, and the
-/// number of those firings.
+/// Returns the most common number of columns by which a shot is behind the latest one of
+/// `reference`, and the number of such shots.
 std::pair<std::uint32_t, std::size_t> DelayOf(const Shots& shots, const Shots& reference,
                                               std::uint32_t columns) {
   std::map<std::uint32_t, std::size_t> votes;

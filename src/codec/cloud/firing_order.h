@@ -19,7 +19,7 @@ struct PointPlace {
 /// The places of all points of a slice, as decoders give them.
 struct PointPlaces {
   std::uint32_t beams = 0;    // 0: all points are loose
-  std::uint32_t columns = 0;  // of a turn; places are below both
+  std::uint32_t columns = 0;  // of a turn; more than the column of any point
   std::vector<PointPlace> points;
 
   void AddLoose(std::size_t count) { points.resize(points.size() + count); }
@@ -35,8 +35,7 @@ struct FiringOrder {
   bool descends = false;    // columns fall with time
   std::vector<Slot> slots;  // of the beams
 
-  /// Returns how many firings after the first one a point was measured. The point must not be
-  /// loose.
+  /// Returns the number of firings from the first one to that of a point, which must not be loose.
   std::uint32_t FiringOf(const PointPlace& place, std::uint32_t columns) const {
     const std::uint32_t firing = (place.column + slots[place.beam].delay) % columns;
     return (descends ? first + columns - firing : firing + columns - first) % columns;
@@ -46,7 +45,7 @@ struct FiringOrder {
 };
 
 /// Finds the order by `clock`, which rises with the time of each point. Sets `fit` to the part of
-/// the points that keep to it.
+/// the points that agree with it.
 FiringOrder FindFiringOrder(const PointPlaces& places, const std::vector<std::int64_t>& clock,
                             double* fit);
 

@@ -24,8 +24,8 @@ class LevelModel {
     for (Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
   }
 
-  /// `last` is the level before, and `mean` the mean level of the neighbours. `place` is 0 for the
-  /// first point of a cell.
+  /// `last` is the preceding level, and `mean` the mean level of the neighbours. `place` is 0 for
+  /// the first point of a cell.
   template <class Coder>
   unsigned Code(unsigned level, unsigned last, unsigned mean, unsigned place, Coder* coder) {
     const std::array<std::uint32_t, 4> contexts = {

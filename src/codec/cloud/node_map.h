@@ -9,8 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// An open hash table that is never more than half full: it grows. The hash depends on where the
-/// table lies, because a cloud could be made whose cells all collide by a known one.
+/// An open hash table that is never more than half full: it grows. The hash depends on the address
+/// of the table: with a known hash, a cloud could be crafted whose cells all collide.
 class NodeMap {
  public:
   static constexpr std::uint32_t kAbsent = UINT32_MAX;

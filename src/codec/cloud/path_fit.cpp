@@ -20,7 +20,8 @@ struct Sample {
 };
 using Line = std::vector<Sample>;  // in the order of firing
 
-/// Returns no lines if there are too many, or too few points.
+/// Returns the points of each laser, by time. Returns no lines if there are too many lasers or too
+/// few points.
 std::vector<Line> LinesOf(const std::vector<Pulse>& pulses) {
   constexpr std::size_t kLeastPoints = 64;
   std::vector<Line> lines;
@@ -52,7 +53,7 @@ double PeriodOf(const std::vector<Line>& lines) {
     if (b.time > a.time) steps.push_back(b.time - a.time);
   });
   double period = MedianOf(std::move(steps));
-  // Long steps count in the second pass only, when the period is more exact.
+  // Long steps are used only in the second pass, when the period is more exact.
   for (const double longest : {8.0, 1e9}) {
     double time = 0;
     double columns = 0;
@@ -91,7 +92,8 @@ std::uint32_t CountColumns(std::vector<Line>* lines) {
   return static_cast<std::uint32_t>(columns);
 }
 
-/// Sets the azimuths of all samples, less those of the turn, and returns their mean rise.
+/// Sets the azimuths of all samples, less those of the turn, and returns their mean rise per
+/// column.
 double Unwrap(const std::vector<Sighting>& points, const BeamPath& path, std::vector<Line>* lines) {
   double sum = 0;
   double squares = 0;
@@ -150,7 +152,8 @@ class CurveFit {
   }
   /// Returns nothing if a factor does not fit the format.
   std::optional<PathBeam> Solve() {
-    // A curve stays low over columns without points, because high factors take more bits.
+    // The stiffness keeps a curve low over columns without points, because high factors take more
+    // bits.
     for (std::size_t i = 0; i < kPathTerms; ++i) products_[i][i] += kStiffness * (count_ + 1);
     Factorise();
     PathBeam beam;

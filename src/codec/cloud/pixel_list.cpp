@@ -67,7 +67,7 @@ class PixelCheck {
   }
 
  private:
-  /// Largest distance of a decoded point, in units.
+  /// Largest errors of the angles of a decoded point, in units.
   struct Angles {
     double azimuth;
     double elevation;
@@ -85,8 +85,8 @@ class PixelCheck {
     off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }
-  /// Returns the error by rounding a residual. Its width follows from the decoded range, which may
-  /// be shorter than the original.
+  /// Returns the error by rounding a residual. The width of its class follows from the decoded
+  /// range, which may be shorter than the original.
   double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
     return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;
@@ -113,8 +113,8 @@ struct FittingPoint {
   std::uint32_t range_mm;
 };
 
-/// Points by whether they fit a pixel. The list is short, so that later passes need not read the
-/// placed points again.
+/// The points that fit a pixel. The list is compact, and later passes need not read the placed
+/// points again.
 struct Fitting {
   std::vector<FittingPoint> points;
   std::uint32_t first_column = UINT32_MAX;
@@ -164,7 +164,7 @@ bool PlaceImage(const BeamTable& table, const Fitting& fitting, const PixelError
 }  // namespace
 
 void PixelList::DropFewExtras() {
-  constexpr std::size_t kPixelsToAnExtra = 256;  // pixels to a further return
+  constexpr std::size_t kPixelsToAnExtra = 256;  // pixels for each further return
   if (extras.size() * kPixelsToAnExtra > returns) return;
   for (const ExtraReturn& extra : extras) rest.push_back(extra.point);
   extras.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points by the pixels of a sensor's image, and points that fit no pixel.
+// Assigns points to the pixels of a sensor's image, and lists the points that fit no pixel.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -59,10 +59,10 @@ struct PlacedCloud {
   const std::vector<Sighting>* points;
   const std::vector<PlacedPoint>* placed;
   const BeamTable* table;
-  std::size_t stride = 1;  // one point in `stride` counts
+  std::size_t stride = 1;  // only one point in `stride` is used
 };
 
-/// Returns how many points fit as pixels.
+/// Returns the number of points that fit a pixel.
 std::size_t CountFitting(const PlacedCloud& cloud, const PixelErrors& errors);
 /// Returns the ranges of these points [mm].
 std::vector<std::uint32_t> FittingRanges(const PlacedCloud& cloud, const PixelErrors& errors);

@@ -29,7 +29,7 @@ class Rounder {
  public:
   explicit Rounder(std::int32_t width) : half_(width / 2), per_width_(1.0 / width) {}
   std::int32_t Of(std::int32_t number) const {
-    // A half keeps quotients away from the next integer by more than rounding moves them.
+    // The half keeps a quotient farther from the next integer than rounding can move it.
     const auto size = static_cast<std::int32_t>((std::abs(number) + half_ + 0.5) * per_width_);
     return number < 0 ? -size : size;
   }
@@ -252,7 +252,7 @@ class ExtraCoder {
   std::unique_ptr<CountModel> counts_ = std::make_unique<CountModel>();
   std::unique_ptr<Model> distances_ = std::make_unique<Model>();
   std::unique_ptr<Model> levels_;    // null without levels
-  std::vector<std::uint8_t> above_;  // of each column: had the last pixel further returns?
+  std::vector<std::uint8_t> above_;  // of each column: 1 if its last pixel has further returns
   std::uint32_t left_ = 0;
   std::uint32_t nearby_ = 0;
   std::uint32_t jumps_ = 0;

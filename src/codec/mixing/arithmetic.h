@@ -53,7 +53,8 @@ struct Counter {
   std::uint16_t rate = RateAfter(0);
   std::uint16_t chance = kOne / 2;
 
-  /// Vote of a counter whose logit is `logit`: nearer to 0 the fewer bits it has seen.
+  /// Vote of a counter whose logit is `logit`: the fewer bits the counter has seen, the nearer to
+  /// 0.
   std::int32_t Vote(std::int32_t logit) const {
     const std::int32_t sure = 65'535 - (rate + (rate >> 1));
     return logit * 2 * (sure >> 1) >> 16;

@@ -11,12 +11,12 @@
 
 namespace lidar::codec::mixing {
 
-/// A beam search along each row, with the models as they are before the row. A cheap bin may make
+/// A beam search along each row. The models stay as they are before the row. A cheap bin may make
 /// the next ones expensive, so the search follows two ways.
 template <class Effort>
 class BinSearch {
  public:
-  /// `steps` is a buffer that lives on between searches.
+  /// `steps` is a buffer that later searches use again.
   BinSearch(Model* model, std::int64_t step_mm, std::vector<SearchStep>* steps)
       : parts_{{{model, &meter_, step_mm}, {model, &meter_, step_mm}}}, steps_(*steps) {}
 
@@ -139,7 +139,7 @@ class BinSearch {
   }
 
   CostMeter meter_;
-  std::array<Part, kMostWays> parts_;  // each stands where its way ends
+  std::array<Part, kMostWays> parts_;  // each has the state at the end of its way
   std::array<Way, kMostWays> ways_{};  // the cheapest first
   unsigned count_ = 0;
   std::array<Trial, kMostWays> trials_{};  // of a return, the cheapest first

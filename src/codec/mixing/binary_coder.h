@@ -28,9 +28,9 @@ class BinaryEncoder {
     }
     return bit;
   }
-  /// Always false; the decoder's may be true.
+  /// Always false, unlike that of a decoder.
   static constexpr bool overran() { return false; }
-  /// Writes the bytes that name the last interval. A decoder reads zeros behind them.
+  /// Writes the bytes that identify the last interval. A decoder reads zeros after them.
   void Finish();
 
  private:

@@ -41,7 +41,7 @@ class ChanceMap {
       chances_[static_cast<std::size_t>(i)] =
           static_cast<std::uint16_t>(Chance((i << kShift) - kMiddle));
   }
-  /// Returns the mean of the chance that `logit` stands for and of that share.
+  /// Returns the mean of two chances: the one of `logit`, and the share of 1s so far.
   std::int32_t Refined(std::int32_t logit) const {
     const std::int32_t place = ClampLogit(logit) + kMiddle;
     const auto i = static_cast<std::size_t>(place >> kShift);

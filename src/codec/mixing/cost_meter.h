@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A coder that only counts what bits would cost.
+// A coder that writes nothing, and adds up what the bits would cost.
 #pragma once
 #include <cstdint>
 

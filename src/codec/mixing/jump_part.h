@@ -32,8 +32,8 @@ class JumpPart {
   /// `distance` is 1 or more. Returns kTooFar for a damaged stream.
   std::uint32_t Code(std::uint32_t distance, const JumpContext& context) {
     context_ = &context;
-    // An Exp-Golomb code: first the length, then the bits below the highest one. Each bit says
-    // whether the distance reaches `middle`.
+    // An Exp-Golomb code: first the length, then the bits below the highest one. Each bit is 1 if
+    // the distance reaches `middle`.
     unsigned length = 0;
     const auto last = static_cast<unsigned>(BitLength(distance) - 1);
     while (CodeNode(length < last, std::min(length, kLengthNodes - 1), context.gap_class,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Eight counters, votes or weights at once, in the vector instructions of the processor. All
-// processors give the same numbers.
+// Processes eight counters, votes or weights at once, by vector instructions. The results are the
+// same on all processors.
 #pragma once
 #include <algorithm>
 #include <array>

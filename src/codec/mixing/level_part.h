@@ -36,8 +36,8 @@ class LevelPart {
   };
 
   void StartRow() { zero_run_ = 0; }
-  /// Returns the level, or -1 for a damaged stream. `residual` is its difference from the
-  /// prediction.
+  /// Returns the level, or -1 for a damaged stream. `residual` gets its difference from the
+  /// prediction, limited to -3 to 3.
   std::int32_t Code(std::int32_t level, const Around& around, std::int32_t* residual) {
     Look(around);
     SetContexts(around);

@@ -38,8 +38,8 @@ inline std::uint32_t UnevenClass(std::uint32_t sum) {
   return std::min(HalfOctave(sum) - 2, 23U);
 }
 
-/// Puts a difference in 1/16 bin into one of 11 classes: one for less than 0.5 bin, and for each
-/// sign one below 1.5, 2.5, 4.5 and 10 bins each, and one above.
+/// Puts a difference in 1/16 bin into one of 11 classes: one up to 0.5 bin, and for each sign one
+/// up to 1.5, 2.5, 4.5 and 10 bins, and one above.
 inline std::uint32_t OffsetClass(std::int32_t difference) {
   static constexpr auto kClasses = [] {
     std::array<std::uint8_t, 323> classes{};
@@ -58,8 +58,8 @@ inline std::uint32_t OffsetClass(std::int32_t difference) {
   return kClasses[static_cast<std::size_t>(std::clamp(difference, -161, 161) + 161)];
 }
 
-/// Puts a difference in 1/16 bin into one of 7 classes: one for less than 0.5 bin, and for each
-/// sign one below 1.5 and 3.5 bins each, and one above.
+/// Puts a difference in 1/16 bin into one of 7 classes: one up to 0.5 bin, and for each sign one up
+/// to 1.5 and 3.5 bins, and one above.
 inline std::uint32_t StepClass(std::int32_t difference) {
   const std::int32_t size = std::abs(difference);
   const int c = (size > 7 ? 1 : 0) + (size > 23 ? 1 : 0) + (size > 56 ? 1 : 0);
@@ -92,8 +92,8 @@ inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
   return static_cast<std::uint32_t>(residual * mirror + 3);
 }
 
-/// Next value on the wall through `far` and `near`. A straight wall has an even slope in the
-/// inverse of the range.
+/// Next value on the wall through `far` and `near`. Along a straight wall the inverse of the range
+/// changes evenly.
 inline std::int32_t Extrapolate(std::int32_t near, std::int32_t far) {
   const std::int64_t divisor = 2 * std::int64_t{far} - near;
   if (divisor <= 0) return near;

@@ -67,7 +67,7 @@ class RangePart {
     ++row_.gap;
     row_.residual_north_west = above_[i].residual;
   }
-  /// Codes the bin of pixel `i` and notes it for the azimuth. Returns -1 for a damaged stream.
+  /// Codes the bin of pixel `i` and stores it in `azimuth`. Returns -1 for a damaged stream.
   [[gnu::always_inline]] std::int32_t Code(std::int32_t bin, std::uint32_t i, Azimuth* azimuth) {
     Look(i);
     SetContexts(i);
@@ -217,7 +217,7 @@ class RangePart {
     return &model_.weights.range[node * kUnevenClasses + uneven_];
   }
   Weights* EventWeightsOf(unsigned node) { return &model_.weights.event[node * 64 + event_set_]; }
-  /// Sets of weights and map of chances of refined models.
+  /// Sets of weights of refined models.
   std::array<Weights*, 3> SetsOf(unsigned node) {
     const std::uint32_t set = range_class_ * 4 + gap_class_;
     return {WeightsOf(node), EventWeightsOf(node),

@@ -44,14 +44,14 @@ struct Refined : Effort {
   static constexpr bool kRefined = true;
 };
 
-/// A decoder also gives bits past the end of its stream, so decoding must stop there.
+/// A decoder returns bits even past the end of its stream, so callers must stop there.
 bool Overran(const BinaryDecoder& coder) { return coder.overran(); }
 template <class Coder>
 bool Overran(const Coder& /*coder*/) {
   return false;
 }
 
-/// Stands for BinSearch at efforts that do not search.
+/// Replaces BinSearch at efforts that do not search.
 struct NoSearch {
   NoSearch(Model* /*model*/, std::int64_t /*step_mm*/, std::vector<SearchStep>* /*steps*/) {}
 };

@@ -125,7 +125,7 @@ class TableCoder {
   std::vector<std::array<Counter, 256>> counters_;
 };
 
-/// Writes, or with a decoder reads, all of `states`; a writer leaves them rounded.
+/// Writes, or with a decoder reads, all of `states`; an encoder leaves them rounded.
 template <class Coder>
 void CodeAll(StartStates* states, Coder* coder) {
   TableCoder<Coder> table(coder);

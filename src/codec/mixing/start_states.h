@@ -34,15 +34,15 @@ struct StartStates {
 
   /// Sets all chances to a half, and all weights alike.
   void Reset();
-  /// Rounds to values that a table can hold. Counters then count as having seen few bits, so that a
-  /// slice can still change them.
+  /// Rounds to values that a table can hold. A counter then has the rate of one with few bits, so a
+  /// slice can still change it.
   void Round();
   /// Appends the table of rounded states.
   void Write(std::vector<std::uint8_t>* out) const;
   /// Returns false if `table` is anything but a whole table.
   bool Read(ByteView table);
 
-  /// Sets `model` to the initial states. If `level_bits` is 0, its models of levels stay.
+  /// Sets `model` to the initial states. If `level_bits` is 0, its models of levels do not change.
   void CopyTo(unsigned effort, std::int64_t step_mm, unsigned level_bits, Model* model) const {
     model->counters = counters[StepClassOf(step_mm)];
     model->weights = weights[effort - 1];
@@ -52,7 +52,7 @@ struct StartStates {
   }
 };
 
-/// The states of this version, from the table in the program.
+/// The states of this version, from the table that is compiled in.
 const StartStates& Trained();
 
 /// The table (start_table.txt) that StartStates::Write() made.

@@ -9,7 +9,7 @@
 namespace lidar::codec {
 namespace {
 
-/// Returns the residual of `value`, with the sign changed if the prediction asks for that.
+/// Returns the residual of `value`, with the sign changed if the prediction is mirrored.
 Residual ResidualOf(std::int32_t value, const Prediction& p) {
   const std::int32_t difference = value - p.value;
   const std::int32_t sign = difference >> 31;
@@ -51,7 +51,7 @@ void AdaptiveCoder::Reset(const BlockShape& shape) {
 }
 
 /// Calls code_row(beam, row, first) for each row that has returns; `first` is the index of its
-/// first one. Ends with false if a call returns false.
+/// first one. Stops, and returns false, if a call returns false.
 template <class CodeRow>
 bool AdaptiveCoder::ForEachRow(const BlockShape& shape, CodeRow&& code_row) {
   Reset(shape);

@@ -21,7 +21,7 @@ struct BlockShape {
 };
 
 /// Writes the columns of the 1s in `count` bytes of `mask`, and returns their number. `columns` has
-/// room for kListMargin more.
+/// room for kListMargin more than these.
 std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns);
 constexpr std::size_t kListMargin = 8;
 
@@ -53,12 +53,12 @@ class AdaptiveCoder {
   /// Adds the symbols that Encode() would write.
   void Count(const BlockShape& shape, const IntegerLists& lists, SymbolCounts* values,
              SymbolCounts* levels);
-  /// Fills the ranges of `image`, and its intensity if it has room for one. Returns false if the
+  /// Fills the ranges of `image`, and its intensity unless this is empty. Returns false if the
   /// stream is damaged, or a range is not below kMaxBins.
   bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
               RangeImage* image);
 
-  /// Replaces the values by their residuals, and the other way round. Levels stay.
+  /// Replaces the values by their residuals, and the other way round. Levels do not change.
   void ToResiduals(const BlockShape& shape, IntegerLists* lists);
   bool FromResiduals(const BlockShape& shape, IntegerLists* lists);
 

@@ -37,7 +37,7 @@ class BlendedChannel {
   /// The last values of the beams above at an azimuth.
   struct Known {
     std::int32_t value = kUnknown;
-    std::int32_t before = kUnknown;  // value above that
+    std::int32_t before = kUnknown;  // value of the beam above that one
     std::int32_t residual = 0;       // of `value`, -3 to 3
   };
   /// State of a row after the values so far.
@@ -56,7 +56,8 @@ class BlendedChannel {
     std::array<std::int32_t, kCandidates> candidates;  // surfaces to which a jump may lead
     BlendedModels models;
   };
-  /// The candidates that lie behind a jump's first value: a bit for each.
+  /// Returns a bit for each candidate that lies in the direction of a jump, and nearly as far as
+  /// the shortest jump or farther.
   static unsigned Behind(const View& view, std::int32_t sense);
   void StartRow(std::uint32_t beam);
   View Look(std::uint32_t column);

@@ -46,8 +46,8 @@ std::uint32_t RunClass(std::uint32_t before) {
   return (before & 0x7FFF) == all ? 5 : 4;
 }
 
-/// Returns true if no pixel that chooses a group's models has a return. `above` is that of the
-/// group's first pixel.
+/// Returns true if no pixel that chooses a group's models has a return. `above` points to the byte
+/// above the group's first pixel.
 bool IsAmongEmpty(const std::uint8_t* above, std::uint32_t before) {
   constexpr std::uint32_t kThreeBeams = 7 * kBytes;
   const std::uint32_t beside =
@@ -65,7 +65,7 @@ void BlendedMask::Reset(const AzimuthAlignment& alignment, std::uint32_t columns
   row_.assign(std::size_t{MaskCoder::Groups(columns)} * kGroup, 0);
 }
 
-/// `above` is that of the group's first pixel.
+/// `above` points to the byte above the group's first pixel.
 [[gnu::always_inline]] inline BlendedModels BlendedMask::ModelsOf(const std::uint8_t* above,
                                                                   std::uint32_t before) {
   const std::uint32_t here = FourAt(above);

@@ -27,7 +27,7 @@ struct Interval {
 
 namespace detail {
 
-/// For each symbol, the starts that Update() moves towards: low up to the symbol, high behind it.
+/// For each symbol, the starts that Update() moves towards: low up to the symbol, high after it.
 /// Their slope keeps intervals from vanishing.
 struct Targets {
   constexpr Targets() {
@@ -40,8 +40,8 @@ struct Targets {
 };
 inline constexpr Targets kTargets;
 
-/// The rate falls with the number of updates, because the first few samples are most of what there
-/// is to learn about a context.
+/// Shifts that set the speed of learning. It falls with the number of updates, because the first
+/// few samples show most about a context.
 struct Rates {
   static constexpr unsigned kMiddleAge = 24;
   static constexpr unsigned kOldest = 400;
@@ -61,9 +61,9 @@ using BlendedModels = std::array<NibbleModel*, 4>;
 /// Blended models learn twice as fast as single ones.
 constexpr int kBlendedHaste = 1;
 
-/// See F. Giesen, "Mixing discrete probability distributions" (2015): the cumulative
-/// distribution moves towards one that has nearly all of its mass on the symbol seen. Every symbol
-/// keeps a probability above zero, because both ends of each step are strictly increasing.
+/// See F. Giesen, "Mixing discrete probability distributions" (2015): the cumulative distribution
+/// moves towards one that has nearly all of its mass on the symbol seen. Every symbol keeps a
+/// probability above zero, because the starts and the targets of each step are strictly increasing.
 class NibbleModel {
  public:
   /// Uniform.
@@ -133,7 +133,7 @@ class NibbleModel {
     }
   }
 
-  /// Takes the distribution of `other` before the first update.
+  /// Copies the distribution of `other` if this model has not been updated yet.
   void InheritOnce(const NibbleModel& other) {
     if (start_[kAge] == 0) std::copy_n(other.start_.begin(), kNibbles, start_.begin());
   }
@@ -184,12 +184,12 @@ class NibbleModel {
     return counts;
   }
 
-  // [0] is 0 for ever, [16] is kProbabilityOne (read unsigned), [17] the number of updates so far.
+  // [0] is always 0, [16] is kProbabilityOne (read unsigned), [17] the number of updates so far.
   alignas(64) std::array<std::int16_t, 32> start_{};
 };
 
-/// Blends four different models as long as symbol 0 follows. They stay in registers, so Store()
-/// must come at the end.
+/// Blends four different models as long as symbol 0 follows. Copies of the models stay in
+/// registers, so Store() must be called at the end.
 class NibbleModel::ZeroRun {
  public:
   /// Returns true if the models learn at their last rate, which a run needs.

@@ -22,7 +22,8 @@ constexpr unsigned kContexts = 15;
 
 namespace detail {
 
-/// Contexts by sums of absolute differences: a context each half octave, the last one open.
+/// Contexts by sums of absolute differences: a context for each half octave. The last one has no
+/// upper limit.
 struct ContextTable {
   static constexpr unsigned kMost = 128;
   constexpr ContextTable() {
@@ -71,7 +72,7 @@ class RowPredictor {
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
 
   /// Calls code(lane, index, prediction) for all returns of a row in the order of coding. Returns
-  /// false if a value is not below `limit`, a power of two; Reset() must come next.
+  /// false if a value is not below `limit`, a power of two; Reset() must then be called next.
   template <class Code>
   [[gnu::always_inline]] bool CodeRow(std::uint32_t beam, const RowReturns& row,
                                       std::uint32_t limit, Code&& code) {
@@ -106,7 +107,8 @@ class RowPredictor {
         lanes, [&](unsigned lane, std::size_t i) __attribute__((always_inline)) {
           Return& at = row[i];
           const std::int32_t w = west[lane];
-          // No comparisons here: a compiler could make jumps of them, which are mispredicted.
+          // No comparisons here: a compiler could turn them into jumps, which would be
+          // mispredicted.
           const std::int32_t to_north = kBlind ? 0 : Difference(at.north, w);
           const std::int32_t below = to_north & to_north >> 31;
           const std::int32_t above = to_north & ~(to_north >> 31);
@@ -132,7 +134,7 @@ class RowPredictor {
     std::int32_t value = kUnknown;
     std::int32_t error = 0;  // size of its residual
   };
-  /// A return of the row: what surrounds it before it is coded, and what it was after that.
+  /// A return of the row: its surroundings before it is coded, then its value and error.
   struct Return {
     union {
       std::int32_t north;

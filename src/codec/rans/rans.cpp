@@ -8,7 +8,7 @@
 namespace lidar::codec {
 namespace {
 
-/// Code of a state's size in a stream, and its number of bytes.
+/// Returns the code of a state's size in a stream. BytesOf() converts it to a number of bytes.
 unsigned SizeCode(std::uint64_t state) {
   unsigned bytes = kRansShortestState;
   while (bytes < kRansStateBytes && state >> (8 * bytes) != 0) ++bytes;
@@ -24,8 +24,8 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
   const auto pieces = static_cast<std::size_t>(next_ - pieces_.data());
   std::array<std::uint64_t, kRansLanes> states;
   states.fill(kRansLow);
-  // A piece takes one word at most, and one more is written but not kept. Decoding goes the other
-  // way, so words grow downwards.
+  // A piece takes at most one word. One further word is written, but not used. Words are stored
+  // from the end on, because decoding reverses their order.
   if (words_.size() < pieces + 1) words_.resize(pieces + 1);
   std::uint32_t* const words_end = words_.data() + words_.size();
   std::uint32_t* word = words_end;
@@ -57,7 +57,7 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
 }
 
 RansDecoder::RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded) {
-  // Bytes behind the end: the states of the shortest stream, and the words that are read ahead.
+  // Bytes after the end: the states of the shortest stream, and the words that are read ahead.
   constexpr std::size_t kStates = 1 + kRansLanes * kRansStateBytes;
   padded->assign(bytes.size + kStates + (ahead + 2) * sizeof(std::uint32_t), 0);
   if (bytes.size > 0) std::memcpy(padded->data(), bytes.data, bytes.size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An entropy coder: four interleaved rANS states for symbols and the plain bits behind them.
+// An entropy coder: four interleaved rANS states for symbols and the plain bits after them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -42,7 +42,7 @@ class RansEncoder {
   /// Appends the stream to `out`.
   void Finish(std::vector<std::uint8_t>* out);
 
-  /// Writes to an encoder until it goes out of scope; only one at a time.
+  /// Writes to an encoder until it goes out of scope; only one Writer at a time.
   class Writer {
    public:
     explicit Writer(RansEncoder* encoder) : encoder_(encoder), next_(encoder->next_) {}
@@ -88,7 +88,7 @@ class RansDecoder {
   /// overran() at least once in `ahead` calls.
   RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded);
 
-  /// Returns true if more was read than there is: the stream is damaged, and callers stop.
+  /// Returns true if bytes past the end were read: the stream is damaged, and callers must stop.
   bool overran() const { return position_ > end_; }
 
   /// The next call must be GetBits() of the same lane, with a count of 0 if no bits follow.

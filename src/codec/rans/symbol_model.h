@@ -74,18 +74,18 @@ struct ClassedResidual {
   }
   unsigned symbol;
   unsigned bits;
-  std::uint32_t low;   // as many bits
+  std::uint32_t low;   // of `bits` bits
   std::uint32_t rest;  // if it is long
   bool is_long;
 };
 
-/// Codes what long magnitudes have above kLongMagnitude.
+/// Codes the excess of long magnitudes over kLongMagnitude.
 class LongModel {
  public:
   void Reset(const NibbleModel& start) { model_ = start; }
   /// The first symbol of `rest`.
   static unsigned SymbolOf(std::uint32_t rest) { return std::min(BitLength(rest), kLongest); }
-  /// Codes as many bits as fit with the length, and the higher ones by themselves.
+  /// Codes as many bits as fit together with the length, then the higher bits on their own.
   void Encode(std::uint32_t rest, unsigned lane, RansEncoder::Writer* writer) {
     const unsigned length = SymbolOf(rest);
     const unsigned bits = PlainBits(length);
