@@ -34,7 +34,7 @@ bool ReadModel(const GstStructure* s, rtp::StreamConfig* config) {
   return true;
 }
 
-/// Returns nothing if a field is missing or does not fit into its place.
+/// Returns nothing if a field is missing or too long for the wire format.
 std::optional<rtp::StreamConfig> NumberedConfig(rtp::Coder coder, const GstStructure* s) {
   const gchar* fields = gst_structure_get_string(s, "fields");
   const gchar* geometry = gst_structure_get_string(s, "geometry");

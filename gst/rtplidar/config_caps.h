@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps of encoded clouds to stream configs and back.
+// Converts caps of encoded clouds to stream configs and back.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,8 +10,8 @@
 
 namespace lidar::gst {
 
-/// Returns nothing if a receiver would not take the config: `why` then has the reason in words for
-/// a user.
+/// Returns nothing if a receiver would refuse the config: `why` then has the reason in words for a
+/// user.
 std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::string* why);
 /// transfer full
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config);

@@ -95,7 +95,7 @@ lidar::Duration ReorderTime(const Settings& s) {
 struct State {
   explicit State(GstRTPBaseDepayload* self) : output(self) {}
 
-  std::mutex mutex;  // guards all down to wrong_payload_type; never held while pushing
+  std::mutex mutex;  // guards members up to wrong_payload_type; never held while pushing
   Settings settings;
   Receiver receiver{ReorderTime(Settings{})};
   guint64 not_rtp = 0;
@@ -107,7 +107,7 @@ struct State {
   bool warned_of_type = false;
   bool warned_of_rival = false;
   bool readable = false;     // a packet was readable, or the warning was posted
-  lidar::Time now;           // goes on in a segment whose PTS begin anew
+  lidar::Time now;           // continues in a segment whose PTS begin anew
   lidar::Duration shift{0};  // from PTS to `now`
   bool new_segment = false;
   GstPadChainFunction base_chain = nullptr;
@@ -156,8 +156,8 @@ static bool CountWrongType(State& state) {
          state.receiver.accounts().packets_received == 0;
 }
 
-/// Returns false, and counts, for data that are not RTP or of another payload type. The base class
-/// would post a warning for each, and a flood of garbage must not become a flood of messages.
+/// Returns false, and counts the buffer, if it is not RTP or has another payload type. The base
+/// class would post a warning for each, but a flood of garbage must not become a flood of messages.
 static bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
   State& state = *self->state;
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;

@@ -103,7 +103,8 @@ static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   return any || gst_caps_can_intersect(allowed.get(), usual.get()) ? "application" : "video";
 }
 
-/// Notes how long a scan takes, and posts that the latency changes if it depends on that.
+/// Stores the duration of a scan. Posts a new latency if aggregation makes it depend on the
+/// duration.
 static void SetScanTime(GstRTPBasePayload* base, State& state) {
   const auto& config = *state.config;
   const GstClockTime scan_time =
@@ -172,7 +173,8 @@ static gboolean SinkEvent(GstRTPBasePayload* base, GstEvent* event) {
   return GST_RTP_BASE_PAYLOAD_CLASS(gst_lidar_rtp_pay_parent_class)->sink_event(base, event);
 }
 
-/// Returns the event for the encoder, without the share of our headers. Unknown fields stay.
+/// Returns the event for the encoder, with the bitrates reduced by our headers. Keeps unknown
+/// fields.
 static GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
   GstStructure* s = gst_structure_copy(gst_event_get_structure(event));
   for (const char* name : {"bitrate", "min-bitrate", "max-bitrate"}) {

@@ -17,7 +17,7 @@ constexpr guint kClockRate = 90'000;
 // Each slice multiplies the sum of bytes by this, so the sum covers about the last second.
 constexpr gdouble kShareMemory = 0.98;
 
-/// An RTP buffer of `packet`, whose body is a part of `slice_buffer` that is not copied.
+/// Returns an RTP buffer of `packet`. The body is a part of `slice_buffer` and is not copied.
 GstBuffer* MakeBuffer(GstRTPBasePayload* base, const rtp::Packet& packet, GstBuffer* slice_buffer) {
   GstBuffer* out = gst_rtp_base_payload_allocate_output_buffer(
       base, static_cast<guint>(packet.header.size()), 0, 0);

@@ -28,7 +28,7 @@ struct PayCounters {
   guint64 empty = 0;          // buffers without a byte, not sent
 };
 
-/// The content of a buffer: its unit, times and flags.
+/// A slice to send: its unit, meta and times.
 struct PaySlice {
   rtp::Unit unit;
   GstLidarSlice meta{};
@@ -37,7 +37,7 @@ struct PaySlice {
 };
 
 struct PayState {
-  std::mutex mutex;  // guards settings, counters, share and config_due; never held while pushing
+  std::mutex mutex;  // guards members up to config_due; never held while pushing
   PaySettings settings;
   PayCounters counters;
   gdouble recent_slice_bytes = 0;
@@ -51,7 +51,7 @@ struct PayState {
   GstClockTime config_sent_at = GST_CLOCK_TIME_NONE;
   rtp::ScanCounter scans{g_random_int()};
   std::optional<std::uint32_t> last_scan;
-  guint unnamed_scans = 0;  // ids of buffers without a meta
+  guint unnamed_scans = 0;  // next scan id of a buffer without a meta
   rtp::Aggregator aggregator;
   PaySlice first_aggregated;
   std::optional<GstLidarBitrateBounds> bounds;  // the encoder's, without our headers
@@ -60,7 +60,7 @@ struct PayState {
 
 /// Room for payload in one RTP packet [bytes].
 std::size_t MaxPayload(GstRTPBasePayload* base);
-/// Payloads and pushes one encoded slice; posts what is wrong with it.
+/// Payloads and pushes one encoded slice; posts an error if it cannot be sent.
 GstFlowReturn PaySliceBuffer(GstRTPBasePayload* base, PayState& state, GstBuffer* buffer);
 /// Pushes the slices that wait for aggregation.
 GstFlowReturn PushAggregate(GstRTPBasePayload* base, PayState& state);

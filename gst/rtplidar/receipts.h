@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Turns events about packets that a receiver has into events about slices, for the encoder.
+// Converts events about packets that a receiver has to events about slices, for the encoder.
 #pragma once
 #include <gst/gst.h>
 

@@ -32,7 +32,7 @@ GstBuffer* ToBuffer(rtp::ReceivedSlice* slice) {
   return buffer;
 }
 
-/// Warns of a coder that the next element does not take.
+/// Warns of a coder that the next element does not accept.
 void WarnOfCoder(GstRTPBaseDepayload* base, const GstCaps* caps) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   const std::string type = gst_structure_get_name(s);
@@ -85,8 +85,8 @@ void SliceOutput::Push(std::vector<rtp::ReceivedSlice> slices, Time now) {
       }
       flush();
       asked_ = slice.config;
-      // Refused caps are offered again with the next slice, because a flushing pad refuses them,
-      // too.
+      // Refused caps are offered again with the next slice, because a flushing pad refuses any
+      // caps.
       config_ = SetCapsOf(*slice.config) ? slice.config : nullptr;
     }
     if (!config_) {

@@ -18,12 +18,12 @@ class SliceOutput {
   explicit SliceOutput(GstRTPBaseDepayload* element) : element_(element) {}
 
   /// Pushes the slices; those of one config form a list. Drops slices of a coder that the next
-  /// element does not take, and of formats that change too often, and warns once of each. The first
-  /// slice after dropped ones is marked DISCONT.
+  /// element does not accept, and slices of formats that change too often. Warns once of each. The
+  /// first slice after dropped ones is marked DISCONT.
   void Push(std::vector<rtp::ReceivedSlice> slices, Time now);
   /// Resets all state with the counts. The caller holds the element's lock.
   void Reset();
-  /// The times of Push() begin anew.
+  /// Call it if the times of Push() begin anew.
   void ResetTime() { changes_ = {kFormatChanges, kFormatChangePeriod}; }
 
   guint64 not_accepted() const { return not_accepted_; }
