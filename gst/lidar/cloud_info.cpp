@@ -11,7 +11,7 @@ namespace {
 
 constexpr gint64 kMaxFrameSize = gint64{1} << 30;
 
-/// Takes the caps apart step by step; the first step that fails names the reason.
+/// Parses the caps step by step. The first step that fails sets the reason.
 class Reader {
  public:
   explicit Reader(const GstStructure* s) : s_(s) {}

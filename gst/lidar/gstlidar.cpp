@@ -5,7 +5,7 @@
 
 namespace {
 
-// GStreamer takes a meta's name only once in a process.
+// GStreamer registers a meta's name only once in a process.
 void RegisterMeta(const char* name) {
   static const gchar* no_tags[] = {nullptr};
   if (gst_meta_get_info(name) == nullptr)
@@ -167,7 +167,8 @@ void SetPairs(GstStructure* s, const char* name, guint count, guint (*number)(gc
   gst_structure_take_value(s, name, &list);
 }
 
-/// Reads such a list, GST_LIDAR_MAX_RECEIVED pairs at most. Returns false if it is malformed.
+/// Reads a flat list of pairs, at most GST_LIDAR_MAX_RECEIVED of them. Returns false if it is
+/// malformed.
 gboolean GetPairs(const GstStructure* s, const char* name, guint* count,
                   void (*take)(gpointer, guint, guint, guint), gpointer data) {
   const GValue* list = gst_structure_get_value(s, name);

@@ -27,7 +27,7 @@ G_BEGIN_DECLS
 /** Registers the metas. Idempotent and thread-safe; every plugin of the set calls it. */
 GST_LIDAR_API void gst_lidar_init(void);
 
-/** One azimuth sector of a scan; a buffer without it is a scan of one slice. */
+/** One azimuth sector of a scan; a buffer without this meta is a scan of one slice. */
 typedef struct {
   guint scan_id;     /* counts scans, wraps at 2^32 */
   guint slice_index; /* 0 .. slice_count - 1 */
@@ -67,13 +67,13 @@ typedef enum {
   GST_LIDAR_TRACKING_LOST = 3        /* the scan does not fit the map; the pose is a prediction */
 } GstLidarTracking;
 
-/** Where the sensor was when the buffer's first column was sampled, seen from where it started. */
+/** Pose of the sensor, relative to its start, when the buffer's first column was sampled. */
 typedef struct {
   gdouble position[3];    /* x, y, z [m] */
   gdouble orientation[4]; /* unit quaternion x, y, z, w: sensor to start */
   GstLidarTracking tracking;
-  /* Of the error since the start, after the last whole scan: x, y, z [m], and turns about these
-   * axes [rad]. Symmetric, row by row, as in nav_msgs/Odometry. */
+  /* Of the pose's error since the start, after the last whole scan: x, y, z [m], and turns about
+   * these axes [rad]. Symmetric, row by row, as in nav_msgs/Odometry. */
   gdouble covariance[36];
 } GstLidarPose;
 
@@ -81,7 +81,7 @@ GST_LIDAR_API void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPo
 /** Returns FALSE if the buffer has no meta. */
 GST_LIDAR_API gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose);
 
-/** Upstream event: the rates that the element that gets it may put out [bit/s]. */
+/** Upstream event: the target and limits of the receiving element's output [bit/s]. */
 typedef struct {
   guint bitrate;
   guint ssrc;
@@ -104,8 +104,8 @@ typedef struct {
 
 #define GST_LIDAR_MAX_RECEIVED 256
 
-/** Upstream event, from a sender to the payloader: packets that a receiver has got. Others may
- * still arrive. */
+/** Upstream event, from a sender to the payloader: packets that a receiver has got. Further ones
+ * may still arrive. */
 typedef struct {
   guint ssrc;
   guint receiver; /* another number is another receiver */

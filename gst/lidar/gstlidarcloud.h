@@ -17,7 +17,7 @@ typedef struct {
 } GstLidarCloudFormat;
 
 /**
- * Returns the offset of a field in a point [bytes], or -1 if none has that @name and @type.
+ * Returns the offset of a field in a point [bytes], or -1 if no field has that @name and @type.
  * Types are I8, U8, I16, U16, I32, U32, F32 and F64; integers and floats are little-endian.
  */
 GST_LIDAR_API gint gst_lidar_cloud_format_get_offset(const GstLidarCloudFormat* cloud,

@@ -23,12 +23,12 @@ typedef enum {
 
 /** One field of a point; numbers are little-endian. */
 typedef struct {
-  gchar name[64]; /* a longer one is cut off */
+  gchar name[64]; /* a longer name is cut off */
   GstLidarFieldType type;
   guint offset; /* bytes from the start of the point */
 } GstLidarField;
 
-/** What caps say of a cloud: rows of points, one behind the other. */
+/** The contents of a cloud's caps. A cloud is stored point by point, row after row. */
 typedef struct {
   guint width;       /* columns, or points */
   guint height;      /* beams; 1: the cloud has no rows */
@@ -64,7 +64,7 @@ GST_LIDAR_API gboolean gst_lidar_cloud_map(GstLidarCloud* cloud, const GstLidarC
                                            GstBuffer* buffer, GstMapFlags flags);
 GST_LIDAR_API void gst_lidar_cloud_unmap(GstLidarCloud* cloud);
 
-/** Returns the value of @field, one of the cloud's, at point @index; points count row by row. */
+/** Returns the value of @field, a field of the cloud, at point @index, counted row by row. */
 GST_LIDAR_API gdouble gst_lidar_cloud_get(const GstLidarCloud* cloud, const GstLidarField* field,
                                           gsize index);
 /** Sets the value in a cloud that is mapped for writing; integers are rounded and limited to their

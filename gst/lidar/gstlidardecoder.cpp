@@ -125,7 +125,8 @@ static const std::array<Property<Settings>, 5> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// Asks the subclass whether it can decode `cloud`, and removes the fields that it does not give.
+/// Asks the subclass whether it can decode `cloud`. Sets is_dense, and removes the sensor model of
+/// a cloud without rows.
 static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                         GstLidarDecodedFormat* decoded) {
   const std::string fields = cloud->fields.ToString();
@@ -318,7 +319,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   return result;
 }
 
-/// Makes the pads from the templates of the subclass, which are not known before.
+/// Makes the pads from the templates of the subclass, which are not known in init().
 static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->constructed(object);
   GST_LIDAR_DECODER(object)->state->pads.Create(object, Chain, SinkEvent);

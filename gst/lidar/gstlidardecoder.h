@@ -5,10 +5,10 @@
  * The base class has the pads `sink` and `src`, the caps, the properties max-points, stats and
  * stats-interval, holds sticky events back until the first slice gives the size of the cloud, drops
  * and counts damaged slices, and sends gaps. A subclass brings two pad templates and decodes one
- * slice; any bytes may come.
+ * slice from unchecked bytes.
  *
- * All virtual methods but reset() run in the streaming thread, one at a time. None is called while
- * a lock is held.
+ * All virtual methods but reset() run in the streaming thread, one at a time. The base class holds
+ * no lock during a call.
  */
 #pragma once
 #include <gst/lidar/gstlidarcloud.h>

@@ -310,7 +310,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   return result;
 }
 
-/// Makes the pads from the templates of the subclass, which are not known before.
+/// Makes the pads from the templates of the subclass, which are not known in init().
 static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_encoder_parent_class)->constructed(object);
   State& state = *GST_LIDAR_ENCODER(object)->state;

@@ -8,8 +8,8 @@
  * error-check, stats and stats-interval, gaps, DISCONT, flushes and state changes. A subclass
  * brings two pad templates and codes one slice at one step.
  *
- * All virtual methods but reset() run in the streaming thread, one at a time. None is called while
- * a lock is held.
+ * All virtual methods but reset() run in the streaming thread, one at a time. The base class holds
+ * no lock during a call.
  */
 #pragma once
 #include <gst/lidar/gstlidarcloud.h>
@@ -91,7 +91,7 @@ typedef enum {
   GST_LIDAR_ENCODE_OUT_OF_REACH = 2 /* no grid of this coder keeps to max_error: a gap, a warning */
 } GstLidarEncodeResult;
 
-/** Which point of the raw slice a decoded point stands for. */
+/** Rule that assigns a decoded point to a point of the raw slice. */
 typedef enum {
   GST_LIDAR_ORDER_PIXELS = 0, /* as many points as the raw slice has, at their places */
   GST_LIDAR_ORDER_KEPT = 1,   /* the raw points that are finite and not all zero, in their order */
@@ -115,11 +115,11 @@ struct _GstLidarEncoderClass {
    */
   gboolean (*set_format)(GstLidarEncoder* encoder, const GstLidarCloudFormat* cloud,
                          gboolean with_intensity, GstLidarCodedFormat* coded);
-  /** Takes a slice, which the next four methods are about. */
+  /** Loads a slice for the next four methods. */
   void (*load)(GstLidarEncoder* encoder, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded);
   /** Gives the steps that keep to @max_error. Optional; by default a cubic grid of coordinates. */
   void (*get_steps)(GstLidarEncoder* encoder, gdouble max_error, GstLidarStepRange* steps);
-  /** Forgets the rows whose element of @kept is 0. Optional if rows are 0. */
+  /** Drops the rows whose element of @kept is 0. Optional if rows are 0. */
   void (*thin)(GstLidarEncoder* encoder, const guint8* kept, guint rows);
   /** Appends the coded slice to @bytes, which is empty. May be called again for the same slice. */
   GstLidarEncodeResult (*encode)(GstLidarEncoder* encoder, const GstLidarEncodeSettings* settings,
@@ -138,7 +138,7 @@ struct _GstLidarEncoderClass {
    * slices go to one place. Each receiver has its own number @receiver. Optional.
    */
   void (*acknowledge)(GstLidarEncoder* encoder, guint receiver, guint scan_id, guint slice_index);
-  /** A receiver cannot decode what it gets: encode so that it can. Optional. */
+  /** A receiver cannot decode its slices: encode the next ones without references. Optional. */
   void (*request_key)(GstLidarEncoder* encoder);
 
   /*< private >*/

@@ -25,7 +25,7 @@ class CloudInput {
   };
   /// The place of the next buffer. A buffer without a meta is a scan of one slice.
   Place PlaceOf(GstBuffer* buffer);
-  /// The next slice after a flush starts a scan.
+  /// Call it after a flush: the next slice starts a scan.
   void ForgetScan() { scan_id_.reset(); }
 
   /// Returns nothing after an error message if the buffer does not hold the cloud of its caps.

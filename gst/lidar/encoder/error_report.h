@@ -19,8 +19,8 @@ struct CheckedSlice {
   bool thinned = false;    // the encoder left out beams
 };
 
-/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. The first one
-/// that exceeds max_error_m gives a warning. Belongs to the streaming thread.
+/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. Warns of the
+/// first of successive slices that exceed max_error_m. Belongs to the streaming thread.
 class ErrorReport {
  public:
   struct Outcome {

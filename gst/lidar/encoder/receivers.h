@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Keeps what receivers report of an encoder's slices until its streaming thread takes it.
+// Keeps the reports of receivers about an encoder's slices until its streaming thread takes them.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,8 +10,8 @@
 
 namespace lidar::gst {
 
-/// Returns true if data of `src` reach at most one place: no element downstream has two outputs for
-/// them. A second place would not report its losses.
+/// Returns true if data of `src` reach at most one destination: no element downstream has two
+/// outputs for them. A second one would not report its losses.
 bool HasOneWay(GstPad* src);
 
 /// Events come in any thread; the streaming thread calls Take().
@@ -26,10 +26,12 @@ class ReceiverEvents {
     std::vector<Slice> received;
     bool key_requested = false;
   };
-  /// Returns false if `event` is no report of a receiver; the caller keeps it.
+  /// Returns false if `event` is no report of a receiver. The event stays the caller's in both
+  /// cases.
   bool OnEvent(GstEvent* event);
   void Forget();
-  /// All reports since the last call; empty if `src` leads to several places.
+  /// Returns all reports since the last call, but no received slices if `src` leads to several
+  /// destinations.
   News Take(GstPad* src);
 
  private:
