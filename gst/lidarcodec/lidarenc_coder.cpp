@@ -54,7 +54,7 @@ void LidarEncCoder::KeepBlocks() {
   slice_.blocks.clear();
 }
 
-/// Notes what the last slice took. Call it while its coder is there.
+/// Reports the time of the last slice to `control_`. Call it before the slice's coder is replaced.
 void LidarEncCoder::MeasureEffort() {
   if (automatic_ && spent_ > Duration{0}) control_.OnSlice(sweep_, returns(), spent_);
   spent_ = {};

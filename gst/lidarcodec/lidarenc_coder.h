@@ -25,10 +25,10 @@ class LidarEncCoder {
   /// points only.
   bool SetFormat(const CloudInfo& info, bool with_intensity,
                  const codec::cloud::ExactChoice& exact);
-  /// Takes the slice. Without `effort` it chooses the effort that time allows.
+  /// Loads the slice. Without `effort` it chooses the effort that time allows.
   void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
-  /// Lets the loaded slice refer to blocks that the receiver has, if receivers are to remember
-  /// blocks (`remembers`).
+  /// Lets the loaded slice refer to blocks that the receiver has, and later slices to blocks of it,
+  /// if `remembers` is true.
   void Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval);
   /// Describes the loaded slice; valid until the next Load().
   void Describe(GstLidarLoadedSlice* loaded);
@@ -64,7 +64,7 @@ class LidarEncCoder {
   codec::EffortControl control_;
   bool automatic_ = false;  // the loaded slice has the effort of `control_`
   Duration sweep_{};        // of the loaded slice
-  Duration spent_{};        // for the loaded slice, with all tries
+  Duration spent_{};        // for all encodings of the loaded slice
 };
 
 }  // namespace lidar::gst
