@@ -17,7 +17,7 @@
 namespace lidar::gst {
 namespace caps_text {
 
-/// Returns nothing if a value of the array is of another type.
+/// Returns nothing if a value of the array is not a double.
 inline std::optional<ScalarCaps::Value> ToDoubles(const GValue* array) {
   ScalarCaps::Doubles values;
   for (guint i = 0; i < gst_value_array_get_size(array); ++i) {
@@ -40,7 +40,7 @@ inline void SetDoubles(GstStructure* s, const gchar* name, const ScalarCaps::Dou
   gst_structure_take_value(s, name, &array);
 }
 
-/// Returns nothing for a value of another type.
+/// Returns nothing for a value of a type that ScalarCaps lacks.
 inline std::optional<ScalarCaps::Value> ToScalar(const GValue* value) {
   using Value = ScalarCaps::Value;
   const GType type = G_VALUE_TYPE(value);

@@ -41,8 +41,8 @@ inline bool ReadPem(const std::string& path, bool with_key, std::string* pem, st
   return false;
 }
 
-/// Reads both from files. Returns false and sets `error` on failure; `error` never contains the
-/// key.
+/// Reads both certificates from files. Returns false and sets `error` on failure; `error` never
+/// contains the key.
 inline bool ReadCertificates(const std::string& own, const std::string& peer,
                              Certificates* certificates, std::string* error) {
   std::string pem;

@@ -24,7 +24,7 @@ class CoderPads {
   GstPad* sink() const { return sink_; }
   GstPad* src() const { return src_; }
 
-  /// Sets whether the next buffer does not continue the last one.
+  /// Call it with true if the next buffer does not continue the last one.
   void set_discont(bool discont) { discont_ = discont; }
 
   GstFlowReturn Push(BufferPtr output, GstBuffer* input) {
@@ -49,7 +49,7 @@ class CoderPads {
   bool discont_ = false;
 };
 
-/// Forgets the stream of a coder on its way to READY. The base class calls it once its pads are
+/// Resets the stream of a coder on its way to READY. The base class calls it once its pads are
 /// inactive.
 template <class Coder, class Class>
 void EndStream(Coder* coder, const Class* klass) {
@@ -58,7 +58,7 @@ void EndStream(Coder* coder, const Class* klass) {
   if (klass->reset != nullptr) klass->reset(coder);
 }
 
-/// Statistics as element messages.
+/// Posts statistics as element messages.
 class MessageTimer {
  public:
   /// Posts `stats` if `interval` (0: never) has passed since the last post, or since the first call

@@ -22,7 +22,7 @@ inline constexpr const char* kImuFrame = "imu";
 inline constexpr const char* kOdometryFrame = "odom";
 inline constexpr const char* kMapFrame = "map";
 
-/// Returns the frame in a field of caps, or `usual` where they have none.
+/// Returns the frame in a field of caps, or `usual` if they have none.
 inline std::string FrameIn(const GstStructure* caps, const char* field, const char* usual = "") {
   const gchar* frame = gst_structure_get_string(caps, field);
   return frame != nullptr ? frame : usual;

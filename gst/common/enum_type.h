@@ -11,8 +11,8 @@ constexpr gint Int(E value) {
   return static_cast<gint>(value);
 }
 
-/// Registers an enumeration with a new name, and documents it with the plugin. `values` live for
-/// ever and end with an empty row.
+/// Registers an enumeration with a new name, and documents it with the plugin. `values` have static
+/// storage and end with an empty row.
 inline GType RegisterEnum(const char* name, const GEnumValue* values) {
   const GType type = g_enum_register_static(name, values);
   gst_type_mark_as_plugin_api(type, static_cast<GstPluginAPIFlags>(0));

@@ -23,7 +23,7 @@ struct SpecArgs {
   gdouble max = 0;
 };
 
-/// How a C++ type looks as a GValue: Spec() makes a property of it, Get() and Set() copy values.
+/// Maps a C++ type to a GValue: Spec() makes a property of it, Get() and Set() copy values.
 template <class T, class = void>
 struct Kind;
 
@@ -116,7 +116,7 @@ struct Kind<bool> {
   static void Get(bool value, GValue* v) { g_value_set_boolean(v, value); }
 };
 
-/// An empty string reads as NULL, as GStreamer's own elements show it.
+/// An empty string reads as NULL, as in GStreamer's own elements.
 template <>
 struct Kind<std::string> {
   static GType Type() { return G_TYPE_STRING; }
@@ -132,7 +132,7 @@ struct Kind<std::string> {
     g_value_set_string(v, value.empty() ? nullptr : value.c_str());
   }
 };
-/// Text of static storage, which can only be read.
+/// Text in static storage, for read-only properties and for statistics.
 template <>
 struct Kind<const char*> {
   static GType Type() { return G_TYPE_STRING; }
@@ -142,7 +142,7 @@ struct Kind<const char*> {
   static void Get(const char* value, GValue* v) { g_value_set_static_string(v, value); }
 };
 
-/// Gives the GType of a boxed type or object. Specialised for each type in rows.
+/// Returns the GType of a boxed type or object. Specialised for each type that a table uses.
 template <class T>
 GType GTypeOf();
 template <>
@@ -217,10 +217,11 @@ class Field {
   Field(const EnumField<S, E>& e)
       : member_(reinterpret_cast<Member>(e.field)), type_(e.type), ops_(&kEnum<E>) {}
 
-  /// The field of `row`, in the struct at the end of the path. The row lives for ever.
+  /// The field of `row`, in the struct at the end of the path. The row has static storage.
   template <class Row, auto... path>
   Field(const Row* row, AtPath<path...>) : row_(row), ops_(&kWithin<Row, ByPath<path...>>) {}
-  /// `row` is a row of the child's table; its default is that of `defaults`. Both live for ever.
+  /// `row` is a row of the child's table; its default is that of `defaults`. Both have static
+  /// storage.
   template <class Row>
   Field(const Row* row, const typename Row::Struct* defaults, GObject* (*child)(GObject*))
       : function_(reinterpret_cast<Function>(child)),
@@ -248,7 +249,7 @@ class Field {
  private:
   using Member = char S::*;
   using Function = void (*)();
-  /// Operations that differ by type. They cast the pointers above back to their types.
+  /// Operations that differ by type. They cast the stored pointers back to their types.
   struct Ops {
     GType (*type)(const Field&);
     GParamSpec* (*spec)(const Field&, const SpecArgs&, const S&);
@@ -308,7 +309,7 @@ class Field {
         Kind<T>::Get(Way::Read(f, s, object), v);
       },
       nullptr};
-  // A function can use later declarations; the lambda of a constant cannot.
+  // A function can use later declarations; a lambda that initialises a constant cannot.
   static GType EnumType(const Field& f) { return f.type_(); }
   template <class E>
   static constexpr Ops kEnum = {EnumType,

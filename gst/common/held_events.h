@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sticky events of a pad whose caps come from the data of the first buffer.
+// Holds sticky events of a pad whose caps come from the data of the first buffer.
 #pragma once
 #include <algorithm>
 #include <utility>
@@ -12,8 +12,8 @@ namespace lidar::gst {
 /// Events leave after the caps, in order of arrival. A new event replaces an older one of its type.
 class HeldEvents {
  public:
-  /// Holds a sticky event that belongs behind the caps; drops a gap, which has no meaning before
-  /// them. Returns false, and leaves `event` to the caller, for other events.
+  /// Holds a sticky event that belongs after the caps. Drops a gap, which has no meaning before
+  /// caps. Returns false, and leaves `event` to the caller, for other events.
   bool Take(GstEvent* event) {
     const GstEventType type = GST_EVENT_TYPE(event);
     const bool waits = GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&

@@ -26,7 +26,7 @@ struct HistoryQuestion {
 struct HistoryAnswer {
   guint64 from = 0;  // capture times of all that is kept [ns since 1970]; 0: nothing
   guint64 to = 0;
-  std::vector<SamplePtr> samples;  // caps and buffers with metas; their offset is the position
+  std::vector<SamplePtr> samples;  // caps, buffers with metas; a buffer's offset is its position
   guint64 position = 0;            // where the next answer begins
   bool ended = true;               // nothing newer is kept yet
   guint64 damaged = 0;             // buffers that were left out

@@ -39,7 +39,7 @@ inline bool GetCovariance(const GstStructure* s, double* covariance) {
   return true;
 }
 
-/// Variances with which a weighted pose has no effect [m^2, rad^2].
+/// Variances so large that such a pose has no effect in a weighted mean [m^2, rad^2].
 inline constexpr double kDegenerateVariance = 1e3;
 inline constexpr double kUnknownVariance = 1e6;
 
@@ -48,7 +48,7 @@ inline void SetVariances(double position, double orientation, Covariance* covari
 }
 
 /// The covariance also carries the GstLidarTracking, for which ROS has no field. Zeros mean an
-/// unknown covariance. `measured` is that of a tracked pose.
+/// unknown covariance. `measured` is the covariance of a tracked pose.
 inline Covariance CovarianceOf(std::uint64_t tracking, const Covariance& measured = {}) {
   Covariance covariance{};
   if (tracking <= GST_LIDAR_TRACKING_OK) return measured;
@@ -65,7 +65,7 @@ inline GstLidarTracking TrackingOf(const Covariance& covariance) {
                                               : GST_LIDAR_TRACKING_OK;
 }
 
-/// Covariance of an unknown velocity, so that its zeros are not taken for a standstill.
+/// Covariance of an unknown velocity, so that the velocity's zeros are not taken for a standstill.
 inline Covariance NoVelocity() {
   Covariance covariance{};
   SetVariances(kUnknownVariance, kUnknownVariance, &covariance);

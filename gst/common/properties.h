@@ -63,7 +63,7 @@ auto Within(const std::array<Property<Part>, N>& table, std::string_view name) {
 }
 
 /// Returns the row `name` of a child's table as a row of its bin. `child` returns the child, or
-/// NULL. The default is that of `defaults`, which live for ever.
+/// NULL. The default is that of `defaults`, which have static storage.
 template <class Settings, class ChildSettings, std::size_t N>
 Property<Settings> Proxy(const std::array<Property<ChildSettings>, N>& table, std::string_view name,
                          GObject* (*child)(GObject*), const ChildSettings* defaults = nullptr) {
@@ -109,10 +109,10 @@ void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v,
   p.field.Get(&s, object, v);
 }
 
-/// The default of ServeProperties(): does nothing after a change.
+/// The default of `changed` in ServeProperties(): does nothing.
 inline void NothingMore(GObject*, GParamSpec*) {}
 
-/// A shared table may be a function that returns it.
+/// Returns the rows of `table`, which is an array or a function that returns one.
 template <class Table>
 const auto& RowsOf(const Table& table) {
   if constexpr (std::is_function_v<Table>) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Remembers refused caps, so that an element posts one error although GStreamer offers them with
-// each buffer. Accepted caps end that.
+// Keeps the last refused caps, so that an element posts one error although GStreamer offers them
+// again with each buffer.
 #pragma once
 #include <gst/gst.h>
 

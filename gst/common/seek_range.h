@@ -7,7 +7,7 @@
 
 namespace lidar::gst {
 
-/// What a seek asks for, with times counted from the beginning.
+/// The range that a seek asks for, with times counted from the beginning.
 struct SeekRange {
   GstSeekType start_type = GST_SEEK_TYPE_NONE;
   GstClockTime start = 0;
@@ -41,15 +41,15 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
                        &stop);
   range.start = FromBeginning(&range.start_type, start, *segment);
   range.stop = FromBeginning(&range.stop_type, stop, *segment);
-  // GStreamer, too, takes a start of -1 for 0.
+  // GStreamer also treats a start of -1 as 0.
   if (range.start_type == GST_SEEK_TYPE_SET && start == -1) range.start = 0;
   return range.IsSound(*segment) &&
          gst_segment_do_seek(segment, rate, GST_FORMAT_TIME, flags, range.start_type, range.start,
                              range.stop_type, range.stop, nullptr) != FALSE;
 }
 
-/// Serves a seek without start and flush. Playback continued meanwhile, so the segment continues
-/// from `end`, the place that it reached.
+/// Completes a seek without start and flush. Playback continued meanwhile, so the segment continues
+/// from `end`, the time that playback has reached.
 inline void GoOnFrom(GstClockTime end, GstSegment* segment) {
   segment->position = std::min(std::max(end, segment->position), segment->stop);
   segment->offset = segment->position - segment->start;
