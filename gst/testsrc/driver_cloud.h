@@ -26,7 +26,7 @@ class DriverCloud {
   /// Writes the points of the returns.
   const std::vector<std::uint8_t>& Write(const synth::Returns& returns, const synth::Rays& rays,
                                          const Sweep& sweep);
-  /// Caps of the last written cloud; width 0: no returns.
+  /// Caps of the last written cloud. The width is 0 if it has no returns.
   const CloudInfo& info() const { return info_; }
 
  private:

@@ -274,7 +274,7 @@ static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   return caps;
 }
 
-/// Caps come with each buffer if each buffer has its own.
+/// Create() sets the caps of each buffer if each buffer has caps of its own.
 static gboolean Negotiate(GstBaseSrc* base) {
   const auto& maker = StateOf(base).maker;
   if (maker && maker->OwnInfo() != nullptr) return TRUE;
@@ -313,7 +313,7 @@ static GstClockTime UnixTime(GstLidarTestSrc* self, Duration t) {
   return live ? self->state->pacer.ToUnixTime(t) : kEpoch + static_cast<GstClockTime>(t.count());
 }
 
-/// Reports the first row that does not fit; written rows stay, and no more follow.
+/// Writes a row. Reports the first row that does not fit; written rows stay, and no more follow.
 static void LogPose(GstLidarTestSrc* self, Duration at) {
   State& state = *self->state;
   if (!state.log) return;
@@ -373,7 +373,7 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   }
   const CapsPtr caps(info->ToCaps());
   const GstFlowReturn flow = SetSourceCaps(GST_BASE_SRC(push), caps.get());
-  if (flow != GST_FLOW_OK) gst_clear_buffer(out);  // the base class would ignore it
+  if (flow != GST_FLOW_OK) gst_clear_buffer(out);  // the base class ignores a buffer with an error
   return flow;
 }
 

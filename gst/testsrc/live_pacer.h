@@ -17,11 +17,11 @@ class LivePacer {
  public:
   explicit LivePacer(GstBaseSrc* source) : source_(source) {}
 
-  /// Stream time zero is now. To be called once the pipeline plays.
+  /// Sets stream time zero to the present. Call it when the pipeline plays.
   void Start();
   void Stop() { started_ = false; }
   bool started() const { return started_; }
-  /// Waits until stream time `t`, through pauses of the pipeline; FLUSHING when it stops.
+  /// Waits until stream time `t`, through pauses of the pipeline. Returns FLUSHING if it stops.
   GstFlowReturn WaitUntil(Duration t);
   /// Present stream time; nothing without a clock.
   std::optional<Duration> Now() const;
@@ -30,8 +30,8 @@ class LivePacer {
   /// Called by unlock and unlock_stop. Any thread may call it.
   void SetFlushing(bool flushing);
 
-  /// Called whenever the pipeline begins to play: the running time stands still in a pause; UTC
-  /// does not.
+  /// Call it whenever the pipeline begins to play, because the running time stops in a pause, but
+  /// UTC does not.
   void MeasureUnixOffset();
 
  private:
@@ -41,7 +41,7 @@ class LivePacer {
   bool started_ = false;
   GstClockTime start_ = 0;                        // running time of stream time zero
   std::atomic<GstClockTimeDiff> unix_offset_{0};  // UTC less running time
-  std::mutex mutex_;                              // guards what follows; not held while waiting
+  std::mutex mutex_;  // guards the members below; not held while waiting
   bool flushing_ = false;
   GstClockID wait_ = nullptr;
 };

@@ -98,7 +98,7 @@ CloudInfo SliceMaker::InfoFor(const synth::ScannerConfig& config, const SliceOpt
 }
 
 Duration SliceMaker::LongestSlice() const {
-  // Rounding makes neighbours differ by a nanosecond.
+  // Rounding makes the lengths of slices differ by a nanosecond.
   return period_ / std::int64_t{slices_} + Duration{1};
 }
 

@@ -34,9 +34,9 @@ class SliceMaker {
   /// width, because each slice has its own.
   static CloudInfo InfoFor(const synth::ScannerConfig& config, const SliceOptions& options);
 
-  /// When the first column of the next slice is sampled.
+  /// Time at which the first column of the next slice is sampled.
   Duration NextTime() const { return scanner_.ColumnTime(scan_, FirstColumn()); }
-  /// When the next slice ends.
+  /// Time at which the next slice ends.
   Duration NextEnd() const { return scanner_.ColumnTime(scan_, FirstColumn() + width_); }
   const synth::Trajectory& trajectory() const { return scanner_.trajectory(); }
   Duration LongestSlice() const;
@@ -44,9 +44,10 @@ class SliceMaker {
   /// Casts the next slice into a buffer with PTS, duration and slice meta. `begin` is NextTime()
   /// since 1970.
   BufferPtr Make(GstClockTime begin);
-  /// Caps of the last slice, if each has its own; width 0: no returns.
+  /// Caps of the last slice if each slice has its own, else null. The width is 0 if there are no
+  /// returns.
   const CloudInfo* OwnInfo() const { return driver_ ? &driver_->info() : nullptr; }
-  /// Goes on with the first slice of the scan that is being swept at `time`.
+  /// Continues with the first slice of the scan that is being swept at `time`.
   void SkipTo(Duration time);
 
  private:
