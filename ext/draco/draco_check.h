@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Checks a Draco stream before libdraco, which trusts the counts in it.
+// Checks a Draco stream before it goes to libdraco, which trusts the counts in it.
 #pragma once
 #include <cstdint>
 #include <optional>

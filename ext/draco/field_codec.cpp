@@ -21,10 +21,11 @@ using Attribute = ::draco::GeometryAttribute;
 constexpr int kSpeed = 7;
 // Draco's coder of integers takes memory and time in proportion to the range of their differences.
 constexpr double kWidestRange = 1 << 20;
-// Draco counts them in a byte.
-constexpr std::uint32_t kMostNumbers = 255;  // of a field
+// Draco counts the numbers of a field in a byte.
+constexpr std::uint32_t kMostNumbers = 255;
 
-/// Draco converts integers to int32, so it refuses large unsigned ones. Their bits are the same.
+/// Draco converts integers to int32, so it refuses large unsigned ones. As int32, they keep their
+/// bits.
 ::draco::DataType DracoTypeOf(FieldType type) {
   constexpr ::draco::DataType kTypes[] = {
       ::draco::DT_INT8,  ::draco::DT_UINT8, ::draco::DT_INT16,   ::draco::DT_UINT16,

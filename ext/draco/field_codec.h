@@ -10,7 +10,7 @@
 
 namespace lidar::draco {
 
-/// Numbers of one type side by side.
+/// A field: adjacent numbers of one type.
 struct FieldOfPoints {
   FieldType type;
   std::uint32_t offset;  // bytes from the start of the point
@@ -25,8 +25,8 @@ struct FieldLayout {
   static constexpr std::size_t kMaxFields = 64;
 };
 
-/// Rounds nothing and keeps the order of points. Returns false if there is no point to code, or a
-/// field ends past the point.
+/// Codes numbers without rounding, and keeps the order of points. Returns false if there is no
+/// point to code, or a field ends past the point.
 bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::uint8_t>* out);
 
 /// Returns whole points of the layout, with zeros between the fields. Returns false if the stream

@@ -26,7 +26,8 @@ class XyzSliceEncoder {
   bool has_intensity() const { return has_intensity_; }
   void Thin(const std::vector<bool>& kept);
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
-  /// Takes over when `before` tried both methods, and which one was smaller.
+  /// Takes over from `before` the better method, and the number of slices until both are tried
+  /// again.
   void Continue(const XyzSliceEncoder& before) {
     method_ = before.method_;
     slices_ = before.slices_;
@@ -39,11 +40,11 @@ class XyzSliceEncoder {
   XyzCloud cloud_;
   bool has_intensity_ = false;
   XyzMethod method_ = XyzMethod::kKdTree;
-  unsigned slices_ = 0;  // since both methods were tried
+  unsigned slices_ = 0;  // slices with a level above 0; every kTryBothEvery-th tries both methods
 };
 
-/// Encodes slices as codec::SliceEncoder does, with a further geometry and further coders. For one
-/// thread at a time.
+/// Encodes slices as codec::SliceEncoder does, and also in xyz geometry and with Draco's coders.
+/// For one thread at a time.
 class SliceEncoder {
  public:
   /// Returns nothing if `format` cannot be coded in that geometry. Without a geometry it takes
@@ -54,8 +55,8 @@ class SliceEncoder {
 
   Geometry geometry() const { return range_ ? Geometry::kRange : Geometry::kXyz; }
 
-  /// Takes the points out of `raw`, which holds whole points (range: whole beams) of the format,
-  /// and keeps them for Encode().
+  /// Loads the points of `raw`, which holds whole points (range: whole beams) of the format, for
+  /// Encode().
   void Load(ByteView raw, std::uint32_t first_column, bool with_intensity);
   /// The number of loaded returns.
   std::size_t returns() const { return range_ ? range_->returns() : xyz_.cloud().size(); }
@@ -64,7 +65,8 @@ class SliceEncoder {
   /// Resolution of the loaded ranges [mm]; 1 if there are none.
   std::uint32_t range_unit_mm() const { return range_ ? range_->range_unit_mm() : 1; }
   bool has_intensity() const { return range_ ? range_->has_intensity() : xyz_.has_intensity(); }
-  /// Names the coder that Encode() will take, for statistics and predictors: "xyz-kd6".
+  /// Returns the name of the coder that Encode() will use, for statistics and predictors:
+  /// "xyz-kd6".
   std::string Mode(unsigned level) const;
 
   /// Keeps only the loaded beams (range) or points (xyz) that `kept` marks.
@@ -78,7 +80,7 @@ class SliceEncoder {
 
   /// Encodes the loaded points. May be called again for the same ones.
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
-  /// Goes on as the encoder of the stream's last format.
+  /// Continues the work of the encoder of the stream's last format.
   void Continue(const SliceEncoder& before) { xyz_.Continue(before.xyz_); }
 
  private:

@@ -135,7 +135,8 @@ bool FromGrid(const ::draco::PointAttribute& attribute, const std::uint8_t* byte
   return true;
 }
 
-/// Returns Draco's attribute of that type, if it is kComponents floats.
+/// Copies Draco's attribute of that type to `values`. Returns false unless it has kComponents
+/// finite numbers for each point.
 template <std::size_t kComponents>
 bool GetAttribute(const ::draco::PointCloud& cloud, GeometryAttribute::Type type,
                   std::vector<float>* values) {
