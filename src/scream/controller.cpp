@@ -13,20 +13,20 @@ namespace lidar::scream {
 namespace {
 
 constexpr Duration kHousekeeping = 50ms;
-/// A caller that is this much late has stood still, or its clock was set.
+/// If the caller is late by this much, it did not run, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// The window is about what the link carries for this long after a sign of congestion.
+/// The window is about the link's capacity for this time after a sign of congestion.
 constexpr Duration kCongestedLately = 300ms;
-/// Longest silence that may be a gap of the link.
+/// A longer silence of the receiver is no gap of the link.
 constexpr Duration kLongestSilence = 2s;
-/// A report this late shows a link that stands still.
+/// A report that is late by more than this shows a stalled link.
 constexpr Duration kOverdue = 5ms;
 
 }  // namespace
 
-/// Discards feedback on packets that were under way while the caller stood still: the path did not
-/// cause their delay.
+/// Returns the steady time. After a pause of the caller, feedback on the packets in flight does not
+/// count, because the path did not cause their delay.
 Time Controller::Advance(Time caller_now) {
   const Time now = clock_.From(caller_now);
   // The caller must call often while data are in flight.
@@ -110,8 +110,8 @@ void Controller::TakeOutageRestart(Time now) {
   const auto restart = outage_.OnFeedback(now);
   if (!restart) return;
   window_.Restart(std::max(window_.ref_wnd(), *restart));
-  // Packets that the gap delayed arrive during the next round trip. The restart already answered
-  // their marks, so they do not count.
+  // Packets that the outage delayed arrive during the next round trip. They do not count, because
+  // the restart already answered their marks.
   path_.evidence().BeginAt(now + path_.rtt().smoothed());
   fast_increase_.Restart();
 }
@@ -168,7 +168,7 @@ bool Controller::RespondToDrop(Time now) {
 
 void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   const CongestionSignals signals = Signals(now, acks);
-  // Growth waits until the backlog of recent congestion has left.
+  // Fast growth waits until the backlog of recent congestion has left the streams' queues.
   if (streams_.media_qdelay(now) <= streams_.frame_period() || !CongestedLately())
     fast_increase_.Update(now, path_.Round(streams_.frame_period()));
   const RateReason reason = window_.Update(now, signals);
@@ -253,8 +253,8 @@ DataRate Controller::WindowTarget(Time now) const {
   return now < path_.half_rate_until() ? target * kDriftRateScale : target;
 }
 
-/// Returns the target for encoders. It is below the window's rate while their output would wait,
-/// but not below their need while the path lives.
+/// Returns the target for encoders. While the link is stalled, the target is below the window's
+/// rate, because new data would wait. It is not below the encoders' need, except in a long silence.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
   if (p_.extensions.gaps && started_ && Stalled(now)) asked = asked * p_.stall_share;
@@ -275,30 +275,31 @@ std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
                       path_.ecn().codepoint()};
 }
 
-/// Allows for one lost report.
+/// Returns how late a report may be on a healthy link, which may have lost one report.
 Duration Controller::Lateness() const { return 2 * path_.report_gap() + kOverdue; }
 
-/// Returns true if packets in flight take longer than before: they wait for the link.
+/// Returns true if the oldest packet in flight waits longer than a round trip and late reports
+/// explain.
 bool Controller::Overdue(Time now) const {
   const auto oldest = history_.oldest_in_flight();
   return oldest && now - *oldest > path_.rtt().smoothed() + Lateness();
 }
 
-/// Returns true if packets are acknowledged more slowly than they were sent: a gap, or its start.
+/// Returns true in a gap and at its start, when packets are overdue and no acknowledgement comes.
 bool Controller::Stalled(Time now) const {
   return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
 }
 
-/// Returns how much longer packets that met a gap wait, at the rate from before the gap. Packets
-/// that have arrived meanwhile still count.
+/// Returns how much longer packets behind a gap wait: the time that the most bytes in flight of the
+/// last two round trips take at the rate before the gap.
 Duration Controller::WaitBehindGap(Time now) const {
   const auto rate = gap_recovery_.rate_before();
   if (!rate || !Overdue(now)) return Duration{0};
   return path_.max_in_flight().lately() / *rate;
 }
 
-/// Returns true if the stream must wait: too many packets are unsettled, or the link stands still,
-/// where packets of a new frame could not be dropped.
+/// Returns true if the stream must wait, because too many packets are unsettled or the link is
+/// stalled. A new frame then stays in the stream's queue, where it can still be dropped.
 bool Controller::Holds(const Stream& stream, Time now) const {
   const bool stalled = p_.extensions.gaps && started_ && Overdue(now) && Stalled(now);
   return history_.full() || (stalled && stream.at_start());
@@ -308,8 +309,8 @@ bool Controller::CongestedLately() const {
   return now_ - window_.last_congestion_detected_time() < kCongestedLately;
 }
 
-/// Returns the highest rate at which a stream's queue may leave. The window does not show the
-/// link's capacity in a gap, or without a queue in the network.
+/// Returns the highest rate at which a stream's queue can drain. The rate is infinite in a gap and
+/// without recent congestion, because the window then does not show the link's capacity.
 DataRate Controller::QueueRate(const Stream& stream) const {
   if (gap_recovery_.in_gap() || outage_.active() || !CongestedLately()) return DataRate::Infinite();
   const DataRate known =

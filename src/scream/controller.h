@@ -44,15 +44,15 @@ struct SendDecision {
 ///       send; }
 ///     }
 ///
-/// Take the time of OnSent() *before* the send call: a sender preempted within it would
-/// otherwise see negative queue delay. After OnFeedback(), OnTimer() and OnQueued() read
-/// target_bitrate() again. Times must not go backwards by more than reordering between threads
-/// does: an earlier time than one seen before counts as that one.
+/// Take the time of OnSent() *before* the send call: a sender preempted within it would otherwise
+/// see negative queue delay. After OnFeedback(), OnTimer() and OnQueued() read target_bitrate()
+/// again. Times must not go backwards by more than reordering between threads does. A time before
+/// the latest one counts as the latest one.
 ///
 /// Not thread-safe, no callbacks; a caller with a lock holds it around each call.
 ///
-/// It only calls the parts in order: `model/` measures the path, `response/` decides what follows
-/// from it, and `streams` shares the result.
+/// The controller only calls its parts in order: `model/` measures the path, `response/` decides
+/// what follows from the measurements, and `streams` shares the rate.
 class Controller {
  public:
   explicit Controller(const Parameters& parameters) : p_(parameters) {}
@@ -70,7 +70,7 @@ class Controller {
   void OnSent(Time now, StreamId stream, const SentPacket& packet);
   /// The caller dropped the first `packets` of the stream's queue.
   void OnDropped(Time now, StreamId stream, std::size_t packets);
-  /// The packet at the head of the queue was not sent, as another path delivered it.
+  /// The packet at the head of the queue is not sent, because another path delivered it.
   void OnUnneeded(Time now, StreamId stream);
   /// Takes parsed feedback of the peer, whose source address the caller has checked.
   FeedbackResult OnFeedback(Time now, const rtcp::CongestionFeedback& feedback);
@@ -81,18 +81,20 @@ class Controller {
   void OnRouteChange(Time now);
 
   // Decisions:
-  // Returns which stream may send next, and when: later while the window is closed, and nothing
-  // while all queues are empty.
+  // Returns the stream that may send next, and the time. The time is in the future if the pacer or
+  // a closed window delays the packet. Returns nothing while all queues are empty.
   std::optional<SendDecision> NextSend(Time now) const;
-  /// Returns how many packets at the head of the queue are too late. An access unit that has not
-  /// begun to leave is late as a whole if its last packet would leave later than `max_queue_delay`
-  /// after the middle of its capture; late units behind it count, too. The limit is five times as
-  /// long for a unit that has begun. While packets in flight are overdue, it is longer by the time
-  /// that they took at the earlier rate, up to half of `max_queue_delay`.
+  /// Returns how many packets at the head of the queue are too late. An access unit, or its group,
+  /// is late as a whole if its last packet would leave later than `max_queue_delay` after the
+  /// middle of its capture. The limit is five times as long if the group has begun to leave. Late
+  /// units behind it count, too. The rest of a unit that has begun is late when its first packet
+  /// has waited five times `max_queue_delay`. While packets in flight are overdue, the limits are
+  /// longer by the time that the bytes in flight take at the rate before the gap, up to half of
+  /// `max_queue_delay`.
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// Returns when to call OnTimer() next.
   Time NextTimer() const;
-  /// Bitrates that one stream and all streams may send, with IP, UDP and RTP.
+  /// Bitrates that one stream and all streams may send, with IP, UDP and RTP headers.
   DataRate target_bitrate(StreamId stream) const;
   DataRate target_bitrate() const { return streams_.target_bitrate(); }
   /// Returns the stream that queued or sent `ssrc`, for events that name an SSRC.

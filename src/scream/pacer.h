@@ -39,7 +39,7 @@ class Pacer {
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
   /// Call it after a gap. The next packet does not wait as long as the rate in the gap required.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
-  /// The next packet is timed from when this one was due, not from a late wake-up, within a bound.
+  /// Times the next packet from the due time of this one, not from a late wake-up, within a bound.
   void OnSent(Time now, DataSize size) {
     const Duration gap = size / pace_bitrate_;
     next_ = std::max(next_, now - p_.pacing_catch_up) + gap;

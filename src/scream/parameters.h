@@ -48,7 +48,7 @@ struct Parameters {
   double l4s_avg_g = 1.0 / 16;
   double qdelay_avg_g = 1.0 / 4;
   double ref_wnd_i_update_max_hold_rtts = 50;
-  /// ref_wnd_i moves if ref_wnd exceeds its lowest value since then by this factor (draft: 1.05).
+  /// ref_wnd_i moves if ref_wnd has grown by this factor since the last reduction (draft: 1.05).
   double ref_wnd_i_update_growth = 1;
 
   // Optional, jitter scale:
@@ -85,36 +85,36 @@ struct Parameters {
   double acked_bitrate_margin = 0.8;
   double backoff_scale_low_target_rate = 0.25;
 
-  // Extensions: Growth beyond the draft's is at most this fraction of the acknowledged bytes.
+  // Extensions: fast growth, beyond the draft's, adds at most this part of the acknowledged bytes.
   double fast_increase_max = 0.5;
-  /// Step by which that growth increases with each round without congestion.
+  /// Step by which fast growth increases with each round without congestion.
   double fast_increase_step = 0.03;
   /// fast_increase_step if no marks give an early warning.
   double fast_increase_step_unmarked = 0.02;
-  /// Rounds without congestion before that growth begins. A queue of busy_qdelay stops it.
+  /// Rounds without congestion before fast growth begins. A queue of busy_qdelay stops it.
   int fast_increase_rounds = 3;
-  /// Slope of the growth above the inflection point (8 in the draft).
+  /// Slope of fast growth above the inflection point (8 in the draft).
   double fast_increase_slope = 3;
   /// The capacity has fallen if the target is above this part of its measured value.
   double drop_threshold = 0.9;
-  /// drop_threshold for an unsure measurement: over less than a frame period and VIRTUAL_RTT, with
-  /// fewer than half of the packets marked, or shortly after another reaction.
+  /// drop_threshold for an unsure measurement: shorter than both a frame period and VIRTUAL_RTT,
+  /// with fewer than half of the packets marked, or shortly after another reaction.
   double drop_threshold_unsure = 1.5;
-  /// The queue delay on a path with marks must also have grown by this many packet gaps.
+  /// A fall on a path with marks must also lengthen the queue delay by this many packet gaps.
   double drop_growth = 3;
-  /// Queue that shows a busy link; without marks, this part of qdelay_target.
+  /// Queue delay that shows a busy link. Without marks it is a part of qdelay_target.
   Duration busy_qdelay = 5ms;
   double busy_qdelay_unmarked = 0.45;
-  /// Bytes in flight relative to ref_wnd while most packets are marked.
+  /// Limit of bytes in flight relative to ref_wnd while packets keep coming out of a queue.
   double bounded_overhead = 1.0;
-  /// The same while most packets are not marked.
+  /// The same limit on a path with marks, without such a queue.
   double open_overhead = 1.2;
   /// Tolerated loss rate if the path carries ECT(1).
   double isolated_loss_threshold = 0.05;
   /// Losses show congestion if the queue delays packets by more than this.
   Duration isolated_loss_qdelay = 6ms;
-  /// Factor of l4s_alpha's filter. Alpha rises by an eighth after two rounds in a row in which a
-  /// part of even_alpha_max was marked, or after one such round of at least long_frame_period.
+  /// Gain of l4s_alpha's filter. The gain is an eighth while alpha rises after two rounds in a row
+  /// with a marked part of even_alpha_max, or one such round of at least long_frame_period.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
   /// Pacing: a frame has left this long before its period ends. On a full link a queue of this
@@ -124,29 +124,31 @@ struct Parameters {
   /// shortest_pacing_reserve to pacing_reserve.
   double onset_reserve = 0.8;
   Duration shortest_pacing_reserve = 700us;
-  /// Frames with shorter periods than this have a smaller min_pacing_reserve, in proportion. The
-  /// limits are fractions of the period.
+  /// min_pacing_reserve and max_pacing_reserve are fractions of a frame's period. Below this
+  /// period, the least reserve is smaller in proportion.
   Duration long_frame_period = 50ms;
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
 
-  /// Company: part of the draft's growth near the inflection point, for a flow with less than its
-  /// share and without marks. The draft grows there by a segment of 1500 bytes a round trip.
+  /// Company: growth near the inflection point, in MSS a round trip, for a flow with less than its
+  /// share and without marks. The value is a segment of 1500 bytes.
   double classic_growth = 1.5;
-  /// The same part if marking starts early.
+  /// The same growth if marking starts early.
   double early_growth = 0.45;
-  /// Part of the draft's reaction to marks, for such a flow and if marking starts early.
+  /// Part of the draft's reaction to marks, for a flow with less than its share or if marking
+  /// starts early.
   double prague_backoff = 0.1;
   /// Packets leave by this much sooner or later than at even intervals, so that arrivals show other
   /// flows' packets.
   Duration pacing_ripple = 300us;
-  /// Part of the multiplicative growth if losses occur at a full queue that other flows also fill.
+  /// Part of fast growth that is left if losses occur at a full queue, which other flows may also
+  /// fill.
   double fast_increase_beside = 0.2;
   /// Target in a gap, relative to the window's rate: data queued in a gap may be late.
   double stall_share = 0.6;
   /// Time in which a lower target removes a backlog.
   Duration backlog_drain = 200ms;
-  /// Part of a late wake-up that is caught up. The draft's pacing has no such term.
+  /// Longest part of a late wake-up that is caught up. The draft's pacing has no such term.
   Duration pacing_catch_up = 4ms;
 
   /// Limit for all streams together; minimum bitrates take precedence.

@@ -16,7 +16,7 @@ enum class EcnState {
   kTesting,   ///< sent, result unknown
   kCapable,   ///< arrives as sent, or CE
   kBleached,  ///< arrives as Not-ECT: fallen back to Not-ECT
-  kSilent,    ///< not acknowledged, but Not-ECT is: fallen back to it
+  kSilent,    ///< not acknowledged, though Not-ECT is: fallen back to Not-ECT
 };
 inline const char* ToString(EcnState state) {
   constexpr const char* kNames[] = {"off", "testing", "capable", "bleached", "silent"};

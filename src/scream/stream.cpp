@@ -17,7 +17,7 @@ constexpr Duration kMinFramePeriod = 1ms;
 constexpr Duration kLikelyFramePeriod = 200ms;
 /// Separates video from scans: the value is between the period of film, 42 ms, and that of 20 Hz.
 constexpr Duration kScanPeriod = 45ms;
-/// The rest of a group that has begun to leave may wait this many times as long.
+/// The rest of a group that has begun to leave may wait this many times max_queue_delay.
 constexpr int kBegunStay = 5;
 /// A stream without packets for this time leaves its share to others.
 constexpr Duration kInactive = 1s;
@@ -121,9 +121,8 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
   return static_cast<std::size_t>(unit - queue_.begin());
 }
 
-/// Returns how many packets of a frame that has begun are stuck. A frame that has begun is sent to
-/// its end, as half a frame is useless, unless it has waited kBegunStay times as long as a frame
-/// may.
+/// Returns how many packets of a frame that has begun to leave are stuck. Half a frame is useless,
+/// so the rest is sent unless its first packet has waited kBegunStay * max_queue_delay.
 std::size_t Stream::StuckPackets(Time now) const {
   const Duration age = now - queue_.front().queued;
   if (age < kBegunStay * p_.max_queue_delay) return 0;

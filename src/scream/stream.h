@@ -19,14 +19,13 @@ class Stream {
   void Configure(const StreamConfig& config) { config_ = config; }
   /// Returns true if the packet ends a frame.
   bool OnQueued(Time now, const QueuedPacket& packet);
-  /// Takes the packet at the head of the queue.
+  /// Removes the packet at the head of the queue.
   void OnSent(Time now, std::uint32_t ssrc, DataSize size);
   void OnDropped(Time now, std::size_t packets);
-  /// Another path delivered the packet at the head. The rest of its group is still of use.
+  /// Another path delivered the packet at the head. The rest of its group is still useful.
   void OnUnneeded(Time now);
-  /// Returns how many packets at the head are of no use if the queue drains at `rate`. An access
-  /// unit, or its whole group, is late if its last packet would leave more than max_queue_delay, or
-  /// kBegunStay times that once it has begun to leave, after the middle of its capture.
+  /// Returns how many packets at the head are late if the queue drains at `rate`; see
+  /// Controller::LatePackets().
   std::size_t LatePackets(Time now, DataRate rate) const;
 
   bool empty() const { return queue_.empty(); }
@@ -34,8 +33,8 @@ class Stream {
   /// Returns true if no packet of the first access unit, or of its group, has left.
   bool at_start() const { return queue_.front().starts_frame && !Begun(queue_.front()); }
   DataSize queued() const { return queued_; }
-  /// Queued bytes beyond those that the target carries until the next frame. Frames that are not
-  /// whole scans count as due a full period from now.
+  /// Queued bytes beyond those that the target carries until the next frame. Unless frames are
+  /// whole scans, the next frame counts as a full period away.
   DataSize backlog(Time now) const;
   /// Reduction of the target that removes the backlog within backlog_drain, or for whole scans
   /// within a period.
@@ -50,7 +49,7 @@ class Stream {
   /// Notes that the queue came from a gap or a drop of the capacity. The reduction of the target
   /// that this queue causes then fades fast.
   void OnSuddenBacklog() { sudden_backlog_ = !queue_.empty() || rate_adjust_factor_ > 0; }
-  /// Starts to measure silence, if that has not begun.
+  /// Starts to measure the time without packets, unless the measurement runs already.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }
   /// Returns true if the stream has packets, or had some recently.
   bool active(Time now) const;
@@ -62,7 +61,7 @@ class Stream {
   void OnAcked(bool ce) { counters_.packets_ce += ce ? 1 : 0; }
   void OnLost() { ++counters_.packets_lost; }
   StreamStatistics statistics(Time now) const;
-  /// Bytes sent by weight, for the scheduler; see Streams.
+  /// Sum of sent bits over the target bitrate, for the scheduler; see Streams.
   double virtual_time = 0;
 
  private:
@@ -74,7 +73,7 @@ class Stream {
     bool starts_frame = false;
     std::optional<std::uint32_t> group = std::nullopt;
   };
-  /// The last complete group in the queue, and the incomplete one.
+  /// A group of access units.
   struct Group {
     std::optional<std::uint32_t> id;
     DataSize size;

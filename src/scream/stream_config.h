@@ -19,8 +19,8 @@ struct StreamConfig {
   DataRate min_bitrate = DataRate::BitsPerSecond(100e3);
   DataRate start_bitrate = DataRate::BitsPerSecond(1e6);
   DataRate max_bitrate = DataRate::BitsPerSecond(50e6);
-  /// Least useful target, from min_bitrate to max_bitrate. It holds while the path can carry it;
-  /// min_bitrate always holds. 0: none.
+  /// Least useful target, from min_bitrate to max_bitrate. It is met while the path can carry it;
+  /// min_bitrate is always met. 0: none.
   DataRate needed_bitrate{};
   /// Precedes all other streams, and gets its maximum before they get more than they need.
   bool strict = false;

@@ -64,7 +64,7 @@ void Streams::Allocate(Time now, DataRate total) {
   const bool any_active = std::any_of(streams_.begin(), streams_.end(),
                                       [now](const auto& s) { return s.second.active(now); });
   for (auto& [id, stream] : streams_) stream.set_counts(!any_active || stream.active(now));
-  // All needs above the minima are met in the same part, as far as the path can carry.
+  // All needs above the minima are met in the same proportion, as far as the path can carry.
   const DataRate least = min_bitrate();
   const DataRate extra = needed_bitrate() - least;
   const double need_share = extra > DataRate() ? std::clamp((total - least) / extra, 0.0, 1.0) : 0;
@@ -110,8 +110,7 @@ DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   return left;
 }
 
-/// Lowers the targets of streams with a backlog of their own only: a stream may also wait behind
-/// another's.
+/// A stream with a much shorter backlog keeps its target: it may only wait behind another stream.
 void Streams::LeaveRoomForBacklogs(Time now) {
   const auto wait = [now](const Stream& s) {
     return s.backlog(now) / std::max(s.target_bitrate(), DataRate::BitsPerSecond(1));

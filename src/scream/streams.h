@@ -29,8 +29,9 @@ class Streams {
   /// Counts acknowledged and lost packets by stream.
   void OnReport(const AckSummary& acks);
 
-  /// Gives each stream its minimum and, in one proportion, what it needs above it; then shares the
-  /// rest by priority up to each maximum. Silent streams keep their need, unless all are silent.
+  /// Gives each stream its minimum, and the same part of its need above the minimum. Then shares
+  /// the rest by priority up to each maximum. Silent streams keep their need, unless all are
+  /// silent.
   void Allocate(Time now, DataRate total);
   /// Lowers the targets of the streams with the longest backlogs by Stream::backlog_rate(), but not
   /// below their need.

@@ -39,10 +39,10 @@ class BusySpacing {
   Step pause_;  // longest step
 };
 
-/// The link is never idle between packets that all waited in the bottleneck's queue. Their bytes
-/// over their arrival time are its capacity, at any rate of the sender. The latest of them, behind
-/// the last hole, show its present capacity: a hole is a time in which the link stood nearly still
-/// while packets waited.
+/// The link is never idle between packets that all waited in the bottleneck's queue. So their bytes
+/// over their arrival time are the link's capacity, at any rate of the sender. The packets after
+/// the last hole show the present capacity. A hole is a time in which the link carried almost
+/// nothing while packets waited.
 class BusyRun {
  public:
   struct Arrival {
@@ -50,7 +50,7 @@ class BusyRun {
     Time time{};
     DataSize size;
     Duration qdelay{0};
-    bool busy = false;  ///< it waited: was marked, or had a queue before it
+    bool busy = false;  ///< the packet was marked or met a queue
     bool marked = false;
   };
 

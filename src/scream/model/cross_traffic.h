@@ -10,10 +10,11 @@
 
 namespace lidar::scream {
 
-/// While the bottleneck's queue is not empty, only packets of others come between our arrivals. So
-/// the spacing of arrivals grows with that of departures by the others' share of the link. The
-/// remainder is the link's time for one of our packets. The pacer makes departures slightly uneven
-/// for this measurement. It takes many packets, as arrival times of reports are coarse.
+/// While the bottleneck's queue is not empty, only packets of other flows come between our
+/// arrivals. In a linear fit of arrival gaps over departure gaps, the slope is the others' share of
+/// the link, and the intercept is the link's time for one of our packets. The pacer makes
+/// departures slightly uneven for this measurement, which takes many packets because arrival times
+/// of reports are coarse.
 class CrossTraffic {
  public:
   struct Packet {
@@ -22,15 +23,14 @@ class CrossTraffic {
     DataSize size;
   };
 
-  /// `congested`: marks or losses show a queue. Without them jitter or clock drift looks like a
-  /// queue, and arrivals on an idle link follow departures just as beside other flows.
+  /// `congested`: marks or losses prove the queue. Jitter or clock drift may look like a queue, and
+  /// an idle link then looks like other flows: arrival gaps follow departure gaps on both.
   void Add(const Packet& packet, Duration qdelay, bool congested) {
     if (!congested) {
       Skip(packet.sent);
       return;
     }
-    // The packet before shows the queue, because whether a packet counts must not depend on its
-    // arrival.
+    // Earlier packets show the queue: whether a packet counts must not depend on its own arrival.
     const double waited_ms = std::min(lately_waited_ms_, waited_ms_);
     waited_ms_ = Ms(qdelay);
     lately_waited_ms_ += (waited_ms_ - lately_waited_ms_) / 4;
@@ -61,7 +61,7 @@ class CrossTraffic {
   /// Returns true after a long queue of unknown origin. Other flows may fill it, but our packets
   /// are too far apart, or reports too coarse, to show them.
   bool unseen() const { return unseen_ >= kDecisionWeight; }
-  /// Capacity of the link for all flows; unset while share() is.
+  /// Capacity of the link for all flows; unset while share() is unset.
   std::optional<DataRate> link_rate() const {
     const auto share = this->share();
     const double own_ms = arrived_.value - share.value_or(0) * sent_.value;
@@ -70,7 +70,7 @@ class CrossTraffic {
   }
 
  private:
-  /// A moving average over as many packets as the sums cover.
+  /// An exponential moving average, in which a new value has the weight `weight`.
   struct Average {
     double value = 0;
     void Add(double x, double weight) { value += (x - value) * weight; }
@@ -100,12 +100,13 @@ class CrossTraffic {
     sent_sent_ *= factor;
     sent_arrived_ *= factor;
   }
-  /// The weight is the time since the last packet [ms], so that a few packets far apart weigh as
+  /// Returns the time between packets [ms] as a weight, so that a few packets far apart weigh as
   /// much as many close ones.
   static int Weight(double apart_ms) {
     return static_cast<int>(std::clamp(apart_ms, 1.0, kMostWeight));
   }
-  /// A start, or a step of the capacity, must be over before the decision.
+  /// Changes the decision only after much evidence against it: a start, or a step of the capacity,
+  /// must be over first.
   void Decide(int weight) {
     const auto share = this->share();
     const bool same = !share || (*share > kShareToFind) == found_;

@@ -8,9 +8,9 @@
 namespace lidar::scream {
 
 /// Bleached: packets sent as ECT arrive as Not-ECT. Silent: Not-ECT packets are acknowledged, ECT
-/// ones are not. Both states last until Reset() after a change of route. Where nothing is
-/// acknowledged, the cause may be ECN or a receiver that is not there: packets then leave as ECT
-/// and Not-ECT by turns.
+/// packets are not. Both states last until Reset() after a change of route. If nothing is
+/// acknowledged, the cause may be ECN or a missing receiver, so packets leave as ECT and Not-ECT by
+/// turns.
 class EcnMonitor {
  public:
   explicit EcnMonitor(Ecn wanted) : wanted_(wanted) { Reset(); }
@@ -42,7 +42,7 @@ class EcnMonitor {
     takes_turns_ = plain_next_ = false;
   }
   void OnTimer(Time now) {
-    // A capable path may change to one that drops ECT: then no report shows the change of route.
+    // A capable path is tested, too: if a new route drops ECT, no report shows the change of route.
     if (Tries() && sent_ >= kSilentPackets && now - first_sent_ >= kSilence) takes_turns_ = true;
   }
 
@@ -54,8 +54,8 @@ class EcnMonitor {
 
   /// Number of packets without their codepoint that cannot be chance.
   static constexpr int kBleachedPackets = 20;
-  /// Number of unacknowledged packets, and time, after which ECN may be the cause of silence. So
-  /// many acknowledged packets without a codepoint show that it is.
+  /// Number of unacknowledged packets, and time, after which ECN may be the cause of silence. The
+  /// same number of acknowledged Not-ECT packets proves it.
   static constexpr int kSilentPackets = 10;
   static constexpr Duration kSilence = 2s;
   Ecn wanted_;

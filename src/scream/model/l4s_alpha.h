@@ -13,8 +13,8 @@ class L4sAlpha {
 
   /// `round` is a round trip, or a frame period if that is longer. With the extension capacity the
   /// fraction is that of a whole round, and alpha rises as fast as it falls. Fractions of few
-  /// packets scatter, and a step marks all packets of some rounds and no packets of others. A fast
-  /// attack with slow decay would turn both into a bias against the smaller of two flows.
+  /// packets scatter, and a step AQM marks all packets of some rounds and no packets of others. A
+  /// fast attack with slow decay would turn both into a bias against the smaller of two flows.
   void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
               Duration round) {
     delivered_ += data_units_acked;
@@ -45,8 +45,9 @@ class L4sAlpha {
   double value() const { return alpha_; }
 
  private:
-  /// Counts marked rounds. A step fills one round with marks, a fall of the capacity two in a row.
-  /// A long round has enough packets to show a fall alone.
+  /// Counts marked rounds, and returns true if they show a fall of the capacity. A step AQM marks
+  /// one whole round, and a fall two rounds in a row. A long round has enough packets to show a
+  /// fall alone.
   bool CountsAsFall(double fraction, Duration round) {
     marked_rounds_ = fraction < p_.even_alpha_max ? 0 : marked_rounds_ + 1;
     const int enough = round < p_.long_frame_period ? 2 : 1;

@@ -11,14 +11,14 @@ namespace {
 constexpr Duration kMarksExpected = 30s;
 /// Time after a loss in which a queue may overflow again.
 constexpr Duration kLossesExpected = 10s;
-/// Reports need no allowance if they are closer than a round trip divided by this.
+/// Unreported packets do not matter if reports are closer than a round trip divided by this.
 constexpr int kCloseReports = 5;
 /// Longest gap between reports that counts.
 constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
 constexpr double kOnsetFall = 1.0 / 32;
 constexpr double kOnsetRise = 1.0 / 128;
-/// Number of packets in a row behind a queue that cannot be chance.
+/// So many packets in a row that met a queue cannot be chance.
 constexpr int kQueueingPackets = 3;
 /// Least duration of the clock-drift remedy, which otherwise lasts five round trips.
 constexpr Duration kShortestHalfRate = 200ms;
@@ -155,7 +155,7 @@ void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = DataRate();
 }
 
-/// Weights reports by what they acknowledge: a pause of the source is no gap.
+/// Weights reports by what they acknowledge: a pause of the source is no gap between reports.
 void PathModel::MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd) {
   const Duration gap = std::min(now - std::exchange(last_report_, now), kLongestInterval);
   const double weight = std::min(1.0, acks.bytes_newly_acked / ref_wnd);

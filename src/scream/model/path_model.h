@@ -71,7 +71,7 @@ class PathModel {
   // What the last report showed. A new mark or loss is one that no reaction has answered.
   bool new_mark() const { return new_mark_; }
   bool new_loss() const { return new_loss_; }
-  /// The link stood nearly still before a packet.
+  /// The link carried almost nothing for a time before a packet of the report.
   bool hole_in_report() const { return hole_in_report_; }
   /// Returns true after a mark within the last round trip.
   bool MarkedLately(Time now) const { return last_mark_ && now - *last_mark_ < rtt_.min(); }
@@ -80,14 +80,14 @@ class PathModel {
   const MaxBytesInFlight& max_in_flight() const { return max_in_flight_; }
   /// Averaged over a round trip, or over two frame periods if those are longer.
   DataRate acked_rate(Time now) const { return acked_rate_.Rate(now); }
-  /// Averaged over a second and read at arrivals: a shorter average would ignore pauses between
-  /// frames.
+  /// Averaged over a second. The rate is read at arrivals, where a shorter average would ignore
+  /// pauses between frames.
   DataRate long_acked_rate(Time now) const { return long_acked_rate_.Rate(now); }
 
   /// Returns true if the path carries ECT(1) and its bottleneck has recently marked it.
   bool L4sWorks(Time now) const;
-  /// Queueing delay of a packet that shows a busy link. Without marks a queue only counts as
-  /// congestion if the draft counts it.
+  /// Queueing delay at which a packet shows a busy link. Without marks it is close to the delay
+  /// that the draft counts as congestion.
   Duration BusyQdelay(Time now) const;
   /// Returns true if the queue exceeds `qdelay` and packets keep coming out of it.
   bool Queueing(Duration qdelay) const;

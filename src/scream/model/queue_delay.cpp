@@ -6,7 +6,7 @@
 namespace lidar::scream {
 namespace {
 
-/// The base history has RFC 6817's ten minutes.
+/// The base history covers the ten minutes of RFC 6817.
 constexpr Duration kBaseInterval = 10s;
 constexpr std::size_t kBaseHistory = 60;
 /// The base history is shorter if marks prevent a long-standing queue.
@@ -59,7 +59,7 @@ bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   const bool jumped = base_ && Jumped(now, owd, sample.way_back);
   if (jumped) {
     ForgetBase();
-    // The round trip still shows a queue that exists during the jump.
+    // Subtracts the queue of the moment, which the round trip still shows.
     AddToBase(now, owd - sample.rtt_excess, short_history);
   }
   AddToBase(now, owd, short_history);

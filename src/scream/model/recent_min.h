@@ -13,7 +13,7 @@ class RecentMin {
  public:
   explicit RecentMin(Duration window) : window_(window) {}
 
-  /// Returns by how much `d` is below the earlier minimum; 0 if there is none.
+  /// Returns by how much `d` is below the earlier minimum; 0 without an earlier minimum.
   Duration Add(Time now, Duration d) {
     if (now - since_ >= window_) {
       previous_ = std::exchange(latest_, Duration::max());
@@ -24,7 +24,7 @@ class RecentMin {
     return before == Duration::max() ? Duration{0} : before - value();
   }
   void Forget() { latest_ = previous_ = Duration::max(); }
-  /// Duration::max() before the first.
+  /// Duration::max() before the first Add().
   Duration value() const { return std::min(latest_, previous_); }
 
  private:

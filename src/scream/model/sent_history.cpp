@@ -16,19 +16,19 @@ constexpr std::size_t kMaxPackets = 32000;
 /// kept.
 constexpr std::size_t kMaxSettled = 1024;
 constexpr Duration kKeepSettled = 1s;
-/// Greatest number of packets that overtake a packet before it is sent.
+/// A packet may be sent after packets with larger numbers if they differ by less than this.
 constexpr std::int64_t kOvertaken = 64;
-/// Numbers further back than kFarBehind start a new count once this many unknown ones, or this many
-/// known ones, come in a row. Receivers take a smaller distance for reordering, and do not count
-/// the packets until their numbers are new again.
+/// Numbers that go back by kFarBehind or more start a new count after kUnknownBehind unknown or
+/// kKnownBehind known numbers in a row. Receivers take a smaller step back for reordering, and do
+/// not count the packets until their numbers are new again.
 constexpr std::int64_t kFarBehind = 3000;
 constexpr int kUnknownBehind = 2;
 constexpr int kKnownBehind = 64;
 /// Time after a restart in which reports of earlier numbers may come.
 constexpr Duration kReportsOfBefore = 2s;
-/// A packet is lost if one that was sent this much later is acknowledged.
+/// A packet is given up if a packet that was sent this much later is acknowledged.
 constexpr Duration kTailWait = 1s;
-/// The reordering window is kept for this time, and then shrinks by this share each second.
+/// The reordering window stays for this time, and then shrinks by 1 / kReorderingDecay each second.
 constexpr Duration kReorderingMemory = 5s;
 constexpr int kReorderingDecay = 8;
 /// SSRCs come and go with restarts; the one with the longest silence is forgotten.

@@ -32,7 +32,7 @@ struct AckedPacket : SentRecord {
   bool expired = false;  ///< acknowledged after Expire()
 };
 
-/// The news of a report.
+/// The new information of a report.
 struct AckSummary {
   std::vector<AckedPacket> acked;  ///< in the order of sending
   std::vector<SentRecord> lost;
@@ -55,7 +55,7 @@ enum class FeedbackResult {
   kStale,        ///< has nothing new
 };
 
-/// Validates the whole report before it changes its state.
+/// Records sent packets. A report is validated as a whole before it changes the records.
 class SentHistory {
  public:
   void OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record);
@@ -113,7 +113,7 @@ class SentHistory {
   std::map<std::uint32_t, Source> sources_;
   rtcp::ReportClock clock_;
   DataSize in_flight_;
-  Time newest_acked_{};          // its sending time
+  Time newest_acked_{};          // sending time of the newest acknowledged packet
   bool arrivals_known_ = false;  // the peer reports arrival times
   Duration reordering_window_{0};
   Time last_reordering_{};

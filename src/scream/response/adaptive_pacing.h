@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension capacity: how fast frames leave, and how fast a backlog of the sender's queue.
+// Extension capacity: the pace of frames, and of a backlog in the sender's queue.
 #pragma once
 #include <algorithm>
 

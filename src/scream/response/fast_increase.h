@@ -32,7 +32,8 @@ class FastIncrease {
     if (!p_.extensions.capacity) return 0;
     const int bold = std::max(0, rounds_ - p_.fast_increase_rounds);
     const double step = path.L4sWorks(now) ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
-    // Rounds of rare frames are long, and an excess stays queued for a round: start slower.
+    // Rounds of rare frames are long, and an excess stays queued for a round, so the start is
+    // slower.
     const double round = Seconds(path.Round(frame_period));
     const double start =
         p_.fast_increase_max * std::clamp(Seconds(p_.long_frame_period) / round, 0.5, 1.0);

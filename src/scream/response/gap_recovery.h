@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension gaps: restores the state from before a gap after it.
+// Extension gaps: after a gap, restores the state from before it.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -11,7 +11,7 @@
 namespace lidar::scream {
 
 /// A gap is a time in which the link carries almost nothing, as at a handover or the edge of a
-/// cell. The window's losses in a gap say nothing about the link after it.
+/// cell. The window's reductions in a gap say nothing about the link after it.
 class GapRecovery {
  public:
   struct Restart {
@@ -22,7 +22,7 @@ class GapRecovery {
 
   explicit GapRecovery(const Parameters& parameters) : p_(parameters) {}
 
-  /// Call it after each report. Returns where to continue once the gap is over.
+  /// Call it after each report. Returns the state to continue with once the gap is over.
   std::optional<Restart> Update(Time now, const PathModel& path, DataSize ref_wnd) {
     if (!p_.extensions.gaps) return std::nullopt;
     const auto rate = path.busy_run().latest_capacity();
@@ -47,13 +47,14 @@ class GapRecovery {
   }
   /// Call it while no acknowledgement comes back.
   void OnSilence(Time now) { NoteSign(now); }
-  /// Forgets the state before the gap, after another route or an unknown time.
+  /// Call it after a change of route, or a pause of the caller. Forgets the state from before a
+  /// gap.
   void Reset() {
     before_.reset();
     last_sign_.reset();
   }
 
-  /// Rate of the remembered window; unset at first.
+  /// Rate of the remembered window; unset if no window is remembered.
   std::optional<DataRate> rate_before() const {
     return before_ ? std::optional(before_->rate) : std::nullopt;
   }
@@ -85,12 +86,13 @@ class GapRecovery {
     before_ = Before{{ref_wnd, path.rtt().smoothed(), path.l4s_alpha().value()},
                      ref_wnd / path.rtt().smoothed() / p_.target_rate_divisor};
   }
-  /// Returns the window that fits the packets behind the gap.
+  /// Returns the window for the measured rate of packets behind the gap; nothing while the rate is
+  /// low.
   std::optional<DataSize> Measured(DataRate rate, const PathModel& path) const {
     if (rate < before_->rate * kGapPart) return std::nullopt;
     return rate * path.rtt().min() * p_.target_rate_divisor;
   }
-  /// Returns the next larger window if no queue measures the link.
+  /// Returns the next larger window while no queue shows the link's rate.
   std::optional<DataSize> Unproven(Time now, const PathModel& path, DataSize ref_wnd) const {
     // Packets before the newest may have marks from the gap.
     const bool calm = path.queue_delay().qdelay() < p_.busy_qdelay && !path.newest_marked();
@@ -102,8 +104,7 @@ class GapRecovery {
   static constexpr double kGapPart = 0.25;
   /// The state from before a gap is forgotten this long after the last sign of the gap.
   static constexpr Duration kLongestMemory = 3s;
-  /// A gap of this length also ends that memory: the rate in the gap is then the link's new
-  /// capacity.
+  /// A gap of this length shows the link's new capacity, so the state from before it is forgotten.
   static constexpr Duration kLongestGap = 10s;
   /// Part of the missing window that is restored each round trip while nothing measures the link.
   static constexpr double kUnprovenPart = 0.5;

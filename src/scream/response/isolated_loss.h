@@ -9,8 +9,8 @@
 
 namespace lidar::scream {
 
-/// Returns true if losses show congestion. With the extension, losses at a short queue do, too, and
-/// a path that carries ECT(1) may have a higher rate of other losses.
+/// Returns true if losses show congestion. With the extension, losses at a short queue also show
+/// congestion, but a path that carries ECT(1) may have a higher rate of other losses.
 inline bool LossIsCongestion(const Parameters& p, const PathModel& path) {
   const QueueDelay& queue = path.queue_delay();
   if (!p.link_layer_loss || queue.qdelay_avg() > p.qdelay_target_lo / 4) return true;

@@ -28,8 +28,7 @@ class Outage {
     if (!window_before_) window_before_ = ref_wnd;
     return ref_wnd * kBackoff;
   }
-  /// Call it when packets are acknowledged. Returns the window for the restart if that ends an
-  /// outage.
+  /// Call it when packets are acknowledged. Returns the window for the restart if an outage ends.
   std::optional<DataSize> OnFeedback(Time now) {
     last_feedback_ = now;
     const auto before = std::exchange(window_before_, std::nullopt);
@@ -37,7 +36,7 @@ class Outage {
   }
 
   bool active() const { return window_before_.has_value(); }
-  /// Time since the last acknowledgement, or since the first packet to wait for.
+  /// Time since the last acknowledgement, or since the first packet that waits for one.
   Duration Quiet(Time now) const { return now - last_feedback_; }
   /// Time without acknowledgements in an outage; 0 without an outage.
   Duration Silence(Time now) const { return active() ? Quiet(now) : Duration{0}; }

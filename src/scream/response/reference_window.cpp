@@ -6,7 +6,7 @@
 namespace lidar::scream {
 namespace {
 
-/// Slope of the reaction with the distance to the inflection point, and its floors.
+/// Slope of the reaction over the distance to the inflection point, and floors of the scales.
 constexpr double kInflectionSlope = 8;
 constexpr double kInflectionMin = 0.1;
 constexpr double kScaleMin = 0.25;
@@ -94,7 +94,7 @@ void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignal
   ForgetSigns();
 }
 
-/// The reductions of one congestion do not lower the inflection point step by step.
+/// Sets the inflection point. The reductions of one congestion do not lower it step by step.
 void ReferenceWindow::NoteInflectionPoint(Time now, Duration s_rtt) {
   const bool held = Ratio(now - ref_wnd_i_update_time_, s_rtt) > p_.ref_wnd_i_update_max_hold_rtts;
   if (ref_wnd_ <= ref_wnd_lowest_ * p_.ref_wnd_i_update_growth && !held) return;
@@ -129,7 +129,8 @@ double ReferenceWindow::UndershootScale(const CongestionSignals& s) const {
   return low ? p_.backoff_scale_low_target_rate : 1;
 }
 
-/// Extension: the capacity above the last known maximum is unknown.
+/// Extension capacity: returns the fast growth. It is slower near the measured capacity, or near
+/// the inflection point if no capacity is measured.
 double ReferenceWindow::FastIncrement(const CongestionSignals& s, double scl) const {
   const auto capacity = Bytes(s.capacity_window);
   double scale = ref_wnd_ > ref_wnd_i_ ? InflectionScale(p_.fast_increase_slope) : scl;

@@ -9,9 +9,9 @@
 
 namespace lidar::scream {
 
-/// Extension: least growth and reaction near the inflection point, relative to their full
-/// values. Above 1 a flow gives way faster than the draft, but never by more than half of its
-/// window.
+/// Extension: least growth and reaction near the inflection point, relative to their full values.
+/// With a backoff above 1 a flow gives way faster than the draft, but never by more than half of
+/// its window.
 struct Boldness {
   double growth = 0.25;
   double backoff = 0.25;
@@ -51,19 +51,19 @@ class ReferenceWindow {
  public:
   explicit ReferenceWindow(const Parameters& parameters);
 
-  /// Takes a report. Reduces at most once every min(VIRTUAL_RTT, s_rtt), then increases. Returns
-  /// the reason of the reduction, or kIncrease.
+  /// Updates the window after a report. Reduces it at most once every min(VIRTUAL_RTT, s_rtt), then
+  /// increases it. Returns the reason of the reduction, or kIncrease.
   RateReason Update(Time now, const CongestionSignals& signals);
   /// Sets the window outside of the draft's rules; never below MIN_REF_WND.
   void Set(DataSize window);
-  /// Sets the window whose target is `rate`, for the start that the draft leaves open. Signs of the
-  /// route before do not count.
+  /// Sets the window whose target is `rate`: the draft leaves the start open. Drops earlier marks
+  /// and losses that still wait for a reaction.
   void Start(DataRate rate, Duration s_rtt);
   /// Call it when the link's capacity has fallen to what `window` fills. The draft's own reaction
   /// then waits.
   void Drop(Time now, DataSize window);
-  /// Sets the window after a gap or an outage. Marks and losses that still wait for a reaction come
-  /// from that gap or outage.
+  /// Sets the window after a gap or an outage. Drops marks and losses that still wait for a
+  /// reaction, because they come from that gap or outage.
   void Restart(DataSize window);
   void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The draft's send window, and what the extension `capacity` takes off or adds.
+// The draft's send window, and how the extension `capacity` changes it.
 #pragma once
 #include <algorithm>
 
@@ -13,8 +13,9 @@ class SendWindow {
   explicit SendWindow(const Parameters& parameters) : p_(parameters) {}
 
   void OnSent(Time now) { last_sent_ = now; }
-  /// Returns the most bytes in flight. With the extension they exceed the window slightly if marks
-  /// work, and not at all while packets keep coming out of a queue. Unreported bytes are added.
+  /// Returns the limit of bytes in flight. With extension `capacity` the limit is a little above
+  /// the window on an L4S path, and equal to it while a queue lasts. Bytes that have arrived but
+  /// are not reported yet come on top.
   DataSize Max(Time now, DataSize ref_wnd, const PathModel& path) const {
     const double range = p_.ref_wnd_overhead_max - p_.ref_wnd_overhead_min;
     double overhead = p_.ref_wnd_overhead_min + range * path.queue_delay().ref_wnd_delay_scale();
@@ -25,8 +26,8 @@ class SendWindow {
     }
     return std::max(ref_wnd * overhead, 2 * p_.mss);
   }
-  /// Returns when a packet of `size` may leave. A closed window passes packets at RATE_PACE_MIN, so
-  /// that lost feedback cannot stop the sender.
+  /// Returns the time from which a packet of `size` may leave. A closed window passes packets at
+  /// RATE_PACE_MIN, so that lost feedback cannot stop the sender.
   Time Opens(DataSize size, DataSize in_flight, DataSize max) const {
     const bool fits = in_flight.bytes() == 0 || in_flight + size <= max;
     return fits ? Time{} : last_sent_ + size / p_.rate_pace_min;

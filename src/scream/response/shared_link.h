@@ -10,8 +10,8 @@
 
 namespace lidar::scream {
 
-/// Returns 1 if marking starts at a queue as long as a ramp's, or if it is not known where it
-/// starts; 0 if it starts at so short a queue that each queued packet is marked.
+/// Returns 1 if marking starts at a queue as long as a ramp's, or if the start is unknown. Returns
+/// 0 if marking starts at so short a queue that each queued packet is marked.
 inline double LateMarking(Duration onset) {
   constexpr Duration kEarly = 1250us, kLate = 2ms;
   return std::clamp(Seconds(onset - kEarly) / Seconds(kLate - kEarly), 0.0, 1.0);
@@ -33,7 +33,7 @@ inline Duration PacingRipple(const Parameters& p, const PathModel& path) {
   return FromSeconds(Seconds(p.pacing_ripple) * LateMarking(path.marking_onset()));
 }
 
-/// Returns a value from -1, clearly less than half of the link, to 1, clearly more.
+/// Returns a value from -1 (clearly less than half of the link) to 1 (clearly more).
 inline double AboveHalf(DataRate own, DataRate link) {
   // The constant is below one half, so that two of our flows with half each both give way early,
   // and because a flow's bursts make the link look faster than it is.
@@ -45,8 +45,8 @@ inline double AboveHalf(DataRate own, DataRate link) {
 }
 
 /// Half of the link is enough beside other flows. A flow with less, or with an unknown share, is
-/// about as bold as Prague or Cubic. A flow with more gives way as early as the draft, the gentlest
-/// of them. So the kind and the number of the other flows need not be known.
+/// about as bold as Prague or Cubic. A flow with more gives way as early as a flow of the draft,
+/// the gentlest kind. So the kind and the number of the other flows need not be known.
 inline Boldness BesideOthers(const Parameters& p, const PathModel& path, Time now) {
   constexpr double kGrowthOfLess = 1.3;  // above Prague's, as whole scans leave pauses
   constexpr double kGrowthOfMore = 1.0 / 3;

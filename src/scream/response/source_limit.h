@@ -15,7 +15,7 @@ inline DataSize BurstWindow(const Parameters& p, const PathModel& path, const St
 }
 
 /// Returns true if the window delays bursts at the maximum bitrate. A window that suffices for
-/// frames at an even pace may delay whole scans, and data from a gap.
+/// frames at an even pace may delay whole scans, and data queued in a gap.
 inline bool HoldsBurstsBack(const Parameters& p, const PathModel& path, const Streams& streams,
                             DataSize ref_wnd) {
   return p.extensions.capacity && streams.max_bitrate() < DataRate::Infinite() &&
