@@ -53,7 +53,7 @@ bool LinkLedger::Translate(const Source& source, const rtcp::SsrcReport& block,
 
 void LinkLedger::Settle(const rtcp::SsrcReport& own, Source* source, Report* report) {
   if (own.metrics.empty()) return;
-  // The block's numbers lie within one turn of 16 bit, because kMaxPackets is less than a turn.
+  // The block's numbers lie within one cycle of 16 bit, because kMaxPackets is less than a cycle.
   const std::int64_t begin =
       source->end() - static_cast<std::uint16_t>(source->end() - own.begin_seq);
   for (std::size_t i = 0; i < own.metrics.size(); ++i) {

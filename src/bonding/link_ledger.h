@@ -14,10 +14,10 @@
 
 namespace lidar::bonding {
 
-/// A link carries some of the packets, and copies of old ones behind newer ones. A controller that
-/// counted by RTP sequence numbers would see losses and repetitions. So each SSRC has its own
-/// numbers on each link, without gaps, in the order in which packets leave. Reports are converted
-/// from RTP sequence numbers to these.
+/// A link carries only some of the packets, and copies of old packets after newer packets. A
+/// controller that counted by RTP sequence numbers would see losses and repetitions. So each SSRC
+/// has its own numbers on each link, without gaps, in the order in which packets leave. Reports are
+/// converted from RTP sequence numbers to the link's numbers.
 class LinkLedger {
  public:
   /// Number of packets that are remembered. Reports of older packets are implausible.
@@ -42,9 +42,9 @@ class LinkLedger {
   std::optional<Report> OnFeedback(const rtcp::CongestionFeedback& feedback);
   /// Returns true if each packet of the report left over this link.
   bool HasSent(const rtcp::CongestionFeedback& feedback) const;
-  /// Returns when the oldest due report should have left the receiver. Packets count if neither
-  /// they nor later ones were reported. The receiver reports at a slice's end, at the latest after
-  /// kReportEvery.
+  /// Returns the sending time of the packet that should cause the oldest missing report, or nothing
+  /// if all packets were reported or overtaken. The receiver reports at a slice's end, at the
+  /// latest after kReportEvery.
   std::optional<Time> waiting_since() const;
   static constexpr Duration kReportEvery = std::chrono::milliseconds(40);
 

@@ -50,14 +50,14 @@ Duration Scheduler::Rtt(const Link& link) {
   return link.path.rtt > Duration{0} ? link.path.rtt : kUnknownRtt;
 }
 
-/// Returns the least time on the link, at most half of kMaxAge: so even a far link gets packets
-/// that are up to half of kMaxAge old.
+/// Returns the least one-way time on the link, but at most half of kMaxAge, so that even a far link
+/// gets packets that are up to half of kMaxAge old.
 Duration Scheduler::LeastTravel(const Link& link) {
   return std::min(link.path.min_rtt / 2, kMaxAge / 2);
 }
 
-/// Returns the time until the link has delivered `size` whole. A gap is expected to last as long
-/// again as it has lasted.
+/// Returns the time until the link has delivered `size` in addition to its queue. A gap is expected
+/// to last as long again as it has lasted.
 Duration Scheduler::WholeIn(std::size_t link, Time now, DataSize size) const {
   const Link& l = links_[link];
   if (!l.usable) return Duration::max() / 2;
@@ -91,8 +91,8 @@ bool Scheduler::InGap(Time now, std::size_t link) const {
   return !l.usable || (since && now - *since > Rtt(l) + kReportMargin);
 }
 
-/// Returns the links that share a queue with a nearer link that works. The link of the last slice
-/// counts as nearer by kSimilarRtts.
+/// Returns the links that share a queue with a working link of a shorter round trip. The round trip
+/// of the last slice's link counts as shorter by kSimilarRtts.
 LinkSet Scheduler::Spare(Time now) const {
   const auto far = [this](std::size_t link) {
     return std::pair(Rtt(links_[link]) - (link == slice_first_ ? kSimilarRtts : Duration{0}), link);
@@ -200,7 +200,7 @@ void Scheduler::Abandon(std::uint32_t ssrc) {
   order_.erase(std::remove_if(order_.begin(), order_.end(), of_source), order_.end());
 }
 
-/// Erases the entry of a packet of order_.
+/// Erases the packet from packets_. The caller removes it from order_.
 void Scheduler::Erase(PacketId id) {
   const auto found = packets_.find(id.key());
   for (std::size_t i = 0; i < links_.size(); ++i)
@@ -218,7 +218,7 @@ void Scheduler::LookAtGaps(Time now) {
   }
 }
 
-/// Returns true if the packet is overdue on each link that has it.
+/// Returns true if the packet is missing, late, or on its way only over links in a gap.
 bool Scheduler::Overdue(Time now, const Entry& entry) const {
   if (entry.missing || now > entry.expected) return true;
   for (std::size_t i = 0; i < links_.size(); ++i)
@@ -226,8 +226,8 @@ bool Scheduler::Overdue(Time now, const Entry& entry) const {
   return true;
 }
 
-/// Returns the further links for a waiting packet: the best link that is in no gap, else all
-/// others, because any of them may leave its gap first.
+/// Returns further links for an overdue packet: the best link that is in no gap, else all others,
+/// because any of them may leave its gap first.
 LinkSet Scheduler::OthersFor(Time now, const Entry& entry) const {
   const LinkSet spare = Spare(now);
   LinkSet others, alive;

@@ -17,11 +17,11 @@
 namespace lidar::bonding {
 
 enum class Method {
-  /// Copies waiting packets, and while links are unsettled all packets for which there is room.
-  /// With TargetRule::kSum it copies waiting packets only.
+  /// Copies overdue packets. While links are unsettled, copies all packets for which there is room.
+  /// With TargetRule::kSum copies overdue packets only.
   kAdaptive,
   kBroadcast,  ///< copies each packet to each link
-  kBackup,     ///< copies waiting packets only
+  kBackup,     ///< copies overdue packets only
 };
 /// How the targets of the links make the encoder's target.
 enum class TargetRule {
@@ -87,7 +87,7 @@ class Scheduler {
     std::uint32_t slice = 0;  // shared by the packets of an access unit, as is their RTP timestamp
     bool ends_slice = true;   // the last packet of its access unit
   };
-  /// Chooses the links of a new packet, among them always the best one.
+  /// Chooses the links of a new packet. The best link is always one of them.
   LinkSet OnPacket(Time now, const Packet& packet);
   struct Copy {
     PacketId id;
@@ -99,7 +99,7 @@ class Scheduler {
   std::vector<Copy> TakeCopies(Time now);
   static constexpr Duration kTick = std::chrono::milliseconds(10);
 
-  // Returns true if the packet at the head of the link's FIFO is still of use there.
+  // Returns true if the packet at the head of the link's FIFO is still useful there.
   bool Wants(Time now, std::size_t link, PacketId id) const;
   /// Notes that the packet leaves. Returns its number for the link's congestion control.
   std::uint16_t OnSent(Time now, std::size_t link, PacketId id);

@@ -23,21 +23,22 @@ constexpr double kFound = 4;
 constexpr double kStillFound = 1;
 /// The queue did not run empty if it was longer by this than the time to the next packet.
 constexpr double kMarginMs = 1;
-/// Packets of two links that leave within kTogether meet the same queue of one FIFO: the two queues
-/// differ by less than kAlike of the longer one, on average over kQueues packets. Links that share
-/// a queue do so until it is more than kStillAlike.
+/// If two links share a FIFO, packets that leave within kTogether meet the same queue: the queues
+/// that both links measure differ by less than kAlike of the longer one, on average over kQueues
+/// packets. Links that share a queue stop doing so beyond kStillAlike.
 constexpr Duration kTogether = 10ms;
 constexpr double kAlike = 0.35;
 constexpr double kStillAlike = 0.5;
 constexpr double kQueues = 16;
-/// While two queues differ, the samples from before lose this share of their weight with each
-/// packet that shows it: the paths may have parted. A queue that runs empty gives no newer samples.
+/// If two queues differ, the paths may have parted, so each packet that shows a difference takes
+/// this share of the weight of earlier samples. An empty queue gives no newer samples to replace
+/// them.
 constexpr double kFade = 1.0 / 32;
 /// A longer spacing is a gap of the link.
 constexpr double kPauseMs = 60;
 /// A larger change of a delay is due to another clock or path.
 constexpr double kJumpMs = 1000;
-/// The shortest delay of the present window and the one before counts as that of an empty queue.
+/// The shortest delay of the present and the previous window counts as that of an empty queue.
 constexpr Duration kBaseWindow = 10s;
 constexpr std::size_t kMaxSent = 8192;
 
@@ -113,8 +114,7 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   const double sent_ms = Milliseconds(arrival.sent - last->sent);
   const auto ticks = static_cast<std::int32_t>(arrival.report_timestamp - last->report_timestamp);
   const double arrived_ms = ticks / 65.536 - Milliseconds(arrival.age - last->age);
-  // The packet before shows the queue, because whether a packet counts must not depend on its
-  // arrival.
+  // Earlier packets show the queue: whether a packet counts must not depend on its own arrival.
   const bool busy = l.queue_ms > sent_ms + kMarginMs;
   l.Measure(arrival.sent, arrived_ms - sent_ms);
   for (std::size_t other = 0; other < kMaxLinks; ++other)
