@@ -46,9 +46,9 @@ bool IsCcfb(ByteView rtcp_packet);
 /// nothing if the lengths do not add up: then the datagram is to be treated as one opaque packet.
 std::vector<ByteView> SplitRtcp(ByteView datagram);
 
-/// Parses a peer's feedback and learns its reading of num_reports. A length that fits only one
-/// reading decides. If both fit (odd counts), a padding half-word that is not zero is a block;
-/// otherwise the reading learnt last holds, at first kCount.
+/// Parses a peer's feedback and detects its reading of num_reports. A length that fits only one
+/// reading decides. If both fit (odd counts), a padding half-word that is not zero shows
+/// kCountMinusOne; otherwise the last reading holds, at first kCount.
 class CcfbParser {
  public:
   /// Parses one whole RTCP packet. Returns nothing for other types and versions, and for wrong

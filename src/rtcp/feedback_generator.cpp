@@ -94,8 +94,8 @@ std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint1
     return source->first;
   }
   source->restart.reset();
-  // A packet before the very first one extends the record backwards. A packet that the record has
-  // dropped does not.
+  // A packet before the first one extends the record backwards until the first report. Later the
+  // record may have dropped the packet.
   if (extended < source->first && source->next_report > source->first) return std::nullopt;
   if (extended - source->next_report > kMaxBacklog) {
     Start(source, seq);

@@ -60,7 +60,8 @@ class FeedbackGenerator {
 
   /// `at` is the kernel's time if known. It should not be after the `now` of Take().
   void OnPacket(Time at, const ReceivedPacket& packet);
-  /// Returns when the next report is due, which may be in the past; Time::max() if no packet waits.
+  /// Returns the time at which the next report is due, which may be in the past; Time::max() if no
+  /// packet waits.
   Time NextDue() const { return clock_.ToCaller(due_); }
   /// Returns the report if one is due.
   std::optional<CongestionFeedback> Take(Time at);

@@ -26,7 +26,7 @@ std::uint32_t ToWire(Duration time) { return Saturate(static_cast<double>(time.c
 
 struct AppPacket {
   std::uint8_t version = 0;
-  ByteReader rest;  // starts at the SSRC, without the name
+  ByteReader rest;  // what follows the name
 };
 
 /// Opens `packet` if it is an APP packet with our name.

@@ -32,9 +32,9 @@ struct SenderReport {
 /// Builds an empty receiver report and the APP packet.
 std::vector<std::uint8_t> BuildSenderReport(const SenderReport& report);
 
-/// Returns true if a compound RTCP datagram has such a packet, of any version.
+/// Returns true if a compound RTCP datagram has an APP packet of this name, of any version.
 bool HasSenderReport(ByteView datagram);
-/// Parses the first such report that has a known version and is whole. Fields of newer senders
+/// Parses the first sender report that is whole and has a known version. Fields of newer senders
 /// behind the known ones are ignored.
 std::optional<SenderReport> ParseSenderReport(ByteView datagram);
 

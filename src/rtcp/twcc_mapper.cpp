@@ -26,7 +26,7 @@ void TwccMapper::OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t 
   const std::int64_t extended = numbers_.Peek(number);
   const std::int64_t end = first_ + static_cast<std::int64_t>(sent_.size());
   if (sent_.empty() || extended < first_ || extended > end + kMaxHistory) {
-    // this is the first packet, or the numbers began anew
+    // The first packet, or the numbers began anew.
     sent_.clear();
     numbers_.Reset();
     first_ = numbers_.Unwrap(number);
@@ -49,7 +49,7 @@ const TwccMapper::Sent* TwccMapper::Find(std::uint16_t number) const {
   return sent.ours ? &sent : nullptr;
 }
 
-/// Returns the arrival nearest to the newest one so far.
+/// Adds the multiple of kTwccPeriod that brings `arrival` nearest to the newest arrival.
 Duration TwccMapper::Unwrap(Duration arrival) {
   if (!newest_) return arrival;
   const std::int64_t away = (*newest_ - arrival).count();

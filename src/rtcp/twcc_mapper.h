@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Maps the packet numbers of transport-wide feedback (TWCC,
-// draft-holmer-rmcat-transport-wide-cc-extensions-01) to SSRCs and sequence numbers, as the
-// controller counts. An rtpsession reads the feedback packets.
+// draft-holmer-rmcat-transport-wide-cc-extensions-01) to SSRCs and sequence numbers, by which the
+// controller counts packets. An rtpsession reads the feedback packets.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -30,11 +30,12 @@ struct TwccFeedback {
 };
 
 /// The sender's side. TWCC has no ECN bits and no report time: packets count as Not-ECT, and the
-/// report as made when the last packet in it arrived.
+/// last arrival in a report counts as the report's time.
 class TwccMapper {
  public:
   void OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t seq);
-  /// Leaves out numbers that were never sent or too long ago. Returns nothing if no number remains.
+  /// Leaves out numbers that were never sent, or sent too long ago. Returns nothing if no number
+  /// remains.
   std::optional<CongestionFeedback> Map(const TwccFeedback& feedback);
 
  private:
