@@ -59,7 +59,7 @@ class Bottleneck {
   explicit Bottleneck(const BottleneckConfig& config);
 
   void Enqueue(Time now, const Packet& packet);
-  /// Returns when to call Deliver() next; Time::max() if no packet is under way.
+  /// Returns the time of the next call of Deliver(); Time::max() if no packet is under way.
   Time NextEventTime() const;
   /// Returns the packets that arrived or were dropped up to `now`, in the order of these times.
   std::vector<Outcome> Deliver(Time now);

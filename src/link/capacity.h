@@ -24,8 +24,8 @@ class Capacity {
   /// before it. Returns nothing for other text; `error` then has the place and the reason.
   static std::optional<Capacity> ParseTrace(std::string_view text, bool repeat, std::string* error);
 
-  /// Returns the same capacity from `start` on. In a repeating one the part before `start` comes
-  /// last.
+  /// Returns the same capacity from `start` on. In a repeating capacity, the part before `start`
+  /// comes last.
   Capacity StartingAt(Duration start) const;
 
   /// Sets the rate to 0 from `from` to `until`, which are link times and do not repeat.
@@ -34,8 +34,8 @@ class Capacity {
   DataRate RateAt(Duration t) const;
   /// Returns the first time after `t` at which the rate may change, or Duration::max() for never.
   Duration NextChange(Duration t) const;
-  /// Returns when the last bit of `size` leaves if the first leaves at `start`, or Duration::max()
-  /// for never.
+  /// Returns the time at which the last bit of `size` leaves if the first leaves at `start`, or
+  /// Duration::max() for never.
   Duration Finish(Duration start, DataSize size) const;
   /// Returns the bytes that the link carries from `from` to `until`.
   DataSize Between(Duration from, Duration until) const;

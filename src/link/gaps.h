@@ -25,9 +25,10 @@ struct RecoveryConfig {
   double share = 0.8;
 };
 
-/// Time from the end of each gap until the sender has recovered [s]: for a tenth of a second it
-/// then uses `share` of what the link can carry and the source can use. The time is at most 5 s,
-/// and ends with the next gap. A gap is left out if the next one begins within 0.2 s.
+/// Returns the time from the end of each gap until the sender has recovered [s]. A sender has
+/// recovered when it uses, for a tenth of a second, `share` of what the link can carry and the
+/// source can use. The time is at most 5 s, and ends with the next gap. A gap is left out if the
+/// next one begins within 0.2 s.
 std::vector<double> RecoveryAfterGaps(const Capacity& capacity,
                                       const std::vector<SentPacket>& packets,
                                       const RecoveryConfig& config);

@@ -94,8 +94,8 @@ class PacedLinks {
   PacedLinks(const std::vector<Capacity>& links, Duration delay)
       : links_(links), delay_(delay), free_(links.size()), ends_(links.size()) {}
 
-  /// Sends a slice that is made at `now`. Returns when it arrives, if a link delivers it by
-  /// `deadline`.
+  /// Sends a slice that is made at `now`. Returns the time of its delivery, or nothing if no link
+  /// delivers it by `deadline`.
   std::optional<Duration> Send(Duration now, Duration deadline, DataSize size, Bonding bonding) {
     for (std::size_t i = 0; i < links_.size(); ++i) ends_[i] = Ends(i, now, size);
     const auto first = std::min_element(

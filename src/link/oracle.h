@@ -18,8 +18,8 @@ struct OracleConfig {
   /// A scan whose first slice has waited longer is dropped whole, except for the newest scan.
   Duration max_age = std::chrono::milliseconds{200};
   Duration rtt = std::chrono::milliseconds{40};
-  /// The sender of several links gives each no more than what the link carried this long ago. With
-  /// 0 it knows the links in advance.
+  /// A sender over several links gives each link no more than the link carried this long ago. With
+  /// 0 the sender knows the links in advance.
   Duration known_after{0};
   std::uint32_t slices_per_scan = 8;
   double scans_per_second = 10;
@@ -35,7 +35,7 @@ struct OracleResult {
 
 OracleResult AskOracle(const Capacity& capacity, const OracleConfig& config);
 
-/// The links that carry a slice, if the sender knows several in advance.
+/// The links that carry a slice if the sender has several.
 enum class Bonding {
   kWhereWholeFirst,
   kOnEach,  // on each link that can deliver it in time

@@ -21,7 +21,7 @@ class Path {
  public:
   Path(const PathConfig& config, std::uint64_t seed) : config_(config), random_(seed) {}
 
-  /// Returns when a packet arrives that would arrive at `t` on an ideal path. `t` must not
+  /// Returns the arrival of a packet that would arrive at `t` on an ideal path. `t` must not
   /// decrease.
   Time Arrival(Time t) {
     if (config_.jitter > Duration{0})

@@ -43,8 +43,8 @@ class PiController {
 std::unique_ptr<Aqm> Pi2Aqm(const Pi2Config& config, Random random);
 
 /// Returns two queues. The L4S queue (ECT(1), CE) has a ramp and the coupled signal, the other
-/// queue is classic. The queue whose head has waited longer is served first; t_shift is added for
-/// L4S.
+/// queue is classic. The queue whose head has waited longer is served first; t_shift is added to
+/// the wait of the L4S queue.
 std::unique_ptr<Queue> DualPi2Queue(const Pi2Config& config, Random random);
 
 }  // namespace lidar::link
