@@ -47,7 +47,7 @@ Scenario BesideWithAqm(const std::string& name, TcpKind other, AqmConfig::Kind a
   return s;
 }
 
-/// The other flow runs the draft alone, at our frame rate.
+/// The other flow runs the draft without extensions, at our frame rate.
 Scenario BesideDraft(Duration phase, const Parameters& p) {
   Scenario s = BesideWithAqm("draft_ramp_20M_phase_" + std::to_string(phase / 1ms) + "ms",
                              TcpKind::kCubic, AqmConfig::Kind::kRamp, p);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Duration kTick = std::chrono::microseconds{500};
 constexpr double kPacketBits = 9600;
-/// Speed at which the queue leaves, relative to the known capacity.
+/// Rate at which the sender's queue drains, relative to the known capacity.
 constexpr double kPacing = 1.25;
 
 /// Times are in seconds, sizes in bits.

@@ -31,8 +31,8 @@ struct LateSenderReport {
   double queue_p95_ms = 0;  // of the network's queue
 };
 
-/// The window is the known rate times the round trip, so that at a gap only as much is under way as
-/// fills the link.
+/// The window is the known rate times the round trip. So when a gap begins, no more data are in
+/// flight than fill the link.
 LateSenderReport SendLate(const link::Capacity& capacity, const LateSenderConfig& config);
 
 }  // namespace lidar::loop

@@ -35,7 +35,7 @@ struct LoopReport {
   std::uint64_t captured = 0;
   std::uint64_t skipped = 0;  // by the encoder
   std::uint64_t complete = 0;
-  std::uint64_t in_time = 0;          ///< of `complete`: each slice within the oracle's age
+  std::uint64_t in_time = 0;  ///< of `complete`: each slice arrives within the oracle's max_age
   link::OracleResult oracle_at_min;   // for scans of the lowest bitrate that keeps the error bound
   link::OracleResult oracle_at_mean;  // for scans of the bitrate that the encoder sent
   // Slices:
@@ -64,8 +64,8 @@ struct LoopRun {
 
 LoopRun RunLoop(const LoopCase& loop_case);
 
-/// Returns the same case with another scene, `n` times 7.33 s later in its trace. Runs over drives
-/// are chaotic, so only the mean of several runs is meaningful.
+/// Returns the same case with another scene, and with a start `n` times 7.33 s later in its trace.
+/// Runs over drives are chaotic, so only the mean of several runs is meaningful.
 LoopCase Later(LoopCase loop_case, int n);
 
 struct NamedTrace {

@@ -26,8 +26,7 @@ struct LoopGoals {
 };
 LoopGoals GoalsOf(const LoopCase& loop_case);
 
-/// Checks the goals of this kind of run. Traces with regular gaps have a goal for the time after a
-/// gap.
+/// Checks the goals of the case. Traces with regular gaps have a goal for the recovery after a gap.
 std::vector<GoalResult> CheckGoals(const LoopCase& loop_case, const LoopReport& report);
 
 /// Checks that adapting is never worse than the coarsest step within the same error bound.

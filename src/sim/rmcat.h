@@ -31,13 +31,13 @@ FlowConfig RmcatVideo(const Parameters& parameters, Duration start = {}, double 
 struct RmcatMetrics {
   double utilisation = 0;  ///< relative to what link 0 carries and its flows can use
   double media_mbps = 0;   ///< mean of the forward flows
-  double variation = 0;    ///< standard deviation of their rates in 200 ms over the mean, averaged
-  double jain = 1;         ///< of the forward flows
-  Percentiles queue_ms;    ///< of the forward flows' packets
-  Percentiles frame_ms;    ///< creation to last packet
-  double loss = 0;         ///< of all media packets
-  double dropped = 0;      ///< part of all frames that senders dropped
-  double feedback = 0;     ///< size of reports relative to media
+  double variation = 0;  ///< standard deviation of a flow's rate in 200 ms over its mean, averaged
+  double jain = 1;       ///< of the forward flows
+  Percentiles queue_ms;  ///< of the forward flows' packets
+  Percentiles frame_ms;  ///< creation to last packet
+  double loss = 0;       ///< of all media packets
+  double dropped = 0;    ///< part of all frames that senders dropped
+  double feedback = 0;   ///< size of reports relative to media
   double others_mbps = 0;  ///< mean of the other flows while they run
   double file_s = 0;       ///< mean time of a file of the other flows
   /// Delivered bytes of a sender's first stream, relative to its second.

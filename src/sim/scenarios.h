@@ -21,7 +21,7 @@ struct Scenario {
   SimulationConfig config;
   Duration settle = std::chrono::seconds(3);  ///< left out of utilisation and queue
   std::optional<Duration> drop_at;            ///< time of a capacity drop to measure
-  bool beside_draft = false;                  ///< the other flows run the draft alone
+  bool beside_draft = false;                  ///< the other flows run the draft without extensions
 };
 
 /// Returns all scenarios, with these parameters at the sender.

@@ -165,7 +165,7 @@ std::vector<DataRate> Flow::targets() const {
   return targets;
 }
 
-/// Returns when the pacing thread wakes up for the next packet.
+/// Returns the time at which the pacing thread wakes up for the next packet.
 std::optional<Time> Flow::Wake(Time now) {
   const auto d = controller_->NextSend(ToSender(now));
   if (!d) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sender of a greedy flow: TCP as a queue sees it, without clock and socket.
+// The sender of a greedy flow: TCP as it appears to a queue, without clock and socket.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -16,8 +16,8 @@ class TcpSender {
  public:
   TcpSender(TcpKind kind, Time start, double slow_start_threshold);
 
-  /// Returns when to call OnTimer() or SendPacket() next; Time::max() if the sender must wait for
-  /// an acknowledgement.
+  /// Returns the time of the next OnTimer() or SendPacket(); Time::max() if the sender must wait
+  /// for an acknowledgement.
   Time NextEvent() const;
   bool MaySend(Time now) const;
   /// Accounts for a packet that leaves now. Returns its number.
