@@ -68,8 +68,8 @@ Time PeerLatch::LastHeard() const {
   return last;
 }
 
-/// A silent first link gives its place to the link that sends, so that a stranger finds no silent
-/// peer.
+/// If the first link is silent, the link that sends takes its place, so that the peer keeps its
+/// standing against others.
 PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link* link) {
   link->at = now;
   if (now - peer_.at >= kPeerSilence) {
@@ -81,7 +81,7 @@ PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link*
   return Verdict::kAccepted;
 }
 
-/// Looks for candidates that have sent a copy of this packet.
+/// Counts the copies of this packet that candidates have sent.
 void PeerLatch::NoteCopies(const Packet& packet) {
   if (packet.digest == 0) return;
   digests_.Add(packet.digest);
@@ -89,8 +89,8 @@ void PeerLatch::NoteCopies(const Packet& packet) {
     if (c.digests.Take(packet.digest)) ++c.copies;
 }
 
-/// Gives the candidate a place among the links, if need be that of the longest silent link. Returns
-/// false if all places belong to links that send.
+/// Makes the candidate a link. If there are too many links, it replaces the link that has been
+/// silent for longest. Returns false if all links send.
 bool PeerLatch::Join(Time now, Peer* candidate) {
   if (links_.size() + 1 >= kMaxLinks) {
     const auto oldest = std::min_element(links_.begin(), links_.end(),
@@ -106,7 +106,7 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
 }
 
 /// Finds or adds a candidate. If there are too many, a new candidate replaces the one with the
-/// lowest standing, and among equals the longest silent.
+/// lowest standing, and among equal ones the one that has been silent for longest.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;
@@ -152,7 +152,8 @@ bool PeerLatch::Wins(const Peer& candidate, Time now) const {
   return shown >= (needs_slices ? Standing::kSlices : Standing::kStream);
 }
 
-/// A peer that fell silent stays known; a peer that lost its place while it sent is forgotten.
+/// Makes the candidate the peer. The old peer stays known if it is silent, and is forgotten if it
+/// still sends.
 void PeerLatch::Promote(Time now, Peer candidate) {
   if (IsSilent(now)) Remember(peer_);
   for (auto it = known_.begin(); it != known_.end();) {

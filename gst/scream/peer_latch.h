@@ -36,8 +36,8 @@ class Digests {
 };
 
 /// Accepts one peer at a time: the first that sends. Another peer takes its place with a higher
-/// standing (see Standing), or with an equal one while the first is silent. Packets of others count
-/// for their standing and are dropped. A packet without an address counts as the peer's.
+/// standing (see Standing), or with an equal one while the first is silent. Packets of other peers
+/// are dropped, but count for their standing. A packet without an address counts as the peer's.
 ///
 /// A peer may send over several links. An address becomes its link after kCopies packets that equal
 /// packets of the peer byte for byte: only an observer of the packets can send them. If a link
@@ -57,7 +57,7 @@ class PeerLatch {
   /// Time for which the SSRCs of a silent peer stay known.
   static constexpr Duration kStandingMemory = 10min;
   static constexpr std::size_t kMaxCandidates = 64;
-  /// Number of copies that make an address a link of the peer.
+  /// An address that sends this many copies of the peer's packets becomes a link of the peer.
   static constexpr int kCopies = 4;
   static constexpr std::size_t kMaxLinks = 4;
 
@@ -82,7 +82,7 @@ class PeerLatch {
   };
 
   Verdict OnPacket(Time now, const Packet& packet);
-  /// Returns true if `from` may send datagrams other than media.
+  /// Returns true for an address of the peer, which may send datagrams other than media.
   bool IsPeer(GSocketAddress* from) const;
   /// Returns true if OnPacket() does not need the payload of packets from `from`.
   bool HasShownSlices(GSocketAddress* from) const { return peer_.has_slices && IsPeer(from); }

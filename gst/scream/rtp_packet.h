@@ -27,7 +27,7 @@ std::optional<RtpHeader> ReadRtpHeader(GstBuffer* buffer);
 /// Returns true if a datagram on an RTP port is RTCP (RFC 5761: packet types 192 to 223).
 bool IsRtcp(ByteView datagram);
 bool IsRtcp(GstBuffer* datagram);
-/// Returns true if it is DTLS (RFC 7983: a first byte from 20 to 63).
+/// Returns true if a datagram on an RTP port is DTLS (RFC 7983: a first byte from 20 to 63).
 bool IsDtls(GstBuffer* datagram);
 
 /// Builds an empty receiver report and a BYE for `ssrcs`, at most 31 of them.
@@ -35,8 +35,7 @@ std::vector<std::uint8_t> BuildBye(const std::vector<guint32>& ssrcs);
 /// Returns the SSRCs of all BYEs in a compound RTCP datagram.
 std::vector<guint32> ParseBye(ByteView datagram);
 
-/// Returns a digest, never 0. A sender that has not seen a packet cannot make one with the same
-/// digest.
+/// Returns a digest, never 0. A sender that has not seen the packet cannot produce its digest.
 std::uint64_t DigestOf(ByteView packet);
 
 /// Returns the sender of the buffer, owned by the buffer, or NULL.

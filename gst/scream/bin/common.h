@@ -15,7 +15,8 @@
 
 namespace lidar::gst {
 
-/// Valid from READY to NULL. `mutex` guards it; calls into children are made without it.
+/// Valid from READY to NULL. `mutex` guards the members, and is not held during calls into
+/// children.
 struct BinState {
   std::mutex mutex;
   SocketInUse used;

@@ -49,7 +49,7 @@ struct State : BinState {
 }  // namespace
 
 /// A ghost pad for a sink pad of screamtx or, with several links, for a pad of each link's
-/// screamtx. It has the properties of the first one, which the others follow.
+/// screamtx. It has the properties of the first link's pad, and the pads of the other links follow.
 G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
                      GstGhostPad)
 struct _GstLidarScreamSinkPad {
@@ -170,7 +170,7 @@ static const std::array<Property<SinkSettings>, 27> kProperties = {{
     Within<&SinkSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
-/// Decides whether a packet is feedback of the receiver.
+/// The rule for feedback: it comes from `peer` or, if not `strict`, from the peer's host.
 struct FeedbackRule {
   SharedSocketAddress peer;
   bool strict;
@@ -182,7 +182,7 @@ static FeedbackRule FeedbackRuleOf(State& state) {
 }
 
 /// Returns true if `buffer` comes from the receiver of a link, and counts it otherwise. A multicast
-/// group has many receivers.
+/// group has many receivers, so all addresses count.
 static bool IsFeedback(State& state, GstBuffer* buffer, GSocketAddress* peer, bool strict) {
   GSocketAddress* from = SourceOf(buffer);
   const auto is_group = [peer] {
@@ -267,7 +267,7 @@ static std::shared_ptr<SinkLinks> LinksOf(GstLidarScreamSink* self) {
   return self->state->links;
 }
 
-/// Returns the pads between which SRTP stands; `open` has all links.
+/// Returns the pads between which SRTP is inserted; `open` has all links.
 static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenLink>& open) {
   std::vector<SrtpPlace> places;
   const std::shared_ptr<SinkLinks> links = LinksOf(self);
@@ -291,7 +291,7 @@ static void AwaitKey(GstLidarScreamSink* self, GstPad* pad) {
   if (srtp) KeyGate::Guard(srtp->gate(), pad);
 }
 
-/// Opens the socket for both ways and hands it to the children.
+/// Opens the socket for both directions and hands it to the children.
 static bool Open(GstLidarScreamSink* self) {
   State& state = *self->state;
   const SinkSettings s = Snapshot(state);
@@ -303,7 +303,7 @@ static bool Open(GstLidarScreamSink* self) {
   SharedSocketAddress peer = first.peer;
   SharedSocket socket = first.socket;
   if (!socket) return false;
-  // The sink gets the address, because a name may have several.
+  // The sink gets the resolved address, because a name may have several addresses.
   g_object_set(self->sink, "host", HostOf(peer.get()).c_str(), "port", first.address.target.port,
                "interface", first.address.interface.c_str(), nullptr);
   GiveSocket(self->sink, socket.get());

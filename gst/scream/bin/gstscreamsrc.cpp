@@ -98,7 +98,7 @@ static const std::array<Property<SrcSettings>, 22> kProperties = {{
     Within<&SrcSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
-/// Opens the socket for both ways and hands it to the children.
+/// Opens the socket for both directions and hands it to the children.
 static bool Open(GstLidarScreamSrc* self) {
   State& state = *self->state;
   const SrcSettings s = Snapshot(state);

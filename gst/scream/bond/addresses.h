@@ -17,9 +17,9 @@ struct BondAddress {
   std::string text;  // as the property has it
 };
 
-/// Parses HOST:PORT, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, separated by commas; an IPv6
-/// host stands in brackets, and an IPv6 local address may. Returns nothing and sets the error for
-/// other text, more than kMaxLinks, or a repeated link.
+/// Parses HOST:PORT, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, separated by commas. An IPv6
+/// host must be in brackets, and an IPv6 local address may be. Returns nothing and sets the error
+/// for other text, more than kMaxLinks, or a repeated link.
 std::optional<std::vector<BondAddress>> ParseBondAddresses(const std::string& text,
                                                            std::string* error);
 

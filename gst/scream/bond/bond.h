@@ -6,8 +6,8 @@
 //
 // Threads: streaming threads push packets to the links that the scheduler chooses. The bond's own
 // thread pushes copies, and sends targets to encoders. One mutex guards the scheduler and the
-// packets kept for copies; no thread pushes with it held. Each screamtx calls in with its own lock
-// held.
+// packets kept for copies; no thread pushes with it held. Each screamtx calls the bond with its own
+// lock held.
 #pragma once
 #include <gst/gst.h>
 
@@ -29,14 +29,14 @@ G_END_DECLS
 
 namespace lidar::gst {
 
-/// Creates a bond above `links`, one screamtx each, which it uses until BondRelease(). The
-/// reference is floating.
+/// Creates a bond for `links`, one screamtx each, which the bond uses until BondRelease(). The
+/// returned reference is floating.
 GstLidarScreamBond* NewBond(const std::vector<GstLidarScreamTx*>& links, bonding::Method method,
                             bonding::TargetRule rule);
-/// Protects RTP before it goes to a link, so that all links send the same bytes. Call it below
-/// READY.
+/// Sets the layer that protects RTP before it goes to a link, so that all links send the same
+/// bytes. Call it below READY.
 void BondProtect(GstLidarScreamBond* bond, std::shared_ptr<SrtpLayer> layer);
-/// Separates the links again. Call it below READY.
+/// Detaches the links from the bond. Call it below READY.
 void BondRelease(GstLidarScreamBond* bond);
 /// Adds a sink pad that leads to a pad of each link: `tx_pads`, in the order of the links.
 GstPad* BondAddStream(GstLidarScreamBond* bond, const std::vector<GstPad*>& tx_pads);

@@ -19,7 +19,8 @@ namespace {
 constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
 // Least change of a target that is sent to the encoder, relative to the target.
 constexpr double kWorthTelling = 0.02;
-// Least interval between key units. The interval of a single link is longer.
+// Requests for key units closer than this are the same request by several links: the interval of a
+// single link is longer.
 constexpr Duration kKeyUnitInterval = std::chrono::milliseconds(400);
 
 constexpr std::size_t kMaxMisdirected = 64;  // reports held for the next tick
@@ -46,7 +47,7 @@ class BondLink : public TxLink {
     const std::lock_guard lock(bond_->mutex);
     auto own = bond_->scheduler.OnFeedback(now, index_, report);
     if (own || bond_->misdirected.size() >= kMaxMisdirected) return own;
-    // The other screamtx has a lock of its own, so the bond's thread takes the report there.
+    // The other screamtx has its own lock, so the bond's thread hands the report over.
     if (const auto owner = bond_->scheduler.OwnerOf(report))
       bond_->misdirected.push_back({*owner, report});
     return own;

@@ -22,7 +22,7 @@
 namespace lidar::gst {
 
 struct BondStream {
-  PadPtr sink;                                 // a link may pass an event to it while it is removed
+  PadPtr sink;                                 // a link may push events to it during its removal
   std::vector<GstPad*> srcs;                   // one per link
   std::vector<GstLidarTargetBitrate> targets;  // as the links report them
   std::vector<std::string> reasons;            // of `targets`
@@ -53,10 +53,10 @@ struct BondShared {
   Time Now() const { return Time{Duration{static_cast<std::int64_t>(gst_clock_get_time(clock))}}; }
   /// Keeps the packet while it may be copied. Returns the links that send it.
   bonding::LinkSet Schedule(GstBuffer* buffer, BondStream* stream);
-  /// Takes the target of the link behind `src`. Returns an event with the combined target if the
-  /// encoder does not have it yet.
+  /// Stores the target of the link behind `src`. Returns an event with the combined target if that
+  /// target is new to the encoder.
   EventPtr Combine(BondStream& stream, GstPad* src, const GstLidarTargetBitrate& target);
-  /// Returns true for a request for a key unit that follows another one too soon.
+  /// Returns true for a request for a key unit that follows another request too soon.
   bool IsRepeatedRequest(BondStream& stream, GstEvent* event);
   BondWork TakeWorkLocked(const std::vector<std::unique_ptr<BondStream>>& streams);
   void ForgetPacketsLocked(const BondStream* stream);
@@ -81,7 +81,7 @@ struct BondShared {
   std::deque<std::pair<Time, std::uint64_t>> order_;
 };
 
-/// Returns link `index` in the form that its screamtx calls.
+/// Returns the interface by which the screamtx of link `index` calls the bond.
 std::shared_ptr<TxLink> NewBondLink(std::shared_ptr<BondShared> bond, std::size_t index);
 
 }  // namespace lidar::gst

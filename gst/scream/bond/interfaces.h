@@ -14,8 +14,8 @@ namespace lidar::gst {
 class Interfaces {
  public:
   static Interfaces Now();
-  /// Returns why the link cannot carry packets for a peer of that family, or an empty text if it
-  /// can.
+  /// Returns the reason why the link cannot carry packets for a peer of that family, or an empty
+  /// text if it can carry them.
   std::string Lacks(const BondAddress& link, GSocketFamily family) const;
 
   struct Interface {

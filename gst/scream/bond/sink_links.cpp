@@ -36,8 +36,8 @@ GType BondTargetType() {
 // Time after which a link whose packets failed is tried again.
 constexpr gint64 kRetryUs = 1 * G_USEC_PER_SEC;
 
-/// Opens the link's socket. Returns a link without one, and the reason, if its name is not found or
-/// no socket opens.
+/// Opens the link's socket. If the host is not found or no socket opens, returns a link without a
+/// socket, and the reason.
 OpenLink Open(const BondAddress& address, std::string* why) {
   OpenLink link{address, nullptr, nullptr, true};
   GError* error = nullptr;
@@ -70,8 +70,7 @@ GstPadProbeReturn FilterLink(GstPad*, GstPadProbeInfo* info, gpointer data) {
   });
 }
 
-/// Keeps the properties of `to` the same as those of `from`, an object of the same class, except
-/// `own`.
+/// Keeps the properties of `to`, except `own`, equal to those of `from`, which has the same class.
 void BindProperties(GObject* from, GObject* to, std::string_view own) {
   guint n = 0;
   GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(from), &n);

@@ -52,7 +52,8 @@ class SinkLinks {
   SinkLinks(const SinkLinks&) = delete;
   SinkLinks& operator=(const SinkLinks&) = delete;
 
-  /// Adds a stream. `tx_pad` is a pad of the first link; returns the pad that takes its packets.
+  /// Adds a stream with the pad `tx_pad` of the first link. Returns the bond's pad, which takes the
+  /// stream's packets.
   GstPad* Add(GstPad* tx_pad);
   /// Removes a stream. Returns the first link's pad, which remains.
   PadPtr Remove(GstPad* sink);
@@ -74,10 +75,9 @@ class SinkLinks {
     gint64 failed_us = 0;  // monotonic time of the last failure
   };
   void AddLink(const OpenLink& link);
-  /// Looks for links that vanished or came back.
+  /// Detects links that became unusable or usable.
   void Watch();
-  /// Returns true if the link failed to send packets and sent no other, since the last call or
-  /// within the last second.
+  /// Returns true if a call in the last second found new errors and no new sent packet.
   bool Fails(std::size_t link);
   void Change(std::size_t link, const std::string& trouble);
 

@@ -67,7 +67,7 @@ gboolean CopyExceptCaps(GstPad*, GstEvent** event, gpointer to) {
   return TRUE;
 }
 
-/// Returns the SSRC, or the next number if the pad of that name has another SSRC now.
+/// Returns the SSRC, or the next number if another pad has its name already.
 guint32 FreePadNumber(GstLidarScreamRx* self, guint32 ssrc) {
   for (guint32 number = ssrc;; ++number) {
     const StringPtr name(g_strdup_printf("src_%u", number));
@@ -195,8 +195,8 @@ static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPa
                        GST_PAD_NAME(pad)));
 }
 
-/// Returns the ended route that began first of those that the stream fits, or the end of the
-/// routes: a restarted sender begins its streams in the same order.
+/// Returns the oldest ended route that suits the stream, or the end of the routes. A restarted
+/// sender begins its streams in the same order.
 static auto FindEnded(RxState& state, guint payload_type, GstCaps* caps) {
   auto first = state.routes.end();
   for (auto at = state.routes.begin(); at != state.routes.end(); ++at) {
@@ -211,7 +211,7 @@ static auto FindEnded(RxState& state, guint payload_type, GstCaps* caps) {
 
 /// Returns the pad of a new SSRC. A restarted sender gets the pad of its earlier SSRC, because an
 /// application links a pad once. The pad's stream goes on: with a STREAM_START, sinks would wait
-/// for those of the other pads. A flush that began before the pad had its route continues here.
+/// for those of the other pads. A flush that is in progress applies to the pad, too.
 static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer** buffer) {
   RxState& state = *self->state;
   const CapsPtr caps(CapsOf(self, header));

@@ -90,7 +90,7 @@ void Run(gpointer data) {
   const bool first = !std::exchange(state.rtcp_started, true);
   lock.unlock();
   if (first) StartStream(self);
-  // A refused report is lost, but the next one may have another sink.
+  // A refused report is lost, and the task goes on: the pad may get another sink.
   gst_pad_push(self->rtcp_src, buffer);
 }
 

@@ -19,7 +19,7 @@ constexpr Duration kSsrcTimeout = std::chrono::seconds(5);
 constexpr Duration kMaxAge = std::chrono::seconds(1);
 constexpr Duration kMaxApart = std::chrono::milliseconds(1);
 
-/// The present on the reports' clock and on that of kernel arrival times.
+/// The present time on the reports' clock, and on the clock of kernel arrival times.
 struct Clocks {
   Time now{};
   GstClockTime unix_now = 0;
@@ -135,15 +135,16 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
 
 enum class Fate { kPass, kDrop, kEnd };
 
-/// Returns true if a stream continues. A restarted sender sends no goodbye for its earlier SSRC.
+/// Returns true if a stream continues. Silent streams do not count, because a restarted sender
+/// sends no goodbye for its earlier SSRC.
 bool AnyAlive(const RxState& state, Time now) {
   return std::any_of(state.ssrcs.begin(), state.ssrcs.end(),
                      [now](const auto& s) { return now - s.second < kSsrcTimeout; });
 }
 
 /// Handles RTCP on the media's port: a goodbye ends streams, `stats` keeps a sender's report, and
-/// other RTCP passes unread. With a pt-map it is dropped, because no stream's pad is for it. The
-/// caller holds the lock.
+/// other RTCP passes unread. With a pt-map other RTCP is dropped, because no stream's pad is for
+/// it. The caller holds the lock.
 Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
   if (goodbyes.empty() && !rtcp::HasSenderReport(map.view()))

@@ -19,7 +19,7 @@ namespace lidar::gst {
 /// Reports of a link cover the packets that came by it. The first link may have no address.
 class LinkReports {
  public:
-  /// A new link replaces the oldest silent one.
+  /// A new link replaces the link that has been silent for longest.
   static constexpr std::size_t kMaxLinks = 4;
 
   struct Report {
@@ -41,7 +41,7 @@ class LinkReports {
     rtcp::FeedbackGenerator::Stats feedback;
   };
   std::vector<LinkStats> stats() const;
-  /// Sums over all links, also those that were replaced.
+  /// Sums over all links, including replaced ones.
   rtcp::FeedbackGenerator::Stats Sum() const;
 
  private:
@@ -63,9 +63,10 @@ class SeenPackets {
   static constexpr int kWindow = 4096;
   static constexpr std::size_t kMaxSources = 64;
 
-  /// Returns true if the number has another RTP timestamp than before: the sender has restarted.
+  /// Returns true if the number arrived before with another RTP timestamp: the sender has
+  /// restarted.
   bool ShowsRestart(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp) const;
-  /// Returns false for a repeated packet. A restart forgets the packets of before.
+  /// Returns false for a repeated packet. After a restart, earlier packets are forgotten.
   bool Add(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp);
 
  private:

@@ -92,9 +92,9 @@ struct RxState {
 
   // Used by the streaming thread only:
   bool eos = false;
-  bool src_taken = false;    // a stream of pt-map uses it
-  bool src_started = false;  // its caps were sent
-  bool routes_full = false;  // the warning about it was posted
+  bool src_taken = false;    // a stream of pt-map uses src
+  bool src_started = false;  // the caps of src were sent
+  bool routes_full = false;  // the warning about too many routes was posted
   bool warned_of_untaken = false;
   GstFlowCombiner* combiner = nullptr;
 };

@@ -13,8 +13,9 @@
 
 namespace lidar::gst {
 
-/// Is a child of the bin, which never stops it: srtpdec warns of a state change while it decodes.
-/// Only the streaming thread that gives it datagrams may use it, apart from creating it.
+/// The bin contains srtpdec but never changes its state, because srtpdec warns of a state change
+/// while it decodes. Any thread may create an SrtpDecoder; only the streaming thread that gives it
+/// datagrams may use it.
 class SrtpDecoder {
  public:
   /// Null if the srtp plugin is missing.

@@ -14,11 +14,11 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::chrono::milliseconds kDtlsTick{100};
-// A client drops a handshake after this time, because the pauses between repetitions of DTLS
-// double. It begins a new handshake if its packets stay unanswered for this time.
+// A client gives up a handshake after this time, because DTLS doubles its pauses between
+// repetitions. A client with a key begins anew if its media stay unanswered as long.
 constexpr std::chrono::seconds kDtlsPatience{5};
 constexpr std::chrono::seconds kDtlsPause{1};  // between handshakes that fail
-// A server may have to repeat its last datagram.
+// A server keeps a handshake for this time, because it may have to repeat its last datagram.
 constexpr std::chrono::seconds kServerKeeps{10};
 
 }  // namespace
@@ -92,7 +92,8 @@ void DtlsKeys::Process(GstBuffer* datagram) {
     session = SessionOf(HelloIn(BufferMap(datagram, GST_MAP_READ).view()), from);
   }
   if (session == nullptr) return;
-  // A server's last datagram waits in Send() until the key is in use: the client's media follow it.
+  // The lock makes a server's last datagram wait in Send() until the key is in use, because the
+  // client's media follow that datagram.
   const std::lock_guard lock(session->route->mutex);
   session->handshake->Take(datagram);
   TakeKey(session);

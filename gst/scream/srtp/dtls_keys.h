@@ -38,9 +38,9 @@ struct SrtpTraffic {
 };
 
 /// The end that sends media is the client: it sends its hello over all links, repeats it until
-/// there is a key, and begins anew if its packets stay unanswered, as after a restart of the other
+/// there is a key, and begins anew if its media stay unanswered, as after a restart of the other
 /// end. The server answers each address that sent the same hello, so one live link is enough.
-/// Repeated datagrams do no harm in DTLS. All that takes time runs in a thread of its own.
+/// Repeated datagrams do no harm in DTLS. Slow work runs in a thread of its own.
 class DtlsKeys {
  public:
   static constexpr std::size_t kMaxHandshakes = 4;  // of a server at a time
@@ -50,7 +50,8 @@ class DtlsKeys {
 
   using Addresses = std::vector<SocketAddressPtr>;
   struct Calls {
-    /// Sends a datagram to the addresses; a client's has none, and goes over all links.
+    /// Sends a datagram to the addresses. A client's datagram has no addresses, and goes over all
+    /// links.
     std::function<void(GstBuffer*, const Addresses&)> send;
     std::function<void(const SrtpKey&)> on_key;
     std::function<SrtpTraffic()> traffic;
@@ -65,14 +66,14 @@ class DtlsKeys {
 
   /// Shakes hands until Stop(): a client at once, a server as hellos come.
   void Start();
-  /// Forgets open handshakes.
+  /// Ends the thread, and forgets open handshakes.
   void Stop();
   /// Takes a datagram that has its source's address; any thread.
   void Take(GstBuffer* datagram);
   DtlsCounts counts() const { return {handshakes_, refused_, dropped_, 0}; }
 
  private:
-  /// Data for the encoder's thread: a server's addresses of one peer, or the first part of a
+  /// Data for the threads of dtlsenc: the addresses of a server's peer, or the first part of a
   /// client's hello.
   struct Route {
     std::mutex mutex;
@@ -107,7 +108,7 @@ class DtlsKeys {
   std::deque<BufferPtr> waiting_;
   bool stop_ = false;
 
-  // Used by the thread, and while there is none:
+  // Used by the thread, and by other threads only while it does not run:
   std::deque<Session> sessions_;  // oldest first
   Allowance hellos_{kHellosPerSecond, Duration(std::chrono::seconds(1)) / kHellosPerSecond};
   std::optional<Time> heard_at_;  // last sign of the other end; none before the first key

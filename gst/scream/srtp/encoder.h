@@ -12,8 +12,8 @@
 
 namespace lidar::gst {
 
-/// Is a child of the bin. Each key has one encoder, because two would use a packet index twice. All
-/// threads may call it.
+/// srtpenc is a child of the bin. Each key has one encoder, because two encoders would use a packet
+/// index twice. All threads may call it.
 class SrtpEncoder {
  public:
   /// Null if the srtp plugin is missing.

@@ -69,7 +69,7 @@ void DtlsHandshake::OnKey(GstBuffer* key) {
 
 void DtlsHandshake::Take(GstBuffer* datagram) {
   BeginStream(sink_.get(), "application/x-dtls");
-  // The decoder works in place.
+  // The decoder works in place, so it gets a copy.
   const GstFlowReturn flow = gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   if (flow != GST_FLOW_OK && state_ == State::kOpen) state_ = State::kFailed;
 }

@@ -153,9 +153,9 @@ BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   return nullptr;
 }
 
-/// RTP does not carry its rollover counter. Without other strangers, many values are tried for one
-/// packet, because a sender without feedback sends few packets. Half of the trials are kept for the
-/// first values of other packets.
+/// Tries rollover counters for a packet of an unknown or lost stream. RTP does not carry the
+/// counter. While trials are left, many values are tried for one packet, because a sender without
+/// feedback sends few packets. Half of the trials are kept for the first values of other packets.
 BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   const Time now = MonotonicTime();
   if (!trials_.Take(now)) return nullptr;
@@ -170,7 +170,7 @@ BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   return decoded;
 }
 
-/// The rollover counter of a lost stream is above its old value: packets with a lower one are
+/// The rollover counter of a lost stream is above its old value: packets with a lower counter are
 /// recordings.
 BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead) {
   const Stream& stream = StreamOf(head.stream());
@@ -235,7 +235,7 @@ SrtpInput::Stream& SrtpInput::StreamOf(const StreamId& id) {
   return streams_[id];
 }
 
-/// `rollover` is set for a new stream or key.
+/// `rollover` is the counter that fitted in a trial, else 0.
 void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollover) {
   in_use_ = key;
   Stream& stream = StreamOf(head.stream());

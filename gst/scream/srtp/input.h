@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The way in from a socket: tries the valid keys on each datagram.
+// The input from a socket: tries the valid keys on each datagram.
 #pragma once
 #include <gst/gst.h>
 
@@ -23,17 +23,17 @@
 namespace lidar::gst {
 
 struct SrtpCounts {
-  std::uint64_t received = 0;  // datagrams that were decided on
+  std::uint64_t received = 0;  // datagrams that passed or were refused
   std::uint64_t refused = 0;   // wrong key, replayed, damaged or not protected
   std::uint64_t copies = 0;    // came by another link of the sender
   std::uint64_t key_changes = 0;
 };
 
 /// Replaces the link between `socket` and `target`: events and queries pass, and datagrams pass
-/// decoded or not at all. A new key and the old key are valid at the same time, until a while after
-/// a packet fits the new key. An unknown stream is first tried in another decoder, at a bounded
-/// rate, so that a flood of strangers costs neither time nor memory. The RTCP of an SSRC is a
-/// stream of its own: it carries its index, and says nothing about the media's rollover counter.
+/// decoded or not at all. After a packet fits a new key, the old key stays valid for a while. An
+/// unknown stream is first tried in another decoder, at a bounded rate, so that a flood of unknown
+/// streams costs neither time nor memory. The RTCP of an SSRC is a stream of its own, because its
+/// index says nothing about the media's rollover counter.
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
@@ -49,8 +49,8 @@ class SrtpInput {
   bool Link(GstPad* socket, GstPad* target);
   /// Gives DTLS datagrams to `on_dtls`; without it they are refused. Call it before Link().
   void SetDtls(OnDtls on_dtls) { on_dtls_ = std::move(on_dtls); }
-  /// All threads may call it. Returns false without the srtp plugin. Keeps the key of the packets
-  /// that pass; of more than two newer keys it drops the oldest.
+  /// All threads may call it. Returns false without the srtp plugin. The key of the packets that
+  /// pass stays. Of more than two newer keys, the oldest is dropped.
   bool AddKey(const SrtpKey& key);
   /// Keys newer than the present one that fitted no packet yet.
   std::size_t waiting_keys() const { return waiting_; }
@@ -65,9 +65,9 @@ class SrtpInput {
     std::uint16_t sequence = 0;  // RTP only
     std::uint32_t ssrc = 0;
   };
-  /// Produces the numbers to try, from 1 on. Rounds become longer and restart with short ones, so
-  /// that small numbers recur often. Each round begins at a random number: an attacker who uses up
-  /// some numbers cannot block one of them.
+  /// Produces the rollover counters to try, from 1 on. Rounds become longer and restart with short
+  /// ones, so that small numbers recur often. Each round begins at a random number: an attacker who
+  /// uses up some numbers cannot block one of them.
   class Search {
    public:
     std::uint32_t Next();
@@ -130,8 +130,8 @@ class SrtpInput {
   std::optional<Time> forget_old_at_;
   std::map<StreamId, Stream> streams_;
   SrtpCopies copies_;
-  Allowance trials_;    // of strangers
-  unsigned tried_ = 0;  // strangers since the trial decoders were cleared
+  Allowance trials_;    // of unknown and lost streams
+  unsigned tried_ = 0;  // trials since the trial decoders were cleared
   bool warned_ = false;
 
   std::atomic<std::size_t> waiting_{0};

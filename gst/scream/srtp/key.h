@@ -12,7 +12,7 @@ struct SrtpSettings {
   std::string key;  // hex, "file:PATH" or "env:NAME"; empty: no SRTP
   std::string cipher = "aes-128-icm";
   std::string auth = "hmac-sha1-80";
-  std::string dtls_certificate;  // files; both or none
+  std::string dtls_certificate;  // files; both are set, or none
   std::string dtls_peer_certificate;
 
   bool by_dtls() const { return !dtls_certificate.empty() || !dtls_peer_certificate.empty(); }

@@ -14,8 +14,8 @@
 
 namespace lidar::gst {
 
-/// While it is shut, packets of live sources are dropped and counted, and other sources wait: for
-/// the key, a flush or a stop.
+/// While the gate is shut, packets of live sources are dropped and counted, and other sources wait:
+/// for the key, a flush or a stop.
 class KeyGate {
  public:
   /// Shuts `pad` until Open(). Does nothing after Open().

@@ -172,7 +172,7 @@ bool SrtpLayer::IsDone(GstBuffer* packet) const {
   return places_.links.size() > 1 && !IsRtcp(packet);
 }
 
-/// A refused packet was sent before, or the key is used up: the packet must not leave.
+/// Drops a packet that srtpenc refuses: it was sent before, or the key is used up.
 GstPadProbeReturn SrtpLayer::OnOut(GstPad*, GstPadProbeInfo* info, gpointer data) {
   auto* self = static_cast<SrtpLayer*>(data);
   return MapPackets(info, [self](BufferPtr packet) {

@@ -21,7 +21,7 @@
 
 namespace lidar::gst {
 
-/// Linked pads of the bin's children between which the layer stands.
+/// Linked pads of the bin's children, between which the layer is inserted.
 struct SrtpPlace {
   GstElement* sender;         // screamtx or screamrx
   const char* out;            // its pad towards the socket

@@ -126,7 +126,7 @@ static void OnReport(GstLidarScreamAux* self, GstEvent* event) {
   if (report) TxTakeReport(GST_LIDAR_SCREAM_TX(self->tx), *report);
 }
 
-/// A packet that the next pad refuses gets no number from the session.
+/// Returns false if the next pad refuses packets: the session then gives them no number.
 static bool NextPadTakes(GstPad* src) {
   const PadPtr next(gst_pad_get_peer(src));
   return next && !GST_PAD_IS_FLUSHING(next.get()) && !GST_PAD_IS_EOS(next.get());

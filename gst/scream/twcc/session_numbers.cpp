@@ -21,7 +21,7 @@ const gchar* UriOf(const GValue* field) {
   return G_VALUE_HOLDS_STRING(uri) ? g_value_get_string(uri) : nullptr;
 }
 
-/// A packet in rtpsession's event. `arrival` is unset if it is lost or untimed.
+/// A packet in rtpsession's event. `arrival` is unset if the packet is lost or has no time.
 struct Reported {
   guint number = 0;
   std::optional<Duration> arrival;
@@ -49,7 +49,7 @@ std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   const GstStructure* s = gst_event_get_structure(event);
   if (s == nullptr || !gst_structure_has_name(s, kEvent)) return packets;
   const GValue* list = gst_structure_get_value(s, "packets");
-  // The type is found by its name, because GLib deprecates it; rtpsession uses it.
+  // Finds the type by its name, because GLib deprecates GValueArray, which rtpsession uses.
   if (list == nullptr || !G_VALUE_HOLDS(list, g_type_from_name("GValueArray"))) return packets;
   const auto* array = static_cast<const GValueArray*>(g_value_get_boxed(list));
   for (guint i = 0; array != nullptr && i < array->n_values; ++i)

@@ -19,7 +19,7 @@ class EntryGate {
  public:
   explicit EntryGate(GstClock* clock) : clock_(clock) {}
 
-  /// Lets chain functions queue.
+  /// Lets chain functions queue packets.
   void Open() { Set(true, GST_FLOW_OK); }
   /// Ends all waits and closes the queues; chain functions return FLUSHING.
   void Close(const TxStreams& streams);

@@ -18,7 +18,7 @@ class FeedbackWatch {
     if (!unanswered_since_) unanswered_since_ = now;
     OnInput(now);
   }
-  /// Notes that there is more to send. Silence counts only then.
+  /// Call it for each input: without input, missing feedback is not silence of the receiver.
   void OnInput(Time now) {
     if (unanswered_since_ && now - *unanswered_since_ >= kFeedbackTimeout) silent_ = true;
   }

@@ -107,7 +107,8 @@ void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* eve
   if (start) gst_pad_push_event(pad, start.release());
 }
 
-/// A stream begins after its end. If all had ended, the output begins anew, too.
+/// Call it when a stream begins after an end. If the end of all streams was sent, the output begins
+/// anew, too.
 void BeginAnew(TxState& state) {
   if (state.pacing.end_sent()) state.merger.BeginAnew();
   state.pacing.ForgetEnd();
@@ -173,7 +174,7 @@ void Remember(TxState& state, TxStream& stream, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
       stream.live.reset();
-      // The end may be that of other streams, and this one's pad new.
+      // If the other streams have ended, a new pad begins the output anew.
       if (std::exchange(stream.eos, false) || state.pacing.end_sent()) BeginAnew(state);
       break;
     case GST_EVENT_SEGMENT:

@@ -12,7 +12,7 @@
 
 namespace lidar::gst {
 
-/// screamtx calls it with its lock held, from any of its threads.
+/// screamtx calls the methods with its lock held, from any of its threads.
 class TxLink {
  public:
   virtual ~TxLink() = default;

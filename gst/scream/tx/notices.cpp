@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-// An outage may drop fewer frames, which needs no warning.
+// An outage may drop fewer frames than this, which needs no warning.
 constexpr guint64 kFramesUntilWarning = 20;
 // A sum with a longer interval may exceed the range of a time.
 constexpr Duration kLongestInterval = std::chrono::hours(24 * 365);

@@ -35,7 +35,7 @@ class Notices {
   /// Compares the state with the last messages. Returns true if a message is due.
   bool Evaluate(const scream::Controller& controller, Duration stats_interval, Time now);
   bool due() const;
-  /// `most_dropped`: frames that the stream with most losses has lost.
+  /// `most_dropped`: dropped frames of the stream that dropped most.
   Batch Take(GstObject* element, guint64 most_dropped);
   /// Time at which Evaluate() finds statistics due.
   Time next_stats() const { return next_stats_; }

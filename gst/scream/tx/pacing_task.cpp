@@ -203,7 +203,7 @@ bool PacingTask::Drained(Time now) {
   return true;
 }
 
-/// Returns when the task must run again at the latest.
+/// Returns the latest time at which the task must run again.
 Time PacingTask::NextWake(Time now) const {
   TxState& s = state();
   Time wake = std::min(s.reporter.NextLook(now), s.controller->NextTimer());

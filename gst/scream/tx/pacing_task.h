@@ -36,7 +36,7 @@ class PacingTask {
     settings_changed_ = true;
     Wake();
   }
-  /// Call it when a receiver took packets: delays the deadline of an end with input that is not
+  /// Call it when a receiver acknowledged packets. Delays the deadline of the end if input is not
   /// live.
   void OnAccepted(Time now);
   /// Call it when the stream begins anew: a new end is then sent, too.

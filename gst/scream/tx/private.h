@@ -81,7 +81,8 @@ TxStream* FindStream(TxState& state, scream::StreamId id);
 void Configure(TxState& state, TxStream& stream);
 /// Drops the packets and events of `stream`.
 void ClearQueue(TxState& state, TxStream& stream, Time now);
-/// Drops what a flush drops. Caps and other events stay that upstream does not repeat.
+/// Drops packets, segments and EOS, as a flush does. Caps and other sticky events stay, because
+/// upstream does not repeat them.
 void FlushQueue(TxState& state, TxStream& stream, Time now);
 StructurePtr StatsOf(TxState& state);
 

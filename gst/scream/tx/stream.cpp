@@ -42,8 +42,8 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
   config.start_bitrate = Bps(std::clamp(start, needed, max));
   config.max_bitrate = Bps(max);
   // The needed bitrate is no minimum: if the path cannot carry what the error bound needs, the
-  // encoder gets a lower target. The encoder can then leave out scans, whereas a queue would only
-  // become older.
+  // encoder gets a lower target. The encoder can then leave out scans, whereas a higher target
+  // would only lengthen the queue.
   config.needed_bitrate = Bps(needed);
   return config;
 }

@@ -46,7 +46,7 @@ class OverheadMeter {
 };
 
 /// A flush restarts the running time, but without a preroll the base time stays. Entry times are
-/// shifted until a preroll gives the pipeline a new base time; a pause only moves it.
+/// shifted until a preroll gives the pipeline a new base time. A pause only moves the base time.
 struct EntryShift {
   bool due = false;    // measure the shift with the next buffer
   bool moved = false;  // take the base time of the next buffer
@@ -93,8 +93,8 @@ using TxStreams = std::vector<std::unique_ptr<TxStream>>;
 
 /// Present time on the system's clock, as the controller takes it.
 Time TimeOf(GstClock* clock);
-/// Returns the controller's configuration: settings of the pad, else of the element, within the
-/// encoder's bounds, which exclude overhead.
+/// Returns the controller's configuration from the pad's settings, else the element's. The
+/// encoder's bounds, with overhead added, limit max_bitrate and set needed_bitrate.
 scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,
                                 const TxSettings& element);
 /// Converts `wire` to the encoder's bitrate [bit/s].

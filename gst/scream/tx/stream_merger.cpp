@@ -70,7 +70,7 @@ void StreamMerger::NoteSent(bool merged, EventPtr* event) {
   }
 }
 
-/// The last stream may have another segment: that of a stream that left.
+/// Maps the buffer's times to the output's segment, which may be that of a stream that left.
 BufferPtr StreamMerger::ToOutput(const TxStream& stream, BufferPtr buffer) const {
   const GstSegment& segment = stream.leaving_segment;
   if (segment.format != GST_FORMAT_TIME || gst_segment_is_equal(&segment, &segment_)) return buffer;

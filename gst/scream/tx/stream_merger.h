@@ -20,7 +20,7 @@ class StreamMerger {
   StreamMerger() { gst_segment_init(&segment_, GST_FORMAT_UNDEFINED); }
   /// Returns the next event whose place is before all queued packets of its stream, or NULL.
   EventPtr NextEvent(const Streams& streams);
-  /// Lets events of a start follow the end. No packet may be queued.
+  /// Call it after the end, with empty queues: the next events begin a new stream.
   void BeginAnew() {
     sent_start_ = merged_caps_ = false;
     segment_due_ = true;

@@ -28,7 +28,7 @@ class UpstreamReporter {
   Notices& notices() { return notices_; }
   /// Finds the due events and messages.
   void Evaluate(Time now);
-  /// Returns when to call Evaluate() again at the latest.
+  /// Returns the latest time of the next call of Evaluate().
   Time NextLook(Time now) const;
 
  private:
