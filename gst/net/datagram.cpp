@@ -75,7 +75,7 @@ DatagramInfo ReadInfo(msghdr* received) {
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message) {
   *control = {};
-  // A mapped address leaves through the IPv4 stack, which reads only its own options.
+  // A datagram to a mapped address leaves through the IPv4 stack, which reads only its own options.
   const bool v4 = to.IsIpv4();
   const int level = v4 ? IPPROTO_IP : IPPROTO_IPV6;
   const int value = tos;
@@ -108,7 +108,7 @@ bool SendMulticastFrom(int fd, const std::string& interface) {
   if (getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) != 0) return false;
   ip_mreqn v4{};
   v4.imr_ifindex = index;
-  // A socket of IPv6 may send to groups of IPv4, too, for which the option of IPv4 counts.
+  // An IPv6 socket may send to IPv4 groups, too, which use the IPv4 option.
   const int v4_result = setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4);
   return (local.ss_family == AF_INET6
               ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index)
@@ -125,7 +125,7 @@ unsigned SetReceiveBuffer(int fd, unsigned bytes) {
   int granted = 0;
   socklen_t length = sizeof granted;
   if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
-  return static_cast<unsigned>(granted / 2);  // the kernel doubles it for its own bookkeeping
+  return static_cast<unsigned>(granted / 2);  // the kernel doubles the size for its own bookkeeping
 }
 
 }  // namespace lidar::net

@@ -42,20 +42,20 @@ DatagramInfo ReadInfo(msghdr* received);
 struct SendControl {
   alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(in6_pktinfo))] = {};
 };
-/// Makes `message` leave to `to` with `tos`, through the interface of that index (0: by the
-/// routes). Needs no privileges. `control` must live until the message is sent.
+/// Makes `message`, whose destination is `to`, leave with `tos`, through the interface of that
+/// index (0: by the routes). Needs no privileges. `control` must live until the message is sent.
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message);
 
-/// Index of the interface of that name in the socket's network; 0 if it is not there.
+/// Index of the interface of that name in the socket's network namespace; 0 if there is none.
 unsigned InterfaceIndex(int fd, const std::string& name);
 
 /// Makes multicast leave through the interface of that name. Returns false with errno set on
 /// failure.
 bool SendMulticastFrom(int fd, const std::string& interface);
 
-/// Sets the largest receive buffer up to `bytes` that the kernel grants (0: leaves it). Returns its
-/// size, or 0 on failure.
+/// Asks for a receive buffer of `bytes` (0: keeps the buffer). Returns the size that the kernel
+/// grants, or 0 on failure.
 unsigned SetReceiveBuffer(int fd, unsigned bytes);
 
 }  // namespace lidar::net

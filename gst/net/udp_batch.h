@@ -75,7 +75,7 @@ class UdpBatchReceiver {
   /// Gives waiting datagrams to `consume`. Returns their number, or -1 with errno set. Call
   /// net::AskForInfo() on `fd` before.
   int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
-  /// Datagrams the kernel dropped because the socket's buffer was full, since it was opened.
+  /// Datagrams that the kernel dropped for a full buffer since the socket was opened.
   guint kernel_drops() const { return kernel_drops_; }
   /// Resets the count for another socket. The kernel reports no count before its first drop.
   void ForgetDrops() { kernel_drops_ = 0; }

@@ -46,7 +46,7 @@ struct SocketInUse {
   SharedSocket socket;
   bool given = false;
 
-  /// Closes and forgets it; a given socket is closed only with `close_given`.
+  /// Closes and forgets the socket; a given socket is closed only with `close_given`.
   void Close(bool close_given);
 };
 
@@ -75,7 +75,8 @@ SocketInUse TakeSocket(const GivenSocket& given, Open open) {
   return {open(), false};
 }
 
-/// The row used-socket of an element whose state has `used` and the mutex that guards it.
+/// Getter of the property used-socket, for an element whose state has `used` and the mutex that
+/// guards it.
 template <class Self>
 SharedSocket UsedSocket(GObject* object) {
   auto& state = *reinterpret_cast<Self*>(object)->state;

@@ -17,7 +17,7 @@ namespace {
 
 using InetAddressPtr = std::unique_ptr<GInetAddress, GObjectUnref>;
 
-/// Returns true if the machine has a route there. Nothing is sent.
+/// Returns true if the machine has a route to `address`. Nothing is sent.
 bool HasRouteTo(GInetAddress* address) {
   const SocketPtr socket(g_socket_new(g_inet_address_get_family(address), G_SOCKET_TYPE_DATAGRAM,
                                       G_SOCKET_PROTOCOL_UDP, nullptr));

@@ -25,12 +25,12 @@ inline SocketAddressPtr RefAddress(GSocketAddress* address) {
 }
 
 /// Returns the address for a socket of `family`: an IPv4 address becomes a mapped one on an IPv6
-/// socket. Returns an invalid address if it does not fit.
+/// socket. Returns an invalid address if `address` does not fit the family.
 NativeAddress ToNative(GSocketAddress* address, GSocketFamily family);
-/// Transfer full; a mapped address comes out as IPv4. NULL if it is of no known family.
+/// Returns the address, a mapped address as IPv4; NULL for an unknown family. Transfer full.
 GSocketAddress* FromNative(const NativeAddress& address);
 
-/// Compares as the network does: a mapped IPv4 address equals that address. NULL equals only NULL.
+/// Compares as the network does: an IPv4 address equals its mapped form. NULL equals only NULL.
 bool SameAddress(GSocketAddress* a, GSocketAddress* b);
 /// Compares without the port.
 bool SameHost(GSocketAddress* a, GSocketAddress* b);
