@@ -72,7 +72,7 @@ const std::array<Stat<Counters>, 4> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while sending or posting
+  std::mutex mutex;  // guards members up to the next comment; not held while sending or posting
   SinkSettings settings;
   SocketInUse used;
   SharedSocketAddress peer;

@@ -58,7 +58,7 @@ const std::array<Stat<Counters>, 4> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while receiving or posting
+  std::mutex mutex;  // guards members up to the next comment; not held while receiving or posting
   SrcSettings settings;
   SocketInUse used;
   Counters counters;
@@ -219,8 +219,8 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   }
 }
 
-/// Returns single buffers: GstBaseSrc 1.22 takes lists, but releases a wrong buffer if it is
-/// stopped with one.
+/// Returns single buffers: GstBaseSrc 1.22 accepts lists, but releases a wrong buffer if it stops
+/// with a list.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(push);
   State& state = StateOf(self);
