@@ -20,11 +20,12 @@ struct BitrateControl {
 std::optional<BitrateControl> FindBitrateControl(const std::string& factory);
 
 /// The first element upstream of `pad` whose klass has "Encoder" in it; null if there is none. The
-/// way there leads through elements and bins with one input.
+/// search goes only through elements and bins with one input.
 ElementPtr FindEncoderUpstream(GstPad* pad);
 
-/// Sets what `control` names to `bps`, clamped to the property's range. Returns the bitrate that
-/// was set [bit/s], or nothing if the encoder has no such numeric property.
+/// Sets the property or field that `control` names to `bps`, clamped to the property's range.
+/// Returns the bitrate that was set [bit/s], or nothing if the encoder has no such numeric
+/// property.
 std::optional<guint> SetEncoderBitrate(GstElement* encoder, const BitrateControl& control,
                                        guint bps);
 

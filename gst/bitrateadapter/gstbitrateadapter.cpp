@@ -46,7 +46,7 @@ struct State {
   guint bitrate = 0;
   bool warned = false;
   bool bounds_due = false;   // the limits have changed
-  bool told_bounds = false;  // downstream has limits
+  bool told_bounds = false;  // limits were sent downstream
 };
 
 }  // namespace
