@@ -23,16 +23,16 @@ class Canvas {
   const Color* Row(int y) const { return &pixels_[Index(0, y)]; }
 
   void Clear();
-  /// A square of `size` pixels about (x, y); what lies outside is cut.
+  /// Draws a square of `size` pixels about (x, y), cut at the borders.
   void Splat(int x, int y, int size, float depth, Color color);
-  /// The rectangle [x0, x1) x [y0, y1).
+  /// Fills the rectangle [x0, x1) x [y0, y1).
   void Fill(int x0, int y0, int x1, int y1, Color color);
   /// Draws a line of half-transparent pixels below what is drawn already.
   void Line(float x0, float y0, float x1, float y1, Color color);
-  /// Draws a line `size` pixels wide between two depths; nearer pixels hide it.
   struct End {
     float x, y, depth;
   };
+  /// Draws a line `size` pixels wide between two depths; nearer pixels hide it.
   void Stroke(End from, End to, int size, Color color);
   /// Eye-dome lighting: darkens pixels that lie behind their neighbours, so that edges show.
   void ShadeEdges(float strength);

@@ -15,7 +15,7 @@ class FieldReader {
   float operator()(const std::uint8_t* point) const {
     return static_cast<float>(ReadNumber(point + field_.offset, field_.type));
   }
-  /// The first of `names` that is there.
+  /// Returns the first of `names` that `fields` has.
   static std::optional<FieldReader> Find(const PointFields& fields,
                                          std::initializer_list<std::string_view> names) {
     for (const std::string_view name : names)

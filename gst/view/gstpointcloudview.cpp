@@ -116,7 +116,7 @@ struct State {
   RefusedCaps refused;
   GstVideoInfo video;
   std::optional<TrailMap> map;
-  gint map_colors = 0;  // the map keeps the values of its colours
+  gint map_colors = 0;  // color_by of the values in the map
   std::unique_ptr<Renderer> renderer;
   bool warned_no_pose = false;
   bool drawing = false;  // a picture is begun
@@ -206,7 +206,7 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   std::lock_guard lock(state.mutex);
   state.changed = true;
   state.renderer.reset();
-  state.drawing = false;  // a picture that is begun has the format of before
+  state.drawing = false;  // a picture that is begun has the old format
   return TRUE;
 }
 
@@ -246,7 +246,7 @@ static void Paint(const Canvas& canvas, GstVideoFrame* frame) {
   }
 }
 
-/// Moves the map to the pose of `in`. Returns false if its points must not enter the map.
+/// Moves the map to the pose of `in`. Returns false if the points of `in` must not enter the map.
 static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   if (!state.map) return false;
@@ -266,7 +266,7 @@ static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   return pose.tracking != GST_LIDAR_TRACKING_LOST;
 }
 
-/// Keeps the map while the settings ask for one with the same colours.
+/// Returns the map, or null if the settings want no map. Another color_by begins a new map.
 static TrailMap* UpdateMap(State* state) {
   const Settings& settings = state->settings;
   const bool stale = state->map_colors != settings.color_by;

@@ -13,10 +13,11 @@ constexpr Color kBackground{20, 23, 32};
 constexpr Color kWay{255, 176, 46};
 constexpr Color kSensor{255, 255, 255};
 constexpr float kMapShare = 0.7F;  // share of its colour that a point of the map keeps
-constexpr float kReach = 300;      // up to which the map is drawn in perspective [m]
-// A place is drawn once this many scans have seen it. Most things that move are not drawn.
+constexpr float kReach = 300;      // distance up to which the map is drawn in perspective [m]
+// A point of the map is drawn once this many scans have seen it, so most moving things are not
+// drawn.
 constexpr int kMetOften = 3;
-constexpr float kMargin = 25;  // around the way [m]
+constexpr float kMargin = 25;  // around the sensor's way [m]
 /// Number of poses by which the columns of a scan are placed.
 constexpr std::size_t kPhases = 64;
 

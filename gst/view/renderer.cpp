@@ -12,7 +12,7 @@ namespace {
 constexpr float kPi = 3.14159265F;
 constexpr Color kRing{120, 132, 158};
 constexpr Color kCar{255, 255, 255};
-constexpr float kAbove = 100;  // from where the view from above looks down [m]
+constexpr float kAbove = 100;  // height from which the view from above looks down [m]
 
 struct Scale {
   float low, high;
@@ -85,7 +85,7 @@ void Renderer::LearnScale(const CloudInfo& info, const std::uint8_t* points) {
 
 Color Renderer::ColorOf(float value) const {
   const float t = (value - low_) / (high_ - low_);
-  // The square root brightens dark values, which are most.
+  // The square root brightens dark values, which are the most frequent.
   if (settings_.color_by == ColorBy::kIntensity) return Glow(t > 0 ? std::sqrt(t) : 0);
   return Spectrum(t);
 }

@@ -30,7 +30,7 @@ struct ViewSettings {
 
 constexpr float kGround = -1.9F;  // below the sensor [m]
 
-/// Draws a picture at a time: Begin, Draw for each slice, Finish.
+/// Draws one picture at a time: Begin, Draw for each slice, Finish.
 class Renderer {
  public:
   /// If there is a map, and poses for it, scans are drawn where they were taken, over earlier ones.
@@ -74,7 +74,7 @@ class Renderer {
   void DrawWay();
   Vec ToPicture(const std::array<float, 3>& at) const;
   std::optional<std::array<float, 3>> Project(Vec p) const;  // x, y in pixels; depth
-  /// As Project(), in the view of the settings.
+  /// Like Project(), but in the view of the settings.
   std::optional<std::array<float, 3>> Place(Vec p) const;
 
   ViewSettings settings_;

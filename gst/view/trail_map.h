@@ -23,8 +23,8 @@ struct Rigid {
   float heading() const;  // [rad]
 };
 
-/// Keeps one point per cube in bounded memory: if there are too many cubes, they grow; if the way
-/// is too long, it keeps every second place.
+/// Keeps one point per cube in bounded memory. If there are too many cubes, they grow. If the way
+/// is too long, the map keeps every second place of it.
 class TrailMap {
  public:
   struct Point {
@@ -38,10 +38,10 @@ class TrailMap {
 
   /// Sets the pose of the sensor at `seconds`, and the velocity since the pose before.
   void MoveTo(const GstLidarPose& pose, double seconds);
-  /// Place of the sensor, `later_s` after the last pose.
+  /// Pose of the sensor, `later_s` after the last pose.
   Rigid PoseAfter(double later_s) const;
 
-  /// Points that were added since the last call belong to one scan.
+  /// Ends the scan of the points that were added since the last call.
   void EndScan() { ++scan_; }
   void Add(const std::array<float, 3>& at, float value);
 
