@@ -35,7 +35,8 @@ void Backlog::Push(SharedSlice slice) {
   }
   bytes_ += CostOf(*slice);
   slices_.push_back(std::move(slice));
-  // No slice can refer to one without blocks: it was only for display.
+  // No slice can refer to a slice without blocks, which is only for display, so an old one is
+  // dropped.
   for (auto it = slices_.begin(); it != slices_.end();)
     it = (*it)->blocks.empty() && !IsRecent(**it) ? Erase(it) : std::next(it);
   while (bytes_ > most_bytes_) Erase(slices_.begin());
@@ -59,7 +60,7 @@ void Backlog::EraseBefore(const Slice& key) {
     it = (*it)->id.index == key.id.index ? Erase(it) : std::next(it);
 }
 
-/// Returns the slice to which `slice` refers, if it waits here.
+/// Returns the slice to which `slice` refers, if the backlog has it.
 const Slice* Backlog::ReferenceOf(const Slice& slice) const {
   for (const codec::BlockName& block : slice.blocks) {
     if (!block.reference) continue;

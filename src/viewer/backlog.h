@@ -9,7 +9,8 @@
 namespace lidar::viewer {
 
 /// Slices that wait for a decoder. An encoder refers to ever newer slices of a sector. So once a
-/// slice refers to one that stands alone, all slices of that sector before the latter are obsolete.
+/// slice refers to a slice that stands alone, all slices of the sector before that reference are
+/// obsolete.
 class Backlog {
  public:
   explicit Backlog(std::size_t most_bytes) : most_bytes_(most_bytes) {}

@@ -19,7 +19,7 @@ struct Slice {
   virtual ~Slice() = default;
   SliceId id;
   std::uint32_t count = 1;               // of the scan's slices
-  bool is_recoded = false;               // it stands alone
+  bool is_recoded = false;               // the slice stands alone
   std::vector<codec::BlockName> blocks;  // in the robot's own coding
   DataSize size;                         // of the message
 };
@@ -34,9 +34,10 @@ class RecentScans {
   };
   struct Scan {
     std::uint32_t number = 0;
-    std::map<std::uint32_t, Forms> slices;  // by their place
+    std::map<std::uint32_t, Forms> slices;  // by index in the scan
   };
-  /// Keeps the two newest scans: a viewer has no use for slices of older ones.
+  /// Adds a slice. Only the two newest scans are kept, because viewers need no slices of older
+  /// scans.
   void Add(SharedSlice slice);
   /// The oldest first.
   const std::deque<Scan>& scans() const { return scans_; }
@@ -53,7 +54,7 @@ class Feed {
   explicit Feed(DataRate max_bitrate) : pace_(max_bitrate) {}
 
   /// Returns the slices to send now, in this order, and counts them as sent. Call it after each new
-  /// slice, after each drawn one, and at intervals.
+  /// slice, after each drawn slice, and at intervals.
   std::vector<SharedSlice> Take(Time now, const RecentScans& recent);
   /// Takes slices of a recording from the front of `waiting`, as the pace allows, and skips no
   /// slice. Call it as Take().
@@ -72,7 +73,7 @@ class Feed {
  private:
   struct Taken {
     std::uint32_t scan = 0;
-    std::unordered_set<std::uint32_t> sent;  // places of the slices sent
+    std::unordered_set<std::uint32_t> sent;  // indices of the slices sent
   };
   void Begin(Time now, const RecentScans& recent);
   bool Knows(const Slice& slice) const;

@@ -56,7 +56,7 @@ void Pace::OnDrawn(Time now, SliceId slice) {
     LearnRate(now, (acknowledged_ - newest.acknowledged_before) / since);
 }
 
-/// A delay without other traffic is that of the path, even if an old one was shorter.
+/// A delay without other traffic is that of the path, even if an older delay was shorter.
 void Pace::LearnDelay(Time now, Duration delay, bool alone) {
   const bool is_old = now - shortest_at_ > kDelayMemory && alone;
   if (shortest_ && !is_old && delay > *shortest_ + kSameDelay) return;

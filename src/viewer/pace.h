@@ -17,8 +17,8 @@ struct SliceId {
   std::uint32_t index = 0;
 };
 
-/// Decides when a scan may begin: if the unacknowledged bytes, at the rate of recent
-/// acknowledgements, arrive within the shortest delay and kSlack. Times must not go back.
+/// A scan may begin if the unacknowledged bytes arrive within the shortest delay plus kSlack, at
+/// the rate of recent acknowledgements. Times must not go back.
 class Pace {
  public:
   /// `max_bitrate` of 0: no limit.
@@ -71,7 +71,7 @@ class Pace {
   DataSize unacknowledged_;
   DataSize acknowledged_;
   Time acknowledged_at_{};
-  std::deque<Rate> rate_;  // highest first, each later one newer
+  std::deque<Rate> rate_;  // highest first; each later rate is lower and newer
   std::optional<Duration> shortest_;
   Time shortest_at_{};
   unsigned begun_ = 0;
