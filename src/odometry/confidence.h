@@ -8,8 +8,8 @@ namespace lidar::odometry {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Errors are twists in the sensor's frame. Errors add up only over scans that enter the map: all
-/// scans are aligned to the map.
+/// Errors are twists in the sensor's frame. Each scan is aligned to the map, so
+/// errors add up only over the scans that enter the map.
 class Confidence {
  public:
   Confidence();

@@ -9,8 +9,8 @@ namespace lidar::odometry {
 namespace {
 
 constexpr std::size_t kLeastPairs = 20;  // fewer pairs give no pose
-/// Weight of the guess along a direction that the scene does not show. It exceeds that of all
-/// points.
+/// Weight of the guess along a direction that the scene does not show. It exceeds the
+/// weight of all points together.
 constexpr double kHold = 1e6;
 /// Least error of a map [m], however small the residuals are.
 constexpr double kLeastSpread = 0.01;

@@ -9,8 +9,9 @@
 
 namespace lidar::odometry {
 
-/// A beam draws a circle on the ground that moves with the sensor. A map of points alone takes it
-/// for an edge; the beams above and below show that it lies on a plane.
+/// A beam meets the ground in a circle, which moves with the sensor. In a map of points alone the
+/// circle is an edge that holds the pose back. The beams above and below show that it lies on a
+/// plane.
 class ScanNormals {
  public:
   /// `rings` has the beam of each point, in any order of the beams. Only the constructor reads

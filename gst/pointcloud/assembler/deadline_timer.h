@@ -17,7 +17,8 @@ class DeadlineTimer {
   /// woken: then the thread checks flushing() and waits again.
   bool Wait(std::unique_lock<std::mutex>* lock, GstElement* element,
             const std::function<GstClockTime()>& next);
-  /// The deadlines have changed, or the element has a clock now; `next` is the earliest.
+  /// Call it when the deadlines change or the element gets a clock. `next` is the earliest
+  /// deadline.
   void Update(GstClockTime next);
   /// Wait() returns at once while flushing.
   void SetFlushing(bool flushing);

@@ -72,7 +72,8 @@ static void PushCaps(GstLidarScanAssembler* self, guint width) {
   if (segment) gst_pad_push_event(self->srcpad, segment.release());
 }
 
-/// Pushes the segment that waits for the first scan, which does not come, behind likely caps.
+/// Pushes the segment that waits for a first scan, which will not come. Caps must precede it, so
+/// they describe a full turn.
 static void PushEarlySegment(GstLidarScanAssembler* self) {
   State& state = *self->state;
   guint width = 0;
@@ -85,7 +86,7 @@ static void PushEarlySegment(GstLidarScanAssembler* self) {
   PushCaps(self, width);
 }
 
-/// The streaming lock must be held, and the mutex must not.
+/// The caller holds the streaming lock, but not the mutex.
 static GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
   GstFlowReturn flow = GST_FLOW_OK;
   for (auto& scan : *finished) {
@@ -228,7 +229,7 @@ static void SetFlushing(GstLidarScanAssembler* self, bool flushing) {
 static void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
-  // Slices of unorganised clouds differ in width; that is no change for the scan.
+  // Slices of unorganised clouds differ in width, which does not change the caps of the scan.
   if (!state.in_caps || !SameButForWidth(caps, state.in_caps.get())) state.out_width = 0;
   state.in_caps.reset(gst_caps_ref(caps));
   state.info = std::move(info);

@@ -55,7 +55,7 @@ class ScanBuilder {
 
   guint scan_id_;
   CloudInfo info_;      // of one slice
-  bool is_discont_;     // something is missing before the first slice that came
+  bool is_discont_;     // the first slice that came has the flag DISCONT
   guint first_column_;  // of the scan
   std::vector<bool> present_;
   std::size_t present_count_ = 0;

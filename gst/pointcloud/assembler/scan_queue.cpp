@@ -18,8 +18,8 @@ ScanQueue::Open* ScanQueue::Find(const SliceView& slice) {
   return nullptr;
 }
 
-/// Compares a scan with the open ones and those that left. Finishes all if the sender has
-/// restarted.
+/// Compares a scan with the open scans and with those that left. Finishes all open scans if the
+/// sender has restarted.
 ScanQueue::Age ScanQueue::AgeOf(guint scan_id, Finished* finished) {
   const auto newest = open_.empty() ? newest_left_ : open_.back().builder.scan_id();
   if (!newest) return Age::kNew;

@@ -70,7 +70,7 @@ constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
 struct State {
   std::mutex mutex;  // guards settings, changed and counters
   FilterSettings settings;
-  bool changed = false;  // the settings, since the plan was made
+  bool changed = false;  // true: the settings are newer than the plan
   Counters counters;
   FramePlacer placer;
   // Only the streaming thread uses these.
@@ -254,7 +254,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-/// A cloud may be delayed by the wait for its transform.
+/// Adds the time that a cloud may wait for its transform.
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !ReadLatency(query).live) return TRUE;
@@ -277,7 +277,7 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
                           const GstCaps*) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
   GST_OBJECT_LOCK(self);
-  // A requested name is kept, and pads that are requested later without a name get other names.
+  // A pad keeps its requested name. Later pads without a name get higher numbers.
   guint64 number = self->next_pad;
   if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT, &number, nullptr);
   self->next_pad = std::max(self->next_pad, number + 1);

@@ -14,7 +14,7 @@
 
 namespace lidar::gst {
 
-/// Returns nothing if the buffer has none. Differences of these times do not overflow.
+/// Returns nothing if the buffer has no capture time. Differences of these times do not overflow.
 std::optional<Time> CaptureTimeOf(GstBuffer* buffer);
 
 /// All threads may call it.
@@ -26,7 +26,7 @@ class TransformInbox {
   void ReleasePad(GstElement* element, GstPad* pad);
 
   /// Finds the transform of points from `source` to `target`. Waits for a missing transform. After
-  /// a vain wait it does not wait again before a newer transform has come.
+  /// a wait without success, it waits again only when a newer transform has come.
   TransformTree::Answer Find(const std::string& target, const std::string& source,
                              std::optional<Time> at, std::chrono::nanoseconds timeout);
   /// Ends waits of Find(), until Interrupt(false).

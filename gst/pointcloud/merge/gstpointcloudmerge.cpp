@@ -62,7 +62,7 @@ struct MergePadState {
   std::string own_fields;  // of the clouds; empty: not known
 };
 
-/// Scans without a duration that are farther apart belong to different turns.
+/// Greatest distance of two scans of one turn, if the scans have no duration.
 constexpr GstClockTime kUsualScan = 100 * GST_MSECOND;
 
 struct Head {
@@ -191,7 +191,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
     const BufferPtr buffer(gst_aggregator_pad_peek_buffer(pad));
     if (!buffer) continue;
-    // A duration of 0 would make even the newest scan count as a scan of an earlier turn.
+    // With a duration of 0, even the newest scan would belong to an earlier turn.
     const GstClockTime duration = GST_BUFFER_DURATION(buffer.get());
     const bool known = GST_CLOCK_TIME_IS_VALID(duration) && duration > 0;
     heads.push_back({GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()),
@@ -213,7 +213,7 @@ static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& head
   return dropped;
 }
 
-/// Warns of slices: merged one by one, they would be of unrelated parts of the turn.
+/// Warns of slices: slices that are merged one by one show unrelated parts of the turn.
 static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
   GstLidarSlice slice{};
   if (self->state->slices_reported || !gst_lidar_buffer_get_slice(buffer, &slice) ||
@@ -249,7 +249,7 @@ static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* me
   return true;
 }
 
-/// Gaps on all pads, as of filters that leave no point, are a turn, too.
+/// Sets the times of a turn that has only gaps, for example from filters that leave no point.
 static void TakeTimeOfGaps(const std::vector<Head>& heads, Merged* merged) {
   const auto first = std::min_element(heads.begin(), heads.end(),
                                       [](const Head& a, const Head& b) { return a.time < b.time; });
@@ -257,7 +257,7 @@ static void TakeTimeOfGaps(const std::vector<Head>& heads, Merged* merged) {
   merged->duration = first->duration;
 }
 
-/// Sends caps if the next cloud's number of points or fields differ from the last ones.
+/// Sends caps if the number of points or the fields differ from those of the last cloud.
 static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
                     const lidar::PointFields& fields) {
   CloudInfo info;
@@ -271,8 +271,8 @@ static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
   self->state->pushed = std::move(caps);
 }
 
-/// Downstream need not wait for a cloud that does not come. There is no segment for the gap before
-/// the first cloud, and after a flush.
+/// Announces that no cloud comes, so that downstream does not wait for it. Before the first cloud
+/// and after a flush, the pad has no segment, so it can push no gap.
 static void PushGap(GstPad* pad, GstClockTime pts, GstClockTime duration) {
   const EventPtr segment(gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0));
   if (segment && GST_CLOCK_TIME_IS_VALID(pts))
@@ -282,7 +282,7 @@ static void PushGap(GstPad* pad, GstClockTime pts, GstClockTime duration) {
 static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   auto* base = GST_AGGREGATOR(self);
   GstSegment& segment = GST_AGGREGATOR_PAD(base->srcpad)->segment;
-  // The segment of a seek begins where the seek goes to, and the running time at 0.
+  // After a seek the segment begins at the target of the seek, where the running time is 0.
   const GstClockTime pts =
       gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, merged.time);
   if (GST_CLOCK_TIME_IS_VALID(pts)) segment.position = pts + merged.duration;
@@ -310,7 +310,7 @@ static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
     });
     return ended ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
   }
-  // A late sensor is waited for until the latency has passed.
+  // Waits for a late sensor until the latency has passed.
   while (DropOld(self, heads)) {
     if (!timeout) return GST_AGGREGATOR_FLOW_NEED_DATA;
     heads = Heads(pads);
@@ -333,7 +333,7 @@ static gboolean SinkEvent(GstAggregator* base, GstAggregatorPad* pad, GstEvent* 
       ->sink_event(base, pad, event);
 }
 
-/// Pads are children, so that sink_1::transform reaches its pad.
+/// Makes the pad a child of the element, so that gst-launch can set sink_1::transform.
 static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
                           const GstCaps* caps) {
   GstPad* pad = GST_ELEMENT_CLASS(gst_lidar_point_cloud_merge_parent_class)

@@ -39,22 +39,22 @@ class CloudStamper {
   void SetRate(const FrameRate& rate);
   /// Number of clouds pushed or left out.
   guint64 count() const { return place_.next; }
-  /// Whether upstream stamps its buffers.
+  /// Returns true if upstream's buffers have timestamps.
   bool times_given() const { return times_given_; }
 
-  /// Keeps upstream's segment if it is in time, and makes one otherwise. Takes the event.
+  /// Keeps upstream's segment if its format is time, and makes one otherwise. Takes the event.
   void TakeSegment(GstEvent* event);
-  /// The segment that is to go before the next cloud; NULL once it was taken.
+  /// Returns the segment to push before the next cloud; NULL if it was pushed already.
   EventPtr NextSegment() { return std::move(segment_); }
-  /// Sets the size of all clouds in bytes; 0: sizes differ. With a size, seeks and queries in time
-  /// are answered here, and go upstream in bytes.
+  /// Sets the size of all clouds in bytes; 0: sizes differ. With a size, the parser converts
+  /// seeks and queries in time to bytes for upstream.
   void SetCloudSize(gsize bytes);
   /// Returns the time that `clouds` take.
   GstClockTime TimeOf(guint64 clouds) const { return Grid().TimeOf(clouds); }
   /// Sets a missing capture time as if the sensor had begun when the first cloud came. Numbers a
   /// cloud that is no slice as a scan of its own.
   void Stamp(GstBuffer* cloud);
-  /// A cloud that is left out keeps its place in time.
+  /// Leaves out a cloud. Its time stays empty.
   void LeaveOut() { ++place_.next; }
   /// Returns true if the next cloud was pushed before a seek that continues at the current
   /// position.

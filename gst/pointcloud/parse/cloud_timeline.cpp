@@ -7,7 +7,8 @@
 
 namespace lidar::gst {
 
-/// TimeOf() rounds down, so the time of a cloud would otherwise give the cloud before it.
+/// TimeOf() rounds down, so a plain division would give the cloud before the one that begins at
+/// `time`.
 guint64 CloudTimeline::Grid::CloudAt(GstClockTime time) const {
   const guint64 cloud = gst_util_uint64_scale(time, rate_n, rate_d * GST_SECOND);
   return TimeOf(cloud + 1) <= time ? cloud + 1 : cloud;

@@ -16,7 +16,7 @@ class CloudTimeline {
   CloudTimeline() { gst_segment_init(&segment_, GST_FORMAT_TIME); }
 
   struct Grid {
-    guint64 cloud_bytes = 0;  // 0: not known, so that nothing is answered
+    guint64 cloud_bytes = 0;  // 0: not known; seeks and queries then fail
     guint64 rate_n = 10;      // clouds/s
     guint64 rate_d = 1;
 
@@ -29,10 +29,10 @@ class CloudTimeline {
   void SetGrid(const Grid& grid);
   void Reset();
 
-  /// Clouds by their numbers.
+  /// Numbers of clouds, counted from the start of the file.
   struct Place {
     guint64 next = 0;   // number of the next cloud
-    guint64 shown = 0;  // earlier clouds were pushed, though their bytes may come again
+    guint64 shown = 0;  // all clouds before it were pushed; a seek may repeat their bytes
   };
   /// Converts a segment in bytes to one in time that continues after the last cloud. Sets `place`
   /// to its beginning, as far as known.
@@ -42,12 +42,12 @@ class CloudTimeline {
   EventPtr Continue(guint64 next);
   /// Converts SEGMENT_DONE to time; takes the event.
   EventPtr EndInTime(GstEvent* done) const;
-  /// A cloud was pushed that ends at `end`, or at the segment's stop if that is earlier.
+  /// Notes that the last pushed cloud ends at `end`, or at the segment's stop if that is earlier.
   void NotePosition(GstClockTime end);
-  /// The running time begins anew.
+  /// Sets the running time to 0.
   void RestartTime();
 
-  /// Returns true if the query has its answer. `sinkpad` is where the bytes come in.
+  /// Returns true if it answered the query. `sinkpad` is where the bytes come in.
   bool Answer(GstPad* sinkpad, GstQuery* query) const;
   /// Returns nothing if the seek is not for this parser, otherwise whether upstream performed it.
   std::optional<bool> Seek(GstPad* sinkpad, GstEvent* event);

@@ -144,7 +144,7 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
   PushSegment(self);
   GstBuffer* out = gst_buffer_make_writable(buffer.release());
   state.stamper.Stamp(out);
-  // All clouds of one buffer have its flag.
+  // The adapter gave the flag of one buffer to all its clouds.
   gst_buffer_unset_flags(out, GST_BUFFER_FLAG_DISCONT);
   if (std::exchange(state.discont, false)) gst_buffer_set_flags(out, GST_BUFFER_FLAG_DISCONT);
   return gst_pad_push(self->srcpad, out);
