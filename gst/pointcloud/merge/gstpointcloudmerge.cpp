@@ -191,7 +191,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
     const BufferPtr buffer(gst_aggregator_pad_peek_buffer(pad));
     if (!buffer) continue;
-    // With a duration of 0, even the newest scan would belong to an earlier turn.
+    // Even the newest scan would belong to an earlier turn if it had a duration of 0.
     const GstClockTime duration = GST_BUFFER_DURATION(buffer.get());
     const bool known = GST_CLOCK_TIME_IS_VALID(duration) && duration > 0;
     heads.push_back({GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()),
@@ -282,7 +282,7 @@ static void PushGap(GstPad* pad, GstClockTime pts, GstClockTime duration) {
 static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   auto* base = GST_AGGREGATOR(self);
   GstSegment& segment = GST_AGGREGATOR_PAD(base->srcpad)->segment;
-  // After a seek the segment begins at the target of the seek, where the running time is 0.
+  // The segment after a seek begins at its target, where the running time is 0.
   const GstClockTime pts =
       gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, merged.time);
   if (GST_CLOCK_TIME_IS_VALID(pts)) segment.position = pts + merged.duration;
