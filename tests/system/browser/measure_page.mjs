@@ -151,7 +151,7 @@ async function measurePage(browser, folder) {
   ]);
   const coders = { ...CODERS, 'slices at 2 cm': '! lidarenc max-error=0.02' };
   await eachStream(folder, coders, (...of) => measureStream(browser, ...of));
-  console.log('\naxe:\n');
+  console.log('\nThe accessibility checker axe finds:\n');
   head(['page', 'rules that hold', 'violations']);
   await measureAxe(browser, 'desk, dark', { colorScheme: 'dark' });
   await measureAxe(browser, 'phone, light', { viewport: { width: 390, height: 780 }, colorScheme: 'light' });
