@@ -49,7 +49,7 @@ struct Session {
 };
 
 constexpr GstClockTime kPoll = 100 * GST_MSECOND;
-// Pause between handshakes: limits the restarts that packets of strangers can cause.
+// Pause between handshakes: limits the restarts that forged packets can cause.
 constexpr gulong kPauseUs = 200'000;
 
 /// Refuses an untrusted certificate. A certificate arrives before the keys do, and no packet passes
@@ -140,8 +140,8 @@ bool IsOfDtls(GstObject* source) {
 
 enum class End { kOver, kFailed, kNoHandshake };
 
-/// Plays until EOS, an error, `*run` is false, or `duration_s` (if not 0) after the keys. EOS does
-/// not pass dtlssrtpenc, whose handshake never ends.
+/// Plays until EOS, an error or `*run` is false, but at most for `duration_s` after the keys, if it
+/// is not 0. EOS does not pass dtlssrtpenc, whose handshake never ends.
 End Play(Session* session, double duration_s, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);
@@ -162,7 +162,7 @@ End Play(Session* session, double duration_s, const bool* run, std::string* why)
   return session->refused ? End::kNoHandshake : End::kOver;
 }
 
-/// Runs sessions in sequence: packets of strangers end a handshake, not the program.
+/// Runs sessions in sequence: forged packets end a handshake, not the program.
 class Sessions {
  public:
   Sessions(const Options& options, const Certificates& certificates)
@@ -191,7 +191,7 @@ class Sessions {
   }
 
  private:
-  /// Prints a reason unless it repeats the last one, so that strangers cannot fill a log.
+  /// Prints a reason unless it repeats the last one, so that forged packets cannot fill a log.
   void Tell(const Session& session, const std::string& why) {
     if (session.has_keys) told_.clear();
     if (std::exchange(told_, why) == why) return;

@@ -53,7 +53,7 @@ class Edge {
       receivers_.push_back(std::make_unique<Receiver>(
           config, robot, robot.ssrc ? shared_port_->socket(next++) : nullptr));
     std::optional<nats::ConnectionSettings> connection = config.nats.connection;
-    if (connection) connection->name = "lidar-edge";  // as the server's monitoring shows it
+    if (connection) connection->name = "lidar-edge";  // name in the server's monitoring
     statistics_.emplace(
         fleet::StatisticsSettings{config.http_address, config.http_port, config.interval_s},
         connection);

@@ -14,8 +14,8 @@ using gst::ElementPtr;
 using gst::PadPtr;
 using tools::SetText;
 
-// Limits of data that wait for a slow disk. The number of buffers bounds the overhead of tiny ones,
-// and the time bounds how many events lie between them.
+// Limits of data that wait for a slow disk. The number of buffers bounds the overhead of tiny
+// buffers, and the time bounds the number of events between them.
 constexpr guint kRecordQueue = 8U << 20;  // bytes
 constexpr guint kRecordQueueBuffers = 16'384;
 constexpr GstClockTime kRecordQueueTime = 30 * GST_SECOND;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A robot's receiver: its sessions on a thread of their own, so that its failures harm no other.
+// A robot's receiver: its sessions on a thread of their own, so that its failures harm no other
+// robot.
 #pragma once
 #include <condition_variable>
 #include <mutex>
@@ -11,7 +12,7 @@ namespace lidar::edge {
 
 class Receiver {
  public:
-  /// Takes the arguments of Session, and throws as it does.
+  /// Passes its arguments to Session, and throws as Session does.
   Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
   /// Ends the session, and waits for it.
   ~Receiver();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Tracks by a robot's received bytes whether it is there, and how far it exceeds its limit.
+// Decides from a robot's received bytes whether it is present, and how far it exceeds its limit.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace lidar::edge {
 class RobotWatch {
  public:
   static constexpr Duration kTimeout = std::chrono::seconds(10);  // silence of a robot that left
-  static constexpr double kCredit = 3;  // seconds of data by which it may exceed its limit
+  static constexpr double kCredit = 3;  // seconds of data that a robot may send beyond its limit
 
   /// 0: no limit.
   explicit RobotWatch(double max_mbps) : limit_(max_mbps * 125'000) {}

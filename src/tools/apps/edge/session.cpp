@@ -115,7 +115,7 @@ void Session::NoteRecordFailure(Time now, const std::string& why) {
 bool Session::NoteError(Time now, GstMessage* message) {
   const std::string text = tools::MessageText(message);
   if (IsFromRecorder(message)) {
-    if (recording_) NoteRecordFailure(now, text);  // the first of its errors
+    if (recording_) NoteRecordFailure(now, text);  // the recorder's first error
     return true;
   }
   if (now - began_at_ > kHealthySession) failures_.Reset();

@@ -20,22 +20,22 @@ namespace lidar::edge {
 
 class Session {
  public:
-  /// `socket` is the robot's share of the common port, or NULL. Throws std::runtime_error if an
+  /// `socket` is the robot's socket on the common port, or NULL. Throws std::runtime_error if an
   /// element is missing or a setting is wrong.
   Session(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
   ~Session() { End(); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Begins or ends a session where that is due. One thread calls this and Finish().
+  /// Begins or ends a session if that is due. One thread calls this and Finish().
   void Poll(Time now);
   /// Ends the session once its files are complete.
   void Finish(Time now);
 
   const RobotConfig& robot() const { return robot_; }
   GstElement* pipeline() const { return pipeline_.get(); }
-  /// Adds its figures to `exposition`, and returns them as a report. From any thread; waits for no
-  /// server and no disk.
+  /// Adds the robot's figures to `exposition`, and returns them as a report. May be called from any
+  /// thread. Waits for no server and no disk.
   nlohmann::json Tell(fleet::Exposition* exposition) const;
 
  private:

@@ -25,7 +25,8 @@ sock_filter Step(unsigned code, std::uint32_t k, std::uint8_t yes = 0, std::uint
   return {static_cast<std::uint16_t>(code), yes, no, k};
 }
 
-/// Returns the number of the socket; 0 for an SSRC outside of the ranges and for a short datagram.
+/// Makes a program that returns the number of a datagram's socket: 0 for an SSRC outside of the
+/// ranges and for a short datagram.
 Program ChooseBySsrc(const std::vector<SsrcRange>& ranges) {
   // RTCP has the packet types 192 to 223 (RFC 5761), and its SSRC is 4 bytes earlier.
   Program p = {Step(BPF_LD | BPF_B | BPF_ABS, 1),
@@ -73,8 +74,8 @@ Address Resolve(const std::string& name, std::uint16_t port) {
   return address;
 }
 
-/// Opens a socket bound to `address`; `shared` allows other sockets of this user. IPv6 sockets take
-/// IPv4 as well.
+/// Opens a socket bound to `address`; `shared` allows other sockets of this user. An IPv6 socket
+/// receives IPv4 as well.
 tools::FileDescriptor OpenSocket(const Address& address, bool shared) {
   tools::FileDescriptor fd(
       socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));

@@ -15,23 +15,23 @@ namespace lidar::edge {
 
 class SharedPort {
  public:
-  /// A socket for each of `ranges`, which do not overlap. Throws std::runtime_error.
+  /// Opens a socket for each of `ranges`, which must not overlap. Throws std::runtime_error.
   SharedPort(const std::string& address, std::uint16_t port, const std::vector<SsrcRange>& ranges);
 
   GSocket* socket(std::size_t index) const { return sockets_.at(index + 1).get(); }
-  /// Number of dropped datagrams, which have no robot's SSRC.
+  /// Number of datagrams that were dropped because their SSRC is no robot's.
   std::uint32_t strays() const;
 
  private:
   struct Unref {
     void operator()(GSocket* socket) const { g_object_unref(socket); }
   };
-  // Sockets in the order of binding, by which the kernel numbers them. The first takes datagrams of
-  // no robot.
+  // Sockets in the order of binding, by which the kernel numbers them. The first receives the
+  // datagrams whose SSRC is no robot's.
   std::vector<std::unique_ptr<GSocket, Unref>> sockets_;
 };
 
-/// A shut socket drops its queue and new datagrams.
+/// Shuts or opens the socket. A shut socket drops new datagrams, and opening drops queued ones.
 void ShutSocket(GSocket* socket, bool shut);
 
 }  // namespace lidar::edge

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Hands a program's connection to its elements.
+// Gives the settings of a program's NATS connection to its elements.
 #pragma once
 #include "ext/nats/connection.h"
 #include "src/tools/common/elements.h"
 
 namespace lidar::fleet {
 
-/// Sets the properties of a natssink or natssrc.
+/// Sets the connection properties of a natssink or natssrc.
 inline void SetConnection(GstElement* element, const nats::ConnectionSettings& connection) {
   tools::SetText(element, "url", connection.url);
   tools::SetText(element, "credentials-file", connection.credentials_file);

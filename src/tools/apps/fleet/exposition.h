@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Statistics of elements as JSON and as Prometheus reads them.
+// Writes statistics of elements as JSON and in the text format of Prometheus.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,7 +10,7 @@
 
 namespace lidar::fleet {
 
-/// Labels as Prometheus writes them. The names have no characters that need quotes.
+/// Labels as Prometheus writes them. The names have no characters that need an escape.
 std::string RobotLabels(const std::string& robot, const std::string& sensor);
 
 /// Converts numbers, flags, text and structures; other types are left out.
@@ -29,12 +29,12 @@ class Exposition {
   std::map<std::string, std::vector<std::string>> lines_;
 };
 
-/// Adds the statistics of `elements` in `bin`: to Prometheus under `labels`, and to `report` by
-/// their names.
+/// Adds the statistics of `elements` in `bin` to `exposition` under `labels`, and to `report` under
+/// the names of the elements.
 void AddStats(GstElement* bin, const std::vector<std::string>& elements, const std::string& labels,
               Exposition* exposition, nlohmann::json* report);
 
-/// Returns a report as one line. Errors from the network may have any bytes: invalid UTF-8 is
+/// Returns a report as one line. Error texts from the network may hold any bytes: invalid UTF-8 is
 /// replaced.
 std::string ToText(const nlohmann::json& report);
 

@@ -101,12 +101,13 @@ void MetricsServer::Run() {
   }
 }
 
-/// If all places are taken, a new connection replaces the oldest, which has had the most time.
+/// A connection beyond kMaxConnections replaces the oldest, which has had the most time.
 void MetricsServer::Accept() {
   tools::FileDescriptor socket(
       accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (!socket && !MustWait()) {
-    // No descriptor is left. The listener stays readable, so without a pause this would spin.
+    // No descriptor is left, so all connections are closed. The listener stays readable: without a
+    // pause, Run() would spin.
     cut_ += connections_.size();
     connections_.clear();
     pollfd wake{wake_.get(), POLLIN, 0};
@@ -120,7 +121,7 @@ void MetricsServer::Accept() {
   connections_.push_back({std::move(socket), Clock::now() + kClientTimeout, "", "", 0});
 }
 
-/// Returns false once the connection is over.
+/// Receives or sends what is possible now. Returns false once the connection is over.
 bool MetricsServer::GoesOn(Connection* connection) {
   if (connection->answer.empty() && !Receive(connection)) return false;
   if (connection->answer.empty()) return true;

@@ -40,13 +40,14 @@ void Reporter::Open(Clock::time_point now) {
   if (!connection_) Tell(why);
 }
 
-/// Prints each reason once until there is a connection.
+/// Prints a reason unless it repeats the last one.
 void Reporter::Tell(const std::string& why) {
   if (std::exchange(told_, why) == why) return;
   std::fprintf(stderr, "NATS gets no statistics: %s\n", tools::Printable(why).c_str());
 }
 
-/// libnats closes a refused connection, so a new one is made after a while.
+/// Returns true if connected. libnats closes a refused connection, so this function opens another
+/// after a pause.
 bool Reporter::Connected(Clock::time_point now) {
   const auto current = [this] {
     return connection_ ? connection_->state() : nats::ConnectionState();

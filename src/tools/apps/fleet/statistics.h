@@ -27,8 +27,8 @@ class Statistics {
   Statistics(const StatisticsSettings& settings,
              const std::optional<nats::ConnectionSettings>& connection);
 
-  /// Calls `collect` once an interval. Waits for no server and no client.
   using Collect = std::function<void(Exposition*, Reporter::Reports*)>;
+  /// Calls `collect` once an interval. Waits for no server and no client.
   void Poll(const Collect& collect);
 
  private:

@@ -64,7 +64,7 @@ void Check(const std::string& pipeline) {
   if (!good) throw std::runtime_error(why.empty() ? "no element is called pay0" : why);
 }
 
-/// Returns a factory whose viewers get one medium. By default a query in a viewer's address starts
+/// Returns a factory whose viewers share one medium. By default a query in a viewer's URL starts
 /// another pipeline.
 GstRTSPMediaFactory* MakeFactory(const std::string& pipeline) {
   GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();

@@ -48,7 +48,7 @@ struct Pending {
   Step step;
 };
 
-/// Returns a promise whose answer runs `step`.
+/// Returns a promise whose reply runs `step`.
 GstPromise* Then(Call* call, Step step) {
   return gst_promise_new_with_change_func(
       [](GstPromise* promise, gpointer data) {
@@ -66,7 +66,7 @@ void Fail(Call* call, const char* what) {
   GST_ELEMENT_ERROR(call->pipeline.get(), RESOURCE, FAILED, ("%s", what), (nullptr));
 }
 
-/// Returns the description called `name` in a reply; null without one.
+/// Returns the description called `name` in a reply; null if there is none.
 gpointer DescriptionIn(const GstStructure* reply, const char* name) {
   const GValue* value = reply != nullptr ? gst_structure_get_value(reply, name) : nullptr;
   return value != nullptr && G_VALUE_HOLDS_BOXED(value) ? g_value_get_boxed(value) : nullptr;
@@ -108,7 +108,8 @@ void OnCandidateOfCallee(GstElement*, guint line, gchar* text, Call* call) {
   g_signal_emit_by_name(call->caller.get(), "add-ice-candidate", line, candidate.c_str());
 }
 
-/// The callee behind a relay finds the caller's address by the packets through it.
+/// Gives the callee the caller's address. Behind a relay the callee uses the address of the packets
+/// that arrive.
 void OnCandidateOfCaller(GstElement*, guint line, gchar* text, Call* call) {
   if (call->options.relay == 0)
     g_signal_emit_by_name(call->callee.get(), "add-ice-candidate", line, text);

@@ -21,7 +21,7 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kRenewInterval{200};
 constexpr milliseconds kListInterval{1'000};
-constexpr int kListPause = 5;  // least pause between lists, in durations of a list
+constexpr int kListPause = 5;  // least pause between lists, in units of a list's duration
 constexpr std::int64_t kHeartbeatNs = 500'000'000;
 constexpr int kMaxValueSize = 4'096;
 constexpr const char* kSeparator = ".lidar.";
@@ -107,7 +107,8 @@ natsStatus FleetWatch::MakeBucket() {
   return s;
 }
 
-/// A consumer dies with its server, so this runs again after a reconnect.
+/// Subscribes to the bucket's entries. A consumer ends with its server, so a reconnect needs
+/// another.
 natsStatus FleetWatch::Subscribe() {
   entries_.reset();
   last_number_ = 0;
@@ -150,8 +151,7 @@ void FleetWatch::Step() {
   }
   if (now >= list_at_) {
     ListRobots();
-    // A stop waits for a list that is under way. With many robots a list takes long, so the pause
-    // between lists is longer, too.
+    // The destructor waits for a list that is under way, so the pause grows with a list's duration.
     const auto took = steady_clock::now() - now;
     list_at_ = now + std::max<steady_clock::duration>(kListInterval, kListPause * took);
   }

@@ -70,7 +70,7 @@ class FleetWatch {
   unsigned connections_ = 0;  // count at the last subscription
   unsigned missed_heartbeats_ = 0;
   std::uint64_t last_number_ = 0;  // consumer's number of the last entry
-  bool stale_ = true;              // the subscription has a gap, or there is none
+  bool stale_ = true;              // there is no subscription, or it has a gap
   std::chrono::steady_clock::time_point renew_at_{};
   std::chrono::steady_clock::time_point list_at_{};
   std::string bucket_trouble_;

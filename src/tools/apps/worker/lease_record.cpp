@@ -95,7 +95,8 @@ std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
   const double sine = std::hypot(turn[0], turn[1], turn[2]);
   // Takes the shorter turn: each rotation has two quaternions.
   const double angle = 2 * std::atan2(std::copysign(sine, turn[3]), std::abs(turn[3]));
-  // Expresses the velocity in the orientation halfway, so that a bend does not look like a drift.
+  // Expresses the velocity in the orientation halfway between the scans, so that a bend does not
+  // look like a drift.
   Quaternion half = {turn[0], turn[1], turn[2], turn[3] + std::copysign(1.0, turn[3])};
   const double norm =
       std::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2] + half[3] * half[3]);

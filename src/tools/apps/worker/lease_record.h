@@ -17,7 +17,7 @@ struct Progress {
   /// vx vy vz wx wy wz in the sensor's frame [m/s, rad/s], if known.
   std::optional<std::array<double, 6>> velocity;
   std::uint64_t time = 0;    // of the pose, by the robot's clock [ns]
-  std::uint64_t stream = 0;  // creation of the stream [ns since 1970]; numbers are of this stream
+  std::uint64_t stream = 0;  // creation of the stream [ns since 1970]; message numbers belong to it
   std::uint64_t scan = 0;    // number in the stream of the first message of the pose's scan
   std::uint64_t from = 0;    // an earlier message from which a decoder can start
 };
@@ -31,7 +31,8 @@ struct LeaseRecord {
 /// Returns false if ParseLeaseRecord() would refuse it.
 bool ReadsBack(const Progress& progress);
 
-/// Returns the velocity between two consecutive scans; nothing if their times are too close or far.
+/// Returns the velocity between two consecutive scans; nothing if their times are too close or too
+/// far apart.
 std::optional<std::array<double, 6>> VelocityBetween(const Progress& before, const Progress& after);
 
 std::string ToJson(const LeaseRecord& record);

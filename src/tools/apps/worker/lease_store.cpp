@@ -40,7 +40,7 @@ void LeaseStore::Write(std::uint64_t ticket, const std::string& key, std::uint64
                      text.data(), static_cast<int>(text.size())) != NATS_OK)
     return;
   const MessagePtr message(raw);
-  // The header restricts the write to that revision.
+  // The header makes the server refuse the write if `replaces` is not the newest revision.
   if (natsMsgHeader_Set(raw, kReplaces, std::to_string(replaces).c_str()) != NATS_OK) return;
   natsConnection_PublishMsg(connection_, raw);
 }

@@ -12,7 +12,8 @@ namespace {
 constexpr int kRenewals = 4;  // writes in the time of a lease
 /// Other workers wait 1 / kMargin longer than the lease: steady clocks differ by far less.
 constexpr int kMargin = 20;
-/// A full worker waits for this part of a lease, so that others go first.
+/// A full worker waits for this share of a lease before it takes a free robot, so that workers with
+/// fewer robots take it first.
 constexpr double kHesitation = 0.3;
 /// A sensor without progress for this time gives its place to a waiting one.
 constexpr Duration kIdleSensor = std::chrono::seconds(30);
@@ -32,14 +33,14 @@ void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
   for (auto at = robots_.begin(); at != robots_.end();) {
     Robot& robot = at->second;
     robot.wanted = robots.count(at->first) > 0;
-    // A known robot is kept, because the bucket sends an entry once.
+    // A robot with an entry is kept, because the bucket sends each entry only once.
     const bool is_known = robot.revision > 0 || robot.doubted_since || robot.held || robot.pending;
     at = robot.wanted || is_known ? std::next(at) : robots_.erase(at);
   }
   for (const std::string& name : robots) {
     const auto [at, is_new] = robots_.try_emplace(name);
     at->second.wanted = true;
-    // Waits for the entry, which may be another worker's lease.
+    // The bucket first gets time to send the robot's entry, which may be another worker's lease.
     if (is_new) at->second.not_before = now + settings_.lease / kRenewals;
   }
 }
@@ -89,7 +90,7 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // The store sends its entry later. An earlier write of this worker may have made the entry.
+  // Gives the store time to send its entry, which may be from an earlier write of this worker.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
@@ -116,7 +117,7 @@ void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
 }
 
 void LeaseTable::LeaveToOthers(const std::string& name, Duration least, Time now) {
-  // Other workers wait for a lease from our last write, so this one waits for two.
+  // Other workers wait one lease after our last write, so this worker waits two.
   Drop(name, std::max(least, 2 * settings_.lease), now);
 }
 
@@ -141,8 +142,8 @@ LeaseTable::Robots::iterator LeaseTable::Choose(const std::map<std::string, std:
       FromSeconds(kHesitation * Seconds(settings_.lease) * static_cast<double>(held) /
                   static_cast<double>(settings_.most));
   auto best = robots_.end();
-  // Sorts robots by fewest places, then by fewest tries, then differently in each worker, so that
-  // two workers seldom choose the same robot.
+  // Prefers robots with the fewest places, then with the fewest tries. Workers order equal robots
+  // differently, so that two workers seldom choose the same one.
   std::tuple<std::size_t, std::uint64_t, std::size_t> best_rank;
   for (auto at = robots_.begin(); at != robots_.end(); ++at) {
     const Robot& robot = at->second;

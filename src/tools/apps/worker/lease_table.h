@@ -27,8 +27,8 @@ struct LeaseSettings {
 /// one thread.
 ///
 /// An entry stands for a sensor, "r7" or "r7.front", and a publisher can invent any number of
-/// sensors of its robot. So robots share the places of a worker evenly, however many sensors they
-/// have. A sensor without progress gives its place to a waiting one.
+/// sensors of its robot. So robots share the `most` places of a worker evenly, however many sensors
+/// they have. A sensor without progress gives its place to a waiting one.
 class LeaseTable {
  public:
   struct Write {
@@ -47,16 +47,16 @@ class LeaseTable {
 
   /// Sets the robots of the fleet.
   void SetRobots(const std::set<std::string>& robots, Time now);
-  /// Notes the store's entry of a robot; without a record the entry is damaged.
+  /// Notes the store's entry of a robot. A missing record means that the entry is damaged.
   void OnEntry(const std::string& robot, std::uint64_t revision,
                const std::optional<LeaseRecord>& record, Time now);
   void OnStored(std::uint64_t ticket, std::uint64_t revision, Time now);
-  /// The store refused a write. `newest` is its present revision, if known.
+  /// The store refused a write. `newest` is the entry's present revision, if known.
   void OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> newest, Time now);
 
   /// Sets the progress for the next renewal.
   void SetProgress(const std::string& robot, const Progress& progress);
-  /// Gives up a robot; it is not taken again for `pause`.
+  /// Gives up a robot, and does not take it again for `pause`.
   void Drop(const std::string& robot, Duration pause, Time now);
   /// Gives up a robot that fails here. Another worker may take it; this one tries again after
   /// `least`.

@@ -22,7 +22,7 @@ namespace lidar::worker {
 namespace {
 
 constexpr std::chrono::milliseconds kEnd{900};  // longest end, even if servers hang
-// Pauses between connections where servers do not answer.
+// Pauses between attempts to connect while servers do not answer.
 constexpr std::chrono::seconds kFirstPause{1};
 constexpr std::chrono::seconds kLongestPause{16};
 constexpr std::chrono::milliseconds kPoll{50};

@@ -5,8 +5,8 @@ namespace lidar::worker {
 namespace {
 
 constexpr std::size_t kMostMessages = 65'536;
-/// Longest pause of a server. If stored times differ by more and capture times do not, the robot's
-/// clock stands still.
+/// Longest pause of a server. If stored times differ by more while capture times hardly differ, the
+/// robot's clock has stopped.
 constexpr std::uint64_t kLongestPauseNs = 60'000'000'000;
 
 /// `to` - `from`; 0 if a clock went back.

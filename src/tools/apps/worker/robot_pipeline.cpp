@@ -53,7 +53,7 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
     g_object_set(odometry, "initial-velocity", NumbersText(*begin->velocity).c_str(), nullptr);
 }
 
-/// Drops the velocity if `stream` is not the record's stream, because it belongs to a scan there.
+/// Drops the velocity, which belongs to a scan of the record's stream, if `stream` is another.
 std::optional<Progress> BeginIn(std::uint64_t stream, std::optional<Progress> begin) {
   if (begin && begin->stream != stream) begin->velocity.reset();
   return begin;
@@ -160,7 +160,7 @@ void RobotPipeline::NoteLateBegin(GstClockTime captured) {
   late_ns_ = GST_CLOCK_TIME_IS_VALID(captured) ? captured - std::min(since, captured) : 0;
 }
 
-/// A worker without its lease publishes and records no pose.
+/// Drops poses after the end of the lease, and does not record them as progress.
 GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   std::optional<Scan>& scan = closed_ ? closed_ : open_;
   const gst::BufferMap map(buffer, GST_MAP_READ);
@@ -183,7 +183,7 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   if (progress_)
     progress.velocity = VelocityBetween(*progress_, progress);
   else if (begin_ && !begun_late_)
-    progress.velocity = begin_->velocity;  // the pose from the record
+    progress.velocity = begin_->velocity;  // this is the record's pose
   progress_ = progress;
   return GST_PAD_PROBE_OK;
 }

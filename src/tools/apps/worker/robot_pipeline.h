@@ -53,19 +53,19 @@ class RobotPipeline {
   std::uint64_t stream() const { return stream_; }
   /// Returns the progress from which it began.
   const std::optional<Progress>& begin() const { return begin_; }
-  /// Returns true if its first message is after `last`, the stream's newest at `asked_at`: the
-  /// record is wrong.
+  /// Returns true if the pipeline begins after `last`, the stream's newest message at `asked_at`.
+  /// Then the record is wrong.
   bool IsAheadOf(std::uint64_t last, Time asked_at) const {
     return begin_scan_ > last && asked_at > made_at_;
   }
-  /// Returns true once it dropped a pose, because its end had passed.
+  /// Returns true once it has dropped a pose, because the time of SetEnd() had passed.
   bool has_dropped() const { return dropped_; }
   /// Returns nothing before the first pose.
   std::optional<Progress> progress() const;
   /// Adds the statistics of its elements, as fleet::AddStats() does. Does not wait.
   void AddStats(const std::string& labels, fleet::Exposition* exposition,
                 nlohmann::json* report) const;
-  /// Returns the error that has ended it, or nothing. Prints warnings.
+  /// Returns the error that has ended the pipeline, or an empty text. Prints warnings.
   std::string Poll();
 
  private:
@@ -99,7 +99,7 @@ class RobotPipeline {
   std::uint64_t number_ = 0;  // of the message in the pipeline
   RewindWindow window_;       // its last message is number_
   bool begun_ = false;
-  bool begun_late_ = false;  // began behind the scan of the record's pose
+  bool begun_late_ = false;  // began after the scan of the record's pose
   std::optional<Scan> open_;
   std::optional<Scan> closed_;  // waits for its pose
 

@@ -19,7 +19,7 @@ using tools::Now;
 
 constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
-// Their sum stays below a second.
+// The sum of both stays below a second.
 constexpr milliseconds kStopTimeout{400};
 constexpr milliseconds kAnswerTimeout{300};
 constexpr std::size_t kShownLetters = 300;  // of a damaged record

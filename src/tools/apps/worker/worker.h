@@ -32,7 +32,8 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Whether only another worker can reach a server: see ConnectionState.
+  /// Whether the connection was given up, so that only a new Worker can connect: see
+  /// ConnectionState.
   bool unanswered() const { return connection_->state().unanswered; }
   /// Works for some milliseconds.
   void Step();
