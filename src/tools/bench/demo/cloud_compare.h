@@ -10,14 +10,14 @@ namespace lidar::demo {
 struct Comparison {
   std::uint64_t points = 0;   // returns compared
   std::uint64_t missing = 0;  // returns that did not arrive
-  std::uint64_t added = 0;    // points at places without a return
+  std::uint64_t added = 0;    // points where the sent cloud has no return
   double max_error_m = 0;
   double sum_error_m = 0;
 
   Comparison& operator+=(const Comparison& o);
 };
 
-/// Compares organised clouds of equal shape place by place. Otherwise compares each point with the
+/// Compares organised clouds of equal shape pixel by pixel. Otherwise compares each point with the
 /// nearest one of the other cloud within `reach_m`, in both directions. All-zero points are missing
 /// returns.
 Comparison Compare(const Cloud& sent, const Cloud& received, double reach_m);

@@ -49,7 +49,7 @@ class Coordinator {
     kSender,
     kStreaming,
     kDraining,
-    kArriving,  // data under way when the sender has ended
+    kArriving,  // the sender has ended, but data may be under way
     kReceiverStops,
     kLinkStops
   };
@@ -225,7 +225,7 @@ void Coordinator::PrintLive(const nlohmann::json& link) {
 void Coordinator::TakeComparisons() {
   if (!comparer_) return;
   for (const auto& [key, comparison] : comparer_->Take()) {
-    // The comparison slows down a receiver that stops, so its time limit starts again.
+    // Comparisons slow down a receiver that stops, so each result restarts its time limit.
     if (phase_ == Phase::kReceiverStops) phase_since_ = Now();
     last_error_m_ = std::max(last_error_m_, comparison.max_error_m);
     m_.ledger.Add(key, comparison);

@@ -9,8 +9,8 @@ namespace lidar::demo {
 /// captured, encoded, bounds and stats, and every captured slice to descriptor 3.
 int Send(const std::string& description);
 
-/// Watches `receiver`, `depayloader` and `decoder`. Writes the records decoded and stats, and every
-/// decoded slice to descriptor 3.
+/// Watches `receiver`, `depayloader`, `decoder` and, if present, `odometry`. Writes the records
+/// decoded, posed and stats, and every decoded slice to descriptor 3.
 int Receive(const std::string& description);
 
 }  // namespace lidar::demo

@@ -19,7 +19,7 @@ struct LinkPacket {
   bool marked = false;
   double sojourn_ms = 0;
   std::size_t link = 0;
-  std::int64_t unix_ns = 0;  // the same time
+  std::int64_t unix_ns = 0;  // arrival at the link
 };
 
 /// Statistics of the sender and the encoder at one time.
@@ -42,7 +42,7 @@ SenderSample ReadSample(const nlohmann::json& record);
 /// Reads a link's log. Lines that are cut off or malformed are left out.
 std::vector<LinkPacket> ReadLinkLog(const std::string& file);
 /// Packets of all links, in the order of their arrival. Their time_s counts from the origin of the
-/// first link that has any.
+/// first link with packets.
 std::vector<LinkPacket> ReadLinkLogs(const RunOptions& options);
 
 struct Measurements {

@@ -20,7 +20,7 @@ std::int64_t UnixNow();
 
 class MediaProcess {
  public:
-  /// Parses the description; throws std::runtime_error with GStreamer's words.
+  /// Parses the description; throws std::runtime_error with GStreamer's error text.
   explicit MediaProcess(const std::string& description);
   ~MediaProcess();
   MediaProcess(const MediaProcess&) = delete;

@@ -26,7 +26,7 @@ class StreamComparer {
   using Result = std::pair<SliceKey, Comparison>;
   /// Results since the last call.
   std::vector<Result> Take();
-  /// Returns when both pipes have ended and everything is compared.
+  /// Waits until both pipes have ended and everything is compared.
   void Finish();
 
   static constexpr std::size_t kMaxPending = 512;

@@ -11,7 +11,8 @@ namespace lidar::demo {
 
 /// Bits on the wire for each bit that the encoder put out; 1 without output.
 double WireShare(const Measurements& m);
-/// Returns the scans that a sender which knew the link could deliver at this bitrate of media.
+/// Returns the scans that a sender with full knowledge of the link could deliver at this bitrate of
+/// media.
 link::OracleResult AskOracle(const Measurements& m, double media_bps);
 
 struct Verdict {

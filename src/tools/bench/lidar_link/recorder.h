@@ -15,7 +15,7 @@
 
 namespace lidar::tools {
 
-/// A packet as it left or was dropped.
+/// A packet that left or was dropped.
 struct PacketRecord {
   link::Outcome outcome;
   Ecn ecn_in = Ecn::kNotEct;
@@ -27,13 +27,13 @@ class Recorder {
  public:
   /// `log`: file name or empty. Throws std::runtime_error if it cannot be written.
   explicit Recorder(const std::string& log);
-  /// Ends the log; throws std::runtime_error if it could not be written whole.
+  /// Ends the log; throws std::runtime_error if a part of it could not be written.
   void Close() { log_.Close(); }
 
   void Start(Time origin, Duration unix_offset);
   void OnPacket(const PacketRecord& record);
   void OnFeedback(bool delivered, std::size_t bytes);
-  /// `late`: from the computed time of a packet's departure to the real one.
+  /// `late` is the time from a packet's computed departure to the real one.
   void OnLateness(Duration late) { lateness_.Add(Milliseconds(late)); }
   void OnRefusedSend() { ++refused_sends_; }
 

@@ -47,7 +47,7 @@ void Relay::Start(Time origin) {
 
 Time Relay::ArrivalOf(const Datagram& datagram) {
   const Time now = Now();
-  // The kernel's time of reception is better: this process may have waited for its turn.
+  // The kernel's time of reception is better, because this process may run later.
   const Time kernel{datagram.kernel_time - unix_offset_};
   constexpr auto kPlausible = std::chrono::seconds{1};
   const bool use_kernel = kernel <= now && kernel > now - kPlausible;

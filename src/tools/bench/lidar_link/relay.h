@@ -19,7 +19,7 @@ class Relay {
   /// opened.
   Relay(const LinkOptions& options, EventLoop* loop, Recorder* recorder);
 
-  /// Sends due packets. Returns when to call again at the latest.
+  /// Sends due packets. Returns the latest time of the next call.
   Time Pump();
 
   std::vector<int> ListeningPorts() const;

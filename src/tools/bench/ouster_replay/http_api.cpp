@@ -28,7 +28,7 @@ bool Flag(const HttpRequest& request, const char* name) {
   return value == "true" || value == "True" || value == "1";
 }
 
-/// Returns false for the paths that set faults, which ignore the sensor's faults.
+/// Returns false for the paths under /replay/, which the sensor's faults do not affect.
 bool IsSensorPath(const HttpRequest& request) { return request.path.rfind("/replay/", 0) != 0; }
 
 /// Parses "key value"; the value is JSON or a bare word.

@@ -14,8 +14,7 @@ namespace lidar::tools {
 ///   GET  /api/v1/sensor/config?staging=       POST /replay/faults  (faults.h; merged)
 ///   POST /api/v1/sensor/config?staging=&reinit=&persist=
 ///   POST /replay/restart
-/// and the paths that firmware before 2.4 has in place of .../config; with `old_firmware` not
-/// .../config.
+/// With `old_firmware`, the paths of firmware before 2.4 replace .../config.
 class HttpApi {
  public:
   struct Options {

@@ -63,8 +63,8 @@ ColumnWindow ToColumns(const json& window, std::uint32_t columns) {
   return {first % columns, (last + columns - first) % columns + 1};
 }
 
-/// Returns a synthetic sensor's metadata after a new configuration; a recorded sensor does not
-/// change.
+/// Returns the metadata for a new `config`. Throws std::runtime_error if a recorded sensor would
+/// get another lidar_mode or udp_profile_lidar.
 ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& first,
                          const json& config) {
   ouster::Metadata m = first;

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kLongest_s = 1e9;  // nanoseconds in 64 bits last 9 times as long
+constexpr double kLongest_s = 1e9;  // 64 bits of nanoseconds reach 9 times as far
 
 struct Text {
   std::string profile = "RNG19_RFL8_SIG16_NIR16";

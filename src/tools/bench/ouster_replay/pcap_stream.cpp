@@ -37,7 +37,7 @@ void Put(std::uint8_t* at, std::uint64_t v, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<std::uint8_t>(v >> (8 * i));
 }
 
-/// Returns the time of the first valid column: those of other columns mean nothing.
+/// Returns the time of the first valid column. Times of invalid columns mean nothing.
 std::optional<std::uint64_t> TimeOf(const ouster::LidarPacket& packet) {
   for (std::uint32_t i = 0; i < packet.columns(); ++i)
     if (packet.Column(i).valid()) return packet.Column(i).timestamp;
@@ -76,7 +76,7 @@ void ApplyToLidar(const PacketPatch& patch, const ouster::PacketFormat& format,
   }
 }
 
-/// Calls change(). A right CRC stays right, unless the packets have none.
+/// Calls `change`, and corrects a CRC that was right before. Without `has_crc` packets have no CRC.
 template <class Change>
 void KeepCrc(bool has_crc, std::vector<std::uint8_t>* packet, const Change& change) {
   std::uint8_t* bytes = packet->data();
@@ -121,7 +121,8 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
   first_time_ns_ = first_time.value_or(0);
   const std::uint64_t ids = format_.frame_id_modulus();
   scans_ = static_cast<std::uint32_t>((ids + last_frame - *first_frame) % ids) + 1;
-  // A round lasts whole scans, so that its first scan follows the last one of the round before.
+  // A round lasts a whole number of scans, so that its first scan follows the last scan of the
+  // round before.
   round_ = metadata.scan_period() * scans_;
 }
 

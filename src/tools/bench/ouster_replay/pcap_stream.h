@@ -24,7 +24,7 @@ class PcapStream : public PacketStream {
  private:
   std::vector<OutPacket> packets_;
   ouster::PacketFormat format_;
-  std::vector<std::size_t> imu_times_;  // places in an IMU packet
+  std::vector<std::size_t> imu_times_;  // offsets in an IMU packet
   bool imu_has_header_;
   Options options_;
   Duration round_{};  // duration of the capture's scans

@@ -49,7 +49,7 @@ void Player::RunEvents(Time now) {
   }
 }
 
-/// Sends from an address of the destination's family.
+/// Opens a socket with an address of the destination's family.
 void Player::SetDestination(const Sensor::Destination& to) {
   lidar_address_ = ResolveAddress(to.host + ":" + std::to_string(to.lidar_port), to.host);
   imu_address_ = ResolveAddress(to.host + ":" + std::to_string(to.imu_port), to.host);
@@ -81,7 +81,7 @@ void Player::CopyCounts() {
 std::optional<Time> Player::Pump(Time now) {
   RunEvents(now);
   if (auto metadata = sensor_.TakeRestart()) {
-    SendHeld(destination_);  // it left before the restart
+    SendHeld(destination_);  // the held packet left before the restart
     boots_until_ = now + FromSeconds(options_.boot_s);
     Start(*metadata, boots_until_);
   }

@@ -15,7 +15,7 @@
 
 namespace lidar::tools {
 
-/// Returns the sensor's clock when it starts to scan.
+/// Returns the reading of the sensor's clock at the time when it starts to scan.
 std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now);
 
 class Player {
@@ -28,7 +28,7 @@ class Player {
 
   /// Sends what is due; returns the time of the next call, or nothing at the end.
   std::optional<Time> Pump(Time now);
-  /// Sends the packet that waits for the next one.
+  /// Sends the packet that is held back to be reordered, if there is one.
   void Finish() { SendHeld(sensor_.destination()); }
   /// Any thread may call this.
   FaultCounts counts() const;

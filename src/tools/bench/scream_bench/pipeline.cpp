@@ -23,7 +23,7 @@ struct Runner {
   int result = 0;
 };
 
-/// The first signal lets queues drain; the second stops at once.
+/// The first call lets queues drain, and the second stops at once.
 void End(Runner* runner) {
   if (runner->ending) {
     g_main_loop_quit(runner->loop.get());

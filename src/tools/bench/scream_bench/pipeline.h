@@ -15,8 +15,8 @@ namespace lidar::tools {
 /// Throws std::runtime_error if the pads don't fit.
 void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad);
 
-/// Returns 0, or 1 after an error, which is printed after `program`. `end` makes the source send
-/// EOS. The pipeline still plays on return.
+/// Returns 0, or 1 after an error. Prints the error with the prefix `program`. `end` makes the
+/// source send EOS. The pipeline still plays on return.
 int RunPipeline(GstElement* pipeline, const std::string& program, Duration duration,
                 const std::function<void()>& every_100_ms, const std::function<void()>& end);
 

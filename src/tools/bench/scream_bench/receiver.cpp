@@ -26,7 +26,7 @@
 namespace lidar::tools {
 namespace {
 
-/// Greater ages show a sender whose RTP timestamps are not Unix time.
+/// A greater age means that the sender's RTP timestamps are not Unix time.
 constexpr Duration kPlausibleAge = std::chrono::seconds{60};
 
 Duration FromTicks(std::int32_t ticks) {
@@ -160,7 +160,7 @@ void Receiver::Build() {
     gst_util_set_object_arg(G_OBJECT(rx), "num-reports", o.num_reports.c_str());
     GstElement* back = AddElement(bin, "ecnudpsink", "feedback");
     g_object_set(back, "host", host.c_str(), "port", port, "sync", FALSE, "async", FALSE, nullptr);
-    GST_OBJECT_FLAGS(back) &= ~guint32{GST_ELEMENT_FLAG_SINK};  // the run ends with the media
+    GST_OBJECT_FLAGS(back) &= ~guint32{GST_ELEMENT_FLAG_SINK};  // EOS of the media ends the run
     LinkPads(source, "src", rx, "sink");
     LinkPads(rx, "src", sink, "sink");
     LinkPads(rx, "rtcp_src", back, "sink");
@@ -221,7 +221,7 @@ void Receiver::Tick() {
   line_since_ = now;
 }
 
-/// A line lasts a second, and the time to the next check.
+/// A line covers a second and the time to the next check.
 void Receiver::PrintLine(Duration now) {
   std::printf(
       "%7.1f s  received %8.3f Mbit/s  frame age p50 %6.1f p95 %6.1f ms%s  CE %llu  lost %llu\n",

@@ -75,8 +75,8 @@ Sender::~Sender() {
   gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
 }
 
-/// The thread ends the stream. An EOS event to the pipeline would race with its lists of buffers,
-/// which basesrc of GStreamer 1.22 takes for single ones.
+/// Lets the thread end the stream. An EOS event to the pipeline would race with its lists of
+/// buffers, because basesrc of GStreamer 1.22 takes a list for a single buffer.
 void Sender::StopSending() {
   stop_ = true;
   if (thread_.joinable()) thread_.join();
