@@ -11,7 +11,7 @@
 
 namespace lidar::tools {
 
-/// Thread-safe. Data beyond `capacity` bytes of backlog are dropped whole and counted.
+/// Thread-safe. A write that would exceed `capacity` bytes of backlog is dropped whole and counted.
 class AsyncWriter {
  public:
   /// Does not own `fd`.

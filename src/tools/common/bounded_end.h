@@ -12,9 +12,9 @@
 
 namespace lidar::tools {
 
-/// Begins when the program ends: after `most` the process ends with a message and code 0. While the
-/// machine does not run the process, no time passes. The exit itself is not bounded, because a
-/// sanitizer's leak check takes long on a busy machine.
+/// Make one when the program begins to end: after `most`, the process exits with a message and code
+/// 0. Time in which the machine does not run the process does not count. The exit itself is not
+/// bounded, because a sanitizer's leak check takes long on a busy machine.
 class BoundedEnd {
  public:
   explicit BoundedEnd(std::chrono::milliseconds most) {
@@ -34,7 +34,7 @@ class BoundedEnd {
   BoundedEnd& operator=(const BoundedEnd&) = delete;
 
  private:
-  // The kernel makes one signal of all ticks that a process missed.
+  // The kernel merges all ticks that a process missed into one signal.
   static constexpr int kTicks = 20;
 
   static void SetTimer(std::chrono::microseconds tick) {

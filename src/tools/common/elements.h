@@ -29,7 +29,8 @@ inline GstElement* AddElement(GstElement* bin, const std::string& factory,
   return element;
 }
 
-/// Makes the pipeline of a command line's words. Returns null, with a line on stderr, if it cannot.
+/// Makes a pipeline from the words of a command line. Prints an error and returns null if that
+/// fails.
 inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
   std::vector<const gchar*> argv;
   for (const std::string& word : words) argv.push_back(word.c_str());
@@ -78,7 +79,7 @@ inline void PrintStats(GstElement* bin, const std::string& names, const std::str
   std::fflush(stdout);
 }
 
-/// Returns the text of an error or a warning after the name of its source.
+/// Returns the name of the source and the text of an error or a warning.
 inline std::string MessageText(GstMessage* message) {
   GError* raw = nullptr;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR)

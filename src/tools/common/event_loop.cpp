@@ -52,8 +52,8 @@ EventLoop::EventLoop()
   sigprocmask(SIG_BLOCK, &set, nullptr);
   signals_ = FileDescriptor(signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
   Check(static_cast<bool>(signals_), "signalfd");
-  // A timer may be late by 1 ns. The default of 50 us would be a third of the time between packets
-  // at 64 Mbit/s.
+  // Allows a timer to be late by 1 ns only. The default of 50 us would be a third of the time
+  // between packets at 64 Mbit/s.
   prctl(PR_SET_TIMERSLACK, 1UL);
   Watch(timer_.get(), [this] {
     std::uint64_t expirations = 0;

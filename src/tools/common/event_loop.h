@@ -21,10 +21,10 @@ class EventLoop {
 
   void Watch(int fd, std::function<void()> readable);
   void Unwatch(int fd);
-  /// Sets when Run() next calls `before_wait` at the latest; Time::max() for never.
+  /// Sets the latest time of the next call of `before_wait` by Run(); Time::max() for never.
   void SetWakeUp(Time when);
-  /// Calls the handlers of what is readable and then `before_wait`, which may set the next wake-up,
-  /// until a signal or Stop.
+  /// Runs until a signal or Stop(): calls the handlers of readable descriptors, then `before_wait`,
+  /// which may set the next wake-up.
   void Run(const std::function<void()>& before_wait);
   void Stop() { running_ = false; }
 

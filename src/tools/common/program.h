@@ -20,8 +20,8 @@ inline void AddHelpAllFlag(CLI::App* app) {
   app->set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
 }
 
-/// Throws if a number is NaN, which CLI::Range lets pass, or negative where CLI11 before 2.3 takes
-/// it modulo 2^64.
+/// Throws if a number is NaN, because CLI::Range accepts NaN, or if an unsigned number is negative,
+/// because CLI11 before 2.3 takes it modulo 2^64.
 inline void RefuseWrongNumbers(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const std::string type = option->get_type_name();
@@ -38,8 +38,8 @@ inline void RefuseWrongNumbers(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) RefuseWrongNumbers(*command);
 }
 
-/// Parses the command line, and has `check` throw CLI::ParseError for options that contradict each
-/// other. Ends the program for --help and wrong options.
+/// Parses the command line and calls `check`, which throws CLI::ParseError for options that
+/// contradict each other. Ends the program for --help and wrong options.
 template <class Check>
 void Parse(CLI::App* app, int argc, char** argv, Check check) {
   try {

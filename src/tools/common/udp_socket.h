@@ -21,7 +21,7 @@ struct HostPort {
 };
 /// Splits "HOST:PORT", "[IPV6]:PORT" or "PORT" (then `default_host`).
 HostPort Split(const std::string& text, const std::string& default_host);
-/// Resolves a text that Split() takes. Throws std::runtime_error with a text for the user.
+/// Resolves a text that Split() accepts. Throws std::runtime_error with a text for the user.
 Address ResolveAddress(const std::string& text, const std::string& default_host);
 
 struct Datagram {
@@ -37,7 +37,7 @@ class UdpSocket {
   static UdpSocket Bind(const Address& local);
   static UdpSocket Connect(const Address& remote);
 
-  /// Multicast leaves by the interface of that name; throws std::runtime_error if there is none.
+  /// Sends multicast from the interface of that name; throws std::runtime_error if there is none.
   void SendMulticastFrom(const std::string& interface);
 
   int fd() const { return fd_.get(); }
