@@ -17,8 +17,8 @@ constexpr int kMostBytes = 128 << 20;    // of a message
 constexpr int kMostBytesOfAName = 4096;  // or of a statement of the schema
 constexpr std::size_t kMostTopics = 10'000;
 constexpr std::size_t kLongestName = 1024;
-/// Instructions of SQLite for the schema or the topics. Pages of a damaged schema may repeat on
-/// each of 20 levels, so that it has nearly no end.
+/// Most instructions of SQLite to read the schema or the topics. A damaged schema may repeat its
+/// pages on each of 20 levels, so that reading hardly ends.
 constexpr int kMostInstructions = 500'000;
 
 struct Closer {
@@ -43,7 +43,7 @@ class BagDatabase final : public MessageReader {
     database_.reset(database);
     if (result != SQLITE_OK) FailWithItsReason();
     sqlite3_db_config(database, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
-    // Tables that compute their rows may do so without end.
+    // Views and virtual tables may compute rows without end.
     sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -59,15 +59,15 @@ class BagDatabase final : public MessageReader {
 
   std::vector<RecordedTopic> Topics() const override { return topics_; }
 
-  /// Only messages that are returned are loaded.
+  /// Next() loads only the messages that it returns.
   void Select(const std::string& topic) override {
     std::string ids;
     for (std::size_t i = 0; i < topics_.size(); ++i)
       if (topics_[i].name == topic) ids += (ids.empty() ? "" : ",") + std::to_string(ids_[i]);
     sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, kMostBytes);
     sqlite3_progress_handler(database_.get(), 0, nullptr, nullptr);
-    // Text in place of numbers is neither loaded nor passed on the way to the data: the text of
-    // many rows may be the same pages.
+    // Skips rows with text in place of a number: SQLite would read the text to reach the data, and
+    // a crafted file may use the same pages as the text of many rows.
     const std::string numbers =
         "typeof(id) IN ('integer', 'null') AND typeof(topic_id) = 'integer' AND "
         "typeof(timestamp) = 'integer'";
@@ -110,8 +110,8 @@ class BagDatabase final : public MessageReader {
     return uri;
   }
 
-  /// Refuses other columns: a generated column is computed when it is read, and any other column
-  /// may lie before the columns that are read.
+  /// Refuses other columns. A generated column is computed when it is read, and SQLite must pass
+  /// any other column that lies before the columns to read.
   void RequireColumns(const std::string& table, const std::array<const char*, 4>& names) {
     const Statement columns = Prepare("PRAGMA table_xinfo(" + table + ")");
     int result = SQLITE_ROW;
@@ -126,9 +126,9 @@ class BagDatabase final : public MessageReader {
     if (result != SQLITE_DONE) FailWithItsReason();
   }
 
-  /// Rows in the order of the file, in which they were recorded. NOT INDEXED avoids a sort, which
-  /// would keep all rows. Column 0 is the number of the row, column 1 the size of its data in
-  /// bytes.
+  /// Rows in the order of the file, which is the order of recording. NOT INDEXED avoids a sort,
+  /// which would hold all rows in memory. Column 0 is the number of the row, column 1 the size of
+  /// its data in bytes.
   struct Rows {
     Statement statement;
     std::int64_t last_row = INT64_MIN;
@@ -161,7 +161,7 @@ class BagDatabase final : public MessageReader {
     return Statement(statement);
   }
 
-  /// Returns false at the end. Pages of a damaged file may form a loop, so that its rows have no
+  /// Returns false at the end. Refuses a damaged file whose pages form a loop: its rows have no
   /// end.
   bool Step(Rows* rows) {
     sqlite3_stmt* row = rows->statement.get();

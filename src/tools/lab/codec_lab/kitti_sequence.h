@@ -20,11 +20,11 @@ std::unique_ptr<ScanStream> OpenKittiSequence(const std::string& folder);
 /// The times of times.txt, which have to ascend. Throws std::runtime_error.
 std::vector<Time> ReadKittiTimes(const std::string& folder);
 
-/// Returns the beam of each point of a cloud that lists beams in sequence, each of which begins
+/// Returns the beam of each point if the cloud lists its points beam by beam, and each beam begins
 /// straight ahead and turns once. Returns an empty list for another order.
 std::vector<std::uint16_t> FindRings(const std::vector<float>& xyz);
 
-/// Points as a sequence keeps them.
+/// The points of a scan, as the files of a sequence hold them.
 struct KittiScan {
   std::vector<float> points;  // x y z reflectance
   std::vector<float> phases;  // empty: not known

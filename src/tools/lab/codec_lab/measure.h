@@ -27,7 +27,7 @@ struct MeasuredSetting {
 std::optional<Measurement> Measure(const ScanSet& set, const CodingMode& mode,
                                    const MeasuredSetting& setting);
 
-/// Returns our coder at an effort; its default effort here is 0.
+/// Returns our coder at `effort`. The lab's default is effort 0 (DefaultRangeMode).
 const CodingMode& ModeOfEffort(unsigned effort);
 const CodingMode& DefaultRangeMode();
 /// Returns dracoenc's default: range geometry for organised sources, else xyz.

@@ -18,7 +18,7 @@ struct RecordedTopic {
 
 struct RecordedMessage {
   std::uint64_t log_time_ns = 0;
-  ByteView data;  // of the reader, until its next call
+  ByteView data;  // valid until the reader's next call
 };
 
 /// All functions throw std::runtime_error with a message for the user.
@@ -27,7 +27,7 @@ class MessageReader {
   virtual ~MessageReader() = default;
   /// Topics with CDR messages. A topic may be listed more than once.
   virtual std::vector<RecordedTopic> Topics() const = 0;
-  /// Next() returns the messages of this topic, from the first on.
+  /// Makes Next() return the messages of this topic, from the first on.
   virtual void Select(const std::string& topic) = 0;
   /// Returns nothing at the end, or without a selected topic.
   virtual std::optional<RecordedMessage> Next() = 0;

@@ -26,7 +26,8 @@ std::vector<Beam> Hdl64Beams() {
   return beams;
 }
 
-/// The beam whose altitude is nearest, or -1 for a point more than a beam's distance outside.
+/// Returns the beam whose altitude is nearest, or -1 for a point outside by more than a beam's
+/// spacing.
 int NearestBeam(const std::vector<Beam>& beams, double altitude_deg) {
   const auto below = std::lower_bound(beams.begin(), beams.end(), altitude_deg,
                                       [](const Beam& b, double a) { return b.altitude_deg > a; });

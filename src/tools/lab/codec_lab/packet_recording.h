@@ -14,7 +14,7 @@ namespace lidar::tools {
 std::vector<Beam> ParseBeams(const std::string& text);
 
 /// A sensor whose frame is that of the cloud, with the origin of the beams at its origin. A turn
-/// begins at -x, as those of Ouster's sensors and of KITTI's do. `columns` is a multiple of 16.
+/// begins at -x, as in Ouster's and KITTI's scans. `columns` is a multiple of 16.
 SensorModel ModelOfCloud(const std::vector<Beam>& beams, std::uint32_t columns);
 
 /// Puts a cloud into the pixels of `geometry`, the nearest point in each. An organised scan stays
@@ -24,7 +24,7 @@ Scan ToRangeImage(const Scan& scan, const std::shared_ptr<const ScanGeometry>& g
 /// Metadata of the capture's sensor: profile RNG19_RFL8_SIG16_NIR16.
 ouster::Metadata MetadataOf(const ScanSet& set);
 
-/// Throws std::runtime_error. The scans are organised, all alike.
+/// Throws std::runtime_error. The scans must be organised and have one geometry.
 void WriteCapture(const ScanSet& set, const ouster::Metadata& metadata, const std::string& path);
 
 }  // namespace lidar::tools

@@ -50,7 +50,7 @@ class FaultyScans final : public ScanStream {
     const Duration after = since_first - kBeforeTheGap;
     if (after >= Duration{0} && after < FromSeconds(faults_.gap_s)) return true;
     if (left_of_burst_ > 0) return left_of_burst_-- > 0;
-    // Chance that a burst begins. With it, bursts have `lost_share` of all scans.
+    // Chance that a burst begins, so that bursts lose `lost_share` of all scans.
     const double begins =
         faults_.lost_share / (kBurst * (1 - faults_.lost_share) + faults_.lost_share);
     const double drawn = static_cast<double>(random_()) / static_cast<double>(random_.max());

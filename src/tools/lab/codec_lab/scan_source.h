@@ -21,7 +21,7 @@ struct SourceOptions {
   bool mixed_pixels = false;   // of synthetic drives
 };
 
-/// A scan and when it was taken.
+/// A scan and the time of its capture.
 struct TimedScan {
   Scan scan;
   Time start{};  // of the first column

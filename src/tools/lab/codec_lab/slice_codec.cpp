@@ -196,7 +196,7 @@ std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
     return std::nullopt;
   constexpr std::uint32_t kMaxPoints = 1U << 26;
-  // Draco uses the kd-tree anyway past a number of bits.
+  // Draco uses the kd-tree anyway above a certain number of bits.
   const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
   if (xyz && draco::CheckDraco(bytes, {kMaxPoints}).value().is_kd_tree) return std::nullopt;
   draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);

@@ -11,7 +11,7 @@
 namespace lidar::tools {
 
 struct SamplingOptions {
-  std::size_t samples = 200;  // of each source; the adaptive model takes each in all modes
+  std::size_t samples = 200;  // of each source; each gives the adaptive model a sample in all modes
   std::vector<std::string> modes;
   double min_step_m = 0.001;
   double max_step_m = 0.5;
@@ -41,7 +41,7 @@ struct FitReport {
   rate::FitError cross_validation;
 };
 
-/// Leaves out one source after the other, or fifths of the samples if there is one source.
+/// Cross-validates: leaves out each source in turn, or each fifth of the samples of one source.
 FitReport Report(
     const std::string& name, const std::vector<rate::Sample>& samples,
     const std::function<std::unique_ptr<rate::SizeModel>(const std::vector<rate::Sample>&)>& fit);

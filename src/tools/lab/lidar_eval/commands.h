@@ -14,7 +14,7 @@ void AddStaticCommand(CLI::App* app);
 void AddTrackCommand(CLI::App* app);
 void AddPredictCommand(CLI::App* app);
 void AddToPcapCommand(CLI::App* app);
-// Only where there is odometry.
+// Only in builds with odometry.
 void AddSlamCommand(CLI::App* app);
 void AddAteCommand(CLI::App* app);
 void AddToKittiCommand(CLI::App* app);

@@ -7,8 +7,8 @@
 
 namespace lidar::tools {
 
-/// Reads the poses of poses.txt, which are those of a camera, and turns them into the sensor's with
-/// `Tr` of calib.txt; without calib.txt they are the sensor's. Empty without poses.txt. Throws
+/// Reads poses.txt. Its poses are those of a camera if there is a calib.txt, and are converted to
+/// the sensor's by its `Tr`. Returns an empty trajectory without poses.txt. Throws
 /// std::runtime_error.
 odometry::Trajectory ReadKittiTruth(const std::string& folder);
 

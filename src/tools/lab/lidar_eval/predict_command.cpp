@@ -31,7 +31,7 @@ std::string Cell(const rate::FitError& e) {
                     : Format("%19s", "-");
 }
 
-/// Predicts each scan at another random step, after the model has seen the scan before.
+/// Predicts each scan at a random step of its own, after the model has seen the scan before.
 rate::FitError Corrected(const ScanSet& set, const CodingMode& mode, const PredictOptions& o,
                          rate::SizeModel* model) {
   std::mt19937_64 random(o.sampling.seed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs an odometry over all scans of a source, after a codec's effect on their points.
+// Runs an odometry over all scans of a source. A codec's loss is applied to the points first.
 #pragma once
 #include <functional>
 
@@ -19,7 +19,7 @@ struct SlamOptions {
   odometry::OdometrySettings odometry;
   CodingLoss loss;
   std::size_t max_scans = 0;  // 0: all
-  bool gyroscope = false;     // for sources with a truth at any time
+  bool gyroscope = false;     // only for sources whose true pose is known at any time
   bool close_loops = false;
   std::size_t most_local_maps = 1000;  // with close_loops
 };
@@ -34,7 +34,7 @@ struct SlamResult {
   std::vector<double> cpu_ms;     // of each scan, ascending
   std::size_t map_voxels = 0;     // at the end
   std::size_t maps = 0;
-  // Mean distance by which the loss moved points.
+  // Mean and largest distance by which the loss moved points.
   double mean_point_error_m = 0;
   double max_point_error_m = 0;
   // Set with close_loops
@@ -47,8 +47,8 @@ struct SlamResult {
 SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress);
 
-/// Errors of the poses since the first one, along its axes: x, y, z [m], and turns [rad]. Empty if
-/// `truth` does not cover the estimate.
+/// Errors of the motion since the first pose, along the axes of that pose: x, y, z [m], and turns
+/// [rad]. Empty if `truth` does not cover the estimate.
 std::vector<odometry::Twist> ErrorsOf(const SlamResult& result, const odometry::Trajectory& truth);
 
 /// Errors relative to the odometry's deviations.

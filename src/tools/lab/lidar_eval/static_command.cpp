@@ -45,7 +45,7 @@ class Link {
       : o_(options), effort_(effort), period_(FromSeconds(1 / scans_per_second)) {
     settings_.max_error_m = error;
     keeper_.set_key_interval(FromSeconds(options.key_interval_s));
-    // The keeper has a receiver from the start.
+    // An acknowledgement shows the keeper that there is a receiver.
     keeper_.OnAcknowledged(Now(), 0, 0, 0);
   }
 

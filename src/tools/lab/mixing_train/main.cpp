@@ -52,7 +52,7 @@ std::string ToText(const std::vector<std::uint8_t>& table) {
   return text;
 }
 
-// Uses 8 slices a scan by default.
+// Effort, error bound [m], bits of levels and slices of a scan.
 constexpr MixingCase kCases[] = {{1, 0.02, 0, 8}, {2, 0.02, 0, 8}, {3, 0.02, 0, 8}, {1, 0.05, 0, 8},
                                  {2, 0.05, 0, 8}, {3, 0.05, 0, 8}, {3, 0.02, 5, 8}, {3, 0.02, 8, 8},
                                  {3, 0.01, 0, 8}, {3, 0.1, 0, 8},  {3, 0.02, 0, 1}};

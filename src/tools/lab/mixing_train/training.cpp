@@ -232,7 +232,7 @@ class Trainer {
   std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
-  std::vector<std::uint8_t> written_;  // never read: only the learning counts
+  std::vector<std::uint8_t> written_;  // never read: only the learnt states matter
 };
 
 }  // namespace
