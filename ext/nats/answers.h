@@ -20,7 +20,8 @@ class AnswerSubjects {
   std::string Of(const std::string& word) const { return prefix_ + word; }
   std::string Of(std::uint64_t number) const { return Of(std::to_string(number)); }
   std::string All() const { return prefix_ + "*"; }
-  /// Returns the word of the message that `answer` belongs to; empty if its subject is another.
+  /// Returns the word of the message that `answer` belongs to; empty if `answer` has another
+  /// subject.
   std::string_view WordOf(natsMsg* answer) const;
 
  private:

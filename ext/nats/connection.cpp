@@ -68,8 +68,8 @@ natsStatus SetPace(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetWriteDeadline(o, Connection::kWriteTimeoutMs);
   // The flusher of libnats would wait a millisecond for more to send.
   if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
-  // Messages in this buffer of libnats would be stored before older messages, which were lost with
-  // the connection and are sent again.
+  // Disables the reconnect buffer of libnats: its messages would be stored before older ones, which
+  // were lost with the connection and are sent again.
   if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 0);
   return s;
 }
@@ -77,7 +77,7 @@ natsStatus SetPace(natsOptions* o) {
 }  // namespace
 
 struct Connection::Shared {
-  std::mutex mutex;  // guards all but `changed`; never held while that runs
+  std::mutex mutex;  // guards all but `changed`; never held while `changed` runs
   std::condition_variable ended;
   ConnectionState state;
   bool refused = false;  // a server refused the first connect
@@ -122,7 +122,7 @@ struct Callbacks {
     Of(closure).Update([](ConnectionState* s) { ++s->disconnections; });
   }
   static void OnError(natsConnection* nc, natsSubscription*, natsStatus error, void* closure) {
-    // Slow consumers count their own losses.
+    // Subscribers count these losses themselves.
     if (error == NATS_SLOW_CONSUMER || error == NATS_MISMATCH) return;
     if (error == NATS_MISSED_HEARTBEAT)
       return Of(closure).Update([](ConnectionState* s) { ++s->missed_heartbeats; });
@@ -182,7 +182,8 @@ natsStatus Connection::Connect(natsOptions* o) {
   const natsStatus first = natsConnection_Connect(&nc_, o);
   if (first != NATS_OK) {
     shared_->NoteFirst(first);
-    // libnats would not tell of the reason of a refusal, had it been asked to try again at once.
+    // Asks for retries only now: if the first connect had them, libnats would not report the reason
+    // of a refusal.
     s = natsOptions_SetRetryOnFailedConnect(o, true, Call::OnConnected, closure.get());
     if (s == NATS_OK) s = natsConnection_Connect(&nc_, o);
   }
@@ -196,7 +197,7 @@ std::unique_ptr<Connection> Connection::Open(const ConnectionSettings& settings,
                                              std::string* why) {
   *why = CheckFiles(settings);
   std::vector<std::string> urls = SplitUrls(settings.url);
-  // libnats would connect to the local machine.
+  // libnats would connect to the local machine if there is no URL.
   if (why->empty() && urls.empty()) *why = "url names no server";
   if (!why->empty()) return nullptr;
   std::vector<const char*> servers;

@@ -29,23 +29,22 @@ struct ConnectionState {
   bool refused() const { return closed && !unanswered; }
 
   bool closed = false;  // for good, so that only another connection helps
-  // No server refused the first connect, but libnats gives it up if one takes it and is silent.
+  // libnats gave up the first connect: no server refused it, but one accepted it and stayed silent.
   bool unanswered = false;
-  unsigned connections = 0;  // how many were made so far
+  unsigned connections = 0;  // number of connects so far
   unsigned disconnections = 0;
-  std::uint64_t errors = 0;  // reports of the server
+  std::uint64_t errors = 0;  // number of the server's error reports
   std::string last_error;    // the latest report, or empty
-  // Number of heartbeats that did not come from JetStream's consumers. The server may have lost the
-  // consumer.
+  // Number of missed heartbeats of JetStream's consumers. The server may have lost the consumer.
   unsigned missed_heartbeats = 0;
 };
 
 class Connection {
  public:
+  using Changed = std::function<void(const ConnectionState&)>;
   /// `changed` runs in threads of libnats, at each change of the state until the destructor
   /// returns. Returns null, and `why`, if the settings are wrong. A server that does not answer is
   /// no error: the connection tries again until it does, or is `unanswered`.
-  using Changed = std::function<void(const ConnectionState&)>;
   static std::unique_ptr<Connection> Open(const ConnectionSettings& settings, Changed changed,
                                           std::string* why);
   /// Waits for a connect (kConnectTimeoutMs) or a write (kWriteTimeoutMs) that is under way.
@@ -54,7 +53,7 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   natsConnection* get() const { return nc_; }
-  /// Makes the ends of subscriptions, which follow, not wait for the server.
+  /// Closes the connection. Subscriptions that end later do not wait for the server.
   void Close() { natsConnection_Close(nc_); }
   /// Never waits for the network.
   ConnectionState state() const;

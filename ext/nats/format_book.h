@@ -13,9 +13,9 @@ namespace lidar::nats {
 
 class FormatBook {
  public:
-  /// Takes a format; `subject` ends with its id. Counts damaged formats.
+  /// Adds a format; `subject` ends with its id. Counts damaged formats.
   void Note(std::string_view subject, std::string_view text);
-  /// Takes the format that JetStream keeps at `subject`. Returns null if there is none.
+  /// Adds and returns the format that JetStream keeps at `subject`. Returns null if there is none.
   StreamFormat::Ptr Fetch(jsCtx* js, const std::string& stream, const std::string& subject);
   /// Returns null if the format is not known.
   StreamFormat::Ptr Find(const std::string& id) const;

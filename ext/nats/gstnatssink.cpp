@@ -269,7 +269,7 @@ static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool kee
                         (nullptr));
 }
 
-/// Posts an error if the server has no message although none waits.
+/// Posts an error if no message reached the server although none waits.
 static void TellOfDropped(GstBaseSink* base, const Publisher& publisher,
                           const NatsSinkSettings& settings) {
   const PublisherCounters counters = publisher.counters();

@@ -80,10 +80,10 @@ struct State {
   std::shared_ptr<ConnectionWatch> watch;
   StreamFormat::Ptr format;
   std::string trouble;           // last trouble that was reported
-  Delivery delivery;             // place of the last pushed buffer
+  Delivery delivery;             // of the last pushed buffer, until it is acknowledged
   std::optional<guint64> first;  // time at which JetStream stored the first message
   gint64 no_wait_until_us = 0;   // until then no message waits for its caps
-  gint64 here_at_us = 0;         // last time with a server, at first the start
+  gint64 here_at_us = 0;         // last time with a server, initially the start
   bool warned_damaged = false;
   bool warned_of_caps = false;
   bool warned_absent = false;
@@ -257,8 +257,8 @@ static bool IsAway(State& state) {
   return !connection.connected() && !connection.closed;
 }
 
-/// Returns the format with that id; waits for a server that is away. Returns null if there is none,
-/// and counts the message, which the caller drops, unless the source is flushing.
+/// Returns the format with that id, and waits while no server is there. Returns null if the format
+/// is missing: counts the message, unless the source is flushing, and the caller drops it.
 static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
   State& state = StateOf(self);
   if (state.format && state.format->id() == id) return state.format;
@@ -283,9 +283,8 @@ static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer)
   GST_BUFFER_PTS(buffer) = *delivery.stored - std::min(*state.first, *delivery.stored);
 }
 
-/// Returns CUSTOM_SUCCESS after it dropped and counted a message whose caps the next element does
-/// not take, with a warning the first time. That is no error: others may publish another coder's
-/// stream.
+/// Sets the caps of `format`. If the next element refuses them, counts the message, warns the first
+/// time and returns CUSTOM_SUCCESS. That is no error, as others may publish another coder's stream.
 static GstFlowReturn SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
   State& state = StateOf(self);
   GstPad* pad = GST_BASE_SRC_PAD(self);
@@ -305,7 +304,7 @@ static GstFlowReturn SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& f
   return GST_FLOW_CUSTOM_SUCCESS;
 }
 
-/// Notes a message that came and is dropped: it is not lost, but leaves a gap.
+/// Notes a message that arrived but is dropped: it is not lost, but leaves a gap.
 static void NoteLeftOut(State& state, const ReadMessage& read) {
   state.account.NotePlace(read.place, !state.now.nats.queue_group.empty());
   state.left_out = true;
@@ -381,8 +380,8 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   }
   state.trouble.clear();
   const GstFlowReturn flow = Take(self, delivery, out);
-  if (flow == GST_FLOW_FLUSHING) return flow;  // unacknowledged, the message comes again
-  // A durable consumer may get earlier messages again.
+  if (flow == GST_FLOW_FLUSHING) return flow;  // a durable consumer sends the message again
+  // Ignores a durable consumer, which may get earlier messages again.
   state.at_end =
       eos_at_end && delivery.stored && delivery.to_come == 0 && !state.subscriber->acknowledges();
   state.delivery = std::move(delivery);
@@ -394,7 +393,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_NATS_SRC(push);
   State& state = StateOf(self);
-  Acknowledge(state);  // the last buffer, from which downstream has returned
+  Acknowledge(state);  // the last buffer: its push has returned
   if (state.at_end) return GST_FLOW_EOS;
   while (!state.flushing) {
     Delivery delivery;
@@ -449,7 +448,7 @@ static void gst_lidar_nats_src_class_init(GstLidarNatsSrcClass* klass) {
   src->unlock = Unlock;
   src->unlock_stop = UnlockStop;
   src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
-  // Caps are set with the first message, which carries them.
+  // Create() sets the caps before the first buffer.
   src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
   GST_PUSH_SRC_CLASS(klass)->create = Create;
 }

@@ -52,7 +52,7 @@ natsStatus Add(jsCtx* js, const StreamSettings& settings, const std::vector<std:
   return js_AddStream(nullptr, js, &config, nullptr, code);
 }
 
-/// Adds `subjects` to those of the stream, which may be of other sinks.
+/// Adds `subjects` to the stream, which may have subjects of other sinks.
 natsStatus Update(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, const jsStreamConfig& now,
                   jsErrCode* code) {
@@ -84,7 +84,8 @@ natsStatus AddOrUpdate(jsCtx* js, const StreamSettings& settings,
   jsStreamInfo* raw = nullptr;
   const natsStatus status = js_GetStreamInfo(&raw, js, settings.name.c_str(), nullptr, code);
   const StreamInfoPtr info(raw);
-  // A stream of all subjects also stores the request, and answers it with an acknowledgement.
+  // A stream of all subjects stores this request, too, and answers with an acknowledgement instead
+  // of a configuration.
   if (status == NATS_OK && info->Config == nullptr) return NATS_PROTOCOL_ERROR;
   if (status == NATS_OK) return Update(js, settings, subjects, *info->Config, code);
   return status == NATS_NOT_FOUND ? Add(js, settings, subjects, code) : status;

@@ -30,7 +30,7 @@ bool EnsureStream(jsCtx* js, const StreamSettings& settings,
 /// Returns true if `pattern` covers `subject`; both may have wildcards.
 bool Covers(const std::string& pattern, const std::string& subject);
 
-/// The fault of a name of a stream, a consumer or a queue group; empty if there is none.
+/// Returns the fault in the name of a stream, a consumer or a queue group; empty if there is none.
 std::string CheckName(const std::string& name);
 
 }  // namespace lidar::nats

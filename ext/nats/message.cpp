@@ -25,7 +25,7 @@ constexpr const char* kMessageId = "Nats-Msg-Id";  // JetStream stores each id o
 
 constexpr guint kMaxSlices = 4'096;
 constexpr int kPoseNumbers = 29;         // 7 doubles, an integer and 21 floats
-constexpr std::size_t kMaxHeader = 512;  // the longest pose
+constexpr std::size_t kMaxHeader = 512;  // has room for the longest pose
 constexpr std::size_t kMaxSubject = 200;
 
 /// Writes numbers with blanks between them.
@@ -68,7 +68,7 @@ class NumberReader {
   bool first_ = true;
 };
 
-/// Remembers the first failure of several calls.
+/// Sets headers until one fails.
 class HeaderWriter {
  public:
   explicit HeaderWriter(natsMsg* message) : message_(message) {}
@@ -82,7 +82,7 @@ class HeaderWriter {
   natsStatus status_ = NATS_OK;
 };
 
-/// Returns the nearest finite number, and the largest for NaN: the variance is unknown.
+/// Returns the nearest finite number. NaN becomes the largest, as an unknown variance.
 float ToFloat(double v) {
   constexpr double kMost = std::numeric_limits<float>::max();
   return static_cast<float>(std::fmax(-kMost, std::fmin(v, kMost)));

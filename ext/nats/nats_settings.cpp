@@ -83,7 +83,7 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
   const bool closed = state.refused() && !std::exchange(closed_, true);
   const bool error = state.errors > std::exchange(errors_, state.errors);
   if (changed) complaints_.clear();
-  // A complaint may come with each message.
+  // A complaint may come with each message, so each text gives only one warning.
   const bool is_new =
       error && complaints_.size() < kMaxComplaints && complaints_.insert(state.last_error).second;
   lock.unlock();

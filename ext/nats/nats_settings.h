@@ -41,14 +41,14 @@ class ConnectionWatch {
   void Silence();
 
  private:
-  const ElementPtr element_;  // owned, because threads of libnats may outlive its stop
+  const ElementPtr element_;  // owned, because threads of libnats may outlive the element's stop
   const bool keeps_trying_;
   std::mutex mutex_;
   bool silent_ = false;
   bool connected_ = false;
   bool closed_ = false;
   std::uint64_t errors_ = 0;
-  std::set<std::string> complaints_;  // of this connection, as warned of
+  std::set<std::string> complaints_;  // of this connection; each gave a warning
 };
 
 }  // namespace lidar::gst

@@ -39,7 +39,7 @@ class Outbox {
 
   /// The format of the oldest message that waits, or null.
   StreamFormat::Ptr NextFormat() const;
-  /// Returns since when the oldest message is in flight.
+  /// Returns the time of the oldest Take() of a message in flight.
   std::optional<Clock::time_point> OldestInFlight() const;
 
   std::size_t waiting() const { return waiting_.size(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Remembers which messages of a stream arrived, so that each is used once.
+// Records which messages of a stream arrived, so that each is used once.
 #pragma once
 #include <cstdint>
 #include <deque>

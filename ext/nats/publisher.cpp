@@ -189,7 +189,7 @@ void Publisher::OnAck(natsMsg* message) {
   if (!error.empty()) Tell(&lock, error);
 }
 
-/// The stream would refuse it each time. `number` is missing if the message is the caps.
+/// Gives up a message, or the caps if `number` is missing: the stream would refuse it each time.
 void Publisher::NoteTooLarge(Lock* lock, std::optional<std::uint64_t> number) {
   if (!number)
     config_unanswered_ = false;
@@ -254,7 +254,8 @@ void Publisher::NoteConnection(const ConnectionState& state) {
   open_at_ = Clock::now() + refusals_.Next();
 }
 
-/// Sends messages in flight again before waiting ones, so that all are stored in order.
+/// Sends messages in flight again after a reconnect, before waiting ones, so that all are stored in
+/// order.
 void Publisher::RetryAfterReconnect(Lock* lock) {
   lock->unlock();
   const bool again = connection_->TakeReconnect();  // may wait for a write
@@ -262,7 +263,7 @@ void Publisher::RetryAfterReconnect(Lock* lock) {
   if (again) SendAllAgain();
 }
 
-/// libnats gives up a connection that the server has refused twice. Creates another one.
+/// Opens another connection. libnats gives one up after two refusals, or if the server is silent.
 void Publisher::OpenAgain(Lock* lock) {
   if (Clock::now() < open_at_) {
     wake_.wait_until(*lock, open_at_);

@@ -48,7 +48,7 @@ struct PublisherCounters {
 /// Called without a lock, by threads of libnats and of the publisher.
 struct PublisherEvents {
   Connection::Changed connection;
-  /// Called once per reason while messages cannot be sent or kept.
+  /// Called once per reason while messages cannot be sent or stored.
   std::function<void(const std::string& why)> trouble;
 };
 
@@ -134,11 +134,11 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   std::uint64_t bytes_since_config_ = 0;
   Clock::time_point retry_at_{};              // earliest next try to make the stream
   Clock::time_point open_at_{};               // earliest next connect after a refusal
-  Clock::time_point here_at_ = Clock::now();  // last time with a server, at first the start
+  Clock::time_point here_at_ = Clock::now();  // last time with a server, initially the start
   Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
   unsigned connections_before_ = 0;  // of earlier Connection objects
   std::uint64_t errors_before_ = 0;
-  unsigned connections_ = 0;  // of the present Connection, as handled
+  unsigned connections_ = 0;  // number of connects at the last NoteConnection()
   std::string told_;          // last trouble that was reported
   bool asked_ = false;
   bool config_unanswered_ = false;

@@ -156,8 +156,8 @@ natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
   messages_ = Own(raw);
   if (s != NATS_OK) return s;
-  // Messages beyond the limit are dropped here and, unacknowledged, come again. A single message
-  // must fit.
+  // Messages beyond the limit are dropped here, and come again because they are not acknowledged. A
+  // single message must fit.
   const std::int64_t largest = natsConnection_GetMaxPayload(connection_->get());
   const auto bytes = std::max<std::int64_t>(settings_.max_pending, 2 * largest);
   return natsSubscription_SetPendingLimits(
@@ -181,7 +181,8 @@ natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
   return settings_.durable.empty() ? SubscribeOwn(code) : SubscribeDurable(code);
 }
 
-/// Numbers are void in another stream, even one of the same name: it is read from its beginning.
+/// Begins with the first message of another stream, even one of the same name: message numbers of
+/// the earlier stream are void.
 void Subscriber::NoteStream() {
   jsStreamInfo* raw = nullptr;
   js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), nullptr, nullptr);
@@ -191,7 +192,8 @@ void Subscriber::NoteStream() {
   if (before != 0 && before != created_) next_ = 1;
 }
 
-/// The end of each subscription, and each request, would wait in turn for a server that hangs.
+/// Returns true if the server answers. Otherwise the end of each subscription, and each request,
+/// would wait in turn.
 bool Subscriber::Answers() const {
   return natsConnection_FlushTimeout(connection_->get(), kRequestTimeoutMs) == NATS_OK;
 }
@@ -227,7 +229,7 @@ Subscriber::Event Subscriber::Renew() {
   natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
   const ConsumerInfoPtr info(raw);
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
-  // The server may lose the consumer before the first message: the new one begins here.
+  // The server may lose the consumer before the first message: the next one then begins here.
   next_ = info->Delivered.Stream + 1;
   return Event::kNothing;
 }
@@ -262,8 +264,8 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   return Event::kMessage;
 }
 
-/// Asks the server, because only it knows which messages come again, what others of the group have
-/// not acknowledged, and which messages it has removed.
+/// Returns true if no message is to come. Asks the server, which alone counts messages that come
+/// again, messages that others of the group have not acknowledged, and removed messages.
 bool Subscriber::IsDone() {
   const auto now = steady_clock::now();
   if (!settings_.seeks_end || now < is_done_at_) return false;
@@ -305,7 +307,7 @@ Subscriber::Event Subscriber::Next(milliseconds timeout, Delivery* delivery) {
   delivery->message.reset(raw);
   if (s == NATS_SLOW_CONSUMER) CountOverruns();
   if (s == NATS_MISMATCH) stale_ = true;
-  // The state, which says why, may come a moment later.
+  // The state, which has the reason, may change a moment later.
   if (!messages_ || s == NATS_CONNECTION_CLOSED) std::this_thread::sleep_for(timeout);
   if (s == NATS_TIMEOUT && stored() && state.connected() && IsDone()) return Event::kEmpty;
   if (s != NATS_OK || raw == nullptr) return Event::kNothing;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Takes messages of one stream from NATS, live or kept by JetStream.
+// Receives messages of one stream from NATS, live or kept by JetStream.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -61,9 +61,9 @@ class Subscriber {
   /// Returns the format with that id. Requests an unknown one from the sender; returns null at a
   /// timeout.
   StreamFormat::Ptr Format(const std::string& id, std::chrono::milliseconds timeout);
-  /// Counts messages that came faster than they were taken.
+  /// Number of messages dropped because they came faster than Next() took them.
   std::uint64_t overruns() const { return overruns_; }
-  /// Counts formats that are damaged or not from a natssink.
+  /// Number of formats that are damaged or not from a natssink.
   std::uint64_t damaged_formats() const { return book_.damaged(); }
 
  private:
@@ -105,7 +105,7 @@ class Subscriber {
   unsigned missed_heartbeats_ = 0;
   bool stale_ = false;             // the consumer missed a message
   std::int64_t created_ = 0;       // time when the stream was made; 0: unknown
-  std::uint64_t next_ = 0;         // least number in the stream of the next message; 0: unknown
+  std::uint64_t next_ = 0;         // least number of the next message in the stream; 0: unknown
   std::uint64_t last_number_ = 0;  // number of the last message at the consumer
   bool began_ = false;
   std::uint64_t overruns_ = 0;
