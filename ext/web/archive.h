@@ -28,10 +28,10 @@ class Archive {
   };
 
   virtual ~Archive() = default;
-  /// Returns the times of all that can be read now, or nothing if there is none; `why` then has the
-  /// reason for a user.
+  /// Returns the first and last time that can be read now. Returns nothing if nothing can be read,
+  /// and sets `why` for a user.
   virtual std::optional<Times> Look(std::string* why) = 0;
-  /// Continues at a time, or behind the item that had the `position`.
+  /// Continues at a time, or after the item that had the `position`.
   virtual void Seek(std::uint64_t time_ns) = 0;
   virtual void GoOn(std::uint64_t position) = 0;
   /// Returns nothing if there is no next item yet, or soon after Cancel().

@@ -40,7 +40,7 @@ Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers, gint64 (*clock_us
 Client::~Client() {
   readable_.reset();
   writable_.reset();
-  // A TLS connection would wait for a peer that takes no close notification.
+  // A TLS connection would wait on close for a peer that does not read the close notification.
   if (G_IS_TLS_CONNECTION(stream_.get())) {
     GIOStream* base = nullptr;
     g_object_get(stream_.get(), "base-io-stream", &base, nullptr);
@@ -137,7 +137,7 @@ void Client::Forget(std::uint32_t channel) {
 
 void Client::Close(CloseCode code) {
   if (closed_) return;
-  // An error frame may stand between two frames, not within one.
+  // A close frame may be sent between two frames, not within one.
   if (!current_ || current_->sent == 0) WriteSome({foxglove::CloseFrame(code), nullptr, 0});
   End();
 }

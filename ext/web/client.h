@@ -32,19 +32,19 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// Control texts wait in order; a client that lets too many wait is closed.
+  /// Queues a control text, in order. A client that lets too many wait is closed.
   void SendText(const std::string& text);
   /// Queues a message; at most `depth` of its channel wait. Returns how many of them were dropped,
   /// which may include the new one.
   std::size_t Send(Outbox::Item item, std::size_t depth);
   /// Notes that a message of the channel is not sent to this client.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
-  /// Slices are kept in order. They are sent only as earlier ones were drawn, so a client that lets
-  /// too many wait broke the protocol and is closed. `replay` is the number of the replay to which
-  /// the slice belongs, or 0 if it is live.
+  /// Queues a slice, in order. The caller sends slices only as the client draws earlier ones, so a
+  /// client that lets too many wait broke the protocol and is closed. `replay` is the number of the
+  /// replay to which the slice belongs, or 0 if it is live.
   void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice,
                  std::uint16_t replay = 0);
-  /// The channel's messages are no longer sent.
+  /// Drops the messages and slices of the channel that wait.
   void Forget(std::uint32_t channel);
   /// Sends the close frame, if the peer takes it, and ends the connection.
   void Close(foxglove::CloseCode code);

@@ -23,7 +23,7 @@ void Answer(SoupServerMessage* request, guint status, const char* text) {
                                    strlen(text));
   auto* headers = soup_server_message_get_response_headers(request);
   soup_message_headers_replace(headers, "Cache-Control", "no-store");
-  // RFC 9110, sections 15.5.2 and 15.5.6, wants these.
+  // RFC 9110, sections 15.5.2 and 15.5.6, requires these headers.
   if (status == SOUP_STATUS_UNAUTHORIZED)
     soup_message_headers_replace(headers, "WWW-Authenticate", "Bearer");
   if (status == SOUP_STATUS_METHOD_NOT_ALLOWED)
@@ -246,8 +246,8 @@ void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text
   }
 }
 
-/// The newest subscription of a channel counts. An id names one channel: unsubscribe has only the
-/// id.
+/// The newest subscription to a channel replaces an earlier one. An id names one channel only,
+/// because an unsubscribe has nothing but the id.
 void ClientService::Subscribe(Client* client, const foxglove::Subscription& subscription) {
   const auto topic = topics_.find(subscription.channel_id);
   if (topic == topics_.end() || client->closed()) return;  // the topic or client has just gone
@@ -351,7 +351,7 @@ void ClientService::SendStatistics() {
   Deliver(kStatisticsId, std::make_shared<const Message>(std::move(message)));
 }
 
-/// Later connections use the new certificate.
+/// Reads the certificate again if its files have changed. Later connections use the new one.
 void ClientService::RenewCertificate() {
   std::string why;
   if (!certificate_.is_wanted()) return;

@@ -41,7 +41,7 @@ class ClientService {
   static void OnRequest(SoupServer*, SoupServerMessage*, const char* path, GHashTable* query,
                         gpointer self);
   static void OnUpgraded(SoupServerMessage*, gpointer self);
-  /// The grant of the request; nothing if it is answered already.
+  /// Returns the grant of the request, or answers with a refusal and returns nothing.
   std::optional<Grant> Admit(SoupServerMessage* request, GHashTable* query);
   void Upgrade(SoupServerMessage* request);
   void AddClient(SoupServerMessage* request);

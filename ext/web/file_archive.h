@@ -34,7 +34,7 @@ class FileArchive final : public Archive {
   const std::string location_;
   const SliceCaps caps_;
   std::unique_ptr<mcap::Playback> playback_;
-  std::optional<Item> ahead_;               // the item after the last one
+  std::optional<Item> ahead_;               // the item after the one that Next() returned last
   std::uint64_t damaged_ = 0;               // chunks left out before `ahead_` was read
   std::map<std::string, bool> known_caps_;  // as text; true: of our stream
   std::string topic_;                       // the first one of our stream

@@ -43,7 +43,7 @@ struct State {
   InputSettings settings;
   std::shared_ptr<Hub> hub;
   // Only the streaming thread uses what follows.
-  std::shared_ptr<Hub> used;  // since start
+  std::shared_ptr<Hub> used;  // the hub since start
   Kind kind = Kind::kNone;
   CloudInfo info;
   RefusedCaps refused;
@@ -102,7 +102,7 @@ std::string TopicName(const InputSettings& settings, const char* usual) {
   return settings.number == 0 ? usual : usual + ("_" + std::to_string(settings.number));
 }
 
-/// Returns false, with an element error, if another pad publishes other data there.
+/// Returns false, with an element error, if another pad publishes other data under `name`.
 bool OpenTopic(GstBaseSink* sink, const std::string& name, Schema schema, SharedTopic* topic) {
   State& state = StateOf(sink);
   *topic = state.used->server->Open(name, schema);
@@ -332,15 +332,15 @@ bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   for (double& value : pose.position) value = in.LeF64();
   for (double& value : pose.orientation) value = in.LeF64();
   if (!in.ok()) return false;
-  // The pad's frame-id, if set, goes before the caps.
+  // The pad's frame-id, if set, has priority over the caps.
   const bool from_caps = header.frame_id == InputSettings{}.frame_id;
   PublishPose(state, {header.unix_ns, state->parent_frame},
               from_caps ? state->child_frame : header.frame_id, pose);
   return true;
 }
 
-/// Estimates the number of messages per scan: a slow client may miss whole scans, a fast one no
-/// slice.
+/// Sets the depth of the channel to the slices of a scan: a slow client may miss whole scans, a
+/// fast one no slice.
 void LearnDepth(State* state, GstBuffer* buffer) {
   GstLidarSlice slice;
   gst_lidar_buffer_get_slice(buffer, &slice);

@@ -9,7 +9,7 @@
 namespace lidar::web {
 namespace {
 
-/// Longest time for a request. The page takes less, even over a poor link.
+/// Longest time for a request. The page's requests take less, even over a poor link.
 constexpr gint64 kLongest_us = 60 * gint64{G_USEC_PER_SEC};
 constexpr int kBacklog = 128;
 /// Limit of unsent data in the kernel, which become old there and cannot be dropped.
@@ -103,7 +103,7 @@ void FrontDoor::MakeRoom(const std::string& address) {
     Evict(&waiting_.front());
 }
 
-/// The server reads requests from `stream`.
+/// Makes the server read requests from `stream`.
 void FrontDoor::Enter(GSocketConnection* connection, GIOStream* stream) {
   const auto visitor =
       std::find_if(waiting_.begin(), waiting_.end(),
@@ -116,7 +116,7 @@ void FrontDoor::Enter(GSocketConnection* connection, GIOStream* stream) {
   const GErrorPtr owner(error);
 }
 
-/// The server sees the end of the connection and forgets it.
+/// Shuts the connection down. The server then notices its end and drops it.
 void FrontDoor::Evict(Visitor* visitor) {
   GSocketConnection* connection = visitor->connection;
   g_object_weak_unref(G_OBJECT(connection), OnGone, visitor);

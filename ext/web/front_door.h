@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Accepts connections for a SoupServer, with TLS if there is a certificate, and bounds the number
-// of silent ones.
+// of those without a WebSocket.
 #pragma once
 #include <libsoup/soup.h>
 
@@ -16,7 +16,7 @@ namespace lidar::web {
 /// Lives in the server's thread.
 class FrontDoor {
  public:
-  /// Limits of connections that are no WebSocket; the oldest are closed.
+  /// Most connections that are no WebSocket. Beyond a limit the oldest is closed.
   struct Limits {
     std::size_t all = 1000;
     std::size_t of_an_address = 32;  // a browser has six at a time
@@ -29,7 +29,7 @@ class FrontDoor {
 
   /// Returns the port, or 0 and the error.
   guint16 Listen(GInetAddress* address, guint16 port, std::string* error);
-  /// The connection of this request is a WebSocket from now on.
+  /// Notes that the connection of this request is a WebSocket from now on.
   void Promote(SoupServerMessage* request);
   /// Call it once a second: closes connections that take too long.
   void Tick(gint64 now_us);

@@ -19,7 +19,7 @@ struct GlibFree {
   void operator()(gpointer p) const { g_object_unref(p); }
 };
 
-/// A source stops when its owner goes.
+/// A source stops when its owner is deleted.
 using SourcePtr = std::unique_ptr<GSource, GlibFree>;
 using ContextPtr = std::unique_ptr<GMainContext, GlibFree>;
 using LoopPtr = std::unique_ptr<GMainLoop, GlibFree>;

@@ -14,7 +14,7 @@ bool SameSecret(std::string_view a, std::string_view b);
 
 struct Grant {
   std::optional<std::int64_t> expires_s;           // of Unix time
-  std::optional<std::vector<std::string>> topics;  // none: all; "/r7/*" is all below /r7
+  std::optional<std::vector<std::string>> topics;  // missing: all; "/r7/*" is all below /r7
 
   bool IsOver(std::int64_t now_s) const { return expires_s && now_s >= *expires_s; }
   bool Allows(std::string_view topic) const;

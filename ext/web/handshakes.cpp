@@ -96,7 +96,7 @@ void Handshakes::Start(const EntryPtr& entry) {
   entry->secure = NewServerConnection(entry->connection.get(), entry->certificate.get());
   if (!entry->secure) return Finish(entry, false);
   ++entry->address->second.running;
-  // A browser leaves by closing the connection, without a goodbye.
+  // A browser closes the connection without a close notification.
   g_tls_connection_set_require_close_notify(G_TLS_CONNECTION(entry->secure.get()), FALSE);
   g_tls_connection_handshake_async(G_TLS_CONNECTION(entry->secure.get()), G_PRIORITY_DEFAULT,
                                    entry->cancel.get(), OnShaken, new EntryPtr(entry));

@@ -13,7 +13,7 @@
 
 namespace lidar::web {
 
-/// Lives in the server's thread, whose context is its thread's default.
+/// Lives in the server's thread, and uses that thread's default context.
 class Handshakes {
  public:
   using Done = std::function<void(GSocketConnection*, GIOStream* secure)>;
@@ -25,7 +25,7 @@ class Handshakes {
 
   /// Waits for the first byte of the peer, and for its turn.
   void Begin(ObjectPtr<GSocketConnection> connection, GTlsCertificate* certificate);
-  /// The connection was closed.
+  /// Drops a connection that was closed.
   void Forget(GSocketConnection* connection);
   /// Call it once a second: ends handshakes that take too long.
   void Tick(gint64 now_us);
@@ -38,7 +38,7 @@ class Handshakes {
   };
   using Counts = std::map<std::string, Count>;
   struct Entry {
-    Handshakes* owner = nullptr;  // null: it has gone
+    Handshakes* owner = nullptr;  // null: it was deleted
     ObjectPtr<GSocketConnection> connection;
     ObjectPtr<GTlsCertificate> certificate;
     ObjectPtr<GIOStream> secure;  // null until the handshake starts

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads a recording in pieces, as viewers go back into it.
+// Reads a recording in pieces, at the times that viewers request.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -18,7 +18,7 @@ class Recording {
 
   /// Times [ns] are close to capture times.
   struct Piece {
-    std::uint64_t from_ns = 0;  // of the whole recording; both are 0 if nothing can be read
+    std::uint64_t from_ns = 0;  // of the whole recording; 0, as is to_ns, if nothing can be read
     std::uint64_t to_ns = 0;
     std::vector<SharedSliceMessage> slices;  // and poses
     std::uint64_t last_ns = 0;               // of the last slice

@@ -12,7 +12,7 @@
 
 namespace lidar::web {
 
-/// The server's thread uses it, whose context is its thread's default.
+/// Used by the server's thread, with that thread's default context.
 class RecordingReader {
  public:
   enum class Kind { kLook, kJump, kGoOn };

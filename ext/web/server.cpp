@@ -39,7 +39,7 @@ std::unique_ptr<Server> Server::Start(ServerConfig config, std::string* error) {
 
 Server::~Server() {
   if (!thread_.joinable()) return;
-  // The loop's own thread quits it, so that the loop has begun before.
+  // Quits from within the loop: before the loop runs, a quit has no effect.
   GSource* quit = g_idle_source_new();
   g_source_set_priority(quit, G_PRIORITY_HIGH);
   g_source_set_callback(

@@ -31,11 +31,12 @@ class Server {
   std::uint16_t port() const { return port_; }
   const ServerCounters& counters() const { return counters_; }
 
-  /// Opens the channel `topic`. Inputs may share it unless it has slices, which `stream` describes;
-  /// viewers may go back into their `recording`. Returns nothing if the topic has another schema.
+  /// Opens the channel `topic`. Inputs may share a channel unless it has slices. `stream` describes
+  /// the slices, and viewers may request earlier ones from `recording`. Returns nothing if the
+  /// topic has another schema.
   SharedTopic Open(const std::string& topic, foxglove::Schema schema, std::string stream = {},
                    std::shared_ptr<Recording> recording = {});
-  /// The last pad that opened the channel closes it.
+  /// Closes the channel once all inputs that opened it have called this.
   void Close(const SharedTopic& topic);
   /// Queues the message for the server's thread. If too many wait, the oldest are dropped.
   void Publish(const SharedTopic& topic, Message message);

@@ -19,7 +19,7 @@ struct ServerConfig {
   std::string token;            // empty, with `token_secret` also empty: admits all clients
   std::string token_secret;     // for signed tokens; empty: none
   std::string allowed_origins;  // of other pages that need no token: "https://a,https://b"
-  std::string certificate;      // PEM file of it and its chain; empty: no TLS
+  std::string certificate;      // PEM file of the certificate and its chain; empty: no TLS
   std::string private_key;      // PEM file
   std::function<void(std::string)> warn;  // warnings for a user; called in the server's thread
   unsigned max_clients = 8;
@@ -33,7 +33,7 @@ struct ServerCounters {
   using Count = std::atomic<std::uint64_t>;
   Count clients{0};
   Count clients_accepted{0};
-  Count clients_refused{0};  // wrong tokens, or too many of them
+  Count clients_refused{0};  // by Admission, or because of max_clients
   Count messages_sent{0};
   Count messages_dropped{0};  // a slow client gets a newer one instead
   Count bytes_sent{0};

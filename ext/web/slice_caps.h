@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The caps of coded slices, and what viewers get of them.
+// The caps of coded slices, and the facts that viewers get from them.
 #pragma once
 #include <gst/gst.h>
 

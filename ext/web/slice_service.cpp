@@ -8,7 +8,7 @@ namespace {
 
 Time Now() { return Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
-/// Interval at which a recording that grows is looked at, while it has viewers.
+/// Interval of checks of a growing recording, while it has viewers.
 constexpr Duration kLook = std::chrono::seconds(2);
 
 std::size_t BytesOf(const std::deque<viewer::SharedSlice>& slices) {

@@ -21,12 +21,12 @@ class SliceService {
 
   void Subscribe(Client* client, const SharedTopic& topic, std::uint32_t subscription);
   void Unsubscribe(Client* client, std::uint32_t channel);
-  /// The client has left, or the channel was removed.
+  /// Forgets a client that has left, or a channel that was removed.
   void Forget(const Client* client);
   void ForgetChannel(std::uint32_t channel) { streams_.erase(channel); }
 
   void Deliver(std::uint32_t channel, const SharedSliceMessage& slice);
-  /// `request` is about slices.
+  /// Handles a request about slices.
   void OnRequest(Client* client, const foxglove::Request& request);
   /// Call it regularly: sends what had to wait.
   void Tick();
@@ -41,12 +41,12 @@ class SliceService {
   /// What a viewer gets of a recording in place of live slices.
   struct Replay {
     std::uint16_t number = 0;                 // number of the replay, chosen by the viewer
-    std::deque<viewer::SharedSlice> waiting;  // read and not sent
+    std::deque<viewer::SharedSlice> waiting;  // read but not sent yet
     std::uint64_t next = 0;                   // position of the next piece
     std::uint64_t last_ns = 0;                // time of the last slice that was read
     std::uint64_t damaged = 0;                // parts that were left out
     bool is_reading = true;
-    bool ended = false;  // no more follow
+    bool ended = false;  // no more slices follow
   };
   struct Viewer {
     std::uint32_t subscription = 0;
@@ -59,7 +59,7 @@ class SliceService {
     viewer::RecentScans recent;
     std::map<Client*, Viewer> viewers;
     Time looked_at{};           // last look at the recording
-    std::uint64_t from_ns = 0;  // times of the recording at that look
+    std::uint64_t from_ns = 0;  // times of the recording at looked_at
     std::uint64_t to_ns = 0;
     std::string why;  // of the last warning
   };

@@ -21,7 +21,7 @@ class SliceStream {
     std::string topic;           // of the decoded clouds; the slices' topic adds kSlicesEnding
     std::string frame_id;        // of both channels
     std::string recording = {};  // location of mcapsink's files of the stream; empty: none
-    UpstreamArchive::Ask ask_upstream = {};  // queries a history without a recording; null: none
+    UpstreamArchive::Ask ask_upstream = {};  // used without a recording; null: no history
     guint max_points = 0;                    // of a decoded message; 0: no limit
   };
   struct Counters {
@@ -29,7 +29,7 @@ class SliceStream {
     std::atomic<guint64>& malformed;  // slices that cannot be decoded
   };
   /// Opens both channels. Returns nothing and sets `why` if the caps are not those of slices to
-  /// decode, or another stream has a topic. `server` and the `counters` outlive the stream.
+  /// decode, or another stream uses a topic. `server` and the `counters` outlive the stream.
   static std::unique_ptr<SliceStream> Open(Server* server, const GstCaps* caps, Settings settings,
                                            Counters counters, std::string* why);
   /// Closes the channels.
@@ -51,7 +51,8 @@ class SliceStream {
   void Wake();
   void Run();
   void Publish(const SliceMessage& slice, bool recodes);
-  /// Returns true if a client wants decoded slices. The lock is held.
+  /// Returns true if the thread must decode: a client wants decoded slices, or the backlog is full.
+  /// The lock is held.
   bool IsWanted();
 
   Server* const server_;
@@ -66,7 +67,7 @@ class SliceStream {
   std::condition_variable change_;
   viewer::Backlog backlog_;
   gint64 recoded_wanted_us_ = 0;  // last time that recoded slices were wanted
-  bool recodes_ = false;          // slices were recoded recently
+  bool recodes_ = false;          // recoded slices were wanted recently
   bool stopping_ = false;
   std::thread thread_;
 };

@@ -64,7 +64,8 @@ struct Summary {
   std::size_t size = 0;  // of an array; 0: a number
 };
 constexpr double kMs = 1e-6;  // of ns
-// Reports of a sender in another pipeline count, too; later rows win.
+// The first rows take values from the reports of a sender in another pipeline. Later rows replace
+// them by values of a sender in this pipeline.
 constexpr std::array<Summary, 23> kSummaries = {{
     {"target_bitrate", "sender_target_bitrate", "sender_reports"},
     {"sent_bitrate", "sender_sent_bitrate", "sender_reports"},

@@ -20,7 +20,7 @@ namespace lidar::web {
 struct Message {
   std::uint64_t unix_ns = 0;
   std::vector<std::uint8_t> payload;
-  bool continues = false;  // worthless without the message before it: a frame that is no key frame
+  bool continues = false;  // useless without the message before, as a frame that is no key frame
 };
 using SharedMessage = std::shared_ptr<const Message>;
 
@@ -32,7 +32,7 @@ struct SliceMessage final : viewer::Slice {
   std::vector<std::uint8_t> payload;
 
   /// Sets the size and the links to other slices from the payload. Returns false if no decoder
-  /// takes it.
+  /// accepts the payload.
   bool ReadLinks(bool has_ranges) {
     size = DataSize::Bytes(static_cast<std::int64_t>(payload.size()));
     if (!has_ranges) return true;
@@ -67,7 +67,8 @@ class Topic {
   void set_wants_recoded(bool wanted) {
     if (wants_recoded_.exchange(wanted) != wanted && wanted) TellOfWish();
   }
-  /// The server's thread calls `tell` when the first subscriber comes. Null removes it.
+  /// The server's thread calls `tell` when a subscriber comes, or when a viewer starts to need
+  /// recoded slices. Null removes it.
   void set_on_wish(std::function<void()> tell) {
     const std::lock_guard lock(mutex_);
     on_wish_ = std::move(tell);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads what a source upstream can still get of the stream, as natssrc can from JetStream.
+// Reads the past of the stream from a source upstream that can get it, as natssrc can from
+// JetStream.
 #pragma once
 #include <deque>
 #include <functional>

@@ -35,7 +35,7 @@ struct Slice {
 /// A block of a slice that others may refer to.
 struct Link {
   std::uint32_t name = 0;
-  std::uint32_t needs = 0;  // the name of another
+  std::uint32_t needs = 0;  // the name of the block that it refers to
   std::uint32_t has_needs = 0;
 };
 
@@ -167,7 +167,7 @@ Decoder* Open(const std::uint8_t* model, std::uint32_t size, std::uint32_t max_p
   return new Decoder(std::move(sensor), max_points < kMostPoints ? max_points : kMostPoints);
 }
 EXPORT(close) void Close(Decoder* decoder) { delete decoder; }
-/// Returns the place for the next slice; null for a slice that is too large.
+/// Returns memory for the next slice; null for a slice that is too large.
 EXPORT(input) std::uint8_t* Input(Decoder* decoder, std::uint32_t size) {
   return decoder->Input(size);
 }

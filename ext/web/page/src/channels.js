@@ -6,7 +6,7 @@ const CLOUDS = ['foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
 const SLICES = 'lidar.Slice';
 const VIDEO = 'foxglove.CompressedVideo';
 
-/** The topic of the clouds that a channel has, also as slices; null if it has none. */
+/** The topic of a channel's clouds; for slices that of the decoded clouds; null without clouds. */
 function cloudTopic({ schemaName, schema, topic }) {
   if (CLOUDS.includes(schemaName)) return topic;
   if (schemaName !== SLICES) return null;
@@ -19,7 +19,7 @@ function cloudTopic({ schemaName, schema, topic }) {
 
 const robotOf = (topic) => topic.split('/').filter(Boolean)[0];
 
-/** The robots' names, with which all topics of clouds must begin: r7 of /r7/points. */
+/** Returns the robots' names if all topics of clouds begin with one: r7 of /r7/points. */
 export function robotsOf(list) {
   const topics = list.map(cloudTopic).filter((topic) => topic !== null);
   if (!topics.every((topic) => topic.split('/').filter(Boolean).length > 1)) return [];

@@ -12,7 +12,7 @@ export class Clock {
     this.differences = [];
   }
 
-  /** Notes a message that left the server at `sent` [s]; returns the present [s]. */
+  /** Notes a message that left the server at `sent` [s]; returns the present time [s]. */
   arrived(sent) {
     this.differences.push(nowSeconds() - sent);
     if (this.differences.length > KEPT) this.differences.shift();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Decodes the slices of a stream into points, by ext/web/decoder as WebAssembly. Each decoder is an
-// instance: a slice that makes it trap costs only its own stream the references.
+// instance of its own: if a slice makes it trap, only the slice's stream loses its references.
 
 export const POINT_FLOATS = 6; // x, y, z, intensity, beam, range, as in fields.js
 const DAMAGED = -1;

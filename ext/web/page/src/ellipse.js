@@ -8,7 +8,7 @@ const CORNERS = 64;
 /** Points of the ellipse around 0, as x, y, 0; `covariance` is that of lidar.Statistics. */
 export function ellipseOf(covariance) {
   const [xx, xy, yy] = [0, 1, 7].map((i) => covariance[i]);
-  // The Cholesky factor makes the ellipse of a circle.
+  // The Cholesky factor turns a circle into the ellipse.
   const a = Math.sqrt(xx);
   const b = a > 0 ? xy / a : 0;
   const c = Math.sqrt(Math.max(yy - b * b, 0));

@@ -2,7 +2,7 @@
 // The coded slices of the last minutes, by capture time, and a player that shows them again.
 
 const MOST_AHEAD_S = 1; // a time further ahead is a jump
-const PATIENCE_MS = 20; // of decoding, then the worker reads its messages
+const PATIENCE_MS = 20; // of decoding, after which the worker reads its messages
 
 /** Slices are {captured, header, bytes, links, source}; a decoder is opened for each `source`. */
 export class History {
@@ -62,7 +62,7 @@ export class History {
     return this.first + low;
   }
 
-  /** The first slice of the last scan but one before slice `number`: a whole picture begins there. */
+  /** The number of the first slice of the last two scans before slice `number`: a whole picture. */
   scanBefore(number) {
     const scans = new Set();
     const source = this.at(number - 1)?.source;
@@ -122,8 +122,9 @@ export class Player {
   }
 
   /**
-   * Returns {jumped, slices: [{slice, decoded}], next}: what is new in the picture at `time`, after a
-   * jump all of it; `next` is the time of the slice after it. Null if `isWanted()` turns false.
+   * Returns {jumped, slices: [{slice, decoded}], next}: the new slices of the picture at `time`, or
+   * all its slices after a jump; `next` is the time of the slice after them. Null if `isWanted()`
+   * turns false.
    */
   async show(time, isWanted = () => true) {
     const { history } = this;

@@ -3,7 +3,7 @@
 
 export const MOST_LINKS = 4;
 const NS_TO_MS = 1e-6;
-const SENDER_S = 3; // after its last report, in which a receiver's reports are ignored
+const SENDER_S = 3; // after the sender's last report; a receiver's reports are ignored meanwhile
 
 const inMs = (ns) => (typeof ns === 'number' ? ns * NS_TO_MS : undefined);
 

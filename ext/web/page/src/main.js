@@ -162,7 +162,7 @@ function jump(time) {
   if (!wasOn) page.choose();
 }
 
-/** Clears what belongs to the picture of the time before. */
+/** Clears what belongs to the picture shown before. */
 function showTime() {
   const { isPast } = page.timeline;
   if (isPast) page.scene.setCovariance(null);
@@ -186,7 +186,7 @@ function onStatistics(message) {
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
   if (sink?.scan_duration > 0 && !page.paused) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
-  // Of the past, statistics have nothing.
+  // Statistics describe the present, not the past.
   if (message.pose_covariance && !page.timeline.isPast) page.scene.setCovariance(message.pose_covariance);
   const links = page.links.of(message, nowSeconds());
   page.charts.add({ ...page.quality, ...message, ...links, received: page.receivedBps, age: page.age });
@@ -333,7 +333,7 @@ function connectOthers() {
 
 // --- the loop ---
 
-/** Sends the acknowledgements by which the server paces, and takes the age of the drawn cloud. */
+/** Acknowledges slices, by which the server paces, and notes the age of the drawn cloud. */
 function afterDrawing() {
   page.slices.drawn();
   page.replay.acknowledge();
@@ -352,7 +352,7 @@ function frame(now) {
   if (!page.timeline.isPast) page.video.draw(time);
   else if (time !== null) page.video.replay(time);
   afterDrawing();
-  // After a busy stretch of the browser, clouds may have come that it has not delivered yet.
+  // A busy browser may have received clouds that it has not delivered yet.
   page.quietMs += Math.min(now - drawn, BUSY_MS);
   drawn = now;
   if (now - drawnCharts > SLOW_DRAW_MS) {

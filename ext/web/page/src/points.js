@@ -53,7 +53,7 @@ export class FreshPoints {
     this.uniforms = {
       now: { value: 0 },
       span: { value: 0.1 }, // age at which a point has lost its glow [s]
-      hidden: { value: 0.1 }, // age from which it is not drawn [s]
+      hidden: { value: 0.1 }, // age from which a point is not drawn [s]
       floor: { value: -NO_CLIP },
       ceiling: { value: NO_CLIP },
       mode: { value: 0 },
@@ -83,7 +83,7 @@ export class FreshPoints {
   clear() {
     this.next = 0;
     this.batches = []; // {start, count, stamp, place}, the oldest first
-    this.scan = this.scanBefore = undefined; // the last two, if points come as slices
+    this.scan = this.scanBefore = undefined; // the last two scans, if points come as slices
     this.epoch = null; // zero of the times [s], which are floats
     this.latest = 0;
     for (const part of this.parts) part.geometry.setDrawRange(0, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The transforms of each frame, interpolated, and extrapolated past the newest one because slices
-// come before the pose of their scan. Nothing is interpolated across a loss of the server.
+// come before the pose of their scan. Nothing is interpolated across a loss of the connection.
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
 const KEPT = 1 << 14; // half an hour at 10 Hz, longer than slices are kept
@@ -10,7 +10,7 @@ const ONE = new Vector3(1, 1, 1);
 export class Poses {
   constructor() {
     this.frames = new Map(); // lists of transforms by child frame, the oldest first
-    this.begun = 0; // number of losses of the server
+    this.begun = 0; // number of losses of the connection
   }
 
   /** Ends the series of transforms: later ones do not continue it. */

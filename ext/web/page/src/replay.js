@@ -143,7 +143,7 @@ export class Replay {
     this.on.show(time);
   }
 
-  /** Acknowledges the slices shown up to AHEAD_S from now. */
+  /** Acknowledges the slices that are shown or will be within AHEAD_S. */
   acknowledge() {
     for (const [channel, { unshown }] of this.streams) {
       let last = null;

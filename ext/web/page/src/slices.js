@@ -113,7 +113,7 @@ export class Slices {
     this.worker?.postMessage({ show: time, isReplay });
   }
 
-  /** Has the worker keep only the slices of this replay; 0: none. */
+  /** Makes the worker keep only the slices of this replay; 0: none. */
   replay(number) {
     this.start().postMessage({ replay: number });
   }

@@ -6,7 +6,7 @@ import { NO_CLIP } from './points.js';
 import { number, t } from './text.js';
 
 const TRAIL_S = 1;
-const SHARE_MS = 400; // after the last change the address is updated
+const SHARE_MS = 400; // from the last change to the update of the address
 const NARROW = '(max-width: 760px)';
 
 const byId = (id) => document.getElementById(id);

@@ -101,7 +101,7 @@ export class Video {
     this.next = key < 0 ? null : this.first + key;
   }
 
-  /** Shows the newest picture not later than `time` [s], that of the cloud; null: the newest. */
+  /** Shows the newest picture up to `time` [s], the cloud's time; null: the newest of all. */
   draw(time) {
     const ahead = (picture) => picture.timestamp * 1e-6 - time;
     const isDue = (picture) => time === null || ahead(picture) <= 0 || ahead(picture) > FAR_S;
