@@ -219,7 +219,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   auto* self = GST_LIDAR_NATS_SINK(base);
   State& state = StateOf(self);
   std::string why;
-  // Refused caps leave the format, because GstBaseSink does not set the earlier caps again.
+  // Refused caps do not change the format, because GstBaseSink does not set the earlier caps again.
   if (auto format = StreamFormat::FromCaps(caps, &why)) {
     state.refused_caps.Reset();
     state.format = std::move(format);
