@@ -84,8 +84,8 @@ class CloudWriter : public BufferWriter {
 
 /// Writes a message for each sample of a packet.
 class ImuWriter : public BufferWriter {
-  /// A sample further behind the first has another clock, because the sensor's clock was set. It is
-  /// logged with the sample before.
+  /// The sensor's clock was set if a sample is earlier than the first, or later by more than this.
+  /// Such a sample gets the log time of the sample before.
   static constexpr std::uint64_t kLongestPacket = GST_SECOND;
 
  public:

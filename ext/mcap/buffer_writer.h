@@ -28,8 +28,8 @@ class BufferWriter {
   virtual ~BufferWriter() = default;
 
   MessageType type() const { return type_; }
-  /// Appends the messages of `buffer`, logged at `log_time`. Returns false if it contradicts its
-  /// caps.
+  /// Appends the messages of `buffer`, logged at `log_time`. Returns false if the buffer
+  /// contradicts its caps.
   virtual bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) = 0;
 
  protected:

@@ -68,11 +68,11 @@ const std::array<Stat<Counters>, 4> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards these; never held while writing, because a disk may hang
+  std::mutex mutex;  // guards settings and counters; not held while writing, as a disk may hang
   Settings settings;
   Counters counters;
 
-  std::mutex recording;  // guards these, is taken before `mutex`, and never held while posting
+  std::mutex recording;  // guards what follows; taken before `mutex`; never held while posting
   std::unique_ptr<Recorder> recorder;
   Timeline timeline;
   std::set<std::string> topics;
@@ -314,7 +314,7 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   if (!state.recorder) return false;
   state.topics.insert(topic);
   state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
-  // If earlier caps of the stream come again, it continues in their channel.
+  // If earlier caps of the stream come again, the stream continues in their channel.
   const auto [known, is_new] = stream->channels.try_emplace(KindOf(caps, writer.type()));
   stream->channel_id = known->second;
   if (!is_new) return true;

@@ -248,7 +248,7 @@ static GstFlowReturn PlayItem(GstLidarMcapSrc* self, const lidar::mcap::Playback
   return GST_FLOW_OK;
 }
 
-/// Counts files that can no longer be read by their turn, and warns of them.
+/// Counts files that could not be read any more when playback reached them, and warns of them.
 static void NoteUnreadable(GstLidarMcapSrc* self) {
   State& state = *self->state;
   const lidar::mcap::Playback& playback = *state.run.playback;
@@ -279,7 +279,7 @@ static void Loop(gpointer user_data) {
   if (flow != GST_FLOW_OK) Stop(self, flow);
 }
 
-/// Takes the pads from the element, because the streams belong to the task.
+/// Pushes `event` on all pads. Lists the element's pads, because the streams belong to the task.
 static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   GST_OBJECT_LOCK(self);
   GList* pads = g_list_copy_deep(
@@ -300,7 +300,7 @@ static void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment)
     std::lock_guard lock(state.mutex);
     segment = state.segment = seek.Begun(segment, state.segment);
   }
-  if (seek.flushes()) state.end_wanted = false;  // the flush drops it
+  if (seek.flushes()) state.end_wanted = false;  // the flush also drops a wanted end
   const std::uint64_t start = run.playback->start_time();
   const bool ends = GST_CLOCK_TIME_IS_VALID(segment.stop) && segment.stop < UINT64_MAX - start;
   run.playback->Seek(start + segment.position, ends ? start + segment.stop : UINT64_MAX);
@@ -326,7 +326,7 @@ static bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
   if (seek.flushes()) PushFlush(self, seek, gst_event_new_flush_start());
   state.task.Pause();
   g_rec_mutex_lock(state.task.lock());
-  bool open = false;  // it may have been closed meanwhile
+  bool open = false;  // the recording may have been closed meanwhile
   {
     std::lock_guard lock(state.mutex);
     open = state.is_open;

@@ -64,7 +64,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
     return FALSE;
   }
   state.refused.Reset();
-  // Refused caps leave the writer, because GstBaseSink does not set the earlier caps again.
+  // Refused caps do not change the writer, because GstBaseSink does not set the earlier caps again.
   state.writer = std::move(writer);
   if (state.topic.empty()) {
     const std::string usual(TopicOf(state.writer->type()));
@@ -96,8 +96,8 @@ static gboolean Event(GstBaseSink* base, GstEvent* event) {
   return GST_BASE_SINK_CLASS(gst_lidar_mcap_stream_parent_class)->event(base, event);
 }
 
-/// Each recording has its own channels, even if the element went no lower than READY between two of
-/// them.
+/// Each recording has its own channels, even if the element went no lower than READY between two
+/// recordings.
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     State& state = StateOf(element);

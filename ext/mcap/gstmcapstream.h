@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A stream of mcapsink, inside of it.
+// A stream inside of mcapsink.
 #pragma once
 #include <gst/base/gstbasesink.h>
 

@@ -25,7 +25,7 @@ void WarnOfUnclosed(GstElement* element, guint64 files);
 void WarnOfUnreadable(GstElement* element, guint64 files, const std::string& why);
 /// Posts an error if nothing could be read, and a warning if parts are left out.
 void PostDamage(GstElement* element, const PlayedCounts& counts);
-/// Posts an error: no pad's caps are taken downstream.
+/// Posts an error: the caps of no pad are accepted downstream.
 void PostNotTaken(GstElement* element);
 
 }  // namespace lidar::gst

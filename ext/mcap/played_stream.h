@@ -18,7 +18,7 @@ struct PlaybackGroup {
   guint32 seqnum = GST_SEQNUM_INVALID;
 };
 
-/// Used by the streaming thread, or while it stands still.
+/// Used by the streaming thread, or while that thread is paused.
 class PlayedStream {
  public:
   /// `pad` is inactive; Prepare() adds it to `element` once its caps are known.
@@ -31,7 +31,7 @@ class PlayedStream {
 
   /// Reads messages of that channel from now on. Returns false if their type is unknown.
   bool Follow(const mcap::Schema& schema, const mcap::Channel& channel);
-  /// Pushes caps and segment if they are due, and shows the pad. Returns false if caps are not
+  /// Pushes caps and segment if they are due, and adds the pad. Returns false if caps are not
   /// known.
   bool Prepare(const PlaybackGroup& group);
   /// Null if the message is damaged.
@@ -39,7 +39,7 @@ class PlayedStream {
   GstFlowReturn Push(BufferPtr buffer);
   /// Pushes a gap up to `time` if the stream is far behind it.
   void FillUpTo(GstClockTime time, const PlaybackGroup& group);
-  /// A seek plays from `position` in a new segment.
+  /// Begins a new segment at `position`, after a seek.
   void Restart(GstClockTime position) {
     needs_segment_ = true;
     discont_ = true;
@@ -55,7 +55,7 @@ class PlayedStream {
   const std::string topic_;
   std::unique_ptr<MessageReader> reader_;
   std::string schema_;       // of the channel that is read
-  mcap::Metadata metadata_;  // likewise
+  mcap::Metadata metadata_;  // of the same channel
   CapsPtr pushed_caps_;
   bool added_ = false;
   bool needs_segment_ = true;

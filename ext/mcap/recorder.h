@@ -28,7 +28,7 @@ struct RecorderFault {
   std::string path;
   int error = 0;  // errno
   bool opening = false;
-  bool complete = false;  // the only file already is
+  bool complete = false;  // the only file is complete already
 };
 
 struct RecordedFile {
@@ -41,7 +41,7 @@ class Recorder {
  public:
   Recorder(const RecorderSettings& settings, mcap::FileNames names);
 
-  /// Returns what prevents the first file, without creating it.
+  /// Returns the fault that would prevent the first file, without creating it.
   std::optional<RecorderFault> Check() const;
 
   mcap::Catalogue& catalogue() { return catalogue_; }

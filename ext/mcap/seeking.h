@@ -15,10 +15,11 @@ class Seek {
   explicit Seek(GstEvent* event);
 
   /// Returns the segment after the seek. Returns nothing unless the seek is forward, by time, and
-  /// to a place with data.
+  /// to a time with data.
   std::optional<GstSegment> AppliedTo(GstSegment played) const;
-  /// Returns the segment that the task plays; `made` is the result of AppliedTo(). Without a flush
-  /// the running time of `played`, the segment when the task paused, continues.
+  /// Returns the segment that the task plays after the seek. `made` is the result of AppliedTo(),
+  /// `played` the segment when the task paused. Without a flush the running time of `played`
+  /// continues.
   GstSegment Begun(GstSegment made, const GstSegment& played) const;
   bool flushes() const { return (flags_ & GST_SEEK_FLAG_FLUSH) != 0; }
   guint32 seqnum() const { return gst_event_get_seqnum(event_.get()); }

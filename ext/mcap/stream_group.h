@@ -14,7 +14,7 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread, or while it stands still. The destructor removes the pads.
+/// Used by the streaming thread, or while that thread is paused. The destructor removes the pads.
 class StreamGroup {
  public:
   /// Returns a new, inactive pad without a parent.
@@ -43,14 +43,14 @@ class StreamGroup {
   Played Read(const mcap::Playback::Item& item, GstClockTime pts);
   /// Returns the combined flow of all pads.
   GstFlowReturn Push(Played played);
-  /// The source performed a seek.
+  /// Begins a new segment after a seek of the source.
   void Restart(const GstSegment& segment, guint32 seqnum);
   /// Sends `event` on all pads.
   void End(GstEvent* event);
 
  private:
   PlayedStream* StreamOf(const std::string& topic);
-  /// Each topic costs a pad and a thread behind it.
+  /// Each topic costs a pad, and perhaps a thread downstream.
   static constexpr std::size_t kMaxStreams = 256;
 
   struct FreeCombiner {

@@ -16,8 +16,8 @@ class Timeline {
     std::uint64_t now = 0;
   };
 
-  /// The first buffer relates running times to 1970, by its capture time or the present. Later
-  /// buffers keep their distances.
+  /// The first buffer relates running times to 1970, by its capture time or the present. Log times
+  /// of later buffers have the same distances as their running times.
   std::uint64_t LogTime(const Moment& at) {
     if (!at.running_time) return last_ > 0 ? last_ : at.capture_time.value_or(at.now);
     if (!origin_) {
@@ -28,8 +28,7 @@ class Timeline {
     last_ = std::max(last_, time);
     return time;
   }
-  /// Running times restarted, and the recording continues: the next buffer relates them to 1970
-  /// anew.
+  /// Call it when running times restart in a recording: the next buffer relates them to 1970 anew.
   void Restart() { origin_.reset(); }
 
  private:

@@ -7,11 +7,11 @@
 
 namespace lidar::mcap {
 
-/// The header of the chunk that is `record`; nothing if it is damaged or asks for more than
+/// Returns the header of the chunk at `record`; nothing if it is damaged or claims more than
 /// kMaxChunk.
 std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& record);
 
-/// Replaces `records` by those of the chunk. Returns false if it is damaged.
+/// Replaces `records` by those of the chunk. Returns false if the chunk is damaged.
 bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records);
 
 }  // namespace lidar::mcap

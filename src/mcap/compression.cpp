@@ -9,7 +9,7 @@
 namespace lidar::mcap {
 namespace {
 
-constexpr int kZstdLevel = 1;  // clouds gain little from more
+constexpr int kZstdLevel = 1;  // clouds gain little from higher levels
 
 std::size_t CompressLz4(ByteView bytes, Bytes* out) {
   out->resize(LZ4F_compressFrameBound(bytes.size, nullptr));

@@ -16,8 +16,8 @@ std::string_view NameOf(Compression compression);
 /// then they are better stored uncompressed.
 bool Compress(Compression compression, ByteView bytes, Bytes* out);
 
-/// Replaces `out` by exactly `size` bytes; false if the data are damaged, give more or less, or are
-/// of an unknown compression. The caller has bounded `size`.
+/// Replaces `out` by the uncompressed `bytes`. Returns false if `bytes` are damaged, do not give
+/// exactly `size` bytes, or have an unknown compression. The caller has bounded `size`.
 bool Decompress(std::string_view compression, ByteView bytes, std::size_t size, Bytes* out);
 
 }  // namespace lidar::mcap

@@ -28,10 +28,10 @@ struct FileIndex {
   bool empty() const { return chunks.empty(); }
   std::uint64_t start_time() const;
   std::uint64_t end_time() const;
-  /// Takes a new schema or channel. Returns false for other records, damaged ones and known ones,
+  /// Adds a new schema or channel. Returns false for other records, damaged ones and known ids,
   /// which stay unchanged. Memory stays within kMaxCatalogue.
   bool Learn(const Record& record);
-  /// The same of all records of a chunk.
+  /// Calls Learn() with all records of a chunk.
   void LearnAll(ByteView records);
 };
 

@@ -15,9 +15,9 @@ struct Conversion {
   std::size_t digits = 0;
   std::size_t length = 0;
 };
-/// Parses the conversion at the beginning of `text`; nothing for any other.
+/// Parses the conversion at the beginning of `text`. Returns nothing for another conversion.
 std::optional<Conversion> ParseConversion(std::string_view text) {
-  std::size_t at = 1;  // behind the %
+  std::size_t at = 1;  // after the %
   const bool zeros = at < text.size() && text[at] == '0';
   std::size_t digits = 0;
   const auto parsed = std::from_chars(text.data() + at, text.data() + text.size(), digits);

@@ -11,7 +11,7 @@ namespace lidar::mcap {
 namespace {
 
 constexpr std::uint64_t kMaxRun = std::uint64_t{1} << 20;  // bytes
-constexpr int kChunksToLearn = 4;  // later channels become known with their messages
+constexpr int kChunksToLearn = 4;  // channels of later chunks are read together with their messages
 
 class Scanner {
  public:

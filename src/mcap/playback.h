@@ -36,7 +36,7 @@ class Playback {
                                         const std::atomic<bool>* cancelled, std::string* why);
 
   /// Lists the files again: a recording that is still written grows, and its oldest files are
-  /// removed. Returns false if there is no file to read; `why` then has the reason. Seek() comes
+  /// removed. Returns false if there is no file to read; `why` then has the reason. Call Seek()
   /// next.
   bool Refresh(std::string* why);
 
@@ -45,16 +45,17 @@ class Playback {
   std::uint64_t end_time() const { return end_time_; }
   /// The first channel of each topic, known before any message is read.
   const std::vector<Topic>& topics() const { return topics_; }
-  /// Counts of files without an index, and of unreadable files, those included that can no longer
-  /// be read by their turn.
+  /// Numbers of files without an index, and of unreadable files. A file that becomes unreadable
+  /// before its turn counts, too.
   std::uint64_t unclosed_files() const { return unclosed_files_; }
   std::uint64_t unreadable_files() const { return unreadable_files_; }
-  /// The reason for the last file that could not be read by its turn.
+  /// The reason why the last such file could not be read at its turn.
   const std::string& why_unreadable() const { return why_unreadable_; }
   /// Chunks that were left out so far.
   std::uint64_t damaged_chunks() const;
 
-  /// Next() gives the messages of log times from `begin` to before `end`. Files may overlap.
+  /// Makes Next() return the messages with log times from `begin` to before `end`. Files may
+  /// overlap.
   void Seek(std::uint64_t begin, std::uint64_t end = UINT64_MAX);
   std::optional<Item> Next();
 
@@ -85,7 +86,7 @@ class Playback {
   std::uint64_t unclosed_files_ = 0;
   std::uint64_t unreadable_files_ = 0;
   std::string why_unreadable_;
-  // Place in the file.
+  // What is left to play: a range of log times, from this file on.
   std::uint64_t begin_ = 0;
   std::uint64_t end_ = UINT64_MAX;
   std::size_t next_file_ = 0;

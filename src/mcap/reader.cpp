@@ -49,8 +49,8 @@ bool Reader::WantsNextChunk() const {
          size < kMaxOpen;
 }
 
-/// Returns true for a channel of the index. Some writers write a channel once, so that it may stand
-/// in a chunk that a seek passed over.
+/// Returns true for a known channel. Some writers write a channel only once, so the function also
+/// reads the chunks that a seek skipped.
 bool Reader::Knows(std::uint16_t channel) {
   Bytes records;
   for (; index_.channels.count(channel) == 0; ++learnt_chunks_) {

@@ -60,7 +60,7 @@ class Reader {
   FileIndex index_;
   std::uint64_t from_ = 0;
   std::size_t next_chunk_ = 0;
-  std::size_t learnt_chunks_ = 0;  // the first ones, whose channels the index has
+  std::size_t learnt_chunks_ = 0;  // number of the first chunks whose channels the index has
   std::deque<OpenChunk> open_;
   std::uint64_t damaged_chunks_ = 0;
 };

@@ -33,7 +33,7 @@ enum class Op : std::uint8_t {
   kDataEnd = 0x0F,
 };
 
-/// Opcode and length stand before each record.
+/// Size of opcode and length, which stand before the content of each record.
 constexpr std::size_t kRecordHeaderSize = 9;
 
 struct Header {
@@ -132,7 +132,7 @@ std::optional<Schema> ParseSchema(ByteView content);
 std::optional<Channel> ParseChannel(ByteView content);
 /// `data` is the message itself, within `content`.
 std::optional<MessageHeader> ParseMessage(ByteView content, ByteView* data);
-/// `content` may end behind the header; the records themselves are not looked at.
+/// `content` may end after the header, because the records are not read.
 std::optional<ChunkHeader> ParseChunkHeader(ByteView content, std::size_t* header_size);
 std::optional<ChunkIndex> ParseChunkIndex(ByteView content);
 std::optional<Statistics> ParseStatistics(ByteView content);
@@ -143,7 +143,7 @@ struct Record {
   ByteView content;
   std::size_t offset;  // of its opcode in the run
 };
-/// Takes the next record of `bytes` from `*offset` on; nothing at the end or if it is cut off.
+/// Returns the next record of `bytes` from `*offset` on; nothing at the end or if it is cut off.
 std::optional<Record> NextRecord(ByteView bytes, std::size_t* offset);
 
 }  // namespace lidar::mcap

@@ -170,7 +170,7 @@ Bytes Writer::Summary(std::uint64_t start) const {
   Footer footer{start, start + out.size(), 0};
   for (const SummaryOffset& offset : offsets) Append(offset, &out);
   Append(footer, &out);
-  // The checksum covers all before itself.
+  // The checksum covers all bytes before itself.
   const std::size_t crc_at = out.size() - sizeof footer.summary_crc;
   const std::uint32_t crc = Crc32({out.data(), crc_at});
   for (unsigned i = 0; i < 4; ++i) out[crc_at + i] = static_cast<std::uint8_t>(crc >> (8 * i));

@@ -13,7 +13,7 @@
 
 namespace lidar::mcap {
 
-/// The largest message. Readers take chunks up to a limit, which leaves room for the channels.
+/// The largest message. Readers accept chunks of kMaxChunk, and a chunk also holds its channels.
 constexpr std::size_t kMaxMessage = kMaxChunk - (std::size_t{1} << 20);  // bytes
 
 struct WriterSettings {
@@ -28,9 +28,10 @@ class Catalogue {
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
 
-  /// The id of the schema of that name, which is added if it is missing.
+  /// Returns the id of the schema with that name, and adds the schema if it is missing.
   std::uint16_t AddSchema(const Schema& schema);
-  /// The id of the new channel; 0 if there are 65,535 of them, or a reader would refuse more.
+  /// Adds a channel and returns its id; 0 if there are 65,535 channels, or more than a reader
+  /// accepts.
   std::uint16_t AddChannel(Channel channel);
 
  private:
