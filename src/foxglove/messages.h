@@ -36,10 +36,10 @@ struct EncodedCloud {
   std::uint32_t points = 0;
 };
 
-/// Makes a foxglove.PointCloud of the returns: points that are finite and not all zero. Of more
-/// than `max_points` (0: no limit) it takes every n-th. Points of an organised cloud get a field
-/// `ring` with their beam's number, unless they have one, because their place no longer shows the
-/// beam. `points` has x, y and z as adjacent F32.
+/// Makes a foxglove.PointCloud of the returns: points that are finite and not all zero. Keeps every
+/// n-th point if there are more than `max_points` (0: no limit). Points of an organised cloud get a
+/// field `ring` with their beam's number, unless they have one, because their position in the
+/// message no longer gives the beam. `points` has x, y and z as adjacent F32.
 EncodedCloud EncodePointCloud(const Header& header, const PointsView& points,
                               std::uint32_t max_points);
 /// foxglove.CompressedPointCloud of a Draco file.

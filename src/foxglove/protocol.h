@@ -47,7 +47,7 @@ std::string ErrorStatus(const std::string& text);
 struct RecordingStatus {
   std::uint32_t subscription = 0;
   std::uint16_t number = 0;   // of the replay; 0: the viewer is live
-  std::uint64_t from_ns = 0;  // both are 0 if nothing can be read
+  std::uint64_t from_ns = 0;  // 0, as is to_ns, if nothing can be read
   std::uint64_t to_ns = 0;
   std::uint64_t damaged = 0;            // parts that the replay left out
   std::optional<std::uint64_t> end_ns;  // of the last slice, if no more follow
@@ -59,7 +59,7 @@ struct Subscription {
   std::uint32_t channel_id = 0;
 };
 
-/// A scan, and the place in it.
+/// The number of a scan, and of a slice in it.
 struct SliceName {
   std::uint32_t scan = 0;
   std::uint32_t index = 0;
@@ -73,7 +73,7 @@ struct Request {
     kSubscribe,
     kUnsubscribe,
     kDrawn,           // the viewer has drawn `slice`, and all that came before it
-    kLacksReference,  // its decoder lacks a slice
+    kLacksReference,  // the viewer's decoder lacks a slice
     kReplay,          // slices of the recording from `time_ns` on, in place of live ones
     kLive,            // live slices again
   };

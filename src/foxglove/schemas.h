@@ -21,8 +21,8 @@ enum class Schema {
 struct SchemaText {
   const char* name;      // "foxglove.PointCloud"
   const char* encoding;  // of the messages: "protobuf", "json" or "lidar-slice"
-  const char* language;  // of the schema: "protobuf", "jsonschema", or "json": the stream itself
-  std::string text;      // base64 if the language is protobuf; empty if each stream has one
+  const char* language;  // of the schema: "protobuf", "jsonschema", or "json" (of a stream)
+  std::string text;      // base64 if the language is protobuf; empty if each stream has its own
 };
 SchemaText TextOf(Schema schema);
 
