@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds the Debian packages in a clean root of a release, then installs them in another and tries them there.
+# Builds the Debian packages in a clean root of a release, then installs and tries them in another.
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 

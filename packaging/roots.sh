@@ -25,7 +25,7 @@ leave_root() {
   umount "$1/dev/shm" "$1/proc" 2>/dev/null || true
 }
 
-# inside DIR COMMANDS: runs them by a shell in the root, which ends if one fails.
+# inside DIR COMMANDS: runs the commands by a shell in the root, until one fails.
 inside() {
   chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     DEB_BUILD_OPTIONS="${DEB_BUILD_OPTIONS:-}" sh -euc "$2"

@@ -38,7 +38,7 @@ until_ended() {
   kill "$@" 2>/dev/null || true
   wait "$@" 2>/dev/null || true
 }
-# playing LOG PID: waits, for a minute at most, until statistics in the LOG of a process tell of feedback.
+# playing LOG PID: waits until the statistics in LOG report feedback or PID has ended, or a minute.
 playing() {
   local i
   for ((i = 0; i < 600; ++i)); do

@@ -68,7 +68,7 @@ if [ $into_files = yes ]; then
   (launch -e "${words[@]}" ! scanassembler ! identity eos-after="$((scans + 1))" \
     ! "${stage[@]}" ! multifilesink location="$output/scan%06d.${format%-text}")
 else
-  # The synthetic sensor runs in real time, as others do.
+  # The synthetic sensor runs in real time, as real sensors do.
   case $source in lidartestsrc*) words+=(is-live=true) ;; esac
   pieces() { find "$output" -name 'rec-*.mcap' | wc -l; }
   before=$(pieces)

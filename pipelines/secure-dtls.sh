@@ -64,7 +64,7 @@ send_stranger() {
   kill $stranger 2>/dev/null || true
   wait $stranger || true
 }
-# statistic FILE NAME: a number of the statistics in it
+# statistic FILE NAME: prints the number NAME of the statistics in FILE.
 statistic() { grep -oE "[ ,]$2=\(guint64\)[0-9]+" "$1" | grep -oE '[0-9]+$'; }
 
 receive >"$folder/received" & receiver=$!

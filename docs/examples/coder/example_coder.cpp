@@ -48,7 +48,7 @@ static gfloat middle_of(gint64 cell, gfloat step) {
   return (static_cast<gfloat>(cell) + 0.5F) * step;
 }
 
-// exampledec decodes with this, and the encoder to check its own errors. Any bytes may come.
+// exampledec calls this to decode, and exampleenc to measure its errors. `data` may be any bytes.
 static gboolean decode_slice(const guint8* data, gsize size, guint max_points,
                              std::vector<GstLidarPoint>* points) {
   Header header;
@@ -57,7 +57,7 @@ static gboolean decode_slice(const guint8* data, gsize size, guint max_points,
   const guint8* at = data + sizeof header;
   const guint8* end = data + size;
   points->clear();
-  // A difference takes a byte at least, so no header makes us allocate more than it sent.
+  // A point takes three bytes at least, so a header cannot claim more points than were sent.
   if (header.points > max_points || header.points > size / 3 || !std::isfinite(header.step))
     return FALSE;
   std::array<gint64, 3> cell = {0, 0, 0};
