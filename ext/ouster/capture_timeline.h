@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The duration of a capture and places in it, for the reading thread and for threads that query.
+// The duration of a capture and offsets in its file, for the reading thread and for threads that
+// query.
 #pragma once
 #include <gst/gst.h>
 
@@ -16,7 +17,7 @@ namespace lidar::gst {
 /// it.
 class CaptureTimeline {
  public:
-  /// `packet_interval` is the duration of the last packet.
+  /// `packet_interval` is used as the duration of the last packet.
   CaptureTimeline(std::string path, Duration packet_interval)
       : path_(std::move(path)), packet_interval_(packet_interval) {}
 

@@ -70,7 +70,7 @@ bool FileSession::IsBeforeTarget(const PcapFeed::Packet& packet) const {
   return sampled.value_or(Time(packet.due)) < *skip_to_;
 }
 
-/// Waits for the pipeline's clock; false when it was woken to stop.
+/// Waits for the pipeline's clock. Returns false if the wait was interrupted in order to stop.
 bool FileSession::WaitUntil(GstClockTime running_time) {
   const std::unique_ptr<GstClock, Unref> clock(gst_element_get_clock(gst_element()));
   if (!clock) return true;

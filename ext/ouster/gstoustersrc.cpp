@@ -165,7 +165,7 @@ static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
   }
   if ((flags & GST_SEEK_FLAG_FLUSH) != 0) session->imu().StartFlush(seqnum);
   const gboolean done = GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
-  session->imu().StopFlush();  // where the seek failed
+  session->imu().StopFlush();  // needed if the seek failed
   return done;
 }
 
@@ -176,7 +176,8 @@ static gboolean Event(GstBaseSrc* base, GstEvent* event) {
   return GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
 }
 
-/// The base class would perform a seek of an application without a call of Event().
+/// Sends an application's seek to the pad: the base class would perform it without a call of
+/// Event().
 static gboolean SendEvent(GstElement* element, GstEvent* event) {
   const auto session = SessionOf(element);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK && session && session->seekable())

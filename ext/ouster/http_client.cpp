@@ -21,7 +21,7 @@ struct Headers {
   ~Headers() { curl_slist_free_all(list); }
 };
 
-/// An answer, as far as it has come.
+/// The received part of an answer.
 struct Answer {
   std::string body;
   std::size_t header_bytes = 0;

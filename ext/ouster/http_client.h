@@ -8,7 +8,7 @@
 namespace lidar::gst {
 
 struct HttpResponse {
-  bool ok = false;  // a 2xx answer came whole
+  bool ok = false;  // a complete 2xx answer arrived
   long status = 0;  // 0: no answer
   std::string body;
   std::string error;  // for a user, if not ok

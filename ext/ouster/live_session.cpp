@@ -212,7 +212,7 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
         ("is it powered, and is its name or address right?"));
     return false;
   }
-  // Packets count more than the API: they may continue while it is down.
+  // Packets count more than the API, which may be down while they continue.
   if (connected_) return true;
   SetConnected(false, why);
   if (!std::exchange(api_reported_, true))
@@ -223,8 +223,8 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// Posts an error and returns false without `reconnect`, or if no packet ever came: a setting is
-/// wrong then.
+/// Returns true if the session waits for the stream. Posts an error and returns false without
+/// `reconnect`, or if no packet ever came, because a setting is wrong then.
 bool LiveSession::WaitWhileSwitchedOff() {
   constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {

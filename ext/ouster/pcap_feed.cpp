@@ -49,7 +49,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
 }
 
 bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
-  // Every jump rewinds the reader first, because it reads no more after an error.
+  // Every jump rewinds the reader first, because after an error a reader reads no more.
   if (!reader_->Rewind() || (offset && !reader_->GoTo(*offset))) return false;
   first_ = last_ = first;
   return true;

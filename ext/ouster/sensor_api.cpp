@@ -31,7 +31,7 @@ std::optional<json> ParseWindow(const std::string& text) {
   if (!window.is_array() || window.size() != 2 || !window[0].is_number_unsigned() ||
       !window[1].is_number_unsigned())
     return std::nullopt;
-  return std::make_optional<json>(window);  // by name: nlohmann_json 3.12 makes json of an optional
+  return std::make_optional<json>(window);  // typed, because nlohmann_json 3.12 converts optionals
 }
 
 /// The parameters that the settings ask for, by the names of the API.

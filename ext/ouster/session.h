@@ -41,12 +41,12 @@ class Session {
   /// Next() returns FLUSHING until UnlockStop(). Any thread may call both.
   virtual void Unlock() = 0;
   virtual void UnlockStop() = 0;
-  /// The pipeline plays, or plays again after a pause. All threads may call it.
+  /// Call it when the pipeline plays, also after a pause. Any thread may call it.
   virtual void Resume() {}
 
   /// Returns true if Seek() works.
   virtual bool seekable() const { return false; }
-  /// Makes the next slices those of `segment`. Do not call it while Next() runs.
+  /// Makes Next() return the slices of `segment`. Do not call it while Next() runs.
   virtual void Seek(const GstSegment& segment) {
     start_ = segment.start;
     ended_ = false;
@@ -63,7 +63,7 @@ class Session {
  protected:
   Session(GstBaseSrc* element, OusterSettings settings);
 
-  /// Waits for packets and takes them. After OK, Next() looks for slices and calls it again.
+  /// Waits for packets and takes them. After OK, Next() looks for slices and calls Poll() again.
   virtual GstFlowReturn Poll() = 0;
   virtual void AddCounters(Counters*) const {}
 

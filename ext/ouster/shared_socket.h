@@ -30,9 +30,9 @@ struct SocketPlace {
 
 class SharedSocket;
 
-/// A reader of a socket; every reader gets every datagram in the order of arrival. The reader that
-/// calls Receive() first reads the socket and leaves copies for the others, so no extra thread is
-/// needed and a lone reader copies nothing. For one thread.
+/// A reader of a socket; every reader gets every datagram in the order of arrival. Receive() reads
+/// the socket and leaves copies for the other readers, so no extra thread is needed and a lone
+/// reader copies nothing. For one thread.
 class SocketReader {
  public:
   /// `queue_bytes` bounds the reader's queue, and the kernel's buffer of the socket; 0: the
@@ -71,7 +71,7 @@ class SocketReader {
   UdpBatchReceiver batch_;
   std::vector<Copy> taken_;
   std::vector<ReceivedDatagram> arrived_;
-  guint64 drops_before_ = 0;  // kernel's count when this reader came
+  guint64 drops_before_ = 0;  // kernel's count when this reader was opened
   guint64 kernel_drops_ = 0;
   guint64 queue_drops_ = 0;
 

@@ -72,7 +72,7 @@ bool UdpFeed::IsOpen(const Ports& ports) const {
 }
 
 void UdpFeed::Close() {
-  // A socket that other readers still use stays in the epoll set unless it is taken out.
+  // A socket that other readers still use stays in the epoll set unless it is removed.
   for (const ReaderPtr* reader : {&lidar_, &imu_})
     if (*reader)
       for (const int fd : {(*reader)->socket_fd(), (*reader)->queue_fd()})

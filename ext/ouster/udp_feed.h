@@ -29,7 +29,7 @@ class UdpFeed {
     std::string error;         // for a user; empty: success
     std::string imu_error;     // for a user; then only the lidar's socket is open
   };
-  /// Binds and joins, replacing open sockets.
+  /// Opens the sockets and joins the multicast group. Closes sockets that were open.
   Opened Open(const OusterSettings& settings, const Ports& ports);
   bool IsOpen(const Ports& ports) const;
   void Close();

@@ -24,13 +24,13 @@ class CaptureIndex {
   std::optional<Time> first() const { return first_; }
   /// Time from the first datagram that was read to the last.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
-  /// Returns the place from which a reader finds all read datagrams of `time` and later, or nothing
-  /// if it must read from the front.
+  /// Returns the offset in the file from which a reader finds all read datagrams of `time` and
+  /// later, or nothing if it must read from the front.
   std::optional<std::int64_t> OffsetBefore(Duration time) const;
 
  private:
   struct Entry {
-    Duration time{};  // of the latest datagram before the place
+    Duration time{};  // of the latest datagram before the offset
     std::int64_t offset = 0;
   };
 

@@ -35,7 +35,7 @@ class ClockMapper {
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
   /// Lets the next packet set the offset anew.
   void Reset() { offset_.reset(); }
-  /// The receiver's clock was put forward by `step`.
+  /// Notes that the receiver's clock was put forward by `step`.
   void Shift(Duration step);
   /// Returns true after Observe(), until Reset().
   bool is_set() const { return offset_.has_value(); }

@@ -19,8 +19,8 @@ std::array<float, 3> ReadVector(ByteReader* r, float scale) {
 std::vector<ImuSample> ReadLegacy(ByteView bytes) {
   ByteReader r(bytes);
   ImuSample sample;
-  r.Skip(16);                   // when the packet was made, and the accelerometer read
-  sample.timestamp = r.Le64();  // when the gyroscope was read
+  r.Skip(16);                   // times of the packet and of the accelerometer
+  sample.timestamp = r.Le64();  // time of the gyroscope
   sample.acceleration = ReadVector(&r, kGravity);
   sample.angular_velocity = ReadVector(&r, kRadiansPerSecond);
   return {sample};

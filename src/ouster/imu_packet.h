@@ -11,7 +11,7 @@
 
 namespace lidar::ouster {
 
-/// Values in the IMU's frame; Metadata::imu_to_sensor leads to the sensor's.
+/// Values in the IMU's frame; Metadata::imu_to_sensor converts them to the sensor's.
 struct ImuSample {
   std::uint64_t timestamp = 0;              // ns of the sensor's clock
   std::array<float, 3> acceleration{};      // m/s^2
@@ -25,7 +25,7 @@ bool IsImuPacket(ByteView bytes, const Metadata& metadata);
 /// invalid are left out.
 std::optional<std::vector<ImuSample>> ParseImuPacket(ByteView bytes, const Metadata& metadata);
 
-/// Returns where an IMU packet has its timestamps [byte].
+/// Returns the offsets of the timestamps in an IMU packet [byte].
 std::vector<std::size_t> ImuTimestamps(const Metadata& metadata);
 
 }  // namespace lidar::ouster

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An image of the pixels of a sensor to keep.
+// An image that marks the pixels of a sensor to keep.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -38,7 +38,7 @@ struct Metadata {
   double scans_per_second = 0;
   PacketFormat format;
   ColumnWindow window;
-  SensorModel model;  // with per-pixel angles: of a beam's middle column, for number and order only
+  SensorModel model;  // with pixel_angles, only the number and order of its beams count
   PixelAngles pixel_angles;
   Transform imu_to_sensor = kIdentity;  // translation in metres
   ImuProfile imu_profile = ImuProfile::kLegacy;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The places of all parts of lidar packets: a table of profiles for parser and writer.
+// The layout of lidar packets: a table of profiles for parser and writer.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -29,10 +29,10 @@ class PcapReader {
   /// Goes back to the first packet. Returns false if the file is gone.
   bool Rewind();
 
-  /// Returns the place of the next frame, for GoTo() of any reader of this file. Returns nothing
+  /// Returns the offset of the next frame, for GoTo() of any reader of this file. Returns nothing
   /// for pcapng, whose frames need the blocks before them.
   std::optional<std::int64_t> Offset() const;
-  /// Returns false on failure; the place is then undefined.
+  /// Makes Next() continue at `offset`. Returns false on failure; the position is then undefined.
   bool GoTo(std::int64_t offset);
 
  private:

@@ -17,7 +17,8 @@ constexpr std::size_t kRangeOffset = 16;
 constexpr std::size_t kRange2Offset = 20;
 constexpr std::size_t kIntensity2Offset = 24;
 
-/// Channels that describe the pixel; `second` is the same channel of the second return.
+/// Channels that come from a pixel of the packet; `second` is the same channel of the second
+/// return.
 struct PixelChannel {
   std::string_view name;
   Channel channel;

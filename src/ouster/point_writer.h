@@ -47,7 +47,7 @@ std::optional<std::vector<Sector>> ParseSectors(std::string_view text);
 
 /// A point is x, y, z, intensity (F32, intensity being the reflectivity), range (U32, mm), then the
 /// second return and the extra channels. A pixel without a return has zeros (or NaN) for its
-/// geometry and intensity; extra channels keep what the sensor measured (ambient light has no
+/// geometry and intensity; extra channels keep what the sensor measured (ambient light needs no
 /// return).
 class PointWriter {
  public:

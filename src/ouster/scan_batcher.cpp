@@ -9,8 +9,8 @@
 namespace lidar::ouster {
 namespace {
 
-// A packet further ahead, or from the past, counts only if others follow: a single damaged frame id
-// must not discard a scan.
+// A packet that is further ahead, or from the past, is accepted only if others follow: a single
+// damaged frame id must not discard a scan.
 constexpr std::int64_t kMaxScansAhead = 8;
 constexpr std::uint32_t kStraysForRestart = 4;
 constexpr std::size_t kRememberedLosses = 256;
@@ -169,7 +169,7 @@ void ScanBatcher::CountLaterPacket(Key key) {
     if (open.key < key) ++open.later_packets;
 }
 
-/// The first slice that the sensor has yet to fill.
+/// Returns the first slice that is not given out yet and has columns in the sensor's window.
 ScanBatcher::Key ScanBatcher::NextExpected() const {
   Key key = std::max(next_, joined_key_);
   while (expected_[static_cast<std::size_t>(key % slices_)] == 0) ++key;
@@ -232,7 +232,7 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
   }
 }
 
-/// Extrapolates to the first column of a slice.
+/// Extrapolates from `reference` to the time of the slice's first column.
 std::uint64_t ScanBatcher::StartOf(Key key, const ColumnTime& reference) const {
   const auto columns = static_cast<double>(key * width_ - reference.column);
   const auto shift = static_cast<std::int64_t>(columns * column_period_);

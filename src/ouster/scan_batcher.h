@@ -119,7 +119,7 @@ class ScanBatcher {
   Key next_ = 0;           // the first slice not yet given out
   std::uint32_t strays_in_a_row_ = 0;
   bool gap_ = false;
-  // Packets before the first or after the last one are not lost.
+  // Packets before the first received one or after the last do not count as lost.
   Key joined_key_ = 0;
   std::uint32_t joined_column_ = 0;
   std::int64_t newest_scan_ = 0;

@@ -9,7 +9,7 @@
 namespace lidar::ouster {
 namespace {
 
-// A clock with a larger offset is not synchronised, whatever it claims.
+// A clock with a larger offset is not synchronised, whatever the sensor claims.
 constexpr Duration kMaxSyncError = std::chrono::seconds(1);
 // Silence after which a sensor without serial numbers in its packets may have another address.
 constexpr Duration kSenderKept = std::chrono::seconds(1);
@@ -90,7 +90,7 @@ void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arriv
   }
 }
 
-/// Counts and names a packet that has another size than this sensor's lidar packets.
+/// Counts a packet that has another size than this sensor's lidar packets, and returns its kind.
 PacketVerdict SensorStream::Refuse(ByteView payload, const Arrival& arrival) {
   if (IsImuPacket(payload, metadata_)) {
     const bool first = batcher_.stats().packets == 0;
@@ -123,7 +123,8 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     ++stats_.foreign;
     return PacketVerdict::kForeign;
   }
-  // Another sensor's checksums would make this sensor's packets without them count as damaged.
+  // Checked after IsForeign(): a valid CRC of another sensor would make this sensor's packets count
+  // as damaged if they have none.
   if (!crc_.Accept(payload)) {
     ++stats_.damaged;
     return PacketVerdict::kDamaged;
@@ -132,7 +133,8 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     refused_init_id_ = header.init_id;
     return PacketVerdict::kNewInitId;
   }
-  // Old metadata have no serial number; the init id shows that this packet is of its sensor.
+  // Old metadata have no serial number. The init id shows that the packet is from the metadata's
+  // sensor.
   if (metadata_.serial == 0 && metadata_.init_id != 0 && header.init_id == metadata_.init_id)
     metadata_.serial = header.serial;
   ObserveClocks(*packet, arrival);

@@ -39,7 +39,7 @@ struct StreamOptions {
 
 struct TimedSlice {
   Slice slice;
-  Time local{};  // of the first column; never before that of the last slice
+  Time local{};  // of the first column; never earlier than the last slice's
   Time utc{};
   Time completed{};  // arrival of the packet that completed it, in UTC
 };
@@ -70,8 +70,8 @@ class SensorStream {
   /// Takes a packet. A packet with kNewInitId is left out: refresh the metadata, or call
   /// AcceptNewInitId() and push the packet again.
   PacketVerdict Push(ByteView payload, const Arrival& arrival);
-  /// Call this after kNewInitId: the sensor restarted, and packets with that init id count from now
-  /// on.
+  /// Call this after kNewInitId: the sensor restarted, and packets with that init id are accepted
+  /// from now on.
   void AcceptNewInitId() { metadata_.init_id = refused_init_id_; }
   std::optional<TimedSlice> Pop();
   /// Makes incomplete slices ready. The next packet may be of any scan.
@@ -79,9 +79,9 @@ class SensorStream {
   /// Calls Flush(); the next packet may have any time.
   void Restart();
   /// Drops incomplete and waiting slices: the next packet is from another place of a recording. The
-  /// clocks stay, so a slice has the same time after any seek.
+  /// offsets of the clocks stay, so a slice has the same time after any seek.
   void Reposition();
-  /// UTC is later by `step` at the same local time, from the next packet on.
+  /// Notes that UTC is later by `step` at the same local time, from the next packet on.
   void ShiftUtc(Duration step) { utc_.Shift(step); }
   /// Continues after the last slice of the stream before a reconfiguration.
   void Continue(const SensorStream& before) {
