@@ -17,7 +17,7 @@ struct Shared {
   unsigned users = 0;
 };
 
-/// Held while a domain begins or ends, so that no participant joins a dying domain.
+/// Held while a domain begins or ends, so that no participant joins a domain that ends.
 std::mutex& Mutex() {
   static std::mutex mutex;
   return mutex;

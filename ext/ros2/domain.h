@@ -11,7 +11,7 @@ namespace lidar::dds {
 class Domain {
  public:
   /// Returns null if Cyclone refuses its configuration; `why` has the reason. The fault may be the
-  /// user's: CYCLONEDDS_URI is read after ours, which only allows large messages.
+  /// user's: CYCLONEDDS_URI is read after our configuration, which only allows large messages.
   static std::unique_ptr<Domain> Join(std::uint32_t id, std::string* why);
   ~Domain();
   Domain(const Domain&) = delete;

@@ -55,8 +55,8 @@ cdr::Guid GuidOf(dds_entity_t entity) {
 }
 
 /// Returns the size of the largest message to take. A domain that other code of the process created
-/// may pass larger ones. Messages other than clouds have a lower limit, because a hundred of them
-/// may wait; it holds thousands of transforms.
+/// may deliver larger messages. Messages other than clouds have a lower limit, because a hundred of
+/// them may wait. That limit has room for thousands of transforms.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
   return cdr::IsCloud(type) ? Domain::kMaxMessage : kMaxSmall;

@@ -91,7 +91,7 @@ class Writer : public Node {
   unsigned subscribers() const;
   /// The kind of setting that a subscriber wants and this writer lacks.
   enum class Want { kNothing, kReliability, kOther };
-  /// Returns what a new incompatible subscriber wants: of several, the last one.
+  /// Returns what the last incompatible subscriber wants; kNothing if none is new.
   Want TakeIncompatible();
 
   static constexpr std::int64_t kMaxBlockingNs = 100'000'000;  // as ROS 2 has it

@@ -182,7 +182,7 @@ static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosT
   return true;
 }
 
-/// Wrong settings fail at once; the type may have to wait for the caps.
+/// Wrong settings fail at once. An automatic type is not known before the caps.
 static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_ROS2_SINK(base);
   State& state = StateOf(self);
@@ -200,7 +200,7 @@ static gboolean Start(GstBaseSink* base) {
 static gboolean Stop(GstBaseSink* base) {
   State& state = StateOf(base);
   std::unique_lock lock(state.mutex);
-  // The writer ends without the lock: DDS waits for its threads.
+  // The writer ends without the lock, because its end waits for threads of DDS.
   const std::shared_ptr<Writer> writer = std::move(state.writer);
   lock.unlock();
   state.messages.reset();

@@ -58,7 +58,7 @@ struct Ros2SrcSettings {
 /// Static transforms come once from each publisher; tf2 keeps a hundred of them, too.
 constexpr guint kStaticDepth = 100;
 
-/// Returns true if the topic's content never changes: by its name, as in ROS.
+/// Returns true if the topic's content never changes, judged by its name, as in ROS.
 bool IsForGood(const Ros2SrcSettings& settings) {
   const std::string name = settings.ros.topic.substr(settings.ros.topic.rfind('/') + 1);
   return settings.type == RosType::kTransforms && name == "tf_static";
@@ -196,7 +196,7 @@ static gboolean Stop(GstBaseSrc* base) {
   State& state = StateOf(base);
   CountersNow(G_OBJECT(base));
   std::unique_lock lock(state.mutex);
-  // The reader ends without the lock: DDS waits for its threads.
+  // The reader ends without the lock, because its end waits for threads of DDS.
   const std::shared_ptr<Reader> reader = std::move(state.reader);
   state.counters.publishers = 0;
   lock.unlock();

@@ -64,7 +64,7 @@ void MessageReader::SetStamp(Time stamp) {
   if (ns > 0) gst_lidar_buffer_set_capture_time(buffer_.get(), static_cast<GstClockTime>(ns));
 }
 
-/// Sets new caps: what downstream takes of `caps`, which follow from the message alone.
+/// Sets new caps: the part of `caps` that downstream accepts. `caps` follow from the message alone.
 MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   const CapsPtr wanted = wanted_();
   if (wanted)

@@ -17,7 +17,7 @@ namespace lidar::gst {
 /// Used by the streaming thread.
 class MessageReader {
  public:
-  /// `wanted` gives what downstream takes; null: anything.
+  /// `wanted` returns the caps that downstream accepts; null: any.
   using Wanted = std::function<CapsPtr()>;
   /// `for_good`: transforms do not change with time.
   MessageReader(cdr::RosType type, Wanted wanted, bool for_good = false)

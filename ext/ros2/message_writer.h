@@ -43,10 +43,10 @@ class MessageWriter {
   /// The default type for buffers of `caps`.
   static std::optional<cdr::RosType> UsualType(const GstCaps* caps);
 
+  using Publish = std::function<void(const std::vector<ByteView>& pieces)>;
   /// Calls `publish` for each message of `buffer`, with pieces that are valid during the call.
   /// `now` is the time of buffers without a capture time. Returns false if the buffer contradicts
   /// its caps.
-  using Publish = std::function<void(const std::vector<ByteView>& pieces)>;
   bool Write(GstBuffer* buffer, const MessageSettings& settings, Time now, const Publish& publish);
 
   cdr::RosType type() const { return type_; }

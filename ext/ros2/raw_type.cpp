@@ -75,7 +75,8 @@ ddsi_serdata* FromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
   return data;
 }
 
-/// Returns data that stand for all messages of a topic without keys.
+/// Returns the key of a message, without its type. All messages of a topic without keys have this
+/// key.
 ddsi_serdata* Untyped(const ddsi_serdata* data) {
   RawData* key = NewRaw(data->type, SDK_KEY, 0);
   if (key != nullptr) key->type = nullptr;
