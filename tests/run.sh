@@ -65,7 +65,7 @@ without_dear=("${dear[@]/#/--no-suite=}")
 # Tests of elements wait for half of their time, so more of them run at a time than there are cores.
 waiting=(--num-processes $((2 * $(nproc))))
 # A time limit is for tests that hang: a busy machine only takes longer.
-patient=(--timeout-multiplier 20)
+patient=(--timeout-multiplier 40)
 
 # ccache takes the headers from the compiler's own list, so a file that is not in the cache is not
 # preprocessed twice.
