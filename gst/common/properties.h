@@ -16,8 +16,8 @@
 
 namespace lidar::gst {
 
-/// A property; the default is the field's initialiser. A function of the object makes it
-/// read-only.
+/// A property. The default is the field's initialiser. A property whose `field` is a function that
+/// reads the value is read-only.
 template <class Settings>
 struct Property {
   using Struct = Settings;
@@ -49,7 +49,8 @@ const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table
 }
 
 /// Returns the row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name"). gcc 12
-/// may merge the instances of two files, so structs of two files of a plugin need different names.
+/// may merge instances of this template from two source files, so structs in two files of a plugin
+/// need different names.
 template <auto part, class Settings, class Part, std::size_t N>
 Property<Settings> WithinOf(Part Settings::*, const std::array<Property<Part>, N>& table,
                             std::string_view name) {

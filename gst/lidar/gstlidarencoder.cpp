@@ -249,8 +249,8 @@ static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
                                const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
   BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
-  // The output has a place in the scan even if the input has none: otherwise a receiver could not
-  // count lost slices, and would acknowledge another scan.
+  // The output gets its place in the scan if the input has none. Without it a receiver could not
+  // count lost slices, and its acknowledgement would name the wrong scan.
   GstLidarSlice known{};
   if (!gst_lidar_buffer_get_slice(input, &known)) gst_lidar_buffer_set_slice(output.get(), &place);
   PushBounds(self);

@@ -10,7 +10,7 @@ namespace lidar {
 
 class LoadBudget {
  public:
-  /// At most the unused time of this period is saved.
+  /// Unused time is saved, but not more than is allowed in this period.
   static constexpr Duration kUnusedTimeKept = std::chrono::seconds(1);
 
   /// `load` is the allowed processor time divided by elapsed time. Returns false while more

@@ -74,7 +74,7 @@ class RangeGrid {
         : per_mm_(1.0 / grid.unit_mm_), per_part_(1.0 / grid.parts_) {}
     /// `range_mm` is up to kMaxRangeMm.
     std::uint32_t Of(std::uint32_t range_mm) const {
-      // The half keeps a quotient farther from the next integer than rounding can move it.
+      // Adding a half keeps a quotient so far from an integer that rounding cannot change it.
       const auto cells =
           static_cast<std::int32_t>((static_cast<std::int32_t>(range_mm) + 0.5) * per_mm_);
       return static_cast<std::uint32_t>(

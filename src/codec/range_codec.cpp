@@ -116,8 +116,8 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
     EncodeByRans(&blended_mask_, &blended_, image.columns);
     return settings.coder;
   }
-  // The adaptive coder codes slices whose ranges are too long, or whose bits are too few, for the
-  // mixing coder.
+  // The mixing coder refuses slices with too long ranges, and outputs with too few bytes for their
+  // pixels. The adaptive coder codes these slices.
   EncodeByRans(&mask_coder_, &coder_, image.columns);
   return RangeCoder::kAdaptive;
 }
@@ -206,8 +206,8 @@ bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
   mask_.resize(image.size());
   lists_.values.resize(image.size());
-  // This is BinOf(), exact below 2^28. The half part keeps the quotient farther from the next
-  // integer than rounding can move it.
+  // The loop computes BinOf() without divisions. Adding half_part keeps a quotient so far from an
+  // integer that rounding cannot change the bin.
   const RangeGrid& grid = settings.grid;
   const double per_mm = RangeGrid::kParts / (1.0 * grid.parts() * grid.unit_mm());
   const double half_part = 0.5 / grid.parts();

@@ -23,8 +23,8 @@ struct RegistrationSettings {
   /// A direction is not observed if surfaces hold it less than this (0: no surface faces it, 1: all
   /// do).
   double least_constraint = 0.04;
-  /// A direction is not observed, either, if surfaces hold it less than this part of the next
-  /// direction, as along a tunnel.
+  /// The direction with the least share is not observed, either, if its share is below this part of
+  /// the second least, as along a tunnel.
   double least_balance = 0.3;
   /// Greatest distance of a fitting point from its surface or neighbour. It does not depend on the
   /// reach, so that a wide search does not make a scan fit.

@@ -20,7 +20,8 @@ constexpr float kBinsPerRadian = kBins / 6.2831853F;
 constexpr double kLeastStep = 0.02;
 constexpr double kLargestStep = 0.14;
 constexpr float kFarthest_m = 1e4F;
-/// Greatest distance from the plane: noise, grass, and curvature over the baseline.
+/// A return may be this far from its plane: kRoughness_m for noise and grass, and kBend times the
+/// distance of the outer rings for curvature, but at most kMostRough_m.
 constexpr float kRoughness_m = 0.05F;
 constexpr float kBend = 0.03F;
 constexpr float kMostRough_m = 0.2F;

@@ -123,8 +123,8 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     ++stats_.foreign;
     return PacketVerdict::kForeign;
   }
-  // Checked after IsForeign(): a valid CRC of another sensor would make this sensor's packets count
-  // as damaged if they have none.
+  // Checked after IsForeign(): if this sensor sends no CRC, a foreign packet with a valid CRC would
+  // make the sensor's packets count as damaged.
   if (!crc_.Accept(payload)) {
     ++stats_.damaged;
     return PacketVerdict::kDamaged;

@@ -17,8 +17,8 @@ enum class DegradationPreference {
 /// Holds for all slices of one scan.
 struct ScanPlan {
   bool skip = false;
-  /// True if the budget is below what the error bound needs: the step stays the coarsest, even with
-  /// savings.
+  /// True if the budget is below what the error bound needs. The step then stays the coarsest, even
+  /// if bytes are left over from earlier scans.
   bool degraded = false;
   double keep_fraction = 1;  // of the returns
   unsigned intensity_bits = 0;

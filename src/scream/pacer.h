@@ -37,7 +37,7 @@ class Pacer {
   }
   /// Call it when a packet enters an empty queue. The idle time before it gives no credit.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
-  /// Call it after a gap. The next packet does not wait as long as the rate in the gap required.
+  /// Call it after a gap. The next packet is due at once, despite the low rate in the gap.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
   /// Times the next packet from the due time of this one, not from a late wake-up, within a bound.
   void OnSent(Time now, DataSize size) {

@@ -120,8 +120,8 @@ struct Parameters {
   /// Pacing: a frame has left this long before its period ends. On a full link a queue of this
   /// length comes and goes with each frame.
   Duration pacing_reserve = 4ms;
-  /// If marks work, the reserve is this part of the queue delay at which marking starts, from
-  /// shortest_pacing_reserve to pacing_reserve.
+  /// If marks work, the reserve is this part of the queue delay at which marking starts, but at
+  /// least shortest_pacing_reserve and at most pacing_reserve.
   double onset_reserve = 0.8;
   Duration shortest_pacing_reserve = 700us;
   /// min_pacing_reserve and max_pacing_reserve are fractions of a frame's period. Below this

@@ -111,7 +111,7 @@ void AskOracles(const LoopCase& c, LoopReport* report) {
   report->oracle_at_mean = AskOracle(c.capacity, oracle);
 }
 
-/// Returns delivered bits relative to usable bits, in steps of a tenth of a second.
+/// Returns delivered bits relative to usable bits. The usable bits are summed over bins of kBin.
 double Utilisation(const LoopCase& c, const SimulationResult& result, const LoopReport& report) {
   double used = 0, usable = 0;
   for (Duration t = kSettle; t + kBin <= c.duration; t += kBin)

@@ -44,7 +44,7 @@ SrtpDecoder::~SrtpDecoder() {
 
 BufferPtr SrtpDecoder::Decode(GstBuffer* datagram) {
   BeginStream(sink_.get(), "application/x-srtp");
-  // The decoder works in place, and frees a buffer that others also hold, so it gets a copy.
+  // srtpdec gets a copy: it uses a shared buffer after it has released its reference.
   gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   return std::move(out_);
 }

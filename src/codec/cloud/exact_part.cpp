@@ -385,7 +385,7 @@ FieldCode BestCode(const Visited& visited, const ExactField& field) {
   return best;
 }
 
-/// Returns the key with the fewest steps.
+/// Returns the sorting key that codes the points' order in the fewest steps.
 unsigned BestOrderKey(const Visited& visited, const ExactPart& part) {
   unsigned best = kAsVisited;
   std::size_t least = SIZE_MAX;

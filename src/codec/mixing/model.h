@@ -20,8 +20,8 @@ constexpr std::array<std::uint32_t, 14> kLevelContexts = {
 /// Decisions on small differences from a prediction: zero or not, the sign, and for each sign
 /// whether it is more than 1, 2, 3.
 constexpr unsigned kSmallNodes = 8;
-/// Larger values take kLengthNodes for the length, and the other nodes for the bits below the
-/// highest one, by place and level.
+/// Nodes of a jump's Exp-Golomb code: kLengthNodes code the length. The other nodes code the bits
+/// below the highest one, a node for each level and place.
 constexpr unsigned kJumpNodes = 48;
 constexpr unsigned kLengthNodes = 24;
 

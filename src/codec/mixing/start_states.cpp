@@ -39,8 +39,8 @@ std::uint32_t RateClass(unsigned rate) {
   return c;
 }
 
-/// Codes numbers of up to 8 bits, each in a context, as binary trees of counters that learn the
-/// table's own statistics.
+/// Codes the table's numbers of up to 8 bits. Each context has a binary tree of counters, which
+/// follow the table's statistics.
 template <class Coder>
 class TableCoder {
  public:

@@ -97,7 +97,8 @@ class NibbleModel {
         _mm_movemask_epi8(_mm_packs_epi16(_mm_cmpgt_epi16(low, v), _mm_cmpgt_epi16(high, v)));
     return static_cast<unsigned>(__builtin_ctz(static_cast<unsigned>(above) | 0x10000U)) - 1U;
 #elif defined(__aarch64__)
-    // The starts rise. Each one up to the slot counts as 65535, which is -1.
+    // The starts rise, so the starts up to `slot` end at the symbol's. The comparison gives -1
+    // (65535) for each of them.
     const int16x8_t v = vdupq_n_s16(static_cast<std::int16_t>(slot));
     const uint16x8_t up_to_slot = vaddq_u16(vcleq_s16(vld1q_s16(start_.data()), v),
                                             vcleq_s16(vld1q_s16(start_.data() + 8), v));

@@ -32,7 +32,8 @@ struct CongestionSignals {
   bool qdelay_avg_falls = false;
   double ref_wnd_delay_scale = 1;
   Boldness boldness;
-  /// Extension: a reaction may be this much early, as the next report is far away.
+  /// Extension `capacity`: a reaction may come this much before the end of the round trip, because
+  /// the next report may come long after it.
   Duration earliness{0};
   Duration s_rtt{0};
   DataSize max_bytes_in_flight;

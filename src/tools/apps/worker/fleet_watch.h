@@ -60,7 +60,7 @@ class FleetWatch {
   natsStatus Subscribe();
   void TakeEntry(natsMsg* message);
   void ListRobots();
-  /// Reports `trouble` if it differs from the last of its kind; empty: there is none.
+  /// Reports `trouble` if it differs from `last`, and keeps it there. Reports no empty trouble.
   void Tell(std::string* last, const std::string& trouble);
 
   nats::Connection* const connection_;

@@ -7,7 +7,7 @@ namespace lidar::demo {
 
 /// The pattern of LinkScans()'s links for multifilesrc.
 std::string ScansPattern(const std::string& output);
-/// Links the files of `folder`, in the order of their names, under numbers in the folder `output`.
+/// Creates numbered links to the files of `folder`, in the order of their names, in `output`.
 /// Takes only files with the extension (pcd, ply, las or bin) of the first. Throws
 /// std::runtime_error with a text for the user if there is no file.
 void LinkScans(const std::string& folder, const std::string& output);

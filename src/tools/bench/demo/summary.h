@@ -23,7 +23,7 @@ struct Guarantee {
   std::string text;
   bool holds = false;
 };
-/// The guarantees on every path, which decide the exit code.
+/// Checks the guarantees that must hold on any network path. They decide the exit code.
 std::vector<Guarantee> CheckGuarantees(const Measurements& m);
 
 nlohmann::ordered_json Summarise(const Measurements& m);

@@ -221,7 +221,7 @@ void Receiver::Tick() {
   line_since_ = now;
 }
 
-/// A line covers a second and the time to the next check.
+/// Prints a line about the time since the last one: a second or, until the next check, a bit more.
 void Receiver::PrintLine(Duration now) {
   std::printf(
       "%7.1f s  received %8.3f Mbit/s  frame age p50 %6.1f p95 %6.1f ms%s  CE %llu  lost %llu\n",

@@ -77,7 +77,7 @@ odometry::Pose ToPose(const synth::Pose& pose) {
   return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
 }
 
-/// Makes an inertial unit on the drive, for its gyroscope; null without options.gyroscope.
+/// Makes an IMU that moves along the drive. Returns null without options.gyroscope.
 std::unique_ptr<synth::Imu> MakeImu(const ScanStream& scans, const SlamOptions& options) {
   if (!options.gyroscope) return nullptr;
   if (scans.trajectory() == nullptr)
