@@ -17,8 +17,8 @@ constexpr std::array<Voxel, 7> kCross = {
 
 Voxel operator+(const Voxel& a, const Voxel& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
-/// Squared distance from a point to the cube `step` away. The point is relative to its own cube, of
-/// edge `size`.
+/// Returns the squared distance from a point to the cube `step` away. `inside` is the point,
+/// relative to the corner of its own cube of edge `size`.
 double SquaredGap(const Eigen::Vector3d& inside, const Voxel& step, double size) {
   const auto gap = [size](double c, std::int32_t s) { return s == 0 ? 0.0 : s > 0 ? size - c : c; };
   const double x = gap(inside.x(), step.x);
@@ -129,8 +129,8 @@ std::optional<LocalMap::Neighbour> LocalMap::FindNearest(const Eigen::Vector3d& 
   return neighbour;
 }
 
-/// Fits a surface to the points of the cube. With few points it takes those of the cubes that share
-/// a face with it, too.
+/// Fits a surface to the points of the cube. If they are few, adds the points of cubes that share a
+/// face with it.
 void LocalMap::UpdateNormal(const Voxel& voxel, Block* block) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();

@@ -42,11 +42,11 @@ class LocalMap {
   struct Neighbour {
     Eigen::Vector3d point;
     bool has_normal = false;
-    /// A unit vector, added with the point or computed from the surface of its cube.
+    /// A unit vector, added with the point or computed from the surface of the point's cube.
     Eigen::Vector3d normal;
   };
-  /// Finds the nearest point within `reach_m` of `point`. The search covers the point's cube and
-  /// the adjacent ones, so it misses some neighbours if `reach_m` exceeds a cube's edge. A cube's
+  /// Finds the nearest point within `reach_m` of `point`. The search covers the cube of `point` and
+  /// the adjacent cubes, so it misses some neighbours if `reach_m` exceeds a cube's edge. A cube's
   /// normal is computed again only after the cube has changed.
   std::optional<Neighbour> FindNearest(const Eigen::Vector3d& point, double reach_m);
 

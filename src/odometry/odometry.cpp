@@ -35,7 +35,7 @@ constexpr int kUsualScans = 10;  // number of scans that set the usual share
 constexpr int kFirstRounds = 4;
 /// Number of steps of a sweep at which the motion is computed.
 constexpr int kPhases = 1024;
-/// A turn counts as steady within a step of this length.
+/// Longest step of time over which a turn is taken as steady.
 constexpr Duration kTurnStep = milliseconds(100);
 constexpr int kLostForGood = 10;  // number of lost scans after which a new map begins
 /// A map with fewer fitting scans may have begun with a wrong motion: the first lost scan ends it.
@@ -49,8 +49,8 @@ constexpr double kMostTurnAcceleration = 30;
 constexpr double kSlack = 0.3;
 /// Greatest distance of a fitting point, relative to the map's cubes.
 constexpr double kFit = 0.2;
-/// Weight of neighbours without a surface, if scans show surfaces. It is small, so that directions
-/// that no surface holds are found.
+/// Weight of neighbours without a surface, if scans show surfaces. It is small, because such
+/// neighbours hide a direction that no surface holds.
 constexpr double kSparePointWeight = 0.05;
 constexpr double kPointTurn = 0.3;
 constexpr double kLeastConstraint = 0.002;

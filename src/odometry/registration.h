@@ -15,16 +15,15 @@ struct RegistrationSettings {
   double spare_point_weight = 1;
   /// Weight of a neighbour without a surface if surfaces leave a direction open.
   double point_weight = 1;
-  /// Part of the pull of a neighbour without a surface that may turn the sensor: distant wrong
-  /// neighbours would turn it most.
+  /// Weight of the rotation in the pull of a neighbour without a surface: distant wrong neighbours
+  /// would turn the sensor most.
   double point_turn = 1;
-  /// Surfaces hold a direction whose share is at least this (0: no surface faces it, 1: all do).
+  /// Surfaces hold a direction if at least this share of them faces it: 0 to 1.
   double held_by_surfaces = 0.04;
-  /// A direction is not observed if surfaces hold it less than this (0: no surface faces it, 1: all
-  /// do).
+  /// A direction is not observed if a smaller share of surfaces faces it.
   double least_constraint = 0.04;
-  /// The direction with the least share is not observed, either, if its share is below this part of
-  /// the second least, as along a tunnel.
+  /// The direction with the smallest share is not observed, either, if its share is less than this
+  /// part of the next larger one, as along a tunnel.
   double least_balance = 0.3;
   /// Greatest distance of a fitting point from its surface or neighbour. It does not depend on the
   /// reach, so that a wide search does not make a scan fit.
@@ -47,9 +46,8 @@ struct Prediction {
 struct Alignment {
   Pose pose;
   double inlier_share = 0;  // share of the points that fit
-  /// Share of the points that fit, without the surfaces that face the best held direction. Usually
-  /// these are ground, which fits at every place. Their normals come from the scan, or else from
-  /// the map.
+  /// The same share without the surfaces that face the best held direction: they are usually
+  /// ground, which fits at every place. Normals come from the scan, or else from the map.
   double standing_share = 0;
   int iterations = 0;
   /// The scene does not show the motion along a direction; the guess is kept there.
@@ -62,9 +60,9 @@ struct Alignment {
 
 /// Aligns the points of `scan` to `map`, from `guess`, as KISS-ICP does (Vizzo et al.,
 /// 2023, section III-D): neighbours within `reach_m`, residuals weighted by the Geman-McClure
-/// kernel of scale `kernel_m`. It differs at surfaces of the map: the distance from the surface
-/// counts there, so that a wall does not hold motion along it, and fewer iterations suffice. The
-/// prediction holds the pose along directions that the points hold weakly.
+/// kernel of scale `kernel_m`. Unlike KISS-ICP, a surface of the map counts by the distance from
+/// the surface: a wall does not hold motion along it, and fewer iterations suffice. The prediction
+/// holds the pose along directions that the points hold weakly.
 Alignment Align(const Surface& scan, LocalMap* map, const Prediction& prediction, double reach_m,
                 double kernel_m, const RegistrationSettings& settings);
 /// Aligns from a guess without a known error.

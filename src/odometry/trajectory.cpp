@@ -84,8 +84,8 @@ bool ToPose(const Row& row, Pose* pose) {
   return (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 0.01;
 }
 
-/// Sets the C locale. This must precede all output: after a full disk the stream cannot even be
-/// closed.
+/// Sets the C locale, before the first output only: a new locale flushes the stream, and a stream
+/// whose flush fails, as on a full disk, cannot be closed.
 void WriteAsInC(std::ostream& out) {
   if (out.getloc() != std::locale::classic()) out.imbue(std::locale::classic());
 }

@@ -87,8 +87,8 @@ void MeasureDrift(const Pairs& pairs, TrajectoryError* error) {
   if (count > 0) error->drift = sum / static_cast<double>(count);
 }
 
-/// Returns the error of the last position after the first second of both is aligned. A single pose
-/// would not fix the direction well enough for a long path.
+/// Returns the error of the last position after the first second of both trajectories is aligned. A
+/// single pose would not fix the direction well enough for a long path.
 double EndError(const Pairs& pairs) {
   Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
   Eigen::Vector3d truth = Eigen::Vector3d::Zero();

@@ -8,7 +8,7 @@ namespace lidar::odometry {
 namespace {
 
 /// A longer pause between samples hides how the sensor turned. IMUs give at least 100 samples a
-/// second, and samples of the last slice may still be under way.
+/// second. The last sample holds as long, because samples of the last slice may still be under way.
 constexpr Duration kLongestStep = std::chrono::milliseconds(50);
 constexpr Duration kNewClock = std::chrono::seconds(1);
 constexpr double kMostRate = 50;  // [rad/s]: vehicles turn slower
@@ -25,9 +25,9 @@ constexpr int kLeastTaught = 5;  // scans
 /// estimate.
 constexpr double kRestShare = 0.02;
 constexpr int kLeastForcesTaught = 10;  // scans
-/// Greatest squared error of trusted forces, relative to that of the mean velocity. A scan that was
-/// straightened without forces has an error of its own. Forces along reversed axes have four times
-/// the error.
+/// Greatest squared error of trusted forces, relative to that of the mean velocity. Forces may err
+/// more, because scans straightened without forces have errors. Forces along reversed axes have
+/// four times the error.
 constexpr double kMostForceError = 2;
 /// Half of gravity [m/s^2]. An IMU without an accelerometer, or with other units, shows less at
 /// rest.
@@ -111,7 +111,7 @@ void TurnHistory::Teach(Time from, Time to, const Eigen::Quaterniond& found,
   if (bias_.norm() > kMostBias) bias_ *= kMostBias / bias_.norm();
 }
 
-/// Returns the state after a span; gravity pulls against the force at rest.
+/// Returns the state after a span. Subtracts the force at rest, which only balances gravity.
 Moving TurnHistory::After(const Moving& at, const Span& span, double seconds) const {
   const Eigen::Vector3d rest = at.pose.rotation.conjugate() * rest_;
   const Eigen::Vector3d start = at.velocity.head<3>();

@@ -64,8 +64,8 @@ class TurnHistory {
   int taught_ = 0;
   /// The force at rest, in the frame of the poses: gravity, and the accelerometer's offset.
   Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();
-  /// Velocities in the frame of the poses: the mean over the last span, and that at its end by the
-  /// forces. The odometry's velocity does not serve, because it is filtered.
+  /// Velocities in the frame of the poses: the mean over the last span, and the velocity at its end
+  /// according to the forces. The odometry's velocity does not serve, because it is filtered.
   struct Reached {
     Eigen::Vector3d mean;
     Eigen::Vector3d velocity;
