@@ -19,7 +19,7 @@ constexpr double kStep_m = 0.02;
 constexpr double kStep_rad = 0.002;
 constexpr double kClosure_m = 0.05;
 constexpr double kClosure_rad = 0.002;
-/// A closure is wrong if the solved poses contradict it by more.
+/// A closure is wrong if the solved poses contradict it by more than this.
 constexpr double kContradiction_m = 1.5;
 constexpr double kContradiction_rad = 0.05;
 /// Greatest distance between the same point of two maps. Beyond kOverlap_m a map counts as empty

@@ -23,7 +23,7 @@ struct LoopSettings {
   double least_score = 0.3;
   double least_distinct = 1.3;
   double least_overlap = 0.35;  // least share of the points that are in both maps
-  double least_fit = 0.6;       // least share of those that coincide
+  double least_fit = 0.6;       // least share of these points that coincide
 };
 
 /// Two local maps of the same place.

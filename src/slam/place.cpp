@@ -110,7 +110,7 @@ bool MeetGround(const Place& a, const Place& b, Pose* pose) {
     std::nth_element(gaps.begin(), middle, gaps.end(),
                      [](const auto& x, const auto& y) { return x.second < y.second; });
     const double median = middle->second;
-    // Cars and walls are outliers: only residuals near the middle count.
+    // Cars and walls are outliers: only gaps near the median count.
     const double reach = round == 0 ? 3 : 1;
     for (const auto& [p, gap] : gaps) {
       if (std::abs(gap - median) > reach) continue;

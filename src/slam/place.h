@@ -42,9 +42,9 @@ struct PlaceMatch {
   double distinct = 0;
 };
 
-/// Finds the best place of the map of `b` on that of `a`, turned by `yaw` plus or minus `yaw_range`
-/// [rad]. Then tilts the map of `b` so that the grounds of both meet. Returns nothing if they share
-/// no ground.
+/// Finds where the map of `b`, turned by `yaw` plus or minus `yaw_range` [rad], fits that of `a`
+/// best. Then raises and tilts the map of `b` so that the grounds of both meet. Returns nothing if
+/// they share no ground.
 std::optional<PlaceMatch> Match(const Place& a, const Place& b, double yaw, double yaw_range);
 
 }  // namespace lidar::slam
