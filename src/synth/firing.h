@@ -17,12 +17,12 @@ struct DriverLayout {
 struct Firing {
   std::string_view name;
   std::uint32_t lasers;
-  std::uint32_t banks;  // the laser that fires as number i has the ring i / banks of bank i % banks
-  double first_elevation;      // of ring 0
-  double elevation_step;       // from one ring to the next
-  double bank_azimuth;         // from one bank to the next
-  double laser_delay_ns;       // from one laser to the next
-  std::uint32_t columns;       // of a scan
+  std::uint32_t banks;     // laser i, in the order of firing, is ring i / banks of bank i % banks
+  double first_elevation;  // of ring 0
+  double elevation_step;   // from one ring to the next
+  double bank_azimuth;     // from one bank to the next
+  double laser_delay_ns;   // from one laser to the next
+  std::uint32_t columns;   // of a scan
   double first_azimuth, view;  // where a sweep begins, and its span
   double sweeps;               // per scan; scans differ if this is no whole number
   double swing, swings;        // amplitude and number per scan of the elevations' swings

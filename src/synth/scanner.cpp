@@ -12,7 +12,7 @@ constexpr float kFastest = 25;  // greatest speed of things in a scene [m/s]
 constexpr std::size_t kGaussBits = 12;
 constexpr float kHalfDivergence = 0.0015F;  // half divergence of a beam [rad]
 
-/// Normal deviates by quantile, for uniform random bits.
+/// Returns normal deviates of at most four standard deviations, from which random bits choose.
 std::vector<float> MakeGaussTable() {
   constexpr double kTurn = 6.28318530717958647692;
   std::vector<float> table(std::size_t{1} << kGaussBits);
@@ -66,7 +66,7 @@ Duration Scanner::ColumnTime(std::uint64_t scan, std::uint32_t column) const {
 
 void Scanner::MoveAnchor(double x, double y) {
   const double anchor_x = std::floor(x / kAnchorStep) * kAnchorStep;
-  // This is 0 in worlds along x: sensors stay within half a step of their middle.
+  // In worlds along x this is 0, because sensors stay within half a step of the middle.
   const double anchor_y = std::round(y / kAnchorStep) * kAnchorStep;
   if (anchor_x == view_.anchor_x && anchor_y == view_.anchor_y && !shapes_.empty()) return;
   view_.anchor_x = anchor_x;
@@ -152,7 +152,7 @@ Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
   constexpr float kDropout = 0.998F;
   constexpr float kPhotons = 40;  // photons of an echo at the limit of detection
   const float range = hit.distance + rays_.origin_m();
-  // Reference: a target of 10 % at the range where nine of ten pulses return.
+  // The signal is 1 for a target of 10 % at the range where nine of ten pulses return.
   const float signal = hit.reflectivity * hit.cosine * signal_scale_ / (range * range);
   const std::uint64_t bits = noise->Bits();
   const float chance = kDropout * signal * signal / (signal * signal + 0.11F);
@@ -230,7 +230,7 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
   returns->range2_mm.resize(seconds);
   returns->reflectivity2.resize(seconds);
   returns->signal2.resize(seconds);
-  // Returns must not depend on where a window begins.
+  // The ranges must not depend on where a window begins.
   std::vector<Hit> beside;
   if (config_.mixed_pixels && window.first > 0) beside = TraceColumn(scan, window.first - 1);
   std::uint32_t chunk = UINT32_MAX;

@@ -44,7 +44,7 @@ class Scanner {
 
   /// Casts the columns of `window` (within a turn) of turn number `scan`.
   void Cast(std::uint64_t scan, ColumnWindow window, Returns* returns);
-  /// Returns when column `column` of that turn is sampled, since the start.
+  /// Returns the time from the start to the sampling of `column` in turn `scan`.
   Duration ColumnTime(std::uint64_t scan, std::uint32_t column) const;
   const Rays& rays() const { return rays_; }
   const Trajectory& trajectory() const { return trajectory_; }

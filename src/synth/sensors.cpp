@@ -73,7 +73,7 @@ std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns) {
     if (parsed.ptr == digits.data() + digits.size() &&
         (beams == 32 || beams == 64 || beams == 128)) {
       Sensor sensor = Build(family, beams, columns);
-      // As read from caps, so that both ends convert ranges to the same points.
+      // Rounds the model as caps do, so that both ends convert ranges to the same points.
       const auto bytes = sensor.model.Serialise();
       sensor.model = *SensorModel::Parse({bytes.data(), bytes.size()});
       return sensor;

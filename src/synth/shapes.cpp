@@ -145,8 +145,7 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
 }
 
 bool EnterFoliage(const Shape& s, Random* noise, Span* span) {
-  // A ray's way through leaves until it hits one has an exponential distribution; half.x sets the
-  // mean.
+  // The path of a ray through leaves has an exponential distribution; half.x sets the mean.
   const float mean = 0.55F * s.half.x;
   const float depth = -mean * std::log(1.0F - noise->Uniform());
   span->in += depth;

@@ -35,8 +35,8 @@ struct Bend {
   }
 };
 
-// The lengths have no common multiple with the distance of crossings, so all blocks differ. Grades
-// are at most 10 % along each axis, and curves have radii of at least 350 m.
+// The lengths have no common divisor with the distance of crossings, so blocks differ. Grades are
+// at most 10 % along each axis, and curves have radii of at least 350 m.
 constexpr Bend kHillX{5, 421};
 constexpr Bend kHillY{4, 347};
 constexpr Bend kBendU{20, 521};  // shift of u along y
@@ -51,7 +51,7 @@ class Terrain {
   };
   static Point ToPlan(Point world);
   static Point FromPlan(Point plan);
-  /// Returns the direction, not of unit length, of a street along u, or along v, at `world`.
+  /// Returns the direction at `world` of a street along u or along v. Its length is not 1.
   static Point DirectionAt(Point world, bool along_u);
 
   struct Ground {
@@ -75,7 +75,7 @@ class Terrain {
     Height HeightAt(float x, float y) const {
       return {hill_x_.At(x) + hill_y_.At(y), hill_x_.SlopeAt(x), hill_y_.SlopeAt(y)};
     }
-    /// Plan coordinates of a point, less those of the anchor in the world.
+    /// Plan coordinates of a point, minus the anchor's coordinates in the world.
     float PlanU(float x, float y) const { return x - bend_y_.At(y); }
     float PlanV(float x, float y) const { return y - bend_x_.At(x); }
     static constexpr float curvature() {  // greatest curvature of the ground [1/m]

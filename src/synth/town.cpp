@@ -203,7 +203,7 @@ void Town::AddMoving(const View& view, const Instant& now, std::vector<Shape>* s
       shapes->end());
 }
 
-/// Returns the distance at which the ray meets the hills, raised by `above`; nothing if it does
+/// Returns the distance at which the ray meets the hills, raised by `above`, or `reach` if it does
 /// not.
 float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float reach) {
   constexpr int kMostSteps = 20;
@@ -218,8 +218,8 @@ float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float r
     if (clearance < kClose) return std::max(t, 0.0F);
     const float fall =
         ground.slope_x * ray.direction.x + ground.slope_y * ray.direction.y - ray.direction.z;
-    // The ray would meet the ground at the new t if that had the greatest curvature. Real ground is
-    // lower, so no point before is missed.
+    // The ray would meet ground of the greatest curvature at the new t. Real ground is lower, so
+    // the step jumps over no point of it.
     t += 2 * clearance / (fall + std::sqrt(fall * fall + 2 * curvature * clearance));
   }
   return reach;

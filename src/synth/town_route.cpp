@@ -44,7 +44,7 @@ std::vector<Leg> MakeLegs() {
     const int du = Sign(to.u - from.u);
     const int dv = Sign(to.v - from.v);
     const int turn = du * Sign(next.v - to.v) - dv * Sign(next.u - to.u);
-    // A turn at `from` ends this far behind it; the first leg begins without a turn.
+    // A turn at `from` ends this far past it; the first leg begins without a turn.
     const Corner& before = kCorners[i > 0 ? i - 1 : kLegs - 1];
     const bool turned = Sign(from.u - before.u) != du || Sign(from.v - before.v) != dv;
     const double skip = turned ? kCornerRadius : 0;

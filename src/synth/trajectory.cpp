@@ -16,7 +16,7 @@ struct Wave {
   }
 };
 
-// The lengths have no common multiple: the drive does not repeat.
+// The lengths have no short common multiple, so the drive does not repeat.
 constexpr Wave kSwayLong{1.0, 149};
 constexpr Wave kSwayShort{0.35, 43};
 constexpr Wave kHeave{0.012, 9.7};

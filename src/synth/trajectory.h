@@ -21,7 +21,7 @@ class Route {
     double bank = 0;      // rise to the left
     double distance = 0;  // driven since the start [m]
   };
-  /// Returns the place after `seconds` of a car at its wanted speed, slower in corners.
+  /// Returns the place of a car after `seconds` at its wanted speed, or slower in corners.
   virtual Place At(double seconds) const = 0;
 };
 
