@@ -162,7 +162,8 @@ static const std::array<Property<Settings>, 10> kProperties = {{
      ReadStats},
 }};
 
-/// Returns when the first column of `buffer` was sampled: its capture time, or else its timestamp.
+/// Returns the time at which the first column of `buffer` was sampled: the buffer's capture time,
+/// or else its timestamp.
 static std::optional<Time> SampledAt(GstBuffer* buffer) {
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   const GstClockTime at = GST_CLOCK_TIME_IS_VALID(captured) ? captured : GST_BUFFER_PTS(buffer);

@@ -19,7 +19,7 @@ struct MotionSample {
   Eigen::Vector3d force;  // [m/s^2]
 };
 
-/// The streams of the IMU and of the scans may call it at the same time.
+/// The threads of the IMU and of the scans may use an object at the same time.
 class ImuInput {
  public:
   /// Sets the layout of the samples that follow, and the rotation from the IMU to the sensor.

@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// All threads may call it.
+/// Any thread may call it.
 class LoopThread {
  public:
   explicit LoopThread(const slam::LoopSettings& settings);

@@ -19,9 +19,9 @@ struct PointsInMemory {
   std::uint32_t xyz_offset;  // of x, y and z, each an F32
 };
 
-/// Returns the seconds from the first sample to each point. Drivers count from the cloud, 1970 or
-/// power-on, in seconds, milliseconds, microseconds or nanoseconds. The unit is the one in which
-/// the samples last about as long as `sweep_s`. Returns an empty vector if no unit fits.
+/// Returns the seconds from the first sample to each point. Drivers count from the cloud's start,
+/// 1970 or power-on, in seconds, milliseconds, microseconds or nanoseconds. The unit is the one in
+/// which the samples last about as long as `sweep_s`. Returns an empty vector if no unit fits.
 std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& points, double sweep_s);
 
 }  // namespace lidar::gst
