@@ -55,8 +55,8 @@ double Uncertainty(const std::vector<double>& values) {
   return 1.96 * std::sqrt(squares / (n - 1) / n) / mean;
 }
 
-/// Compares a stream over a pair of generated drives with senders that send as much at a constant
-/// rate. One knows the drives in advance, the other after a round trip.
+/// Compares a stream over a pair of generated drives with two senders that send as many bytes at a
+/// constant rate. The first knows the drives in advance, the second after a round trip.
 void PrintPair(std::uint64_t seed, bool adapts, Duration duration) {
   RunConfig config;
   config.links = {{Drive(seed)}, {Drive(seed + 1)}};

@@ -33,7 +33,7 @@ const Capture& CaptureOf(std::int64_t source, std::int64_t slices) {
   return captures[{source, slices}] = *std::move(capture);
 }
 
-// The argument `coder` is a codec::RangeCoder, or for kMixing kEffort plus the effort.
+// The argument `coder` is a codec::RangeCoder. For kMixing it is kEffort plus the effort.
 constexpr std::int64_t kEffort = 10;
 
 codec::RangeCoder CoderOf(std::int64_t coder) {

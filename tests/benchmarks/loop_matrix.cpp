@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// loop-matrix: runs encoder, sender and link in simulated time over traces with gaps. Prints the
-// figures and those of a sender that knew the link.
+// loop-matrix: runs encoder, sender and link in simulated time over traces with gaps. Prints their
+// figures beside those of a sender that knows the link.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

@@ -29,7 +29,7 @@ constexpr std::uint8_t kEcnMask = 3;
 constexpr std::uint8_t kCe = 3;
 constexpr std::uint8_t kEct1 = 1;
 
-/// Sends until a signal comes; prints the packets that it sent.
+/// Sends until a signal comes, then prints the number of packets sent.
 void Send(const std::string& to, TcpKind kind) {
   UdpSocket socket = UdpSocket::Connect(lidar::tools::ResolveAddress(to, "127.0.0.1"));
   EventLoop loop;

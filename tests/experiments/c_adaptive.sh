@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# A drive over a mobile network with L4S, adaptive: what the paper's system does.
+# A drive whose encoder adapts to a mobile network with L4S, as in the paper's system.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"
 
-# It runs over the first link, and over each further --trace.
+# The drive runs over the first link, and again over each further --trace.
 names=(c)
 for trace in "${traces[@]:1}"; do names+=("c@$(basename "$trace" .txt)"); done
 printf '%s\n' "${names[@]}" | streams

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Sourced by the experiments over a network: sender, link and receiver in real time, with SLAM.
 
-# path_of NAME: sets `path` to the options of the link: the --trace whose name follows an @ in NAME;
-# without an @ the first trace, or a generated drive if there is none.
+# path_of NAME: sets `path` to the options of the link: the --trace whose name follows an @ in NAME.
+# Without an @ it is the first --trace; without any --trace it is a generated drive.
 path_of() {
   local trace
   path=(--drive --rate "$rate")

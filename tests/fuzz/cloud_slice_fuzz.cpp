@@ -16,7 +16,7 @@ using namespace lidar::codec;
 constexpr std::uint32_t kMaxPoints = 4'096;
 
 /// Returns a name for a field: "line" or "timestamp", by which the encoder looks for paths, or
-/// another if that is taken.
+/// another name if `others` has that field.
 std::string NameOf(FieldType type, const PointFields& others) {
   const char* name = type == FieldType::kU8 ? "line" : "timestamp";
   return others.Find(name) == nullptr ? name : "f" + std::to_string(others.all().size());
@@ -64,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool has_points = geometry.Decode({data, size});
   const CloudLayout layout = LayoutFor(has_points ? geometry.exact_section() : ByteView());
   cloud::ExactDecoder decoder(ExactFields(layout.fields), kMaxPoints);
-  // The slice is decoded twice: what it leaves behind must not change the next one.
+  // The slice is decoded twice: the first decoding must not change the second one.
   const bool first = decoder.Decode({data, size});
   FUZZ_CHECK(first == decoder.Decode({data, size}));
   FUZZ_CHECK(has_points || !first);

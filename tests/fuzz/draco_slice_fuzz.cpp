@@ -14,7 +14,7 @@ using lidar::draco::SliceDecoder;
 
 constexpr std::uint32_t kMaxPoints = 1U << 16;
 
-/// Returns a sensor: rows of 512 columns are coded in lanes, those of 64 are not.
+/// Returns a sensor. Rows of 512 columns are coded in lanes, rows of 64 columns are not.
 lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
   lidar::SensorModel model;
   model.columns_per_scan = columns;
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto format = Format(data[0]);
   const Geometry geometry = (data[0] & 2) != 0 ? Geometry::kRange : Geometry::kXyz;
   SliceDecoder decoder(format, geometry, kMaxPoints);
-  // The slice is decoded twice: what it leaves behind must not harm the next one.
+  // The slice is decoded twice: the first decoding must not harm the second one.
   for (int i = 0; i < 2; ++i) {
     const auto shape = decoder.Decode({data + 1, size - 1});
     if (!shape) continue;

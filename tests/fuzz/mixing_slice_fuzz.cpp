@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Payloads of the mixing coder. The first byte chooses the sensor, the bits of the intensity, the
-// grid, and whether there is memory of scans before.
+// grid, and whether the decoder has a memory of earlier scans.
 #include "src/codec/block_memory.h"
 #include "src/codec/mixing/mixing_codec.h"
 #include "src/codec/mixing/start_states.h"
@@ -8,7 +8,7 @@
 
 namespace {
 
-// Reads the start states before the first input, because time is limited for inputs.
+// Reads the start states before the first input, because each input has a time limit.
 [[maybe_unused]] const auto& kStart = lidar::codec::mixing::Trained();
 
 lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   image.beams = static_cast<std::uint32_t>(sensor.beams.size());
   image.columns = (choice & 64) != 0 ? sensor.columns_per_scan : sensor.columns_per_scan / 2;
   lidar::codec::MixingDecoder decoder(sensor);
-  // The slice is decoded twice: what it leaves behind must not change the next one.
+  // The slice is decoded twice: the first decoding must not change the second one.
   const auto before = (choice & 128) != 0 ? Before(image, grid) : nullptr;
   const bool first = Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
   const auto ranges = image.ranges;

@@ -31,7 +31,7 @@ std::string_view SetHeaders(natsMsg* message, std::string_view text) {
   return text;
 }
 
-/// Checks that a message that was read can be written again, and is then read as the same.
+/// Checks that a message that was read can be written, and that reading it again gives the same.
 void CheckComesBack(const ReadMessage& read) {
   const MessagePtr said = WriteMessage("a", nullptr, read.format_id, read.place, read.buffer.get());
   FUZZ_CHECK(said);

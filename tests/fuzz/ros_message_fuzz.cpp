@@ -15,7 +15,7 @@ namespace {
 using lidar::ByteView;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Checks that a message that was read can be written again, and is then read as the same.
+/// Checks that a message that was read can be written, and that reading it again gives the same.
 template <class Message>
 void CheckComesBack(ByteView data, std::optional<Message> (*read)(ByteView),
                     Bytes (*write)(const Message&)) {
@@ -45,8 +45,8 @@ void CheckCloud(ByteView data) {
              lidar::cdr::RowStride(*cloud).has_value());
 }
 
-/// Checks that frames of strangers give a transform of finite numbers, or a reason why there is
-/// none.
+/// Checks that frames from any sender give a transform of finite numbers, or a reason why there is
+/// no transform.
 void CheckTree(ByteView data) {
   const auto transforms = lidar::cdr::ReadTransforms(data);
   if (!transforms) return;

@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   receiver.Finish();
   const auto a = receiver.accounts();
   FUZZ_CHECK(a.packets_received == packets);
-  // Slices of a candidate that never became the stream are in no account.
+  // Slices of a candidate that never became the stream are not counted.
   FUZZ_CHECK(a.slices.slices_received == slices);
   FUZZ_CHECK(a.slices.slices_received >= a.slices.scans_complete);
   return 0;

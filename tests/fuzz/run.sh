@@ -77,7 +77,7 @@ fuzz_one() {
   local target=$1
   local grown=$work/$target findings=$work/$target-findings
   mkdir -p "$grown" "$findings"
-  # The product promises these limits: no input may take a second or a gigabyte.
+  # No input may take a second or a gigabyte. Sanitizers slow the code down, so 5 s are allowed.
   "$build/tests/fuzz/fuzz_$target" "$grown" "$here/corpus/$target" -max_total_time="$seconds" \
     -timeout=5 -rss_limit_mb=1024 -max_len=65536 -print_final_stats=1 -artifact_prefix="$findings/" \
     >"$work/$target.log" 2>&1

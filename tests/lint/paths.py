@@ -65,7 +65,7 @@ class Checker:
         self.files = tree(root)
         self.names = {pathlib.PurePath(f).name for f in self.files}
         self.programs = programs(root, self.files)
-        # Properties and messages look like programs.
+        # Names of properties and messages look like names of programs.
         self.strings = {
             s
             for f in self.files
