@@ -43,7 +43,7 @@ struct RunResult {
   std::vector<double> scan_age_ms;  // age of each scan when its last slice is whole; 1e9: never
   std::int64_t media_bytes = 0;     // output of the encoder, headers included
   std::vector<std::int64_t> link_bytes;  // sent on each link
-  std::int64_t other_bytes = 0;          // received of competing flows
+  std::int64_t other_bytes = 0;          // of competing flows, received
   struct Target {
     Duration time;
     DataRate rate;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A stream over simulated links, compared with what a sender that knew them could deliver.
+// A stream over simulated links, compared with what a sender that knew the links could deliver.
 #include "tests/core/bonding/bonded_run.h"
 
 #include <gtest/gtest.h>

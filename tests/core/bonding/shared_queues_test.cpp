@@ -36,7 +36,7 @@ class TwoFifos : public testing::Test {
   }
   SharedQueues queues_;
   bool shared_ = false;
-  int changes_ = 0;  // of what it finds
+  int changes_ = 0;  // number of changes of `shared_`
   Time now_ = kStart;
   std::array<Time, 2> free_{kStart, kStart};
   std::array<Duration, 2> behind_{};  // delay of each link behind its queue
@@ -58,7 +58,7 @@ TEST_F(TwoFifos, KnowsTheEmptyQueueOfTheWindowBeforeWhileOneStands) {
     now_ += 50ms;
     for (const std::size_t link : {0U, 1U}) Send(link, 0, DataSize::Bytes(600));
   }
-  // A burst fills the queue, which then stands while the next window of ten seconds begins.
+  // A burst fills the queue, which then stays full while the next window of ten seconds begins.
   while (free_[0] - now_ < 200ms) Send(0, 0, DataSize::Bytes(1200));
   while (now_ < kStart + 14s) {
     now_ += FromSeconds(0.003 + 0.002 * random_.Uniform());
@@ -77,7 +77,7 @@ TEST_F(TwoFifos, TakesNoLittleLikenessForOneQueue) {
   for (int round = 0; round < 5; ++round) {
     now_ = std::max(free_[0], free_[1]) + 1s;  // the queues are empty again
     const Time end = now_ + 8s;
-    // Both queues stand at 50 ms, with packets of others between ours.
+    // Both queues are 50 ms long, with packets of others between ours.
     for (; now_ < end; now_ += FromSeconds(0.003 + 0.002 * random_.Uniform()))
       for (const std::size_t link : {0U, 1U})
         while (free_[link] - now_ < 50ms) {
@@ -113,7 +113,7 @@ TEST_F(TwoFifos, TakesNoOldSamplesForNewOnesWhereQueuesAreAlikeForAMoment) {
     Run(1, false, 0.8);
     EXPECT_FALSE(queues_.Shared(0, 1)) << seed;
   }
-  EXPECT_LE(changes_, 40);  // at least 20
+  EXPECT_LE(changes_, 40);  // two for each seed are needed
 }
 
 }  // namespace

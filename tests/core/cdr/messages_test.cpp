@@ -211,7 +211,7 @@ TEST(CodedSlices, ANegativeDurationIsNone) {
   slice.duration = Duration::max();
   EXPECT_EQ(ReadCodedSlice(View(WriteCodedSlice(slice)))->duration,
             std::chrono::seconds(INT32_MAX));
-  // A second has no more nanoseconds than 999,999,999.
+  // The nanoseconds of a duration are at most 999,999,999.
   bytes[24] = 0x00, bytes[25] = 0xCA, bytes[26] = 0x9A, bytes[27] = 0x3B;
   EXPECT_FALSE(ReadCodedSlice(View(bytes))->duration);
   bytes[24] = 0xFF, bytes[25] = 0xC9;

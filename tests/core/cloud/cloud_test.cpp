@@ -121,7 +121,7 @@ TEST(PointFields, CoordinatesArePackedInTheirOrderOnly) {
   EXPECT_FALSE(packed("x:F32:0,y:F32:4"));
 }
 
-/// Byte by byte as docs/wire-format.md has it.
+/// Each byte is as in docs/wire-format.md.
 TEST(SensorModel, StandsOnTheWireAsDocumented) {
   SensorModel m;
   m.columns_per_scan = 0x0102;

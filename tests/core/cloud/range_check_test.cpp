@@ -79,7 +79,8 @@ TEST(RangeCheckOfPoints, FindsNothingWhereTheyAreAsTheirRangesSay) {
   }
 }
 
-/// Four returns are looked at: the middle one of each quarter, or the next that there is.
+/// The check looks at four pixels, the middle one of each quarter, or at the next one with a
+/// return.
 TEST(RangeCheckOfPoints, FindsOneThatWasMoved) {
   const RangeCheck check = MakeCheck();
   constexpr std::uint32_t kFirst = 28;  // the slice goes over the end of the turn

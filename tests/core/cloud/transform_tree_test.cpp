@@ -152,7 +152,7 @@ TEST_F(Tree, APoseThatIsTooLateChangesNothing) {
   EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(10), At(3), false));
   EXPECT_FALSE(tree_.Set("elsewhere", "odom", kStart - seconds(10), At(3), false));
   ExpectNear(Place(tree_.Find("map", "odom", kStart + milliseconds(500)), {0, 0, 0}), {150, 0, 0});
-  // Many old poses change nothing, either, while newer ones come between them.
+  // Many old poses change nothing while newer ones come between them.
   for (int i = 0; i < 100; ++i) {
     EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(20) + milliseconds(i), At(3), false));
     EXPECT_TRUE(tree_.Set("map", "odom", kStart + seconds(1) + milliseconds(i), At(200), false));
@@ -197,7 +197,7 @@ TEST_F(Tree, AClockThatWentBackIsSeenWhateverThePosesHold) {
               i == kAgain - 1)
         << i;
   ExpectNear(Place(tree_.Find("odom", "base", again + seconds(9)), {0, 0, 0}), {9, 0, 0});
-  // Times without an order: poses too old for the newest one are refused again.
+  // The times have no order. After the restart, poses too old for the newest one are refused.
   const Time earlier = again - seconds(100);
   for (int i = 0; i < 50; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", earlier - seconds(11 * (i % 5)), At(i), false),

@@ -68,7 +68,7 @@ TEST(ReferenceKeeper, HoldsNoMemoryForAReceiverThatIsGone) {
   EXPECT_GT(keeper.bytes(), 0U);
   EXPECT_FALSE(keeper.Begin(Time{3s}, {2, 0, 1}));
   EXPECT_EQ(keeper.bytes(), 0U);
-  // Another one takes its place at once, and has no slice of it.
+  // A new receiver replaces the first one at once, and has no slice yet.
   keeper.OnAcknowledged(Time{3s}, kOneReceiver + 1, 1, 0);
   EXPECT_TRUE(keeper.Begin(Time{3s}, {3, 0, 1}));
   EXPECT_FALSE(keeper.HasReference());

@@ -47,8 +47,8 @@ inline void ExpectRoundTrip(const codec::RangeImage& image, const codec::RangeSe
   }
 }
 
-/// Expects that a block is refused that has a word more than `coder` wrote in its mask or payload,
-/// whose size is `part` of the header.
+/// Expects that a block is refused if its mask or payload has a word more than `coder` wrote.
+/// `part` is the header's size of that mask or payload.
 inline void ExpectNoWordBehind(codec::RangeCoder coder, const codec::IntegerCoder* integers,
                                std::uint32_t codec::RangeHeader::*part) {
   const SensorModel model = RoomSensor();

@@ -30,8 +30,7 @@ std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads
   settings.intensity_bits = 5;
   std::vector<std::uint32_t> ranges;
   SliceDecoder decoder(format, kMaxPoints);
-  // The slice is coded twice: what it leaves behind in the encoder must not reach into the next
-  // one.
+  // The slice is coded twice: the first coding must not change the second one.
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
     const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});
@@ -125,7 +124,7 @@ TEST_P(Efforts, KeepBinsThatOnlyTheFastCoderCanCount) {
 
 INSTANTIATE_TEST_SUITE_P(All, Efforts, ::testing::Range(0U, EffortControl::kHighest + 1));
 
-/// A way to code a slice, for which its figures must be true.
+/// A way to code a slice. The figures of the slice must be true for each way.
 struct Coding {
   unsigned threads;
   unsigned effort;

@@ -141,8 +141,8 @@ std::vector<RangeImage> NoisyScans(int count) {
   return scans;
 }
 
-/// Bytes of dependent blocks of such scans at an effort, the largest error [mm] of decoded ranges,
-/// and how many of the blocks have chosen bins.
+/// Bytes of dependent blocks of NoisyScans() at an effort, the largest error [mm] of decoded
+/// ranges, and how many of the blocks have chosen bins.
 struct Repeated {
   std::size_t bytes = 0;
   int error_mm = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices that refer to others, over links that acknowledge, lose, and say nothing.
+// Slices that refer to others, over links that acknowledge slices, lose them, or return nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t kSlices = 4;
-constexpr std::uint32_t kColumns = 128;  // enough for what needs many scans
+constexpr std::uint32_t kColumns = 128;  // few, because some tests need many scans
 constexpr std::uint32_t kReceiver = 77;
 
-/// What a link does to slice `index` of scan `scan`.
+/// Settings of a run. The link loses the slices for which `loses` returns true.
 struct LinkTest {
   unsigned effort = 2;
   unsigned threads = 1;

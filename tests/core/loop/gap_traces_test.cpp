@@ -169,7 +169,7 @@ TEST(Loop, SettlesSoonOnALinkThatStaysSlow) {
   }
 }
 
-/// The time after a gap until the sender is back at 80 % of what it can use.
+/// The time after a gap until the sender is back at 80 % of the capacity that it can use.
 TEST(Loop, IsBackSoonAfterEveryGap) {
   for (const char* trace : {"gap_100ms_every_0.6s", "gap_100ms_every_2s", "gap_1s_every_10s"})
     EXPECT_LE(RunLoop(Case(trace)).report.recovery_s.max, 0.3) << trace;

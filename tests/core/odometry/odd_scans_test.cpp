@@ -28,7 +28,7 @@ TEST(OddScans, StartsAfreshBesideAMapToWhichNothingHasFitted) {
 }
 
 TEST(OddScans, IsLostWhereAVehicleCannotHaveMovedLikeThat) {
-  for (const bool was_lost : {false, true}) {  // and found its way again
+  for (const bool was_lost : {false, true}) {  // at scan 8, after which it tracked again
     Drive street(synth::SceneKind::kStreet, 10);
     Odometry odometry({});
     for (std::uint64_t i = 0; i < 10; ++i) {
@@ -155,7 +155,7 @@ TEST(OddScans, FindsItsWayAfterLostScansInWhichTheCarBraked) {
   for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
   for (std::uint64_t i = 20; i < 25; ++i)
     EXPECT_EQ(odometry.OnScan(drive.StartOf(i), kPeriod, elsewhere).tracking, Tracking::kLost);
-  // The sensor has moved in 0.6 s as far as in 0.5 s before: 1 m less than is expected.
+  // The sensor moves in 0.6 s only as far as it usually does in 0.5 s: 1 m less than predicted.
   const Estimate found = odometry.OnScan(drive.StartOf(25), kPeriod, drive.Scan(24));
   EXPECT_EQ(found.tracking, Tracking::kTracking);
   EXPECT_LT((found.pose.position - drive.WayTo(24).position).norm(), 0.3);
@@ -274,13 +274,13 @@ TEST(OddScans, ReachesFartherAfterAGapInWhichTheCarBraked) {
   Drive drive(synth::SceneKind::kTown, 10);
   Odometry odometry({});
   for (std::uint64_t i = 0; i < 20; ++i) odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
-  // The sensor has moved in 0.5 s as far as in 0.4 s before.
+  // The sensor moves in 0.5 s only as far as it usually does in 0.4 s.
   const Pose found = odometry.OnScan(drive.StartOf(24), kPeriod, drive.Scan(23)).pose;
   const Pose way = drive.WayTo(23);
   EXPECT_LT((found.position - way.position).norm(), 0.6);
 }
 
-/// Past a gap, the map shows little of the scene, so fewer upright surfaces fit.
+/// After a gap, the map has little of the new scene, so fewer upright surfaces fit.
 TEST(OddScans, TracksASceneThatAGapHasMadeNew) {
   Drive drive(synth::SceneKind::kField, 15, 4);
   Odometry odometry({});

@@ -12,13 +12,13 @@
 namespace lidar::odometry {
 namespace {
 
-/// Poses of `scans` scans, without those in `missing`.
 struct Followed {
   Trajectory truth;
   Trajectory estimate;
   std::vector<Tracking> tracking;
   std::vector<double> deviation_m;
 };
+/// Follows `scans` scans of the drive, without those in `missing`.
 Followed Follow(Drive* drive, std::uint64_t scans, const OdometrySettings& settings,
                 const std::vector<std::uint64_t>& missing = {}) {
   Odometry odometry(settings);

@@ -23,8 +23,8 @@ constexpr int kDatagrams = 5000;
 
 bool Always() { return true; }
 
-/// A capture of a datagram each millisecond, which holds its number; datagram `swapped` comes after
-/// the next one.
+/// A capture of a datagram each millisecond, which holds its number. Datagram `swapped` comes after
+/// its successor.
 class CaptureIndexTest : public ::testing::Test {
  protected:
   void Write(int swapped = kDatagrams) {
@@ -83,7 +83,7 @@ TEST_F(CaptureIndexTest, AReaderSeesAllThatIsLaterFromItsPlaces) {
     const auto next = reader->Next();
     ASSERT_TRUE(next) << time;
     EXPECT_LE(next->time, kStart + milliseconds(time));
-    // Places much earlier than the time would be of no use.
+    // A place much earlier than the time would make a seek slow.
     EXPECT_GE(next->time, kStart + milliseconds(std::min(time, kDatagrams) - 250));
   }
 }

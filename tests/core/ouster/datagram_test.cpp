@@ -242,7 +242,7 @@ TEST_P(Fragments, ThatContradictEachOtherDiscardTheirDatagram) {
   EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(of_one[2])));
 }
 
-// At 640 packets/s the identifiers of IPv4 come round every 102 s.
+// At 640 packets/s the identifiers of IPv4 repeat every 102 s.
 TEST_P(Fragments, OfAnIncompleteDatagramAreForgottenBeforeTheirIdentifierComesRound) {
   Bytes next = Payload(4000);
   std::reverse(next.begin(), next.end());
@@ -302,7 +302,7 @@ TEST_P(Fragments, OfAnIdentifierThatComesAgainMakeAnotherDatagram) {
   }
 }
 
-/// A last fragment that was cut, and came before, contradicts the whole one.
+/// The second fragment begins where the first one does, but is longer.
 TEST_P(Fragments, ThatOverlapInPartDiscardTheirDatagram) {
   const Bytes udp = Udp(Payload(4000));
   const auto packets = Cut(udp, 1480);

@@ -72,7 +72,7 @@ TEST(Metadata, TellsThatTheStreamIsSentNowhere) {
   auto m = Parse(root, &error);
   ASSERT_TRUE(m) << error;
   EXPECT_TRUE(m->switched_off);
-  // Points can be made all the same: a capture may have been recorded later.
+  // Points can still be made, because a capture may have been recorded later than the metadata.
   EXPECT_TRUE(PointWriter::Create(*m, {}, &error)) << error;
   root["lidar_data_format"]["udp_profile_lidar"] = "OFF";
   m = Parse(root, &error);

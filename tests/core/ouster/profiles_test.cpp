@@ -58,7 +58,7 @@ std::uint32_t ValueOf(const ChannelBits& bits, std::uint32_t beam, std::uint32_t
   return static_cast<std::uint32_t>((random() & mask) << bits.scale_shift);
 }
 
-/// Each pixel has all of its bits set before if `again`.
+/// Writes a scan. If `again`, first sets all bits of each pixel, which the values must replace.
 std::vector<std::vector<std::uint8_t>> WriteScan(const Metadata& m, std::uint32_t frame_id,
                                                  bool again = false) {
   PacketWriter writer(m.format, {m.init_id, m.serial});

@@ -94,7 +94,7 @@ Duration ErrorAfter(ClockMapper* mapper, Duration from, Duration until, Duration
 TEST(ClockMapper, RemembersTheFastestPacketOfTheWindowBefore) {
   ClockMapper mapper(ClockMapper::Mode::kFollow);
   EXPECT_EQ(ErrorAfter(&mapper, 0s, 4s, 0ms), 0ms);
-  // A window of slow packets only: the fast ones before still count.
+  // A window has slow packets only, but the earlier fast packets still count.
   EXPECT_EQ(ErrorAfter(&mapper, 4s, 8s, 10ms), 0ms);
   // Later the fast packets are forgotten, and the offset rises as fast as clocks may drift.
   const Duration error = ErrorAfter(&mapper, 8s, 16s, 10ms);

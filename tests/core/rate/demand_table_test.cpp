@@ -8,7 +8,7 @@
 namespace lidar::rate {
 namespace {
 
-/// A scan of three slices that can take so many bytes more than they need.
+/// A scan of three slices. `rooms` are the bytes that each slice can take beyond its need.
 DemandTable Table(const std::array<double, 3>& rooms = {10, 20, 60}) {
   DemandTable table;
   std::uint32_t i = 0;

@@ -49,7 +49,7 @@ class TrainedInTheTunnel : public ::testing::Test {
 };
 TrainedInTheTunnel::Sets* TrainedInTheTunnel::sets_ = nullptr;
 
-/// Returns a rate halfway between what the bound needs and what is of use.
+/// Returns the geometric mean of the rate that the error bound needs and the highest useful rate.
 double MiddleRate(const ScanSet& set, const TrackOptions& options) {
   const rate::RateBounds bounds = MeasureBounds(set, options);
   return std::sqrt(bounds.min.bits_per_second() * bounds.max.bits_per_second());

@@ -128,7 +128,7 @@ TEST(Ccfb, ACompoundIsSplitAndForeignPacketsAreLeftAlone) {
   EXPECT_TRUE(SplitRtcp(View(compound)).empty());
 }
 
-/// Returns `report` with `added` bytes of padding, whose last byte claims `said` of them.
+/// Returns `report` with `added` bytes of padding. The last byte claims that they are `said` bytes.
 Bytes Padded(Bytes report, std::size_t added, std::uint8_t said, std::uint8_t fill = 0x5A) {
   report[0] |= 0x20;
   report[3] = static_cast<std::uint8_t>(report[3] + added / 4);

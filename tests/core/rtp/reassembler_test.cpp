@@ -272,7 +272,7 @@ TEST(Join, InMidStreamStartsWithTheFirstSliceThatIsWholeAfterAConfig) {
   EXPECT_EQ(DeliverAll(&receiver, packets),
             (Names{"2.2", "2.3", "3.0", "3.1", "3.2", "3.3", "4.0", "4.1", "4.2", "4.3"}));
   receiver.Finish();
-  // Scan 1 began before us: it is in no account.
+  // Scan 1 began before the receiver joined, so it is not counted.
   EXPECT_EQ(Accounts(receiver), "received 10 lost 0 damaged 0 mismatch 3; scans 2 1 0");
 }
 

@@ -260,7 +260,7 @@ TEST_P(AnotherStream, IsNotHeldWhileTheStreamGoesOn) {
   for (std::size_t i = own.size(); i < other.size(); ++i)
     for (ReceivedSlice& slice : test::Deliver(&receiver, other[i])) moved.push_back(slice);
   ASSERT_EQ(moved.size(), 41U);
-  EXPECT_EQ(moved.front().info.scan_id, 59U);  // its end is the only packet behind the first stream
+  EXPECT_EQ(moved.front().info.scan_id, 59U);  // only its end comes after the first stream
   EXPECT_TRUE(moved.front().discont);
   EXPECT_FALSE(moved[1].discont);
   receiver.Finish();

@@ -56,8 +56,8 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
 
 class QueueDelayTest : public ::testing::Test {
  protected:
-  /// Sends a packet each millisecond. Its way takes `owd`, and the clocks of both ends differ by an
-  /// hour.
+  /// Sends a packet each millisecond. Each takes `owd` to arrive, and the clocks of both ends
+  /// differ by an hour.
   void Run(int packets, Duration owd, Duration rtt_excess) {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
       const Duration way_back = 40ms + rtt_excess - owd - 1h;
@@ -276,7 +276,7 @@ TEST_F(LossContextTest, KnowsRandomLossFromIt) {
   }
 }
 
-/// The longer of two scattered delays exceeds most single delays, so ranks are among pairs.
+/// Of two scattered delays, the longer one exceeds most single delays, so pairs are ranked.
 TEST_F(LossContextTest, KnowsRandomLossWhereDelaysScatter) {
   link::Random random(1);
   for (int i = 0; i < 5000; ++i, now_ += 1ms) {

@@ -101,8 +101,8 @@ TEST(EcnMonitor, TakesAPathThatBleachesSomePacketsForCapable) {
   EXPECT_EQ(ecn.state(), EcnState::kCapable);
 }
 
-/// Sends a packet each 10 ms from `from` to `until`. Those that `arrives` lets through are
-/// acknowledged as they were sent.
+/// Sends a packet each 10 ms from `from` to `until`. The packets that `arrives` lets through are
+/// acknowledged with the codepoint that they were sent with.
 template <class Arrives>
 void Send(EcnMonitor* ecn, Duration from, Duration until, Arrives arrives) {
   for (Duration t = from; t < until; t += 10ms) {
@@ -120,7 +120,7 @@ TEST(EcnMonitor, FallsBackWhereOnlyPacketsWithoutACodepointComeThrough) {
   EcnMonitor ecn(Ecn::kEct1);
   Send(&ecn, 0s, 2s, kPlain);
   EXPECT_EQ(ecn.state(), EcnState::kTesting);
-  // From then on every other packet has none; ten of them show it.
+  // From then on every other packet has no codepoint. Ten of these packets show the fault.
   Send(&ecn, 2s, 2s + 180ms, kPlain);
   EXPECT_EQ(ecn.state(), EcnState::kTesting);
   Send(&ecn, 2s + 180ms, 2s + 220ms, kPlain);

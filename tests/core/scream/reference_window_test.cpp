@@ -20,7 +20,7 @@ class ReferenceWindowTest : public ::testing::Test {
     signals_.max_bytes_in_flight_prev = DataSize::Bytes(1000000);
     window_.Set(DataSize::Bytes(100000));
   }
-  /// Nothing acknowledged: only reductions move the window.
+  /// No bytes are acknowledged, so only reductions move the window.
   double Factor(Duration after = 1s) {
     const auto before = static_cast<double>(window_.ref_wnd().bytes());
     now_ += after;

@@ -163,7 +163,8 @@ TEST_F(GapRecoveryTest, TakesWhatLastsForMoreThanTenSecondsForWhatTheLinkIs) {
   EXPECT_FALSE(gaps_.in_gap());
 }
 
-/// Growth by the frame period, the rounds without congestion, the queue and whether marks work.
+/// Growth depends on the frame period, the rounds without congestion, the queue, and whether marks
+/// work.
 TEST(FastIncrease, GrowsByTheRoundsAndLessBehindAQueue) {
   const Parameters p;
   Path unmarked(p);

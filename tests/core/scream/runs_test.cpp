@@ -260,8 +260,8 @@ bool Same(const std::string& a, const std::string& b) {
   return *end_a == '\0' && *end_b == '\0' && std::abs(x - y) <= 1e-3 * std::abs(y);
 }
 
-/// The files show what a change of the controller does to whole runs. If that is meant,
-/// UPDATE_GOLDEN=1 in the environment writes them anew.
+/// The files show what a change of the controller does to whole runs. If the change is intended,
+/// UPDATE_GOLDEN=1 in the environment writes the files anew.
 class Runs : public ::testing::TestWithParam<Run> {};
 
 TEST_P(Runs, TakeTheCourseThatTheyAlwaysTook) {

@@ -62,7 +62,7 @@ TEST_F(SentHistoryTest, KnowsWhatHasBeenInFlightForLongest) {
   EXPECT_EQ(history_.oldest_in_flight(), kStart + 4ms);
 }
 
-/// Stream 2, whose packets are older, comes second.
+/// The packets of stream 2 are older, but the report has them second.
 TEST_F(SentHistoryTest, TheRoundTripIsOfThePacketSentLast) {
   for (const std::uint32_t ssrc : {2U, 1U}) {
     for (std::uint16_t seq = 0; seq < 2; ++seq, now_ += 5ms)
@@ -237,7 +237,7 @@ TEST_F(SentHistoryTest, ALonePacketFarBehindIsNoRestart) {
   Send(40500, 40501);
   Send(10001, 10002);
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 21000);
-  Send(12000, 12001);  // nor are two that do not follow each other
+  Send(12000, 12001);  // two that do not follow each other are no restart, either
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 21000);
 }
 

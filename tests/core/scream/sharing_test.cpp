@@ -27,7 +27,7 @@ class TwoStreams : public ::testing::Test {
     result = Simulate(scenario.config);
     metrics = Measure(scenario, result);
   }
-  /// Returns the rate of a stream that arrived after the first 5 s.
+  /// Returns the rate at which a stream arrived [Mbit/s], without the first 5 s.
   double Rate(int source) const {
     const Time origin = scenario.config.forward.origin;
     const Time end = origin + scenario.config.duration;

@@ -92,8 +92,8 @@ TEST(LoopCloser, BoundsItsMapsByForgettingThoseThatLieOverOthers) {
   EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
 }
 
-/// The drive is one map long up to a lap of ten maps, and then repeats the first map of the lap.
-/// The closer forgets that map, because the last one lies on it.
+/// The drive comes to the block along one map, makes a lap of ten maps, and repeats the lap's first
+/// map. The closer forgets the first map of the lap, because the last map lies on it.
 TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
   constexpr int kScansOfAMap = kScansOfALap / 10;
   const Points world = MakeWorld();
@@ -118,7 +118,7 @@ TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
   const Closure& closure = closer.closures().front();
   EXPECT_EQ(closure.from, 0U);
   EXPECT_EQ(closure.to, settings.most_maps - 1);
-  // The middles of the two maps are half a map before and behind the corner.
+  // The middles of the two maps are half a map before and after the corner.
   EXPECT_NEAR(closure.pose.position.norm(), std::sqrt(0.5) * kScansOfAMap * step_m, 5);
 }
 

@@ -98,7 +98,7 @@ TEST(AsyncWriter, WritesAllInOrderAndHasRoomAgainForWhatWasRead) {
   AsyncWriter writer(pipe.write.get(), 100);
   for (int i = 0; i < 50; ++i) {
     const std::string text(80, static_cast<char>('a' + i % 26));
-    // The room of the text before is free just after it was written.
+    // The writer frees the room of a text just after the text is in the pipe.
     std::uint64_t refused = 0;
     EXPECT_TRUE(test::Eventually([&] { return writer.Write(text) || ++refused > 10'000; }));
     ASSERT_LE(refused, 10'000U) << i;

@@ -18,7 +18,7 @@ interrupted() {
   wait "$pid"
 }
 
-# limit [KiB] and the program's arguments: an error that names a file of the folder, and nothing left
+# expect_clean_failure KIB PROGRAM ...: expects an error that names a file in the folder, and no file.
 expect_clean_failure() {
   local limit=$1 output status
   shift

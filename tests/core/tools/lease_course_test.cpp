@@ -65,7 +65,7 @@ class LeaseScript {
         table_.OnStored(write.ticket, ++revision_, now_);
     }
   }
-  /// Notes what is held if it is not what was held before, apart from renewals.
+  /// Notes the held leases if they have changed other than by renewal.
   void NoteHeld() {
     std::string held;
     for (const auto& [name, lease] : table_.HeldAt(now_))

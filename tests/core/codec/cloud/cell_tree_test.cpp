@@ -45,7 +45,7 @@ TEST(CellTree, GivesBackCellsAndCounts) {
     EXPECT_TRUE(decoder.AtEnd());
     EXPECT_EQ(cells.codes, before.codes);
     EXPECT_EQ(cells.counts, before.counts);
-    // A limit of one node or one point less than the tree has refuses it.
+    // A tree with one node or one point more than the limit is refused.
     for (const CellLimits& limits :
          {CellLimits{points.size(), nodes - 1}, CellLimits{points.size() - 1, nodes}}) {
       mixing::BinaryDecoder again({bytes.data(), bytes.size()});

@@ -308,7 +308,7 @@ PathCloud Noise(unsigned seed, std::size_t points) {
   return noise;
 }
 
-// The path is found when the search for beams already makes pauses.
+// When the encoder finds the path, its search for beams already pauses between clouds.
 TEST(CloudCodec, LosesAPathBetweenCloudsWithoutOne) {
   for (const std::size_t after : {4'000U, 3'000U}) {
     std::vector<PathCloud> clouds;
@@ -383,7 +383,7 @@ TEST(CloudCodec, FindsTheBeamsOfSensorsThatTakeTurns) {
   for (const double bits : BitsOfStream(clouds)) EXPECT_LE(bits, 4);
 }
 
-// A sensor on a roof sees little else. Its few other points are far apart, and on beams.
+// A sensor on a roof sees mostly the roof. Its few other points are far apart, and on beams.
 TEST(CloudCodec, CodesFewFarPointsByTheirBeams) {
   PlainPoints points = SpinningScan(0);
   constexpr float kRoof = 0.2F;
@@ -450,7 +450,7 @@ TEST(CloudCodec, GivesBackTheLevelsOfIntensities) {
   }
 }
 
-/// The beams are known from the second cloud on; then points near the sensor are set apart.
+/// The beams are known from the second cloud on, so points near the sensor are then coded apart.
 TEST(CloudCodec, GivesEachPointItsOwnIntensityWhetherItIsNearOrFar) {
   constexpr double kError = 0.35;
   constexpr float kBorder = 8.5F;  // [m]

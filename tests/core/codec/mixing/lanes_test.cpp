@@ -10,7 +10,7 @@
 namespace lidar::codec::mixing {
 namespace {
 
-/// An encoder that only keeps the chances that it gets.
+/// An encoder that only records the chances that it gets.
 struct Script {
   static constexpr bool kDecodes = false;
   bool Code(bool bit, std::int32_t chance) {

@@ -193,7 +193,7 @@ TEST(MixingCodecOf, WorkIsBoundedByTheBytes) {
     RangeImage image;
     image.beams = 128;
     const std::size_t most = MostMixedPixels(bytes) / image.beams;
-    // More is refused before anything is allocated for it.
+    // An image with more pixels is refused before memory for it is allocated.
     image.columns = static_cast<std::uint32_t>(most + 1);
     EXPECT_FALSE(decoder.Decode({payload.data(), bytes}, RangeGrid(1, 41), 0, &image));
     EXPECT_EQ(image.ranges.capacity(), 0U);
