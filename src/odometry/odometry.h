@@ -37,7 +37,7 @@ struct TimedPoints {
 };
 
 enum class Tracking {
-  kStarted,  // the map begins here: at the first scan, or anew after scans that did not fit
+  kStarted,  // the map begins here: at the first scan, after a gap, or after a map of few scans
   kTracking,
   kDegenerate,  // the scene does not show the motion along a direction; there the velocity is kept
   kLost,        // the scan does not fit the map; the pose is a prediction
@@ -51,7 +51,7 @@ struct Estimate {
   double inlier_share = 0;
   int iterations = 0;
   bool turn_measured = false;  // a gyroscope measured the rotation
-  bool map_restarted = false;  // because too many scans were lost
+  bool map_restarted = false;  // a new map begins here, and it is not the first map
   /// Covariance of the error since the first scan: x, y, z [m], and turns about the map's axes
   /// [rad].
   Matrix6 covariance = Matrix6::Zero();

@@ -81,7 +81,7 @@ void Imu::Disturb(const InertialErrors& errors, Axes* axes, Vector* values) {
   const double period = Seconds(spec_.period);
   const double kept = std::exp(-period / kWanderTime);
   const double step = errors.bias_instability / kAllanPeak * std::sqrt(1 - kept * kept);
-  // The band of the samples is half their rate.
+  // The bandwidth of the samples is half their rate.
   const double noise = errors.noise_density * std::sqrt(0.5 / period);
   for (std::size_t i = 0; i < 3; ++i) {
     Axis& axis = (*axes)[i];

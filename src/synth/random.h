@@ -5,7 +5,7 @@
 
 namespace lidar::synth {
 
-/// SplitMix64's finaliser: every bit of `v` moves every bit of the result.
+/// SplitMix64's finaliser: every bit of `v` affects every bit of the result.
 constexpr std::uint64_t Mix(std::uint64_t v) {
   v += 0x9E3779B97F4A7C15ULL;
   v = (v ^ (v >> 30)) * 0xBF58476D1CE4E5B9ULL;

@@ -36,8 +36,8 @@ struct Returns {
   std::vector<std::uint16_t> signal2;
 };
 
-/// Each ray leaves at its own time from the sensor's place at that time. Returns depend on
-/// configuration, scan and pixel only, not on how calls cut a scan. One thread at a time.
+/// Each column's rays leave at the column's time, from the sensor's place at that time. Returns
+/// depend on configuration, scan and pixel only, not on how calls cut a scan. One thread at a time.
 class Scanner {
  public:
   explicit Scanner(const ScannerConfig& config);

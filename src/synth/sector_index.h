@@ -14,7 +14,7 @@ inline float PseudoAngle(float x, float y) {
   return x < 0 ? 2 - p : (p < 0 ? 4 + p : p);
 }
 
-/// Valid for a short part of a sweep: the sensor stays within `margin` of one place.
+/// Valid while the sensor stays within `margin` of one place, so for a short part of a sweep.
 class SectorIndex {
  public:
   struct Entry {

@@ -14,7 +14,7 @@
 namespace lidar::codec {
 namespace {
 
-/// Two blocks of a room, the second by the first.
+/// Two blocks of a room. The second block refers to the first one.
 struct Pair {
   SensorModel model = test::GoldenSensor(16, 256);
   RangeSettings settings;

@@ -75,7 +75,7 @@ TEST(Pi2, DropsAsMuchAsAnOverloadOf10PercentNeedsToHoldItsTarget) {
 }
 
 TEST(Pi2, MarksEct1WithTwiceTheRootOfTheClassicSignal) {
-  // Both see the same p': the classic flow's drops hold the queue.
+  // Both flows see the same p'. The drops of the classic flow keep the queue at its target.
   const auto s = Overload(AqmConfig::Kind::kPi2, {Ecn::kNotEct, Ecn::kEct1}, 0.525);
   const double p = std::sqrt(s[0].rate());
   EXPECT_NEAR(s[0].rate(), 2 - 2 / 1.05, 0.02);

@@ -57,7 +57,7 @@ TEST(ClockMapper, OfAFileHoldsTheOffsetOfTheFirstPacketUntilAClockJumps) {
     mapper.Observe((5 + i) * second, arrival);
     EXPECT_EQ(mapper.Map((5 + i) * second), Time{std::chrono::seconds(100 + i)});
   }
-  EXPECT_FALSE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)}));  // just a second
+  EXPECT_FALSE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)}));  // 1 s: no jump
   EXPECT_TRUE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)} + Duration{1}));
   EXPECT_TRUE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(114)} - Duration{1}));
   mapper.Observe(20 * second, Time{std::chrono::seconds(200)});
@@ -66,7 +66,7 @@ TEST(ClockMapper, OfAFileHoldsTheOffsetOfTheFirstPacketUntilAClockJumps) {
 
 TEST(ClockMapper, FollowsAClockThatDrifts) {
   ClockMapper mapper(ClockMapper::Mode::kFollow);
-  // 100 ppm fast and then 100 ppm slow, a minute each.
+  // The sensor's clock is 100 ppm fast for a minute, then 100 ppm slow for a minute.
   double sensor = 1e9;
   Time arrival{10s};
   for (int i = 0; i < 120'000; ++i) {
@@ -304,7 +304,7 @@ TEST_F(Stream, PacketsWithoutASerialNumberGoByTheirSender) {
   EXPECT_EQ(push(packets_[0], ours), PacketVerdict::kLidar);
   EXPECT_EQ(push(imu, ours), PacketVerdict::kImu);
   EXPECT_EQ(push(imu, theirs), PacketVerdict::kForeign);
-  // With a serial number, the sensor may have moved to another address.
+  // This packet has the serial number, so the sensor has moved to another address.
   EXPECT_EQ(push(packets_[1], theirs), PacketVerdict::kLidar);
   EXPECT_EQ(push(imu, theirs), PacketVerdict::kImu);
 }

@@ -47,7 +47,8 @@ class BagDatabaseFile : public test::FolderTest {
  protected:
   ~BagDatabaseFile() override { Close(); }
 
-  /// Sets the path to a copy of the open bag with its file `end`, and closes the bag.
+  /// Copies the open bag and its file that ends with `end`, closes the bag, and sets the path to
+  /// the copy.
   void LeaveAsADeadWriter(const std::string& end) {
     const std::string copy = folder_ + "/copy";
     std::filesystem::create_directory(copy);

@@ -114,7 +114,7 @@ TEST_F(Files, PcdThatIsCutOffOrOfAnotherKindIsRefused) {
 
 TEST_F(Files, AFolderIsReadInTheOrderOfItsNames) {
   Write("2.bin", Bytes<float>({2, 0, 0, 0}));
-  Write("3.bin", Bytes<float>({3, 0, 0, 0}));  // no order of creation is that of the names
+  Write("3.bin", Bytes<float>({3, 0, 0, 0}));  // files are not written in the order of their names
   Write("1.bin", Bytes<float>({1, 0, 0, 0}));
   Write("notes.txt", "not a cloud");
   const ScanSet set = LoadScans(folder_, {});

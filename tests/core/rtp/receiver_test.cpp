@@ -51,7 +51,7 @@ TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrc) {
   EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 3) + AllSlices(10, 3, 2));
   second.scan_number = 500;
   for (const Wire& w : Sender(second).Scans(20, 3)) DeliverAll(&receiver, {w});
-  // No outage of half a second takes a million scans.
+  // An outage of half a second cannot take a million scans.
   EXPECT_EQ(receiver.accounts().restarts, 2U);
   EXPECT_EQ(receiver.accounts().slices.slices_lost, 0U);
 }

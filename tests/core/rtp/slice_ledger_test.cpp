@@ -95,7 +95,7 @@ TEST_F(Ledger, AScanThatBeginsLateHasItsOwnCountOfSlices) {
   EXPECT_EQ(accounts().scans_incomplete, 2U);
 }
 
-/// A slice may announce 64 skipped ones, at worst of as many scans.
+/// A slice may name 64 skipped slices, at worst of 64 scans.
 TEST_F(Ledger, NewsOfAScanAreTakenForSixtyFourScansAndNoLonger) {
   for (const std::int64_t end : {66, 67}) {
     ledger.StartAnew();

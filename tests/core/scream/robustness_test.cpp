@@ -231,7 +231,7 @@ TEST(Feedback, ThatIsSlowCostsLittle) {
   EXPECT_LT(run.MaxQueueMs(10s, 40s), 30);
 }
 
-/// Receivers with the reference's code report once a frame.
+/// Receivers with the code of the reference implementation report once a frame.
 TEST(Feedback, OnceAFrameIsEnough) {
   for (const char* name :
        {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "frames_20M_two_flows"}) {

@@ -373,7 +373,7 @@ TEST(CloudCodec, FindsTheBeamsOfASensorThatTakesTheOthersPlace) {
   EXPECT_LE(bits[2], 1.01 * bits[0]);
 }
 
-// Each change of the sensor makes the encoder search anew, however many there were.
+// Each change of the sensor makes the encoder search anew, however many changes there were.
 TEST(CloudCodec, FindsTheBeamsOfSensorsThatTakeTurns) {
   const PlainPoints first = SpinningScan(0);
   const PlainPoints second = UnevenScan({"", 0.1, 0.026, 0.2, 0, 0, 7});
