@@ -14,7 +14,7 @@ constexpr double kLongestStretch = 800;
 
 struct Pairs {
   Trajectory truth;
-  Trajectory estimate;  // both have the same length and times
+  Trajectory estimate;  // of the same length and times as `truth`
 };
 
 Pairs Match(const Trajectory& truth, const Trajectory& estimate) {

@@ -15,7 +15,7 @@ struct TrajectoryError {
   double rpe_rmse_m = 0;  // of the motions over one second
   double rpe_rmse_deg = 0;
   double length_m = 0;          // of the true trajectory
-  double end_error_m = 0;       // of the last position, after the first second of both is aligned
+  double end_error_m = 0;       // of the last position, after the first seconds are aligned
   std::optional<double> drift;  // mean over stretches of 100 to 800 m, as part of their length
 };
 

@@ -90,8 +90,8 @@ fuzz_one() {
   return $status
 }
 
-# Keeps the committed corpora small: adds the inputs of a grown file that cover more, smallest
-# first, up to 64 kB a target.
+# merge_one TARGET: adds those inputs of the grown corpus that cover more to the committed one, the
+# smallest first and 64 kB at most, which keeps it small.
 merge_one() {
   local target=$1 minimal=$work/$target-minimal
   rm -rf "$minimal"

@@ -250,7 +250,7 @@ TEST(RowFile, MovesWithItsFile) {
     from.stream() << "row\n";
     to = std::move(from);
   }
-  EXPECT_FALSE(std::filesystem::exists(other));  // it was closed, and was empty
+  EXPECT_FALSE(std::filesystem::exists(other));  // the move closed it, and removed it as empty
   EXPECT_TRUE(to.ok());
   EXPECT_TRUE(to.Flush());
   EXPECT_EQ(std::filesystem::file_size(path), 4U);
@@ -259,7 +259,7 @@ TEST(RowFile, MovesWithItsFile) {
   last = RowFile(other);
   EXPECT_TRUE(std::filesystem::exists(other));
   last.Close();
-  EXPECT_FALSE(std::filesystem::exists(other));  // this one is empty, too
+  EXPECT_FALSE(std::filesystem::exists(other));  // Close() removed it as empty
   EXPECT_TRUE(std::filesystem::exists(path));
   std::filesystem::remove(path);
 }

@@ -17,7 +17,7 @@ struct LinkConfig {
   link::AqmConfig aqm{};
   link::QueueLimit limit{};
   link::PathConfig path{};
-  Duration receiver_clock{0};  // ahead of the sender's
+  Duration receiver_clock{0};  // lead over the sender's clock
   /// The link is reported to the scheduler as unusable in this time of the run.
   Duration unusable_from = Duration::max(), unusable_until = Duration::max();
 };

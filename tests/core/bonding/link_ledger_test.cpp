@@ -121,7 +121,7 @@ TEST(LinkLedger, ForgetsTheSourceThatIsSilentLongest) {
   LinkLedger ledger;
   for (std::uint32_t ssrc = 0; ssrc < LinkLedger::kMaxSources; ++ssrc)
     ledger.OnSent(kStart + ssrc * 1ms, {ssrc, 1});
-  ledger.OnSent(kStart + 1s, {0, 2});  // began first, and still sends
+  ledger.OnSent(kStart + 1s, {0, 2});  // the first source still sends
   ledger.OnSent(kStart + 1s, {1'000, 1});
   EXPECT_EQ(ledger.OnFeedback(ReportOf(1, {true, true}, 0))->arrived.size(), 2U);
   EXPECT_TRUE(ledger.OnFeedback(ReportOf(1, {true}, 1))->arrived.empty()) << "the oldest one";

@@ -573,7 +573,7 @@ TEST(Scheduler, SparesNoLinkBesideOneThatIsDead) {
   for (std::uint32_t slice = 0; links.now_ < silent_since + 1s; ++slice, links.now_ += 5ms) {
     const PacketId id{kMedia, ++links.seq_};
     const LinkSet to = links.scheduler_.OnPacket(links.now_, {id, kSize, 100'000 + slice, false});
-    links.scheduler_.OnSent(links.now_, 0, id);  // and is never reported
+    links.scheduler_.OnSent(links.now_, 0, id);  // no report of the packet follows
     const Duration silent = links.now_ - silent_since;
     EXPECT_TRUE(to[1] || silent < 300ms) << Seconds(silent);
     EXPECT_FALSE(to[1] && silent < 100ms) << Seconds(silent);

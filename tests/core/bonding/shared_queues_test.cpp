@@ -24,7 +24,7 @@ class TwoFifos : public testing::Test {
     shared_ = queues_.Shared(0, 1);
   }
   /// Sends bursts on both links, at the same times if they are `copies`.
-  /// Otherwise the second link gets this share of the packets.
+  /// Otherwise the second link gets `share` of the packets.
   void Run(std::size_t second_fifo, bool copies, double share = 0.4) {
     for (int i = 0; i < 4000; ++i) {
       now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());

@@ -34,7 +34,7 @@ std::string PcdHeader(const std::string& data, int width = 2, int height = 1) {
          "\n";
 }
 
-/// Two points of that header: x, y, z, two bytes of padding, ring.
+/// Two points as in PcdHeader(): x, y, z, two bytes of padding, ring.
 std::vector<std::uint8_t> TwoPoints() {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);

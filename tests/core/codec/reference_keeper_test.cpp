@@ -137,7 +137,7 @@ TEST(PixelMemory, AveragesTheRangesNearItsMeanAndBeginsAnewBeyond) {
   expect(0, {8'000, 82, 1, 0b10});
   expect(1'020, {8'080, 121, 2, 0b101});
   expect(2'000, {16'000, 82, 1, 0b1011});
-  expect(2'123, {16'492, 533, 2, 0b10111});  // as far as a range of this mean may be
+  expect(2'123, {16'492, 533, 2, 0b10111});  // the farthest range that this mean takes in
   expect(1'000, {8'000, 82, 1, 0b101111});
   for (int i = 0; i < 20; ++i) pixel.See(1'000, kStep);
   EXPECT_EQ(pixel.mean, 8'000U);

@@ -75,7 +75,7 @@ double LargestGap(const Points& points, const Points& others) {
   return largest;
 }
 
-/// In the order of a sensor: ring by ring.
+/// Returns points in the order of a sensor: ring by ring.
 Points Rings(std::size_t count) {
   Points points(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -189,7 +189,7 @@ TEST(XyzSlices, ThatNoGridCanHoldAreSaidToBeOutOfReach) {
   EXPECT_EQ(Coded(points, {}).result, SliceResult::kOutOfReach);
 }
 
-/// Along a line, a cell or two from each to the next.
+/// Returns points along a line, a cell or two apart.
 Points Line() {
   Points points(5'000);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -214,7 +214,7 @@ TEST(XyzSlices, TakeTheSmallerOfDracosCodersForTheOrderGiven) {
   }
 }
 
-/// The sequential coder would take a table of all steps.
+/// The sequential coder would need a table of all steps.
 TEST(XyzSlices, OfFineStepsAreCodedInATree) {
   for (const double step : {1e-3, 1e-4, 5e-5, 1e-5}) {
     SliceSettings settings;
@@ -229,7 +229,7 @@ TEST(XyzSlices, OfFineStepsAreCodedInATree) {
   }
 }
 
-/// A tree has the number of points a second time, and libdraco decodes as many.
+/// A tree repeats the number of points, and libdraco decodes the number in the tree.
 TEST(XyzSlices, WhoseTreeHasAnotherNumberOfPointsAreRefused) {
   SliceSettings settings;
   settings.step_m = 1e-5;

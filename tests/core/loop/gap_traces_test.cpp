@@ -130,8 +130,8 @@ TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   }
 }
 
-/// Data that filled the link when a gap began leave first, so the next scan comes later than that
-/// of a stream that sends little.
+/// The data on a full link at the start of a gap leave first after it, so the next scan comes later
+/// than that of a stream that sends little.
 TEST(Loop, AFullLinkCostsHardlyAScanOfAGap) {
   link::GapTraceConfig gaps;
   gaps.gap = 300ms;

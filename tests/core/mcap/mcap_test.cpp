@@ -79,7 +79,7 @@ TEST_P(Compressed, AFileThatBrokeOffGivesEveryWholeChunk) {
         Open(Bytes(maker.file().begin(), maker.file().begin() + static_cast<long>(size)));
     ASSERT_NE(reader, nullptr);
     EXPECT_FALSE(reader->index().complete);
-    // The indexes of messages after a chunk are not needed.
+    // A chunk is read without the message indexes that follow it.
     const auto whole = static_cast<std::size_t>(
         std::count_if(ends.begin(), ends.end() - 1, [&](std::size_t end) { return end <= size; }));
     const auto read = ReadAll(reader.get());

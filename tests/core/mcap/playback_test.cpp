@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using test::FileMaker;
 using test::kSecond;
 
-/// Counts what is read.
+/// Counts the calls of Read().
 class CountedInput : public test::MemoryInput {
  public:
   CountedInput(Bytes bytes, std::size_t* reads) : MemoryInput(std::move(bytes)), reads_(reads) {}

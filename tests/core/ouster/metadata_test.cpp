@@ -188,7 +188,7 @@ TEST(Metadata, PixelsMayHaveAnglesOfTheirOwn) {
 
 struct Damage {
   const char* pointer;
-  const char* value;  // JSON; "" takes the key away
+  const char* value;  // JSON; "" removes the key
 };
 class BadMetadata : public ::testing::TestWithParam<Damage> {};
 TEST_P(BadMetadata, IsRefusedWithAReason) {

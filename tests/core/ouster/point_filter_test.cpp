@@ -16,7 +16,7 @@
 namespace lidar::ouster {
 namespace {
 
-/// Ranges of the first pixel of a packet that has both returns, as they leave the writer; 0: none.
+/// Ranges of both returns of a packet's first pixel; 0: none.
 struct Ranges {
   std::uint32_t first;
   std::uint32_t second;

@@ -8,8 +8,8 @@
 namespace lidar::rate {
 namespace {
 
-constexpr double kGain = 0.3;    // of an innovation, to the drift
-constexpr double kWeight = 0.7;  // of the drift, in a prediction
+constexpr double kGain = 0.3;    // share of an innovation that is added to the drift
+constexpr double kWeight = 0.7;  // share of the drift that is added to a prediction
 
 /// A tracker that has seen one scan, whose sectors all were as the model predicted.
 SliceTracker AfterOneScan(std::uint32_t slices) {

@@ -192,7 +192,7 @@ TEST_F(FeedbackGeneratorTest, OwesNothingForTheNumbersOfBeforeARestart) {
 TEST_F(FeedbackGeneratorTest, OwesNothingForASourceThatItWasToForget) {
   Begin();
   for (std::uint16_t seq = 1; seq <= 10; ++seq) Arrive(seq);
-  generator_.Forget(99);  // there is none
+  generator_.Forget(99);  // an unknown source
   generator_.Forget(1);
   Arrive(500, true);
   const auto report = generator_.Take(now_);

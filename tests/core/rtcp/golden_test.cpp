@@ -37,7 +37,7 @@ std::string Described(const CongestionFeedback& report) {
 
 const Time kBegin{1000s};
 
-/// Takes what is due each millisecond.
+/// Each millisecond, takes the reports that are due.
 class Session {
  public:
   explicit Session(Lines* lines, const FeedbackConfig& config = {})

@@ -29,7 +29,8 @@ class LeaseScript {
     Say("entry of " + robot + (record ? " by " + record->worker : ", damaged"));
     table_.OnEntry(robot, ++revision_, record, now_);
   }
-  /// The store refuses the next write, and names its newest revision if it is known.
+  /// Makes the store refuse the next write. Its answer names the revision `newest`, if there is
+  /// one.
   void RefuseOnce(std::optional<std::uint64_t> newest) {
     refuses_ = true;
     newest_ = newest;

@@ -28,7 +28,8 @@ SharedSlice Recoded(std::uint32_t scan, std::uint32_t index) {
   return slice;
 }
 
-/// What was sent, as "3.1" for the robot's and "3.1r" for a re-coded slice.
+/// A stream of slices. Take() returns the slices that a feed sends: "3.1 " is the robot's slice,
+/// "3.1r " a re-coded one.
 class Stream {
  public:
   void Add(SharedSlice slice) { recent_.Add(std::move(slice)); }

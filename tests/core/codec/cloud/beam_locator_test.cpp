@@ -32,7 +32,7 @@ TEST_P(LocatedBeams, AreTheNearestOfAllAtAnyDistance) {
   const BeamLocator locator(table);
   std::mt19937 random(2);
   std::uniform_real_distribution<float> slope(-0.5F, 0.3F);
-  // Nearer to the sensor, lines of beams far apart in the table cross.
+  // Nearer to the sensor, the lines of beams that are far apart in the table cross.
   const float nearest_m = 1 + 1e-4F * static_cast<float>(GetParam());
   std::uniform_real_distribution<float> along(nearest_m, 10 * nearest_m);
   for (int i = 0; i < 50'000; ++i) {

@@ -299,7 +299,7 @@ TEST(CloudCodec, CodesHowPointsLeaveTheirPath) {
   EXPECT_LE(BitsOf(EncodePaths({cloud})[0]), 0.7 * in_cells);
 }
 
-/// Points in all directions, whose times say nothing.
+/// Points in all directions, all with the time 0.
 PathCloud Noise(unsigned seed, std::size_t points) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> side(-30, 30);
