@@ -14,7 +14,7 @@ namespace lidar::synth {
 enum class SceneKind { kStreet, kTunnel, kField, kTown };
 
 /// A part of the world. Coordinates are floats relative to the anchor, (anchor_x, anchor_y, 0), so
-/// that they stay precise on a long drive. Both are multiples of kAnchorStep.
+/// that they stay precise on a long drive. anchor_x and anchor_y are multiples of kAnchorStep.
 struct View {
   double anchor_x = 0;
   double anchor_y = 0;  // 0 in the worlds along x

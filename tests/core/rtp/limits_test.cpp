@@ -333,7 +333,7 @@ TEST_F(LedgerLimits, AfterAnOutage64SlicesBeforeItsBeginMayTurnOutToBeSkipped) {
   EXPECT_EQ(after.accounts().slices_skipped, 1U);
 }
 
-/// A slice of one packet by the config `config_id`.
+/// Returns a slice of one packet that refers to the config `config_id`.
 test::Wire OnePacket(std::uint16_t index, std::uint8_t config_id, int at_ms) {
   test::SenderOptions options;
   options.slice_size = 300;

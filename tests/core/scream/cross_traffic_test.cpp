@@ -107,7 +107,7 @@ TEST_F(CrossTrafficTest, IsNotBelievedAtOnceAndGoesWithTheOthers) {
   EXPECT_FALSE(traffic_.found());
 }
 
-/// Packets arrive as far apart as they leave both on an idle link and on one full of other flows.
+/// On an idle link, and on a link full of other flows, packets arrive as far apart as they leave.
 TEST_F(CrossTrafficTest, IsUnknownWithoutAQueue) {
   Send(500, 1, 0ms);
   EXPECT_FALSE(traffic_.share());
@@ -173,7 +173,7 @@ TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
 }
 
 TEST(SharedLink, ABolderWindowIsForEarlyMarksOfAnL4sQueueOnly) {
-  EXPECT_EQ(EarlyMarking(600us), 0);  // marks without a queue are a classic flow's
+  EXPECT_EQ(EarlyMarking(600us), 0);  // marks by coupling with a classic flow's queue
   EXPECT_NEAR(EarlyMarking(800us), 0.5, 1e-9);
   EXPECT_EQ(EarlyMarking(1ms), 1);
   EXPECT_GT(EarlyMarking(1500us), 0);

@@ -216,7 +216,7 @@ TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
   EXPECT_EQ(run.End().ecn_state, EcnState::kCapable);
 }
 
-/// What the old route's bottleneck marked says nothing about the new one's.
+/// Marks by the bottleneck of the old route show nothing about the new route.
 TEST(RouteChange, LearnsMarksAnew) {
   const Trial run(OnALongerRoute(Named("slices_8M_step1ms")));
   EXPECT_GT(run.Utilisation(16500ms, 21s), 0.85);

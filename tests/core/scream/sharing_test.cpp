@@ -129,7 +129,7 @@ TEST(BesideOthers, TheStatisticsTellTheirShare) {
   EXPECT_EQ(cross_traffic("frames_20M_rtt25"), 0);
 }
 
-/// Packets arrive as far apart as they leave both on an idle link and on one full of other flows.
+/// On an idle link, and on a link full of other flows, packets arrive as far apart as they leave.
 TEST(BesideOthers, NobodyIsFoundOnAnIdleLinkThatJitters) {
   Scenario s = *FindScenario("frames_20M_jitter4", Parameters());
   s.config.forward.path.jitter = 8ms;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr Duration kFrom = 15s;
 
-/// 8 Mbit/s, RTT 40 ms, from 15 s on nothing; `sources` of 50 frames a second share it.
+/// A link of 8 Mbit/s, RTT 40 ms, carries nothing for `length` from 15 s on. `sources` of 50 frames
+/// a second share the link.
 Scenario Standing(Duration length, std::size_t sources = 1) {
   Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
   s.config.forward.capacity.AddOutage(kFrom, kFrom + length);

@@ -60,7 +60,7 @@ TEST(LoopCloser, TakesADriveWithoutPoints) {
 
 TEST(LoopCloser, SearchesFartherAfterALongerWay) {
   LoopSettings settings;
-  settings.drift_m = -settings.local_map_m;  // a drive without a length allows no distance
+  settings.drift_m = -settings.local_map_m;  // only drift_share allows a distance
   settings.drift_share = 0.1;
   LoopCloser closer(settings);
   AddDrive(Drive(kScansOfALap + 12), &closer);
@@ -100,7 +100,7 @@ TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
   const double step_m = TrueAt(1).position.norm();
   LoopSettings settings;
   settings.local_map_m = (kScansOfAMap - 1.2) * step_m;
-  settings.drift_m = -0.5 * settings.local_map_m;  // no loop with the maps beside
+  settings.drift_m = -0.5 * settings.local_map_m;  // no loop with adjacent maps
   settings.drift_share = 0;
   settings.most_maps = 11;
   LoopCloser closer(settings);
