@@ -70,7 +70,7 @@ TEST(LivoxMessages, ThatAreCutAreRefused) {
     EXPECT_EQ(why, "the message is truncated or is no CustomMsg of Livox");
   }
   Bytes claims = message;
-  claims[claims.size() - 3 * 20 - 3] = 0xff;  // of the number of points
+  claims[claims.size() - 3 * 20 - 3] = 0xff;  // a byte of the number of points
   EXPECT_FALSE(ReadLivox(View(claims)));
 }
 

@@ -60,7 +60,7 @@ TEST(PointFilter, KeepsEveryNthRowAndColumnOfTheScan) {
   settings.beam_step = 2;
   settings.column_step = 2;
   EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 2, 4}));
-  // Columns 4, 6 and 8 stay of a slice that begins with column 3 of the scan.
+  // The slice begins with column 3 of the scan. Columns 4, 6 and 8 of the scan stay.
   const auto slice = Filter(settings, Cloud(), 3);
   EXPECT_EQ(slice.Ids(), (Ids{1, 3, 5}));
   EXPECT_EQ(slice.first_column, 2U);

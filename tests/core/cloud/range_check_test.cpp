@@ -25,7 +25,7 @@ SensorModel ModelOfCheck() {
   return model;
 }
 
-/// A slice of points where their ranges put them.
+/// A slice whose points lie where their ranges put them.
 class CheckedSliceOfRanges {
  public:
   explicit CheckedSliceOfRanges(std::uint32_t first_column)

@@ -104,7 +104,8 @@ TEST_P(Efforts, KeepBinsThatOnlyTheFastCoderCanCount) {
   RangeSettings settings;
   settings.coder = GetParam() > 0 ? RangeCoder::kMixing : RangeCoder::kAdaptive;
   settings.effort = GetParam();
-  // Each coder can count the bins of 9 mm, but not those of the finer grid that a choice takes.
+  // Only the fast coder can count bins of 1 mm. Each coder can count bins of 9 mm, but not the bins
+  // of the finer grid that a choice takes.
   for (const RangeGrid& grid : {RangeGrid(), RangeGrid(1, 9)}) {
     settings.grid = grid;
     bytes.clear();

@@ -328,7 +328,7 @@ TEST(Temporal, SlicesOfAChangedSceneDoNotReferToTheOldOne) {
   EXPECT_TRUE(AnyRefers(loop.Scans(2)));
   EXPECT_TRUE(AllPlain(loop.Scan())) << "it has changed";
   for (int scan = 0; scan < 2; ++scan) {
-    const auto standing = loop.Scan();  // the receiver has said nothing of the new scene yet
+    const auto standing = loop.Scan();  // the receiver has acknowledged nothing of the new scene
     EXPECT_TRUE(AllDecoded(standing));
     for (const Sent& sent : standing) EXPECT_EQ(sent.bytes, sent.plain_bytes + 1) << scan;
   }

@@ -21,7 +21,7 @@ BottleneckConfig Simple() {
   return c;
 }
 
-/// Returns every outcome, at the times that the link asks for.
+/// Delivers at the times that the link asks for, and returns every outcome.
 std::vector<Outcome> Drain(Bottleneck* link) {
   std::vector<Outcome> all;
   while (link->NextEventTime() < Time::max())

@@ -9,7 +9,7 @@ namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
 
-/// 8 Mbit/s with a gap in the second half of the first second and of the third.
+/// 8 Mbit/s with gaps in the second halves of the first and of the third second.
 Capacity TwoGaps() {
   return Capacity::Steps({Mbps(8), Mbps(0.2), Mbps(8), Mbps(8), Mbps(8), Mbps(0), Mbps(8)}, 500ms);
 }

@@ -425,7 +425,7 @@ TEST(Mcap, AnEndThatLostItsLastChunkIsAFailure) {
   ASSERT_TRUE(writer.Flush());
   ASSERT_TRUE(writer.Add({id, 0, 2, 2}, View("lost")));
   EXPECT_FALSE(writer.Finish());
-  EXPECT_EQ(pieces, 3);  // the end is written all the same
+  EXPECT_EQ(pieces, 3);  // the end is still written
 }
 
 TEST(Mcap, ThereAreAsManyChannelsAsNumbersForThem) {

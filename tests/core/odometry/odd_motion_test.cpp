@@ -88,7 +88,7 @@ TEST(OddMotion, AGyroscopeMayStop) {
   EXPECT_LT(off, 0.2);
 }
 
-/// The deck stands around the sensor while the ship, and the gyroscope with it, turns.
+/// The deck does not move around the sensor while the ship turns, and the gyroscope with it.
 TEST(OddMotion, AFerryIsTheWorld) {
   Drive deck(synth::SceneKind::kStreet, 0);
   Odometry odometry({});

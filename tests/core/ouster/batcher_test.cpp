@@ -109,7 +109,7 @@ TEST_F(Batcher, PutsReorderedAndDuplicatedPacketsRight) {
 
 TEST_F(Batcher, DuplicatesDoNotShortenTheWaitForAPacketThatIsUnderWay) {
   Packets repeated = packets_;
-  std::swap(repeated[7], repeated[8]);  // the last packet of a slice comes behind the next one
+  std::swap(repeated[7], repeated[8]);  // the last packet of a slice comes after the next slice's
   repeated.insert(repeated.begin() + 8, 4, Packets::value_type(repeated[7]));
   const auto straight = Run(packets_);
   ExpectSamePoints(Run(repeated), straight);

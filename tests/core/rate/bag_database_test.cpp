@@ -29,7 +29,7 @@ constexpr const char* kTables =
     "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,"
     "timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
-/// The same names without types.
+/// Tables with the same names, whose columns have no types.
 constexpr const char* kAnyTables =
     "CREATE TABLE topics(id,name,type,serialization_format);"
     "CREATE TABLE messages(id,topic_id,timestamp,data);";

@@ -63,7 +63,7 @@ class Accounts : public ::testing::Test {
 
 TEST_F(Accounts, SayWhatTheTargetGaveLessWhatWasSent) {
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> off(0.99, 1.01);  // below what causes a second try
+  std::uniform_real_distribution<double> off(0.99, 1.01);  // too small for a second try
   double given = 0;
   double sent = 0;
   for (std::uint32_t scan = 0; scan < 50; ++scan)

@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
                                          DegradationPreference::kBalanced),
                        ::testing::Values(1U, 8U)));
 
-/// The run uses finer steps only, and the codec's curve is not the model's.
+/// The run never uses the coarsest step, and the codec's curve is not the model's.
 TEST_P(Tracking, KnowsTheMinimumWithoutEverHavingBeenThere) {
   Stream run(Codec());
   for (std::uint32_t i = 0; i < 100; ++i) {

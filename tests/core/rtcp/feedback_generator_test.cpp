@@ -17,7 +17,7 @@ class FeedbackGeneratorTest : public ::testing::Test {
               std::uint32_t ssrc = 1) {
     generator_.OnPacket(now_, {ssrc, seq, ecn, marker, DataSize::Bytes(1000)});
   }
-  /// Answers the report that the very first packet calls for.
+  /// Takes the report that the very first packet calls for.
   void Begin() {
     Arrive(0);
     ASSERT_TRUE(generator_.Take(now_));

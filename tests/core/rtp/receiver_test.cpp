@@ -251,7 +251,7 @@ TEST_P(AnotherStream, IsNotHeldWhileTheStreamGoesOn) {
   foreign.ssrc = 1;
   const auto own = Sender().Scans(0, 60);
   auto other = Sender(foreign).Scans(0, 70);
-  // The end of each slice comes behind the begin of the next, so that a slice is always open.
+  // The end of each slice comes after the begin of the next, so that a slice is always open.
   for (std::size_t end = 3; GetParam() && end + 1 < other.size(); end += 3)
     std::swap(other[end], other[end + 1]);
   Receiver receiver(milliseconds(100));

@@ -123,7 +123,7 @@ TEST_F(Ledger, CountsScansThatTheSourceSkippedOnceThoughAScanComesLate) {
   EXPECT_EQ(accounts().scans_skipped, 2U);
   ledger.BookScanId(4, 15);
   EXPECT_EQ(accounts().scans_skipped, 2U);
-  ledger.BookScanId(4, 15);  // a second slice of it
+  ledger.BookScanId(4, 15);  // a second slice of scan 4
   ledger.BookScanId(5, 2);   // the source began anew
   ledger.BookScanId(6, 4);
   EXPECT_EQ(accounts().scans_skipped, 3U);

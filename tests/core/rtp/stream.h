@@ -78,7 +78,7 @@ class Sender {
     unit.config_id = o_.config_id;
     Emit(unit, o_.config.Serialise(), out);
   }
-  /// With `counter`, the slice says which ones before it were left out.
+  /// With `counter`, the slice names the slices before it that were left out.
   void Slice(std::uint32_t scan, std::uint16_t index, std::vector<Wire>* out,
              ScanCounter* counter = nullptr) {
     Unit unit;

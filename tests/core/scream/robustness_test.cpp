@@ -24,7 +24,7 @@ class Trial {
   double MaxQueueMs(Duration from, Duration until) const {
     return result_.QueueDelay(origin_ + from, origin_ + until).max;
   }
-  /// Returns the lost share of what was sent in this time.
+  /// Returns the lost share of the packets that were sent between `from` and `until`.
   double OwnLoss(Duration from, Duration until) const {
     double sent = 0, lost = 0;
     for (const PacketLog& p : result_.packets) {

@@ -83,8 +83,8 @@ TEST_P(EveryScene, GivesTwoEchoesWhereABeamMeetsTwoThings) {
   EXPECT_NEAR(ShareOfReturns(r.range_mm), ShareOfReturns(Ranges(Config(GetParam()), 2)), 0.02);
 }
 
-// Ground points lie on the ground within the millimetre that ranges are rounded to if each column
-// has its own pose. One pose a scan would be off by 1.2 m along the road and, with the pitch, by
+// If each column has its own pose, ground points lie on the ground within a millimetre, to which
+// ranges are rounded. One pose a scan would be off by 1.2 m along the road and, with the pitch, by
 // centimetres of height.
 TEST(Scanner, EveryColumnIsSampledFromItsOwnPose) {
   ScannerConfig config = Config();
