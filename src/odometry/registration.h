@@ -22,8 +22,8 @@ struct RegistrationSettings {
   double held_by_surfaces = 0.04;
   /// A direction is not observed if a smaller share of surfaces faces it.
   double least_constraint = 0.04;
-  /// The direction with the smallest share is not observed, either, if its share is less than this
-  /// part of the next larger one, as along a tunnel.
+  /// The direction with the least share is not observed, either, if its share is below this part of
+  /// the second least, as along a tunnel.
   double least_balance = 0.3;
   /// Greatest distance of a fitting point from its surface or neighbour. It does not depend on the
   /// reach, so that a wide search does not make a scan fit.

@@ -69,8 +69,8 @@ def static():
     return common.table(head, [[*row[:4], row[4] + " %"] for row in rows])
 
 
-# Bits a point within 2 and 5 cm: first those of the better of TMC13's predictive and octree geometry,
-# measured by hand on 2026-11-24, then the goals.
+# Bits a point within 2 and 5 cm: first those of TMC13's predictive or octree geometry, whichever is
+# better, measured by hand on 2026-11-24, then the goals.
 PEERS = {
     "XT32": ("2.09 / 1.03", "1.2 / 0.75"),
     "Pandar64": ("1.87 / 0.70", "1.5 / 0.65"),

@@ -18,7 +18,8 @@ interrupted() {
   wait "$pid"
 }
 
-# expect_clean_failure KIB PROGRAM ...: expects an error that names a file in the folder, and no file.
+# expect_clean_failure KIB PROGRAM ...: expects an error that names a file in the folder, and that no
+# file is left there.
 expect_clean_failure() {
   local limit=$1 output status
   shift
