@@ -66,7 +66,7 @@ Duration Scanner::ColumnTime(std::uint64_t scan, std::uint32_t column) const {
 
 void Scanner::MoveAnchor(double x, double y) {
   const double anchor_x = std::floor(x / kAnchorStep) * kAnchorStep;
-  // In worlds along x this is 0, because sensors stay within half a step of the middle.
+  // It is 0 in worlds along x, because sensors stay within half a step of the middle.
   const double anchor_y = std::round(y / kAnchorStep) * kAnchorStep;
   if (anchor_x == view_.anchor_x && anchor_y == view_.anchor_y && !shapes_.empty()) return;
   view_.anchor_x = anchor_x;
