@@ -5,8 +5,8 @@ set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
 
-# Name, what it needs beyond tests/packages.txt, and the command from the tree's root. One step
-# follows another, but the soak runs beside all of them: it mostly waits.
+# Each step has a name, its needs beyond tests/packages.txt, and a command for the tree's root. Steps
+# run one after the other. The soak mostly waits, so it runs at the same time as all of them.
 steps=(
   "soak|root|env BUILD_DIR=build-soak tests/system/soak/run.sh --minutes SOAK"
   "run|-|tests/run.sh"
@@ -106,7 +106,7 @@ for step in "${steps[@]}"; do
   if [ -n "$lacking" ]; then
     row "$name" skipped 0 "needs $lacking"
   elif [ "$name" = soak ]; then
-    # A process group of its own ends with the script, also after Ctrl-C, which jobs ignore.
+    # Jobs ignore Ctrl-C, so the soak has a process group, which the script ends when it exits.
     set -m
     take "$name" "$command" &
     soak_group=$!

@@ -17,7 +17,7 @@
 namespace lidar::gst {
 namespace {
 
-/// Names of the elements that come from this project.
+/// Returns the names of this project's elements.
 std::vector<std::string> OurElements() {
   std::set<std::string> names;
   GstRegistry* registry = gst_registry_get();
@@ -96,8 +96,8 @@ TEST_P(EveryElement, HasMetadataThatSaysWhatItIs) {
   }
 }
 
-// An element alone has no peer, and some lack a setting. It may refuse to play, but it must go down
-// in order and up again.
+// An element alone has no peer, and may lack a setting. It may refuse to play, but not to stop and
+// start again.
 TEST_P(EveryElement, GoesUpAndDownAgainAndAgain) {
   const ElementPtr pipeline(gst_pipeline_new(nullptr));
   GstElement* element = gst_element_factory_make(GetParam().c_str(), nullptr);
@@ -187,7 +187,7 @@ TEST_P(EveryBin, LeavesNothingOfTheElementsThatItMade) {
   });
 }
 
-/// Pads of an element of several, and those to which events and queries of a pad go.
+/// A pad of an element, and the pads to which the element passes its events and queries.
 struct PadLinks {
   const char* factory;
   const char* pad;
@@ -233,7 +233,7 @@ TEST_P(LinkedPads, LeadToThePadsOfTheSameData) {
 
 TEST(AllPlugins, LoadIntoOneProcessAndHoldTheseElements) {
   const auto built = OurElements();
-  ASSERT_GE(built.size(), 14U);  // what needs an external library may be switched off
+  ASSERT_GE(built.size(), 14U);  // elements that need an external library may be switched off
   for (const std::string& name : built)
     EXPECT_EQ(std::count(kElements.begin(), kElements.end(), name), 1) << name << " is not listed";
 }

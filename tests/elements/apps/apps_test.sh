@@ -16,7 +16,7 @@ pipeline="lidartestsrc num-buffers=16 model=os1-32 mode=512x10 ! lidarenc ! lida
 cat "$work/cpp"
 [ "$(grep -cE '^[0-9]{19}: \(32, 512\) points, the nearest at [0-9]+\.[0-9]{2} m$' "$work/cpp")" = 2 ]
 
-# Debian's packages belong to Debian's Python, which need not be the first.
+# Debian's packages belong to Debian's Python, which need not be the first in PATH.
 for python in python3 /usr/bin/python3 none; do
   "$python" -c 'import numpy; from gi.overrides import _gi_gst' 2>/dev/null && break
 done

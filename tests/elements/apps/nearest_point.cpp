@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   GError* error = nullptr;
   GstElement* pipeline =
       gst_parse_launch((source + " ! appsink name=sink sync=false").c_str(), &error);
-  // If an element is missing, there are both an error and a pipeline of the others.
+  // If an element is missing, there are both an error and a pipeline of the other elements.
   const bool ended = error == nullptr && show_all(pipeline);
   if (error != nullptr) {
     std::fprintf(stderr, "%s\n", error->message);

@@ -19,7 +19,7 @@ struct CloudCase {
   const char* name;
   std::function<void(codec::RangeImage*)> ranges;  // changes ranges before they become points
   std::function<void(std::vector<std::uint8_t>*)> spoil;  // changes the points
-  bool some_in_xyz = true;                                // otherwise xyz geometry leaves a gap
+  bool some_in_xyz = true;                                // false: xyz geometry has no output
 };
 void PrintTo(const CloudCase& c, std::ostream* out) { *out << c.name; }
 

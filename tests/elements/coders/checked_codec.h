@@ -62,7 +62,7 @@ class CheckedCodec {
   unsigned errors_ = 0;
 };
 
-/// Returns whether the error check `s` held.
+/// Returns true if the error check `s` found no error above the bound.
 inline bool Holds(const GstStructure* s) {
   gboolean holds = FALSE;
   EXPECT_TRUE(gst_structure_get_boolean(s, "holds", &holds));

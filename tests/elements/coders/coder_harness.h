@@ -35,7 +35,7 @@ struct CoderCase {
 };
 inline void PrintTo(const CoderCase& c, std::ostream* out) { *out << c.name; }
 
-// The efforts are fixed, because effort=auto, and so the sizes, depend on the machine's load.
+// The efforts are fixed: with effort=auto the sizes would depend on the machine's load.
 constexpr CoderCase kLidar{"lidar", "lidarenc effort=1", "lidardec"};
 constexpr CoderCase kLidarXyz{"lidar_xyz", "lidarenc effort=0 geometry=xyz", "lidardec", true};
 constexpr CoderCase kDraco{"draco", "dracoenc", "dracodec"};
@@ -43,7 +43,7 @@ constexpr CoderCase kDracoXyz{"draco_xyz", "dracoenc geometry=xyz", "dracodec", 
 
 constexpr CoderCase kExample{"example", "exampleenc", "exampledec", true};
 
-/// Returns the coders of ranges of organised scans.
+/// Returns the coders that code organised scans by their ranges.
 inline std::vector<CoderCase> RangeCoders() {
 #ifdef HAVE_DRACO
   return {kLidar, kDraco};

@@ -56,7 +56,7 @@ void DecodeMuch(GstHarness* h, const std::vector<BufferPtr>& slices) {
   }
 }
 
-/// Leaves out how long something took, and how old it is.
+/// Removes durations and ages, which depend on the clock.
 Lines WithoutClock(Lines lines) {
   static const std::regex kClock("(encode-time|decode-time|age)=\\([a-z0-9]+\\)[0-9]+");
   for (std::string& line : lines) line = std::regex_replace(line, kClock, "$1");

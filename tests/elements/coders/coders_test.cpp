@@ -369,7 +369,7 @@ TEST_P(AnyCoder, PostsItsStatsOnceTheIntervalHasPassed) {
   const Harness h = Encoder(GetParam(), "stats-interval=1000000000");
   const test::ElementBus bus(h->element);
   SetCaps(h.get(), OrganisedInfo(model, 64));
-  for (guint i = 0; i < 7; ++i) {  // a slice each half a second
+  for (guint i = 0; i < 7; ++i) {  // a slice each half second
     gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
     EXPECT_EQ(bus.Pop(GST_MESSAGE_ELEMENT) != nullptr, i > 0 && i % 2 == 0) << i;
     clock.Advance(G_USEC_PER_SEC / 2);
@@ -377,7 +377,7 @@ TEST_P(AnyCoder, PostsItsStatsOnceTheIntervalHasPassed) {
 }
 
 TEST_P(AnyCoder, TellsTheTimeOfTheLastSliceAndTheMean) {
-  const test::StoppedClock clock;  // each look at it takes a microsecond
+  const test::StoppedClock clock;  // each read of it takes a microsecond
   const SensorModel model = test::RoomSensor();
   const Harness h = Codec(GetParam());
   SetCaps(h.get(), OrganisedInfo(model, 64));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sender and receiver count the same where the coders leave data out below min-bitrate.
+// If coders leave data out below min-bitrate, the receiver counts the same losses as the sender.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -72,7 +72,7 @@ class BelowTheMinimum : public ::testing::TestWithParam<std::tuple<CoderCase, Pr
     static const SensorModel model = test::RoomSensor();
     return model;
   }
-  /// Returns the number of decoded slices.
+  /// Pushes `scans` scans from `first` on. Returns the number of decoded slices.
   static guint Play(GstHarness* h, guint first, guint scans) {
     guint slices = 0;
     for (guint i = 8 * first; i < 8 * (first + scans); ++i) {

@@ -33,7 +33,7 @@ TEST(DracoEnc, CodesNoRangesOfMoreColumnsThanATurn) {
 TEST(DracoEnc, CloudsOfAnotherWidthGoOnWithTheMethodThatWasTheSmallerOne) {
   const Harness h(gst_harness_new("dracoenc"));
   for (const std::size_t width : {3000U, 2999U}) {
-    // The sequential coder is smaller in this order, and the kd-tree where points are shuffled.
+    // The sequential coder makes fewer bytes in this order, the kd-tree of shuffled points.
     std::vector<std::array<float, 3>> line(width);
     for (std::size_t i = 0; i < width; ++i) {
       const auto t = static_cast<float>(i) * 0.02F;

@@ -22,7 +22,7 @@ class EffortHarness {
     info.framerate_d = seconds;
     SetCaps(harness_.get(), info);
   }
-  /// Returns the mode of the slice that was pushed, after a check that it decodes within the error.
+  /// Pushes a slice, expects that it decodes within the error, and returns its mode.
   std::string Push() {
     GstBuffer* input =
         OrganisedBuffer(model_, 64, {slices_ / 8, slices_ % 8, 8, 64 * (slices_ % 8)});
@@ -72,8 +72,8 @@ TEST(Effort, FallsByItselfWhereThereIsNone) {
   EXPECT_EQ(EffortHarness("effort=auto", 125'000, 1).Push(20), "range-adaptive");
 }
 
-// A scan takes 16 us here, and the coder 2 us for each cloud, on the stopped clock: an eighth of a
-// scan, but all that a slice lasts.
+// By the stopped clock a scan lasts 16 us, and the coder takes 2 us for each cloud. That is an
+// eighth of a scan, but the whole duration of a slice.
 TEST(Effort, FallsWherePointsHaveTheTimeOfASliceOnly) {
   const test::StoppedClock clock;
   for (const guint slices : {1U, 8U}) {

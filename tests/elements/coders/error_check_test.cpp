@@ -17,7 +17,7 @@ double Number(const GstStructure* s, const char* name) {
   return value;
 }
 
-/// Returns distances between points at the same place, without places that are all zero.
+/// Returns the distances of points with the same index, except where the point of `a` is all zero.
 std::vector<double> Distances(const std::vector<float>& a, const std::vector<float>& b) {
   std::vector<double> distances;
   for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
@@ -135,7 +135,8 @@ INSTANTIATE_TEST_SUITE_P(All, XyzLevels,
                          ::testing::Values("compression-level=0", "compression-level=7"));
 #endif
 
-/// The points are closer to each other than the error, so the nearest one is rarely the same one.
+/// The points are closer to each other than the error, so the nearest decoded point is rarely the
+/// point's own.
 void ExpectPointwiseErrors(const CoderCase& coder, const std::string& properties) {
   std::vector<float> before;
   for (unsigned i = 0; i < 500; ++i) {
@@ -209,7 +210,7 @@ TEST_P(EitherCoder, WarnsWhenTheErrorIsLargerThanItMayBe) {
     EXPECT_FALSE(Holds(check.get()));
     EXPECT_NEAR(Number(check.get(), "largest-error"), 1, 0.021);
   }
-  // Two warnings, for the errors and for the ranges, come once each.
+  // There is one warning for the errors and one for the ranges, although two slices cause both.
   EXPECT_EQ(codec.Warnings(), 2U);
   const StructurePtr stats = codec.Stats();
   guint64 failed = 0;
@@ -248,7 +249,7 @@ TEST_P(EitherCoder, WarnsAgainOfErrorsThatComeBack) {
   const SensorModel model = test::RoomSensor();
   CheckedCodec codec(GetParam(), "error-check=1");
   codec.SetCaps(OrganisedInfo(model, 64));
-  for (const unsigned warnings : {2U, 3U}) {  // the first includes that of the ranges
+  for (const unsigned warnings : {2U, 3U}) {  // the first round also warns of the ranges
     for (guint i = 0; i < 2; ++i) codec.Push(MovedBuffer(model, {0, i, 8, 64 * i}));
     codec.Push(OrganisedBuffer(model, 64, {0, 2, 8, 128}));
     EXPECT_EQ(codec.Warnings(), warnings);

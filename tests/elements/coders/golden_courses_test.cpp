@@ -119,7 +119,7 @@ void EncoderCourse(Course& c) {
   c.Push("acknowledged", CourseSlice(3, 2));
   c.PushUpstream("key unit", KeyUnit());
   c.Push("behind a request", CourseSlice(3, 3));
-  // From here on no slice is coded by another.
+  // With two receivers no slice refers to another.
   GstLidarSlicesReceived other_received{6, 0, {}};
   c.PushUpstream("second receiver", gst_lidar_event_new_slices_received(&other_received));
   c.Set("max-error", "0.2");
@@ -216,7 +216,8 @@ void DecoderCourse(Course& c, const std::string& encoder) {
   c.End();
 }
 
-/// Returns whether the sizes of this coder are those of the files: Draco's differ between releases.
+/// Returns true if this coder's sizes are those of the golden files: Draco's differ between
+/// releases.
 bool HasTheirSizes([[maybe_unused]] const std::string& name) {
 #ifdef HAVE_DRACO
   if (name.rfind("draco", 0) == 0) return std::string(draco::kDracoVersion) == "1.5.5";

@@ -37,8 +37,8 @@ decoder='exampledec ! filesink async=false location'
 "${play[@]}" $encoder ! $decoder=direct
 [ "$(stat -c %s direct)" -gt 500000 ] || { echo "the decoder gave too little" >&2; exit 1; }
 
-# Every slice comes, and each point within twice the bound of where it is without a network: the
-# controller may choose finer or coarser steps.
+# Every slice arrives. Each point is within twice the bound of its place without a network, because
+# the controller may choose finer or coarser steps.
 same() {
   python3 - direct "$1" <<'END' || { echo "$1 is not what was sent" >&2; exit 1; }
 import array, sys
@@ -50,7 +50,7 @@ END
 
 children=()
 trap 'kill "${children[@]}" 2>/dev/null; wait; rm -rf "$work"' EXIT
-# Starts a program in the background, and waits until a command succeeds that checks it.
+# start CHECK PROGRAM...: starts the program in the background, and waits until CHECK succeeds.
 start() {
   "${@:2}" >output 2>&1 &
   children+=($!)

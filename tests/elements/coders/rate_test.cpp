@@ -106,7 +106,7 @@ TEST_P(EitherCoder, TellsItsBitrateFromTheFirstScanOn) {
   info.framerate_d = 2;
   SetCaps(h.get(), info);
   const auto sizes = ScanSizes(h.get(), model, 2);
-  // A scan is counted once the next begins: 7.5 in a second.
+  // The first scan is counted when the second one begins. There are 7.5 scans in a second.
   EXPECT_NEAR(StatOf(h.get(), "bitrate"), 60.0 * static_cast<double>(sizes[0]),
               0.2 * 60 * static_cast<double>(sizes[0]));
 }
@@ -159,7 +159,8 @@ TEST_P(EitherCoder, SkipsWholeScansEvenlyBelowTheMinimum) {
   const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));
   const auto sizes = ScanSizes(tight.get(), model, 30);
-  // The target is half of what is needed: every second scan is sent, and no two in a row are lost.
+  // The target is half of what is needed, so every second scan is sent, and no two in a row are
+  // skipped.
   guint sent = 0;
   for (std::size_t i = 10; i < 30; ++i) {
     sent += sizes[i] > 0 ? 1U : 0U;

@@ -61,8 +61,8 @@ class StaticSensor : public ::testing::Test {
         sender_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
                                             gst_structure_new_empty("GstForceKeyUnit")));
   }
-  /// Passes on what the receiver asks of the sender. Returns true if it asked for a key unit, and
-  /// numbered its requests from 1 on.
+  /// Passes the receiver's requests for key units to the sender. Expects that they are numbered
+  /// from 1 on. Returns true if there was a request.
   bool CarryKeyRequest() {
     bool asked = false;
     while (EventPtr event{gst_harness_try_pull_upstream_event(receiver_.get())}) {
@@ -85,7 +85,7 @@ class StaticSensor : public ::testing::Test {
     return ElementPtr(gst_bin_get_by_name(GST_BIN(harness->element), name));
   }
   ElementPtr AtSender(const char* name) { return Get(name, sender_); }
-  /// Makes the decoder forget its slices, but not the caps.
+  /// Drops the decoder's slices, but not its caps.
   void RestartDecoder() {
     const ElementPtr dec = Get("dec", receiver_);
     gst_element_set_state(dec.get(), GST_STATE_READY);
@@ -164,7 +164,7 @@ TEST_F(StaticSensor, IsCodedByTheScansThatTheReceiverHas) {
   EXPECT_EQ(Encoded("error-checks-failed"), 0U);
 }
 
-/// The check has not decoded the slices that a checked slice refers to.
+/// The error check decodes one slice in three, but not the slices that it refers to.
 TEST_F(StaticSensor, IsCheckedByTheScansThatTheReceiverHas) {
   checks_every_ = 3;
   Start();
@@ -198,7 +198,7 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceABranchOfATeeIsAdded) {
   Scans(4);
   ASSERT_EQ(Mode(), "range-temporal1");
   AddBranch();
-  clock_.Advance(G_USEC_PER_SEC / 10);  // the encoder looks at its downstream this often
+  clock_.Advance(G_USEC_PER_SEC / 10);  // the encoder looks for tees downstream this often
   Scan();
   EXPECT_EQ(Mode(), "range-mixing1") << "the new branch has none of what was sent before";
 }
@@ -233,7 +233,7 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceInEachKeyInterval) {
 
 TEST_F(StaticSensor, IsCodedByWhatIsThereWhateverWasLost) {
   Start();
-  int referring = 0;  // scans whose last slice refers to another
+  int referring = 0;  // scans whose last slice refers to another slice
   for (int i = 0; i < 12; ++i) {
     Scan([](guint packet) { return packet % 5 == 2; });
     referring += Mode() == "range-temporal1" ? 1 : 0;

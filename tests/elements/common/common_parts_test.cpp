@@ -18,7 +18,7 @@ namespace {
 
 constexpr auto kSecond = static_cast<gint64>(GST_SECOND);
 
-/// A segment of ten seconds that has played three of them.
+/// A segment of 10 s at position 3 s.
 GstSegment Played() {
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);

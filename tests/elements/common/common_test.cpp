@@ -96,7 +96,7 @@ TEST(Metas, ThatLackAFieldAreNone) {
   each(GST_LIDAR_ECN_META_NAME, [](GstBuffer* buffer) {
     GstLidarEcn ecn{};
     GstClockTime arrival = 0;
-    // Only the time may be missing.
+    // Of the fields, only the arrival time may be missing.
     if (gst_lidar_buffer_get_ecn(buffer, &ecn, &arrival)) {
       EXPECT_EQ(ecn, GST_LIDAR_ECN_CE);
       EXPECT_EQ(arrival, GST_CLOCK_TIME_NONE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The events of gstlidar.h: what they carry, and what is refused of foreign ones.
+// The events of gstlidar.h: their content, and which events of other programs are refused.
 #include <gtest/gtest.h>
 
 #include <utility>

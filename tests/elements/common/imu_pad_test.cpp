@@ -14,7 +14,7 @@
 
 namespace {
 
-/// A source that gives nothing by itself.
+/// A source that pushes nothing by itself.
 struct ImuSource {
   GstBaseSrc parent;
 };
@@ -46,7 +46,7 @@ class ImuPads : public ::testing::Test {
     source_.reset(GST_ELEMENT(
         gst_object_ref_sink(g_object_new(imu_source_get_type(), "name", "source", nullptr))));
     GstPad* clouds = GST_BASE_SRC_PAD(source_.get());
-    // No task gives clouds.
+    // Starts no task: it would push clouds.
     gst_pad_set_activatemode_function(
         clouds, [](GstPad*, GstObject*, GstPadMode, gboolean) -> gboolean { return TRUE; });
     gst_pad_set_active(clouds, TRUE);
@@ -60,7 +60,7 @@ class ImuPads : public ::testing::Test {
     pad_.reset();
     EXPECT_EQ(PadPtr(gst_element_get_static_pad(source_.get(), "imu")), nullptr);
   }
-  /// Links the new pad, and notes which sticky events it has.
+  /// Links the new pad, and notes whether it already has a segment.
   static void OnPad(GstElement*, GstPad* pad, gpointer self) {
     auto* test = static_cast<ImuPads*>(self);
     test->had_segment_ = EventPtr(gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0)) != nullptr;

@@ -62,7 +62,7 @@ struct TestThingClass {
 static GType test_thing_get_type();
 G_DEFINE_TYPE(TestThing, test_thing, G_TYPE_OBJECT)
 
-/// A bin that shows a thing's port as its own, with another default.
+/// A bin that proxies the property `port` of its TestThing, with another default.
 struct TestBin {
   GObject parent;
   struct State {

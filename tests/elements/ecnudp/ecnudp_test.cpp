@@ -56,7 +56,7 @@ TEST_P(Loopback, EveryPacketArrivesWithItsOwnEcnCodepoint) {
     gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(i), GST_CLOCK_TIME_NONE);
     gst_buffer_list_add(list, buffer);
   }
-  gst_buffer_list_add(list, Payload("packet 4"));  // without meta: the property counts
+  gst_buffer_list_add(list, Payload("packet 4"));  // without meta: the property applies
   ASSERT_EQ(gst_pad_push_list(sink->srcpad, list), GST_FLOW_OK);
   for (guint i = 0; i < 5; ++i) {
     const BufferPtr got(gst_harness_pull(src.get()));
@@ -206,7 +206,7 @@ TEST(EcnUdp, APauseOrAFlushEndsNothing) {
       }};
   for (const auto& interrupt : interruptions) {
     interrupt();
-    // The source waits for each datagram alone.
+    // Each datagram comes alone, while the source waits.
     for (int i = 0; i < 3; ++i) {
       gst_harness_push(sink.get(), Payload(std::to_string(i)));
       const BufferPtr got(gst_harness_pull(src.get()));
@@ -322,7 +322,7 @@ TEST_P(Loopback, PacketsLeaveByTheInterfaceAndByNoOther) {
   EXPECT_EQ(Text(got.get()), "sent");
 }
 
-/// A socket of IPv6 is for both address families and is bound to any address.
+/// Returns a socket on loopback. An IPv6 socket is for both families, and bound to any address.
 Object<GSocket> LoopbackSocket(GSocketFamily family = G_SOCKET_FAMILY_IPV4) {
   const Object<GInetAddress> address(family == G_SOCKET_FAMILY_IPV4
                                          ? g_inet_address_new_loopback(family)
@@ -459,7 +459,7 @@ TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
   g_error_free(error);
   EXPECT_NE(test::MessageDetails(message.get()).find("is another program using the port?"),
             std::string::npos);
-  // An address of another machine is no reason to look for other programs.
+  // If this machine lacks the address, the error does not ask about other programs.
   g_object_set(second.get(), "address", "203.0.113.9", nullptr);
   EXPECT_EQ(gst_element_set_state(second.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
   const MessagePtr elsewhere = bus.Pop(GST_MESSAGE_ERROR);
@@ -526,7 +526,7 @@ TEST(EcnUdpSink, ASocketOfIpv6SendsToAGroupOfIpv4ByItsInterface) {
   EXPECT_EQ(Text(got.get()), "dual");
 }
 
-/// The kernel gives a socket the groups of all programs, unless it is told otherwise.
+/// By default the kernel gives a socket the datagrams of all groups that programs have joined.
 TEST(EcnUdpSrc, TakesNothingOfAnotherGroupOnItsPort) {
   const Harness ours = ListenerOf("239.201.7.1", 0);
   if (gst_element_set_state(ours->element, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE)
