@@ -16,7 +16,7 @@ constexpr const char* kTallCaps =
     "z:F32:8\",framerate=10/1,is-bigendian=false,is-dense=true,frame-id=os";
 constexpr const char* kPoseCaps = "application/x-odometry,frame-id=odom,child-frame-id=os";
 
-/// A working folder of its own: messages name files as the property location does.
+/// Works in a temporary folder, so that the property location, and thus messages, have no path.
 class WorkingFolder {
  public:
   WorkingFolder() { std::filesystem::current_path(folder_.path()); }

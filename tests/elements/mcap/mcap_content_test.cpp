@@ -209,7 +209,8 @@ TEST_F(McapContent, TheSinkCountsAndTellsWhatItWrote) {
   for (const Kept& kept : recorded.buffers.at("see")) bytes += kept.bytes.size();
   EXPECT_EQ(recorded.stats.at("messages"), 80U);
   EXPECT_GE(recorded.stats.at("bytes"), bytes);
-  EXPECT_LT(recorded.stats.at("bytes"), bytes + 80 * 100);  // the rest of each message
+  EXPECT_LT(recorded.stats.at("bytes"),
+            bytes + 80 * 100);  // a message has less than 100 bytes besides its slice
   EXPECT_EQ(recorded.stats.at("files"), 4U);
   EXPECT_EQ(recorded.stats.at("chunks"), 10U);
   ASSERT_EQ(recorded.complete.size(), 4U);
@@ -228,7 +229,7 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
   const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));
   SetPlaying(h.get());
   for (const bool first : {true, false}) {
-    // The second recording is from an hour before.
+    // The second recording begins an hour earlier.
     const GstClockTime start = first ? kCapture : kCapture - 3600 * GST_SECOND;
     const std::string topic = first ? "/slices" : "/rear";
     if (!first) gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::topic", "/rear", nullptr);
@@ -236,7 +237,7 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
     for (guint i = 0; i < 3; ++i) {
       const GstClockTime pts = (i + 1) * GST_MSECOND;
       EXPECT_EQ(gst_harness_push(h.get(), Slice(1, pts, start + i * GST_MSECOND)), GST_FLOW_OK);
-      // An end of the other stream in the first recording does not count in the second.
+      // The recording continues: the end of stream `h` in the first recording has no effect here.
       if (!first && i == 0) End(other.get());
     }
     EXPECT_EQ(StatOf(h->element, "messages"), 3U);
@@ -322,7 +323,7 @@ TEST_F(McapContent, SlicesThatCannotBeAreDroppedAndCounted) {
   EXPECT_EQ(slices[0].slice.slice_count, 4096U);
   EXPECT_EQ(slices[1].slice.slice_count, 4U);
   EXPECT_TRUE(slices[0].discont);
-  EXPECT_TRUE(slices[1].discont);  // something is missing before it
+  EXPECT_TRUE(slices[1].discont);  // a slice is missing before it
   EXPECT_FALSE(slices[2].discont);
   EXPECT_EQ(played.stats.at("messages"), 5U);
   EXPECT_EQ(played.stats.at("messages-dropped"), 2U);
@@ -352,7 +353,7 @@ TEST_F(McapContent, GapsFillWhatASilentStreamLeavesOpen) {
   EXPECT_EQ(p.outcome().gaps["see1"],
             (Gaps{{0, 500}, {500, 500}, {1'350, 550}, {1'900, 500}, {2'400, 500}}));
   EXPECT_EQ(p.outcome().gaps["see0"], Gaps{});
-  // The gaps of the silent stream begin at the place of a seek.
+  // After a seek the first gap of the silent stream begins at the position of the seek.
   p.Forget();
   ASSERT_TRUE(
       gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 1'500 * GST_MSECOND));

@@ -261,7 +261,7 @@ TEST_F(McapErrors, CloudsThatWouldBecomeHugeAreRefused) {
   channel.message_encoding = "cdr";
   const auto reader = gst::MessageReader::Make(gst::SchemaOf(gst::MessageType::kCloud), channel);
   ASSERT_TRUE(reader);
-  // A point of a byte becomes a point of twelve.
+  // A point of 1 byte becomes a point of 12 bytes.
   const auto reads = [&](std::uint32_t width) {
     const std::vector<std::uint8_t> points(width);
     cdr::PointCloud2 cloud;
@@ -295,7 +295,7 @@ TEST_F(McapErrors, MessagesThatAreCutCostThemselvesOnly) {
   }
 }
 
-/// Without caps, slices cannot be decoded, and a stranger's caps may not be of our samples.
+/// Slices without caps are not played. If recorded caps do not fit an IMU's samples, ours are used.
 TEST_F(McapErrors, AStrangersChannelsDoNotKeepOthersFromBeingPlayed) {
   const auto imu = cdr::WriteImu({});
   const std::string ours = "fields=(string)\"" + std::string(kImuFields) + '"';

@@ -87,7 +87,7 @@ TEST_F(McapFiles, PiecesEndByTheirSize) {
 TEST_F(McapFiles, OldPiecesStayAndOldestGo) {
   Record(4, "max-file-duration=200000000", "rec-%03d.mcap");
   Record(4, "max-file-duration=200000000", "rec-%03d.mcap");
-  EXPECT_EQ(Files().size(), 4U);  // two and two
+  EXPECT_EQ(Files().size(), 4U);  // two of each recording
   Record(4, "max-file-duration=200000000 max-files=3", "rec-%03d.mcap");
   EXPECT_EQ(Files(), (std::vector<std::string>{"rec-003.mcap", "rec-004.mcap", "rec-005.mcap"}));
 }
@@ -239,8 +239,7 @@ TEST_F(McapFiles, DamageAnywhereIsSurvived) {
   std::mt19937 random(11);
   for (int round = 0; round < 60; ++round) {
     std::string damaged = whole;
-    // Half of the rounds damage the begin, where the caps are, the most complicated part of the
-    // file.
+    // Half of the rounds damage the beginning: the caps there are the most complicated part.
     for (int i = 0; i < 4; ++i)
       damaged[random() % (round % 2 == 0 ? 4'000 : damaged.size())] = static_cast<char>(random());
     WriteFile("b.mcap", damaged);

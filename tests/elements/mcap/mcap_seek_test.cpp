@@ -64,7 +64,7 @@ TEST_F(McapSeek, SeeksByTime) {
   EXPECT_GE(played.front().pts, static_cast<GstClockTime>(from));
   EXPECT_LT(played.front().pts, static_cast<GstClockTime>(from) + 13 * GST_MSECOND);
   EXPECT_TRUE(played.front().discont);
-  // And again, from the end.
+  // A seek to 0 after EOS plays all again.
   p.Forget();
   ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
@@ -72,7 +72,7 @@ TEST_F(McapSeek, SeeksByTime) {
   gint64 position = 0;
   ASSERT_TRUE(gst_element_query_position(p.Find("m").get(), GST_FORMAT_TIME, &position));
   EXPECT_EQ(position, length);
-  // Backwards is refused.
+  // A negative rate is refused.
   EXPECT_FALSE(gst_element_seek(p.get(), -1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
                                 GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
 }
@@ -120,7 +120,7 @@ TEST_F(McapSeek, RefusesToEndBeforeItBegins) {
   EXPECT_EQ(p.Run().error, "");
 }
 
-/// Keeps the running time at the begin of each segment that comes to a sink [ms].
+/// Records the running time at the start of each segment that comes to a sink [ms].
 class SegmentTimes {
  public:
   explicit SegmentTimes(GstElement* sink) : pad_(gst_element_get_static_pad(sink, "sink")) {
@@ -181,7 +181,7 @@ TEST_F(McapSeek, ASegmentSeekEndsWithItsMessage) {
   EXPECT_EQ(segments.Take(), (std::vector<GstClockTime>{300, 600})) << "without an overlap";
 }
 
-/// Keeps type and number of events that a seek causes.
+/// Records the types and sequence numbers of the events that a seek causes.
 class EventNumbers {
  public:
   using Entry = std::pair<std::string, guint32>;
@@ -323,8 +323,8 @@ TEST_F(McapSeek, IsDoneOnceHoweverManySinksSendIt) {
   }
 }
 
-/// Keeps the times of the buffers that came to a sink after the last flush, and holds the sink at a
-/// buffer of `closed_from` or later until Open().
+/// Records the times of a sink's buffers since the last flush. Blocks the sink at a buffer of
+/// `closed_from` or later until Open().
 class Gate {
  public:
   explicit Gate(GstClockTime closed_from) : closed_from_(closed_from) {}
@@ -395,7 +395,7 @@ TEST_F(McapSeek, ASeekHoldsWhereItsEndIsPlayedMeanwhile) {
   Pipeline p("mcapsrc name=m" + At("a.mcap") +
              " m.src_0 ! fakesink name=a async=false m.src_1 ! fakesink name=b async=false");
   gate.Guard(p.Find("b").get());
-  // The first stream gets the flush first: until that flush is through, the second stream plays on.
+  // The first stream is flushed first. Until this flush ends, the second stream plays on.
   const gst::PadPtr first(gst_element_get_static_pad(p.Find("a").get(), "sink"));
   gst_pad_add_probe(
       first.get(), GST_PAD_PROBE_TYPE_EVENT_FLUSH,

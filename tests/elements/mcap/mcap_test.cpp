@@ -184,8 +184,8 @@ TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
     gst_harness_push_event(h.get(), gst_event_new_eos());
     gst_harness_push_event(late, gst_event_new_eos());
   }
-  // The sink of the late stream would wait for ever without gaps, and the queue before the other
-  // sink would be full.
+  // Without gaps the sink of the late stream would wait for ever, and the queue before the other
+  // sink would fill up.
   const auto played = Play("mcapsrc name=m" + At("a.mcap") +
                            " m.src_0 ! queue max-size-buffers=10 ! fakesink name=see0 m.src_1 ! "
                            "queue ! fakesink name=see1");
@@ -250,7 +250,7 @@ TEST_F(Mcap, EndsWhenToldToAndPlaysTheNextTime) {
   ASSERT_TRUE(p.Wait(GST_MESSAGE_ASYNC_DONE));
   ASSERT_TRUE(gst_element_send_event(p.Find("m").get(), gst_event_new_eos()));
   EXPECT_EQ(p.Run().error, "");
-  EXPECT_LE(p.outcome().buffers.at("see").size(), 3U);  // those in the pipeline
+  EXPECT_LE(p.outcome().buffers.at("see").size(), 3U);  // buffers that were already in the pipeline
   // The first message was not consumed, so it plays now.
   EXPECT_EQ(p.Run(GST_MESSAGE_ERROR).stats.at("messages"), 1U);
 }
@@ -259,7 +259,7 @@ TEST_F(Mcap, CountsAnewAfterReady) {
   Record(2, "", "a.mcap");
   Pipeline p("mcapsrc name=m" + At("a.mcap") + " fakesrc num-buffers=1 ! fakesink");
   for (int round = 0; round < 2; ++round) {
-    // The first message has no consumer: the pad is not linked.
+    // The first message fails, because the pad is not linked.
     EXPECT_EQ(p.Run(GST_MESSAGE_ERROR).stats.at("messages"), 1U);
   }
 }
@@ -318,7 +318,7 @@ TEST_F(McapOfOthers, CloudsBecomeOurs) {
   }
   cdr::PointCloud2 cloud = Cloud(2);
   cloud.data = {points.data(), points.size()};
-  // Empty clouds are left out, and so is a cloud that claims points that it does not have.
+  // Empty clouds are left out, and so is a cloud that claims more points than it has.
   Record({Cloud(0), Cloud(0), Cloud(1U << 24), cloud});
   const auto played = Play("mcapsrc" + At("other.mcap") + " ! fakesink name=see");
   EXPECT_EQ(played.error, "");
@@ -362,7 +362,7 @@ TEST_F(McapOfOthers, CloudsHaveTheFieldsOfTheirOwnMessages) {
       << played.caps.at("see");
 }
 
-/// A program may reduce our clouds and copy the rest of the channel.
+/// Another program may have reduced our clouds, and copied the channel's other metadata.
 TEST_F(McapOfOthers, CloudsOfAnotherLayoutThanTheRecordedCapsAreThoseOfTheirMessages) {
   const auto recorded = Play(kSensor + " num-buffers=1 slices-per-scan=1 ! fakesink name=see");
   const std::string ours = recorded.caps.at("see");
@@ -400,7 +400,7 @@ TEST_F(Mcap, CloudsOfAnyWidthHaveOneChannel) {
   EXPECT_EQ(recorded.error, "");
   const std::string bytes = ReadFile(Path("clouds.mcap"));
   std::size_t channels =
-      0;  // the topic stands in each channel record: in its chunk, and in the summary
+      0;  // the caps are in each channel record: in its chunk, and in the summary
   for (std::size_t at = 0; (at = bytes.find("application/x-pointcloud2", at)) != std::string::npos;
        ++at)
     ++channels;

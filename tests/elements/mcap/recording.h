@@ -99,7 +99,7 @@ struct Outcome {
 
 class Pipeline {
  public:
-  /// Buffers of elements whose names begin with "see" are kept.
+  /// Keeps the buffers of elements whose names begin with "see".
   explicit Pipeline(const std::string& description) {
     GError* raw = nullptr;
     pipeline_.reset(gst_parse_launch(description.c_str(), &raw));
@@ -136,7 +136,7 @@ class Pipeline {
       g_usleep(2000);
     return outcome_.stats[name] >= least;
   }
-  /// Returns false at an error, or if no message comes.
+  /// Returns true once a message `until` comes, and false at an error or without messages.
   bool Wait(GstMessageType until) {
     const ElementBus bus(pipeline_.get());
     bool good = false;
@@ -156,7 +156,7 @@ class Pipeline {
     const std::lock_guard lock(mutex_);
     return outcome_;
   }
-  /// Forgets what came up to now.
+  /// Drops the buffers, gaps and error so far.
   void Forget() {
     const std::lock_guard lock(mutex_);
     outcome_.buffers.clear();
