@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: the sessions of a robot at invented times: their pauses and reports.
+// lidar-edge: pauses and reports of a robot's sessions, at times that the test chooses.
 #include <gio/gio.h>
 
 #include <nlohmann/json.hpp>
@@ -31,7 +31,7 @@ class EdgeSession : public ::testing::Test {
   void Make(GSocket* socket = nullptr) {
     session_ = std::make_unique<edge::Session>(config_, robot_, socket);
   }
-  /// Time since the first session began.
+  /// Polls the session `since` after the first one began.
   void PollAt(Duration since) { session_->Poll(kBegin + since); }
   void Send(int packets, std::size_t size = 1'000) {
     const Object to(g_inet_socket_address_new_from_string("127.0.0.1", robot_.port),
@@ -46,7 +46,7 @@ class EdgeSession : public ::testing::Test {
                        packet.size(), nullptr, nullptr);
     }
   }
-  /// Waits until the session has received so many packets. Returns their bytes.
+  /// Waits until the session has received `packets` packets. Returns their bytes.
   std::uint64_t Received(std::uint64_t packets) {
     EXPECT_TRUE(Eventually([&] { return Source().value("packets-received", 0U) >= packets; }));
     return Source().value("bytes-received", std::uint64_t{0});
@@ -141,7 +141,7 @@ TEST_F(EdgeSession, ARobotThatIsSilentIsGoneAndMayComeAgainAtOnce) {
   EXPECT_EQ(Count("failures") + Count("penalties"), 0U);
 }
 
-/// Pauses [s] after failures in a row, and after one of a session that was good before.
+/// Pauses [s] after failures in a row.
 constexpr int kPauses[] = {2, 4, 8, 16, 32, 64, 64};
 
 TEST_F(EdgeSession, AfterEachFailureInARowThePauseIsLonger) {
@@ -177,7 +177,7 @@ TEST_F(EdgeSession, ARecorderThatFailsIsReplacedAndTheSessionGoesOn) {
   const auto expect_pause = [&](int pause_s) {
     ASSERT_TRUE(records());
     Fail("mcapsink");
-    Fail("queue");  // as GstBaseSrc does behind a failed sink: it is the same failure
+    Fail("queue");  // follows from the sink's failure, and is not counted
     PollAt(at);
     EXPECT_FALSE(records());
     EXPECT_EQ(Count("record-failures"), ++failures);
@@ -268,7 +268,7 @@ TEST_F(EdgeSession, OnASharedPortHasNothingOfItsRest) {
   Send(10);
   PollAt(seconds(100));
   ASSERT_EQ(state(), "waiting");
-  Send(1, 500);  // behind whatever the socket kept
+  Send(1, 500);  // after all packets that the socket still holds
   EXPECT_TRUE(Eventually([&] { return Received(1) % size != 0; }));
   EXPECT_EQ(Source().at("packets-received"), 1U) << "of the rest nothing came";
 }

@@ -13,7 +13,7 @@ struct Run {
   std::size_t life = 0;
   std::optional<SessionReport> report;
   std::uint64_t messages = 0;
-  Missing missing;  // in this run, by the numbers
+  Missing missing;  // in this run, by the slices' numbers
 };
 
 class Bookkeeper {
@@ -102,7 +102,7 @@ class Bookkeeper {
     if (!gap.empty()) BookGap(before, gap, nullptr);
   }
 
-  /// Books the slices between two stored ones.
+  /// Finds who lost the slices of `gap`; `after` is null at the end of the stream.
   void BookGap(const StoredSlice* before, const std::vector<const SentSlice*>& gap,
                const StoredSlice* after) {
     Missing missing;
@@ -116,7 +116,7 @@ class Bookkeeper {
     Tell(gap, missing);
   }
 
-  /// Books a gap between two slices of one session.
+  /// Finds who lost the slices of a gap within one session.
   void BookWithin(const StoredSlice& before, const std::vector<const SentSlice*>& gap,
                   const StoredSlice& after, Missing* missing) {
     Run& run = runs_[after.run];
@@ -131,7 +131,7 @@ class Bookkeeper {
     run.missing += *missing;
   }
 
-  /// Books a gap that ends with another session: the first one, or one after the edge was killed.
+  /// Finds who lost the slices of a gap before a session: the first one, or one after a kill.
   void BookBetween(const StoredSlice* before, const std::vector<const SentSlice*>& gap,
                    const StoredSlice& after, Missing* missing) {
     Run& run = runs_[after.run];
@@ -140,7 +140,7 @@ class Bookkeeper {
         run.report ? run.report->receiving_from : std::numeric_limits<double>::infinity();
     const bool killed = last == nullptr || lives_[last->life].killed.has_value();
     const double end = last == nullptr ? 0 : lives_[last->life].killed.value_or(0);
-    std::uint64_t old = 0;  // in the edge for longer than a report takes
+    std::uint64_t old = 0;  // reached the edge early enough to be in its last report
     for (const SentSlice* slice : gap) {
       if (killed && slice->at <= end) {
         ++missing->at_kill;

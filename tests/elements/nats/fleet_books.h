@@ -67,7 +67,7 @@ struct RobotBooks {
   std::uint64_t received = 0;      // by the last report of each session
   std::uint64_t acknowledged = 0;  // by the last report of each session
   std::uint64_t stored = 0;        // number of slices
-  std::uint64_t twice = 0;         // number of messages beyond them
+  std::uint64_t twice = 0;         // number of messages that repeat a slice
   std::uint64_t strange = 0;       // number of messages that no robot sent
   std::uint64_t acknowledged_and_gone = 0;
   Missing missing;
@@ -79,7 +79,7 @@ struct RobotBooks {
 };
 
 /// `sent`, `sessions` and `lives` are in the order of time, `stored` in that of the stream. Slices
-/// that the edge had not reported on for `report_age` when it was killed count as lost with it.
+/// sent later than `report_age` before a killed edge's last report count as lost with the edge.
 RobotBooks MakeBooks(const std::vector<SentSlice>& sent, const std::vector<StoredSlice>& stored,
                      const std::vector<SessionReport>& sessions, const std::vector<EdgeLife>& lives,
                      double report_age);

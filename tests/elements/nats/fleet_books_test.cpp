@@ -23,7 +23,7 @@ class FleetBooks : public ::testing::Test {
   void Store(std::uint64_t run, std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = from; i < to; ++i) stored_.push_back({i, 0, i + 0.2, i, run, i - from});
   }
-  /// The slice never came to natssink, so later slices have lower numbers.
+  /// Loses a slice that never came to natssink, so later slices have lower numbers.
   void LoseOnPath(std::size_t at) {
     for (std::size_t i = at + 1; i < stored_.size(); ++i)
       if (stored_[i].run == stored_[at].run) --stored_[i].number;
@@ -73,7 +73,7 @@ TEST_F(FleetBooks, NoticeWhatThePathLostAndNobodyCounted) {
 TEST_F(FleetBooks, NoticeWhatTheSinkLostAndNobodyCounted) {
   LoseInSink(40);
   sessions_[1].acknowledged = 24;
-  sessions_[1].lost = 1;  // at another place
+  sessions_[1].lost = 1;  // rtplidardepay counts a loss, not natssink
   EXPECT_EQ(Make().missing.not_counted, 1U);
 }
 
@@ -93,7 +93,7 @@ TEST_F(FleetBooks, NoticeWhatWaitedForLongerThanTheEdgeSaid) {
   stored_.erase(stored_.begin() + 20, stored_.begin() + 30);
   sessions_[0].acknowledged = 20;
   sessions_[0].waiting = 8;
-  // There are 11 slices. Nine are older than the last report, which had eight.
+  // Eleven slices are missing. Nine were sent early enough for the last report, which counts eight.
   const RobotBooks books = Make();
   EXPECT_EQ(books.missing.not_counted, 1U);
   EXPECT_EQ(books.missing.at_kill, 10U);

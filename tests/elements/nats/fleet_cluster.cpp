@@ -58,8 +58,8 @@ class Robot {
   NatsPipeline poses_;
 };
 
-/// Returns how many of `sent` are not in `stored`. The order does not count, because a stream
-/// without a leader changes it.
+/// Returns how many of `sent` are not in `stored`, in any order: a stream that loses its leader may
+/// change the order.
 std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stored) {
   std::set<std::string> there;
   for (const Kept& kept : stored) there.insert(kept.bytes);
@@ -126,7 +126,7 @@ class FleetCluster : public NatsTest {
   /// Returns the time until each of the robots has a pose of its new worker [s].
   std::map<std::string, double> TimesToPoses(const std::set<std::string>& names) {
     const auto begin = SteadyClock::now();
-    // Poses that are on their way now are not of a new worker.
+    // Lets the last poses of the old worker arrive first: they must not count.
     std::this_thread::sleep_for(milliseconds(100));
     std::map<std::string, std::size_t> before;
     for (const auto& robot : robots_) before[robot->name()] = robot->poses();
@@ -164,7 +164,7 @@ void FleetCluster::KillWorkers() {
     for (const auto& [name, time] : TimesToPoses(orphans)) times.push_back(time);
     *victim = NewWorker();
     ASSERT_TRUE(WaitFor([this] { return AllOwned(); }));
-    std::this_thread::sleep_for(milliseconds(1500));  // until it is ready to take over
+    std::this_thread::sleep_for(milliseconds(1500));  // until the new worker is ready to take over
   }
   std::sort(times.begin(), times.end());
   ASSERT_FALSE(times.empty());
@@ -220,8 +220,8 @@ void FleetCluster::CountAll() {
       poses = robot->Replay("poses", "odometry");
       return !poses.empty() && poses.back().capture_time + 200 * GST_MSECOND > last;
     }));
-    // The stream of poses has gaps where it had no leader, because workers do not wait for its
-    // answer.
+    // The stream of poses has gaps while it had no leader, because workers do not wait for
+    // acknowledgements.
     for (const Kept& live : robot->LivePoses()) poses.push_back(live);
     std::stable_sort(poses.begin(), poses.end(), [](const Kept& a, const Kept& b) {
       return std::tie(a.capture_time, a.bytes) < std::tie(b.capture_time, b.bytes);

@@ -36,7 +36,7 @@ struct EnduranceOptions {
 };
 
 struct StoredStream {
-  std::map<std::string, std::vector<StoredSlice>> of;  // robot
+  std::map<std::string, std::vector<StoredSlice>> of;  // by robot
   std::map<std::uint64_t, StoredSlice> by_sequence;
 };
 
@@ -86,7 +86,7 @@ class FleetEndurance : public NatsTest {
 void FleetEndurance::SetUp() {
   NatsTest::SetUp();
   if (IsSkipped()) return;
-  setvbuf(stdout, nullptr, _IOLBF, 0);  // a run of an hour is watched
+  setvbuf(stdout, nullptr, _IOLBF, 0);  // shows each line at once: a run may take an hour
   cluster_.Start();
   witness_ = std::make_unique<AckWitness>(cluster_.url(), "fleet");
   const std::vector<int> ports = FreePorts(options_.robots);
@@ -162,7 +162,7 @@ void FleetEndurance::KillSomething() {
   const std::size_t part = random_() % (workers_.empty() ? 2 : 3);
   const std::size_t which = random_();
   if (part == 0) {
-    // The other two servers must be there and complete.
+    // The other two servers must be up and have all messages.
     if (ClusterIsWhole())
       KillServer(which % kServers);
     else
@@ -219,7 +219,7 @@ void FleetEndurance::Run() {
     RestartDue();
     if (options_.kill_every <= 0 || now < kill_at) continue;
     kill_at = now + options_.kill_every * spread(random_);
-    // The last report of the edge is fresh if the edge is killed now.
+    // If the edge is killed now, its last report is fresh.
     edge_->Sample();
     KillSomething();
   }

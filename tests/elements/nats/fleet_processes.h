@@ -144,8 +144,8 @@ class AckWitness {
   }
 
   std::size_t seen() const { return seen_.size(); }
-  /// Counts acknowledgements whose slice is not in the stream at their sequence number, or is of
-  /// another number or run.
+  /// Counts acknowledgements at whose sequence number the stream has no slice, or one with another
+  /// number or run.
   std::size_t CountGone(const std::map<std::uint64_t, StoredSlice>& by_sequence) const {
     std::map<std::string, std::uint64_t> runs;
     return static_cast<std::size_t>(std::count_if(seen_.begin(), seen_.end(), [&](const Seen& ack) {

@@ -17,8 +17,7 @@ namespace lidar::test {
 /// The clock by which sent slices are timed [s].
 inline double WallTime() { return static_cast<double>(g_get_real_time()) * 1e-6; }
 
-/// All robots share one sensor. Each codes its slices by itself and sends them on a path of its
-/// own.
+/// All robots share one sensor. Each robot codes its slices and sends them on its own path.
 class Robots {
  public:
   Robots(const std::vector<std::string>& names, const std::vector<int>& ports) : names_(names) {
@@ -59,7 +58,7 @@ class Robots {
   const std::map<guint, GstClockTime>& ScansOf(std::size_t robot) const {
     return sent_[robot].scans;
   }
-  /// Returns the losses that SCReAM of all robots counted.
+  /// Returns the losses that the robots' SCReAM counted, as text.
   std::string SenderLosses() const {
     guint64 dropped = 0;
     guint64 lost = 0;

@@ -122,7 +122,7 @@ TEST(FleetMetrics, CutOffWhoSaysNothingOrTooMuch) {
   fleet::MetricsServer server("127.0.0.1", 0);
   EXPECT_EQ(Received(Clients(server.port(), 1, "")[0].get()), "");
   EXPECT_EQ(server.cut(), 1U) << "the silent one";
-  // A busy machine may take longer than the server waits.
+  // The server also cuts off a request that takes too long, as it may on a busy machine.
   bool waits = true;
   for (int tries = 0; waits && tries < 5; ++tries) {
     const std::uint64_t before = server.cut();
@@ -137,7 +137,7 @@ TEST(FleetMetrics, CutOffTheOthersWhereNoFileDescriptorIsLeftForAnother) {
   server.Publish("lidar_edge_x 1\n");
   const auto silent = Clients(server.port(), 1, "");
   const auto answered = Clients(server.port(), 1, "GET /metrics HTTP/1.1\r\n\r\n");
-  EXPECT_NE(Received(answered[0].get()), "");  // the server has taken the silent one before
+  EXPECT_NE(Received(answered[0].get()), "");  // so the server has accepted the silent client, too
   const tools::FileDescriptor next = NewSocket();
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -183,7 +183,7 @@ TEST(FleetMetrics, KnowTheirPortThoughItHasAName) {
     try {
       EXPECT_EQ(fleet::MetricsServer("127.0.0.1", port).port(), port) << s->s_name;
       is_taken = false;
-    } catch (const std::runtime_error&) {  // another program has it
+    } catch (const std::runtime_error&) {  // another program has the port
     }
   }
   endservent();
@@ -239,7 +239,7 @@ TEST_F(FleetReporter, TellsOfAServerThatRefusesUsOnceUntilOneTakesUs) {
   testing::internal::CaptureStderr();
   {
     fleet::Reporter reporter(settings);
-    // A connection is refused twice before it is given up, and a pause follows.
+    // Each connection ends after two refusals, and the next one begins after a pause.
     EXPECT_TRUE(Eventually([&] { return errors() >= 5; }));
     server_.Start({"--auth", "s3cret"});
     {
@@ -327,7 +327,7 @@ TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {
   {
     const fleet::Reporter reporter(settings);
     for (const bool again : {true, false}) {
-      // The call to open() waits for the reader.
+      // open() of a FIFO waits for the reader.
       const tools::FileDescriptor certificate(open(path.c_str(), O_WRONLY));
       unlink(path.c_str());
       if (again) {

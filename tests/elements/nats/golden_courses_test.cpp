@@ -74,7 +74,7 @@ class MessageTexts {
   std::map<std::string, char> runs_;
 };
 
-/// A server, and another program at it that publishes and subscribes.
+/// A server, and a client of it that publishes and subscribes as another program would.
 class Fleet {
  public:
   explicit Fleet(Course* course) : course_(*course) {
@@ -82,7 +82,7 @@ class Fleet {
     course_.Stop();  // the harness starts sinks
     server_.Start();
     g_object_set(course_.element(), "url", server_.url().c_str(), nullptr);
-    // JetStream begins a little after its server.
+    // JetStream is ready a little later than its server.
     course_.Hide("message warning (JetStream gives nothing|The stream box cannot be made).*", "");
     course_.Hide("127[.]0[.]0[.]1:[0-9]+", "the server");
     Connect();
@@ -91,11 +91,11 @@ class Fleet {
   Fleet& operator=(const Fleet&) = delete;
 
   jsCtx* js() const { return client_->js(); }
-  /// Returns once the server has the element's subscription, or has it no more.
+  /// Returns once the server has, or no longer has, the element's subscription.
   void AwaitSubscription(bool is_there) const {
     EXPECT_TRUE(Eventually([&] { return (server_.Subscriptions("r1.imu") > 0) == is_there; }));
   }
-  /// A stream of JetStream that keeps what is published.
+  /// Makes the JetStream stream "box", which stores what is published.
   void MakeBox() const {
     std::string why;
     EXPECT_TRUE(Eventually([&] {
@@ -103,7 +103,7 @@ class Fleet {
                                 {"r1.imu", "r1.imu.config.*"}, &why);
     })) << why;
   }
-  /// The server goes, and is missed.
+  /// Kills the server, and waits until the element has posted that it is gone.
   void Kill() {
     messages_.reset();
     client_.reset();
@@ -112,7 +112,7 @@ class Fleet {
     EXPECT_TRUE(Eventually([&] { return course_.trace()->Count("message nats-conn") > 0; }));
     course_.Await("no server", "message warning No NATS");
   }
-  /// The server is back, and the element has done what waited for that.
+  /// Restarts the server, and waits until the element's `statistics` are `wanted`.
   void Restart(std::initializer_list<const char*> statistics, guint64 wanted) {
     server_.Restart();
     course_.AwaitStat("connected", 1);
@@ -149,7 +149,7 @@ class Fleet {
     if (more != nullptr) headers.emplace_back(more, value);
     Publish("r1.imu", std::string(size, static_cast<char>(place.back())), headers);
   }
-  /// Notes what is published up to the next message of the stream, without caps that come again.
+  /// Notes all messages up to the next sample, except for caps that are published again.
   void NotePublished() {
     for (bool is_caps = true; is_caps;) {
       const nats::MessagePtr message = Next();
@@ -160,7 +160,7 @@ class Fleet {
       course_.AddLine(texts_.Of(message.get()));
     }
   }
-  /// Notes the answer to a natssrc that lacks caps.
+  /// Asks for the caps, as a natssrc without them does, and notes the answer.
   void Ask() {
     natsConnection_Publish(client_->get(), "r1.imu.get-config", nullptr, 0);
     for (const char* begin : {"r1.imu.get-config", "r1.imu.config."})
@@ -194,7 +194,7 @@ class SinkScript {
  public:
   SinkScript(Course* course, Fleet* fleet) : c_(*course), fleet_(*fleet) {}
 
-  /// Begins once there is a connection.
+  /// Starts the element, and begins the stream once the element is connected.
   void Begin(const char* caps) {
     sent_ = 0;
     gst_element_set_state(c_.element(), GST_STATE_PLAYING);
@@ -264,7 +264,7 @@ void SinkCourse(Course& c) {
   c.End();
 }
 
-/// Notes the properties of a stream, and all that it keeps.
+/// Notes the properties of the stream "box", and all its messages.
 void NoteBox(Course& c, const Fleet& fleet, guint64 messages) {
   jsStreamInfo* found = nullptr;
   ASSERT_EQ(js_GetStreamInfo(&found, fleet.js(), "box", nullptr, nullptr), NATS_OK);
@@ -297,7 +297,7 @@ void KeptSinkCourse(Course& c) {
   sink.Push("a cloud", FullSample(24));
   fleet.Kill();
   for (guint8 i = 4; i < 6; ++i) c.Push("that waits", Sample(i, 24));
-  // An answer may come before its message is counted.
+  // An acknowledgement may come before its message is counted.
   fleet.Restart({"messages-acknowledged", "messages"}, 5);
   c.End();
   c.Stop();
@@ -307,7 +307,7 @@ void KeptSinkCourse(Course& c) {
   NoteBox(c, fleet, 6);
 }
 
-/// A source that another program publishes for.
+/// A source, and another program that publishes for it.
 class SourceScript {
  public:
   SourceScript(Course* course, Fleet* fleet) : c_(*course), fleet_(*fleet) {}
@@ -325,7 +325,7 @@ class SourceScript {
     fleet_.PublishSample(*format_, place, size, more, value);
     c_.Await(what, "buffer");
   }
-  /// A message that the source drops, and that it notes with the next one.
+  /// Publishes a message that the source drops. The course notes that with the next message.
   void GiveDamaged(const char* place, std::size_t size, const char* more = nullptr,
                    const char* value = "") {
     fleet_.PublishSample(*format_, place, size, more, value);
@@ -393,7 +393,7 @@ void SourceCourse(Course& c) {
   c.Note("of a subject that is none");
 }
 
-/// Notes what a source answers to a question for the past.
+/// Notes a source's answer to a history query.
 void NotePast(Course& c, const gst::HistoryQuestion& question) {
   const gst::QueryPtr query = gst::NewHistoryQuery(question);
   EXPECT_TRUE(Eventually([&] { return gst_pad_peer_query(c.harness()->sinkpad, query.get()); }));

@@ -51,7 +51,7 @@ class LidarEdge : public NatsTest {
     program_->Signal(SIGTERM);
     return Eventually([this] { return program_->Ended(); }) && program_->Wait() == 0;
   }
-  /// The program cuts a connection off whose request takes two seconds.
+  /// Tries again, because the program closes a connection whose request takes two seconds.
   std::optional<std::string> Metrics() const {
     const std::string host = "127.0.0.1:" + std::to_string(metrics_port_);
     std::optional<std::string> answer;
@@ -67,7 +67,7 @@ class LidarEdge : public NatsTest {
     if (at == std::string::npos) return std::nullopt;
     return std::atof(answer->c_str() + at + line.size());
   }
-  /// Returns true if statistics come, and show that the robot's stream continues.
+  /// Returns true once the statistics show that the robot's stream continues.
   bool GoesOn(const std::string& robot) {
     const auto sent = [&] { return Metric("lidar_natssink_messages", robot).value_or(0); };
     const double before = sent();
@@ -140,7 +140,7 @@ TEST_F(TwoRobots, OneThatSendsTooMuchIsShutOutAndNoOther) {
   EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
 }
 
-/// Takes connections and sends nothing.
+/// Lets clients connect, and sends nothing.
 class SilentServer {
  public:
   SilentServer()
@@ -224,7 +224,8 @@ TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
 TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   server_.Start();
   const auto ports = FreePorts(2);
-  // A FIFO waits for a reader for ever. mcapsink opens it because %% makes a name without a number.
+  // Opening a FIFO waits for a reader for ever. mcapsink opens this one, because its location has
+  // no number: %% stands for a single %.
   ASSERT_EQ(mkfifo((server_.folder() + "/stuck%.mcap").c_str(), 0600), 0);
   const std::string stuck = server_.folder() + "/stuck%%.mcap";
   StartEdge(
@@ -359,7 +360,7 @@ TEST_F(LidarEdge, ARobotOfTwoAddressesOnTheSharedPortIsOneRobot) {
       "max-queue-delay=60000000000 bonding-addresses=\"" + to + "@127.0.0.1," + to + "@127.0.0.2\"",
       "rtplidarpay ssrc=7");
   const auto metric = [&](const char* name) { return Metric(name, "r1").value_or(0); };
-  // Copies count once the second address has shown that it is the robot's.
+  // Copies are counted once the second address has become a link of the robot.
   ASSERT_TRUE(Eventually([&] { return metric("lidar_screamsrc_packets_copies") > 0; }));
   const double foreign = metric("lidar_screamsrc_packets_foreign");
   ASSERT_TRUE(consumer->WaitForBuffers(40));

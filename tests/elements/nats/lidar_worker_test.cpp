@@ -79,7 +79,7 @@ class LidarWorker : public NatsTest {
   void WithJetStream(const std::function<void(jsCtx*)>& use) {
     use(NatsClient(server_.url()).js());
   }
-  /// Makes the bucket if there is none, and calls `use` with it.
+  /// Makes the bucket if it is missing, and calls `use` with it.
   void WithBucket(const std::function<void(kvStore*)>& use) {
     WithJetStream([&](jsCtx* js) {
       kvConfig config;
@@ -127,8 +127,7 @@ class LidarWorker : public NatsTest {
   }
   std::uint64_t LastOf(const char* stream) { return InfoOf(stream)->State.LastSeq; }
   std::string Record() { return Newest("r1.front").text; }
-  /// Expects poses without the record's velocity: the robot drives at 10 m/s, and the record had
-  /// another one.
+  /// Expects poses without the record's velocity: the robot drives at 10 m/s, not at that velocity.
   void ExpectNoVelocityOfTheRecord(NatsPipeline* consumer) {
     ASSERT_TRUE(consumer->WaitForBuffers(10));
     EXPECT_LT(LargestJump(consumer->buffers()), 5);
@@ -152,7 +151,7 @@ TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
   ASSERT_TRUE(consumer.WaitForBuffers(15));
   EXPECT_NE(first->Taken("r1.front").find("from now on"), std::string::npos);
   auto second = Worker(kLongLease);
-  // The second worker has seen by then that the robot is taken.
+  // During 20 more poses the second worker sees that the robot is taken.
   const std::size_t before = consumer.count();
   ASSERT_TRUE(consumer.WaitForBuffers(before + 20));
   EXPECT_EQ(second->Taken("r1.front"), "");
@@ -195,13 +194,14 @@ TEST_F(LidarWorker, WaitsForAServerThatTakesItsConnectionAndIsSilent) {
   auto worker = Worker();
   NatsPipeline other("natssrc name=n" + At() + "! fakesink name=see");
   other.Play();
-  EXPECT_NE(other.WaitForWarning("No NATS server answers"), "");  // comes after both gave it up
+  EXPECT_NE(other.WaitForWarning("No NATS server answers"),
+            "");  // comes after both have given up a connection
   server_.Thaw();
   const auto robot = Robot();
   EXPECT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
 }
 
-/// A proxy without a server behind it: takes connections, and closes them at once.
+/// A proxy without a server behind it: accepts connections, and closes them at once.
 class LoneProxy {
  public:
   LoneProxy() {
@@ -257,8 +257,8 @@ TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
     if (hangs) server_.Thaw();
     return took_s;
   };
-  // A busy machine may not let the worker run: the shortest of three times counts, less the longest
-  // with a server that answers.
+  // A busy machine may delay the worker. So the shortest of three times is compared with the
+  // longest time of a server that answers.
   double shortest_s = 1e9;
   double without_s = 0;
   for (int i = 0; i < 3 && shortest_s >= 1 + without_s; ++i) {
@@ -346,7 +346,7 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   worker::Progress begin;
   begin.pose = {0, 0, 0, 0, 0, 0, 1};
   begin.stream = CreationOf("fleet");
-  begin.scan = begin.from = 2;  // behind the caps
+  begin.scan = begin.from = 2;  // after the caps
   worker::RobotPipeline pipeline(settings, "r1.front", begin.stream, begin);
   pipeline.SetEnd(Time::max());
   pipeline.Play();
@@ -377,7 +377,7 @@ TEST_F(LidarWorker, BeginsItsMapWithAWholeScan) {
     jsOptions options;
     jsOptions_Init(&options);
     options.Stream.Purge.Subject = "fleet.r1.lidar.front";
-    options.Stream.Purge.Sequence = 4;  // behind the caps and two slices
+    options.Stream.Purge.Sequence = 4;  // after the caps and two slices
     EXPECT_EQ(js_PurgeStream(js, "fleet", &options, nullptr), NATS_OK);
   });
   worker::PipelineSettings settings;
@@ -507,14 +507,14 @@ class SlowRobots : public LidarWorker {
     slowness.hold = false;
     worker_.reset();
   }
-  /// Lets the worker work meanwhile.
+  /// Runs the worker until `holds` returns true. Returns false if that takes too long.
   bool WorksUntil(const std::function<bool()>& holds) {
     return Eventually([&] {
       worker_->Step();
       return holds();
     });
   }
-  /// Returns how many robots it has, has taken and has given up, and how many failures.
+  /// Returns the worker's numbers of robots, robots taken, robots given up, and failures.
   std::string Figures() const {
     fleet::Exposition exposition;
     fleet::Reporter::Reports reports;
@@ -552,7 +552,7 @@ TEST_F(SlowRobots, AreHandedOverThoughTheyDoNotStop) {
   EXPECT_FALSE(slowness.gave_up) << "it did not wait for them";
   for (const std::string robot : {"r1.front", "r2.front"}) {
     EXPECT_NE(said.find(robot + ": its pipeline does not stop in time"), std::string::npos) << said;
-    // The server may take the record later.
+    // The server may store the record a little later.
     EXPECT_TRUE(Eventually([&] {
       const auto record = worker::ParseLeaseRecord(Newest(robot).text);
       return record && record->worker.empty();
@@ -611,7 +611,7 @@ worker::WorkerSettings SettingsOf(const std::string& url) {
   return settings;
 }
 
-/// Lets the worker work until it has written `text` to stderr.
+/// Calls `works` until it has written `text` to stderr.
 ::testing::AssertionResult Warns(const std::function<void()>& works, const std::string& text) {
   std::string said;
   const bool warned = Eventually([&] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures natssink and natssrc with many streams at their true pace: added latency, and processor
-// time a stream of each side and of the server.
+// Measures natssink and natssrc with many streams in real time: the added latency, and the
+// processor time per stream of sinks, sources and server.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -72,11 +72,11 @@ gst::ElementPtr Launch(const std::string& description) {
   return pipeline;
 }
 
-/// Runs in a process of its own: takes the streams, and prints latency and processor time.
+/// Runs in its own process: receives the streams, and prints latency and processor time.
 void Receive(const Options& o, std::size_t expected, int ready_fd) {
   struct Latencies {
     std::mutex mutex;
-    guint64 count_from = 0;  // messages sent before do not count
+    guint64 count_from = 0;  // messages sent earlier do not count
     std::size_t received = 0;
     std::vector<double> ms;
   } latencies;
@@ -159,7 +159,7 @@ bool MakeStream(const std::string& url) {
   return made;
 }
 
-/// Starts the receiver in a process of its own, before this one has threads.
+/// Starts the receiver in its own process, before this process has threads.
 int Measure(Options o, const NatsServer& server) {
   const auto expected = static_cast<std::size_t>(o.streams * o.seconds * kSlicesPerSecond);
   int ready[2];

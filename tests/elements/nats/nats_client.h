@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A connection of the test's own, which waits for a server that stands still.
+// A connection of the test itself, which waits for a server that is frozen.
 #pragma once
 #include <gtest/gtest.h>
 

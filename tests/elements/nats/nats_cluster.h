@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Three nats-servers that keep streams together.
+// A cluster of three nats-servers, which share their streams.
 #pragma once
 #include <memory>
 #include <string>
@@ -46,7 +46,7 @@ class Cluster {
   }
   NatsServer& server(std::size_t i) { return servers_[i]; }
   jsCtx* js() { return js_.get(); }
-  /// Returns the leader of a stream whose copies are all there and complete; empty: it has none.
+  /// Returns the leader of a stream; empty if it has none, or if a copy is missing or incomplete.
   std::string LeaderOf(const char* stream) {
     jsStreamInfo* raw = nullptr;
     if (js_GetStreamInfo(&raw, js_.get(), stream, nullptr, nullptr) != NATS_OK) return "";

@@ -121,7 +121,7 @@ TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
   EXPECT_EQ(clouds.WaitForEnd(), "");
   ASSERT_TRUE(receiver.WaitForBuffers(2));
   Stranger stranger(server_.url());
-  // A message with the caps of the clouds, and a cloud cut short.
+  // Sends a cut cloud with the caps of the clouds.
   std::string why;
   const gst::CapsPtr caps(gst_caps_from_string(clouds.caps().c_str()));
   const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
@@ -181,7 +181,7 @@ TEST_F(NatsErrors, AServerThatIsNotThereIsToldOfByBothEnds) {
   }
 }
 
-/// A robot that starts in a gap of its link meets this: libnats gives the connect up for good.
+/// This happens to a robot that starts in a gap of its link: libnats does not connect again itself.
 TEST_F(NatsErrors, AServerThatTakesConnectionsAndIsSilentIsTriedAgain) {
   server_.Start();
   server_.Freeze();
@@ -294,7 +294,7 @@ bool MakeCertificate(const std::string& folder, const std::string& name) {
 
 TEST_F(NatsErrors, AnAddressWithTlsMeansTls) {
   server_.Start();
-  // A connection in the clear would succeed. One tls:// address of several is enough to refuse it.
+  // A connection without TLS would succeed. One tls:// address of several is enough to demand TLS.
   for (const std::string& url : {server_.url("tls"), server_.url() + "," + server_.url("tls")}) {
     NatsPipeline wary("natssrc name=n url=" + url + " ! fakesink name=see sync=false");
     wary.Play();
@@ -308,7 +308,7 @@ TEST_F(NatsErrors, CertificatesMeanTls) {
   const std::string own = server_.folder() + "/own";
   if (!MakeCertificate(server_.folder(), "own")) GTEST_SKIP() << "openssl is not installed";
   server_.Start();
-  // A connection in the clear would succeed.
+  // A connection without TLS would succeed.
   for (const std::string& files :
        {"tls-ca-file=" + own + ".pem",
         "tls-cert-file=" + own + ".pem tls-key-file=" + own + "-key.pem"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What JetStream keeps: replays, durable consumers, a server that dies.
+// Streams that JetStream stores: replays, durable consumers, a server that dies.
 #include "ext/nats/jetstream.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class NatsJetStream : public NatsTest {
     return player.buffers();
   }
 
-  std::string caps_;  // of what Replay() gave
+  std::string caps_;  // of the last Replay()
 };
 
 /// A durable consumer of r1.front that another program has made.
@@ -55,11 +55,11 @@ class DurableConsumer {
     config.MaxAckPending = max_pending;
     EXPECT_EQ(js_AddConsumer(nullptr, client_.js(), "box", &config, nullptr, nullptr), NATS_OK);
   }
-  /// Returns the number of messages that were sent again and are not acknowledged.
+  /// Returns the number of unacknowledged messages that were sent more than once.
   std::int64_t again() const { return Info()->NumRedelivered; }
-  /// Returns the number of messages that were sent and are not acknowledged.
+  /// Returns the number of unacknowledged messages that were sent.
   std::int64_t unacknowledged() const { return Info()->NumAckPending; }
-  /// Returns the number of messages without an acknowledgement.
+  /// Returns the number of unacknowledged messages, sent or not.
   std::uint64_t open() const {
     const auto info = Info();
     return info->NumPending + static_cast<std::uint64_t>(info->NumAckPending);
@@ -92,7 +92,7 @@ std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuesti
   return out;
 }
 
-/// Makes `receiver` play so slowly that messages are sent again, and then take all messages.
+/// Holds `receiver` until messages are sent again. Returns true if it then acknowledges all.
 bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* receiver) {
   receiver->Hold(true);
   receiver->Play();
@@ -101,7 +101,7 @@ bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* 
   return sent_again && Eventually([&] { return consumer.open() == 0; });
 }
 
-/// Puts caps that no other message has into the stream, and a message of them.
+/// Publishes caps that no other message has, and a message with these caps.
 void PutInOwnCaps(const NatsClient& client, int number) {
   const gst::CapsPtr caps(gst_caps_from_string(
       (GST_LIDAR_IMU_MEDIA_TYPE ", sample-size=(int)32, number=(int)" + std::to_string(number))
@@ -148,7 +148,7 @@ TEST_F(NatsJetStream, AReplayBeginsEarlyInASecondAsWell) {
   ExpectSameStream(played, second);
 }
 
-/// Returns when the server stored the last message [ns since 1970].
+/// Returns the time at which the server stored the last message [ns since 1970].
 guint64 LastStored(const NatsClient& client) {
   natsMsg* raw = nullptr;
   EXPECT_EQ(js_GetLastMsg(&raw, client.js(), "box", "r1.front", nullptr, nullptr), NATS_OK);
@@ -156,7 +156,7 @@ guint64 LastStored(const NatsClient& client) {
   return message ? static_cast<guint64>(natsMsg_GetTime(raw)) : 0;
 }
 
-/// A replay that begins early in a second leaves out what the server has of that second before.
+/// libnats asks for the whole second if a time is early in it, so natssrc drops earlier messages.
 TEST_F(NatsJetStream, AReplayEndsWhereAllMessagesAreBeforeItsTime) {
   const NatsClient client(server_.url());
   std::string why;
@@ -183,7 +183,7 @@ TEST_F(NatsJetStream, AReplayBeginsAtItsNumber) {
   ExpectSameStream(Replay(later, "start-sequence=6"), {sent.begin() + 4, sent.end()});
 }
 
-/// Puts `count` messages into the stream, each with caps that no other has.
+/// Publishes `count` messages, each with caps that no other message has.
 void FillWithOwnCaps(const NatsServer& server, int count) {
   const NatsClient client(server.url());
   std::string why;
@@ -193,7 +193,7 @@ void FillWithOwnCaps(const NatsServer& server, int count) {
   for (int i = 0; i < count; ++i) PutInOwnCaps(client, i);
 }
 
-constexpr int kManyFormats = 20;  // more than a source knows at a time
+constexpr int kManyFormats = 20;  // more than a source stores at a time
 
 TEST_F(NatsJetStream, AStreamOfManyFormatsIsReplayedWhole) {
   FillWithOwnCaps(server_, kManyFormats);
@@ -239,8 +239,8 @@ TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
   ExpectSameStream(Replay(0), sent);
 }
 
-/// The sink waits five seconds for an answer. Meanwhile it sends, caps included, until 256 messages
-/// are unanswered, which takes three seconds here.
+/// The sink waits five seconds for an acknowledgement. Meanwhile it sends messages and caps until
+/// 256 of them are unacknowledged, which takes three seconds here.
 TEST_F(NatsJetStream, GoesOnWhereCapsWereNeverAnswered) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At(kBox));
   sender.Play();
@@ -278,7 +278,7 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   EXPECT_LE(second.count(), 64U - 28U);
 }
 
-/// Returns what the durable consumer has left, once the pipeline has ended.
+/// Reads what is left for the durable consumer, to the end of the stream.
 std::vector<Kept> TakeRest(const std::string& at) {
   NatsPipeline rest("natssrc name=n durable=slam start-time=0 eos-at-end=true" + at +
                     "! fakesink name=see sync=false");
@@ -290,7 +290,7 @@ std::vector<Kept> TakeRest(const std::string& at) {
 TEST_F(NatsJetStream, ADurableConsumerBeginsAtTheTimeAndNumberThatItWasMadeWith) {
   PublishSlices(8, At(kBox));
   guint64 between = 0;
-  ASSERT_TRUE(Eventually([&] {  // libnats writes earlier times in whole seconds
+  ASSERT_TRUE(Eventually([&] {  // libnats asks for the whole second at earlier times
     between = static_cast<guint64>(g_get_real_time()) * 1000;
     return between % GST_SECOND > 100 * GST_MSECOND;
   }));
@@ -398,7 +398,7 @@ TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
   ASSERT_TRUE(a.WaitForBuffers(8));
   b.Play();
   ASSERT_TRUE(Eventually([&] { return b.stat("connected") == 1; }));
-  // The second natssrc gets its share once the server has that subscription.
+  // The second natssrc gets its share once the server has its subscription.
   ASSERT_TRUE(Eventually([&] {
     PublishSlices(8, At(kBox));
     return b.count() > 0;
@@ -468,7 +468,7 @@ TEST_F(NatsJetStream, ASinkWhoseStreamIsDeletedSaysSoAndMakesItAnew) {
   ExpectSameStream(kept, {sent.end() - static_cast<std::ptrdiff_t>(kept.size()), sent.end()});
 }
 
-/// Makes the box, which takes no message larger than `most` bytes.
+/// Makes the stream "box", which takes no message larger than `most` bytes.
 void MakeBoxForSmallMessages(const std::string& url, std::int32_t most) {
   const NatsClient client(url);
   const char* subjects[] = {"r1.front", "r1.front.config.*"};
@@ -534,8 +534,8 @@ TEST_F(NatsJetStream, ManyThatBeginAtOnceShareABox) {
     EXPECT_EQ(sender->stat("messages-acknowledged"), 16U);
     EXPECT_EQ(sender->stat("messages-dropped"), 0U);
   }
-  // A sink that adds its subject may remove the subject that another sink has just added. Messages
-  // that the stream then refuses are sent again, after the messages that it took.
+  // A sink that adds its subject may remove one that another sink has just added. The stream then
+  // refuses messages of the other sink, which sends them again after later ones.
   std::vector<Kept> played = Replay(0);
   std::stable_sort(played.begin(), played.end(), [](const Kept& a, const Kept& b) {
     return std::pair(a.slice.scan_id, a.slice.slice_index) <
@@ -562,7 +562,7 @@ TEST_F(NatsJetStream, AStreamThatAnswersForTheServerIsToldOf) {
   std::string why;
   const bool made = nats::EnsureStream(client.js(), {"all", {}, 0, 1, ""}, {"*.>"}, &why);
   EXPECT_TRUE(made || why.find("no-ack") != std::string::npos) << why;  // newer servers refuse it
-  // The server and the stream both answer, and the first answer counts.
+  // The server and the stream both answer, and EnsureStream() gets the first answer.
   bool told = !made;
   for (int i = 0; i < 500 && !told; ++i)
     told = !nats::EnsureStream(client.js(), {"all", {}, 0, 1, ""}, {"*.>"}, &why);
@@ -594,7 +594,7 @@ TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {
             "are dropped and counted.");
   EXPECT_EQ(receiver.WaitForWarning("JetStream"),
             "JetStream gives nothing: the server has no JetStream; it is tried again.");
-  // Both try it twice a second, and this takes two seconds.
+  // Both elements try again twice a second, and these messages take two seconds.
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages-waiting") >= 160; }));
   EXPECT_EQ(sender.Warnings("cannot be made") + receiver.Warnings("gives nothing"), 0U)
       << "said again";
@@ -610,8 +610,8 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_EQ(last.from, sent.front().capture_time);
   EXPECT_EQ(last.to, sent.back().capture_time);
   EXPECT_EQ(last.damaged, 0U);
-  // The first slice may be up to a second earlier than `half`, because libnats writes times in
-  // whole seconds.
+  // The first slice may be up to a second earlier than `half`, because the source asks for the
+  // whole second.
   const GstClockTime half = sent[150].capture_time;
   const auto later = AskForHistory(receiver, {half, 0, 100'000}, &last);
   ASSERT_FALSE(later.empty());
@@ -621,7 +621,7 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_TRUE(last.ended);
 }
 
-/// docs/fleet.md names these rights.
+/// docs/fleet.md lists these permissions.
 TEST_F(NatsJetStream, AReceiverNeedsTheRightsOfItsStreamAlone) {
   std::ofstream(server_.folder() + "/conf") << R"(authorization { users = [
     { user: edge, password: pw },

@@ -37,7 +37,7 @@ class NatsParts : public ::testing::Test {
  protected:
   void SetUp() override {
     gst_lidar_init();
-    nats_Open(-1);  // connections do that themselves
+    nats_Open(-1);  // otherwise the first connection would do it
   }
 };
 
@@ -253,7 +253,7 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
   const auto back = StreamFormat::FromText(text);
   ASSERT_TRUE(back);
   EXPECT_TRUE(gst_caps_is_equal(back->caps(), format->caps()));
-  EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));  // whole scans?
+  EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));  // no alignment=slice
   EXPECT_FALSE(FormatOf("application/x-voxels, alignment=slice, levels=(uint)<1,2>", &why));
   EXPECT_EQ(why,
             "the field levels is no string, number, fraction, flag, buffer or array of doubles");
@@ -447,7 +447,7 @@ TEST_F(NatsParts, ABookOfPlacesKnowsWhatCameAndWhatIsMissing) {
 
 TEST_F(NatsParts, ABookOfPlacesIsBounded) {
   PlaceBook book;
-  for (std::uint64_t n = 0; n < 100'000; n += 2) book.Note({1, n});  // all apart
+  for (std::uint64_t n = 0; n < 100'000; n += 2) book.Note({1, n});  // a gap after each
   EXPECT_TRUE(book.Note({1, 99'998}).again);
   EXPECT_FALSE(book.Note({1, 0}).again) << "forgotten";
   for (std::uint64_t run = 2; run < 1'000; ++run) book.Note({run, 1});
@@ -558,7 +558,7 @@ TEST(NatsUrls, AreShownWithoutTheirUsers) {
   EXPECT_EQ(WithoutUser("me:secret@host"), "host");
 }
 
-/// A watch posts messages of a connection on the bus of its element.
+/// A watch posts a connection's changes and errors on the bus of its element.
 class NatsWatch : public NatsParts {
  protected:
   void Make(bool keeps_trying) {
@@ -566,7 +566,7 @@ class NatsWatch : public NatsParts {
     bus_.emplace(element_.get());
     watch_.emplace(element_.get(), keeps_trying);
   }
-  /// Returns what the watch posts of the state as it is now.
+  /// Passes the state to the watch, and returns what the watch posts.
   std::string Posted() {
     watch_->Note(state_);
     std::string posted;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pipelines with an end at NATS, whose buffers are kept while they run.
+// Pipelines with a natssrc or natssink, which keep their buffers.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -43,12 +43,12 @@ class NatsPipeline {
     Hold(false);
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
   }
-  /// Holds the next buffer at the pad of `see` until Hold(false).
+  /// Hold(true) blocks the next buffer at the pad of `see` until Hold(false).
   void Hold(bool on) {
     hold_from_ = SIZE_MAX;
     held_ = on;
   }
-  /// Returns true while a buffer is held.
+  /// Returns true while a buffer is blocked.
   bool holds() const { return holds_; }
   /// As Hold(true), once `count` buffers have passed.
   void HoldFrom(std::size_t count) { hold_from_ = count; }
@@ -70,7 +70,7 @@ class NatsPipeline {
     return "";
   }
 
-  /// How many warnings with `part` in them have come since they were last looked for.
+  /// Returns the number of warnings with `part` in them since the last call.
   std::size_t Warnings(const std::string& part) {
     return CountWith(part, bus_->Texts(GST_MESSAGE_WARNING));
   }
@@ -126,7 +126,7 @@ class NatsPipeline {
 inline const std::string kLive = "lidartestsrc is-live=true model=os1-32 mode=512x10 ";
 inline const std::string kQuick = "lidartestsrc model=os1-32 mode=512x10 ";
 inline const std::string kSee = " ! identity name=see ";
-/// The longest that there is: EOS waits for a server that stands still.
+/// The longest timeout: EOS waits for a server that is frozen.
 inline const std::string kPatientDrain = " drain-timeout=60000000000 ";
 
 /// Publishes `count` coded slices, waits until the server has them, and returns them.
@@ -138,8 +138,8 @@ inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
   return sender.buffers();
 }
 
-/// Plays a natssrc that follows its subject. Returns once the server has the subscription, so that
-/// nothing that is published then is missed.
+/// Plays a natssrc that subscribes to its subject. Returns once the server has the subscription, so
+/// that no later message is missed.
 inline void Listen(const NatsServer& server, NatsPipeline* receiver) {
   gchar* raw = nullptr;
   g_object_get(receiver->nats(), "subject", &raw, nullptr);

@@ -24,7 +24,7 @@ std::string StatsText(GstElement* element) {
   return text.get();
 }
 
-/// A natssink that the test gives samples of an IMU.
+/// A natssink to which the test pushes samples of an IMU.
 class Feeder {
  public:
   explicit Feeder(const std::string& properties)
@@ -38,7 +38,7 @@ class Feeder {
     if (GST_CLOCK_TIME_IS_VALID(captured)) gst_lidar_buffer_set_capture_time(buffer, captured);
     EXPECT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
   }
-  /// Returns once the server has everything, or the wait for that is over.
+  /// Returns once the server has all messages, or after drain-timeout.
   void End() { gst_harness_push_event(h_.get(), gst_event_new_eos()); }
   void Stop() { gst_element_set_state(sink_.get(), GST_STATE_NULL); }
   void PlayAgain() {
@@ -50,7 +50,7 @@ class Feeder {
   }
   guint64 stat(const char* name) const { return StatOf(sink_.get(), name); }
   std::string stats() const { return StatsText(sink_.get()); }
-  /// How many warnings with `part` in them have come since the last call.
+  /// Returns the number of warnings with `part` in them since the last call.
   std::size_t Warnings(const std::string& part) {
     return CountWith(part, bus_.Texts(GST_MESSAGE_WARNING));
   }
@@ -188,7 +188,7 @@ TEST_F(NatsRuns, TheBoxIsAsThePropertiesSayAlsoWhereItWasMadeBefore) {
     EXPECT_EQ(info->Config->Replicas, 1);
     EXPECT_EQ(info->Config->Storage, js_FileStorage);
   }
-  // A server alone keeps no copies.
+  // A single server cannot store replicas.
   Feeder copied(At("subject=r2.imu jetstream=copied replicas=3 drain-timeout=0"));
   copied.Push(32);
   EXPECT_TRUE(Eventually([&] { return copied.Warnings("The stream copied cannot be made") > 0; }));
@@ -359,7 +359,7 @@ TEST_F(NatsRuns, AServerThatGoesIsToldOfEachTime) {
   }
 }
 
-/// Returns the first answer of a natssrc that follows the subject.
+/// Returns a natssrc's first answer to a history query.
 gst::HistoryAnswer Past(const std::string& where, const gst::HistoryQuestion& question) {
   NatsPipeline receiver("natssrc name=n" + where + "! fakesink name=see");
   receiver.Play();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A nats-server of the test's own, on a free port of the loopback interface.
+// A nats-server of the test itself, on a free port of the loopback interface.
 #pragma once
 #include <gst/gst.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace lidar::test {
 
 class NatsServer {
  public:
-  /// Debian installs it in a folder that may be missing in a user's PATH.
+  /// Debian installs nats-server in a folder that may be missing in a user's PATH.
   static std::string Program() {
     for (const char* path : {"/usr/sbin/nats-server", "/usr/local/bin/nats-server"})
       if (access(path, X_OK) == 0) return path;
@@ -53,7 +53,7 @@ class NatsServer {
     waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
-  /// Returns once it stands still.
+  /// Stops the process. Returns once it is stopped.
   void Freeze() {
     kill(pid_, SIGSTOP);
     waitpid(pid_, nullptr, WUNTRACED);
@@ -77,7 +77,7 @@ class NatsServer {
     if (std::system(make.c_str()) != 0) return {};
     return {"-c", folder_ + "/operator.conf", "-js=false"};
   }
-  /// Returns how many subscriptions to exactly this subject the server has.
+  /// Returns the server's number of subscriptions to exactly this subject.
   std::size_t Subscriptions(const std::string& subject) const {
     const std::string sign = "\"subject\": \"" + subject + "\"";
     const std::string text =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What others publish on the subjects of a stream.
+// Messages that other programs publish on the subjects of a stream.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -74,7 +74,7 @@ TEST_F(NatsStream, CapsDoNotComeWithEachMessage) {
   EXPECT_LT(caps, 40) << "they come again after a second";
 }
 
-/// The sender answers the third question.
+/// The sender answers the third request for caps.
 TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
   std::string why;
   const gst::CapsPtr caps(gst_caps_from_string("application/x-imu,sample-size=(int)32"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A lidar-worker of the test's own, and the poses that it publishes.
+// A lidar-worker of the test itself, and the poses that it publishes.
 #pragma once
 #include <csignal>
 #include <cstdlib>
@@ -29,7 +29,7 @@ class WorkerProcess {
         tools::ChildProcess::Config{std::move(command), "", false});
   }
 
-  /// Returns the "robot.sensor" names that the worker has, by its output so far.
+  /// Returns the names "robot.sensor" that the worker follows, by its output so far.
   std::set<std::string> Robots() {
     Read();
     return robots_;
@@ -84,8 +84,8 @@ inline double DistanceOf(const Kept& pose) {
   return std::hypot(p[0], p[1], p[2]);
 }
 
-/// Returns the largest difference between the distance of two poses and the way that the robot
-/// drove between them.
+/// Returns the largest difference between the distance of two poses and the distance that the robot
+/// drove between them [m].
 inline double LargestJump(std::vector<Kept> poses) {
   std::stable_sort(poses.begin(), poses.end(),
                    [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; });
@@ -98,7 +98,7 @@ inline double LargestJump(std::vector<Kept> poses) {
   return largest;
 }
 
-/// How far the last pose is behind the robot, which drove straight on.
+/// Returns the distance by which the last pose is behind the robot, which drove straight on [m].
 inline double BehindBy(const std::vector<Kept>& poses) {
   const auto earlier = [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; };
   const auto [first, last] = std::minmax_element(poses.begin(), poses.end(), earlier);
@@ -107,7 +107,7 @@ inline double BehindBy(const std::vector<Kept>& poses) {
   return kSpeed * time - (DistanceOf(*last) - DistanceOf(*first));
 }
 
-/// Returns the poses of a robot's stream in JetStream, by one odometry from begin to end.
+/// Returns the poses that one odometry makes of a robot's whole stream in JetStream.
 inline std::vector<Kept> PosesInOneGo(const std::string& robot, const std::string& url) {
   NatsPipeline player("natssrc name=n eos-at-end=true start-time=0 jetstream=fleet subject=fleet." +
                       robot + ".lidar.front url=" + url +
