@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans of a drive along a corner, a far wall that fits none of them, and samples of stillness.
+// Scans of a drive along a corner, a far wall that fits none of them, and samples of an IMU at
+// rest.
 #pragma once
 #include <array>
 #include <vector>
@@ -19,7 +20,7 @@ inline constexpr const char* kCornerCaps =
 inline constexpr GstClockTime kCornerPeriod = 100 * GST_MSECOND;
 
 /// A corner of three walls, from 2 to 19 m away, seen by a sensor that moves along x at 10 m/s and
-/// samples a wall after the other.
+/// samples one wall after the other.
 inline gst::BufferPtr CornerFrom(double metres) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -69,7 +70,7 @@ inline void BeginImu(GstPad* pad) {
   gst_pad_send_event(pad, NewSegment());
 }
 
-/// Ten samples, every 10 ms.
+/// Returns ten samples of an IMU at rest, 10 ms apart.
 inline gst::BufferPtr StillnessAt(GstClockTime from) {
   std::vector<std::uint8_t> bytes;
   for (unsigned i = 0; i < 10; ++i) {

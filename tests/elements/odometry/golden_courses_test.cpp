@@ -7,7 +7,7 @@
 namespace lidar::test {
 namespace {
 
-/// The sinks of the poses and of the map, and the source of samples.
+/// Sinks for the poses and for the map's poses, and the pad for the IMU's samples.
 struct SidePads {
   explicit SidePads(Course* c)
       : poses(gst_harness_new_with_element(c->element(), nullptr, "odometry")),

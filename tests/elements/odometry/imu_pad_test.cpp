@@ -57,7 +57,7 @@ class ImuPad : public ::testing::Test {
     if (!gst_pad_send_event(imu_.get(), gst_event_new_caps(caps.get()))) return false;
     return gst_pad_send_event(imu_.get(), test::NewSegment());
   }
-  /// Sends ten samples of a turn of `rate` about the vertical, over a scan that begins at `start`.
+  /// Sends the ten samples of a scan from `start` on, which turn at `rate` about the vertical axis.
   GstFlowReturn Send(GstClockTime start, double rate) {
     std::vector<std::uint8_t> bytes;
     for (unsigned i = 0; i < 10; ++i) {
@@ -127,7 +127,7 @@ TEST(ImuInput, TakesNothingOnceTheLayoutIsAnother) {
   EXPECT_TRUE(input.Take().empty());
 }
 
-/// The caps of ImuCaps() with another `imu-to-sensor`: zeros and three ones of a rotation.
+/// Returns the caps of ImuCaps() with another `imu-to-sensor`: zeros, and `one` on the diagonal.
 template <class Number>
 CapsPtr CapsWith(GType type, guint count, Number one, void (*set)(GValue*, Number)) {
   GValue list = G_VALUE_INIT;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Loop closure: its thread, and what lidarodometry makes of its results.
+// Loop closure: its thread, and how lidarodometry uses the results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -99,12 +99,12 @@ class MapPad : public ::testing::Test {
 
 TEST_F(MapPad, SaysWhereTheOdometryIsInTheMapAsRosHasIt) {
   Play(26, "local-maps=10");
-  EXPECT_EQ(poses_, 27U);  // one for each scan, and those that the last loops changed
+  EXPECT_EQ(poses_, 27U);  // one for each scan, and one at EOS after the last loops
   const GstStructure* s = gst_caps_get_structure(caps_.get(), 0);
   EXPECT_STREQ(gst_structure_get_string(s, "frame-id"), "map");
   EXPECT_STREQ(gst_structure_get_string(s, "child-frame-id"), "odom");
   EXPECT_EQ(local_maps_, 2U);
-  EXPECT_NEAR(last_.orientation[3], 1, 1e-9);  // the drive does not return
+  EXPECT_NEAR(last_.orientation[3], 1, 1e-9);  // the drive has no loop
   EXPECT_NEAR(last_.position[0], 0, 1e-9);
 }
 
@@ -170,7 +170,7 @@ class Laps : public ::testing::Test {
                                  "application/x-pointcloud2,width=0,height=1,point-step=12,"
                                  "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1");
   }
-  /// Waits for the loop thread by an EOS, after which the stream begins anew.
+  /// Waits for the loop thread: sends EOS, and begins a new stream.
   void FindLoops() {
     gst_harness_push_event(h_.get(), gst_event_new_eos());
     map_from_odometry_ = PullFrom(map_.get());
@@ -202,8 +202,8 @@ class Laps : public ::testing::Test {
     EXPECT_LE(tracking, GST_LIDAR_TRACKING_OK);
     return {Eigen::Quaterniond(pose.orientation.data()), Eigen::Vector3d(pose.position.data())};
   }
-  /// Takes the messages since the last call. Returns the number of those that tell of loops, of
-  /// which the last one tells the present pose of the map and the present number of loops.
+  /// Returns the number of messages about loops since the last call. Expects that the last one has
+  /// the current pose of the map and the current number of loops.
   unsigned CountLoopMessages() {
     unsigned count = 0;
     guint64 loops = 0;
@@ -221,13 +221,13 @@ class Laps : public ::testing::Test {
     }
     return count;
   }
-  /// Distance of the last pose from the true one.
+  /// Returns the distance of the last pose, moved by `frame`, from the true one.
   double ErrorOf(const odometry::Pose& frame) const {
     const int scan = static_cast<int>(odometry_.size()) - 1;
     return (frame * odometry_.back().position - block::TrueAt(scan).position).norm();
   }
 
-  /// The ground of MakeWorld() is a grid, which fits itself after any step.
+  /// Scatters the ground of MakeWorld(): a grid would fit itself again after a step.
   static block::Points WorldWithoutGrid() {
     block::Points world = block::MakeWorld();
     std::mt19937 random(7);

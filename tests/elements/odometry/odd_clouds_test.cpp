@@ -172,7 +172,7 @@ TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
     ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
     gst_buffer_unref(gst_harness_pull(h_.get()));
   }
-  EXPECT_EQ(Count("scans"), 1U);  // the first four slices, once they had too many points
+  EXPECT_EQ(Count("scans"), 1U);  // the first four slices, which have too many points
 }
 
 TEST_F(OddClouds, CutOffByTheNextScanOrTheEndHaveTheirOwnTimestamp) {

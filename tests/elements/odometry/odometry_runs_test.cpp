@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidarodometry: each property has an effect, each count counts, and an element that was stopped
+// lidarodometry: each property has an effect, each counter counts, and an element that was stopped
 // behaves as a new one.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace lidar::test {
 namespace {
 
-/// lidarodometry with sinks for its clouds, its poses and its map, and a source of samples.
+/// lidarodometry with sinks for its clouds, poses and map, and with a pad for the IMU's samples.
 class OdometryRun {
  public:
   explicit OdometryRun(const std::string& properties) {
@@ -114,8 +114,8 @@ TEST(OdometryProperties, AreAllInTheTable) {
   ExpectEachPropertyIn(kOdometryEffects, "lidarodometry");
 }
 
-/// Leaves much behind: lost scans, new maps, a scan under way, and samples that no scan has taken
-/// and that would make the next run drop its first samples.
+/// Leaves much state behind: lost scans, new maps, an incomplete scan, and unused samples that
+/// would make the next run drop its first samples.
 void RunWithTroubles(OdometryRun* run) {
   run->BeginImu();
   for (unsigned i = 0; i < 9; ++i) {
@@ -139,7 +139,7 @@ TEST(OdometrySecondRun, IsAsTheFirst) {
     if (ends) run.End();
     Lines lines = run.Take();
     EXPECT_TRUE(HasLine(lines, "message warning The position was lost"));
-    // A line of the trajectory for each scan.
+    // The trajectory has a line for each scan.
     lines.push_back(TakeFile(kRunTrajectory));
     EXPECT_EQ(std::count(lines.back().begin(), lines.back().end(), '\n'), ends ? 26 : 25);
     if (first.empty()) first = lines;

@@ -65,7 +65,7 @@ class Odometry : public ::testing::Test {
     double way = 0;  // distance from the origin
     guint64 time = 0;
   };
-  /// Returns what the message of each scan says.
+  /// Returns the content of each scan's message.
   std::vector<Told> TakeMessages() {
     std::vector<Told> all;
     while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT)) {
@@ -120,7 +120,7 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   EXPECT_EQ(CountMessages("odometry"), 10U);
 }
 
-/// Returns the length of the way over five scans at 20 m/s, with `coder` before the odometry.
+/// Returns the distance that the odometry measures over five scans at 20 m/s, behind `coder`.
 double DriveOf(const std::string& model, const char* deskew, const std::string& coder = "") {
   const Harness h(
       gst_harness_new_parse(("lidartestsrc speed=20 num-buffers=7 model=" + model + " ! " + coder +
@@ -152,7 +152,7 @@ TEST_F(Odometry, FollowsCodedCloudsByTheTimesThatComeBack) {
 }
 
 TEST_F(Odometry, BeginsAtItsInitialPose) {
-  // A quarter turn to the left: a drive along x goes along y.
+  // The pose is a quarter turn to the left, so a drive along x goes along y.
   Start(1, 5, "initial-pose=\"100 20 3 0 0 0.70710678 0.70710678\"");
   const auto scans = PullAll(5);
   GstLidarPose first;
@@ -239,7 +239,7 @@ TEST_F(Odometry, AlignsAScanOfWhichSlicesAreMissing) {
   WaitForEnd();
   EXPECT_EQ(Count("scans"), kGiven);
   EXPECT_EQ(Count("scans-lost"), 0U);
-  // The vehicle drives 1 m in each scan.
+  // The vehicle drives 1 m per scan.
   const auto told = TakeMessages();
   ASSERT_EQ(told.size(), kGiven);
   for (unsigned scan = 0; scan < kGiven; ++scan) {
@@ -261,7 +261,7 @@ TEST_F(Odometry, WritesTheTrajectory) {
   std::filesystem::remove(path);
 }
 
-/// Ends a pipeline if a test returns early, too.
+/// Stops a pipeline, also if a test returns early.
 struct Stop {
   void operator()(GstElement* pipeline) const { gst_element_set_state(pipeline, GST_STATE_NULL); }
 };

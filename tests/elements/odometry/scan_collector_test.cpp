@@ -16,7 +16,7 @@ constexpr Time kStart{std::chrono::seconds(50)};
 
 class Collector : public ::testing::Test {
  protected:
-  /// Prepares rows of beams: two in organised clouds.
+  /// Sets clouds of `height` rows: one, or two in organised clouds.
   void Prepare(guint height) {
     info_.height = height;
     info_.point_step = 12;
@@ -26,7 +26,7 @@ class Collector : public ::testing::Test {
     ASSERT_TRUE(collector_.SetInfo(info_));
     height_ = height;
   }
-  /// Adds `width` columns whose points have their index, from 1 on, as x.
+  /// Adds `width` columns. The x of a point is its index + 1.
   void Add(guint scan, guint index, guint count, Time time, guint width) {
     std::vector<float> points;
     for (guint i = 0; i < width * height_; ++i)
@@ -86,7 +86,8 @@ TEST_F(Collector, OfPointsInNoOrderOnlyTheSliceTellsTheTime) {
   EXPECT_TRUE(collector_.Take()->points.phases.empty());
 }
 
-/// Points with a time field, after `missing` ones without a return. Returns the phases of returns.
+/// Returns the phases of points whose field `field` is in `times`. The first `missing` points have
+/// no return, and no phase.
 template <class T>
 std::vector<float> PhasesWith(const char* field, const std::vector<T>& times,
                               const GstLidarSlice& slice = {7, 0, 1, 0}, std::size_t missing = 0) {
@@ -116,11 +117,11 @@ void ExpectQuarters(const std::vector<float>& phases) {
 }
 
 TEST(PointTimes, AreTakenAsTheDriversGiveThem) {
-  // Ouster and Nebula [ns since the cloud], Velodyne [s], which ends at the cloud's time.
+  // Ouster and Nebula [ns since the cloud's time], Velodyne [s until the cloud's time].
   ExpectQuarters(PhasesWith<guint32>("t", {0, 25'000'000, 50'000'000, 75'000'000}));
   ExpectQuarters(PhasesWith<guint32>("time_stamp", {9, 25'000'009, 50'000'009, 75'000'009}));
   ExpectQuarters(PhasesWith<float>("time", {-0.075F, -0.05F, -0.025F, 0}));
-  // Livox's own messages [ns since the cloud].
+  // Livox's own messages [ns since the cloud's time].
   ExpectQuarters(PhasesWith<guint32>("offset_time", {0, 25'000'000, 50'000'000, 75'000'000}));
   // Hesai and RoboSense [s since 1970], Livox [ns since 1970], a sensor without a clock [us].
   constexpr double kNow = 1'700'000'000;
@@ -207,7 +208,7 @@ TEST(Rings, AreLeftOutWhereTheirFieldHoldsNoSmallNumbers) {
 
 TEST_F(Collector, ANewScanBeginsWithItsIdOrWithASliceThatCameAlready) {
   Prepare(2);
-  EXPECT_FALSE(collector_.BeginsNewScan({7, 0, 4, 0}));  // none is open
+  EXPECT_FALSE(collector_.BeginsNewScan({7, 0, 4, 0}));  // no scan is open
   Add(7, 1, 4, kStart, 4);
   EXPECT_FALSE(collector_.complete());
   EXPECT_FALSE(collector_.BeginsNewScan({7, 2, 4, 0}));
@@ -233,7 +234,7 @@ TEST_F(Collector, AScanLastsAsLongAsTheFramerateSays) {
   ASSERT_TRUE(collector_.SetInfo(info_));
   Add(7, 0, 1, kStart, 4);
   EXPECT_EQ(collector_.Take()->duration, milliseconds(50));
-  info_.framerate_n = 0;  // not known
+  info_.framerate_n = 0;  // unknown
   ASSERT_TRUE(collector_.SetInfo(info_));
   Add(8, 0, 1, kStart, 4);
   EXPECT_EQ(collector_.Take()->duration, milliseconds(100));
