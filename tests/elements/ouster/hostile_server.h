@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A TCP server that answers every request as the test says, in ways that no sensor would.
+// A TCP server that answers every request as the test chooses, but as no sensor would.
 #pragma once
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class Exchange {
     }
     return true;
   }
-  /// Returns false as Send() does.
+  /// Waits. Returns false once the client has left or the test is over.
   bool Wait(std::chrono::milliseconds time) const {
     std::this_thread::sleep_for(time);
     char next = 0;
@@ -51,7 +51,7 @@ class HostileServer {
  public:
   using Behaviour = std::function<void(const Exchange&)>;
 
-  /// `behave` is called with each request and ends with the connection.
+  /// Calls `behave` for each request, and closes the connection when it returns.
   explicit HostileServer(Behaviour behave)
       : behave_(std::move(behave)), listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in address{};

@@ -10,7 +10,7 @@
 
 namespace lidar::test {
 
-/// A pipeline of ouster_src and an appsink-like harness, with its bus.
+/// ouster_src in a harness, with its bus.
 class Receiver {
  public:
   Receiver(const std::string& host, const std::string& properties)
@@ -32,12 +32,12 @@ class Receiver {
   }
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
-  /// Returns the next buffer, or none.
+  /// Returns the next buffer; null if none comes.
   gst::BufferPtr Pull() { return Pull(g_get_monotonic_time() + kPatience_us); }
   void Drain() {
     while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
   }
-  /// Takes buffers until one is as wanted; returns false if none is.
+  /// Pulls buffers until `wanted` returns true for one. Returns false if that takes too long.
   bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
     const gint64 end = g_get_monotonic_time() + kPatience_us;
     while (const gst::BufferPtr buffer = Pull(end))
@@ -50,7 +50,7 @@ class Receiver {
     EXPECT_TRUE(info);
     return info.value_or(gst::CloudInfo{});
   }
-  /// Returns the next element message of that name.
+  /// Returns the next element message `name`; null at an error.
   gst::MessagePtr Await(const char* name) {
     for (;;) {
       gst::MessagePtr message = bus_->Wait(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR);
@@ -67,7 +67,7 @@ class Receiver {
     } while ((is != FALSE) != connected);
     return true;
   }
-  /// Returns true once the pipeline was asked to find its latency anew.
+  /// Returns true once the element has posted that its latency changed.
   bool AwaitLatency() { return bus_->Wait(GST_MESSAGE_LATENCY) != nullptr; }
   bool AwaitWarning(const std::string& part) {
     for (;;) {

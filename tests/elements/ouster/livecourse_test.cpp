@@ -30,7 +30,7 @@ class PacketSensor {
     packets_ = LoadPackets(capture, metadata_);
   }
 
-  /// Returns a packet as the sensor sends it `scan` scans later.
+  /// Returns packet `number` as the sensor sends it `scan` scans later.
   Packet PacketOf(std::size_t number, guint scan) const {
     constexpr std::size_t kColumns = 16, kHeader = 32, kPeriodNs = 100'000'000;
     Packet packet = packets_[number];
@@ -45,8 +45,8 @@ class PacketSensor {
     }
     return packet;
   }
-  /// Sends packets of a scan, but not those from `lost` up to `found`. Waits now and then, so that
-  /// the socket's buffer suffices.
+  /// Sends packets of a scan, but not those from `lost` up to `found`. Waits after each slice, so
+  /// that the socket's buffer does not overflow.
   void Send(guint scan, std::size_t from, std::size_t to, std::size_t lost = 0,
             std::size_t found = 0) {
     for (std::size_t i = from; i < to; ++i) {
@@ -89,8 +89,8 @@ class PacketSensor {
   guint64 short_ = 0;
 };
 
-/// Switches off the kernel's arrival times on the sockets of `port`: they are real times, while all
-/// else goes by the test clock.
+/// Switches off the kernel's arrival times on the sockets of `port`: they are of the real clock,
+/// but all other times are of the test clock.
 void LeaveOutArrivals(guint port) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     const int fd = std::stoi(entry.path().filename());
@@ -111,9 +111,9 @@ void LiveCourse(Course& c) {
   UseTestClock(c.harness());
   GstClockTime now = kClockStart + 3600 * GST_SECOND;  // packets before running time 0 are dropped
   gst_harness_set_time(c.harness(), now);
-  // Times are those of arrival.
+  // Times of arrival differ between runs.
   c.Hide("buffer at [0-9]+", "buffer");
-  c.Hide("message latency ", "");  // which comes from another thread than events
+  c.Hide("message latency ", "");  // comes from another thread than events, so its place varies
   c.Hide("position [0-9]+", "position");
   c.Hide(", clock-jumps=.guint64.[0-9]+", "");
   c.Hide("captured (at )?-?[0-9]+", "captured");
@@ -128,7 +128,7 @@ void LiveCourse(Course& c) {
     LeaveOutArrivals(port);
     c.Await(what, "event stream-start");
   };
-  // Time passes here alone: a busy machine that delays the test causes no silence.
+  // Time passes only here, so a busy machine that delays the test causes no silence.
   const auto be_silent = [&](const char* line) {
     sensor.AwaitTaken();
     EXPECT_TRUE(Eventually([&] {
@@ -177,10 +177,10 @@ void LiveCourse(Course& c) {
   c.Set("reconnect", "false");
   play("play once more");
   sensor.SendScan("a scan", 9);
-  be_silent("event eos");  // comes behind both errors
+  be_silent("event eos");  // comes after both errors
   c.Stop();
   play("without a sensor");
-  be_silent("event eos");  // comes behind both errors
+  be_silent("event eos");  // comes after both errors
 }
 
 const std::size_t kOusterCourses = AddGoldenCourses(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the tests of ouster_src share: captures, pipelines that end, and a UDP sender.
+// Helpers of the tests of ouster_src: captures, pipelines that end, and a UDP sender.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -26,7 +26,7 @@ namespace lidar::test {
 inline constexpr const char* kThreeScans = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 inline constexpr const char* kThreeScansMetadata = "OS-1-128_v2.3.0_1024x10.json";
 
-/// When the datagrams of a capture were captured, from the first on.
+/// Returns the capture times of a file's datagrams, in order.
 inline std::vector<Time> TimesOf(const std::string& name) {
   std::string error;
   auto reader = ouster::PcapReader::Open(DataPath(name), &error);

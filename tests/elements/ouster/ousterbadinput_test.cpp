@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Captures and metadata that are wrong: they give a clear error, or are counted and skipped.
+// Wrong captures and metadata give a clear error. Wrong packets are counted and skipped.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -35,7 +35,7 @@ Ending RunFile(const std::string& pcap, const std::string& metadata) {
 }
 
 struct BadInput {
-  const char* properties;  // @ means the folder of the data
+  const char* properties;  // @ stands for the folder of the data
   const char* error;       // part of the message
 };
 class OusterBadInput : public ::testing::TestWithParam<BadInput> {};
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"location=@crc_test.pcap min-range=3 max-range=3", "max-range"},
         BadInput{"location=@crc_test.pcap min-range=9 max-range=3", "max-range"}));
 
-/// Returns the classic header of a capture with this link type.
+/// Returns the header of a pcap file with link type `link`.
 std::string PcapHeader(std::uint32_t link) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -94,7 +94,7 @@ std::string PcapHeader(std::uint32_t link) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Returns the same frames in pcapng, with times in microseconds.
+/// Returns the frames of a pcap file as pcapng, with times in microseconds.
 std::string ToPcapng(const std::string& pcap) {
   std::vector<std::uint8_t> out;
   ByteWriter w(&out);

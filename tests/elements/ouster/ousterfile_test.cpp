@@ -151,7 +151,7 @@ TEST(OusterFile, CaptureTimesAfterAPauseAreThoseOfTheDay) {
                                       .c_str()));
   UseTestClock(h.get());
   SetPlaying(h.get());
-  // The running time stands still, as it does in a pipeline that pauses.
+  // The test clock stands still during the pause, as a pipeline's running time does.
   const std::vector<Time> times = TimesOf(kThreeScans);
   const auto second = kClockStart + static_cast<GstClockTime>((times[1] - times[0]).count());
   ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
@@ -166,7 +166,7 @@ TEST(OusterFile, CaptureTimesAfterAPauseAreThoseOfTheDay) {
   EXPECT_GE(gst_lidar_buffer_get_capture_time(next.get()), resumed + GST_BUFFER_PTS(next.get()));
 }
 
-/// A round begins one packet after the last one of the round before.
+/// A round begins one packet interval after the last packet of the previous round.
 TEST(OusterFile, LoopsAtThePaceOfTheCapture) {
   const std::vector<Time> times = TimesOf(kThreeScans);
   const Duration round =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src and a sensor in software, over real sockets: finding, configuring, losing and finding
-// it again.
+// ouster_src and a sensor in software, over real sockets: the element finds and configures the
+// sensor, loses it, and finds it again.
 #include <atomic>
 #include <cstdio>
 #include <fstream>
@@ -106,7 +106,7 @@ TEST(OusterLoss, IsCountedExactlyAsItWasInjected) {
       }
     }
   };
-  // Only losses between packets that arrive can be seen.
+  // A loss can only be counted between packets that arrive, so the first and last ones do.
   send(10);
   faults.loss = faults.reorder = faults.duplicate = 0.05;
   send(6000);
@@ -129,9 +129,9 @@ TEST(OusterLive, CountsWhatIsLostOnTheWay) {
     return sensor.counts().sent > end;
   }));
   const auto stat = [&](const char* name) { return StatOf(receiver.source(), name); };
-  // A loss is seen once a later packet has come, and the receiver may lag on a busy machine. If the
-  // machine stops the sensor for a second, the sensor's clock jumps, and losses at the end of
-  // slices before the jump are not seen.
+  // A loss is counted once a later packet has come, and the receiver may lag on a busy machine. If
+  // the machine stops the sensor for a second, the sensor's clock jumps, and losses at the end of
+  // slices before the jump are not counted.
   const auto lost = [&] { return stat("packets-lost") - before; };
   const auto known = [&] { return lost() >= sensor.counts().lost || stat("clock-jumps") > 0; };
   EXPECT_TRUE(receiver.PullUntil([&](GstBuffer*) { return known(); }));
@@ -253,7 +253,7 @@ TEST(OusterLive, WhatTheKernelDroppedStaysCountedOnAnotherPort) {
   receiver.SetState(GST_STATE_PAUSED);
   const auto sent = [&] { return sensor.counts().sent; };
   const auto before = sent();
-  // The buffer takes fewer than 20 packets.
+  // The socket's buffer holds fewer than 20 packets.
   ASSERT_TRUE(Eventually([&] { return sent() > before + 100; }));
   receiver.SetState(GST_STATE_PLAYING);
   const auto dropped = [&] { return StatOf(receiver.source(), "dropped-by-kernel"); };
@@ -367,7 +367,7 @@ TEST(OusterLive, PacketsOfARestartedSensorAreTakenWhereItsApiIsDown) {
   ASSERT_TRUE(receiver.PullUntil([](GstBuffer* buffer) {
     return GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) != FALSE;
   }));
-  // The answers of the API were no lost connection: the first one is that of the packets.
+  // The API's errors did not count as a lost connection: the first loss is that of the packets.
   sensor.Fault({{"silent", true}});
   std::string reason;
   for (gboolean connected = TRUE; connected != FALSE;) {
@@ -398,10 +398,11 @@ TEST(OusterLive, TheCaptureTimeOfASensorOnPtpIsTrueUtc) {
   const BufferPtr buffer = receiver.Pull();
   const auto age = static_cast<gint64>(g_get_real_time()) * 1000 -
                    static_cast<gint64>(gst_lidar_buffer_get_capture_time(buffer.get()));
-  // A slice is 12.5 ms long, and the machine may be busy. Without the offset it would be 37 s.
+  // A slice is 12.5 ms long, and the machine may be busy. Without the offset between PTP and UTC
+  // the age would be wrong by 37 s.
   EXPECT_GT(age, 12 * static_cast<gint64>(GST_MSECOND));
   EXPECT_LT(age, 30 * static_cast<gint64>(GST_SECOND));
-  // A packet that a busy machine sent a second late shows a clock that is not synchronised.
+  // If a busy machine sends a packet a second late, the clock counts as not synchronised.
   EXPECT_TRUE(Eventually([&] {
     receiver.Drain();
     return StatOf(receiver.source(), "clock-synchronised") == 1;
@@ -437,7 +438,7 @@ TEST(OusterLive, ASensorThatDoesNotSayWhereItSendsIsAClearError) {
   EXPECT_NE(error.find("does not say which udp_dest it found"), std::string::npos) << error;
 }
 
-/// Sensors of other firmware than ouster-replay's take texts without quotes only.
+/// Firmware other than that of ouster-replay accepts texts only without quotes.
 TEST(OusterLive, AsksOldFirmwareForWhatIsActiveAndSetsTextsWithoutQuotes) {
   std::string config;
   std::string set;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on all kinds of addresses, and several of them on one port. Multicast needs a network
-// namespace of the test's own, hence root.
+// ouster_src on all kinds of addresses, and several sources on one port. Multicast needs a network
+// namespace of the test itself, and thus root.
 #include <net/if.h>
 #include <sched.h>
 #include <sys/ioctl.h>
@@ -21,8 +21,8 @@ namespace {
 
 using gst::BufferPtr;
 
-/// Enters a network of loopback only, which carries multicast. Returns false if the user may not
-/// make one.
+/// Enters a new network namespace, whose loopback carries multicast. Returns false if the user may
+/// not make one.
 bool EnterOwnNetwork() {
   if (unshare(CLONE_NEWNET) != 0) return false;
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -35,8 +35,8 @@ bool EnterOwnNetwork() {
   return ok;
 }
 
-/// Adds two Ethernets, because loopback carries no multicast over IPv6. Returns false without
-/// iproute2. The kernel takes the first one for multicast, unless a socket names the interface.
+/// Adds two Ethernets, because loopback carries no multicast over IPv6. Without an interface in a
+/// socket's request, the kernel uses the first one for multicast. Returns false without iproute2.
 bool AddEthernets() {
   return std::system(
              "for i in 0 2; do ip link add lidar$i type veth peer name lidar$((i + 1)) && "
@@ -99,7 +99,7 @@ TEST(OusterMulticast, ReachesEveryReceiverOfTheGroup) {
   const Receiver::Ports ports{FreePort(), FreePort()};
   Receiver first(sensor.host(), properties, ports);
   ASSERT_TRUE(first.Pull());
-  // Another program opens its socket so that it cannot be shared.
+  // Another program opens a socket that does not share its port.
   GError* raw = nullptr;
   const gst::UdpBind bind{"", ports.lidar, G_SOCKET_FAMILY_IPV4, true};
   const std::unique_ptr<GSocket, gst::GObjectUnref> other(gst::OpenUdpSocket(bind, &raw));
@@ -138,7 +138,7 @@ class OusterOnePort : public ::testing::Test {
   const Receiver::Ports ports_{FreePort(), FreePort()};
 };
 
-/// Takes buffers. Gaps are allowed only if the kernel's buffer was full, a sensor's packets were
+/// Expects buffers without a gap, unless the kernel's buffer was full, a sensor's packets were
 /// reordered by a change of its processor, or the machine stopped the sensor for a second.
 void ExpectWholeScans(Receiver* receiver, int buffers) {
   int gaps = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sensor whose metadata has angles for every pixel: points follow those angles. There is no
-// sensor model, so the encoder takes xyz geometry.
+// A sensor whose metadata has angles for every pixel: points follow those angles. Clouds have no
+// sensor model, so the encoder uses xyz geometry.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -19,7 +19,7 @@ using gst::CloudInfo;
 
 const char* const kPcap = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 
-/// The sensor of kPcap, its pixels fixed to a view of 120 by 50 degrees.
+/// The sensor of kPcap, but with pixel angles of a view of 120 by 50 degrees.
 class OusterPixels : public ::testing::Test {
  protected:
   OusterPixels() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src: each property has an effect, each count counts, and an element that was stopped
+// ouster_src: each property has an effect, each counter counts, and an element that was stopped
 // behaves as a new one.
 #include <algorithm>
 #include <atomic>
@@ -17,10 +17,10 @@
 namespace lidar::test {
 namespace {
 
-/// A capture that can be changed, of a sensor of 32 beams: 64 packets of a scan, and IMU packets.
+/// A capture that a test can change: 64 packets of a scan of 32 beams, and packets of the IMU.
 struct CaptureFile {
   struct Record {
-    guint64 us;  // when it was captured
+    guint64 us;  // time of capture
     std::string frame;
   };
   static constexpr std::size_t kPayload = 42;  // in a frame
@@ -47,8 +47,7 @@ struct CaptureFile {
     }
     std::ofstream(path, std::ios::binary) << bytes.substr(0, bytes.size() - cut);
   }
-  /// Returns the lidar packets alone, moved to the scan `n` periods later and captured `delay_us`
-  /// later.
+  /// Returns the lidar packets, moved to the scan `n` periods later, and captured `delay_us` late.
   std::vector<Record> Scan(guint n, guint64 delay_us = 0) const {
     std::vector<Record> scan;
     for (Record r : records) {
@@ -164,7 +163,7 @@ class FileRun {
   std::optional<RunTrace> trace_;
 };
 
-/// The properties of a file's source, without `changed`.
+/// Returns the properties of a source of a file, without the property `changed`.
 std::string WithFile(const std::string& changed) {
   std::string all;
   if (changed != "location") all += " location=" + DataPath(kDual + ".pcap");
@@ -233,7 +232,7 @@ TEST(OusterProperties, ThePtpOffsetMakesASynchronisedClockOfUtc) {
   EXPECT_FALSE(synchronised(FileRun(source + " ptp-utc-tai-offset=0").Play()));
 }
 
-/// Returns whether a program could bind a port of this machine.
+/// Returns true if a program could bind a port of this machine.
 bool IsFree(const char* address, guint16 port) {
   const std::unique_ptr<GSocket, gst::GObjectUnref> socket(
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
@@ -242,7 +241,7 @@ bool IsFree(const char* address, guint16 port) {
   return g_socket_bind(socket.get(), place.get(), FALSE, nullptr) != FALSE;
 }
 
-/// A sensor that refuses each configuration, and notes that it was asked.
+/// A sensor that refuses each configuration. asked() is true after the first request.
 class RefusingSensor {
  public:
   RefusingSensor(int status, bool can_be_read) : status_(status), can_be_read_(can_be_read) {}
@@ -262,7 +261,7 @@ class RefusingSensor {
                             [this](const tools::HttpRequest& r) { return Answer(r); }};
 };
 
-/// Live sources: the ports they take, what they ask a sensor, and what they say first.
+/// Live sources: their ports, their requests to a sensor, and their first message.
 class OusterLiveEffects : public ::testing::Test {
  protected:
   /// Returns the text of the first error or warning.
@@ -280,7 +279,7 @@ class OusterLiveEffects : public ::testing::Test {
     return "metadata=" + DataPath(kDual + ".json") + " lidar-port=" + std::to_string(lidar) +
            " imu-port=" + std::to_string(imu) + " ";
   }
-  /// Returns at which of two addresses a source takes `port`.
+  /// Returns those of two addresses at which a source binds `port`.
   std::string Taken(const std::string& properties, guint16 port) const {
     const gst::ElementPtr source(gst_parse_launch(("ouster_src " + properties).c_str(), nullptr));
     EXPECT_NE(gst_element_set_state(source.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
@@ -346,8 +345,8 @@ TEST_F(OusterLiveEffects, TheReceiveBufferOfASharedSocketIsTheLargest) {
   for (const auto& pipeline : pipelines) gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
-/// The queue of a source holds the packets that another source takes from the socket: at least
-/// 1 MiB, of which these packets are more than twice as much.
+/// A source reads the shared socket also for the others, whose queues hold at least 1 MiB. The
+/// packets of this test have more than twice as many bytes.
 TEST_F(OusterLiveEffects, SourcesOfOnePortGetEachPacketHoweverManyCome) {
   constexpr std::size_t kPackets = 300;
   constexpr std::size_t kAtOnce = 8;  // fewer than a small socket holds
@@ -421,7 +420,7 @@ TEST(OusterProperties, AreAllInATest) {
     EXPECT_EQ(tried.count(name), 1U) << name;
 }
 
-/// Writes a capture in which each count has something to count. Returns its path.
+/// Writes a capture with an event for each counter. Returns its path.
 std::string CaptureOfTroubles() {
   using Record = CaptureFile::Record;
   CaptureFile file(DataPath(kDual + ".pcap"));
@@ -452,7 +451,7 @@ std::string CaptureOfTroubles() {
   all.push_back(stray);
   add(second, 45, 64);
   Record short_one = imu[2];
-  short_one.frame[39] = 8 + 40;  // its length by its UDP header
+  short_one.frame[39] = 8 + 40;  // the length in the UDP header
   all.push_back(short_one);
   add(file.Scan(2, 5 * G_USEC_PER_SEC), 0, 64);
   std::vector<Record> restarted = file.Scan(3, 5 * G_USEC_PER_SEC);
@@ -515,7 +514,7 @@ TEST(OusterSecondRun, OfAFileThatWasSoughtGivesTheSameClouds) {
   Lines again = run.SeekToBegin();
   for (Lines* lines : {&first, &again})
     for (std::string& line : *lines) {
-      const std::size_t number = line.find(" slice ");  // scans are counted on
+      const std::size_t number = line.find(" slice ");  // the numbers of scans continue
       if (number != std::string::npos) line.erase(number, line.find(' ', number + 7) - number);
     }
   EXPECT_EQ(again, first);

@@ -18,7 +18,7 @@ using gst::EventPtr;
 
 constexpr GstClockTime kSlice = 12500 * GST_USECOND;
 
-/// The parts of a slice that must not depend on where playback began.
+/// The parts of a slice that must not depend on the position at which playback began.
 struct Played {
   GstClockTime pts = 0;
   GstClockTime captured = 0;
@@ -128,7 +128,7 @@ TEST(OusterSeek, GoesToTheSliceOfATimeAndPlaysTheSameFromThere) {
   const auto all = PlayOn(h);
   ASSERT_EQ(all.size(), 24U);
   for (const std::size_t n : {23U, 5U, 12U, 0U, 20U}) {
-    // Seeks to the begin of slice n and into its middle.
+    // Seeks to the beginning and to the middle of slice n.
     for (const GstClockTime into : {GstClockTime{0}, kSlice / 2}) {
       ASSERT_TRUE(Seek(h, {static_cast<gint64>(all[n].pts + into)}));
       const auto rest = PlayOn(h);
@@ -209,7 +209,7 @@ TEST(OusterSeek, NeitherBackwardsNorLiveNorInALoop) {
   }
 }
 
-/// What passed a pad: the start of its newest segment, and the times since.
+/// What passed a pad: the start of the newest segment, and the times of buffers in it.
 struct Seen {
   std::mutex mutex;
   GstClockTime start = 0;
@@ -279,7 +279,7 @@ TEST(OusterSeek, TakesTheImuAlongOnce) {
   }
   EXPECT_NEAR(static_cast<double>(samples.times.size()), all / 2.0, 2.0);
   EXPECT_GE(samples.times.front(), middle);
-  // The times are those of the first pass.
+  // The samples have the same times as in the first pass.
   ASSERT_LE(samples.times.size(), first_pass.size());
   EXPECT_TRUE(std::equal(samples.times.rbegin(), samples.times.rend(), first_pass.rbegin()));
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// HTTP servers that are not sensors, at the address of one: the element reports that, stays within
+// HTTP servers that are not sensors, at a sensor's address: the element reports that, stays within
 // its bounds and stops on request.
 #include <sys/resource.h>
 
@@ -85,7 +85,7 @@ void AwaitRequest(const HostileServer& server, int earlier) {
   ASSERT_TRUE(Eventually([&] { return server.requests() > earlier; }));
 }
 
-/// Returns how long the element takes to stop, `wait_ms` after its first request.
+/// Returns the time that the element takes to stop, `wait_ms` after its first request.
 std::chrono::milliseconds TimeToStop(const HostileServer& server, const char* properties,
                                      guint wait_ms) {
   const int earlier = server.requests();
@@ -122,8 +122,7 @@ INSTANTIATE_TEST_SUITE_P(All, OusterServer, ::testing::ValuesIn(kAttacks),
                            return std::string(attack.param.name);
                          });
 
-/// A sensor is asked again after a second at the earliest, whatever comes to the port of its
-/// packets.
+/// The element asks a sensor again after a second at the earliest, whatever packets come.
 TEST(OusterQuestions, AreAsFewAsSeconds) {
   const Receiver::Ports ports{FreePort(), FreePort()};
   std::ifstream file(DataPath("OS-1-128_v2.3.0_1024x10.json"));
@@ -153,7 +152,7 @@ TEST(OusterQuestions, AreAsFewAsSeconds) {
   EXPECT_LE(server.requests(), of_a_question * (1 + seconds));
 }
 
-/// A sensor whose API says for a time that it sends nothing.
+/// A sensor whose API says on request that the sensor is switched off.
 class ChangingAnswers {
  public:
   explicit ChangingAnswers(const Receiver::Ports& ports) : sender_(ports.lidar) {
@@ -171,7 +170,7 @@ class ChangingAnswers {
   void SendLidar() {
     for (const auto& packet : packets_) sender_.Send(packet);
   }
-  /// Four packets of another size make the element ask.
+  /// Sends four packets of another size, after which the element asks the API.
   void SendWrongSizes() {
     for (int i = 0; i < 4; ++i) sender_.Send(std::vector<std::uint8_t>(1'000));
   }
@@ -217,7 +216,7 @@ TEST(OusterHostname, MayNameAnInterfaceOrAskForTls) {
   }
 }
 
-/// Returns the error of ouster_src if it cannot start; `scarcity` is created before it tries.
+/// Returns the error of ouster_src if it cannot start while an object of type Scarcity exists.
 template <class Scarcity>
 std::string ErrorAmid() {
   const gst::ElementPtr source(
@@ -239,7 +238,7 @@ TEST(OusterThread, ThatCannotBeStartedIsAnElementError) {
   EXPECT_NE(error.find("Cannot start a thread"), std::string::npos) << error;
 }
 
-/// Leaves ten more files to the process, as `ulimit -n` does.
+/// Lets the process open only ten more files, as `ulimit -n` does.
 class ScarceFiles {
  public:
   ScarceFiles() {

@@ -147,7 +147,7 @@ TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
   EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
 }
 
-/// A sensor whose silence goes by a test clock.
+/// A sensor whose silence a test clock measures.
 class OusterSilence : public OusterUdp {
  protected:
   OusterSilence() : imu_(imu_port_) {
@@ -168,7 +168,8 @@ class OusterSilence : public OusterUdp {
     for (std::size_t i = 0; i < packets; ++i) sender_->Send(packets_[sent_++]);
     EXPECT_TRUE(Eventually([this] { return StatOf(source_.get(), "packets") == sent_; }));
   }
-  /// Returns true if no silence is reported after a packet of the IMU, which ends none.
+  /// Returns true if no silence is reported. Sends a packet of the IMU first, which ends no
+  /// silence.
   bool IsNotReported() {
     const auto taken = [this] { return StatOf(source_.get(), "packets-imu"); };
     const guint64 before = taken();
@@ -221,7 +222,7 @@ TEST_F(OusterSilence, AtTheStartIsReportedToo) {
 TEST_F(OusterSilence, DoesNotBeginInAPause) {
   Send(kPacketsOfSlice / 2);
   gst_element_set_state(h_->element, GST_STATE_PAUSED);
-  Send(kPacketsOfSlice / 2);  // with which the source waits for the end of the pause
+  Send(kPacketsOfSlice / 2);  // the source waits with them for the end of the pause
   Pass(10 * GST_SECOND);
   SetPlaying(h_.get());
   EXPECT_TRUE(IsNotReported());

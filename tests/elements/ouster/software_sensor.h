@@ -20,7 +20,7 @@ class SoftwareSensor {
     std::string mode = "512x20";
     std::string timestamp_mode = "TIME_FROM_INTERNAL_OSC";
     bool old_firmware = false;
-    std::string destination;  // empty: nowhere, until it is configured
+    std::string destination;  // empty: none, until the sensor is configured
     std::string http_address = "127.0.0.1";
     std::string source;           // address to send from; empty: any
     std::string multicast_iface;  // empty: the kernel's choice
