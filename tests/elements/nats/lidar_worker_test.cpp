@@ -194,8 +194,7 @@ TEST_F(LidarWorker, WaitsForAServerThatTakesItsConnectionAndIsSilent) {
   auto worker = Worker();
   NatsPipeline other("natssrc name=n" + At() + "! fakesink name=see");
   other.Play();
-  EXPECT_NE(other.WaitForWarning("No NATS server answers"),
-            "");  // comes after both have given up a connection
+  EXPECT_NE(other.WaitForWarning("No NATS server answers"), "");  // after both gave up to connect
   server_.Thaw();
   const auto robot = Robot();
   EXPECT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
