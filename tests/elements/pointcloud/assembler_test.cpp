@@ -224,7 +224,7 @@ TEST_F(Assembler, DropsSlicesThatNoScanIsMadeOf) {
   Push(MakeSlice({0, 4, 4, 0}));               // index past the count
   Push(MakeSlice({0, 0, 4'000'000'000U, 0}));  // more slices than a turn has columns
   Push(MakeSlice({0, 0, 0, 0}));               // no slices
-  Push(MakeSlice({0, 0, 6, 0}));               // more columns than the sensor
+  Push(MakeSlice({0, 0, 6, 0}));               // more columns than the sensor has
   Push(MakeSlice({0, 0, 4, 0}, 5));            // less than a slice
   Push(MakeSlice({0, 0, 4, 4'294'967'295U}));  // a column that no turn has
   EXPECT_EQ(Stat("invalid-slices"), 5U);
@@ -411,7 +411,8 @@ INSTANTIATE_TEST_SUITE_P(All, AssemblerOfTwoLayouts,
                                cloud->sensor_model->beams.push_back({0, -3, 0});
                              }));
 
-/// The sensor has one beam: its model gives columns places; without a model points are appended.
+/// The sensor has one beam. With its model, columns have positions; without it, points are
+/// appended.
 TEST_F(Assembler, NeverMixesColumnsAndPoints) {
   CloudInfo columns = SliceInfo();
   columns.height = 1;
@@ -493,7 +494,7 @@ TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineAlsoBehindAFlush) {
 
 /// Returns true once the thread of the element's timer sleeps.
 bool AwaitSleepOfTimer(GstElement* assembler) {
-  // A thread has the name of its element and pad, as far as Linux keeps it.
+  // A thread has the name of its element and pad, which Linux cuts to 15 characters.
   const std::string name = (std::string(GST_OBJECT_NAME(assembler)) + ":src").substr(0, 15);
   return test::Eventually([&] {
     for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps that an element cannot take: they give one error with the reason, however often they come.
-// After accepted caps they give another.
+// Caps that an element refuses cause one error with the reason, however often they come. After
+// accepted caps they cause another error.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -15,7 +15,7 @@ namespace {
 
 using test::Harness;
 
-/// Takes 24 bytes with a gap behind z, as points in PCL's files often do.
+/// A point of 24 bytes with a gap after z, as in many files of PCL.
 struct Point {
   float x, y, z;
   std::uint32_t gap;

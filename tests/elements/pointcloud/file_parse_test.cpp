@@ -64,7 +64,7 @@ TEST(CloudFileTypes, AreFoundInShortFilesOfUnknownSize) {
 TEST_F(FileParse, PlyComesBackWithoutWhatIsMissing) {
   for (const char* encoder : {"plyenc", "plyenc binary=false"}) {
     Write(encoder, "scan%d.ply");
-    // The file is large and comes in pieces.
+    // The file is large, so it comes in several buffers.
     const auto read =
         Play("filesrc" + At("scan1.ply") + " ! typefind ! pointcloudparse ! fakesink name=see");
     EXPECT_EQ(read.error, "");

@@ -16,7 +16,7 @@ namespace lidar::gst {
 
 class Filter : public ::testing::Test {
  protected:
-  /// `properties` as gst-launch has them.
+  /// `properties` have the syntax of gst-launch.
   void Start(const std::string& properties, const std::string& caps) {
     const ElementPtr filter(gst_parse_launch(("pointcloudfilter " + properties).c_str(), nullptr));
     h_.reset(gst_harness_new_with_element(filter.get(), "sink", "src"));

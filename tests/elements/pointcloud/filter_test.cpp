@@ -195,7 +195,7 @@ TEST_F(Filter, HoldsTagsBackThroughAFlushUntilTheFirstCloud) {
                                              "tag", "segment"}));
 }
 
-/// Flushes the harness in the middle of the events that come out of it.
+/// Flushes the element at its tag event, in the middle of the events that it pushes.
 GstPadProbeReturn FlushAtTags(GstPad*, GstPadProbeInfo* info, gpointer harness) {
   if (GST_EVENT_TYPE(gst_pad_probe_info_get_event(info)) != GST_EVENT_TAG) return GST_PAD_PROBE_OK;
   gst_harness_push_event(static_cast<GstHarness*>(harness), gst_event_new_flush_start());

@@ -27,7 +27,7 @@ class Waiter {
         }) {}
   ~Waiter() { thread_.join(); }
 
-  /// Waits until the kernel reports that the thread sleeps. Returns false if it ends before.
+  /// Waits until the kernel reports that the thread sleeps. Returns false if the thread ends first.
   bool AwaitSleep() const {
     while (!done_) {
       std::ifstream stat("/proc/self/task/" + std::to_string(id_) + "/stat");
@@ -46,7 +46,7 @@ class Waiter {
   std::thread thread_;
 };
 
-/// pointcloudfilter, and a source of its transforms.
+/// pointcloudfilter, and sources of static and of moving transforms.
 class FilterByTransforms : public Filter {
  protected:
   void Start(const std::string& properties, const std::string& frame = "os") {
@@ -99,7 +99,7 @@ TEST_F(FilterByTransforms, CloudsGoToTheTargetFrameAsItIsAtTheirTime) {
   EXPECT_EQ(PulledX(), 2011);
   EXPECT_EQ(FrameOut(), "map");
   EXPECT_EQ(Stat("transforms"), 3U);
-  // The newest transform counts for clouds without a capture time.
+  // The newest transform applies to clouds without a capture time.
   ASSERT_EQ(Push(std::vector<std::uint8_t>(12, 0)), GST_FLOW_OK);
 }
 
@@ -194,7 +194,7 @@ TEST_F(FilterByTransforms, TakesThePosesOfAnOdometry) {
   push(100);
   EXPECT_EQ(PushAt(100), GST_FLOW_OK);
   EXPECT_EQ(PulledX(), 6);
-  bytes[6] = 0x1C;  // of 5.0 makes 7.0
+  bytes[6] = 0x1C;  // turns 5.0 into 7.0
   push(102);
   EXPECT_EQ(PushAt(101), GST_FLOW_OK);
   EXPECT_EQ(PulledX(), 7) << "a pose is of its time";
@@ -208,7 +208,7 @@ TEST_F(FilterByTransforms, WhatIsNoTransformIsCounted) {
   EXPECT_EQ(Stat("transforms"), 0U);
 }
 
-/// Another filter would move the points a second time.
+/// With the pose, another filter would move the points a second time.
 TEST_F(FilterByTransforms, ACloudInItsTargetFrameHasNoPoseLeft) {
   Start("target-frame=map tf-timeout=0");
   Tell(fixed_.get(), "map", "os", 0, 10);
@@ -273,7 +273,7 @@ TEST_F(FilterByTransforms, CloudsWaitForAStreamOfTransformsThatBeginsAgain) {
   }
 }
 
-/// Clouds behind one that waited in vain do not wait for the same transform, but in a second run.
+/// After a cloud has waited in vain, later clouds do not wait for that transform in the same run.
 TEST_F(FilterByTransforms, ASecondRunWaitsAgain) {
   Start("target-frame=map tf-timeout=1000000");
   Tell(moving_.get(), "map", "os", 100, 1);

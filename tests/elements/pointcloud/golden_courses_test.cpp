@@ -48,7 +48,7 @@ gst::BufferPtr Text(const std::string& text) {
   return gst::BufferPtr(gst_buffer_new_memdup(text.data(), text.size()));
 }
 
-/// `count` points on the axis of x, from `first` on.
+/// Returns `count` points on the x axis, from `first` on.
 gst::BufferPtr Row(std::size_t count, float first) {
   Numbers numbers;
   for (std::size_t i = 0; i < count; ++i) {
@@ -117,12 +117,12 @@ void FilterCourse(Course& c) {
   c.Stop();
 }
 
-/// Slices in any order, whole and cut.
+/// Slices in any order, whole and cut, through an assembler.
 void AssemblerCourse(Course& c, const std::string& caps, std::size_t points) {
   const auto slice = [&](guint scan, guint index, guint slices = 4) {
     auto made = At(Row(points, static_cast<float>(10 * scan + index)),
                    {100 * scan + 25 * index, 24, {scan, index, slices, 2 * index + 1}});
-    // The first slice has times of its own.
+    // The times of the first slice do not follow from those of the others.
     if (index == 0) GST_BUFFER_PTS(made.get()) += 2 * GST_MSECOND;
     if (index == 0)
       gst_lidar_buffer_set_capture_time(made.get(), (1'003 + 100 * scan) * GST_MSECOND);
@@ -275,7 +275,7 @@ void FilesCourse(Course& c) {
   }
 }
 
-/// Two sensors. A step ends once the merger has put out what it can.
+/// Two sensors through a merger. A step ends once the merger has pushed all that it can.
 void MergeCourse(Course& c) {
   const Harness second(gst_harness_new_with_element(c.element(), "sink_1", nullptr));
   const auto begin = [&](const std::string& caps) {

@@ -15,7 +15,7 @@ namespace {
 
 class Merge : public Recording {};
 
-/// Points of 20 bytes that are returns.
+/// Returns the number of returns among a cloud's points of 20 bytes.
 std::size_t Returns(const Kept& cloud) {
   std::size_t count = 0;
   for (std::size_t at = 0; at < cloud.bytes.size(); at += 20) {
@@ -73,7 +73,7 @@ TEST_F(Merge, ASensorThatStartsLaterIsJoinedAtItsTurn) {
   gst_pad_set_offset(pad.get(), 300 * GST_MSECOND);
   const auto outcome = p.Run();
   EXPECT_EQ(outcome.error, "");
-  // Three scans of the first sensor have no partner, nor do its last ones.
+  // The first three and the last scans of the first sensor have no partner.
   const auto& merged = outcome.buffers.at("see");
   ASSERT_GE(merged.size(), 5U);
   EXPECT_EQ(merged.front().pts, 300 * GST_MSECOND);
@@ -117,7 +117,7 @@ TEST_F(Merge, CloudsWithoutTimesAreAnError) {
             "Clouds of sink_0 cannot be merged: they have no times; pointcloudparse gives them.");
 }
 
-/// Two pads that take clouds of one point each.
+/// pointcloudmerge with two pads for clouds of one point.
 class MergedByHand : public ::testing::Test {
  protected:
   static constexpr const char* kCaps =
@@ -154,7 +154,7 @@ class MergedByHand : public ::testing::Test {
     for (std::size_t i = 0; i < xs.size(); ++i) EXPECT_FLOAT_EQ(points[3 * i], xs[i]);
   }
 
-  /// The last gap until now.
+  /// Expects that the last gap event so far has this time.
   void ExpectGap(GstClockTime time_ms) {
     GstClockTime time = 0;
     GstClockTime duration = 0;
@@ -202,8 +202,8 @@ TEST_F(MergedByHand, SoDoesAScanWhoseDurationIsZero) {
   ExpectCloud({1, 2}, 100);
 }
 
-/// A live sensor is waited for until the end of the last cloud and the latency have passed, also
-/// behind a turn in which no sensor saw anything.
+/// The element waits for a live sensor until the end of its last cloud plus the latency, also after
+/// a turn in which no sensor saw anything.
 TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
   constexpr GstClockTime kLatency = 20 * GST_MSECOND;
   for (GstHarness* h : {first_.get(), second_.get()}) gst_harness_set_upstream_latency(h, kLatency);
@@ -217,7 +217,7 @@ TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
   }
 }
 
-/// Downstream shall not wait for a cloud that does not come.
+/// A gap event keeps downstream from waiting for a cloud.
 TEST_F(MergedByHand, ATurnInWhichNoSensorSeesAnythingIsAGap) {
   for (const float x : {1.F, NAN, 1.F}) {
     Push(first_, x, 100);
@@ -238,7 +238,7 @@ TEST_F(MergedByHand, NoGapComesBeforeTheFirstCloud) {
     EXPECT_NE(GST_EVENT_TYPE(event.get()), GST_EVENT_GAP);
 }
 
-/// Sends a gap, as pointcloudfilter does if no point stays.
+/// Both pads get gaps, as pointcloudfilter sends them in place of empty clouds.
 TEST_F(MergedByHand, ATurnOfGapsIsAGapOfTheEarliersTime) {
   const auto push_gap = [](const Harness& h, GstClockTime time_ms) {
     ASSERT_TRUE(gst_harness_push_event(
@@ -357,7 +357,7 @@ TEST_F(MergedByHand, ASecondRunForgetsTheFieldsOfTheFirst) {
   gst_element_set_state(element_.get(), GST_STATE_NULL);
   gst_element_set_state(element_.get(), GST_STATE_PLAYING);
   for (GstHarness* h : {first_.get(), second_.get()}) {
-    gst_pad_set_active(h->srcpad, FALSE);  // forgets caps
+    gst_pad_set_active(h->srcpad, FALSE);  // drops the caps
     gst_pad_set_active(h->srcpad, TRUE);
     gst_pad_push_event(h->srcpad, gst_event_new_stream_start("run"));
   }

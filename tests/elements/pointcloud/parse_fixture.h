@@ -24,7 +24,7 @@ inline BufferPtr Bytes(gsize size, guint8 value = 7) {
 
 class Parse : public ::testing::Test {
  protected:
-  /// Starts the element behind a source of bytes, such as a file.
+  /// Starts the element after a source of bytes, such as a file.
   void Start(const std::string& caps, const char* element = "pointcloudparse") {
     h_.reset(gst_harness_new_parse(element));
     gst_harness_play(h_.get());

@@ -11,7 +11,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A source of bytes that can seek and is playing: it pushes two clouds before it obeys a seek.
+/// A playing source of bytes that can seek: it pushes two more clouds before it obeys a seek.
 class ParseUnderWay : public Parse {
  protected:
   static constexpr gsize kCloud = 160;
@@ -44,8 +44,8 @@ class ParseUnderWay : public Parse {
     self->PushBytesFrom(static_cast<guint64>(start), gst_event_get_seqnum(raw));
     return TRUE;
   }
-  guint64 from_ = 0;  // where the last seek began
-  gint64 to_ = 0;     // where it ended
+  guint64 from_ = 0;  // start of the last seek
+  gint64 to_ = 0;     // stop of the last seek
   void PushBytesFrom(guint64 start, guint32 seqnum) {
     GstSegment segment;
     gst_segment_init(&segment, GST_FORMAT_BYTES);
@@ -181,7 +181,7 @@ TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   EXPECT_EQ(GST_BUFFER_OFFSET_END(last.get()), 8U);
 }
 
-/// Rates of clouds, some whose times are not whole nanoseconds.
+/// Frame rates. With some of them, times of clouds are not whole nanoseconds.
 class ParseAnyCloud : public ParseUnderWay,
                       public ::testing::WithParamInterface<std::pair<guint64, guint64>> {};
 TEST_P(ParseAnyCloud, IsFoundByItsTimeAndKnowsItsOffset) {
@@ -190,7 +190,7 @@ TEST_P(ParseAnyCloud, IsFoundByItsTimeAndKnowsItsOffset) {
       "application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\","
       "framerate=" +
       std::to_string(n) + "/" + std::to_string(d));
-  PushClouds(1);  // the size of a cloud is known
+  PushClouds(1);  // after that the element has the size of a cloud
   const auto time_of = [n = n, d = d](guint64 cloud) {
     return gst_util_uint64_scale(cloud, d * GST_SECOND, n);
   };
@@ -241,14 +241,14 @@ TEST_F(ParseUnderWay, BuffersThatAreCloudsGoOnWhereTheLastCloudEnded) {
   EXPECT_EQ(RunningTime(), 300 * GST_MSECOND);
   PushClouds(2);
   EXPECT_EQ(RunningTime(), 500 * GST_MSECOND);
-  // A cloud's number means another time at another rate.
+  // At another rate a cloud with the same number has another time.
   PushCaps("application/x-pointcloud2,point-step=16,fields=(string)\"x:F32:0\",framerate=20/1");
   PushBytesFrom(0, 4712);
   PushClouds(2);
   EXPECT_EQ(RunningTime(), 650 * GST_MSECOND);
 }
 
-/// A file of ten clouds at 10 Hz, each of 8 points that hold its number, in PAUSED.
+/// A pipeline in PAUSED with a file of ten clouds at 10 Hz. A cloud has 8 points with its number.
 class ParseSeek : public ::testing::Test {
  protected:
   explicit ParseSeek(const std::string& behind = "") {
@@ -293,7 +293,7 @@ class ParseSeek : public ::testing::Test {
                             static_cast<GstSeekFlags>(flags), GST_SEEK_TYPE_SET,
                             static_cast<gint64>(start), GST_SEEK_TYPE_SET, stop) != FALSE;
   }
-  /// Plays until the message. Returns the clouds until then.
+  /// Plays until the message. Returns the numbers of the clouds until then.
   std::vector<int> PlayTo(GstMessageType type) {
     clouds_.clear();
     times_.clear();

@@ -17,7 +17,7 @@ constexpr const char* kColumns =
     "application/x-pointcloud2,width=8,height=2,point-step=12,"
     "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1,is-bigendian=false";
 
-/// Two points on the axis of x.
+/// Returns two points on the x axis.
 gst::BufferPtr Points(float one, float two) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -42,7 +42,7 @@ gst::BufferPtr At(gst::BufferPtr buffer, GstClockTime ms, guint scan, guint slic
 
 void Push(GstHarness* h, gst::BufferPtr buffer) { gst_pad_push(h->srcpad, buffer.release()); }
 
-/// `run` leaves much state behind: clouds under way, warnings, counts.
+/// `run` leaves much state behind: incomplete clouds, warnings, counts.
 struct Case {
   const char* name;
   const char* element;
@@ -91,7 +91,7 @@ void AssembleScans(GstHarness* h) {
   Push(h, At(Bytes(192, 2), 25, 7, 1, 4));  // late
   Push(h, At(Bytes(99, 2), 100, 8, 0, 4));  // of another size
   for (guint i : {0U, 1U, 1U}) Push(h, At(Bytes(192, 3), 100 + 25 * i, 8, i, 4));
-  Push(h, At(Bytes(192, 4), 200, 9, 0, 4));  // scans 8 and 9 are under way, or incomplete
+  Push(h, At(Bytes(192, 4), 200, 9, 0, 4));  // leaves scans 8 and 9 incomplete
 }
 
 void WriteFiles(GstHarness* h) {
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"PlyFiles", "plyenc", kPoints, WriteFiles}),
     [](const auto& which) { return which.param.name; });
 
-/// Files of one point each. With caps they are read by their type, without by their content.
+/// A file of one point. Its type is in `caps`, or has to be found in the content if `caps` is null.
 struct FileCase {
   const char* name;
   const char* caps;
@@ -197,7 +197,7 @@ class FileAfterAnother : public ::testing::Test {
     for (int i = 0; i < 2; ++i)
       Push(h_.get(), gst::BufferPtr(gst_buffer_new_memdup(which.file.data(), which.file.size())));
   }
-  /// Stops the source, too, because its caps would stay.
+  /// Stops the element and the source, whose caps would stay.
   void StopAll() {
     trace_->Stop();
     gst_pad_set_active(h_->srcpad, FALSE);
