@@ -186,7 +186,7 @@ TEST_P(CompressedClouds, ThatAreDamagedAreRefused) {
     EXPECT_FALSE(Decompress(shorter, &why)) << cut;
     EXPECT_EQ(why, "its compressed data are damaged");
   }
-  // Damaged data may pass, but never as more points.
+  // Damaged data may be accepted, but never give more points.
   std::mt19937 random(7);
   for (int round = 0; round < 2'000; ++round) {
     Bytes data(whole->cloud.data.begin(), whole->cloud.data.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which code makes and ends the DDS domains of a process.
+// The DDS domains of a process: which code makes and ends them, and their configuration.
 #include "ext/ros2/domain.h"
 
 #include <dds/dds.h>
@@ -17,7 +17,7 @@
 namespace lidar::dds {
 namespace {
 
-/// Sets variables of the environment while it lives.
+/// Sets variables of the environment during its lifetime.
 class Variables {
  public:
   using Values = std::map<std::string, std::string>;
@@ -49,7 +49,7 @@ std::unique_ptr<Domain> Join() {
   return domain;
 }
 
-/// Returns true if the domain can be made, so that it did not exist. It is deleted again.
+/// Returns true if the domain did not exist: tries to make it, and deletes it again.
 bool IsFree() {
   const dds_entity_t made = dds_create_domain(kDomain, "");
   if (made > 0) dds_delete(made);

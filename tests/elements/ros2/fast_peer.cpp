@@ -23,7 +23,7 @@
 #include <type_traits>
 
 #ifdef __SANITIZE_ADDRESS__
-/// Fast DDS 2.9.1 deletes an object with another size than it was made with.
+/// Fast DDS 2.9.1 deletes an object with another size than that of its allocation.
 extern "C" const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }
 #endif
 
@@ -36,7 +36,7 @@ using eprosima::fastcdr::FastBuffer;
 using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 
-/// Out and In can be called alike: Out writes the value, and In reads it.
+/// Out and In are called in the same way: Out writes the value, and In reads it.
 struct Out {
   Cdr& cdr;
   template <class T>
@@ -136,7 +136,7 @@ std::size_t SizeOf(const Message&) {
   return 8192;
 }
 
-/// Type support, by hand.
+/// Type support without generated code.
 template <class Message>
 class PeerType : public TopicDataType {
  public:
@@ -271,7 +271,7 @@ struct FastPeer::Impl {
 };
 
 FastPeer::FastPeer(std::uint32_t domain) : impl_(std::make_unique<Impl>()) {
-  // If two peers are in one process, Fast DDS 2.9.1 may call a reader that is gone.
+  // If two peers are in one process, Fast DDS 2.9.1 may call a deleted reader.
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);

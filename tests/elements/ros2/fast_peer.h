@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A ROS 2 node of another maker: eProsima's Fast DDS and Fast CDR, which share no code with what
-// they test.
+// A ROS 2 node of another maker: eProsima's Fast DDS and Fast CDR share no code with the tested
+// elements.
 #pragma once
 #include <array>
 #include <chrono>
@@ -102,7 +102,8 @@ class FastPeer {
   template <class Message>
   bool Take(Message* message, std::chrono::milliseconds timeout);
 
-  /// The writers and readers that were found so far, and the user data of participants.
+  /// Returns the writers and readers that discovery has found so far; then the participants' user
+  /// data.
   std::vector<PeerEndpoint> endpoints() const;
   std::vector<std::string> participants() const;
   std::vector<std::uint8_t> guid() const;

@@ -57,7 +57,7 @@ void Ros2SinkCourse(Course& c) {
   c.Gap(0, GST_MSECOND);
   c.End();
   c.Stop();
-  peer.reset();  // otherwise it could be found before the figures of the beginning are noted
+  peer.reset();  // the element could find the peer before the course notes the first figures
   c.Begin(CapsTextOf(cloud));
   subscribe();
   push("in a second run", BufferOf(cloud));
@@ -75,7 +75,7 @@ void Ros2SrcCourse(Course& c) {
   damaged.bytes[0] = damaged.bytes[2] = damaged.bytes[3] = 0;  // CDR, little-endian
   damaged.bytes[1] = 1;
   std::size_t broken = 0;
-  // A warning follows the count, so the course notes it with the next cloud.
+  // The element posts the warning after it has counted, so the course notes it with the next cloud.
   const auto breaks = [&] {
     EXPECT_TRUE(bad->Publish(damaged));
     c.AwaitStat("messages-damaged", ++broken);

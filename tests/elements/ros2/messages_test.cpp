@@ -44,7 +44,7 @@ class CloudMessages : public ::testing::Test {
                           ++asked_;
                           return CapsPtr(wanted_ ? gst_caps_ref(wanted_.get()) : nullptr);
                         }};
-  int asked_ = 0;  // how often downstream was asked for its caps
+  int asked_ = 0;  // number of queries for the caps of downstream
 };
 
 TEST_F(CloudMessages, HaveNewCapsWhereAnythingOfThemChanges) {
@@ -102,7 +102,7 @@ TEST_F(CloudMessages, MayNameAFrameThatIsNoText) {
 struct Driver {
   const char* name;
   std::uint32_t width, height;
-  std::vector<cdr::RosField> fields;  // its own fields, behind x, y and z
+  std::vector<cdr::RosField> fields;  // after x, y and z
   std::uint32_t point_step;
   bool is_dense;
   const char* caps;  // of the fields

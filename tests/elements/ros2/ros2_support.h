@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the tests of ros2src and ros2sink share: a domain of their own, clouds, pipelines.
+// Helpers of the tests of ros2src and ros2sink: a domain for each program, clouds, pipelines.
 #pragma once
 #include <gio/gio.h>
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ namespace lidar::test {
 constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
 
 /// Returns a domain that only this program has, until it ends. Domains 1 to 9 have the UDP ports
-/// 7650 to 9899: below those that the kernel assigns and those of other tests. The TCP port of a
-/// domain's first UDP port marks it as taken.
+/// 7650 to 9899: below those that the kernel assigns and those of other tests. A TCP socket with
+/// the number of a domain's first UDP port marks the domain as taken.
 inline std::uint32_t TestDomain() {
   using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
   static const Object mark(
@@ -47,8 +47,8 @@ inline std::uint32_t TestDomain() {
   return domain;
 }
 
-/// Returns points of x, y, z, intensity and a time, 24 bytes each. All bytes differ from cloud to
-/// cloud.
+/// Returns points of 24 bytes: x, y, z, intensity, a time and a range. The bytes are random numbers
+/// of `seed`.
 inline PeerCloud TestCloud(std::uint32_t width, std::uint32_t height, unsigned seed = 1) {
   PeerCloud cloud;
   cloud.header = {1'700'000'000 + static_cast<std::int32_t>(seed), 123'456'789, "os_lidar"};
@@ -79,7 +79,7 @@ inline gst::CapsPtr CloudCaps(const PeerCloud& cloud, const char* extra = "") {
   return gst::CapsPtr(gst_caps_from_string(text));
 }
 
-/// Returns a buffer of the cloud's points with its time.
+/// Returns a buffer with the cloud's points and time.
 inline GstBuffer* CloudBuffer(const PeerCloud& cloud) {
   GstBuffer* buffer = gst_buffer_new_memdup(cloud.data.data(), cloud.data.size());
   gst_lidar_buffer_set_capture_time(
@@ -92,7 +92,7 @@ inline std::vector<std::uint8_t> BytesOf(GstBuffer* buffer) {
   return {map.view().begin(), map.view().end()};
 }
 
-/// An element in the domain, alone or with elements before and after it.
+/// An element in TestDomain(), alone or with elements after it.
 class Ros2Test : public ::testing::Test {
  protected:
   void Start(const std::string& element, const std::string& properties,
@@ -126,7 +126,7 @@ class Ros2Test : public ::testing::Test {
     return text.get();
   }
   guint64 Stat(const char* name) { return StatOf(ros_.get(), name); }
-  /// Returns false if it takes too long.
+  /// Waits until a counter is at least `least`. Returns false if that takes too long.
   bool WaitForStat(const char* name, guint64 least) {
     return Eventually([&] { return Stat(name) >= least; });
   }
@@ -138,7 +138,7 @@ class Ros2Test : public ::testing::Test {
     const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR, timeout);
     return message ? MessageText(message.get()) : "";
   }
-  /// Returns NextComplaint(), without warnings about the machine's settings.
+  /// Returns NextComplaint(), but skips a warning about the machine's receive buffer.
   std::string NextOwnComplaint() {
     std::string text = NextComplaint();
     if (text.find("receive buffer") != std::string::npos) text = NextComplaint();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Transforms that ros2src receives, and clouds that they place.
+// Transforms that ros2src receives, and clouds that pointcloudfilter moves by them.
 #include <set>
 
 #include "src/cdr/messages.h"
@@ -47,7 +47,7 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   EXPECT_EQ(Field("static"), "false");
 }
 
-/// Hundreds of messages may wait, so that no message may be as large as a cloud.
+/// Hundreds of messages may wait, so a message of transforms must not be as large as a cloud.
 TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
   Start("ros2src", "topic=/tf type=tf qos=reliable");
   peer_ = std::make_unique<FastPeer>(TestDomain());
@@ -85,7 +85,7 @@ TEST_F(Ros2Transforms, TakesStaticTransformsFromBeforeItWasThere) {
 }
 
 TEST_F(Ros2Transforms, TakesAllStaticTransformsOfAllThatKeepSome) {
-  constexpr int kEach = 10;  // history of a peer
+  constexpr int kEach = 10;  // depth of a peer's history
   std::vector<std::unique_ptr<FastPeer>> peers;
   for (int peer = 0; peer < 3; ++peer) {
     peers.push_back(std::make_unique<FastPeer>(TestDomain()));
@@ -139,8 +139,8 @@ TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   const float x = 4;
   std::memcpy(cloud.data.data(), &x, sizeof x);
   ASSERT_TRUE(peer_->Publish(cloud));
-  // The cloud waits for a transform that is as new. Transforms sent before the two endpoints match
-  // are lost.
+  // The cloud waits for a transform at or after its time. Transforms sent before the two endpoints
+  // match are lost.
   BufferPtr buffer;
   for (int i = 0; i < 600 && !buffer; ++i) {
     for (const int later : {0, 1})

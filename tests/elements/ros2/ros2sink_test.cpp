@@ -10,7 +10,7 @@ namespace {
 using gst::CapsPtr;
 using Qos = FastPeer::Qos;
 
-/// ros2sink, and a subscriber of Fast DDS that has found it.
+/// ros2sink, and a subscriber of Fast DDS that matches it.
 class Ros2Sink : public Ros2Test {
  protected:
   template <class Message>
@@ -314,7 +314,7 @@ TEST_F(Ros2Sink, PublishesTransforms) {
   EXPECT_TRUE(std::equal(transform.transform.begin(), transform.transform.end(), kPose));
 }
 
-/// Returns the text of the error if the element does not start.
+/// Returns the error of an element that does not start.
 std::string StartError(const std::string& line) {
   const std::unique_ptr<GstElement, gst::Unref> element(gst_parse_launch(line.c_str(), nullptr));
   const ElementBus bus(element.get());
@@ -379,7 +379,7 @@ TEST(Ros2Bridge, CarriesWholeScansIntact) {
   out.Subscribe<PeerCloud>("rt/out", kCloudType, Qos::kReliable);
   ASSERT_TRUE(in.WaitForMatch(kPatience));
   PeerCloud taken;
-  // The sink's topic begins with the first cloud, and Cyclone skips what a publisher has sent
+  // The sink makes its topic with the first cloud, and Cyclone skips messages that a publisher sent
   // before its first heartbeat.
   const PeerCloud first = TestCloud(1024, 128);
   bool found = false;

@@ -9,7 +9,7 @@ namespace {
 using gst::BufferPtr;
 using Qos = FastPeer::Qos;
 
-/// ros2src, and a publisher of Fast DDS that it has found.
+/// ros2src, and a publisher of Fast DDS that matches it.
 class Ros2Src : public Ros2Test {
  protected:
   void StartWithPeer(const std::string& properties = "", const std::string& behind = "") {
@@ -148,7 +148,7 @@ void Want(gpointer filter, const char* field) {
   gst_util_set_object_arg(G_OBJECT(filter), "caps", caps.c_str());
 }
 
-/// The wanted caps change while the source waits for a message, and while it gives one.
+/// Downstream's caps change while the source waits for a message, and while it pushes one.
 TEST_F(Ros2Src, GivesWhatIsWantedFromTheNextMessageOn) {
   StartWithPeer("qos=reliable", " ! capsfilter name=filter");
   const std::unique_ptr<GstElement, gst::Unref> filter(
@@ -243,7 +243,7 @@ TEST_F(Ros2Src, TellsOfPublishersThatItsReliabilityDoesNotFit) {
   EXPECT_NE(text.find("best-effort"), std::string::npos) << text;
 }
 
-/// A warning of one run comes again in the next, and counters begin anew.
+/// The same warnings come again in the next run, and counters begin at 0.
 TEST_F(Ros2Src, TellsInEachRunOfWhatDoesNotFit) {
   FastPeer best_effort(TestDomain());
   best_effort.Advertise<PeerCloud>("rt/points", kCloudType, Qos::kBestEffort);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ros2sink beside a subscriber that is slow or hangs, and what it counts then.
+// ros2sink with a subscriber that is slow or hangs, and the sink's counters then.
 #include <dds/dds.h>
 
 #include "ext/ros2/raw_type.h"
@@ -14,7 +14,7 @@ constexpr const char* kSlow = "A subscriber is too slow";
 constexpr gsize kSampleSize = 32;
 constexpr const char* kCaps = "application/x-imu,sample-size=32";
 
-/// A reliable subscriber to IMU samples that has room for one.
+/// A reliable subscriber to IMU samples that has room for one sample.
 class SlowReader {
  public:
   explicit SlowReader(std::uint32_t domain)
@@ -55,7 +55,7 @@ class Ros2SlowSubscriber : public Ros2Test {
   void SetUp() override {
     Start("ros2sink", "topic=/points sync=false");
     gst_harness_set_src_caps_str(h_.get(), kCaps);
-    // The first message opens the topic.
+    // The sink makes its topic with the first message.
     Push(1);
     reader_ = std::make_unique<SlowReader>(TestDomain());
     ASSERT_TRUE(WaitForStat("subscribers", 1));
@@ -95,7 +95,7 @@ TEST_F(Ros2SlowSubscriber, IsToldOfOnceUntilItTakesAMessageAndTheBytesAreThoseOf
   }
   EXPECT_EQ(Stat("buffers-refused"), 0U);
   EXPECT_EQ(Stat("messages-without-subscriber"), 1U);
-  reader_.reset();  // it would end with its domain
+  reader_.reset();  // the element's stop would end the reader's domain
   StartAgain(kCaps);
   for (const char* counter : {"messages", "bytes", "messages-timed-out"})
     EXPECT_EQ(Stat(counter), 0U) << counter;
@@ -105,7 +105,7 @@ TEST_F(Ros2SlowSubscriber, IsToldOfOnceUntilItTakesAMessageAndTheBytesAreThoseOf
   EXPECT_EQ(Complaints(kSlow), 1) << "in each run";
 }
 
-/// Each wait takes a tenth of a second.
+/// Each wait for the subscriber takes a tenth of a second.
 TEST_F(Ros2SlowSubscriber, IsWaitedForOnceForAllSamplesOfABuffer) {
   Push(1);
   const gint64 begin = g_get_monotonic_time();

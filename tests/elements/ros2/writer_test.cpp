@@ -226,7 +226,7 @@ class RosOptions : public ::testing::Test {
   std::optional<dds::EndpointOptions> Options() {
     return ToOptions(element_.get(), settings_, cdr::RosType::kImu);
   }
-  /// Returns the domain that the variable names; -1 for a wrong one.
+  /// Returns the domain with ROS_DOMAIN_ID set to `variable`; -1 if that is an error.
   int DomainOf(const char* variable) {
     g_setenv("ROS_DOMAIN_ID", variable, TRUE);
     const auto options = Options();
@@ -247,7 +247,7 @@ TEST_F(RosOptions, TakeTheDomainOfTheVariableWhereNobodySaysOtherwise) {
   EXPECT_EQ(Options()->domain, 0U);
   settings_.domain_id = 0;
   EXPECT_EQ(DomainOf("7"), 0);
-  EXPECT_EQ(DomainOf("x"), 0);  // the property counts, not the variable
+  EXPECT_EQ(DomainOf("x"), 0);  // the property applies, not the variable
   settings_.domain_id = 9;
   EXPECT_EQ(DomainOf("7"), 9);
 }
