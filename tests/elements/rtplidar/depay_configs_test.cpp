@@ -53,7 +53,7 @@ GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
   return buffer;
 }
 
-/// Notes the fields of the caps under which each buffer leaves.
+/// Notes, for each buffer that leaves, the fields in its caps.
 GstPadProbeReturn NoteFields(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
   const guint buffers = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0
                             ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info))
@@ -88,7 +88,8 @@ TEST(RtpLidarDepay, SlicesOfTwoConfigsInOnePacketLeaveEachUnderItsCaps) {
   EXPECT_EQ(seen, fields);
 }
 
-/// Returns an aggregate of `slices` slices whose formats alternate; their configs were sent before.
+/// Returns an aggregate of `slices` slices whose configs alternate. `ids` are of configs sent
+/// before.
 std::vector<std::uint8_t> TakingTurns(const std::vector<std::uint8_t>& ids, std::uint32_t scan,
                                       std::uint16_t slices) {
   std::vector<std::uint8_t> packet = {0x20};
@@ -264,7 +265,7 @@ TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
                 "and the next element does not take them. They are dropped."});
 }
 
-/// Warnings of a depayloader, from packets that cause them again and again.
+/// Warnings of a depayloader whose packets cause the same warning again and again.
 class OneWarning : public ::testing::Test {
  protected:
   std::size_t Warnings() { return bus_.Texts(GST_MESSAGE_WARNING).size(); }

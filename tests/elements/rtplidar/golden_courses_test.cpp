@@ -22,7 +22,7 @@ gst::BufferPtr Bare(gst::BufferPtr slice) {
       gst_buffer_copy_region(slice.get(), GST_BUFFER_COPY_MEMORY, 0, static_cast<gsize>(-1)));
 }
 
-/// Reports the packets from the `first` newest one to the `last` newest one.
+/// Reports the packets from `first` to `last` packets before the newest one.
 void Tell(Course& c, guint receiver, guint first, guint last) {
   guint newest = 0;
   g_object_get(c.element(), "seqnum", &newest, nullptr);
@@ -164,7 +164,7 @@ void AggregatesCourse(Course& c) {
   c.End();
 }
 
-/// Downstream takes no format, and later one.
+/// Downstream refuses the caps, and later accepts them.
 void RefusedCourse(Course& c) {
   const auto packets = CoursePackets(4, 300);
   gst_harness_set_sink_caps_str(c.harness(), "application/x-other");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Limits of payloader and depayloader, and what they begin anew.
+// Limits of payloader and depayloader, and their state after a flush or a restart.
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"
@@ -27,7 +27,7 @@ class PayLimits : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer, &meta);
     return gst_harness_push(h_.get(), buffer);
   }
-  /// Returns how many configs went out since the last call.
+  /// Returns the number of configs that were sent since the last call.
   std::size_t Configs() {
     std::size_t n = 0;
     for (const Rtp& p : PullAll(h_.get())) n += p.IsConfig() ? 1U : 0U;
@@ -218,7 +218,7 @@ TEST_F(PayLimits, AFlushForgetsWhatWasCollected) {
   EXPECT_EQ(packets[1].payload[15], 1);  // the slice's index
 }
 
-/// Packets of a payloader, which a test may change.
+/// A depayloader, and packets that a test may change.
 class DepayLimits : public ::testing::Test {
  protected:
   static std::vector<gst::BufferPtr> Packets(guint scans) {
@@ -240,7 +240,7 @@ class DepayLimits : public ::testing::Test {
     GST_BUFFER_PTS(copy) = pts;
     gst_harness_push(h_.get(), copy);
   }
-  /// Returns how many slices came out since the last call.
+  /// Returns the number of slices that came out since the last call.
   std::size_t Slices() {
     std::size_t n = 0;
     while (const gst::BufferPtr slice{gst_harness_try_pull(h_.get())}) ++n;

@@ -10,7 +10,7 @@ namespace {
 
 void Give(GstHarness* h, GstBuffer* buffer) { gst_pad_push(h->srcpad, buffer); }
 
-/// Pushes some slices, one of them empty, and bounds. An aggregate is under way at the end.
+/// Pushes bitrate bounds and slices, one of them empty. The last aggregate stays incomplete.
 void PayRun(GstHarness* h) {
   const GstLidarBitrateBounds bounds{1'000, 2'000, 3'000};
   gst_pad_push_event(h->srcpad, gst_lidar_event_new_bitrate_bounds(&bounds));
@@ -67,7 +67,8 @@ TEST_P(PaySecondRun, BeginsWithTheConfigBehindAFlush) {
 
 INSTANTIATE_TEST_SUITE_P(AloneAndTogether, PaySecondRun, ::testing::Bool());
 
-/// Sends losses, garbage, packets of others and of another type; a slice is under way at the end.
+/// Sends garbage, packets of another payload type and of another sender, and a stream with losses.
+/// The last slice stays incomplete.
 class DepaySecondRun : public ::testing::Test {
  protected:
   void Run() {

@@ -24,7 +24,8 @@ TEST(RtpLidarDepay, TellsSlicesThatWereNeverSentFromLostOnes) {
       if (n != 5) gst_harness_push(h.get(), gst_buffer_copy_deep(packets[n].get()));
     gst_harness_push_event(h.get(), gst_event_new_eos());
     const auto slices = Pull(h.get());
-    // Packet 0 is the config. Packet 5 is slice 2 of scan 1, or all of the last scan.
+    // Packet 0 is the config. Packet 5 is slice 2 of scan 1, or with aggregates all of the last
+    // scan.
     EXPECT_EQ(Stat(h.get(), "slices-received"), slices.size());
     EXPECT_EQ(Stat(h.get(), "slices-lost"), aggregate ? 0U : 1U);
     EXPECT_EQ(Stat(h.get(), "slices-skipped"), aggregate ? 4U : 5U);
@@ -205,7 +206,7 @@ TEST(RtpLidarDepay, WaitsForPacketsAsLongAsIsSetWhileItRuns) {
   for (const guint64 wait : {100U, 1000U}) {
     const Harness h = Depay();
     auto packets = Packets(8);
-    // The slice 1.1 comes half a second late.
+    // Slice 1 of scan 1 comes half a second late.
     std::rotate(packets.begin() + 16, packets.begin() + 19, packets.end());
     for (std::size_t i = 0; i < packets.size(); ++i) {
       if (i == 2) g_object_set(h->element, "max-reorder-time", wait * GST_MSECOND, nullptr);

@@ -123,7 +123,7 @@ TEST(RtpLidarPay, AggregatesTheSmallSlicesOfAScan) {
   EXPECT_EQ(packets[1].payload[0], 0x20);
   EXPECT_TRUE(packets[1].marker);
   EXPECT_EQ(packets[2].payload.size(), 1 + kSlices * (4 + 36 + 200));
-  // A slice that does not fit sends the aggregate before it; at EOS the last one leaves.
+  // The aggregate leaves before a slice that does not fit into it, or at EOS.
   gst_harness_push(h.get(), EncodedSlice(2, 0, 200));
   gst_harness_push(h.get(), EncodedSlice(2, 1, 5'000));
   gst_harness_push(h.get(), EncodedSlice(2, 2, 200));
@@ -155,8 +155,8 @@ TEST(RtpLidarPay, HoldsAggregatesNoLongerThanMaxPtime) {
   EXPECT_EQ(gst_harness_query_latency(h.get()), 50 * GST_MSECOND);
 }
 
-/// Slices take 25 ms each. The duration of an aggregate is from its first slice's begin to its last
-/// one's end.
+/// Slices take 25 ms each. An aggregate lasts from the beginning of its first slice to the end of
+/// its last one.
 TEST(RtpLidarPay, CountsTheDurationOfTheLastSliceInMaxPtime) {
   for (const gint64 max_ms : {49, 50, 51}) {
     const Harness h(gst_harness_new("rtplidarpay"));
@@ -258,7 +258,7 @@ TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   gst_harness_push_event(h.get(), NewSegment());
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
   EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR));
-  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));  // no second one
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));  // no second error
   for (const char* next : {"application/x-voxels,alignment=slice", GetParam()})
     gst_harness_set_src_caps_str(h.get(), next);
   EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR)) << "they come again behind others";

@@ -35,7 +35,7 @@ inline std::string EncodedCaps(const char* geometry = "range", int framerate = 1
   return text.get();
 }
 
-/// Slice `index` of scan `scan` as an encoder puts it out.
+/// Returns slice `index` of scan `scan` as an encoder outputs it.
 inline GstBuffer* EncodedSlice(guint scan, guint index, gsize size = 3'000) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
   gst_buffer_memset(buffer, 0, static_cast<guint8>(scan * 16 + index), size);
