@@ -81,7 +81,7 @@ void stand_in_class_init(StandInClass* klass) {
                                         "The gst-lidar developers");
 }
 
-/// Registers a type for the factory, because GStreamer finds the factory by the type.
+/// Registers `factory` with a type of its own, by which GStreamer finds the factory of an element.
 void RegisterStandIn(const std::string& factory) {
   if (GstElementFactory* known = gst_element_factory_find(factory.c_str()); known != nullptr) {
     gst_object_unref(known);
@@ -95,8 +95,8 @@ void RegisterStandIn(const std::string& factory) {
   gst_element_register(nullptr, factory.c_str(), GST_RANK_NONE, type);
 }
 
-/// `description` ends in a bitrateadapter called a, the only element that runs: a bitrate can be
-/// set on hardware encoders without their devices.
+/// A chain that ends in the bitrateadapter `a`. Only `a` runs: encoders take a bitrate without the
+/// hardware that they need to run.
 class Chain {
  public:
   explicit Chain(const std::string& description)
@@ -141,7 +141,7 @@ class KnownEncoders : public ::testing::TestWithParam<Known> {};
 TEST_P(KnownEncoders, GetTheTargetInTheirOwnUnit) {
   const Known known = GetParam();
   RegisterStandIn(known.factory);
-  // The unit of a known property stays if the user names the property.
+  // The unit of a known property is the same if the user names the property.
   for (const std::string& said : {std::string(), std::string(" property=") + known.property}) {
     Chain chain(std::string(known.factory) + " name=e ! identity ! bitrateadapter name=a" + said);
     EXPECT_TRUE(chain.Send(2'000'000));

@@ -20,11 +20,11 @@ const TestCertificates& Papers() {
 std::string OfEdge() { return Papers().Trusting("edge", "robot"); }
 std::string OfRobot() { return Papers().Trusting("robot", "edge"); }
 
-/// A link that dies after so many datagrams: before the hello, within it, within the handshake,
-/// after the handshake, after some packets.
+/// A link that dies after `left` datagrams: before the hello, within the hello, within the
+/// handshake, after the handshake, or after some packets.
 struct Death {
   int left;
-  bool of_first = false;  // of the first link, instead of the second one
+  bool of_first = false;  // the first link dies instead of the second one
 };
 class BondedDtls : public ::testing::TestWithParam<Death> {};
 
@@ -37,7 +37,7 @@ TEST_P(BondedDtls, GoesOnOverOneLinkWhereTheOtherDies) {
   const std::string swapped = links.substr(comma + 1) + "," + links.substr(0, comma);
   Pipeline sender(Bonded(GetParam().of_first ? swapped : links, OfRobot()));
   const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
-  // Packets that went to the dying link have time to go over the other one.
+  // Packets that went to the dying link have time to be sent again over the other one.
   constexpr guint kAfterDeath = 100;
   std::optional<guint> at_death;
   Stream(sender, receiver, [&] {

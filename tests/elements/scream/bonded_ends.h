@@ -36,7 +36,7 @@ inline std::string BoundPort(Pipeline& pipeline) {
   return std::to_string(port);
 }
 
-/// A screamsrc of raw audio on a free port, and the number of buffers that came through.
+/// A screamsrc of raw audio on a free port, and the number of buffers that have come.
 struct BondReceiver {
   explicit BondReceiver(const std::string& options = "")
       : pipeline("screamsrc name=in port=0 " + options +
@@ -79,16 +79,16 @@ inline guint64 OfAllLinks(GstElement* element, const char* field) {
   const auto values = OfLinks(element, field);
   return std::accumulate(values.begin(), values.end(), guint64{0});
 }
-/// Returns how many packets the bonded `sink` was to send.
+/// Returns the number of packets that came into the bonded `sink`.
 inline guint64 PacketsOf(GstElement* sink) { return OfAllLinks(sink, "packets-first"); }
 
-/// Returns true once both links have had more than ten reports.
+/// Returns true if both links have had more than ten reports.
 inline bool BothHear(GstElement* sink) {
   const auto accepted = OfLinks(sink, "feedback-accepted");
   return accepted.size() == 2 && accepted[0] > 10 && accepted[1] > 10;
 }
 
-/// Plays until `enough` holds, then ends both pipelines.
+/// Plays until `enough` returns true, then ends both pipelines.
 inline void Stream(Pipeline& sender, BondReceiver& receiver, const std::function<bool()>& enough) {
   g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
   sender.Play();
@@ -98,11 +98,11 @@ inline void Stream(Pipeline& sender, BondReceiver& receiver, const std::function
   EXPECT_TRUE(receiver.pipeline.Ends());
 }
 
-/// Returns how many packets no link sent in time, because the machine stood still.
+/// Returns the number of packets that links dropped as too old, as on a busy machine.
 inline guint64 TooOld(GstElement* sink) {
   return OfAllLinks(sink, "packets-dropped") - OfAllLinks(sink, "copies-cancelled");
 }
-/// Expects all of `count` packets to have come, but a few that were too old.
+/// Expects that all of `count` packets have come, except a few that were too old.
 inline void ExpectAllPassed(const BondReceiver& receiver, Pipeline& sender, guint64 count) {
   const guint64 too_old = TooOld(sender.Get("out").get());
   EXPECT_LE(too_old, count / 10);
@@ -110,8 +110,8 @@ inline void ExpectAllPassed(const BondReceiver& receiver, Pipeline& sender, guin
   EXPECT_GE(receiver.passed + too_old, count);
 }
 
-/// A router between the links of a sender and one receiver. Each link has a port of its own here,
-/// and comes from an address of its own to the receiver.
+/// A router between the links of a sender and one receiver. The sender reaches each link at its own
+/// port of the router, and the receiver gets each link's packets from another address.
 class Router {
  public:
   static constexpr int kLinks = 2;
@@ -133,13 +133,13 @@ class Router {
   Router(const Router&) = delete;
   Router& operator=(const Router&) = delete;
 
-  /// The links, for the property bonding-addresses.
+  /// Returns the links as the property bonding-addresses needs them.
   std::string Addresses() const {
     return "127.0.0.1:" + PortOf(doors_[0]) + "@127.0.0.1,127.0.0.1:" + PortOf(doors_[1]) +
            "@127.0.0.2";
   }
 
-  /// Link 1 dies after so many datagrams in both directions together.
+  /// Link 1 dies after this number of datagrams, counted over both directions.
   std::atomic<int> left{1 << 30};
   /// No link carries any datagram.
   std::atomic<bool> dark{false};
@@ -149,7 +149,7 @@ class Router {
   std::atomic<bool> loses{false};
   /// Link 1 loses the receiver's datagrams.
   std::atomic<bool> mutes{false};
-  /// Link 1 gets a new address at the receiver every so many milliseconds; 0: never.
+  /// The receiver sees a new address of link 1 each time this has passed [ms]; 0: never.
   std::atomic<int> moves_each_ms{0};
   std::atomic<int> moves{0};
 

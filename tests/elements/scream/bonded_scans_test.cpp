@@ -23,14 +23,14 @@ struct Coding {
 
 std::string NameOf(const ::testing::TestParamInfo<Coding>& info) { return info.param.name; }
 
-/// Keeps the coded slices that pass an identity: scan, index and count, bytes.
+/// Records the coded slices that pass an identity: scan, index, count and bytes.
 class PassingSlices {
  public:
   explicit PassingSlices(const ElementPtr& identity) {
     g_object_set(identity.get(), "signal-handoffs", TRUE, nullptr);
     g_signal_connect(identity.get(), "handoff", G_CALLBACK(OnSlice), this);
   }
-  /// Returns them sorted, because the links may change their order.
+  /// Returns the slices sorted, because the links may change their order.
   std::vector<std::string> sorted() const {
     const std::lock_guard lock(mutex_);
     std::vector<std::string> slices = slices_;
@@ -77,7 +77,7 @@ TEST_P(BondedScans, ComeOnceAndWholeOverTwoLinks) {
   sender.Play();
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.Ends());
-  // The slices sent are compared, because a live encoder that is late leaves slices out.
+  // Compares with the slices that were sent: a live encoder that is late leaves slices out.
   const std::vector<std::string> slices = sent.sorted();
   EXPECT_FALSE(slices.empty());
   const std::vector<std::string> came = got.sorted();

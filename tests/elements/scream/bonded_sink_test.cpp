@@ -64,7 +64,7 @@ class BondedSink : public ::testing::Test {
   }
   void Advance(GstClockTime by) { gst_test_clock_set_time(time_.clock(), time_.now() + by); }
 
-  /// Wakes the links that wait for a time that has passed: a new packet does not.
+  /// Wakes the links that wait for a time that has passed: a new packet does not wake them.
   void WakeLinks() {
     for (GstClockID next = nullptr; gst_test_clock_peek_next_pending_id(time_.clock(), &next);) {
       const GstClockTime due = gst_clock_id_get_time(next);
@@ -75,7 +75,7 @@ class BondedSink : public ::testing::Test {
     }
   }
 
-  /// A datagram that the socket of a link brings.
+  /// Returns a datagram as the socket of a link receives it.
   static BufferPtr From(const std::vector<std::uint8_t>& bytes, const char* host, guint port) {
     BufferPtr buffer(FromBytes(bytes));
     SetSource(buffer.get(), host, port);
@@ -84,7 +84,7 @@ class BondedSink : public ::testing::Test {
   void Bring(std::size_t link, BufferPtr buffer) {
     gst_pad_push(PadOf(NameOf("ecnudpsrc", link), "src").get(), buffer.release());
   }
-  /// A report by `link` that the packet arrived.
+  /// Reports over `link` that the packet arrived.
   void Report(std::size_t link, guint16 seq) {
     rtcp::CongestionFeedback report;
     report.sender_ssrc = 9;
@@ -110,10 +110,9 @@ class BondedSink : public ::testing::Test {
       if (packets_[i] > before[i]) links.insert(i);
     return links;
   }
-  /// Advances time. Returns true once all packets given to the link have left, or are not needed
-  /// any more.
+  /// Advances time. Returns true once all packets given to the link have been sent or dropped.
   bool HasLeft(std::size_t link) {
-    // If time goes on while the sending thread has no processor, the packet becomes too old.
+    // Advances slowly: while the sending thread waits for a processor, its packet may get too old.
     constexpr int kPacing = 20, kSeldom = 100;
     int looks = 0;
     return Eventually([&] {
@@ -126,7 +125,7 @@ class BondedSink : public ::testing::Test {
     });
   }
   guint64 OfLink(const char* field, std::size_t link) { return OfLinks(sink_, field)[link]; }
-  /// Gives the socket of a link datagrams of these sizes in one call.
+  /// Pushes a list of datagrams of these sizes to the socket of a link.
   void SendDatagrams(std::size_t link, std::initializer_list<std::size_t> sizes) {
     GstBufferList* list = gst_buffer_list_new();
     for (const std::size_t size : sizes)
@@ -134,7 +133,7 @@ class BondedSink : public ::testing::Test {
     EXPECT_EQ(gst_pad_chain_list(PadOf(NameOf("ecnudpsink", link), "sink").get(), list),
               GST_FLOW_OK);
   }
-  /// Returns the next link that changed and how, or an empty text.
+  /// Returns the next message scream-link-changed as text; empty if there is none.
   std::string ChangedLink() {
     while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT)) {
       if (!gst_message_has_name(message.get(), "scream-link-changed")) continue;
@@ -156,11 +155,11 @@ class BondedSink : public ::testing::Test {
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamsink", nullptr)));
   std::optional<ElementBus> bus_{sink_};
   Harness h_;
-  std::array<std::atomic<int>, 2> packets_{};  // that the bond gave each link
+  std::array<std::atomic<int>, 2> packets_{};  // numbers that the bond gave each link
   std::atomic<GstClockTime> ended_at_{0};      // when the bond passed EOS on
 
  private:
-  /// Opens the segments of the feedback, because the links' own sources wait for their sockets.
+  /// Begins the streams of feedback, because the links' own sources wait for their sockets.
   void Open() {
     for (std::size_t i = 0; i < 2; ++i) {
       const PadPtr pad = PadOf(NameOf("ecnudpsrc", i), "src");
@@ -192,7 +191,7 @@ class BondedSink : public ::testing::Test {
   }
 };
 
-/// The receiver asks on each link, and each screamtx passes it on.
+/// The receiver asks for a key unit on each link, and each screamtx passes the request on.
 TEST_F(BondedSink, AsksForAKeyUnitOnceWhicheverLinksBringTheWish) {
   Start();
   const auto ask = [this](std::size_t link, GstEvent* event) {
@@ -254,7 +253,7 @@ TEST_F(BondedSink, CountsWhatStrangersSendToAnyLink) {
   Restart();
 }
 
-/// Returns the writable properties of the element as text, without those of one link.
+/// Returns the writable properties of the element as text, without those that differ between links.
 std::string SettingsOf(GstElement* element) {
   const std::set<std::string> of_link = {"name",   "parent",      "host",         "port",
                                          "socket", "used-socket", "peer-address", "stats"};
@@ -295,7 +294,7 @@ TEST_F(BondedSink, GivesEachLinkTheSettingsOfTheSink) {
   EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=555555\n"), std::string::npos);
 }
 
-/// The copy of the packet behind the flush comes after those of older packets.
+/// Copies of packets from before the flush would come before that of the packet after the flush.
 TEST_F(BondedSink, CopiesNothingOfBeforeAFlush) {
   Start();
   guint16 seq = 0;
@@ -452,7 +451,7 @@ TEST_F(BondedSink, KeepsALinkThatSendsSomePacketsAndGivesUpOneThatSendsNone) {
   std::string changed;
   EXPECT_TRUE(Eventually([&] {
     SendDatagrams(1, {kTooLong});
-    Advance(100 * GST_MSECOND);  // the bond looks at all links
+    Advance(100 * GST_MSECOND);  // the bond checks all links
     changed = ChangedLink();
     return !changed.empty();
   }));
@@ -551,7 +550,7 @@ TEST_F(BondedSink, WaitsAtTheEndForWhatMayStillArrive) {
   Send(1);
   const GstClockTime made = time_.now();
   std::thread end([this] { gst_harness_push_event(h_.get(), gst_event_new_eos()); });
-  g_usleep(50'000);  // an end that does not wait is over by now
+  g_usleep(50'000);  // an EOS that does not wait has passed by now
   Advance(150 * GST_MSECOND);
   g_usleep(50'000);
   Advance(51 * GST_MSECOND);
@@ -570,7 +569,7 @@ TEST_F(BondedSink, EndsAtOnceWhereAllHasArrived) {
       for (const std::size_t link : links) Report(link, 1);
     }
     ended_at_ = 0;
-    gst_harness_push_event(h_.get(), gst_event_new_eos());  // the clock stands
+    gst_harness_push_event(h_.get(), gst_event_new_eos());  // the clock stands still
     EXPECT_EQ(ended_at_, time_.now()) << with_packets;
   }
 }

@@ -178,7 +178,7 @@ TEST(Bonding, GoesOnWhereTheAddressOfALinkChangesEachSecond) {
   Pipeline sender(Bonded(router.Addresses()));
   const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
   Stream(sender, receiver, [&] { return router.moves >= 4 && receiver.passed >= 450; });
-  // A move of the router loses what waits in its socket.
+  // A move of the router loses the datagrams that wait in its old socket.
   EXPECT_GE(receiver.passed, PacketsOf(out.get()) * 9 / 10);
   EXPECT_EQ(OfLinks(out.get(), "packets-sent").size(), 2U);
   EXPECT_LE(OfLinks(in.get(), "packets-received").size(), 4U);
@@ -354,7 +354,7 @@ INSTANTIATE_TEST_SUITE_P(Ciphers, BondedSrtp,
                                            "srtp-cipher=aes-128-gcm srtp-key=555555555555555555555"
                                            "55555555555555555555555555555555555"));
 
-/// The receiver has the new key first, and uses it once the media do.
+/// The receiver gets the new key first, and uses it for feedback once the media use it.
 TEST(Bonding, TakesANewKeyWithoutAGap) {
   const std::string old_key = std::string(60, '5'), new_key = std::string(60, '6');
   BondReceiver receiver("srtp-key=" + old_key);
@@ -475,7 +475,7 @@ TEST(BondAddresses, MayHaveBlanksAroundEach) {
   EXPECT_EQ(links->front().text, "edge:1@lo") << "as it is shown";
 }
 
-// The addresses of interfaces are compared in this form.
+// Addresses of interfaces have this form, and are compared with the links' addresses.
 TEST(BondAddresses, AreKeptInOneForm) {
   for (const char* local : {"fd00::2", "FD00::2", "fd00:0:0::2", "[fd00::2]"}) {
     std::string error;

@@ -25,7 +25,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::size_t kLengthOfRecord = 11;          // two bytes
 constexpr std::size_t kRandomOfHello = 13 + 12 + 2;  // behind the headers and the version
 
-/// A datagram, and the port at the server's side from which it comes or to which it goes.
+/// A datagram, and the client's port from which the server gets it or to which the server sends it.
 struct Carried {
   guint16 port;
   Bytes bytes;
@@ -103,7 +103,7 @@ class DtlsEnds : public ::testing::Test {
     client_.reset();
     return hello;
   }
-  /// Returns the ports that get answers: waits for `expected` ports, and then for 0.2 s.
+  /// Returns the ports that get answers: waits for `expected` ports, and then 0.2 s more.
   std::set<guint16> Answered(std::size_t expected) {
     std::set<guint16> ports;
     const auto take = [&] {
@@ -216,7 +216,7 @@ TEST_F(DtlsEnds, WhatFollowsAHelloInItsDatagramMakesItNoOtherHello) {
   StartServer();
   for (guint16 port = 5'001; port <= 5'006; ++port) {
     Bytes first = hello.front();
-    first.push_back(static_cast<std::uint8_t>(port));  // as the number of a second record
+    first.push_back(static_cast<std::uint8_t>(port));  // the first byte of a second record
     Give(*server_, {port, first});
   }
   for (std::size_t n = 1; n < hello.size(); ++n) Give(*server_, {5'001, hello[n]});
@@ -254,7 +254,7 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
   EXPECT_EQ(flood(5'201, 1), std::set<guint16>{5'201});
 }
 
-/// A handshake that is open answers another address of its hello, too.
+/// An open handshake also answers another address that sends the same hello.
 TEST_F(DtlsEnds, AServerForgetsTheOldestOfFiveHandshakes) {
   const auto hello = HelloOfClient();
   frozen_at = g_get_monotonic_time();
@@ -307,10 +307,10 @@ TEST_F(DtlsEnds, AKeyedClientTakesThePauseBetweenStopAndStartForNoSilence) {
   client_->Stop();
   up_.Take();
   frozen_at += 60 * G_USEC_PER_SEC;
-  server_.reset();  // it reads the clock, too
+  server_.reset();  // the server would read the clock, too
   const unsigned before = test::looks;
   client_->Start();
-  // The client has looked twice, which takes two reads of the clock each time.
+  // The client has checked twice for silence, each time with two reads of the clock.
   EXPECT_TRUE(test::Eventually([&] { return test::looks >= before + 4; }));
   EXPECT_TRUE(up_.Take().empty());
   frozen_at += 6 * G_USEC_PER_SEC;
@@ -332,7 +332,7 @@ TEST_F(DtlsEnds, AClientTriesAStrangerOnceASecond) {
       return client_->counts().refused == tries;
     }));
     up_.Take();
-    g_usleep(300'000);  // three of its ticks
+    g_usleep(300'000);  // three ticks of the client
     EXPECT_TRUE(up_.Take().empty());
     frozen_at += G_USEC_PER_SEC;
   }

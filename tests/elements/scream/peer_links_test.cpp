@@ -22,11 +22,11 @@ using LinkAddress = std::unique_ptr<GSocketAddress, gst::GObjectUnref>;
 using Verdict = PeerLatch::Verdict;
 
 struct PeerLinks : ::testing::Test {
-  /// Sends a packet. Packets of one SSRC are equal if their numbers are.
+  /// Sends a packet. Packets with the same number and salt are equal.
   Verdict Send(const LinkAddress& from, std::uint16_t number, std::uint64_t salt = 1) {
     return latch.OnPacket(now, {from.get(), 1, number, {}, number * 1000003U + salt});
   }
-  /// Sends each packet over both links, 10 ms apart.
+  /// Sends each packet over both links. Packets are 10 ms apart.
   void SendBoth(const LinkAddress& sooner, const LinkAddress& later, int packets) {
     for (int i = 0; i < packets; ++i, ++seq, now += 10ms) {
       Send(sooner, seq);
@@ -96,7 +96,7 @@ TEST_F(PeerLinks, CopiesThatComeBeforeTheirOriginalsCountToo) {
   EXPECT_EQ(latch.links(), 2U);
 }
 
-// Digests are made only after packets came from a second address.
+// The first packets have no digest: digests are made only after packets from a second address.
 TEST_F(PeerLinks, ALinkThatRunsAheadAtTheStartIsNoRival) {
   for (std::uint16_t n = 0; n < PeerLatch::kProbation; ++n)
     latch.OnPacket(now, {first.get(), 1, static_cast<std::uint16_t>(seq + n), {}});

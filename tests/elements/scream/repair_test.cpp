@@ -101,7 +101,7 @@ TEST_P(RepairTest, BringsBackWhatTheWireLostAndCongestionControlSeesItAll) {
   guint repaired = 0;
   g_object_get(pipeline.Get(repair.repairer).get(), repair.counter, &repaired, nullptr);
   EXPECT_GE(repaired, static_cast<guint>(lost / 2));
-  // A busy machine lets the jitter buffer give up packets that come later.
+  // On a busy machine the jitter buffer may give packets up before they come.
   const auto jitter = [&](const char* name) {
     return static_cast<int>(StatOf(pipeline.Get("jitter").get(), name));
   };
@@ -115,7 +115,7 @@ TEST_P(RepairTest, BringsBackWhatTheWireLostAndCongestionControlSeesItAll) {
   EXPECT_EQ(received["packets-received"], sent["packets-sent"] - static_cast<guint64>(lost));
   EXPECT_EQ(received["ssrcs"], repair.ssrcs);
   EXPECT_EQ(sent["feedback-foreign-blocks"], 0U);
-  // The stream may end before its last packets' report.
+  // The stream may end before the report of its last packets.
   EXPECT_NEAR(static_cast<double>(sent["packets-lost"]), lost, 1);
   EXPECT_GE(sent["packets-acked"] + 40, received["packets-received"]);
 }

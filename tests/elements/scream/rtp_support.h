@@ -36,7 +36,7 @@ struct Rtp {
   bool marker = false;
   guint32 ssrc = 0x1234;
   guint8 payload_type = 96;
-  guint size = 1188;  // of the payload, unless it is given
+  guint size = 1188;  // of the payload, if `payload` is empty
   std::vector<std::uint8_t> payload{};
 };
 
@@ -176,7 +176,7 @@ class FakeTime {
     }
     if (goal > now()) gst_test_clock_set_time(clock(), goal);
   }
-  /// Returns once the element's thread has finished its work and waits.
+  /// Returns once the element's thread has finished its work and waits on the clock.
   void Settle() const { gst_test_clock_wait_for_next_pending_id(clock(), nullptr); }
   void Advance(GstClockTime time) { AdvanceTo(now() + time); }
 

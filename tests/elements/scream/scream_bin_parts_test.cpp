@@ -34,7 +34,7 @@ class ScreamBin : public ::testing::Test {
     g_object_get(element, property, &value, nullptr);
     return value;
   }
-  /// Returns the first element of the factory in the bin.
+  /// Returns the bin's first element that the factory `name` made.
   ElementPtr OfFactory(const char* name) {
     GstIterator* all = gst_bin_iterate_all_by_element_factory_name(GST_BIN(bin_.get()), name);
     GValue value = G_VALUE_INIT;
@@ -55,7 +55,7 @@ class ScreamBin : public ::testing::Test {
     return OwnedSocket(Of<GSocket*>(element, property));
   }
 
-  // Notes of the bin's signals, which it also emits while it is freed.
+  // Records of the bin's signals outlive the bin, which emits signals while it is freed.
   std::string added_, removed_;
   int notified_ = 0;
   OwnedElement bin_;
@@ -91,7 +91,7 @@ TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
     ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS) << kind.cipher;
     EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28 + kind.tag)
         << kind.cipher << " " << kind.auth;
-    // An encoder with other reports than the peer's decoder would be refused.
+    // The peer's decoder would refuse reports with another cipher or authentication.
     const bool authenticates = std::string(kind.cipher).find("gcm") != std::string::npos;
     const ElementPtr encoder = OfFactory("srtpenc");
     ASSERT_TRUE(encoder);
@@ -400,7 +400,7 @@ class ScreamFeedbackFilter : public ScreamBin {
       return GST_PAD_PROBE_OK;
     };
     gst_pad_add_probe(behind.get(), GST_PAD_PROBE_TYPE_BUFFER, count, &taken_, nullptr);
-    // The source is blocked and waits for its socket meanwhile.
+    // The source waits for its socket, so the test can push from the source's pad.
     pad_.reset(gst_element_get_static_pad(Child("ecnudpsrc").get(), "src"));
     gst_pad_push_event(pad_.get(), gst_event_new_stream_start("feedback"));
     const gst::CapsPtr caps(gst_caps_new_empty_simple("application/x-rtcp"));

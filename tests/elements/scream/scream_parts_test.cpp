@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0xff,
                                                 0xff}));  // extensions past the end
 
-/// The pad has no peer that answers for its latency, so it counts as live.
+/// The pad has no peer that answers a latency query, so the stream counts as live.
 TEST(KeyGate, CountsEachPacketThatItDropsAndPassesAllOnceItIsOpen) {
   const auto gate = std::make_shared<KeyGate>();
   const PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("sink", GST_PAD_SINK))));
@@ -264,11 +264,11 @@ TEST(WakeFd, StaysWokenUntilItIsClearedAndComesBeforeData) {
 struct Destination {
   const char* address;
   GSocketFamily of_socket;
-  bool is_v4;  // which stack sends
+  bool is_v4;  // the IPv4 stack sends
 };
 class UdpControl : public ::testing::TestWithParam<Destination> {};
 
-/// Returns the value of the control message of that kind, if there is one.
+/// Returns the value of the control message of `level` and `type`, if there is one.
 template <class Value>
 std::optional<Value> ControlOf(msghdr* message, int level, int type) {
   for (cmsghdr* c = CMSG_FIRSTHDR(message); c != nullptr; c = CMSG_NXTHDR(message, c)) {
@@ -533,7 +533,7 @@ TEST_F(Latch, FeedbackFromAnotherAddressIsANewPathOnceTheOldOneIsSilent) {
 
 DataRate Bps(int n) { return DataRate::BitsPerSecond(n); }
 
-/// Expects the field names of `shown` with the values 1, 2, ... in this order.
+/// Expects that the fields `names` of `shown` have the values 1, 2, ... in this order.
 void ExpectInOrder(const StructurePtr& shown, const std::vector<const char*>& names) {
   const test::Stats stats(shown.get());
   for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(stats[names[i]], i + 1) << names[i];

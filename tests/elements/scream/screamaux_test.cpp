@@ -91,7 +91,7 @@ class ScreamAux : public ::testing::Test {
     }
     ASSERT_EQ(gst_harness_push(harness.get(), buffer), GST_FLOW_OK);
   }
-  /// Lets packets leave; returns how many did.
+  /// Advances time. Returns the number of packets that left.
   int Leave(int rounds = 20) {
     int packets = 0;
     for (int i = 0; i < rounds; ++i) {
@@ -187,7 +187,7 @@ TEST_F(ScreamAux, FindsTheExtensionByItsUriHoweverCapsHaveIt) {
     extension = 14;
     Push();
     extension = kExtension;
-    Push();  // with another extension now
+    Push();  // its number is in another extension
     ASSERT_EQ(Leave(), 3);
     Tell({{next++}});
     EXPECT_EQ(Stat("packets-acked"), before + 1) << extmap;
@@ -222,7 +222,7 @@ TEST(ScreamAuxSettings, FitASessionWithTransportWideFeedback) {
   EXPECT_EQ(overhead, 20U + 8 + 10);  // IPv4, UDP and the tag of SRTP
   EXPECT_EQ(interval, 500 * GST_MSECOND);
   EXPECT_EQ(ecn, 0);
-  // The estimate of screamaux is that of its screamtx.
+  // screamaux has the estimate of its screamtx.
   g_signal_connect(element.get(), "notify::estimated-bitrate",
                    G_CALLBACK(+[](GObject*, GParamSpec*, int* n) { ++*n; }), &notified);
   g_object_notify(G_OBJECT(tx.get()), "estimated-bitrate");
@@ -283,7 +283,7 @@ TEST_F(ScreamAux, ReportsThatAnAttackerMakesUpMoveNothing) {
   const int sent = Leave();
   ASSERT_GT(sent, 2);
   const guint64 target = Stat("target-bitrate");
-  // Reports of packets that were never sent, with wrong sizes, with arrivals long before and after.
+  // Reports of packets that were never sent, with wrong sizes, and with absurd times of arrival.
   for (guint first : {100U, 20000U, 65000U}) Tell({{first}, {first + 1}, {first + 2}});
   Tell({{0, 1200}, {1, 1200}});
   for (guint64 arrival : {guint64{1}, guint64{12 * 24 * 3600} * GST_SECOND, G_MAXUINT64 / 2}) {

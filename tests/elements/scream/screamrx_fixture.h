@@ -45,7 +45,8 @@ class ScreamRx : public ::testing::Test {
     if (host != nullptr) SetSource(buffer, host, port);
     return gst_harness_push(rtp.get(), buffer);
   }
-  /// Starts with payload type 96 in pt-map, behind a `src` that takes `caps`.
+  /// Starts with payload type 96 in pt-map, and with `caps` after `src`. Byes do not end the
+  /// stream.
   void StartAndOutliveByes(const char* caps) {
     SetPtMap(
         "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");

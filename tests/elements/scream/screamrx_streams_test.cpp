@@ -255,7 +255,7 @@ TEST_F(ScreamRx, RestartedStreamsKeepTheirOrderOfPads) {
     r.ssrc = ssrc;
     for (; r.seq < 6; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK) << ssrc;
   };
-  push(20);  // takes `src`
+  push(20);  // gets the pad `src`
   push(10);
   Harness second(gst_harness_new_with_element(element, nullptr, "src_10"));
   push(10);
@@ -287,7 +287,7 @@ TEST_F(ScreamRx, ARestartedStreamGetsAPadThatHadItsPayloadType) {
     r.payload_type = type;
     for (; r.seq < 3; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK) << ssrc;
   };
-  push(1, 96);  // takes `src`
+  push(1, 96);  // gets the pad `src`
   push(2, 97);
   Harness video(gst_harness_new_with_element(element, nullptr, "src_2"));
   push(2, 97);
@@ -416,7 +416,7 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     Rtp camera;
     camera.payload_type = 97;
     camera.size = 10;
-    camera.payload_type = 72;  // would be RTCP with its marker: not in the map
+    camera.payload_type = 72;  // looks like RTCP with a marker, so the map may not have it
     Push(camera);
     camera.payload_type = 97;
     for (camera.ssrc = 1; camera.ssrc < 1'100; ++camera.ssrc) Push(camera);

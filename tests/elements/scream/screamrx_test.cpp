@@ -323,7 +323,7 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
   }
 }
 
-/// A slice without a capture time counts as old as the slice before it in the same run.
+/// A slice without a capture time gets the age of the slice before it in the same run.
 TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
   g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
   Start();
@@ -475,7 +475,7 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
        {"packets-received", "ssrcs", "packets-foreign", "sender-reports", "goodbyes"})
     EXPECT_EQ(Stats(element)[counter], 0U) << counter;
   while (EventPtr event{gst_harness_try_pull_event(rtcp.get())}) continue;
-  // The address that was foreign is now the first.
+  // The address that was foreign now sends first.
   EXPECT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["packets-foreign"], 0U);
   Report();
@@ -499,7 +499,7 @@ TEST_F(ScreamRx, AsksForNoKeyUnitOfTheRunBefore) {
       &blocked, nullptr);
   ASSERT_EQ(Push({}), GST_FLOW_OK);
   ASSERT_TRUE(Eventually([&] { return blocked.load(); }));
-  Rtp r;  // of so many sources that some requests are still to be sent at the stop
+  Rtp r;  // from so many sources that the stop comes before all requests are sent
   for (r.ssrc = 1; r.ssrc <= 60; ++r.ssrc) ASSERT_EQ(Push(r), GST_FLOW_OK);
   GstStructure* wish = gst_structure_new_empty("GstForceKeyUnit");
   ASSERT_TRUE(gst_harness_push_upstream_event(

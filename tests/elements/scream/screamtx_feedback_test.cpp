@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What screamtx makes of RTCP: reports, forgeries, and packets for others.
+// How screamtx handles RTCP: reports, forgeries, and packets for other elements.
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 #include <time.h>
@@ -63,7 +63,7 @@ TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
   EXPECT_GT(told.rtt, 0U);
 }
 
-/// Sends a packet each 10 ms. `arrives` returns what reports contain for a packet's number.
+/// Sends a packet each 10 ms. `arrives` returns what reports contain about a packet number.
 class ScreamTxFates : public ScreamTx {
  protected:
   template <class Arrives>
@@ -132,8 +132,8 @@ TEST_F(ScreamTxFates, AreCountedEachByItsName) {
   Run(60, arrives);
   EXPECT_EQ(Stats(element)["packets-lost"], 3U);
   EXPECT_EQ(Stats(element)["packets-late"], 0U);
-  Run(1, [&](guint16 seq) { return seq == 4 ? arrived : arrives(seq); });  // a lost one arrives
-  // A block of another sender's packets, a forgery, and a report that is cut off.
+  Run(1, [&](guint16 seq) { return seq == 4 ? arrived : arrives(seq); });  // a lost packet arrives
+  // A block of another sender's packets, malformed RTCP, and a datagram that is not RTP.
   CongestionFeedback report = ReportOf(arrives);
   report.blocks.push_back({0x9999, 0, {arrived}});
   Feed(report);
@@ -190,7 +190,7 @@ TEST_F(ScreamTx, ShowsThePadAndTheQueueOfEachStream) {
 
 TEST_F(ScreamTx, TellsTheEncoderTheRoundTripAndTheQueueThatItShows) {
   Start();
-  // The path is empty at first and takes 40 ms. Then a queue adds 30 ms.
+  // The round trip of the empty path takes 40 ms. Then a queue adds 30 ms.
   for (const guint64 round_trip_ms : {40U, 70U})
     for (guint32 i = 0; i < 30; ++i) {
       PushFrame(next_seq_ * 900U, 1);
@@ -400,7 +400,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   const auto ccfb = rtcp::BuildCcfb(ours);
   auto compound = receiver_report;
   compound.insert(compound.end(), ccfb.begin(), ccfb.end());
-  // An rtpbin downstream computes round trips from the time, and finds the sender by the address.
+  // An rtpbin downstream needs the buffer's time for round trips, and its address for the sender.
   GstBuffer* datagram = FromBytes(compound);
   GST_BUFFER_PTS(datagram) = 7 * GST_SECOND;
   const std::unique_ptr<GSocketAddress, gst::GObjectUnref> peer(
@@ -414,7 +414,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   ASSERT_TRUE(meta);
   EXPECT_EQ(meta->addr, peer.get());
 
-  ours.blocks[0].ssrc = 0x9999;  // of another sender after us
+  ours.blocks[0].ssrc = 0x9999;  // of another sender downstream
   const auto theirs = rtcp::BuildCcfb(ours);
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(theirs)), GST_FLOW_OK);
   const BufferPtr passed(gst_harness_pull(rtcp.get()));
@@ -551,7 +551,7 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   gst_harness_play(rtp.get());
   run(38, false);
   EXPECT_FALSE(next());
-  run(10, false);  // in this run there was no message yet
+  run(10, false);  // the first message of this run
   message = next();
   ASSERT_TRUE(message);
   EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
@@ -566,7 +566,7 @@ class ScreamTxEnds : public ScreamTx {
     bus_.reset();
     ScreamTx::TearDown();
   }
-  /// Returns the number of warnings before the end.
+  /// Streams for `length`. Returns the number of warnings before EOS.
   int WarningsOf(GstClockTime length, bool answered) {
     Start();
     for (GstClockTime at = 0; at < length; at += 10 * GST_MSECOND) {

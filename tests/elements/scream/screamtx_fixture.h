@@ -113,7 +113,7 @@ class ScreamTx : public ::testing::Test {
       gst_event_unref(event);
     }
   }
-  /// Returns the names of all events upstream, those of three more pulses included.
+  /// Returns the names of all upstream events, up to the third next repetition of the target.
   std::multiset<std::string> NamesUpstream(GstHarness* h) {
     std::multiset<std::string> names;
     const auto note = [&](GstEvent* event) {
@@ -129,9 +129,9 @@ class ScreamTx : public ::testing::Test {
     }
     return names;
   }
-  /// Returns the target of the next pulse, long after earlier events.
+  /// Returns the target's next repetition, without events that were caused earlier.
   GstLidarTargetBitrate NextTarget(GstHarness* h) {
-    g_usleep(20'000);  // upstream events come from a thread in real time; late ones come now
+    g_usleep(20'000);  // upstream events come from a thread: lets late ones come first
     Targets(h);
     time.Advance(250 * GST_MSECOND);
     GstLidarTargetBitrate target{};
@@ -153,7 +153,7 @@ class ScreamTx : public ::testing::Test {
   bool Leaves() {
     return Eventually([this] { return BufferPtr(gst_harness_try_pull(rtp.get())) != nullptr; });
   }
-  /// Streams a packet and EOS in each of two rounds. `begin_anew` runs behind each EOS.
+  /// Streams a packet and EOS in each of two rounds. Calls `begin_anew` after each EOS.
   void StreamTwice(const std::function<void()>& begin_anew) {
     Start();
     for (int round = 0; round < 2; ++round) {
@@ -170,7 +170,7 @@ class ScreamTx : public ::testing::Test {
     EXPECT_EQ(sent.size(), 2U);
   }
 
-  std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;  // of feedback; none by default
+  std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;  // source of feedback; null by default
   guint32 receiver = 9;                                     // SSRC that reports come from
   std::vector<int> ecns;
   std::vector<std::vector<std::uint8_t>> byes;

@@ -237,8 +237,8 @@ class ScreamTxOf : public ScreamTx {
   static bool IsIn(const std::future<GstFlowReturn>& pushed, std::chrono::milliseconds patience) {
     return pushed.wait_for(patience) == std::future_status::ready;
   }
-  /// Returns the time for which a packet waits, and lets it enter then. Returns
-  /// GST_CLOCK_TIME_NONE if it enters at once.
+  /// Returns the clock time at which a packet enters, and advances to it. Returns
+  /// GST_CLOCK_TIME_NONE if the packet enters at once.
   GstClockTime EntryOf(guint16 seq, GstClockTime pts) {
     auto pushed = PushAt(seq, pts);
     GstTestClock* clock = gst_harness_get_testclock(rtp.get());
@@ -284,7 +284,7 @@ TEST_F(ScreamTxOf, AFileKeepsItsTimeBehindAFlushThroughAPauseButNotThroughAPrero
   gst_element_set_base_time(element, 5 * GST_SECOND);
   gst_element_set_state(element, GST_STATE_PLAYING);
   EXPECT_EQ(EntryOf(3, 2 * GST_SECOND), 17 * GST_SECOND);
-  gst_element_set_base_time(element, 17 * GST_SECOND);  // of a preroll elsewhere
+  gst_element_set_base_time(element, 17 * GST_SECOND);  // as after a preroll of another element
   EXPECT_EQ(EntryOf(4, 3 * GST_SECOND), 20 * GST_SECOND);
 }
 
@@ -425,7 +425,7 @@ TEST_F(ScreamTx, AddsItsLongestDelayToTheLatency) {
   Start();
   gst_harness_set_upstream_latency(rtp.get(), 30 * GST_MSECOND);
   EXPECT_EQ(gst_harness_query_latency(rtp.get()), 100 * GST_MSECOND);
-  g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);  // for the next start
+  g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);  // applies at the next start
   EXPECT_EQ(gst_harness_query_latency(rtp.get()), 100 * GST_MSECOND);
 }
 

@@ -19,7 +19,7 @@ TEST_F(ScreamTx, TellsTheEncoderItsStartBitrateWithTheCaps) {
   const auto targets = Targets(rtp.get());
   ASSERT_GE(targets.size(), 1U);
   EXPECT_STREQ(targets[0].reason, "start");
-  // The target is without the headers of 1200-byte packets.
+  // The target excludes the headers of 1200-byte packets.
   EXPECT_NEAR(targets[0].bitrate, 2'000'000.0 * 1188 / 1228, 1000);
 }
 
@@ -233,7 +233,7 @@ TEST_F(ScreamTxReports, AreNotSentUnlessAskedForNorMoreOftenThanTenASecond) {
   EXPECT_LE(Reports().size(), 20U);
 }
 
-/// An encoder that takes targets, or not, and no key requests.
+/// An encoder that refuses key requests, and takes targets only if the parameter is true.
 class ScreamTxUnheeded : public ScreamTx, public ::testing::WithParamInterface<bool> {
  protected:
   void StartRefusing() {
@@ -305,7 +305,7 @@ TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
   g_usleep(20'000);
   int more = 0;
   while (bus.Pop(GST_MESSAGE_ELEMENT)) ++more;
-  EXPECT_LE(more, 1);  // the first came with the start
+  EXPECT_LE(more, 1);  // one more may have come at the start
   gst_element_set_state(element, GST_STATE_NULL);
 }
 

@@ -183,7 +183,7 @@ TEST_F(SrtpIn, JoinsAStreamThatHasWrappedWhoseReportsComeFirst) {
     Wait(0.2);
   }
   EXPECT_GE(refused, 2) << "so reports came in between";
-  // Reports still pass once the media is found, and no replay of them does.
+  // Once the media is found, reports still pass, but replays of reports do not.
   const BufferPtr report = sender.ProtectReport();
   EXPECT_TRUE(Passes(report));
   EXPECT_FALSE(Passes(report));
@@ -227,7 +227,7 @@ TEST_F(SrtpIn, FindsAStreamThatWrappedInSilence) {
   Wait(3);
   int refused = 0;
   for (guint16 seq = 10; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(++refused, 40);
-  EXPECT_GE(refused, 19);  // fewer failures may be damage
+  EXPECT_GE(refused, 19);  // fewer refusals may be damaged packets
   EXPECT_TRUE(Passes(sender.Protect(1'000)));
 }
 
@@ -260,7 +260,7 @@ TEST_F(SrtpIn, ForgersDoNotMakeAStreamLost) {
   EXPECT_TRUE(Passes(sender.Protect(1)));
   Forge(3'000);
   EXPECT_TRUE(Passes(sender.Protect(2)));
-  // The forgeries did not use up the tries for strangers, either.
+  // An unknown SSRC still passes: the forgeries did not use up the trials.
   EXPECT_TRUE(Passes(sender.Protect(1, 99)));
 }
 
@@ -268,15 +268,15 @@ TEST_F(SrtpIn, TriesFiveHundredStrangersASecond) {
   Protector sender(Key(5));
   EXPECT_TRUE(Passes(sender.Protect(1)));
   for (guint32 ssrc = 1'000; ssrc < 1'600; ++ssrc) Forge(1, ssrc);
-  EXPECT_TRUE(Passes(sender.Protect(2)));       // a known sender
-  EXPECT_FALSE(Passes(sender.Protect(1, 99)));  // a stranger that has to wait
+  EXPECT_TRUE(Passes(sender.Protect(2)));       // a known SSRC
+  EXPECT_FALSE(Passes(sender.Protect(1, 99)));  // an unknown SSRC has to wait
   Wait(0.1);
   EXPECT_TRUE(Passes(sender.Protect(2, 99)));
 }
 
 TEST_F(SrtpIn, KeepsHalfOfWhatMayBeTriedForFirstTries) {
   Protector sender(Key(5));
-  Forge(40, 77);  // with up to 32 values each
+  Forge(40, 77);  // each causes trials of up to 32 rollover counters
   for (guint32 ssrc = 1; ssrc <= 200; ++ssrc) EXPECT_TRUE(Passes(sender.Protect(1, ssrc))) << ssrc;
 }
 
@@ -316,7 +316,7 @@ TEST_F(SrtpIn, KnowsItsStreamsAmongAnyNumberOfOthers) {
   EXPECT_TRUE(Passes(sender.Protect(400)));  // with the rollover count of the known stream
 }
 
-/// A packet tries 32 values: three packets try all 4, 16 and 64 of the first rounds.
+/// A packet causes trials of 32 values, so three packets cover the rounds of 4, 16 and 64 values.
 TEST_F(SrtpIn, GoesOnWithItsSearchWhereGarbageComesFromMoreSsrcsThanItRemembers) {
   constexpr guint32 kStreams = 16;
   Protector sender(Key(5));
@@ -388,13 +388,13 @@ TEST_F(SrtpIn, RefusesARecordingOfTheKeyBefore) {
 }
 
 TEST_F(SrtpIn, IsNotStoppedWhileItMayDecode) {
-  // srtpdec would warn of a packet that it decodes while it stops. The socket stops by itself.
+  // srtpdec would warn of a packet that it decodes while it stops, so only the socket stops.
   Protector sender(Key(5));
   const BufferPtr first = sender.Protect(1);
   EXPECT_TRUE(Passes(first));
   gst_element_set_state(bin_.get(), GST_STATE_READY);
   EXPECT_TRUE(Passes(sender.Protect(2)));
-  // The stream is unknown after a new start.
+  // After a stream-start event the stream is unknown, so the first packet passes again.
   gst_element_set_state(bin_.get(), GST_STATE_PLAYING);
   EXPECT_FALSE(Passes(first));
   gst_pad_push_event(socket_, gst_event_new_stream_start("again"));
