@@ -26,7 +26,7 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
       : firing_(*synth::FindFiring(GetParam())),
         h_(gst_harness_new_parse(
             (std::string("lidartestsrc num-buffers=2 scene=tunnel model=") + GetParam()).c_str())) {
-    // The width changes from scan to scan, and the source may be ahead of the test.
+    // Keeps the caps of each cloud: the width changes, and the source may be ahead of the test.
     gst_pad_add_probe(
         h_->sinkpad, GST_PAD_PROBE_TYPE_BUFFER,
         [](GstPad* pad, GstPadProbeInfo*, gpointer self) {
@@ -85,7 +85,7 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
 
   const Firing& firing_;
   Harness h_;
-  // caps of each cloud that came
+  // caps of the clouds
   GAsyncQueue* const caps_ =
       g_async_queue_new_full([](gpointer caps) { gst_caps_unref(static_cast<GstCaps*>(caps)); });
   BufferPtr cloud_;
@@ -212,8 +212,8 @@ TEST(DriverModels, SlicesCoverTheScanOnce) {
   EXPECT_EQ(points[0], points[1]);
 }
 
-/// A stop may come between the making of a cloud and its caps. The base class then ignores a
-/// buffer.
+/// A stop may come between the making of a cloud and its caps. The base class would then ignore a
+/// buffer, and leak it.
 TEST(DriverModels, AStopBeforeTheCapsOfACloudLeavesNoBuffer) {
   const ElementPtr source(gst_element_factory_make("lidartestsrc", nullptr));
   gst_util_set_object_arg(G_OBJECT(source.get()), "model", "vlp-16");

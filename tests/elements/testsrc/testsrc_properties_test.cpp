@@ -34,7 +34,7 @@ const SourceEffect kSourceEffects[] = {
     {"is-live", "true"},
 };
 
-/// Returns all that a source gives and writes in a few slices.
+/// Returns all that a source outputs and writes for a few slices.
 Lines LinesOf(const std::string& properties) {
   const std::string launch = "lidartestsrc num-buffers=4 " + properties;
   const gst::ElementPtr element(gst_parse_launch(launch.c_str(), nullptr));

@@ -194,7 +194,7 @@ TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
   EXPECT_EQ(max, GST_CLOCK_TIME_NONE);
 }
 
-/// Lets a waiter go whose time has passed: the test clock holds it until then.
+/// Wakes a waiter whose time has passed: the test clock does not wake it by itself.
 void ReleaseWaiter(const Harness& h) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_clock_id_unref(
@@ -208,7 +208,7 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
-  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // this slice was under way
+  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // the source was waiting with this slice
   ReleaseWaiter(h);
   const BufferPtr next = Pull(h);
   EXPECT_EQ(SliceOf(next).scan_id, 10U);
@@ -221,7 +221,7 @@ TEST(LidarTestSrc, CaptureTimesAfterAPauseAreThoseOfTheDay) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
   SetPlaying(h.get());
-  // The running time stands still, as it does in a pipeline that pauses.
+  // The test clock stands still during the pause, as a pipeline's running time does.
   ASSERT_TRUE(test::AwaitClockWait(h.get(), test::kClockStart + 12'500'000));
   gst_element_set_state(h->element, GST_STATE_PAUSED);
   const auto resumed = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
@@ -306,7 +306,7 @@ TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
   }
 }
 
-/// Returns the error of a pipeline that does not start; null without one.
+/// Returns the error of a pipeline that does not start; null if it posts none.
 ErrorPtr ErrorOfStart(const char* launch) {
   const ElementPtr pipeline(gst_parse_launch(launch, nullptr));
   EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
@@ -447,7 +447,7 @@ TEST(LidarTestSrc, ItsImuGivesTheSameSamplesAgain) {
     EXPECT_EQ(BytesOf(first.samples[i]), BytesOf(again.samples[i]));
 }
 
-/// lidartestsrc with its IMU, on a test clock. Keeps what leaves the pad imu.
+/// lidartestsrc with its IMU, on a test clock. Keeps the buffers that leave the pad imu.
 class LiveImu {
  public:
   LiveImu() {
@@ -498,7 +498,7 @@ TEST(LidarTestSrc, AnImuSkipsWithTheClouds) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
-  Pull(h);  // this slice was under way
+  Pull(h);  // the source was waiting with this slice
   ReleaseWaiter(h);
   EXPECT_EQ(GST_BUFFER_PTS(Pull(h).get()), GST_SECOND);
   ASSERT_EQ(live.samples().size(), 2U);

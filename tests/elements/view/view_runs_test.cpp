@@ -61,7 +61,7 @@ class ViewRun {
     EXPECT_EQ(gst_pad_push(h_->srcpad, cloud.release()), GST_FLOW_OK);
   }
   void PushScan(guint scan) { Push({scan, 0, 1, 0}); }
-  /// Downstream wants pictures of another size from now on.
+  /// Makes downstream ask for pictures of another size.
   void Resize(const char* caps) { gst_harness_set_sink_caps_str(h_.get(), caps); }
 
  private:
@@ -110,7 +110,7 @@ TEST(ViewColors, AreAutomaticWhereTheyWouldEndBelowTheirBegin) {
 
 TEST(ViewProperties, AreAllInTheTable) { ExpectEachPropertyIn(kViewEffects, "pointcloudview"); }
 
-/// Leaves much behind: a map, a warning, and a picture that is begun.
+/// Leaves much state behind: a map, a warning, and an incomplete picture.
 void DrawMuch(ViewRun* run) {
   for (guint scan = 0; scan < 5; ++scan) run->PushScan(scan);
   run->Push({5, 0, 1, 0}, false);

@@ -53,7 +53,7 @@ class View : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer.get(), &slice);
     return Push(std::move(buffer), slice.scan_id * 100 * GST_MSECOND);
   }
-  /// Pushes a scan or a slice of it, taken at `place`, without a rotation.
+  /// Pushes a scan or a slice of it, seen from `place` without a rotation.
   GstFlowReturn PushFrom(std::array<float, 3> place, const std::vector<Point>& points, guint scan,
                          guint index = 0, guint count = 1) {
     BufferPtr buffer = Cloud(points);
@@ -83,7 +83,7 @@ class View : public ::testing::Test {
     gst_video_frame_unmap(&frame);
     return rgb;
   }
-  /// Returns true for a bright pixel: a point. The background is dark, rings are between.
+  /// Returns true for a bright pixel: a point. The background is dark, and rings are in between.
   bool IsPoint(int x, int y) {
     const auto p = Pixel(x, y);
     return std::max({p[0], p[1], p[2]}) > 130;
@@ -250,10 +250,10 @@ TEST_F(View, TheMapKeepsWhatWasSeenWhereItWas) {
     PushFrom({driven, 0, 0}, {{wall, 12, 0, 1}, {wall, 12.5F, 0, 1}}, scan);
     Pull();
   }
-  // The middle of the way, x = 5, is the centre of the picture.
+  // The middle of the driven way, x = 5, is the centre of the picture.
   EXPECT_TRUE(IsDrawn(140, 25));
   EXPECT_FALSE(IsDrawn(160, 25));
-  EXPECT_TRUE(IsDrawn(95, 50));  // the way
+  EXPECT_TRUE(IsDrawn(95, 50));  // the driven way
   EXPECT_FALSE(IsDrawn(80, 50));
 }
 
@@ -263,7 +263,7 @@ TEST_F(View, TheColumnsOfASliceLieWhereTheSensorWasInItsSweep) {
   const Point aside{0.25F, 11.75F, 0, 1};
   PushFrom({0, 0, 0}, {missing, missing, missing, missing}, 0);
   Pull();
-  // The sensor drives ten metres in a scan, so a quarter of that between the columns of a half.
+  // The sensor drives 10 m per scan of four columns, so 2.5 m from one column to the next.
   PushFrom({10, 0, 0}, {aside, aside, missing, missing}, 1, 0, 2);
   PushFrom({10, 0, 0}, {missing, missing, missing, missing}, 1, 1, 2);
   Pull();
