@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A connection on a test clock, whose peer reads nothing, says nothing, or lies.
+// A connection on a test clock, whose peer reads nothing, sends nothing, or sends nonsense.
 #include "ext/web/client.h"
 
 #include <gio/gunixsocketaddress.h>
@@ -132,7 +132,7 @@ struct ServerFrame {
 /// A peer that speaks the protocol.
 class Conversation : public Connection {
  protected:
-  /// Returns all frames until none is under way.
+  /// Returns all frames that the client sends until it is idle.
   std::vector<ServerFrame> Frames() {
     std::array<char, 1 << 16> bytes{};
     for (int idle = 0; idle < 3;) {
@@ -171,7 +171,7 @@ class Conversation : public Connection {
     slice->payload.assign(text.begin(), text.end());
     return slice;
   }
-  /// Returns the ends of the frames' payloads, which differ.
+  /// Returns the last two bytes of each frame's payload, which differ between frames.
   static std::vector<std::string> EndsOf(const std::vector<ServerFrame>& frames) {
     std::vector<std::string> ends;
     for (const ServerFrame& f : frames) ends.push_back(f.payload.substr(f.payload.size() - 2));

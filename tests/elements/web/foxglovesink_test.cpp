@@ -142,7 +142,7 @@ TEST(FoxgloveSink, OfTwoSubscriptionsOfATopicTheNewestCounts) {
   sink.PushCloud(8);
   EXPECT_EQ(FirstX(peer.Next()), 8.0F);
   EXPECT_GT(sink.Stat("points-sent"), sent);
-  // The topic has no subscriber once the last one is gone.
+  // After that the topic has no subscriber.
   peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[2]})");
   peer.Sync();
   const guint64 before = sink.Stat("points-sent");
@@ -158,9 +158,9 @@ TEST(FoxgloveSink, ASubscriptionIdNamesOneChannel) {
   peer.Subscribe("/points", 1);
   const std::size_t before = peer.statuses.size();
   peer.Subscribe("/statistics", 1);
-  EXPECT_EQ(peer.statuses.size(), before + 2);  // of the refusal, and of Sync()
+  EXPECT_EQ(peer.statuses.size(), before + 2);  // answers to the refused request and to Sync()
   EXPECT_EQ(sink.Stat("malformed"), 1U);
-  peer.Subscribe("/points", 1);  // the same again is none of another channel
+  peer.Subscribe("/points", 1);  // the same channel again is no error
   EXPECT_EQ(sink.Stat("malformed"), 1U);
   peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
   peer.Sync();
@@ -421,7 +421,7 @@ TEST_P(PosesOfClouds, AreNotShownIfTheirTopicIsInUseWhichIsSaidOnce) {
                 "The poses of the clouds are not shown: the topic \"" + topic +
                 "\" is already used for something else; set the property topic of one of its "
                 "pads."});
-  // The next run has them: the other stream has not begun.
+  // The next run shows the poses: the stream that uses the topic has not begun.
   gst_element_set_state(sink.element(), GST_STATE_NULL);
   gst_element_set_state(sink.element(), GST_STATE_PLAYING);
   gst_harness_push_event(sink.harness(), gst_event_new_stream_start("again"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The code that lets connections in, on a test clock.
+// The code that accepts connections, on a test clock.
 #include "ext/web/front_door.h"
 
 #include <gtest/gtest.h>
@@ -127,11 +127,11 @@ class SomeAddresses : public test::FolderTest {
   std::size_t Ended() const {
     return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), HasEnded));
   }
-  /// Waiting handshakes are noticed.
+  /// Lets the handshakes notice new connections.
   static void Notice() {
     for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
   }
-  /// Makes all running handshakes take too long.
+  /// Advances time so far that all running handshakes end.
   void EndThoseThatRun() { handshakes_.Tick(g_get_monotonic_time() + 11 * kSecond_us); }
 
   ObjectPtr<GTlsCertificate> certificate_;
@@ -144,7 +144,7 @@ class SomeAddresses : public test::FolderTest {
 TEST_F(SomeAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
   for (int i = 0; i < 9; ++i) Begin("127.0.0.2");
   Begin("127.0.0.1");
-  Notice();  // before a round of running ones ends
+  Notice();  // before running handshakes end
   EndThoseThatRun();
   EXPECT_TRUE(test::WaitUntil([this] { return HasEnded(peers_.back()); }))
       << "three of the other address run, and this one";
@@ -323,7 +323,7 @@ TEST(SliceService, WantsNothingRecodedOnceTheLastViewerLeft) {
   channel.id = 7;
   const auto topic = std::make_shared<Topic>(channel);
   SliceService service{DataRate()};
-  alignas(Client) std::byte nobody[sizeof(Client)];  // a key; it is sent nothing
+  alignas(Client) std::byte nobody[sizeof(Client)];  // used as a key only
   auto* client = reinterpret_cast<Client*>(nobody);
   service.Subscribe(client, topic, 1);
   topic->set_wants_recoded(true);

@@ -10,13 +10,13 @@ namespace {
 
 constexpr GstClockTime kCapturedAt = 1'500'000'000 * GST_SECOND;
 
-/// A viewer whose messages are noted.
+/// A viewer that notes its messages in the course.
 class NotedViewer {
  public:
   NotedViewer(Course* course, guint64 port)
       : course_(*course), peer_("ws://127.0.0.1:" + std::to_string(port), {"foxglove.sdk.v1"}) {}
 
-  /// Notes a new channel of a topic, and all that is said of it.
+  /// Subscribes to a new channel of a topic, and notes the channel's description.
   void Subscribe(const char* topic, std::uint32_t id) {
     EXPECT_TRUE(WaitUntil([&] { return peer_.Channel(topic) != noted_[topic]; }));
     noted_[topic] = peer_.Channel(topic);
@@ -38,8 +38,8 @@ class NotedViewer {
     peer_.Sync();
     course_.AddLine("answer " + nlohmann::json(peer_.statuses).dump());
   }
-  /// Waits for so many messages, and notes all that come before the answer to a request. Answers
-  /// go before messages that wait.
+  /// Waits for `messages` messages, and notes all that come before the answer to a request. Answers
+  /// overtake messages that wait.
   void NoteReceived(std::size_t messages) {
     EXPECT_TRUE(WaitUntil([&] { return peer_.received.size() >= messages; }));
     peer_.Sync();
@@ -92,7 +92,7 @@ class WebScript {
  public:
   explicit WebScript(Course* course) : c_(*course) {
     c_.Hide("port=.uint.[1-9][0-9]*", "port");
-    c_.Hide(", bytes-sent=.guint64.[0-9]+", "");  // counted behind the last message
+    c_.Hide(", bytes-sent=.guint64.[0-9]+", "");  // counted after the last message has come
   }
   void Begin(const std::string& caps) {
     c_.Begin(caps);
@@ -100,7 +100,7 @@ class WebScript {
     c_.AwaitStat("clients", 1);
   }
   NotedViewer& viewer() { return *viewer_; }
-  /// Pushes a buffer that becomes so many messages.
+  /// Pushes a buffer that becomes `messages` messages.
   void Push(const char* what, gst::BufferPtr buffer, std::size_t messages = 1) {
     const GstFlowReturn flow = gst_pad_push(c_.harness()->srcpad, buffer.release());
     viewer_->NoteReceived(messages);

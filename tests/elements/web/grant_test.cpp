@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Signed tokens: which are read, and what they allow.
+// Signed tokens: which tokens are accepted, and what they allow.
 #include "ext/web/grant.h"
 
 #include <gtest/gtest.h>
@@ -132,7 +132,7 @@ TEST(SignedToken, ShowsAClientTheTopicsOfItsRobotOnly) {
   Peer peer(sink.Url("ws", "/?token=" + Sign(Claims(100, R"(["/r7/*"])"))), {"foxglove.sdk.v1"});
   const std::uint32_t id = peer.Channel("/r7/points");
   EXPECT_EQ(peer.channels.count("/statistics"), 0U);
-  // The number of a hidden channel does not help a client to subscribe.
+  // A client cannot subscribe to a hidden channel, even by the channel's number.
   const nlohmann::json item = {{"id", 1}, {"channelId", id}};
   stranger.SendText(nlohmann::json{{"op", "subscribe"}, {"subscriptions", {item}}}.dump());
   stranger.Sync();

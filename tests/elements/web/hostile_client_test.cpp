@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clients that read nothing, say nothing or talk nonsense: the pipeline must not notice.
+// Clients that read nothing, send nothing or send nonsense must not disturb the pipeline.
 #include <gtest/gtest.h>
 
 #include "src/foxglove/websocket.h"
@@ -43,7 +43,7 @@ class RawClient {
     bytes.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
     return bytes;
   }
-  /// Returns `size` bytes; empty if the stream ends before.
+  /// Returns `size` bytes; empty if the stream ends earlier.
   std::string ReadAll(std::size_t size) {
     std::string all;
     while (all.size() < size) {
@@ -114,7 +114,7 @@ RawClient SubscribedClient(Sink* sink) {
   client.SendText(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":)" +
                   std::to_string(id) + "}]}");
   client.SendText(R"({"op":"nothing"})");
-  client.ReadFrame();  // the answer to that: the subscription is known
+  client.ReadFrame();  // this answer comes after the subscription
   return client;
 }
 
@@ -164,7 +164,7 @@ TEST(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
   ASSERT_TRUE(WaitUntil([&] { return sink.Stat("messages-dropped") > 2; }));
   slow.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
   slow.SendText(R"({"op":"nothing"})");
-  // The answer comes after what is in the sockets' buffers.
+  // The answer comes after the messages in the sockets' buffers.
   std::string frame;
   do {
     frame = slow.ReadFrame();
@@ -267,7 +267,7 @@ struct Nonsense {
   const char* name;
   bool upgrade;
   std::string bytes;
-  guint64 malformed = 0;  // how often the server counts it
+  guint64 malformed = 0;  // expected counter of the server
 };
 
 class NonsenseClient : public ::testing::TestWithParam<Nonsense> {};

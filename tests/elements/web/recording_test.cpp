@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Viewers that go back to what mcapsink has written, or still writes.
+// Viewers that replay recordings which mcapsink has written or still writes.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Time of the first slice; slices follow each other by 25 ms.
+/// Time of the first slice. Slices are 25 ms apart.
 constexpr std::uint64_t kFirst_ns = 1'700'000'000'000'000'000;
 constexpr std::uint64_t kSlice_ns = 25'000'000;
 
@@ -32,7 +32,7 @@ class Recordings : public FolderTest {
   std::string path() const { return folder_ + "/r%d.mcap"; }
   std::string file() const { return folder_ + "/r0.mcap"; }
   void OpenEdge() { edge_.emplace("sink_0::recording=" + path()); }
-  /// Edge and recorder get slices.
+  /// Pushes `n` slices to the edge and to the recorder.
   void Push(guint n) {
     for (guint i = 0; i < n; ++i) {
       gst::BufferPtr buffer = edge_->robot.Next();
@@ -80,7 +80,7 @@ nlohmann::json DamagedAtEnd(Viewer* viewer, guint number) {
   return viewer->peer.recording["damaged"];
 }
 
-/// Slices that refer to nothing.
+/// A recording of slices that refer to no other slices.
 class LargeArchive final : public web::Archive {
  public:
   explicit LargeArchive(std::size_t size) : size_(size) {}
@@ -110,7 +110,7 @@ class LargeArchive final : public web::Archive {
   std::uint64_t next_ = 0;
 };
 
-/// A jump reads the slices before its time for their references, more of them than it keeps.
+/// A jump also reads slices before its time, as references, and more of them than it keeps.
 TEST(Recording, ThatIsLargeGivesWhatIsWanted) {
   web::Recording recording(std::make_unique<LargeArchive>(100'000));
   const std::uint64_t time = LargeArchive::TimeOf(600);
@@ -197,7 +197,7 @@ TEST_F(Recordings, AreSentAsFastAsTheViewerDrawsThem) {
   Viewer viewer(&edge_->sink);
   Replay(&viewer, 1, Seconds(kFirst_ns + 10 * kSlice_ns));
   for (int i = 0; i < 8; ++i) viewer.Draw();
-  // The viewer acknowledges no more, so that the last slices of the recording wait.
+  // The viewer stops acknowledging, so the last slices of the recording wait.
   for (int i = 0; i < 40; ++i) viewer.peer.Sync();
   EXPECT_LE(viewer.peer.received.size(), 512U);
 }
@@ -360,19 +360,19 @@ class KeptStream {
     buffers_.emplace_back(gst_sample_new(kept, caps.get(), nullptr, nullptr));
     gst_buffer_unref(kept);
   }
-  /// Makes the next answer count messages that it leaves out.
+  /// Makes the next answer report `messages` messages as damaged.
   void LeaveOut(guint64 messages) {
     const std::lock_guard lock(mutex_);
     left_out_ = messages;
   }
   /// While the lock exists, the server gives no answer.
   std::unique_lock<std::mutex> Hang() { return std::unique_lock(mutex_); }
-  /// Number of answers that only told the times.
+  /// Returns the number of answers without samples, which have only the times.
   unsigned looks() {
     const std::lock_guard lock(mutex_);
     return looks_;
   }
-  /// Number of answers that began at a time.
+  /// Returns the number of answers that began at a time.
   unsigned jumps() {
     const std::lock_guard lock(mutex_);
     return jumps_;
@@ -440,13 +440,13 @@ class Histories : public ::testing::Test {
   std::uint64_t pushed_ = 0;
 };
 
-/// An item of the archive: the position after it, and the number of slices up to there.
+/// The position after an item of the archive, and the number of slices up to that position.
 struct PlaceInArchive {
   std::uint64_t position = 0;
   std::size_t slices = 0;
 };
 
-/// Returns the times of the slices that follow.
+/// Reads the archive to its end, and returns the times of the slices.
 std::vector<std::uint64_t> RestOf(web::Archive* archive,
                                   std::vector<PlaceInArchive>* places = nullptr) {
   std::vector<std::uint64_t> times;
@@ -594,7 +594,7 @@ TEST_F(Histories, WhoseServerIsGoneSaySo) {
   viewer.Draw();
 }
 
-/// Otherwise a viewer could fill memory with jumps and looks, each of a subscription of its own.
+/// Otherwise a viewer could fill the memory with requests, each of a new subscription.
 TEST_F(Histories, AreNotReadForASubscriptionThatAnotherReplaced) {
   Push(40);
   Viewer viewer(&edge_.sink);
@@ -622,7 +622,7 @@ TEST_F(Recordings, SurviveAViewerThatJumpsWithoutEnd) {
     Replay(&viewer, i, i % 3 == 0 ? 1e10 : Seconds(kFirst_ns + (i % 400) * kSlice_ns));
   AwaitStatus(&viewer, 2000);
   Peer other(&edge_->sink);
-  other.Sync();  // served meanwhile
+  other.Sync();  // the server still serves other viewers
   EXPECT_FALSE(viewer.peer.closed());
 }
 

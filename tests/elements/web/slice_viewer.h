@@ -46,8 +46,8 @@ class StillClouds {
   gst::CapsPtr caps_;
 };
 
-/// Codes the slices of a sensor that stands still. All are acknowledged at once, so that the coder
-/// refers to them.
+/// Codes the slices of a sensor that stands still. Each slice is acknowledged at once, so that the
+/// coder refers to it.
 class Robot {
  public:
   explicit Robot(const std::string& options = "effort=2")
@@ -68,7 +68,7 @@ class Robot {
     return slice;
   }
   gst::CapsPtr caps() { return CapsOf(coder_.get()); }
-  /// Makes the next slices stand alone.
+  /// Makes the next slices refer to no others.
   void AskForKey() {
     gst_harness_push_upstream_event(
         coder_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
@@ -123,20 +123,20 @@ class Viewer {
         {*fields, fields->MinimumStep()}, static_cast<std::uint32_t>(model->beams.size()), *model};
     decoder_.emplace(format_, 1U << 20);
   }
-  /// Takes the next slice and decodes it. Poses of a replay come before it.
+  /// Takes and decodes the next slice. Poses of a replay come before their slice.
   void Draw(bool acknowledge = true) {
     for (last = peer.Next(); (SliceReader(last).flags & 2) != 0; last = peer.Next())
       poses.push_back(last);
     const SliceReader slice(last);
     EXPECT_TRUE(decoder_->Decode(slice.slice)) << slice.scan << "." << slice.index;
-    // The slice is the robot's, unchanged or coded anew.
+    // The server sends the robot's slice unchanged, or coded anew.
     EXPECT_EQ(slice.first_column, slice.index * 512 / slice.count);
     if (slice.flags == 0) ++own;
     if (slice.flags == 1) ++recoded;
     if (acknowledge) Acknowledge(slice.scan, slice.index);
   }
-  /// Returns when the server has the acknowledgement: otherwise the next scan could come before it,
-  /// and a slow machine's viewer would not get that scan.
+  /// Returns once the server has the acknowledgement. Otherwise, on a slow machine, the next scan
+  /// could come before the acknowledgement, and the viewer would not get that scan.
   void Acknowledge(std::uint32_t scan, std::uint32_t index, unsigned subscription = 9) {
     peer.SendText(nlohmann::json{
         {"op", "drawn"}, {"subscriptionId", subscription}, {"scan", scan}, {"slice", index}}
@@ -174,7 +174,7 @@ struct Edge {
     EXPECT_EQ(gst_harness_push(sink.harness(), buffer.release()), GST_FLOW_OK);
     return bytes;
   }
-  /// Returns how often the element asked the robot for a key unit.
+  /// Returns the number of key units that the element has requested from the robot.
   guint key_requests() {
     guint n = 0;
     while (const gst::EventPtr event{gst_harness_try_pull_upstream_event(sink.harness())})

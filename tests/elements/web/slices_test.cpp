@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Coded slices: to viewers unchanged, decoded for others, coded anew for late viewers.
+// Coded slices: sent unchanged to viewers, decoded for other clients, coded anew for late viewers.
 #include <gtest/gtest.h>
 
 #include "src/codec/slice_links.h"
@@ -32,7 +32,7 @@ TEST(Slices, GoToAViewerAsTheyAre) {
     }
     bytes += pushed.size();
   }
-  // The very first slice came before the viewer.
+  // The viewer came after the very first slice.
   EXPECT_GE(viewer.own, 10 * kScanSlices - 10 - 1);
   EXPECT_LT(edge.sink.Stat("bytes-sent"), bytes * 11 / 10 + 8192);
   EXPECT_EQ(edge.sink.Stat("points-sent"), 0U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// HTTPS and WSS by the element itself.
+// HTTPS and WSS that the element itself serves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class Tls : public FolderTest {
     if (!Make("robot")) GTEST_SKIP() << "openssl is not installed";
   }
 
-  /// Makes a certificate for `name`, which replaces the one before.
+  /// Makes a certificate for `name`, which replaces the previous certificate.
   bool Make(const std::string& name, const char* days = "2") {
     const std::string make =
         "cd " + folder_ +
@@ -140,7 +140,7 @@ TEST_F(Tls, KeepsItsCertificateAndSaysOnceWhyARenewalIsNone) {
   }
 }
 
-/// Connects from any address of this machine, such as 127.0.0.7.
+/// Connects from `address`, which may be any address of this machine, such as 127.0.0.7.
 GSocketConnection* ConnectFrom(const std::string& address, guint port) {
   GSocketClient* client = g_socket_client_new();
   GSocketAddress* local = g_inet_socket_address_new_from_string(address.c_str(), 0);
@@ -180,7 +180,7 @@ TEST_F(Tls, LetsSilentConnectionsHoldUpNobody) {
   for (int i = 0; i < 20; ++i) {
     silent.push_back(g_socket_client_connect_to_host(
         client, "127.0.0.1", static_cast<guint16>(sink.Stat("port")), nullptr, nullptr));
-    // The first byte of a handshake that never goes on.
+    // The first byte of a handshake that never continues.
     if (i < 2)
       g_output_stream_write(g_io_stream_get_output_stream(G_IO_STREAM(silent.back())), "\x16", 1,
                             nullptr, nullptr);

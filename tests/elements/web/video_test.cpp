@@ -90,7 +90,7 @@ TEST(Camera, WithoutCaptureTimesHasThatOfItsTimestamp) {
       const guint64 before = unix_now();
       gst_harness_push(sink.harness(), buffer.release());
       const guint64 shown = Frame(peer.Next()).unix_ns;
-      // A timestamp of the future is that of now.
+      // A timestamp in the future becomes the current time.
       const guint64 age = (100 - std::min(base + pts, 100U)) * kSecond;
       EXPECT_GE(shown + age, before);
       EXPECT_LE(shown + age, unix_now());

@@ -65,7 +65,7 @@ class Sink {
   Harness harness_;
 };
 
-/// Runs the default context until `done`. Returns false if that takes too long.
+/// Runs the default context until `done` returns true. Returns false if that takes too long.
 inline bool WaitUntil(const std::function<bool()>& done) {
   const gint64 until = g_get_monotonic_time() + kPatience_us;
   while (!done()) {
@@ -116,7 +116,7 @@ inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET",
       },
       &call);
   EXPECT_TRUE(WaitUntil([&] { return done; }));
-  if (!done) soup_session_abort(session);  // its answer would write to freed memory
+  if (!done) soup_session_abort(session);  // a late answer would write to freed memory
   while (!done) g_main_context_iteration(nullptr, TRUE);
   HttpAnswer answer;
   answer.status = soup_message_get_status(message);
@@ -198,13 +198,13 @@ class Peer {
     EXPECT_TRUE(WaitUntil([&] { return channels.count(topic) > 0; })) << topic;
     return channels.count(topic) > 0 ? channels[topic]["id"].get<std::uint32_t>() : 0;
   }
-  /// Returns when the server has subscribed: it answers requests in order.
+  /// Returns once the server has subscribed the client: it answers requests in order.
   void Subscribe(const std::string& topic, std::uint32_t id) {
     const nlohmann::json item = {{"id", id}, {"channelId", Channel(topic)}};
     SendText(nlohmann::json{{"op", "subscribe"}, {"subscriptions", {item}}}.dump());
     Sync();
   }
-  /// Returns when the server has answered a request that it does not offer, and so all before it.
+  /// Returns once the server has answered an unknown request, and so all earlier requests.
   void Sync() {
     const auto answers = [this] {
       return std::count(statuses.begin(), statuses.end(),
