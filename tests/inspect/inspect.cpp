@@ -43,7 +43,7 @@ ordered_json ValuesOf(GType type) {
   return values;
 }
 
-/// Returns when a property may be written.
+/// Returns the states in which a property may be written.
 std::string AccessOf(const GParamSpec* spec) {
   if ((spec->flags & G_PARAM_WRITABLE) == 0) return "read only";
   if (spec->flags & G_PARAM_CONSTRUCT_ONLY) return "at construction";
@@ -72,7 +72,7 @@ ordered_json DescribeProperty(GParamSpec* spec) {
   return property;
 }
 
-/// Leaves out the classes of GStreamer: their properties are documented there.
+/// Leaves out properties of GStreamer's classes, which GStreamer documents.
 ordered_json DescribeProperties(GstElement* element) {
   ordered_json properties = ordered_json::object();
   guint count = 0;

@@ -12,7 +12,7 @@ using odometry::Points;
 using odometry::Pose;
 
 inline constexpr double kTurn = 6.283185307179586;
-inline constexpr double kRadius = 60;  // of the round trip [m]
+inline constexpr double kRadius = 60;  // of the driven circle [m]
 inline constexpr int kScansOfALap = 190;
 
 inline Pose TrueAt(int scan) {
@@ -53,7 +53,7 @@ inline Points SeenFrom(const Pose& pose, const Points& world, int scan) {
   return points;
 }
 
-/// The odometry's estimate of the lap: each step is a little too long and turns a little too far.
+/// Returns the odometry's poses: each step is a little too long and turns a little too far.
 inline odometry::Trajectory Drive(int scans) {
   odometry::Trajectory way;
   for (int i = 0; i < scans; ++i) {

@@ -8,7 +8,7 @@
 
 namespace lidar::test {
 
-/// The test clock's time at running time 0. It is not 0, so that neither is taken for the other.
+/// The test clock's time at running time 0. It is not 0, so that tests tell the two times apart.
 inline constexpr GstClockTime kClockStart = 7 * GST_SECOND;
 
 /// Call it before the harness plays.

@@ -23,7 +23,7 @@ inline std::ptrdiff_t OpenFiles() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
 }
 
-/// A new folder, which goes with this object.
+/// A new folder, which is removed with this object.
 class TempFolder {
  public:
   TempFolder() : path_(std::filesystem::temp_directory_path() / "lidar-test-XXXXXX") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A locale's numbers that no file may have.
+// A locale whose format of numbers must not appear in files.
 #pragma once
 #include <locale>
 #include <string>

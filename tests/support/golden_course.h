@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The course of a scripted run of an element, and the file that it must be equal to.
+// The course of a scripted run of an element, and the golden file that it must match.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ class Course {
     trace_->Begin(caps);
     Note("begin");
   }
-  /// Starts a source. It has done its work once `count` lines begin with `line`.
+  /// Starts a source, and waits until `count` lines begin with `line`.
   void Play(const std::string& what, const char* line, std::size_t count = 1) {
     gst_element_set_state(element(), GST_STATE_PLAYING);
     Await(what, line, count);
@@ -72,13 +72,13 @@ class Course {
     Note(what);
   }
   guint64 Stat(const char* name) { return StatOf(element(), name); }
-  /// The statistic `name` is `wanted` once the element has done its work.
+  /// Waits until the statistic `name` is `wanted`.
   void AwaitStat(const char* name, guint64 wanted) {
     EXPECT_TRUE(Eventually([&] { return Stat(name) == wanted; }))
         << name << " is " << Stat(name) << " instead of " << wanted;
   }
   void AddLine(const std::string& line) { lines_.push_back(line); }
-  /// Writes `word` in place of what differs between runs, such as ports. Leaves out empty lines.
+  /// Replaces text that differs between runs, such as ports, by `word`. Leaves out empty lines.
   void Hide(const std::string& pattern, const std::string& word) {
     hidden_.emplace_back(std::regex(pattern), word);
   }
@@ -95,7 +95,7 @@ class Course {
     const GstFlowReturn flow = gst_pad_push(h_->srcpad, buffer.release());
     Note(what + ": " + gst_flow_get_name(flow));
   }
-  /// The element has done its work once `count` lines begin with `line`.
+  /// Pushes a buffer, and waits until `count` lines begin with `line`.
   void PushUntil(const std::string& what, gst::BufferPtr buffer, const char* line,
                  std::size_t count = 1) {
     CountWhileItLives(buffer.get());
@@ -118,7 +118,7 @@ class Course {
   }
   void Gap(GstClockTime at, GstClockTime lasts) { PushEvent("gap", gst_event_new_gap(at, lasts)); }
   void Tag() { PushEvent("tag", gst_event_new_tag(gst_tag_list_new_empty())); }
-  /// An event that the element does not know.
+  /// Sends events that the element does not know, downstream and upstream.
   void Unknown() {
     PushEvent("unknown", gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM,
                                               gst_structure_new_empty("unknown-event")));
@@ -135,7 +135,7 @@ class Course {
     trace_->Stop();
     Note("stop");
   }
-  /// Asks the element, from downstream, for its latency, and in `format` for the rest.
+  /// Sends the element queries from downstream: for its latency, and others in `format`.
   void Ask(GstFormat format = GST_FORMAT_TIME) {
     const gst::QueryPtr latency(gst_query_new_latency());
     if (Answers(latency.get())) {
@@ -228,7 +228,7 @@ class Course {
     }
     return rounded + steady;
   }
-  /// Notes the fields that have changed, of our own classes: GStreamer's differ between releases.
+  /// Notes the changed fields of our own classes: GStreamer's fields differ between releases.
   void NoteStats(std::string line) {
     for (const char* first : {"scans-sent", "slices-received"})
       if (const std::size_t own = line.find(first); own != std::string::npos)
@@ -256,7 +256,7 @@ class Course {
     return line;
   }
 
-  std::atomic<int> buffers_{0};  // that were pushed and live
+  std::atomic<int> buffers_{0};  // number of pushed buffers that still exist
   Harness h_;
   std::optional<RunTrace> trace_;
   Lines lines_;
@@ -264,7 +264,7 @@ class Course {
   std::vector<std::pair<std::regex, std::string>> hidden_;
 };
 
-/// A course of a name, which its file has, too.
+/// A course, and the name of the course and of its file.
 struct ScriptedCourse {
   std::string name;
   std::string launch;
@@ -288,7 +288,7 @@ class GoldenCourse : public ::testing::Test {
   const bool with_bytes_;
 };
 
-/// Adds a test of each course to the program, before it runs. Returns their number.
+/// Adds a test for each course to the program, before main(). Returns the number of tests.
 inline std::size_t AddGoldenCourses(const char* suite, const std::vector<ScriptedCourse>& courses,
                                     const std::string& folder, bool with_bytes = true) {
   for (const ScriptedCourse& course : courses)

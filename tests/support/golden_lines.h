@@ -28,7 +28,7 @@ inline void ExpectGoldenLines(const Lines& lines, const std::string& path) {
   EXPECT_EQ(lines.size(), n) << path << " is shorter: " << lines[n];
 }
 
-/// Joins what an ostream takes.
+/// Writes `parts` to an ostream, and returns the text.
 template <class... Parts>
 std::string Line(const Parts&... parts) {
   std::ostringstream line;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Properties that a table of tests must have.
+// The properties that a test's table must contain.
 #pragma once
 #include <gst/gst.h>
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@ constexpr std::chrono::seconds kPatience{180};
 constexpr std::int64_t kPatience_us = kPatience / std::chrono::microseconds(1);
 constexpr std::int64_t kPatience_ns = kPatience / std::chrono::nanoseconds(1);
 
-/// Returns true once `holds` returns true, false after kPatience.
+/// Returns true once `holds` returns true, and false after kPatience.
 inline bool Eventually(const std::function<bool()>& holds) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (!holds()) {

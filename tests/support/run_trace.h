@@ -24,8 +24,8 @@ inline bool HasLine(const Lines& lines, const std::string& part) {
 
 class RunTrace {
  public:
-  /// Watches the element of `h`, which must outlive this object. The bytes of its buffers count
-  /// only `with_bytes`: some elements number their streams at random.
+  /// Watches the element of `h`, which must outlive this object. `with_bytes` adds the bytes of
+  /// buffers: with elements that number their streams at random, these differ between runs.
   explicit RunTrace(GstHarness* h, bool with_bytes = true)
       : h_(h), with_bytes_(with_bytes), bus_(h->element) {
     if (h->sinkpad != nullptr) Watch(h->sinkpad);
@@ -46,11 +46,11 @@ class RunTrace {
     probes_.emplace_back(GST_PAD(gst_object_ref(pad)),
                          gst_pad_add_probe(pad, kAll, OnData, this, nullptr));
   }
-  /// Takes and adds what passes each pad that the element adds from now on, with the pad's name.
+  /// Links each pad that the element adds from now on, and adds what passes it with the pad's name.
   void TakeAddedPads() {
     added_ = g_signal_connect(h_->element, "pad-added", G_CALLBACK(OnAdded), this);
   }
-  /// Returns how many lines since the last Take() begin so.
+  /// Returns the number of lines since the last Take() that begin with `begin`.
   std::size_t Count(const std::string& begin) {
     while (const gst::MessagePtr message = bus_.Pop()) AddMessage(message.get(), &messages_);
     const auto begins_so = [&](const auto& line) { return line.rfind(begin, 0) == 0; };
@@ -171,7 +171,7 @@ class RunTrace {
     if (gst_lidar_buffer_get_pose(buffer, &pose))
       line += " pose " + std::to_string(pose.position[0]);
     const GstClockTime capture = gst_lidar_buffer_get_capture_time(buffer);
-    // Some elements take the time of day for the first buffer.
+    // Some elements use the time of day for the first buffer.
     constexpr GstClockTime kYear2020 = 1'577'836'800 * GST_SECOND;
     const bool is_today = GST_CLOCK_TIME_IS_VALID(capture) && capture > kYear2020;
     if (is_today && !GST_CLOCK_TIME_IS_VALID(first_capture_)) first_capture_ = capture;

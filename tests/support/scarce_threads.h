@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A machine on which the calling thread can start no other: pthread_create() of the test program
-// replaces that of libc. Include it in one file of a program.
+// A machine on which the calling thread can start no other thread: the test program's
+// pthread_create() replaces that of libc. Include this header in one file of a program.
 #pragma once
 #include <dlfcn.h>
 #include <pthread.h>

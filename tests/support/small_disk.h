@@ -7,7 +7,7 @@
 
 namespace lidar::test {
 
-/// Limits files to `size` bytes during its lifetime, as if the disk were full then.
+/// Limits files to `size` bytes during its lifetime, as a full disk would.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t size) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Certificates that sign themselves, each in a file without its key and in one with it.
+// Self-signed certificates, each in a file with its key and in a file without.
 #pragma once
 #include <glib.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ class TestCertificates {
 
   std::string Public(const std::string& name) const { return folder_ + "/" + name + ".crt"; }
   std::string WithKey(const std::string& name) const { return folder_ + "/" + name + ".pem"; }
-  /// Returns properties of screamsink and screamsrc.
+  /// Returns the properties of a screamsink or screamsrc that has `own` and trusts `peer`.
   std::string Trusting(const std::string& own, const std::string& peer) const {
     return " dtls-certificate=" + WithKey(own) + " dtls-peer-certificate=" + Public(peer) + " ";
   }
