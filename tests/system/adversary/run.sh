@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds what is attacked, and attacks it for as long as is wanted.
+# Builds the programs, and attacks them for the given time.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A pipeline under attack or hardship: plays it, and answers each line of standard input with a
-// line of JSON about it.
+// Plays a pipeline that a test attacks or hinders, and answers each line of standard input with a
+// line of JSON about the pipeline.
 #include <gst/gst.h>
 #include <gst/net/net.h>
 #include <sys/resource.h>
@@ -29,7 +29,7 @@ using namespace lidar::gst;
 
 constexpr std::size_t kMaxRemembered = 100'000;  // slices between two reports
 
-/// Counts what passes a pad, and remembers the CRC-32 of each buffer until it was reported.
+/// Counts the buffers that pass a pad, and keeps the CRC-32 of each one until the next report.
 class Tap {
  public:
   void Watch(GstElement* pipeline, const char* element, const char* pad_name) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams, and what the native decoder makes of them, for decoder_test.mjs:
+// Writes streams, and the native decoder's results for them, for decoder_test.mjs:
 //   decoder_cases GOLDEN_FOLDER CORPUS_FOLDER
 // Numbers are u32, little-endian. A stream is a name, a sensor model (empty: points), the count of
 // slices, and each slice with its result, the count of its points, and the points as RawPoint.
@@ -76,7 +76,7 @@ void PutStream(const std::string& name, const std::optional<SensorModel>& model,
   }
 }
 
-/// The stream once more, with damage in every slice but the first.
+/// Writes the stream again, with damage in every slice but the first.
 void PutDamaged(const std::string& name, const std::optional<SensorModel>& model,
                 const std::vector<Bytes>& slices, unsigned count) {
   std::mt19937 random(7);
@@ -130,7 +130,7 @@ void PutGolden(const std::filesystem::path& folder) {
   }
 }
 
-/// Scans of a room, in two slices each, that refer to the scan before.
+/// Writes scans of a room. Each has two slices, which refer to the previous scan.
 void PutRoom(unsigned effort) {
   const SensorModel model = test::RoomSensor();
   codec::RangeEncoder encoder(model);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A server whose channels and messages, like those of foxglovesink, a test chooses; it keeps what the
+// A server like foxglovesink, whose channels and messages a test chooses. The server keeps what the
 // page sends.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Measures the page in a headless Chromium that draws by software, as Markdown tables of
-// docs/results/ecosystem.md. Usage: measure_page.mjs [way]; `way`: only a slice's way to the screen.
+// docs/results/ecosystem.md. Usage: measure_page.mjs [way]; `way`: only the delay of a slice.
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';

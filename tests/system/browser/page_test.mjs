@@ -248,7 +248,7 @@ test('two viewers see it; a stalled one holds up neither them nor the pipeline',
   await got;
   stalled._socket.pause();
   const { clouds, messages_dropped: dropped } = sink;
-  // Clouds of 40 kB each: more than the kernel buffers for the stalled client.
+  // 400 clouds of 40 kB are more than the kernel buffers for the stalled client.
   await until('its socket is full', () => sink.clouds > clouds + 400);
   assert.ok(sink.messages_dropped > dropped, 'nothing was dropped for it');
   // The rate depends on the load of the machine, not on the stalled client: wait for a count.

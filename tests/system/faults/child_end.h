@@ -25,7 +25,7 @@ class ChildEnd {
   ChildEnd& operator=(const ChildEnd&) = delete;
 
   ChildReport Report() { return Ask("report"); }
-  /// Sets its wall clock forward, or back.
+  /// Sets the process's wall clock forward, or back.
   void StepClock(int seconds) { Ask("step " + std::to_string(seconds)); }
   /// Ends a sender with EOS.
   ChildReport Finish() { return Ask("finish"); }
@@ -34,7 +34,7 @@ class ChildEnd {
   std::chrono::milliseconds CpuTime() const;
   /// Most resident memory so far [bytes].
   std::uint64_t PeakMemory() const;
-  /// Ends the process. Returns whether it ended well, without an error on its bus.
+  /// Ends the process. Returns true if it ended without an error on its bus.
   bool Close();
 
  private:

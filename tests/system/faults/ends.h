@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The two ends of a stream as pipelines, with what was sent and shown kept to be compared.
+// The two ends of a stream as pipelines. They keep what was sent and shown for comparison.
 #pragma once
 #include <gst/gst.h>
 
@@ -39,7 +39,7 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   void SetState(GstState state);
-  /// Sends EOS and waits for it. Returns false if it does not come in time.
+  /// Sends EOS and waits for its message. Returns false if that takes longer than `limit`.
   bool Finish(std::chrono::milliseconds limit);
   bool AwaitEnd(std::chrono::milliseconds limit);
   /// Returns a number of the property `stats` of an element; all bits are set if it lacks the
@@ -61,7 +61,7 @@ class SendingEnd {
   SendingEnd(SentSlices* sent, std::uint16_t port, const std::string& sink_options = "");
   Pipeline& pipeline() { return pipeline_; }
   std::uint64_t slices_sent() const { return pipeline_.Stat("pay", "slices-sent"); }
-  /// Returns how many slices the sensor has captured at most: 80 a second.
+  /// Returns the largest number of slices that the sensor can have captured: 80 a second.
   std::uint64_t slices_captured() const {
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - made_;
     return static_cast<std::uint64_t>(80 * time.count()) + 1;

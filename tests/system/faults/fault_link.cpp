@@ -140,7 +140,7 @@ void FaultLink::Note(const Datagram& datagram, bool hit) {
   }
 }
 
-/// Counts the slices that get no more packets, and forgets them.
+/// Counts and drops the slices that get no more packets.
 void FaultLink::Fold(const SliceKey& newest) {
   for (auto it = slices_.begin(); it != slices_.end();) {
     const bool open =
@@ -155,7 +155,7 @@ void FaultLink::Fold(const SliceKey& newest) {
   }
 }
 
-/// Returns whether every packet passed: a sender may give up a slice that is half sent.
+/// Returns true if all packets of the slice passed: a sender may give up a slice that is half sent.
 bool FaultLink::Seen::IsWhole() const {
   // Sequence numbers that wrap within a slice give two runs instead of one.
   const std::size_t span = std::size_t{*sequences.rbegin()} - *sequences.begin() + 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A UDP relay that breaks what it carries on request, and notes of each slice whether it passed
-// whole.
+// A UDP relay that damages what it carries on request, and notes for each slice whether all of it
+// passed.
 #pragma once
 #include <netinet/in.h>
 
@@ -23,7 +23,7 @@
 
 namespace lidar::test {
 
-/// What is wrong with the link now.
+/// The faults of the link.
 struct Fault {
   double loss = 0;             // part of the media packets
   double duplicate = 0;        // part of the media packets
@@ -115,7 +115,7 @@ class FaultLink {
   int in_ = -1;
   int out_ = -1;
   std::uint16_t sender_port_ = 0;
-  std::optional<std::pair<Datagram, unsigned>> held_;  // and after how many packets it is sent
+  std::optional<std::pair<Datagram, unsigned>> held_;  // and the packets until it is sent
   unsigned until_hold_ = 50;
   std::mt19937 random_;
   std::atomic<bool> stop_{false};

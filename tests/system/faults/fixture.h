@@ -46,11 +46,11 @@ class Faults : public ::testing::Test {
     EXPECT_LE(time, limit) << what;
     std::printf("recovery: %-44s %5lld ms\n", what, static_cast<long long>(time.count()));
   }
-  /// Lets the sender end well and compares the counts of both sides. Each slice that the payloader
-  /// sent is received or missing at the depayloader, once; the received ones are those that the
-  /// link let through. A slice announces which of the 64 slices before it the sender left out.
-  /// Earlier ones that it left out while nothing came through count as lost: then `sends_all` is
-  /// false.
+  /// Ends the sender with EOS, and compares the counts of both sides. The depayloader counts each
+  /// slice that the payloader sent once, as received or missing. Received are the slices that the
+  /// link let through. A slice names those of the 64 slices before it that the sender left out. If
+  /// the sender may have left out more while nothing came through, these count as lost, and
+  /// `sends_all` is false.
   void ExpectBooksAgree(bool sends_all = true) {
     std::this_thread::sleep_for(milliseconds(500));
     EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Links with gaps between elements in real time: short versions of the traces that the simulation
-// has for hours.
+// Elements in real time over links with gaps: short versions of the traces that the simulation runs
+// for hours.
 #include <gtest/gtest.h>
 
 #include <algorithm>

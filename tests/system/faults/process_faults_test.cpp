@@ -131,7 +131,7 @@ TEST_P(Garbage, AtAHundredTimesTheRateCostsLessThanACoreAndHidesNothing) {
               static_cast<unsigned long long>(sender.slices_sent()),
               static_cast<unsigned long long>(r.received),
               static_cast<unsigned long long>(r.dropped_by_kernel));
-  // The kernel drops datagrams that it has no room for; the receiver shows all others.
+  // The kernel drops datagrams for which it has no room. The receiver shows all others.
   if (r.dropped_by_kernel == 0) {
     EXPECT_EQ(r.received, sender.slices_sent());
   }
@@ -174,7 +174,7 @@ struct Branch {
   gst::PadPtr pad;
 };
 
-/// Gives every stream that comes a depayloader of its own.
+/// A receiver that makes a depayloader for each stream.
 struct ReceiverOfAll {
   explicit ReceiverOfAll(std::uint16_t port)
       : pipeline("pipeline.( screamsrc name=net eos-on-bye=false port=" + std::to_string(port) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams for hours through a link with random faults and checks each minute what must always hold.
+// Streams for hours through a link with random faults, and checks invariants each minute.
 #include <gio/gio.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ class Soak {
   bool Minute(unsigned minute) {
     const auto end = std::chrono::steady_clock::now() + seconds(60);
     std::string story;
-    // Slices cannot be seen in encrypted packets.
+    // The link cannot see slices in encrypted packets.
     comparable_ = !options_.srtp;
     while (std::chrono::steady_clock::now() + seconds(16) < end) {
       std::this_thread::sleep_for(milliseconds(1'000 + random_() % 4'000));
@@ -177,8 +177,8 @@ class Soak {
     return fall.name;
   }
 
-  /// Returns whether the receiver received as many slices as the link let through whole. Minutes in
-  /// which slices may be lost otherwise are not compared.
+  /// Returns true if the receiver got as many slices as the link let through whole, or if this
+  /// minute is not compared, because slices may have been lost elsewhere.
   bool BooksAgree(const Accounts& a) {
     const std::uint64_t whole = link_.counts().slices_whole;
     const std::uint64_t passed = whole - last_whole_;

@@ -57,7 +57,7 @@ inline void SetKey(Pipeline& pipeline, const std::string& key) {
   g_object_set(pipeline.Child("net").get(), "srtp-key", key.c_str(), nullptr);
 }
 
-/// Waits until the receiver has refused so many packets.
+/// Waits until the receiver has refused `packets` packets.
 inline void WaitForRefused(Path& path, std::uint64_t packets) {
   for (int i = 0; i < 3'000; ++i) {
     if (path.receiver.pipeline().Stat("net", "srtp-refused") >= packets) return;

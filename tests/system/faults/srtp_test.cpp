@@ -72,7 +72,7 @@ TEST(Srtp, RefusesPacketsThatAreNotProtected) {
 }
 
 TEST(Srtp, RefusesFeedbackThatIsNotAuthenticated) {
-  // A receiver without the key cannot read the media, but it answers what looks like RTP.
+  // A receiver without the key cannot read the media, but it sends reports on what looks like RTP.
   Path path(Key(30), "");
   path.Play();
   std::this_thread::sleep_for(seconds(2));
@@ -108,7 +108,7 @@ TEST(Srtp, IsJoinedAmongAFloodOfStrangers) {
   EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 1U);
 }
 
-/// Waits until the sender has sent so many packets.
+/// Waits until the sender has sent `packets` packets.
 void WaitForPackets(const Path& path, std::uint64_t packets) {
   for (int i = 0; i < 3'000; ++i) {
     if (path.link.counts().packets >= packets) return;

@@ -42,7 +42,7 @@ class Links : public ::testing::Test {
     WaitForMore(20);
   }
 
-  /// Waits until the receiver has so many packets more.
+  /// Waits until the receiver has got `packets` more packets.
   void WaitForMore(guint packets) {
     const guint from = receiver_->passed;
     for (int i = 0; i < 2'000 && receiver_->passed < from + packets; ++i) g_usleep(10'000);

@@ -17,7 +17,7 @@ class Networks {
   /// Makes Ethernet `n`: the robot's interface rN has 10.9.N.`host`, the edge's eN has 10.9.N.1.
   void Connect(int n, int host = 2) const;
   void Disconnect(int n) const;
-  /// Runs a command in the robot's network. The test fails if it fails.
+  /// Runs a command in the robot's network. The test fails if the command fails.
   void Robot(const std::string& command) const;
 
  private:

@@ -55,8 +55,8 @@ Function Next(const char* name) {
     Release(m);                                             \
     next(m);                                                \
   }
-// Wraps a function that drops a reference: the thread that frees the object has seen all that
-// others did.
+// Wraps a function that drops a reference: the thread that frees the object has seen all that other
+// threads did.
 #define UNREFS(name, type)                                  \
   extern "C" void name(type o) {                            \
     static auto* const next = Next<decltype(&name)>(#name); \

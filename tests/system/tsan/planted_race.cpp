@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Two streaming threads count in callbacks that GStreamer calls, as elements do: a race, or none
-// with `--locked`. Shows that tests/run.sh --tsan would find it.
+// Two streaming threads count in callbacks that GStreamer calls, as elements do. That is a race,
+// except with `--locked`. Shows that tests/run.sh --tsan would find such a race.
 #include <gst/gst.h>
 
 #include <string>
