@@ -5,8 +5,8 @@ set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
 
-# Each step has a name, its needs beyond tests/packages.txt, and a command for the tree's root. Steps
-# run one after the other. The soak mostly waits, so it runs at the same time as all of them.
+# Each step has a name, its needs beyond tests/packages.txt, and a command for the tree's root.
+# Steps run one after the other. The soak mostly waits, so it runs at the same time as all of them.
 steps=(
   "soak|root|env BUILD_DIR=build-soak tests/system/soak/run.sh --minutes SOAK"
   "run|-|tests/run.sh"

@@ -5,7 +5,7 @@
 set -euo pipefail
 list=${1:-$(cd "$(dirname "$0")" && pwd)/packages.txt}
 
-# Lists installed packages and what they provide: the Node.js package of its makers provides npm.
+# Lists installed packages and what they provide: Node.js from its makers, for one, provides npm.
 there=$(dpkg-query -W -f '${db:Status-Status}:${Package},${Provides}\n' | sed -n 's/^installed://p' | tr ',' '\n' |
   sed 's/(.*//; s/ //g')
 missing=()

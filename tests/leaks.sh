@@ -8,8 +8,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/pipelines/environment.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# A registry that is written once and that nothing else writes: a scanner of plugins ends without a
-# report.
+# The registry is written once, here: a later scan of plugins would be a process without a report.
 export GST_REGISTRY_1_0=$work/registry.bin
 gst-inspect-1.0 >"$work/plugins" || { echo "FAILED: the plugins cannot be listed"; exit 1; }
 export GST_REGISTRY_UPDATE=no GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7,leaks:7 GST_DEBUG_NO_COLOR=1 GST_DEBUG_FILE=$work/log/%p
@@ -33,7 +32,7 @@ look() {
   alive=$(grep -h 'object-alive, ' "$work"/log/* | sed -nE 's/.*type-name=\(string\)([A-Za-z]+).*/\1/p' | grep -v GstDtlsAgent | sort | uniq -c)
   # A process that was killed has no report. Empty logs are those of gst-inspect-1.0.
   silent=$(find "$work/log" -type f -size +0 -exec grep -L 'listed [0-9]* alive objects' {} + | wc -l)
-  # The one that is refused as a stranger may be killed before it ends.
+  # The process that is refused as a stranger may be killed before it ends.
   [ "$name" != secure-dtls ] || silent=$((silent > 1 ? silent - 1 : 0))
   printf '%-18s %3d processes, %d of which ended without looking, objects left: %s\n' "$name" "$processes" "$silent" "${alive:-none}"
   [ -z "$alive" ] && [ "$silent" = 0 ] && [ "$processes" -gt 0 ] || status=1

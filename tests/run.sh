@@ -87,9 +87,9 @@ targets() {
     | .filename[] | ltrimstr($dir)'
 }
 
-# build DIR SUITES [meson options]: configures once, then builds what the suites need. Reports need
-# line numbers only; other debug information takes a third of the compiler's time. Headers take most
-# of what is left: a unity build reads them once for many files.
+# build DIR SUITES [meson options]: configures once, then builds what the suites need. Sanitizers'
+# reports need only line numbers; other debug information takes a third of the compiler's time.
+# Headers take most of the rest: a unity build reads them once for many files.
 build() {
   local dir=$1 needed_by=$2 linker=()
   shift 2
@@ -120,8 +120,8 @@ start_sanitized() {
   sanitized_job=$!
   chrt --idle -p 0 "$sanitized_job"
 }
-# hurry PID: ends the low priority of a process and its children. If only root may do that, they go
-# on with the time that other processes leave.
+# hurry PID: ends the low priority of a process and its children. Without the right to do that, they
+# continue with the time that other processes leave.
 hurry() {
   local child
   chrt --other -p 0 "$1" 2>/dev/null
@@ -144,8 +144,7 @@ sanitized_ready() {
 # Prints meson's output of a suite without the lines that are counted below.
 shorten() { grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'; }
 
-# results DIR NAME: prints meson's logs of that name, with the name of a wrapper behind it or
-# without.
+# results DIR NAME: prints meson's logs called NAME, or NAME and the name of a wrapper.
 results() { cat "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json 2>/dev/null; }
 forget() { rm -f "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json; }
 
@@ -181,7 +180,7 @@ run() {
   echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
   forget "$dir" testlog
   meson test -C "$dir" --no-rebuild "${patient[@]}" "${chosen[@]}" --print-errorlogs "$@" 2>&1 | shorten
-  # A meson that was killed by a signal may have left out tests.
+  # If a signal killed meson, tests may be missing.
   [ "${PIPESTATUS[0]}" -lt 128 ] || failed=$((failed + 1))
   [ "${suites[*]}" != pipelines ] || return 0
   for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog; done
@@ -205,7 +204,7 @@ run_pipelines() {
 }
 
 # Tests of elements stream in real time and mostly wait. Other tests run at the same time, with the
-# processor time that those leave.
+# processor time that the tests of elements leave.
 run_sanitized() {
   local dir=$1 rest
   forget "$dir" rest
@@ -239,8 +238,8 @@ if [ "$install" = yes ] && [ "${suites[*]}" = browser ]; then
 fi
 
 needed_by=all
-# Elements and fuzz take a third of the compiler's time and half of the tests'. A run of all suites has
-# them under the sanitizers only, except what cannot run there (the suite `plain`).
+# Elements and fuzz take a third of the time to compile and half of the time to test. A run of
+# all suites runs them only under the sanitizers, except the suite `plain`, which cannot run there.
 if [ "$sanitize" = yes ] && [ ${#suites[@]} -gt 0 ]; then
   suites=(lint "core plain" pipelines bench)
   needed_by="product ${suites[*]} beside"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # What a robot costs lidar-edge: processor time for each slice, and memory, with JetStream. Run by hand
-# (docs/results/fleet.md). The slices of one sensor are sent as those of many robots, each with its own
-# SCReAM.
+# (docs/results/fleet.md). The slices of one sensor are sent as those of many robots, each with its
+# own SCReAM.
 # usage: edge_load.sh ROBOTS SECONDS [FIRST_PORT]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
