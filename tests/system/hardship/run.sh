@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds, and runs the hardships for longer than the test does: for example, processes stop for 20 s.
+# Builds, and runs the hardships for longer than the test does: processes stop for 20 s, say.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 
