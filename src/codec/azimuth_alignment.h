@@ -10,8 +10,8 @@
 namespace lidar::codec {
 
 /// The beams of a spinning sensor fire together at different azimuths, so a column of the slice is
-/// skewed. Coders go beam by beam, and keep a value of the beams above for each azimuth: the
-/// neighbours of pixel i of beam b are AlignedRow::At(b)[i - 1 .. i + 1].
+/// skewed. Coders go beam by beam, and keep a value of the beams above for each azimuth. The
+/// neighbours above pixel i of beam b are AlignedRow::At(b)[i - 1 .. i + 1].
 class AzimuthAlignment {
  public:
   AzimuthAlignment() = default;
@@ -42,8 +42,8 @@ class AlignedRow {
   }
   /// Returns pixel 0 of `beam`; indices in [-kMargin .. columns + kMargin) are valid.
   T* At(std::uint32_t beam) { return &values_[kMargin + alignment_->offset(beam)]; }
-  /// Call it after At(beam)[0 .. columns) was written: in a full turn the last column is the first
-  /// one's neighbour.
+  /// Call it after At(beam)[0 .. columns) was written, because in a full turn the last and the
+  /// first column are neighbours.
   void CloseTurn(std::uint32_t beam) {
     if (!closed_) return;
     const std::size_t begin = kMargin + alignment_->offset(beam);

@@ -58,8 +58,8 @@ struct BlockLink {
   std::shared_ptr<BlockMemory> left;  // the block's own memory; null: no block can refer to it
 };
 
-/// Returns the memory after `image`, whose ranges are the decoded ones. `before` is the memory
-/// before it, whose model continues; null: the model starts anew.
+/// Returns the memory after `image`, whose ranges are the decoded ones. The model of `before`, the
+/// memory before the image, continues; null: the model starts anew.
 std::shared_ptr<BlockMemory> Remember(const RangeImage& image, const RangeGrid& grid,
                                       const BlockMemory* before);
 

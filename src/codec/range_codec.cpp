@@ -142,7 +142,7 @@ bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& se
 bool RangeEncoder::ChoiceSaves(const RangeImage& image, const RangeGrid& grid) {
   const double bits = AdaptiveBits(image, grid);
   const double finer = AdaptiveBits(image, FinerGrid(grid));
-  // Fitted to slices of captures and synthetic drives at 1 to 10 cm, coded both ways.
+  // The factors fit slices of captures and synthetic drives, coded both ways at 1 to 10 cm.
   return finer <= 0.85 * bits + 0.76 * static_cast<double>(returns());
 }
 
@@ -217,7 +217,7 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
   for (std::size_t i = 0; i < size; ++i) mask[i] = ranges[i] != 0 ? 1 : 0;
   std::int32_t* const values = lists_.values.data();
   std::size_t count = 0;
-  // Tests several pixels at once: most are empty in a cloud whose near points are in cells.
+  // Tests several pixels at once, because most are empty in a cloud whose near points are in cells.
   constexpr std::size_t kAtOnce = 8;
   for (std::size_t first = 0; first < size; first += kAtOnce) {
     const std::size_t end = std::min(first + kAtOnce, size);

@@ -56,8 +56,8 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
   if (now < alone_since_) return false;
   Slot& slot = slots_[slice.index];
   if (key_interval_ > Duration{0}) {
-    // The sectors stand alone in different scans: a scan of such slices only would be much larger
-    // than others.
+    // The sectors stand alone in different scans, because a scan with only such slices would be
+    // much larger than others.
     const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
     const auto turn = [&](Time t) { return (t.time_since_epoch() + head_start) / key_interval_; };
     if (turn(now) != turn(slot.begun.value_or(now))) Restart(&slot);

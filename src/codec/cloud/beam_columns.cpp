@@ -43,8 +43,8 @@ std::int32_t InLengthUnits(double um) {
   return kUnit * static_cast<std::int32_t>(std::lround(um / kUnit));
 }
 
-/// Finds the position of each beam's range 0, up to a multiple of the unit: a sensor measures whole
-/// units, but from a zero point of its own.
+/// Finds the position of range 0 along each beam, up to a multiple of the unit in which the sensor
+/// measures. Each beam has a zero point of its own.
 void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
   constexpr double kClear = 0.8;  // best: 1
   const BeamLocator locator(*table);
@@ -120,7 +120,7 @@ std::optional<BeamTable> FindBentColumns(const FoundBeams& found,
   return table;
 }
 
-/// Rounds elevations and offsets: digits that the points do not determine would cost bits.
+/// Rounds elevations and offsets, because digits that the points do not determine would cost bits.
 void RoundAngles(BeamTable* table) {
   constexpr std::int32_t kUnit = 8;
   const auto rounded = [](std::int32_t angle) { return (angle + kUnit / 2) & ~(kUnit - 1); };

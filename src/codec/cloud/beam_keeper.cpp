@@ -125,7 +125,8 @@ bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points,
   return true;
 }
 
-/// Places points by the beams of earlier clouds. Returns false if they fit worse than those clouds.
+/// Places points by the beams of earlier clouds. Returns false if the points fit worse than the
+/// points of those clouds.
 bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
                             std::vector<PlacedPoint>* placed) {
   constexpr double kAlike = 0.97;
@@ -160,7 +161,7 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   constexpr unsigned kAtFirst = 4;
   const bool is_power = (fails_ & (fails_ - 1)) == 0;
   if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0) {
-    // If the beams are on a path, no points are placed, because the search has failed.
+    // No points are placed on a path, because PlaceByOld() found no new path.
     return table_ && !table_->has_path() ? &*table_ : nullptr;
   }
   if (PlaceOnNewPath(points, pulses, placed)) {

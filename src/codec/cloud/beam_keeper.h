@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Keeps the beams of a stream from cloud to cloud: a check takes less time than a search.
+// Keeps the beams of a stream from cloud to cloud, because a check takes less time than a search.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -328,8 +328,8 @@ FoundBeams FindBendingBeams(const std::vector<Sighting>& points) {
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
   FoundBeams found;
   for (const BeamLine& line : FirstLines(points)) found.beams.push_back({line, {}});
-  // Fits the lines found so far first: further lines show only after the points of these lines are
-  // left out.
+  // Fits the lines found so far first, because further lines show only after the points of these
+  // lines are left out.
   for (const double reach_m : {0.04, 0.02}) {
     Assign(points, reach_m, &found);
     for (FoundBeam& beam : found.beams)

@@ -30,7 +30,7 @@ struct FoundBeams {
   std::size_t points = 0;        // of all beams
 };
 
-/// Finds beams that meet in the origin: their elevations are exact.
+/// Finds beams that meet in the origin. The points of a beam have nearly the same elevation.
 FoundBeams FindMeetingBeams(const std::vector<Sighting>& points);
 /// Finds beams that pass the origin at a distance of up to 0.5 m.
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points);

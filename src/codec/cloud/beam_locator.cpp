@@ -28,9 +28,9 @@ BeamLocator::BeamLocator(const BeamTable& table) {
   for (std::uint32_t beam = 0; beam < lines_.size(); ++beam) far_m_.push_back(FarFrom(beam));
 }
 
-/// Returns a distance along the ground. Line `guess` or the next one is the nearest line to each
-/// point that has this guess and is farther away. The point's slope, as seen from the middle
-/// height, is between the slopes of these two lines, or less by up to the width of a bucket.
+/// Returns the distance along the ground beyond which line `guess` or the next one is the nearest
+/// line to each point with this guess. The slope of such a point, as seen from the middle height,
+/// is between the slopes of these two lines, or below both by up to the width of a bucket.
 double BeamLocator::FarFrom(std::uint32_t guess) const {
   const auto beams = static_cast<std::uint32_t>(lines_.size());
   constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -46,8 +46,8 @@ double BeamLocator::FarFrom(std::uint32_t guess) const {
   const double most = upper.sine / upper.cosine;
   const double edge = lower.sine / lower.cosine;
   const double width = 1.1 / (0.4999 * kBuckets) * (1 + std::abs(edge)) * (1 + std::abs(edge));
-  // Distances from a line through the middle height, for a point 1 m along the ground, and how much
-  // the line's own height changes them.
+  // away() is the distance of a point 1 m along the ground from a line, if the line is moved to the
+  // middle height. off_m() is how much the line's own height changes a distance.
   const auto away = [](const Line& line, double slope) { return slope * line.cosine - line.sine; };
   const auto off_m = [&](const Line& line) {
     return std::abs(line.height_m - middle_height_m_) * line.cosine;

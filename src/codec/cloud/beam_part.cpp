@@ -68,7 +68,8 @@ class BeamFields {
         wanted, {field, field * 32 + static_cast<std::uint32_t>(length), field * 16 + way},
         &coder_);
     length = mixing::BitLength(static_cast<std::uint32_t>(std::abs(number)));
-    // A damaged stream may have any number; no field has values as large as kLimit.
+    // A damaged stream may have any number, so the value is limited. No field has values as large
+    // as kLimit.
     const std::int32_t back =
         turn > 0 ? (from + number) & (around - 1) : std::clamp(from + number, -kLimit, kLimit);
     guess.See(back, around);

@@ -31,7 +31,7 @@ BeamPath::Terms BeamPath::TermsAt(std::uint32_t column) const {
 
 std::vector<PathDirection> BeamPath::Trace(const std::vector<PathBeam>& beams, std::uint32_t first,
                                            std::uint32_t count) const {
-  // Leaves out terms that no curve uses: they would take half of the time.
+  // Leaves out terms that no curve uses, because they would take half of the time.
   std::vector<std::size_t> used;
   std::vector<std::array<double, 2>> factors;  // of the used terms, for each beam
   for (std::size_t term = 0; term < kPathTerms; ++term)

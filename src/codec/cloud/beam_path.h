@@ -7,8 +7,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Degrees of the polynomials that multiply 1; the cosine and the sine of the turn; the cosine and
-/// the sine of twice the turn.
+/// A curve is a sum of polynomials, multiplied by 1, by the cosine and the sine of the turn, and by
+/// those of twice the turn. These are the degrees of the polynomials.
 constexpr std::array<unsigned, 3> kPathDegrees = {15, 7, 3};
 constexpr unsigned kPathTerms = 40;
 constexpr std::uint32_t kMostPathBeams = 16;

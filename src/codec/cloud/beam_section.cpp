@@ -133,7 +133,7 @@ void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
   CodeResiduals(image, *settings, residuals, bits);
 }
 
-/// A flag in the byte of the azimuths' guess: further returns are coded by four neighbours.
+/// A flag in the byte of the azimuths' guess: further returns have contexts of four neighbours.
 constexpr unsigned kByFourFlag = 4;
 
 void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* writer) {
@@ -165,7 +165,8 @@ bool BeamSectionEncoder::Encode(BeamTable table, const PixelErrors& errors,
   std::vector<std::uint8_t> block;
   const RangeSettings settings = SettingsOf(errors, levels, way, image);
   if (!CoderOf(table)->Encode(image, settings, &block)) return false;
-  // The codes of the next parts depend on the decoded ranges, or on their bins alone.
+  // Residuals are coded by the decoded ranges. Further returns need only the bins, which are those
+  // of `image` unless the highest effort may choose others.
   RangeImage decoded;
   RangeGrid grid = settings.grid;
   const bool has_extras = !list->extras.empty();
@@ -218,7 +219,7 @@ struct DecodedSection {
   std::vector<BeamTable::Slope> slopes;   // of the beams
   std::vector<PathDirection> directions;  // of the pixels, on a path
   std::vector<ExtraBin> extras;
-  bool by_four = false;  // further returns are coded by four neighbours
+  bool by_four = false;  // further returns have contexts of four neighbours
   std::size_t returns = 0;
 };
 

@@ -94,7 +94,7 @@ struct BeamTable {
   std::uint32_t ColumnOf(const Beam& beam, std::uint32_t firing) const {
     return firing >= beam.delay ? firing - beam.delay : firing + columns() - beam.delay;
   }
-  /// Returns the azimuth without wrapping, if there is no path.
+  /// Returns the azimuth without wrapping. Do not call it for a table with a path.
   std::int32_t AzimuthOf(std::uint32_t beam, std::uint32_t column) const {
     column = FiringOf(beam, column);
     const std::uint64_t angle = places.empty() ? std::uint64_t{column} * kParts * kTurn / turn

@@ -11,8 +11,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Margin for the rounding of floats: grids are finer by this part, and errors are assumed to be
-/// larger.
+/// Margin for the rounding of floats: errors are assumed to be larger by this part, and grids are
+/// finer by twice this part.
 constexpr double kRoom = 1e-4;
 
 /// Does what std::floor() does, without a call.
@@ -107,7 +107,8 @@ class NearCells {
  private:
   static constexpr std::array<std::uint64_t, 3> kSteps = {NodeMap::kStepX, NodeMap::kStepY,
                                                           NodeMap::kStepZ};
-  /// Along each axis the own cell, and the neighbour on the point's side; no others can be near.
+  /// Only two cells along each axis can be near: the own cell, and the neighbour on the point's
+  /// side.
   struct Sides {
     std::array<std::array<double, 3>, 2> squares;  // of the distances from the middles
     std::array<bool, 3> is_below;                  // is the neighbour below the cell?

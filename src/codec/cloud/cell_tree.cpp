@@ -115,7 +115,7 @@ struct ParentBeside {
   std::array<std::uint8_t, 8> places{};  // their places among the 27 around the node
 };
 /// Returns the parents by the node's place in its own parent. Bit k of the second index is set if a
-/// parent differs from the own one along axis k.
+/// parent is beside the node's own parent along axis k.
 constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {
   std::array<std::array<ParentBeside, 8>, 8> all{};
   for (unsigned child = 0; child < 8; ++child)

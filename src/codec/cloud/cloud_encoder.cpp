@@ -297,7 +297,7 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
   candidate->nodes = tree_.nodes();
 }
 
-/// Codes the points of near_ with these indices. The counts of few, shared cells vary more, so the
+/// Codes the points of near_ with these indices. Counts vary more if points share few cells, so the
 /// highest effort also tries each point's own cell, and keeps the smaller stream.
 void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate) {
   candidate->header.points = static_cast<std::uint32_t>(ids.size());
@@ -337,7 +337,7 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
   return true;
 }
 
-/// Returns 0 with exact fields: these cost more for points in cells than the cells save.
+/// Returns 0 with exact fields, because these cost more for points in cells than the cells save.
 double CloudEncoder::ReachOf(const BeamTable& table) const {
   return choice_.empty() ? UsualReach(table) : 0;
 }

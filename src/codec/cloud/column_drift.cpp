@@ -35,7 +35,7 @@ std::int32_t WidestGap(const std::vector<BeamAzimuths>& beams) {
   return middle & (kTurn - 1);
 }
 
-/// Distances of columns from where even steps would put them: a mean for each sector.
+/// Mean distance of the columns of each sector from their places at equal steps.
 class Drift {
  public:
   bool known(double azimuth) const { return counts_[SectorOf(azimuth)] > 0; }
@@ -81,7 +81,7 @@ class Drift {
   std::vector<std::size_t> counts_ = std::vector<std::size_t>(kSectors, 0);
 };
 
-/// A point's azimuth, and the distance of its column from where even steps would put it.
+/// A point's azimuth, and the distance of its column from the column's place at equal steps.
 struct Drifted {
   double azimuth;
   double drift;
@@ -137,7 +137,7 @@ bool SetPlaces(const Drift& drift, double step, BeamTable* table) {
 
 bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table) {
   const std::int32_t first = WidestGap(beams);
-  // Rounds the step to whole grains: then places at equal steps cost nothing.
+  // Rounds the step to whole grains, so that places at equal steps cost nothing.
   step = std::max(std::round(step / kDriftGrain), 1.0) * kDriftGrain;
   std::vector<std::size_t> order(beams.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

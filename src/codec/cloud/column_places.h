@@ -12,8 +12,8 @@ void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table);
 /// Gives the columns places of their own if this saves more bits than it costs.
 void FindPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
 /// Finds places for azimuths that a sensor rounds to multiples of `quantum`, which is about as
-/// large as a step. All beams see the same multiples, each with a delay. Returns false if they do
-/// not.
+/// large as a step. All beams see the same multiples, each with a delay. Returns false if the beams
+/// do not agree.
 bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, double step,
                        BeamTable* table);
 /// Finds beams whose steps are uneven in a periodic way.

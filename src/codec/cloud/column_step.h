@@ -16,8 +16,8 @@ struct BeamAzimuth {
 /// The azimuths of a beam, rising.
 using BeamAzimuths = std::vector<BeamAzimuth>;
 
-/// Each beam has a most common step. Returns the smallest one whose beams have a tenth of all
-/// points together; 0: none.
+/// Each beam has a most common step. Returns the smallest of these steps whose beams together have
+/// a tenth of all points; 0: there is none.
 std::int32_t UsualStep(const std::vector<BeamAzimuths>& beams);
 /// Returns the mean step, from neighbouring points that are one or a few steps of about `usual`
 /// apart; 0: there are none.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beams whose columns are uneven in a periodic way.
+// Beams whose steps from column to column are uneven in a periodic way.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -10,7 +10,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Moves even columns, and changes their step.
+/// Moves columns that have equal steps, and changes the step.
 bool UpdateEvenColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) {
   constexpr std::size_t kSample = 2'048;
   constexpr std::size_t kParts = 16;

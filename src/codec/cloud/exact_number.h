@@ -27,7 +27,7 @@ struct NumberForm {
   static constexpr unsigned kMostDecimals = 9;
   static constexpr int kLeastScale = -128;
   static constexpr int kMostScale = 127;
-  /// A level counts parts of an integer, of the last decimal, or of 2^-scale.
+  /// Levels are in 1/kParts of an integer, of the last decimal, or of 2^-scale.
   static constexpr std::int64_t kParts = 16;
 
   FieldType type = FieldType::kU8;

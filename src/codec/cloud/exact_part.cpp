@@ -20,8 +20,8 @@ namespace {
 
 using Model = NumberModel<3>;
 
-/// A number is predicted by the last one of the beam, by the levels of firing and beam, or by the
-/// beam's level some firings ago: some drivers restart time with each packet.
+/// A number is predicted by the beam's last number, by FiringGuess, or by the beam's number some
+/// firings ago. The latter suits drivers that restart time with each packet.
 constexpr std::uint32_t kByBeam = 0;
 constexpr std::uint32_t kByFiring = 1;
 constexpr std::uint32_t kMostFiringsAgo = 64;
@@ -342,8 +342,8 @@ FiringOrder BestFiringOrder(const PointPlaces& places, const ExactPart& part) {
   return best;
 }
 
-/// Returns the number of firings after which beams repeat most of their numbers; kByFiring: there
-/// is none.
+/// Returns the number of firings after which beams repeat most of their numbers; kByFiring: beams
+/// do not repeat them.
 std::uint32_t BestPeriod(const Visited& v, const std::vector<std::uint64_t>& numbers) {
   constexpr std::size_t kSample = 4'096;
   std::uint32_t best = kByFiring;

@@ -9,8 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// An open hash table that is never more than half full: it grows. The hash depends on the address
-/// of the table: with a known hash, a cloud could be crafted whose cells all collide.
+/// An open hash table that grows, so that it is never more than half full. The hash depends on the
+/// address of the table, because a cloud whose cells all collide could be crafted for a known hash.
 class NodeMap {
  public:
   static constexpr std::uint32_t kAbsent = UINT32_MAX;
@@ -41,8 +41,8 @@ class NodeMap {
   static constexpr std::uint64_t kStepY = std::uint64_t{1} << 21;
   static constexpr std::uint64_t kStepZ = 1;
   /// Positions plus one, so that neighbours of position 0 have keys, too. A field of 21 bits holds
-  /// each position of a cloud in a tree of kMostDepth, because DepthFor() leaves the cells at its
-  /// edge free.
+  /// each position of a cloud in a tree of kMostDepth, because DepthFor() leaves the cells at the
+  /// tree's edge free.
   static std::uint64_t KeyOf(const CellPosition& p) {
     return (p[0] + 1) * kStepX + (p[1] + 1) * kStepY + (p[2] + 1) * kStepZ;
   }

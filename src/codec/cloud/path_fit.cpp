@@ -118,8 +118,8 @@ double Unwrap(const std::vector<Sighting>& points, const BeamPath& path, std::ve
   return squares > 0 ? sum / squares : 0;
 }
 
-/// Returns the turn from one column to the next, in parts of 1/2^kRateBits of an angle's unit, or 0
-/// if there is none.
+/// Returns the turn from one column to the next, in 1/2^kRateBits of an angle's unit; 0: there is
+/// no plausible turn.
 std::int32_t RateOf(const std::vector<Sighting>& points, std::uint32_t columns,
                     std::vector<Line>* lines) {
   std::vector<double> steps;

@@ -85,8 +85,8 @@ class PixelCheck {
     off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }
-  /// Returns the error by rounding a residual. The width of its class follows from the decoded
-  /// range, which may be shorter than the original.
+  /// Returns the error that rounding causes in a residual. The width of the residual's class
+  /// follows from the decoded range, which may be shorter than the original.
   double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
     return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;

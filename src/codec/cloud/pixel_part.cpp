@@ -29,7 +29,7 @@ class Rounder {
  public:
   explicit Rounder(std::int32_t width) : half_(width / 2), per_width_(1.0 / width) {}
   std::int32_t Of(std::int32_t number) const {
-    // The half keeps a quotient farther from the next integer than rounding can move it.
+    // Adding 0.5 keeps a quotient so far from an integer that rounding cannot change the result.
     const auto size = static_cast<std::int32_t>((std::abs(number) + half_ + 0.5) * per_width_);
     return number < 0 ? -size : size;
   }

@@ -68,7 +68,7 @@ class ChanceMap {
 /// Codes decisions by kCounters counters and kExtra other logits. The last input is a constant.
 ///
 /// A mixer lives for one decision and is inlined, so that counters, votes and sums stay in
-/// registers: with calls, efforts 2 and 3 take 1.3 times as long.
+/// registers. With calls, efforts 2 and 3 take 1.3 times as long.
 template <unsigned kCounters, unsigned kExtra, class Lanes = FastLanes>
 class BitMixer {
  public:

@@ -48,8 +48,8 @@ class MixingEncoder {
 
   /// Appends a payload to `out`. Ranges are multiples of the grid's unit; levels of 8 bits become
   /// those of settings.intensity. Returns false, with nothing appended, if the image does not fit
-  /// the sensor, has ranges past mixing::kMaxBins bins, or becomes smaller than MostMixedPixels()
-  /// allows.
+  /// the sensor, has ranges past mixing::kMaxBins bins, or has more pixels than MostMixedPixels()
+  /// allows for the payload.
   bool Encode(const RangeImage& image, const MixingSettings& settings,
               std::vector<std::uint8_t>* out);
 

@@ -105,7 +105,7 @@ bool SliceCoder::CodeBins(Model* model, SliceBins* slice, Coder* coder) {
   return true;
 }
 
-/// Codes bins by the pixels' memory where it predicts them better, and others as CodeBins() does.
+/// Codes bins by the pixels' memory if TemporalPart::Knows(), and the others as CodeBins() does.
 template <class Effort, class Coder>
 bool SliceCoder::CodeRecalledBins(Model* model, SliceBins* slice, Coder* coder,
                                   const Recollection& recollection) {

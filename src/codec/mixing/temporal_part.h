@@ -49,7 +49,7 @@ class TemporalPart {
                                   : 4;
     index_ = i;
   }
-  /// Returns true if the memory predicts the bin better than its neighbours.
+  /// Returns true if the memory probably predicts the bin better than the neighbours do.
   bool Knows() const {
     return known_ &&
            (west_.shift != Surprise::kChanged || above_[index_].shift != Surprise::kChanged);

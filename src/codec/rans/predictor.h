@@ -60,10 +60,10 @@ struct RowReturns {
   RowLanes lanes;
 };
 
-/// A channel (ranges or intensities) of a slice, row by row. The neighbours of a return are the
-/// one to its left in its lane, W, and N and NE in the nearest beams above that have a return at
-/// their azimuths; NW is the N of W. The prediction is the median of W, N and W + N - NW (the MED
-/// predictor of LOCO-I), which follows planes and keeps to one side of an edge.
+/// A channel (ranges or intensities) of a slice, row by row. The neighbours of a return are W, N,
+/// NE and NW. W is the return to the left in the same lane. N and NE are in the nearest beams above
+/// that have a return at their azimuths. NW is the N of W. The prediction is the median of W, N and
+/// W + N - NW (the MED predictor of LOCO-I), which follows planes and keeps to one side of an edge.
 ///
 /// All but W is known before the row is coded and is prepared for the whole row. The lanes of a row
 /// do not wait for each other.

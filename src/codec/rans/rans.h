@@ -19,7 +19,7 @@ constexpr unsigned kRansLowBits = 24;
 constexpr std::uint64_t kRansLow = std::uint64_t{1} << kRansLowBits;
 constexpr unsigned kRansWordBits = 32;
 constexpr unsigned kRansStateBytes = (kRansLowBits + kRansWordBits) / 8;
-/// Fewest bytes of a written state, up to kRansStateBytes. An unused lane has none.
+/// Fewest bytes of a written state; the most are kRansStateBytes. An unused lane writes no bytes.
 constexpr unsigned kRansShortestState = kRansStateBytes - 2;
 /// Most bits that a state of kRansLow can give: with a symbol, and without one.
 constexpr unsigned kMaxJointBits = kRansLowBits - kProbabilityBits;
@@ -81,7 +81,7 @@ class RansEncoder {
   Piece* next_ = nullptr;
 };
 
-/// Copies are cheap: a loop uses its own, which can live in registers.
+/// Copies are cheap, so a loop uses a copy of its own, which can live in registers.
 class RansDecoder {
  public:
   /// `padded` keeps the words, with room for `ahead` calls of GetBits() past the end. Callers check
