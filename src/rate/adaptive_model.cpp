@@ -10,9 +10,9 @@ namespace lidar::rate {
 namespace {
 
 constexpr double kUnitStep = 0.01;
-// Slices with fewer returns teach nothing about the scene: headers are most of their bytes.
+// The model ignores slices with fewer returns, because headers are most of their bytes.
 constexpr std::uint32_t kFewReturns = 64;
-// Exceeds the size of an uncoded return: a larger size is a fault.
+// An uncoded return has fewer bytes, so a larger size is a fault.
 constexpr double kMostBytesAReturn = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;

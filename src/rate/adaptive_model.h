@@ -57,7 +57,7 @@ class AdaptiveModel : public SizeModel {
   /// returns what was learned of the last mode, because the scene is the same.
   const Learned* LearnedOf(const std::string& mode) const;
   double GeometryLog2(const SliceFeatures& slice, double step_m) const;
-  /// Estimates intensity's share of a slice's bytes: codecs report only the sum.
+  /// Estimates intensity's share of a slice's bytes, because codecs report only the sum.
   double IntensityShare(const SliceFeatures& slice, double step_m, unsigned bits,
                         const PredictedSize& predicted) const;
   /// `again`: the model has already learned from this slice.

@@ -11,7 +11,7 @@ namespace {
 
 // Mean distance from the middle of a unit cube to its points.
 constexpr double kMeanInCube = 0.480296;
-// The finest step if the sensor's resolution is unknown: no LiDAR is more accurate.
+// The finest step if the sensor's resolution is unknown. No LiDAR is more accurate.
 constexpr double kFinestXyzStep = 0.001;
 constexpr double kFinestStepAtAll = 1e-6;
 

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 constexpr const char* kFormat = "gst-lidar-rate-model";
 constexpr double kLargest = 1e12;  // larger coefficients are a mistake
 
-/// Returns a reference to the member, or to null: a copy of deep JSON would exhaust the stack.
+/// Returns a reference to the member, or to null. A copy of deep JSON would exhaust the stack.
 const Json& Member(const Json& parent, const char* name) {
   static const Json kNone;
   const auto found = parent.find(name);

@@ -7,13 +7,13 @@
 namespace lidar::rate {
 namespace {
 
-// A scan compensates for half of the earlier scans' excess: all of it at once would double the
-// noise.
+// A scan compensates for half of the earlier scans' excess, because all of it at once would double
+// the noise.
 constexpr double kRepayGain = 0.5;
-// Limit of saved bytes, as a part of a scan's budget: the network does not keep unused capacity.
+// Limit of saved bytes, as a part of a scan's budget. The network does not keep unused capacity.
 constexpr double kMaxSaved = 0.05;
 // A slice is encoded a second time if it exceeds its budget by more than kOver of this budget and
-// by more than kOverOfScan of the scan's budget: later slices even out small errors.
+// by more than kOverOfScan of the scan's budget. Later slices even out smaller errors.
 constexpr double kOver = 0.015;
 constexpr double kOverOfScan = 0.01;
 constexpr double kUnder = 3;         // limit of a shortfall, relative to that of an excess

@@ -7,7 +7,7 @@
 namespace lidar::rate {
 namespace {
 
-// A debt of a tenth of a scan causes no skip: the next scans' steps repay it.
+// A debt of a tenth of a scan causes no skip, because coarser steps of the next scans repay it.
 constexpr double kTolerance = 0.1;
 // A cloud that is thinned further is useless, so scans are skipped in addition.
 constexpr double kMinKeep = 1.0 / 16;

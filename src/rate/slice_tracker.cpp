@@ -26,7 +26,7 @@ void SliceTracker::Observe(std::uint32_t slice_index, std::uint32_t slice_count,
   }
   last_ = anchor;
   if (slice_index >= slice_count) return;
-  // A scan of one slice shows no drift: its innovation is the slice's own noise.
+  // A scan of one slice shows no drift, because its innovation is the slice's own noise.
   if (sectors_[slice_index] && slice_count > 1) {
     const double innovation = error + kDriftWeight * drift_;
     drift_ += kDriftGain * (innovation - drift_);
