@@ -6,7 +6,8 @@
 namespace lidar::rtp {
 namespace {
 
-// Size of a map node and its vector. It counts as memory, too: a tiny fragment needs little else.
+// Size of a map node and its vector. It counts as memory, too, because it is most of the memory of
+// a tiny fragment.
 constexpr std::size_t kFragmentOverhead = 96;
 
 }  // namespace

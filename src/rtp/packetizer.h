@@ -18,9 +18,9 @@ struct Packet {
   bool marker = false;  // the last packet of a slice
 };
 
-/// Cuts `bytes`, the body of `unit`, into packets of at most `max_payload` bytes. Sets type, length
-/// and CRC of the unit itself. Returns no packets if there are no bytes or more than kMaxUnitBytes,
-/// or if `max_payload` is below kMinPayload.
+/// Cuts `bytes`, the body of `unit`, into packets of at most `max_payload` bytes. Computes the
+/// unit's type, length and CRC. Returns no packets if there are no bytes or more than
+/// kMaxUnitBytes, or if `max_payload` is below kMinPayload.
 std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload);
 
 /// Collects small slices into one aggregation packet.

@@ -82,8 +82,8 @@ constexpr std::size_t kMinPayload = 64;
 std::size_t HeaderSize(PacketType type, UnitType unit);
 /// Appends the header of `unit` (all but its body).
 void WriteHeader(const Unit& unit, std::vector<std::uint8_t>* out);
-/// CRC-32 of the unit's description and its bytes: a damaged time or index is as wrong as a damaged
-/// point.
+/// CRC-32 of the unit's description and its bytes, because a damaged time or index is as wrong as a
+/// damaged point.
 std::uint32_t UnitCrc(const Unit& unit, ByteView bytes);
 
 /// Returns the units of a packet, or no units if any part is malformed.

@@ -126,7 +126,7 @@ void Reassembler::Emit(PendingMap::iterator it, std::shared_ptr<const StreamConf
 
 void Reassembler::PushConfig(const RtpPacket& packet, const Unit& unit,
                              std::vector<ReceivedSlice>* out) {
-  // Each repetition of the config starts anew: fragments of two repetitions must not mix.
+  // Each repetition of the config starts anew, because fragments of two repetitions must not mix.
   const auto start = config_fragments_.start_sequence();
   if (StartsUnit(unit.type) && start && *start != packet.sequence) config_fragments_ = {};
   config_fragments_.Add(packet.sequence, unit);

@@ -64,7 +64,8 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
   if (CandidateHasWon(packet.arrival)) Promote(packet.arrival, out);
 }
 
-/// A candidate that continues beside the active stream is no restart, so its slices are discarded.
+/// A candidate that continues beside the active stream is not a restart, so its slices are
+/// discarded.
 void Receiver::DropHeld() {
   if (candidate_->held.empty()) return;
   candidate_->held.clear();

@@ -52,7 +52,7 @@ enum class SliceOutcome : std::uint8_t {
 enum class Admission { kOpen, kSettled, kTooOld, kContradiction };
 
 /// A slice is lost `max_reorder_time` after a later one began. The receiver joins with the first
-/// admitted slice: earlier ones are not missing.
+/// admitted slice, so earlier slices do not count as lost.
 class SliceLedger {
  public:
   explicit SliceLedger(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
@@ -66,8 +66,8 @@ class SliceLedger {
   void Skip(SlicePosition p);
   /// Notes the source's number `id` of `scan`. These numbers have gaps for skipped scans.
   void BookScanId(std::int64_t scan, std::uint32_t id);
-  /// Returns the slice before `p`, or nothing if its scan is forgotten. Scans before the first one
-  /// are assumed to have as many slices as it.
+  /// Returns the slice before `p`, or nothing if its scan is forgotten. Scans before the first scan
+  /// are assumed to have as many slices as the first.
   std::optional<SlicePosition> Before(SlicePosition p) const;
 
   /// Returns the position before which slices are late at `now`; CloseBefore() counts them.
