@@ -11,7 +11,7 @@ namespace lidar {
 class NearestPoint {
  public:
   explicit NearestPoint(const std::vector<float>& xyz);
-  /// Distance from `point` to the nearest; infinity if the cloud is empty.
+  /// Distance from `point` to the nearest point of the cloud; infinity if the cloud is empty.
   double DistanceFrom(const float* point) const;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace lidar {
 
-/// Detects points that an element between source and encoder has moved: coding only ranges would
+/// Detects points that an element between source and encoder has moved. Coding only ranges would
 /// undo the motion.
 class RangeCheck {
  public:

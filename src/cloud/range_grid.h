@@ -9,9 +9,9 @@
 namespace lidar {
 
 /// Ranges are multiples of `unit_mm`, here called cells. Neighbouring cells share a bin and decode
-/// to its middle, rounded up to a whole millimetre. A step that is no whole number of cells makes
-/// bins of two sizes, evenly mixed: so encoded sizes change as smoothly as the step does. The error
-/// is that of the larger bins.
+/// to its middle, rounded up to a whole millimetre. A step that is not a whole number of cells
+/// makes bins of two sizes, evenly mixed, so that encoded sizes change as smoothly as the step
+/// does. The error is that of the larger bins.
 class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
@@ -34,8 +34,8 @@ class RangeGrid {
   /// Returns the coarsest grid whose error stays within `error_m`, or the lossless grid if there is
   /// none.
   static RangeGrid ForError(double error_m, std::uint32_t unit_mm) {
-    // The small term turns a bound such as 0.02 m, which is no exact double, into 20 mm. Fractions
-    // of a millimetre do not matter: errors are whole millimetres.
+    // The small term turns a bound such as 0.02 m, which is not an exact double, into 20 mm.
+    // Fractions of a millimetre do not matter, because errors are whole millimetres.
     const double whole_mm = std::floor(1e3 * error_m + 1e-9);
     const double cells = std::floor(2 * whole_mm / unit_mm) + 1;
     return {unit_mm, static_cast<std::uint32_t>(std::clamp(cells, 1.0, double{kMaxCells}))};
