@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps as text, and back from untrusted text. GStreamer's own parser never gets such text: each
-// level of nesting doubles its time.
+// Caps as text, and back from untrusted text. GStreamer's own parser never gets untrusted text,
+// because each level of nesting doubles the parser's time.
 #pragma once
 #include <gst/gst.h>
 

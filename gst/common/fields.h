@@ -241,7 +241,7 @@ class Field {
   }
   void Set(S* s, GObject* object, const GValue* v) const { ops_->set(*this, s, object, v); }
   void Get(const S* s, GObject* object, GValue* v) const { ops_->get(*this, s, object, v); }
-  /// Adds the count in `part` to that in `sum`. Does nothing for a field that is no number.
+  /// Adds the count in `part` to that in `sum`. Does nothing for a field that is not a number.
   void Add(const S& part, S* sum) const {
     if (ops_->add != nullptr) ops_->add(*this, part, sum);
   }

@@ -15,8 +15,8 @@
 
 namespace lidar::gst {
 
-/// The stream joins the group of the clouds and ends with them. An unlinked or flushing pad is no
-/// error.
+/// The stream joins the group of the clouds and ends with them. An unlinked or flushing pad is not
+/// an error.
 class ImuPad {
  public:
   explicit ImuPad(GstBaseSrc* source) : source_(source) {

@@ -5,8 +5,8 @@
 
 namespace lidar::gst {
 
-/// Returns an iterator over the one pad to which another pad's queries and events go. The caller
-/// owns it.
+/// Returns an iterator over `pad`, the only pad to which another pad's queries and events go. The
+/// caller owns the iterator.
 inline GstIterator* LinkTo(GstPad* pad) {
   GValue value = G_VALUE_INIT;
   g_value_init(&value, GST_TYPE_PAD);

@@ -5,7 +5,7 @@
 
 namespace lidar::gst {
 
-/// A flushing pad, as at a stop, refuses caps, which is no error.
+/// Sets caps. A pad that flushes, as at a stop, refuses them, which is not an error.
 inline GstFlowReturn SetSourceCaps(GstBaseSrc* source, GstCaps* caps) {
   if (gst_base_src_set_caps(source, caps)) return GST_FLOW_OK;
   return GST_PAD_IS_FLUSHING(GST_BASE_SRC_PAD(source)) ? GST_FLOW_FLUSHING

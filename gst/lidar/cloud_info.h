@@ -23,9 +23,9 @@ struct CloudInfo {
   gint framerate_d = 1;
   std::optional<SensorModel> sensor_model;
 
-  /// Returns nothing if the caps are of another type, big-endian, or contradict themselves: fields
-  /// past point-step, a sensor model that does not parse or has another height, too large a frame.
-  /// `why` then has the reason in words for a user.
+  /// Returns nothing if the caps are of another type, big-endian or invalid: fields past
+  /// point-step, a frame that is too large, a sensor model that does not parse or has another
+  /// height. `why` then has the reason in words for a user.
   GST_LIDAR_API static std::optional<CloudInfo> FromCaps(const GstCaps* caps,
                                                          std::string* why = nullptr);
   /// FromCaps() for caps that fix the width as well.

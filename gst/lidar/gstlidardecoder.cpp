@@ -266,8 +266,8 @@ static lidar::Duration ThreadTime() {
   return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec);
 }
 
-/// Returns false, and counts the slice, if earlier slices cost more than max-decode-load: a hostile
-/// sender can make each byte cost microseconds.
+/// Returns false, and counts the slice, if earlier slices cost more than max-decode-load. Without a
+/// limit a hostile sender can make each byte cost microseconds.
 static bool MayDecode(GstLidarDecoder* self, gdouble max_load) {
   State& state = *self->state;
   const lidar::Time now{std::chrono::microseconds(g_get_monotonic_time())};

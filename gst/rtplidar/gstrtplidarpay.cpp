@@ -61,8 +61,8 @@ struct _GstLidarRtpPay {
 };
 
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
-// The element has no rank: otherwise a search for a payloader of video would choose it, because it
-// takes all caps.
+// The element takes all caps, so with a rank it would be chosen by a search for a payloader of
+// video.
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_NONE, gst_lidar_rtp_pay_get_type())
 
 static StructurePtr Stats(GObject* object) {
@@ -224,7 +224,8 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
                               : state.scan_time;
 }
 
-/// `HoldTime` reads these properties; the base class has max-ptime.
+/// Posts a new latency if a property that HoldTime() reads has changed. The base class has
+/// max-ptime.
 static void NotifyChange(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "aggregate") == 0 || g_strcmp0(spec->name, "max-ptime") == 0)
     PostNewLatency(object);

@@ -55,7 +55,7 @@ bool SliceOutput::SetCapsOf(const rtp::StreamConfig& config) {
     gst_pad_set_caps(src, caps.get());
     return true;
   }
-  // This is no error, because another sender may use another coder.
+  // This is not an error, because another sender may use another coder.
   if (!GST_PAD_IS_FLUSHING(src) && !std::exchange(warned_of_coder_, true))
     WarnOfCoder(element_, caps.get());
   return false;

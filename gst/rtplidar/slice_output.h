@@ -21,7 +21,7 @@ class SliceOutput {
   /// element does not accept, and slices of formats that change too often. Warns once of each. The
   /// first slice after dropped ones is marked DISCONT.
   void Push(std::vector<rtp::ReceivedSlice> slices, Time now);
-  /// Resets all state with the counts. The caller holds the element's lock.
+  /// Resets all state, counts included. The caller holds the element's lock.
   void Reset();
   /// Call it if the times of Push() begin anew.
   void ResetTime() { changes_ = {kFormatChanges, kFormatChangePeriod}; }

@@ -136,7 +136,7 @@ class TrajectoryLog {
     file_.stream() << std::fixed << "# timestamp tx ty tz qx qy qz qw\n" << std::flush;
   }
   bool ok() const { return file_.ok(); }
-  /// Returns false if the row did not fit.
+  /// Returns false if the row could not be written.
   bool Write(GstClockTime unix_time, const lidar::synth::Pose& pose) {
     const auto [x, y, z, w] = pose.ToQuaternion();
     // A double does not hold the nanoseconds of a Unix time.
@@ -313,7 +313,8 @@ static GstClockTime UnixTime(GstLidarTestSrc* self, Duration t) {
   return live ? self->state->pacer.ToUnixTime(t) : kEpoch + static_cast<GstClockTime>(t.count());
 }
 
-/// Writes a row. Reports the first row that does not fit; written rows stay, and no more follow.
+/// Writes a row. Warns of the first row that cannot be written. Earlier rows stay, and no more
+/// follow.
 static void LogPose(GstLidarTestSrc* self, Duration at) {
   State& state = *self->state;
   if (!state.log) return;

@@ -8,7 +8,7 @@
 namespace lidar::gst {
 namespace {
 
-// Stands for no slice: the event is about the receiver alone.
+// Index of an entry without a slice, for an event about the receiver alone.
 constexpr guint kNoSlice = G_MAXUINT;
 
 /// Returns the linked pads by which data of `sink` may leave, at most two.

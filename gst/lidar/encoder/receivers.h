@@ -10,8 +10,8 @@
 
 namespace lidar::gst {
 
-/// Returns true if data of `src` reach at most one destination: no element downstream has two
-/// outputs for them. A second one would not report its losses.
+/// Returns true if no element downstream has two outputs for the data of `src`, so that the data
+/// reach at most one destination. A second destination would not report its losses.
 bool HasOneWay(GstPad* src);
 
 /// Events come in any thread; the streaming thread calls Take().
@@ -26,7 +26,7 @@ class ReceiverEvents {
     std::vector<Slice> received;
     bool key_requested = false;
   };
-  /// Returns false if `event` is no report of a receiver. The event stays the caller's in both
+  /// Returns false if `event` is not a report of a receiver. The event stays the caller's in both
   /// cases.
   bool OnEvent(GstEvent* event);
   void Forget();
