@@ -30,7 +30,7 @@ void XyzSliceEncoder::Thin(const std::vector<bool>& kept) {
   if (!cloud_.intensity.empty()) cloud_.intensity.resize(count);
 }
 
-/// Tries both of Draco's coders. The order of the points decides which result is smaller: a
+/// Tries both of Draco's coders, because the order of the points decides which result is smaller. A
 /// sensor's order suits the sequential coder.
 bool XyzSliceEncoder::TryBothMethods(const XyzSettings& settings, codec::EncodedSlice* slice,
                                      XyzResult* result) {

@@ -30,8 +30,8 @@ struct XyzResult {
 };
 
 /// Appends a Draco file to `out`. The points must be finite. Returns false if there are none, or if
-/// no grid that Draco can write meets the bound: a grid has at most 2^30 cells along a side, and
-/// floats at 10 km have steps of a millimetre themselves.
+/// no grid that Draco can write meets the bound. A grid has at most 2^30 cells along a side, and
+/// floats at 10 km have steps of a millimetre.
 bool EncodeXyz(const XyzCloud& cloud, const XyzSettings& settings, std::vector<std::uint8_t>* out,
                XyzResult* result);
 
