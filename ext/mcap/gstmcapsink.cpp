@@ -267,7 +267,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   const StringPtr name(gst_pad_get_name(pad));
   const ElementPtr stream(gst_bin_get_by_name(GST_BIN(element), name.get()));
   if (stream) {
-    // The stream stops first: this wakes a thread that waits in it and holds the pad's lock.
+    // The stream stops first, which wakes a thread that waits in the stream and holds the pad's
+    // lock.
     gst_element_set_locked_state(stream.get(), TRUE);
     gst_element_set_state(stream.get(), GST_STATE_NULL);
   }

@@ -19,8 +19,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kMaxSlices = 4'096;
-/// A point of one byte becomes a point of twelve bytes or more, so the size of a message is no
-/// bound.
+/// A point of one byte becomes a point of twelve bytes or more, so the size of a message does not
+/// bound that of its cloud.
 constexpr gsize kMaxCloud = gsize{256} << 20;  // bytes
 
 void SetCaptureTime(const cdr::Header& header, GstBuffer* buffer) {

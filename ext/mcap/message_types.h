@@ -20,7 +20,7 @@ mcap::Schema SchemaOf(MessageType type);
 std::optional<MessageType> TypeOf(const mcap::Schema& schema, const mcap::Channel& channel);
 /// The message for buffers of `caps`; nothing if they cannot be recorded.
 std::optional<MessageType> TypeOf(const GstCaps* caps);
-/// Whether samples of an IMU are of the layout that can be recorded.
+/// Returns true if samples of an IMU have the layout that can be recorded.
 bool IsOurImu(const GstCaps* caps);
 /// Topic of messages of that type unless another is given.
 std::string_view TopicOf(MessageType type);

@@ -10,7 +10,7 @@ namespace lidar::gst {
 
 Recorder::Recorder(const RecorderSettings& settings, mcap::FileNames names)
     : settings_(settings), names_(std::move(names)) {
-  // Files of an earlier recording stay: the numbers continue after them.
+  // Files of an earlier recording stay, so the numbers continue after those files.
   const auto existing = names_.Existing(&listing_failed_);
   if (!names_.is_numbered() || existing.empty()) return;
   next_number_ = existing.back().first + 1;

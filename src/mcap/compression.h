@@ -12,8 +12,8 @@ enum class Compression { kNone, kLz4, kZstd };
 /// Returns the name of `compression` in a chunk's header.
 std::string_view NameOf(Compression compression);
 
-/// Replaces `out` by the compressed `bytes`. Returns false if this saves less than a twentieth:
-/// then they are better stored uncompressed.
+/// Replaces `out` by the compressed `bytes`. Returns false if this saves less than a twentieth,
+/// because then `bytes` are better stored uncompressed.
 bool Compress(Compression compression, ByteView bytes, Bytes* out);
 
 /// Replaces `out` by the uncompressed `bytes`. Returns false if `bytes` are damaged, do not give

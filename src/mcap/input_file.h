@@ -11,8 +11,8 @@ namespace lidar::mcap {
 
 class InputFile : public Input {
  public:
-  /// Returns nothing if it cannot be opened or is no file; `why` then has the reason. Reads fail
-  /// once `cancelled`, which outlives the file, is true.
+  /// Returns null if `path` cannot be opened or is not a regular file; `why` then has the reason.
+  /// Reads fail once `cancelled`, which outlives the file, is true.
   static std::unique_ptr<InputFile> Open(const std::string& path, std::string* why,
                                          const std::atomic<bool>* cancelled = nullptr);
   ~InputFile() override;

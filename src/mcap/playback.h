@@ -35,9 +35,8 @@ class Playback {
   static std::unique_ptr<Playback> Open(const std::string& location,
                                         const std::atomic<bool>* cancelled, std::string* why);
 
-  /// Lists the files again: a recording that is still written grows, and its oldest files are
-  /// removed. Returns false if there is no file to read; `why` then has the reason. Call Seek()
-  /// next.
+  /// Lists the files again, because a recording that is still written grows and loses its oldest
+  /// files. Returns false if there is no file to read; `why` then has the reason. Call Seek() next.
   bool Refresh(std::string* why);
 
   /// Log times [ns].

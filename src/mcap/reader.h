@@ -20,8 +20,8 @@ struct Message {
 
 class Reader {
  public:
-  /// Returns nothing if `input` is no MCAP file; `why` then has the reason for a user. `known` is
-  /// the index of the same file when it was shorter.
+  /// Returns nothing if `input` is not an MCAP file; `why` then has the reason for a user. `known`
+  /// is the index of the same file when it was shorter.
   static std::unique_ptr<Reader> Open(std::unique_ptr<Input> input, std::string* why,
                                       FileIndex known = {});
 

@@ -15,7 +15,8 @@ std::optional<RecordPlace> RecordAt(Input* input, std::uint64_t offset) {
   place.op = static_cast<Op>(r.U8());
   place.size = r.Le64();
   place.content = offset + bytes.size();
-  // No record has opcode 0: a hole of a sparse file would be an endless row of empty records.
+  // No record has opcode 0. Without this check, a hole of a sparse file would be an endless row of
+  // empty records.
   constexpr Op kNone{0};
   if (place.op == kNone || place.size > input->size() - place.content) return std::nullopt;
   return place;

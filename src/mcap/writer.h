@@ -47,8 +47,8 @@ class Writer {
   /// `catalogue` outlives this object, and may grow.
   Writer(const WriterSettings& settings, const Catalogue* catalogue, Write write);
 
-  /// Takes a message of kMaxMessage at most, and writes a chunk if one is full. After false,
-  /// Finish() may still work.
+  /// Takes a message of at most kMaxMessage bytes, and writes a chunk if one is full. Finish() may
+  /// still work after Add() has returned false.
   bool Add(const MessageHeader& header, ByteView data);
   /// Writes the open chunk.
   bool Flush();
