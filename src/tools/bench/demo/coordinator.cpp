@@ -31,7 +31,7 @@ using namespace std::chrono_literals;
 using tools::ChildProcess;
 using tools::Now;
 
-constexpr auto kPhaseLimit = 60s;  // at the end the receiver may still compare clouds
+constexpr auto kPhaseLimit = 60s;  // at the end comparisons of clouds may slow down the receiver
 constexpr auto kTick = 100ms;
 constexpr int kPoorStream = 3;  // exit code
 constexpr auto kArrivalLimit = 3s;

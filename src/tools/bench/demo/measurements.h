@@ -52,8 +52,8 @@ struct Measurements {
   Ledger ledger;
   std::vector<LinkPacket> packets;
   std::vector<SenderSample> samples;
-  // Means over time of the encoder's bitrate bounds; 0: unknown. After slices that a gap made
-  // coarse, the bounds are guesses.
+  // Means over time of the encoder's bitrate bounds; 0: unknown. The encoder predicts the bounds
+  // from its slices. While slices are coarse after a gap of the link, the bounds are guesses.
   double encoder_min_bps = 0;
   double encoder_max_bps = 0;
   /// The latest bitrate bounds, and since when they hold.
@@ -78,8 +78,8 @@ struct Measurements {
 /// The sender's statistics of each link; empty for a single link.
 nlohmann::json LinkStats(const Measurements& m);
 
-/// Returns the sum of the links' `lines` of a second, with the longest queue. A link without a line
-/// is null.
+/// Adds up the links' `lines` of one second, but takes the longest queue. An item is null if its
+/// link has no line.
 nlohmann::json SumOfLinks(const std::vector<nlohmann::json>& lines);
 
 }  // namespace lidar::demo

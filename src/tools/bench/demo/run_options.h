@@ -70,7 +70,8 @@ std::vector<Duration> ChangesOf(const RunOptions& options);
 
 /// The text of the capacity trace of --drive.
 std::string DriveTraceOf(const RunOptions& options, std::size_t index);
-/// Path of NAME in the report's folder; the second link has a 2 before the extension.
+/// Path of a link's file `name` in the report's folder. For the second link, the name gets a 2
+/// before the extension.
 std::string LinkFile(const RunOptions& options, const std::string& name, std::size_t index);
 
 struct Ports {

@@ -13,8 +13,8 @@
 
 namespace lidar::demo {
 
-/// Reads both pipes in threads of its own. Keeps at most kMaxPending sent slices: older ones were
-/// skipped or lost.
+/// Reads both pipes in threads of its own. At most kMaxPending sent slices wait for the received
+/// ones, because older slices were skipped or lost.
 class StreamComparer {
  public:
   StreamComparer(int sent_fd, int received_fd, double reach_m);

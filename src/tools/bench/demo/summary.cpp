@@ -84,8 +84,8 @@ Delays QueueDelays(const Measurements& m) {
   return d;
 }
 
-/// Returns the delivered bits as a share of those that the link can carry and the source can use,
-/// in steady times.
+/// Returns the delivered bits divided by the bits that the link can carry and the source can use.
+/// Only steady times count.
 nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps) {
   if (m.options.links > 1) return nullptr;  // copies fill the remaining capacity
   constexpr double kSpan_s = 0.1;

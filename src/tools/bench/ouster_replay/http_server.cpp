@@ -49,7 +49,7 @@ class HttpServer::Impl {
         delay_(std::move(delay)),
         context_(g_main_context_new()),
         loop_(g_main_loop_new(context_, FALSE)) {
-    // The server takes the thread's default context.
+    // The server uses the thread's default context.
     g_main_context_push_thread_default(context_);
     server_ = soup_server_new(nullptr, nullptr);
     soup_server_add_handler(server_, nullptr, OnRequest, this, nullptr);

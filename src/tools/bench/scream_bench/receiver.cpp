@@ -55,7 +55,7 @@ class FrameMeter {
   /// Number of missing packets between the oldest and the newest.
   std::uint64_t lost() const;
   std::uint64_t frames() const { return ages_ms_.count(); }
-  /// Returns true if the sender's clock differs, so that ages are relative to the youngest frame's.
+  /// Returns true if the sender's clock differs. Ages are then relative to the smallest one.
   bool is_relative() const { return offset_ != Duration{0}; }
   const Distribution& ages_ms() const { return ages_ms_; }
 
@@ -126,7 +126,7 @@ class Receiver {
   OutputFile log_;
   std::mutex mutex_;  // guards the rest, which the streaming thread writes
   FrameMeter meter_;
-  Distribution second_;  // ages [ms] of this line
+  Distribution second_;  // ages [ms] since the last line
   DataSize line_bytes_;
   Duration first_{0};
   Duration last_{0};
