@@ -233,7 +233,7 @@ int main(int argc, char** argv) {
   app.add_option("--duration", options.duration_s,
                  "How long it plays from the handshake on [s]; without it, until Ctrl-C")
       ->check(CLI::Range(0.1, 1e7));
-  app.prefix_command();  // the first word that is no option begins the pipeline
+  app.prefix_command();  // the first word that is not an option begins the pipeline
   app.footer("PIPELINE: elements, properties and links, after the options");
   lidar::tools::Parse(&app, argc, argv);
   options.pipeline = app.remaining();

@@ -19,7 +19,7 @@ class SharedPort {
   SharedPort(const std::string& address, std::uint16_t port, const std::vector<SsrcRange>& ranges);
 
   GSocket* socket(std::size_t index) const { return sockets_.at(index + 1).get(); }
-  /// Number of datagrams that were dropped because their SSRC is no robot's.
+  /// Number of datagrams that were dropped because no robot has their SSRC.
   std::uint32_t strays() const;
 
  private:
@@ -27,7 +27,7 @@ class SharedPort {
     void operator()(GSocket* socket) const { g_object_unref(socket); }
   };
   // Sockets in the order of binding, by which the kernel numbers them. The first receives the
-  // datagrams whose SSRC is no robot's.
+  // datagrams whose SSRC no robot has.
   std::vector<std::unique_ptr<GSocket, Unref>> sockets_;
 };
 

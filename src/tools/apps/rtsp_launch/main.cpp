@@ -133,7 +133,7 @@ Options ReadOptions(int argc, char** argv) {
           },
           "/PATH"))
       ->capture_default_str();
-  app.prefix_command();  // the first word that is no option begins the pipeline
+  app.prefix_command();  // the first word that is not an option begins the pipeline
   app.footer(
       "PIPELINE: elements, properties and links, after the options; the last is called pay0");
   lidar::tools::Parse(&app, argc, argv);

@@ -248,7 +248,7 @@ void AddOptions(CLI::App* app, Options* o) {
   app->add_option("--duration", o->duration_s,
                   "How long the call lasts [s]; without it, until Ctrl-C")
       ->check(CLI::Range(0.1, 1e7));
-  app->prefix_command();  // the first word that is no option begins the pipeline
+  app->prefix_command();  // the first word that is not an option begins the pipeline
   app->footer("PIPELINE: elements, properties and links, after the options");
 }
 

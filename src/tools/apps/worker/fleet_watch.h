@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Follows the leases in the key-value store and the list of robots, in a thread of its own:
+// Follows the leases in the key-value store and the list of robots, in a thread of its own because
 // requests to an absent server block.
 #pragma once
 #include <atomic>

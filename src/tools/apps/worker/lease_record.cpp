@@ -93,7 +93,7 @@ std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
   const Quaternion begin = RotationOf(before);
   const Quaternion turn = Product(Inverse(begin), RotationOf(after));
   const double sine = std::hypot(turn[0], turn[1], turn[2]);
-  // Takes the shorter turn: each rotation has two quaternions.
+  // Takes the shorter turn, because each rotation has two quaternions.
   const double angle = 2 * std::atan2(std::copysign(sine, turn[3]), std::abs(turn[3]));
   // Expresses the velocity in the orientation halfway between the scans, so that a bend does not
   // look like a drift.

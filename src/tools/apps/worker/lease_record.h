@@ -18,7 +18,7 @@ struct Progress {
   std::optional<std::array<double, 6>> velocity;
   std::uint64_t time = 0;    // of the pose, by the robot's clock [ns]
   std::uint64_t stream = 0;  // creation of the stream [ns since 1970]; message numbers belong to it
-  std::uint64_t scan = 0;    // number in the stream of the first message of the pose's scan
+  std::uint64_t scan = 0;    // number of the first message of the pose's scan
   std::uint64_t from = 0;    // an earlier message from which a decoder can start
 };
 

@@ -12,8 +12,8 @@ namespace {
 constexpr int kRenewals = 4;  // writes in the time of a lease
 /// Other workers wait 1 / kMargin longer than the lease: steady clocks differ by far less.
 constexpr int kMargin = 20;
-/// A full worker waits for this share of a lease before it takes a free robot, so that workers with
-/// fewer robots take it first.
+/// A full worker waits for this share of a lease before it takes a free robot. Workers with fewer
+/// robots wait less, so that they take the robot first.
 constexpr double kHesitation = 0.3;
 /// A sensor without progress for this time gives its place to a waiting one.
 constexpr Duration kIdleSensor = std::chrono::seconds(30);
@@ -90,12 +90,12 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // Gives the store time to send its entry, which may be from an earlier write of this worker.
+  // Waits for the store's entry of the robot, which may be from an earlier write of this worker.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
   robot->revision = 0;
-  // A new bucket lacks the owner's last write to the old one.
+  // If the bucket is new, the owner's last write was to the old one, and its lease may still hold.
   const Duration lease = std::max(robot->record.lease, settings_.lease);
   robot->free_at = IsHeld(*robot, now) ? now : now + lease + lease / kMargin;
 }

@@ -82,7 +82,7 @@ class LeaseTable {
     bool wanted = false;
     bool held = false;
     std::uint64_t revision = 0;  // of the newest known entry; 0: unknown
-    // Time of a refused write: the store may have another entry, even with a lower revision.
+    // Time of a refused write. The store then has another entry, maybe with a lower revision.
     std::optional<Time> doubted_since;
     LeaseRecord record;  // the record of that entry
     Time free_at{};      // end of the owner's lease

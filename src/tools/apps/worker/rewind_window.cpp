@@ -14,8 +14,9 @@ std::uint64_t Between(std::uint64_t from, std::uint64_t to) { return to < from ?
 
 }  // namespace
 
-/// Returns true if the message is more than `rewind` older than the newest, by both of its times:
-/// stored times jump after a pause of the server, and capture times if the robot's clock is set.
+/// Returns true if the message is more than `rewind` older than the newest by both of its times,
+/// because stored times jump after a pause of the server, and capture times if the robot's clock is
+/// set.
 bool RewindWindow::IsOld(const Message& message) const {
   const Message& now = messages_.back();
   const std::uint64_t age_ns = Between(message.stored_ns, now.stored_ns);

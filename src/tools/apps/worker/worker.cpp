@@ -180,7 +180,7 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
     pipeline->SetEnd(held.until);
     pipeline->Play();
     pipelines_[robot] = std::move(pipeline);
-  } catch (const std::exception& e) {  // no threads or files are left
+  } catch (const std::exception& e) {  // the process has no threads or files left
     Warn(robot, e.what());
     ++counters_.failures;
     NoteGivenUp(robot);
