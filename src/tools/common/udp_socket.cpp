@@ -106,7 +106,7 @@ void UdpSocket::ReceiveAll(const std::function<void(const Datagram&)>& handler) 
     message.msg_control = control;
     message.msg_controllen = sizeof control;
     const ssize_t size = recvmsg(fd(), &message, 0);
-    // A connected socket reports the peer's "port unreachable" here: it received no datagram.
+    // A connected socket may return the peer's "port unreachable" here instead of a datagram.
     if (size < 0 && (errno == ECONNREFUSED || errno == EINTR)) continue;
     if (size < 0) return;
     from.length = message.msg_namelen;

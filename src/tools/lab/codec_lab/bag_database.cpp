@@ -30,12 +30,12 @@ using Statement = std::unique_ptr<sqlite3_stmt, Closer>;
 class BagDatabase final : public MessageReader {
  public:
   explicit BagDatabase(const std::string& path) : path_(path) {
-    // A pipe would wait for its writer.
+    // Opening a pipe would wait for its writer.
     if (!std::filesystem::is_regular_file(path)) Fail("is not a regular file");
     const std::uint64_t unfinished = SizeOf(path + "-wal") + SizeOf(path + "-journal");
     size_ = std::filesystem::file_size(path) + unfinished;
-    // An immutable database needs no file beside it. Rows in -wal need an index, which is also a
-    // file unless a single process uses the database.
+    // An immutable database is read without other files. Rows in -wal need an index, which is
+    // another file unless the locking mode is exclusive (below).
     const std::string uri = UriOf(path) + (unfinished > 0 ? "?vfs=unix-none" : "?immutable=1");
     sqlite3* database = nullptr;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI;
@@ -110,8 +110,8 @@ class BagDatabase final : public MessageReader {
     return uri;
   }
 
-  /// Refuses other columns. A generated column is computed when it is read, and SQLite must pass
-  /// any other column that lies before the columns to read.
+  /// Requires `names` as the first columns, because SQLite must pass any column that lies before
+  /// the columns to read. Refuses generated columns, which are computed when they are read.
   void RequireColumns(const std::string& table, const std::array<const char*, 4>& names) {
     const Statement columns = Prepare("PRAGMA table_xinfo(" + table + ")");
     int result = SQLITE_ROW;

@@ -15,7 +15,8 @@ struct Measurement {
   Distortion errors;
 };
 
-/// A setting by its step, or by the paper's bits over the slice's bounding cube.
+/// A setting by its step or, as in the paper, by the bits of a coordinate in the slice's bounding
+/// cube.
 struct MeasuredSetting {
   double step_m = 0;
   unsigned quantization_bits = 0;  // if not 0, replaces the step

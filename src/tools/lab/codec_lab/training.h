@@ -11,7 +11,8 @@
 namespace lidar::tools {
 
 struct SamplingOptions {
-  std::size_t samples = 200;  // of each source; each gives the adaptive model a sample in all modes
+  // Random slices of each source. Each slice gives the adaptive model a sample in each mode.
+  std::size_t samples = 200;
   std::vector<std::string> modes;
   double min_step_m = 0.001;
   double max_step_m = 0.5;

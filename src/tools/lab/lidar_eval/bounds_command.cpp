@@ -48,8 +48,8 @@ std::optional<Measurement> AtError(const ScanSet& set, const CodingMode& mode, d
   return Measure(set, mode, {codec.Bound(mode).CoarsestStep(error), 0, o.intensity_bits, o.slices});
 }
 
-/// Prints the paper's minimum: the fewest bits of the bounding cube that keep the bound in every
-/// scan, at the level that needs the fewest bytes.
+/// Prints the paper's minimum: the fewest bits of a coordinate in the bounding cube that keep the
+/// error bound in every scan, and the bitrate at the level that needs the fewest bytes.
 void PrintPaperMinimum(const ScanSet& set, double error, const BoundsOptions& o) {
   double extent = 0;
   SliceCodec codec;

@@ -113,7 +113,7 @@ struct CloudCoders {
   codec::cloud::CloudDecoder decoder;
 };
 
-/// Adds the size of the first of `repeats` runs, and the times of the fastest ones.
+/// Adds the size of the first of `repeats` runs, and the shortest encoding and decoding times.
 void AddCost(const Scan& scan, double error_m, unsigned repeats, CloudCoders* coders,
              CloudCost* cost) {
   const RawCloud raw(scan);

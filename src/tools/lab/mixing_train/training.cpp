@@ -16,8 +16,8 @@ namespace mixing = codec::mixing;
 using mixing::SliceBins;
 
 constexpr std::uint32_t kSlices = 8;
-// Largest errors [m] to train with: each class of steps gets one at least, for ranges in units of 1
-// mm and of 8 mm.
+// Largest errors [m] to train with. Each class of steps has at least one of them, whether ranges
+// have units of 1 mm or of 8 mm.
 constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
 constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
 constexpr double kLevelError = 0.02;
@@ -83,7 +83,7 @@ class Means {
   std::vector<std::int64_t> counts_;
 };
 
-/// Goes through pairs of numbers of two objects of one type, in order.
+/// Visits the numbers of two objects of one type in pairs, in order.
 class Walk {
  public:
   template <std::size_t kSize, class Do>
