@@ -49,8 +49,8 @@ natsStatus SetSecurity(natsOptions* o, const ConnectionSettings& s) {
     status = natsOptions_LoadCATrustedCertificates(o, s.tls_ca_file.c_str());
   if (status == NATS_OK && !s.tls_cert_file.empty())
     status = natsOptions_LoadCertificatesChain(o, s.tls_cert_file.c_str(), s.tls_key_file.c_str());
-  // Certificates make TLS mandatory: nothing is sent to a server without it. libnats ignores the
-  // scheme of the address, so it is read here.
+  // Certificates make TLS mandatory: nothing is sent to a server without TLS. libnats ignores the
+  // scheme of a URL, so this function reads the scheme.
   const bool tls = s.url.find("tls://") != std::string::npos || !s.tls_ca_file.empty() ||
                    !s.tls_cert_file.empty();
   if (status == NATS_OK && tls) status = natsOptions_SetSecure(o, true);

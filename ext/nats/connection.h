@@ -29,7 +29,7 @@ struct ConnectionState {
   bool refused() const { return closed && !unanswered; }
 
   bool closed = false;  // for good, so that only another connection helps
-  // libnats gave up the first connect: no server refused it, but one accepted it and stayed silent.
+  // libnats gave up the first connect: no server refused, but one accepted and then stayed silent.
   bool unanswered = false;
   unsigned connections = 0;  // number of connects so far
   unsigned disconnections = 0;
@@ -44,7 +44,8 @@ class Connection {
   using Changed = std::function<void(const ConnectionState&)>;
   /// `changed` runs in threads of libnats, at each change of the state until the destructor
   /// returns. Returns null, and `why`, if the settings are wrong. A server that does not answer is
-  /// no error: the connection tries again until it does, or is `unanswered`.
+  /// not an error: the connection tries again until a server answers, or is given up as
+  /// `unanswered`.
   static std::unique_ptr<Connection> Open(const ConnectionSettings& settings, Changed changed,
                                           std::string* why);
   /// Waits for a connect (kConnectTimeoutMs) or a write (kWriteTimeoutMs) that is under way.

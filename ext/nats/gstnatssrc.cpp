@@ -257,8 +257,8 @@ static bool IsAway(State& state) {
   return !connection.connected() && !connection.closed;
 }
 
-/// Returns the format with that id, and waits while no server is there. Returns null if the format
-/// is missing: counts the message, unless the source is flushing, and the caller drops it.
+/// Returns the format with that id, and waits while no server is there. If the format is missing,
+/// counts the message and returns null. Also returns null if the source is flushing.
 static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
   State& state = StateOf(self);
   if (state.format && state.format->id() == id) return state.format;
@@ -284,7 +284,8 @@ static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer)
 }
 
 /// Sets the caps of `format`. If the next element refuses them, counts the message, warns the first
-/// time and returns CUSTOM_SUCCESS. That is no error, as others may publish another coder's stream.
+/// time and returns CUSTOM_SUCCESS, not an error, because others may publish another coder's
+/// stream.
 static GstFlowReturn SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
   State& state = StateOf(self);
   GstPad* pad = GST_BASE_SRC_PAD(self);
@@ -381,7 +382,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   state.trouble.clear();
   const GstFlowReturn flow = Take(self, delivery, out);
   if (flow == GST_FLOW_FLUSHING) return flow;  // a durable consumer sends the message again
-  // Ignores a durable consumer, which may get earlier messages again.
+  // Never at the end with a durable consumer, which may get earlier messages again.
   state.at_end =
       eos_at_end && delivery.stored && delivery.to_come == 0 && !state.subscriber->acknowledges();
   state.delivery = std::move(delivery);

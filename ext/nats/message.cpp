@@ -124,7 +124,7 @@ std::optional<std::string_view> Header(natsMsg* message, const char* name) {
   return text.size() <= kMaxHeader ? text : std::string_view();
 }
 
-/// Returns false if the header exists and is no time.
+/// Returns false if the header exists and is not a time.
 bool ReadTime(natsMsg* message, const char* name, GstClockTime* time) {
   const auto text = Header(message, name);
   if (!text) return true;

@@ -189,7 +189,8 @@ void Publisher::OnAck(natsMsg* message) {
   if (!error.empty()) Tell(&lock, error);
 }
 
-/// Gives up a message, or the caps if `number` is missing: the stream would refuse it each time.
+/// Gives up a message, or the caps if `number` is missing, because the stream would always refuse
+/// them.
 void Publisher::NoteTooLarge(Lock* lock, std::optional<std::uint64_t> number) {
   if (!number)
     config_unanswered_ = false;

@@ -192,8 +192,8 @@ void Subscriber::NoteStream() {
   if (before != 0 && before != created_) next_ = 1;
 }
 
-/// Returns true if the server answers. Otherwise the end of each subscription, and each request,
-/// would wait in turn.
+/// Returns true if the server answers. Without this check the end of each subscription, and each
+/// request, would wait in turn.
 bool Subscriber::Answers() const {
   return natsConnection_FlushTimeout(connection_->get(), kRequestTimeoutMs) == NATS_OK;
 }
@@ -229,7 +229,7 @@ Subscriber::Event Subscriber::Renew() {
   natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
   const ConsumerInfoPtr info(raw);
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
-  // The server may lose the consumer before the first message: the next one then begins here.
+  // If the server loses the consumer before its first message, the next consumer begins here.
   next_ = info->Delivered.Stream + 1;
   return Event::kNothing;
 }
@@ -307,7 +307,7 @@ Subscriber::Event Subscriber::Next(milliseconds timeout, Delivery* delivery) {
   delivery->message.reset(raw);
   if (s == NATS_SLOW_CONSUMER) CountOverruns();
   if (s == NATS_MISMATCH) stale_ = true;
-  // The state, which has the reason, may change a moment later.
+  // Waits, because the connection's state, which has the reason, may change a moment later.
   if (!messages_ || s == NATS_CONNECTION_CLOSED) std::this_thread::sleep_for(timeout);
   if (s == NATS_TIMEOUT && stored() && state.connected() && IsDone()) return Event::kEmpty;
   if (s != NATS_OK || raw == nullptr) return Event::kNothing;

@@ -22,8 +22,8 @@ struct SubscriberSettings {
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
   std::uint64_t start_sequence = 0;         // replaces start_time, unless it is 0
   int max_pending = 8 << 20;                // bytes that may wait, if live
-  // Next() returns kEmpty once the stream has no more messages, and those of a durable consumer are
-  // acknowledged.
+  // Next() returns kEmpty once the stream has no more messages and, with a durable consumer, all
+  // are acknowledged.
   bool seeks_end = false;
 };
 
@@ -54,7 +54,7 @@ class Subscriber {
   Event Next(std::chrono::milliseconds timeout, Delivery* delivery);
   const std::string& trouble() const { return trouble_; }
   ConnectionState connection() const { return connection_->state(); }
-  /// Acknowledges a message of a durable consumer: it does not come again.
+  /// Acknowledges a message of a durable consumer, so that the message does not come again.
   void Acknowledge(natsMsg* message);
   bool acknowledges() const { return !settings_.durable.empty(); }
 
