@@ -14,7 +14,7 @@ namespace lidar::gst {
 
 class PcapFeed {
  public:
-  /// Returns null and `error` for a missing file or one that is no capture.
+  /// Returns null and `error` if the file is missing or is not a capture.
   static std::unique_ptr<PcapFeed> Open(const std::string& path, const ouster::Metadata& metadata,
                                         bool loop, std::string* error);
 

@@ -13,14 +13,14 @@ using nlohmann::json;
 constexpr long kNotFound = 404;
 constexpr const char* kAuto = "@auto";
 
-/// Returns an empty object if the text is no object.
+/// Returns an empty object if the text is not an object.
 json ParseObject(const std::string& text) {
   json root = ouster::ParseJsonObject(text);
   if (root.is_discarded()) return json::object();
   return root;
 }
 
-/// A property may hold bytes that are no UTF-8, which json::dump() refuses by throwing.
+/// A property may hold bytes that are not UTF-8, which json::dump() refuses by throwing.
 std::string Write(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }

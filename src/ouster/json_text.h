@@ -8,15 +8,16 @@
 namespace lidar::ouster {
 
 inline constexpr int kMaxJsonDepth = 16;
-/// Limit of strings, lists and objects: each takes up to 100 times as much memory as text.
+/// Limit of the number of strings, lists and objects, because each takes up to 100 times as much
+/// memory as its text.
 inline constexpr std::size_t kMaxJsonItems = 1U << 16;
 
-/// The value in `text`; discarded (`is_discarded()`) if the text is no JSON or exceeds the bounds
+/// The value in `text`; discarded (`is_discarded()`) if the text is not JSON or exceeds the bounds
 /// above. Takes time linear in the size of the text. The result may be copied, compared and written
 /// without regard to the stack, because its depth is bounded.
 nlohmann::json ParseJson(std::string_view text);
 
-/// The same; discarded also if the value is no object.
+/// The same; discarded also if the value is not an object.
 nlohmann::json ParseJsonObject(std::string_view text);
 
 }  // namespace lidar::ouster

@@ -60,7 +60,7 @@ std::optional<PcapReader::Captured> PcapReader::Next() {
     // pcapng has 64 bits of time, in a unit of its choice.
     const auto latest = std::chrono::duration_cast<std::chrono::seconds>(kLatestTime).count();
     const auto seconds = std::clamp<std::int64_t>(header->ts.tv_sec, 0, latest);
-    // Captures of nanosecond precision: tv_usec holds nanoseconds.
+    // The file was opened with nanosecond precision, so tv_usec holds nanoseconds.
     const Time time(std::chrono::seconds(seconds) + std::chrono::nanoseconds(header->ts.tv_usec));
     auto datagram = extractor_.Extract(link_, {frame, header->caplen}, time);
     if (datagram) return Captured{*std::move(datagram), time};

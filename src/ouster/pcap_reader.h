@@ -15,7 +15,7 @@ namespace lidar::ouster {
 
 class PcapReader {
  public:
-  /// Returns null and sets `error` for a file that is missing or no capture.
+  /// Returns null and sets `error` if the file is missing or is not a capture.
   static std::unique_ptr<PcapReader> Open(const std::string& path, std::string* error);
 
   struct Captured {

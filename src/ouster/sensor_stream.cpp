@@ -71,8 +71,7 @@ Duration SensorStream::slice_duration() const {
 void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arrival) {
   const bool hold = options_.clock == ClockMapper::Mode::kHold;
   for (std::uint32_t i = 0; i < packet.columns(); ++i) {
-    // The first column sets an offset that is held from then on, so that the first slice of a file
-    // starts at zero.
+    // For kHold the first column sets the offset, so that the first slice of a file starts at 0.
     const PacketColumn column = packet.Column(hold ? i : packet.columns() - 1 - i);
     if (!column.valid()) continue;
     if (local_.WouldJump(column.timestamp, arrival.local)) {

@@ -75,7 +75,7 @@ class IpReassembler {
 
 class UdpExtractor {
  public:
-  /// Returns nothing for a frame that is no UDP, is damaged or cut short, or is a fragment whose
+  /// Returns nothing for a frame that is not UDP, is damaged or cut short, or is a fragment whose
   /// datagram is not complete. `time`: of the capture.
   std::optional<UdpDatagram> Extract(LinkType link, ByteView frame, Time time = {});
 
