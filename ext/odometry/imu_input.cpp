@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-/// Reads the rotation of `imu-to-sensor`, a row-major transform; false if it is no rotation.
+/// Reads the rotation of `imu-to-sensor`, a row-major transform; false if that is not a rotation.
 bool ReadRotation(const GstStructure* caps, Eigen::Matrix3d* rotation) {
   const GValue* list = gst_structure_get_value(caps, "imu-to-sensor");
   rotation->setIdentity();

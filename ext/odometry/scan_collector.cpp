@@ -41,7 +41,7 @@ void ScanCollector::Open(const GstLidarSlice& slice, Time time) {
   scan_.duration = GST_CLOCK_TIME_IS_VALID(period)
                        ? std::min(Duration{static_cast<std::int64_t>(period)}, kLongestScan)
                        : kUsualScan;
-  // The first slices of the scan are missing: it began before this one.
+  // If the first slices are missing, the scan began before this slice.
   scan_.start = time - scan_.duration * slice.slice_index / slice.slice_count;
   scan_id_ = slice.scan_id;
   open_ = true;

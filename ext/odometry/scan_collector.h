@@ -21,7 +21,7 @@ struct CollectedScan {
 /// Used by one thread at a time.
 class ScanCollector {
  public:
-  /// Sets the layout of the buffers that follow. Returns false if x, y and z are no packed F32.
+  /// Sets the layout of the buffers that follow. Returns false if x, y and z are not packed F32.
   bool SetInfo(const CloudInfo& info);
 
   /// Returns true if the open scan cannot take `slice`: the slice is of another scan, or the open

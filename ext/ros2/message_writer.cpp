@@ -143,7 +143,7 @@ bool MessageWriter::WritePose(ByteView bytes, const Publish& publish) {
   if (type_ == cdr::RosType::kOdometry) {
     publish({View(cdr::WriteOdometry(*pose))});
   } else if (tracking < GST_LIDAR_TRACKING_LOST) {
-    // Transforms have no covariance, which would show that a pose is a guess.
+    // A transform has no covariance to show that a pose is a guess, so guesses are not published.
     const cdr::TransformStamped transform{pose->header, pose->child_frame_id, pose->position,
                                           pose->orientation};
     publish({View(cdr::WriteTransforms({transform}))});

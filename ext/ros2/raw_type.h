@@ -13,8 +13,8 @@ struct ddsi_sertype;
 namespace lidar::dds {
 
 /// Creates a keyless type `dds_name` without a type description (other implementations of DDS
-/// accept that). The topic that uses it owns it. Received messages larger than `max_size` [bytes]
-/// are cut there, and so damaged.
+/// accept that). The topic that uses the type owns it. Received messages larger than `max_size`
+/// [bytes] are cut there, and so damaged.
 ddsi_sertype* NewRawType(const char* dds_name, std::size_t max_size);
 
 struct Release {

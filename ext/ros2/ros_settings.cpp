@@ -11,7 +11,7 @@ namespace {
 
 constexpr gint kMaxDomain = 232;  // highest number whose ports exist
 
-/// Returns the environment's domain, or 0; nothing if it is no valid number.
+/// Returns the environment's domain, or 0; nothing if it is not a valid number.
 std::optional<gint> DomainOfEnvironment() {
   const char* text = std::getenv("ROS_DOMAIN_ID");
   if (text == nullptr || *text == '\0') return 0;
