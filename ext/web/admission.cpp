@@ -60,8 +60,8 @@ bool IsNoName(std::string_view host) {
   return host.empty() || host == "localhost" || g_hostname_is_ip_address(std::string(host).c_str());
 }
 
-/// True if the asking page is this server's own, or one of `allowed`. Clients that are no browsers
-/// send no origin.
+/// True if the asking page is this server's own, or one of `allowed`. Clients other than
+/// browsers send no origin.
 bool IsOwnPage(SoupServerMessage* request, const std::string& allowed) {
   const std::string_view origin = HeaderOf(request, "Origin");
   if (!origin.empty() && Lists(allowed, origin)) return true;

@@ -154,7 +154,7 @@ void Client::Tick() {
   if (closed_) return;
   const gint64 now_us = clock_us_();
   const bool stalled = current_ && now_us - progress_us_ > kStalled_us;
-  // A client can neither receive a ping nor answer while it takes a long frame.
+  // While a client takes a long frame, it can neither receive a ping nor answer: progress counts.
   if (current_ && progress_us_ > heard_us_) heard_us_ = progress_us_;
   if (stalled || now_us - heard_us_ > kSilent_us) return Close(CloseCode::kGoingAway);
   if (asked_us_ != 0 || now_us - heard_us_ < kAskAfter_us) return;

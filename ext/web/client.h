@@ -18,7 +18,7 @@ class Client {
  public:
   struct Handlers {
     std::function<void(Client*, const std::vector<std::uint8_t>& text)> on_text;
-    std::function<void(Client*)> on_garbage;  // bytes that are no message of the protocol
+    std::function<void(Client*)> on_garbage;  // bytes that are not a message of the protocol
     std::function<void(Client*)> on_closed;   // the last call; the owner deletes the client later
   };
   struct Counters {
@@ -39,7 +39,7 @@ class Client {
   std::size_t Send(Outbox::Item item, std::size_t depth);
   /// Notes that a message of the channel is not sent to this client.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
-  /// Queues a slice, in order. The caller sends slices only as the client draws earlier ones, so a
+  /// Queues a slice, in order. The caller paces slices by the client's acknowledgements, so a
   /// client that lets too many wait broke the protocol and is closed. `replay` is the number of the
   /// replay to which the slice belongs, or 0 if it is live.
   void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice,

@@ -191,7 +191,7 @@ void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> cha
   if (!channels.empty()) client->SendText(foxglove::Advertise(channels));
 }
 
-/// A call of the client itself may end it, so it is deleted after that call.
+/// The client itself may be calling, so Reap() deletes it later.
 void ClientService::ForgetClient(Client* client) {
   for (const auto& [channel, subscription] : client->subscriptions) {
     const auto topic = topics_.find(channel);

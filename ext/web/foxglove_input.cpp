@@ -339,8 +339,8 @@ bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   return true;
 }
 
-/// Sets the depth of the channel to the slices of a scan: a slow client may miss whole scans, a
-/// fast one no slice.
+/// Sets the depth of the channel to the number of slices in a scan, so that a slow client misses
+/// whole scans, and a fast one no slice.
 void LearnDepth(State* state, GstBuffer* buffer) {
   GstLidarSlice slice;
   gst_lidar_buffer_get_slice(buffer, &slice);

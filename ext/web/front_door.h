@@ -16,7 +16,8 @@ namespace lidar::web {
 /// Lives in the server's thread.
 class FrontDoor {
  public:
-  /// Most connections that are no WebSocket. Beyond a limit the oldest is closed.
+  /// Limits of the number of connections that are not WebSockets. Beyond a limit the oldest is
+  /// closed.
   struct Limits {
     std::size_t all = 1000;
     std::size_t of_an_address = 32;  // a browser has six at a time

@@ -49,7 +49,7 @@ std::optional<double> NumberOf(const json& claims, const char* name) {
   return found->get<double>();
 }
 
-/// Returns nothing if the claim is no list of texts.
+/// Returns nothing if the claim is not a list of texts.
 std::optional<std::vector<std::string>> TextsOf(const json& list) {
   std::vector<std::string> texts;
   if (!list.is_array()) return std::nullopt;

@@ -216,8 +216,8 @@ static const std::array<Property<Settings>, 12> kProperties = {{
      ReadStats},
 }};
 
-/// Returns false, with an element error, if bind-address is no address, or admits other machines
-/// without a token.
+/// Returns false, with an element error, if bind-address is not an address, or admits other
+/// machines without a token.
 static bool CheckAddress(GstElement* element, const Settings& s) {
   const lidar::web::ObjectPtr<GInetAddress> address(
       g_inet_address_new_from_string(s.bind_address.c_str()));

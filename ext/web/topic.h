@@ -20,7 +20,7 @@ namespace lidar::web {
 struct Message {
   std::uint64_t unix_ns = 0;
   std::vector<std::uint8_t> payload;
-  bool continues = false;  // useless without the message before, as a frame that is no key frame
+  bool continues = false;  // useless without the message before, as a frame between key frames
 };
 using SharedMessage = std::shared_ptr<const Message>;
 

@@ -68,7 +68,7 @@ export class FreshPoints {
       vertexShader,
       fragmentShader,
     });
-    // Two objects draw the ring: the batches may wrap around its end.
+    // Two objects draw the ring, because the batches may wrap around its end.
     this.parts = [geometry, geometry.clone()].map((part) => {
       for (const name of ['position', 'rest']) part.setAttribute(name, geometry.getAttribute(name));
       const points = new THREE.Points(part, material);
@@ -101,7 +101,7 @@ export class FreshPoints {
 
   /**
    * Adds `points`, in the layout of fields.js, of capture time `time` [s], moved by `matrix` if there
-   * is one. A slice has a `place`, {scan, slice, slices}: it stays until the next scan covers it.
+   * is one. A slice has a `place`, {scan, slice, slices}, and stays until the next scan covers it.
    */
   add(points, time, matrix, place = null) {
     const count = Math.min(points.length / FLOATS, CAPACITY);

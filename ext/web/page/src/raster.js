@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Draws points on the CPU, for browsers without a graphics card: their WebGL takes half a
-// microsecond a point, this a tenth of it. The picture lies behind what WebGL draws.
+// microsecond a point, and this code a tenth of that. The picture lies behind what WebGL draws.
 import * as THREE from 'three';
 import { rampOf, texels } from './palette.js';
 import { STRIDE } from './points.js';

@@ -30,7 +30,7 @@ async function open(id, model) {
   }
 }
 
-/** Frees the decoder at once: kept slices refer to their source for minutes. */
+/** Frees the decoder at once, because kept slices refer to their source for minutes. */
 function close(id) {
   Object.assign(sources.get(id) ?? {}, { decoder: null, isClosed: true });
   sources.delete(id);

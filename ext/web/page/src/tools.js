@@ -119,7 +119,7 @@ class Tools {
       this.scales[mode] = kept.map((v, i) => (first ? found[i] : v + 0.2 * (found[i] - v)));
     }
     this.scales.range[0] = this.scales.intensity[0] = 0;
-    // Each slice has all beams: the largest number is the last beam.
+    // Each slice has all beams, so the largest number is the last beam.
     let beam = this.seen ? this.scales.beam[1] : 1;
     for (let i = 4; i < points.length; i += FLOATS * 7) beam = Math.max(beam, points[i]);
     this.scales.beam[1] = beam;
