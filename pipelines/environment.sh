@@ -38,7 +38,7 @@ until_ended() {
   kill "$@" 2>/dev/null || true
   wait "$@" 2>/dev/null || true
 }
-# playing LOG PID: waits until the statistics in LOG report feedback or PID has ended, or a minute.
+# playing LOG PID: waits at most a minute until the statistics in LOG report feedback, or PID has ended.
 playing() {
   local i
   for ((i = 0; i < 600; ++i)); do

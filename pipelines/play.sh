@@ -47,7 +47,7 @@ case $decoder in
 esac
 if [ -n "$send" ]; then
   [[ $send =~ ^(.+):([0-9]+)$ ]] || wrong "--send wants HOST:PORT, not \"$send\""
-  # A recording is no live source, so identity delays its buffers until they are due.
+  # A recording is not a live source, so identity delays its buffers until they are due.
   sink=(identity sync=true ! rtplidarpay ! screamsink host="${BASH_REMATCH[1]}" port="${BASH_REMATCH[2]}")
   decode=(identity)
 else

@@ -44,7 +44,7 @@ trap 'kill "${link:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$w
   --steps "$high,$low,$high" --step-time "$part" --once --rtt "$rtt" --queue 200 --aqm none --quiet &
 link=$!
 
-# webrtcbin numbers the packets with this extension, and the other end's reports use the numbers.
+# By this extension webrtcbin numbers its packets, and the other end's reports use the numbers.
 twcc=http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01
 caps="application/x-rtp,media=video,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96"
 caps+=",extmap-1=(string)$twcc,rtcp-fb-transport-cc=(boolean)true"
