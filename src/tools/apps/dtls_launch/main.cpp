@@ -140,8 +140,8 @@ bool IsOfDtls(GstObject* source) {
 
 enum class End { kOver, kFailed, kNoHandshake };
 
-/// Plays until EOS, an error or `*run` is false, but at most for `duration_s` after the keys, if it
-/// is not 0. EOS does not pass dtlssrtpenc, whose handshake never ends.
+/// Plays until EOS, an error, a refused certificate, or `*run` is false. A `duration_s` other than
+/// 0 limits the time after the keys. EOS does not pass dtlssrtpenc, whose handshake never ends.
 End Play(Session* session, double duration_s, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);

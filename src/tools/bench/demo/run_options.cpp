@@ -14,7 +14,7 @@
 namespace lidar::demo {
 namespace {
 
-/// Side of the cube that --fixed-bits divides: the view of a sensor of 100 m range.
+/// Side of the cube that --fixed-bits divides: the view of a sensor with a range of 100 m.
 constexpr double kFixedBitsExtentM = 200;
 
 /// Mean capacity of --drive, between the least and the greatest bitrate of a source.

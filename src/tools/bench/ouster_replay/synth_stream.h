@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sensor that drives through a synthetic world, as the packets it would send.
+// The packets of a sensor that drives through a synthetic world.
 #pragma once
 #include <memory>
 #include <string>

@@ -18,7 +18,7 @@ constexpr int kMostBytesOfAName = 4096;  // or of a statement of the schema
 constexpr std::size_t kMostTopics = 10'000;
 constexpr std::size_t kLongestName = 1024;
 /// Most instructions of SQLite to read the schema or the topics. A damaged schema may repeat its
-/// pages on each of 20 levels, so that reading hardly ends.
+/// pages on each of 20 levels, so that reading takes almost for ever.
 constexpr int kMostInstructions = 500'000;
 
 struct Closer {

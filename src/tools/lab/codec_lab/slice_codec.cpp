@@ -13,8 +13,8 @@
 namespace lidar::tools {
 namespace {
 
-// The error bound exceeds the step by this [m], as distant floats are rounded. So the step, not the
-// bound, decides.
+// The error bound exceeds the step by this [m], because distant floats are rounded. So the step,
+// not the bound, decides.
 constexpr double kRoomForRounding = 1e-3;
 
 double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # usage: default_model.sh LIDAR_TRAIN CAPTURES [MODES] >src/rate/default_model.json
 # Fits the model that is compiled in; CAPTURES is tests/data/ouster. MODES, separated by commas, limit
-# it to the adaptive model of these modes.
+# the fit to the adaptive model of these modes.
 set -euo pipefail
 train=$1 captures=$2 modes=${3:-}
 folder=$(mktemp -d)
