@@ -68,8 +68,8 @@ natsStatus SetPace(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetWriteDeadline(o, Connection::kWriteTimeoutMs);
   // The flusher of libnats would wait a millisecond for more to send.
   if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
-  // Disables the reconnect buffer of libnats: its messages would be stored before older ones, which
-  // were lost with the connection and are sent again.
+  // Disables the reconnect buffer of libnats, because its messages would be stored before older
+  // messages, which were lost with the connection and are sent again.
   if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 0);
   return s;
 }

@@ -19,8 +19,8 @@ struct Destroy {
   void operator()(natsInbox* p) const { natsInbox_Destroy(p); }
 };
 
-/// libnats 3.4 frees a subscription even while its reading thread has a message for it. So a flush
-/// waits for the server's answer, which that thread reads after such messages. On a closed
+/// libnats 3.4 frees a subscription even while the thread that reads has a message for it. So a
+/// flush waits for the server's answer, which that thread reads after such messages. On a closed
 /// connection the flush does not wait.
 struct EndSubscription {
   static constexpr std::int64_t kTimeoutMs = 1'000;

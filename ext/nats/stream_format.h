@@ -24,7 +24,7 @@ class StreamFormat {
   const std::string& text() const { return text_; }
   /// CRC of the text, 16 hexadecimal digits.
   const std::string& id() const { return id_; }
-  /// Estimated memory [bytes]: the caps hold the content of the text again.
+  /// Estimated memory [bytes] of the text, and of the caps with the same content.
   std::size_t memory() const { return 2 * text_.size(); }
   /// Returns true if a buffer of these caps may have `size` bytes.
   bool Fits(std::size_t size) const;
