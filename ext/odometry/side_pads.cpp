@@ -19,7 +19,7 @@ GstFlowReturn ImuChain(GstPad* pad, GstObject*, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Drops the events of the samples: the element is their sink.
+/// Drops the events of the samples, because the element is their sink.
 gboolean ImuEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owned(event);
   if (GST_EVENT_TYPE(event) != GST_EVENT_CAPS) return TRUE;

@@ -176,8 +176,8 @@ static gboolean Event(GstBaseSrc* base, GstEvent* event) {
   return GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
 }
 
-/// Sends an application's seek to the pad: the base class would perform it without a call of
-/// Event().
+/// Sends an application's seek to the pad, because the base class would perform the seek without a
+/// call of Event().
 static gboolean SendEvent(GstElement* element, GstEvent* event) {
   const auto session = SessionOf(element);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK && session && session->seekable())

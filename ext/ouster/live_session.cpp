@@ -212,7 +212,7 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
         ("is it powered, and is its name or address right?"));
     return false;
   }
-  // Packets count more than the API, which may be down while they continue.
+  // The API may be down while packets continue.
   if (connected_) return true;
   SetConnected(false, why);
   if (!std::exchange(api_reported_, true))

@@ -96,8 +96,8 @@ bool PackZstd(ByteView points, Bytes* out) {
 #ifdef WITH_DRACO
 constexpr bool kHasDraco = true;
 
-/// Draco has numbers in this machine's byte order. Returns nothing for a layout that it cannot
-/// hold.
+/// Draco has numbers in this machine's byte order. Returns nothing for a layout that Draco
+/// cannot hold.
 std::optional<draco::FieldLayout> DracoLayoutOf(const cdr::RosLayout& layout) {
   if (layout.is_bigendian) return std::nullopt;
   draco::FieldLayout fields;

@@ -27,8 +27,8 @@ std::map<std::uint32_t, Shared>& Domains() {
   return domains;
 }
 
-/// Datagrams of nearly 64 KiB halve the time that a cloud costs. Eight million points of 32 bytes
-/// are the largest message, whatever a peer announces.
+/// Datagrams of nearly 64 KiB halve the time that a cloud costs. The largest message has
+/// eight million points of 32 bytes, whatever a peer announces.
 std::string Configuration() {
   std::string xml =
       "<General><FragmentSize>65000B</FragmentSize><MaxMessageSize>65500B</MaxMessageSize>"

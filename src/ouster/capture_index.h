@@ -20,7 +20,7 @@ class CaptureIndex {
   /// returns false if `go_on` does.
   bool ReadUntil(Duration time, const std::function<bool()>& go_on);
 
-  /// The first datagram's capture time; nothing before it was read.
+  /// The first datagram's capture time; nothing until it was read.
   std::optional<Time> first() const { return first_; }
   /// Time from the first datagram that was read to the last.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }

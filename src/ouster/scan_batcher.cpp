@@ -9,8 +9,8 @@
 namespace lidar::ouster {
 namespace {
 
-// A packet that is further ahead, or from the past, is accepted only if others follow: a single
-// damaged frame id must not discard a scan.
+// A packet that is further ahead, or from the past, is accepted only if others like it follow,
+// because a single damaged frame id must not discard a scan.
 constexpr std::int64_t kMaxScansAhead = 8;
 constexpr std::uint32_t kStraysForRestart = 4;
 constexpr std::size_t kRememberedLosses = 256;
