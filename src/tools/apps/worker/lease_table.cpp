@@ -10,7 +10,7 @@ namespace lidar::worker {
 namespace {
 
 constexpr int kRenewals = 4;  // writes in the time of a lease
-/// Other workers wait longer than the lease by 1 / kMargin of it, though steady clocks differ far less.
+/// Other workers wait longer than the lease by 1 / kMargin of it. Steady clocks differ by far less.
 constexpr int kMargin = 20;
 /// A full worker waits for this share of a lease before it takes a free robot. Workers with fewer
 /// robots wait less, so that they take the robot first.
