@@ -157,6 +157,49 @@ class SegmentTimes {
   std::vector<GstClockTime> times_;
 };
 
+/// An unlinked pad and a pad that returned EOS before would end the segment together.
+TEST_F(McapSeek, ASegmentPlaysThoughTheOneBeforeEndedDownstream) {
+  {
+    const Harness h = RecordingTo(Path("a.mcap"));
+    const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));
+    for (GstHarness* stream : {h.get(), other.get()})
+      gst_harness_set_src_caps_str(stream, "application/x-lidar-slice,alignment=slice");
+    for (guint i = 0; i < 6; ++i) {
+      GstBuffer* buffer = gst_buffer_new_memdup("s", 1);
+      GST_BUFFER_PTS(buffer) = i * 10 * GST_MSECOND;
+      gst_lidar_buffer_set_capture_time(buffer, kCapture + GST_BUFFER_PTS(buffer));
+      GstHarness* const stream = i % 2 == 0 ? other.get() : h.get();  // the unlinked one is first
+      EXPECT_EQ(gst_harness_push(stream, buffer), GST_FLOW_OK);
+    }
+    for (GstHarness* stream : {h.get(), other.get()})
+      gst_harness_push_event(stream, gst_event_new_eos());
+  }
+  Pipeline p("mcapsrc" + At("a.mcap") +
+             " ! identity name=gate ! fakesink name=see sync=false async=false");
+  gst_element_set_state(p.get(), GST_STATE_PLAYING);
+  ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
+  std::atomic<bool> shut{true};
+  const gst::PadPtr gate(gst_element_get_static_pad(p.Find("gate").get(), "sink"));
+  gst_pad_add_probe(
+      gate.get(), GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+        if (!static_cast<std::atomic<bool>*>(data)->exchange(false)) return GST_PAD_PROBE_OK;
+        gst_buffer_unref(GST_PAD_PROBE_INFO_BUFFER(info));
+        GST_PAD_PROBE_INFO_FLOW_RETURN(info) = GST_FLOW_EOS;
+        return GST_PAD_PROBE_HANDLED;
+      },
+      &shut, nullptr);
+  const std::pair<int, std::size_t> seeks[] = {{GST_SEEK_FLAG_FLUSH, 0}, {0, 3}, {0, 3}};
+  for (const auto& [flags, shown] : seeks) {
+    p.Forget();
+    ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME,
+                                 static_cast<GstSeekFlags>(flags | GST_SEEK_FLAG_SEGMENT),
+                                 GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
+    ASSERT_TRUE(p.Wait(GST_MESSAGE_SEGMENT_DONE));
+    EXPECT_EQ(p.outcome().buffers["see"].size(), shown);
+  }
+}
+
 TEST_F(McapSeek, ASegmentSeekEndsWithItsMessage) {
   Record(10, "", "a.mcap");
   Pipeline p("mcapsrc" + At("a.mcap") + " ! identity name=see ! fakesink name=end");
