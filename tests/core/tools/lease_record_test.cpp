@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/core/tools/scan_progress.h"
@@ -95,6 +96,61 @@ TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
   after.pose = {5, 6, 7, 0, 0, 0, 1};
   after.time = before.time + 10'000'000;
   EXPECT_FALSE(VelocityBetween(before, after)) << "157 rad/s";
+}
+
+using Pose = std::array<double, 7>;
+
+/// A third of a turn about x = y = z, which takes x to y, y to z and z to x: of the world, or of
+/// the sensor's axes.
+Pose Turned(const Pose& p, bool world) {
+  const double x = p[3], y = p[4], z = p[5], w = p[6];
+  if (world)
+    return {p[2],
+            p[0],
+            p[1],
+            (x + w + z - y) / 2,
+            (y - z + w + x) / 2,
+            (z + y - x + w) / 2,
+            (w - x - y - z) / 2};
+  return {p[0],
+          p[1],
+          p[2],
+          (w + x + y - z) / 2,
+          (w - x + y + z) / 2,
+          (w + x - y + z) / 2,
+          (w - x - y - z) / 2};
+}
+
+Pose OfOtherSign(const Pose& p) { return {p[0], p[1], p[2], -p[3], -p[4], -p[5], -p[6]}; }
+
+TEST(LeaseRecord, KnowsTheVelocityInAnyFrameAndOfEitherSignOfARotation) {
+  const double half = std::sqrt(0.5);
+  const double speed = 20 * std::sqrt(2);
+  Progress before;
+  before.time = 1'000'000'000;
+  before.pose = {5, 6, 7, 0, 0, half, half};
+  Progress after;
+  after.time = 1'500'000'000;
+  after.pose = {-5, 16, 8, 0, 0, 1, 0};
+  std::array<double, 6> expected = {speed, 0, 2, 0, 0, 3.14159265};
+  const auto expect = [&](const char* what) {
+    const auto velocity = VelocityBetween(before, after);
+    ASSERT_TRUE(velocity) << what;
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(velocity->at(i), expected[i], 1e-6) << what;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int world = 0; world < 3; ++world) {
+      for (Progress* progress : {&before, &after}) {
+        expect("as it is");
+        progress->pose = OfOtherSign(progress->pose);
+        expect("of the other sign");
+      }
+      for (Progress* progress : {&before, &after}) progress->pose = Turned(progress->pose, true);
+    }
+    for (Progress* progress : {&before, &after}) progress->pose = Turned(progress->pose, false);
+    for (const auto begin : {expected.begin(), expected.begin() + 3})
+      std::rotate(begin, begin + 1, begin + 3);
+  }
 }
 
 TEST(LeaseRecord, IsBounded) {
