@@ -169,6 +169,24 @@ TEST(FoxgloveSink, ASubscriptionIdNamesOneChannel) {
   EXPECT_EQ(sink.Stat("points-sent"), sent);
 }
 
+TEST(FoxgloveSink, TheSubscriptionIdOfATopicThatWentIsFree) {
+  Sink sink;
+  sink.SetCloudCaps();
+  Peer peer(&sink);
+  {
+    Harness second(gst_harness_new_with_element(sink.element(), "sink_7", nullptr));
+    gst_harness_set_src_caps_str(second.get(), GST_LIDAR_ODOMETRY_MEDIA_TYPE);
+    peer.Subscribe("/pose_7", 1);
+    gst_element_release_request_pad(
+        sink.element(), gst::PadPtr(gst_element_get_static_pad(sink.element(), "sink_7")).get());
+  }
+  ASSERT_TRUE(WaitUntil([&] { return peer.channels.count("/pose_7") == 0; }));
+  peer.Subscribe("/points", 1);
+  ASSERT_EQ(sink.Stat("malformed"), 0U);
+  sink.PushCloud(7);
+  EXPECT_EQ(FirstX(peer.Next()), 7.0F);
+}
+
 TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
   Sink sink;
   sink.SetCloudCaps();

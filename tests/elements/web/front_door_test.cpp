@@ -203,7 +203,9 @@ class EmptyArchive final : public Archive {
 
 /// A viewer of a recording, whose end of the connection is `socket`.
 struct RecordingViewer {
-  explicit RecordingViewer(std::unique_ptr<Archive> archive) {
+  explicit RecordingViewer(std::unique_ptr<Archive> archive,
+                           std::function<void(std::string)> warn = nullptr)
+      : service(DataRate(), std::move(warn)) {
     std::array<int, 2> ends{};
     EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
     socket = ends[1];
@@ -232,7 +234,7 @@ struct RecordingViewer {
   int socket = -1;
   std::unique_ptr<Client> client;
   std::shared_ptr<Topic> topic;
-  SliceService service{DataRate()};
+  SliceService service;
 };
 
 TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
@@ -316,6 +318,58 @@ TEST(SliceService, TellsWhenAReplayEndsThoughItsLastPieceIsEmpty) {
     if (size > 0) said.append(bytes.data(), static_cast<std::size_t>(size));
     return said.find("\"end\":2.0") != std::string::npos;
   })) << said;
+}
+
+/// A recording that cannot be read for `why`, or is empty where there is no reason.
+class ClosedArchive final : public Archive {
+ public:
+  explicit ClosedArchive(std::atomic<const char*>* why) : why_(*why) {}
+  std::optional<Times> Look(std::string* why) override {
+    *why = why_;
+    return why->empty() ? std::optional(Times{1, 2}) : std::nullopt;
+  }
+  void Seek(std::uint64_t) override {}
+  void GoOn(std::uint64_t) override {}
+  std::optional<Item> Next() override { return {}; }
+  void Rest() override {}
+  std::uint64_t damaged() const override { return 0; }
+
+ private:
+  const std::atomic<const char*>& why_;
+};
+
+TEST(SliceService, WarnsOnceForEachReasonThatARecordingCannotBeRead) {
+  std::atomic<const char*> why{""};
+  std::vector<std::string> warnings;
+  RecordingViewer viewer(std::make_unique<ClosedArchive>(&why),
+                         [&](const std::string& text) { warnings.push_back(text); });
+  std::string said;
+  unsigned answers = 1;  // to the subscription
+  const auto warnings_of_jumps = [&](const char* reason) {
+    why = reason;
+    warnings.clear();
+    for (int i = 0; i < 3; ++i) {
+      viewer.Request(foxglove::Request::Kind::kReplay);
+      ++answers;
+      EXPECT_TRUE(test::WaitUntil([&] {
+        std::array<char, 4096> bytes{};
+        const ssize_t size = recv(viewer.socket, bytes.data(), bytes.size(), MSG_DONTWAIT);
+        if (size > 0) said.append(bytes.data(), static_cast<std::size_t>(size));
+        unsigned count = 0;
+        for (std::size_t at = 0; (at = said.find(R"("op":"recording")", at)) != said.npos; ++at)
+          ++count;
+        return count == answers;
+      }));
+    }
+    return warnings;
+  };
+  using Texts = std::vector<std::string>;
+  const std::string begin = "Viewers cannot go back into the recording: ";
+  EXPECT_EQ(warnings_of_jumps(""), Texts{});
+  EXPECT_EQ(warnings_of_jumps("it is away"), Texts{begin + "it is away."});
+  EXPECT_EQ(warnings_of_jumps("it is damaged"), Texts{begin + "it is damaged."});
+  EXPECT_EQ(warnings_of_jumps(""), Texts{});
+  EXPECT_EQ(warnings_of_jumps("it is damaged"), Texts{begin + "it is damaged."});
 }
 
 TEST(SliceService, WantsNothingRecodedOnceTheLastViewerLeft) {

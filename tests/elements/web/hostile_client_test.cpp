@@ -174,6 +174,26 @@ TEST(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
   EXPECT_EQ(slow.ReadFrame()[0], '{');
 }
 
+TEST(SlowClient, GetsNothingThatWaitedOnceItsTopicIsGone) {
+  constexpr guint kColumns = 100'000;
+  Sink sink;
+  sink.SetCloudCaps(kColumns);
+  sink.PushCloud(1, kColumns);
+  RawClient slow = SubscribedClient(&sink);
+  for (int i = 1; i <= 24; ++i) sink.PushCloud(static_cast<float>(i), kColumns);
+  ASSERT_TRUE(WaitUntil([&] { return sink.Stat("messages-dropped") > 2; }));
+  gst_harness_set_src_caps_str(sink.harness(), "application/x-draco,geometry=xyz,alignment=slice");
+  std::string frame;
+  do {
+    frame = slow.ReadFrame();
+    ASSERT_FALSE(frame.empty());
+  } while (frame[0] != '{');
+  EXPECT_EQ(nlohmann::json::parse(frame)["op"], "unadvertise");
+  EXPECT_EQ(nlohmann::json::parse(slow.ReadFrame())["op"], "advertise");
+  slow.SendText(R"({"op":"nothing"})");
+  EXPECT_EQ(slow.ReadFrame()[0], '{');
+}
+
 TEST(SlowClient, MissesWholeScansButNoSliceOfThoseThatItGets) {
   constexpr guint kColumns = 20'000;
   constexpr guint kSlices = 4;
