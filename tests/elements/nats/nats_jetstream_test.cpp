@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <utility>
 
 #include "ext/nats/message.h"
@@ -443,6 +444,52 @@ TEST_F(NatsJetStream, ASourceBeginsAnotherStreamOfTheSameNameAtItsFirstMessage) 
   ASSERT_TRUE(receiver.WaitForBuffers(88));
   const auto got = receiver.buffers();
   ExpectSameStream({got.begin() + 80, got.end()}, sent);
+}
+
+/// Puts another consumer in the place of the source's own, which begins with the next message and
+/// counts from 1.
+void ReplaceConsumer(const NatsClient& client) {
+  jsConsumerInfoList* raw = nullptr;
+  ASSERT_EQ(js_Consumers(&raw, client.js(), "box", nullptr, nullptr), NATS_OK);
+  const std::unique_ptr<jsConsumerInfoList, decltype(&jsConsumerInfoList_Destroy)> list(
+      raw, jsConsumerInfoList_Destroy);
+  const auto end = list->List + list->Count;
+  const auto found = std::find_if(list->List, end, [](const jsConsumerInfo* info) {
+    return info->PushBound && info->Config->FilterSubject == std::string("r1.front");
+  });
+  ASSERT_NE(found, end);
+  const jsConsumerInfo& info = **found;
+  ASSERT_EQ(js_DeleteConsumer(client.js(), "box", info.Name, nullptr, nullptr), NATS_OK);
+  jsConsumerConfig config;
+  jsConsumerConfig_Init(&config);
+  config.DeliverSubject = info.Config->DeliverSubject;
+  config.DeliverPolicy = js_DeliverNew;
+  config.FilterSubject = "r1.front";
+  config.AckPolicy = js_AckNone;
+  config.FlowControl = true;
+  config.Heartbeat = info.Config->Heartbeat;
+  EXPECT_EQ(js_AddConsumer(nullptr, client.js(), "box", &config, nullptr, nullptr), NATS_OK);
+}
+
+TEST_F(NatsJetStream, MessagesOutOfOrderAreReadAgain) {
+  PublishSlices(8, At(kBox));
+  NatsPipeline receiver("natssrc name=n start-time=0" + At(kBox) +
+                        "! fakesink name=see sync=false");
+  receiver.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(8));
+  const NatsClient client(server_.url());
+  std::vector<Kept> sent;
+  for (int round = 0; round < 2; ++round) {
+    ReplaceConsumer(client);
+    const auto more = PublishSlices(4, At(kBox));
+    sent.insert(sent.end(), more.begin(), more.end());
+    ASSERT_TRUE(receiver.WaitForBuffers(8 + sent.size()));
+  }
+  const auto got = receiver.buffers();
+  ExpectSameStream({got.begin() + 8, got.end()}, sent);
+  EXPECT_EQ(receiver.stat("messages-lost"), 0U);
+  EXPECT_EQ(receiver.stat("messages-again"), 0U);
+  EXPECT_EQ(receiver.stat("reconnects"), 0U);
 }
 
 TEST_F(NatsJetStream, ASinkWhoseStreamIsDeletedSaysSoAndMakesItAnew) {
