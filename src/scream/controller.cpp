@@ -16,9 +16,9 @@ constexpr Duration kHousekeeping = 50ms;
 /// If the caller is late by this much, it did not run, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// The window is about the link's capacity for this time after a sign of congestion.
+/// For this time after a sign of congestion, the window about matches the link's capacity.
 constexpr Duration kCongestedLately = 300ms;
-/// A longer silence of the receiver is no gap of the link.
+/// A longer silence of the receiver is not a gap of the link.
 constexpr Duration kLongestSilence = 2s;
 /// A report that is late by more than this shows a stalled link.
 constexpr Duration kOverdue = 5ms;
@@ -290,8 +290,8 @@ bool Controller::Stalled(Time now) const {
   return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
 }
 
-/// Returns how much longer packets behind a gap wait: the time that the most bytes in flight of the
-/// last two round trips take at the rate before the gap.
+/// Returns how much longer packets behind a gap wait. It is the greatest amount in flight of the
+/// last two round trips, divided by the rate before the gap.
 Duration Controller::WaitBehindGap(Time now) const {
   const auto rate = gap_recovery_.rate_before();
   if (!rate || !Overdue(now)) return Duration{0};

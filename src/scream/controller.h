@@ -87,10 +87,10 @@ class Controller {
   /// Returns how many packets at the head of the queue are too late. An access unit, or its group,
   /// is late as a whole if its last packet would leave later than `max_queue_delay` after the
   /// middle of its capture. The limit is five times as long if the group has begun to leave. Late
-  /// units behind it count, too. The rest of a unit that has begun is late when its first packet
-  /// has waited five times `max_queue_delay`. While packets in flight are overdue, the limits are
-  /// longer by the time that the bytes in flight take at the rate before the gap, up to half of
-  /// `max_queue_delay`.
+  /// units behind a late unit count, too. The rest of a unit that has begun is late when its first
+  /// packet has waited five times `max_queue_delay`. While packets in flight are overdue, the
+  /// limits are longer by the time that the bytes in flight take at the rate before the gap, up to
+  /// half of `max_queue_delay`.
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// Returns when to call OnTimer() next.
   Time NextTimer() const;

@@ -113,8 +113,8 @@ struct Parameters {
   double isolated_loss_threshold = 0.05;
   /// Losses show congestion if the queue delays packets by more than this.
   Duration isolated_loss_qdelay = 6ms;
-  /// Gain of l4s_alpha's filter. The gain is an eighth while alpha rises after two rounds in a row
-  /// with a marked part of even_alpha_max, or one such round of at least long_frame_period.
+  /// Gain of l4s_alpha's filter. The gain is 1/8 while alpha rises after two rounds in a row with a
+  /// marked part of even_alpha_max or more, or after one such round of at least long_frame_period.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
   /// Pacing: a frame has left this long before its period ends. On a full link a queue of this

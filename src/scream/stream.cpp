@@ -141,7 +141,7 @@ Stream::Queue::const_iterator Stream::UnitEnd(Queue::const_iterator unit) const 
   });
 }
 
-/// Assumes that the missing units of a group are as large as those of the group before.
+/// Assumes that a group grows to the size and the time span of the previous group.
 bool Stream::Late(Time now, DataRate rate, Queue::const_iterator unit,
                   Queue::const_iterator next) const {
   DataSize size;

@@ -11,11 +11,11 @@
 
 namespace lidar::scream {
 
-/// Times between packets that all waited in the bottleneck's queue, without the longest pause: a
-/// link that stood still for a moment is not slower.
+/// Times between packets that all waited in the bottleneck's queue, without the longest pause,
+/// because a link that stood still for a moment is not slower.
 class BusySpacing {
  public:
-  /// `arrived` and `left`: time since the packet before.
+  /// `arrived` and `left`: time since the previous packet.
   void Add(Duration arrived, Duration left, DataSize size) {
     all_ = {all_.arrived + arrived, all_.left + left, all_.size + size};
     if (arrived > pause_.arrived) pause_ = {arrived, left, size};

@@ -5,9 +5,10 @@
 
 namespace lidar::scream {
 
-/// An L4S bottleneck marks each packet behind a long queue, a classic one few packets. So the queue
-/// that unmarked packets met, in rounds with marks, distinguishes the two. The shortest delay of
-/// the last seconds is subtracted, as a longer route is no queue.
+/// An L4S bottleneck marks each packet behind a long queue, whereas a classic one marks few
+/// packets. So in rounds with marks, the queue that unmarked packets met distinguishes the two
+/// kinds. The shortest delay of the last seconds is subtracted, because a longer route is not a
+/// queue.
 class ClassicEcn {
  public:
   void OnPacket(Time now, Duration qdelay, bool marked) {

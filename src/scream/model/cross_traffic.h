@@ -30,7 +30,8 @@ class CrossTraffic {
       Skip(packet.sent);
       return;
     }
-    // Earlier packets show the queue: whether a packet counts must not depend on its own arrival.
+    // The queue that earlier packets met decides, because whether a packet counts must not depend
+    // on its own arrival.
     const double waited_ms = std::min(lately_waited_ms_, waited_ms_);
     waited_ms_ = Ms(qdelay);
     lately_waited_ms_ += (waited_ms_ - lately_waited_ms_) / 4;
@@ -125,7 +126,7 @@ class CrossTraffic {
   static constexpr double kPauseMs = 15;
   /// Longest gap between the pacer's departures, in average gaps.
   static constexpr double kLongestGap = 1.5;
-  /// Mean error of delays, as arrival times are rounded up.
+  /// Mean error of delays, because arrival times are rounded up.
   static constexpr double kTickMs = 0.5;
   /// Sum of squared deviations of departure gaps [ms^2] that shows the share: rounding of arrival
   /// times to 1/1024 s then leaves an error of 0.1.

@@ -11,9 +11,10 @@ namespace {
 constexpr Duration kMarksExpected = 30s;
 /// Time after a loss in which a queue may overflow again.
 constexpr Duration kLossesExpected = 10s;
-/// Unreported packets do not matter if reports are closer than a round trip divided by this.
+/// Unreported packets do not matter if reports follow each other within a round trip divided by
+/// this.
 constexpr int kCloseReports = 5;
-/// Longest gap between reports that counts.
+/// Longer gaps between reports count as this time.
 constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
 constexpr double kOnsetFall = 1.0 / 32;

@@ -93,7 +93,8 @@ class PathModel {
   bool Queueing(Duration qdelay) const;
   /// Least time between reactions: min(VIRTUAL_RTT, s_rtt).
   Duration ReactionInterval() const { return std::min(p_.virtual_rtt, rtt_.smoothed()); }
-  /// Round trip, but at least VIRTUAL_RTT and a frame: marks of a frame source come once a frame.
+  /// Round trip, but at least VIRTUAL_RTT and a frame period, because marks of a frame source come
+  /// once a frame.
   Duration Round(Duration frame_period) const {
     return std::max({rtt_.smoothed(), p_.virtual_rtt, frame_period});
   }

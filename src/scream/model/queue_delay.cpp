@@ -59,7 +59,7 @@ bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   const bool jumped = base_ && Jumped(now, owd, sample.way_back);
   if (jumped) {
     ForgetBase();
-    // Subtracts the queue of the moment, which the round trip still shows.
+    // Subtracts the delay of the present queue, which the round trip still shows.
     AddToBase(now, owd - sample.rtt_excess, short_history);
   }
   AddToBase(now, owd, short_history);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Minimum of durations over the present window and the one before, so that an old minimum is
+// Minimum of durations over the present and the previous window, so that an old minimum is
 // forgotten.
 #pragma once
 #include <algorithm>

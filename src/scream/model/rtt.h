@@ -24,7 +24,7 @@ class RoundTripTime {
 
   bool known() const { return smoothed_.has_value(); }
   Duration smoothed() const { return smoothed_.value_or(kInitial); }
-  /// Minimum of the last 30 to 60 s, as a path may become longer permanently.
+  /// Minimum of the last 30 to 60 s, because a path may become longer permanently.
   Duration min() const { return smoothed_ ? min_.value() : kInitial; }
   Duration last() const { return last_; }
 

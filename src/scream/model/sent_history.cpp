@@ -9,14 +9,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Limit of packets per SSRC: extended sequence numbers are unique within half of their range.
+/// Limit of packets per SSRC, because extended sequence numbers are unique within half of their
+/// range.
 constexpr std::size_t kMaxPackets = 32000;
 /// Settled packets are kept so that repeated reports are recognised, and late packets are
 /// distinguished from lost ones. Beyond this number only packets younger than kKeepSettled are
 /// kept.
 constexpr std::size_t kMaxSettled = 1024;
 constexpr Duration kKeepSettled = 1s;
-/// A packet may be sent after packets with larger numbers if they differ by less than this.
+/// A packet may be sent after packets with larger numbers if the numbers differ by less than this.
 constexpr std::int64_t kOvertaken = 64;
 /// Numbers that go back by kFarBehind or more start a new count after kUnknownBehind unknown or
 /// kKnownBehind known numbers in a row. Receivers take a smaller step back for reordering, and do
@@ -33,7 +34,7 @@ constexpr Duration kReorderingMemory = 5s;
 constexpr int kReorderingDecay = 8;
 /// SSRCs come and go with restarts; the one with the longest silence is forgotten.
 constexpr std::size_t kMostSources = 64;
-/// Resolution of the report's times, as arrival offsets have 1/1024 s.
+/// Tolerance for the report's times, because arrival offsets are multiples of 1/1024 s.
 constexpr Duration kTimeTolerance = 2ms;
 
 }  // namespace

@@ -25,8 +25,8 @@ inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duratio
                              longest * p.min_pacing_reserve, p.max_pacing_reserve));
 }
 
-/// Returns the pace near the streams' maximum. It stays within the known capacity, as otherwise the
-/// start of each frame would be marked.
+/// Returns the pace near the streams' maximum. It stays within the known capacity, because
+/// otherwise the start of each frame would be marked.
 inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
   constexpr double kUnmarked = 0.9;
   const DataRate known = path.measured_capacity();
