@@ -10,12 +10,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Packets that a regression remembers, and the fewest that it needs.
+/// Number of packets that a regression remembers, and the least number that it needs.
 constexpr double kMemory = 512;
 constexpr double kFewest = 20;
-/// A regression has no result if the earlier terms leave at most this part of a term unexplained.
+/// A regression has no result if at most this part of a term's square sum is independent of the
+/// earlier terms.
 constexpr double kNothing = 1e-6;
-/// Least variance of the residuals [ms^2]: arrival times are rounded to 1/1024 s.
+/// Least variance of the residuals [ms^2], because arrival times are rounded to 1/1024 s.
 constexpr double kLeastVariance = 0.01;
 /// Two links count as sharing a queue if the significance of both directions together exceeds
 /// kFound, and until it falls below kStillFound.
@@ -114,7 +115,8 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   const double sent_ms = Milliseconds(arrival.sent - last->sent);
   const auto ticks = static_cast<std::int32_t>(arrival.report_timestamp - last->report_timestamp);
   const double arrived_ms = ticks / 65.536 - Milliseconds(arrival.age - last->age);
-  // Earlier packets show the queue: whether a packet counts must not depend on its own arrival.
+  // The queue that earlier packets met decides, because whether a packet counts must not depend on
+  // its own arrival.
   const bool busy = l.queue_ms > sent_ms + kMarginMs;
   l.Measure(arrival.sent, arrived_ms - sent_ms);
   for (std::size_t other = 0; other < kMaxLinks; ++other)

@@ -16,9 +16,9 @@ namespace lidar::bonding {
 /// entered between them take to leave. Packets of another link add to that time only if they pass
 /// the same FIFO. So the spacing of arrivals is regressed on what the other link sent in between,
 /// what the link itself sent, and the spacing of departures, which stands for the flows of others.
-/// RFC 8382 compares delays instead, and would take two queues for one if copies fill them alike;
-/// but packets in one queue do not change the spacing in the other. In addition, links that share a
-/// FIFO must see equally long queues at the same time.
+/// RFC 8382 compares delays instead, so it would take two queues for one if copies fill both alike.
+/// Spacings distinguish them, because packets in one queue do not change the spacing in the other.
+/// In addition, links that share a FIFO must see equally long queues at the same time.
 class SharedQueues {
  public:
   /// A packet of a report.
