@@ -9,7 +9,7 @@ namespace lidar::rtcp {
 namespace {
 
 constexpr std::size_t kMaxSources = 64;
-/// A more distant sequence number belongs to another run of packets.
+/// A sequence number farther than this from the newest one belongs to another run of packets.
 constexpr int kMaxJump = 3000;
 /// A source with more unreported numbers than this starts anew. Only the jumps of a hostile sender,
 /// or reports that cannot leave, cause so many.
@@ -162,7 +162,8 @@ void FeedbackGenerator::Schedule(Time arrival, const ReceivedPacket& packet) {
   }
 }
 
-/// Returns the most bytes of the next RTCP packet: reports stay below the received bytes.
+/// Returns the greatest size of the next RTCP packet [bytes]. It keeps the reports below the
+/// received bytes.
 std::int64_t FeedbackGenerator::Allowance() const {
   return std::min(config_.max_report.bytes(), (stats_.received - stats_.sent).bytes() - kIpUdp);
 }

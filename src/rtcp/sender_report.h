@@ -20,7 +20,7 @@ struct SenderReport {
   DataRate sent_bitrate;
   DataSize ref_wnd;
   DataSize bytes_in_flight;
-  Duration queue_delay{};         // of the path; this and the next two in steps of 1 us
+  Duration queue_delay{};         // of the path; this and the next two are sent in us
   Duration rtt{};                 // smoothed
   Duration sender_queue_delay{};  // wait of packets before they leave
   std::uint32_t packets_sent = 0;
