@@ -13,7 +13,7 @@ constexpr Duration kGrain = 10ms;
 constexpr Duration kWindow = 100ms;
 constexpr Duration kLongest = 5s;
 
-/// Bits that entered the link, in steps of time.
+/// Counts the bits that entered the link in each bin of kGrain.
 class SentBits {
  public:
   SentBits(const std::vector<SentPacket>& packets, Duration duration)

@@ -22,7 +22,7 @@ struct Pi2Config {
   bool knows_l4s = true;  // false: a single queue marks ECT(1) as rarely as ECT(0)
 };
 
-/// The base probability p', in steps of t_update.
+/// The base probability p', which changes once every t_update.
 class PiController {
  public:
   explicit PiController(const Pi2Config& config) : config_(config) {}
