@@ -33,7 +33,7 @@ class LoopSource {
 
  private:
   static DataRate Wire(DataRate media) { return media / kPayloadShare; }
-  static constexpr double kPayloadShare = 0.96;  // share of a packet that is no header
+  static constexpr double kPayloadShare = 0.96;  // the remainder is headers
 
   rate::EncodedSize Encode(const rate::SliceFeatures& features, const rate::Decision& decision);
 

@@ -28,8 +28,8 @@ struct Scenario {
 std::vector<Scenario> Scenarios(const Parameters& parameters);
 /// Returns scenarios with policers, silence and clock changes.
 std::vector<Scenario> EventScenarios(const Parameters& parameters);
-/// Returns scenarios in which our flow shares a link with other flows, or with our own at other
-/// phases.
+/// Returns scenarios in which our flow shares a link with other flows, or with flows of ours at
+/// other phases.
 std::vector<Scenario> BesideScenarios(const Parameters& parameters);
 std::optional<Scenario> FindScenario(const std::string& name, const Parameters& parameters);
 

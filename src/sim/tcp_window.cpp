@@ -59,7 +59,8 @@ class Cubic final : public TcpWindow {
   double w_max_ = 0, k_ = 0, w_est_ = 0, cwnd_prior_ = 0;
 };
 
-/// Grows as a flow with at least the virtual RTT, and decreases by half the marked fraction.
+/// Grows as slowly as a flow whose RTT is at least the virtual RTT. Decreases by half the marked
+/// fraction.
 class Prague final : public TcpWindow {
  public:
   void OnAck(Time now, Duration rtt, bool ce) override {
