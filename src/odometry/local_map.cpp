@@ -9,7 +9,7 @@ namespace lidar::odometry {
 namespace {
 
 constexpr std::uint32_t kPointsOfASurface = 8;
-/// The spread across a surface, as a part of the spread along it.
+/// Greatest variance of points across a surface, relative to their variance along it.
 constexpr double kFlatness = 0.1;
 
 constexpr std::array<Voxel, 7> kCross = {

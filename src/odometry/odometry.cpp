@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 /// cubes. KISS-ICP, section III-B.
 constexpr double kMapGrid = 0.5;
 constexpr double kAlignedGrid = 1.5;
-/// Edge of the cubes for the search of the first motion, relative to the map's cubes.
+/// Edge of the cubes in the search for the first motion, relative to the map's cubes.
 constexpr double kFirstGrid = 4;
 /// Reach and kernel in standard deviations of the motion's error. KISS-ICP, section III-D.
 constexpr double kReach = 3;

@@ -109,8 +109,8 @@ Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSe
   return unobserved;
 }
 
-/// Returns true if surfaces hold each direction. The prediction then has little weight: a turning
-/// car always leaves its predicted line.
+/// Returns true if surfaces hold each direction. The prediction then has little weight, because a
+/// turning car always leaves its predicted line.
 bool AreEnough(const NormalEquations& surfaces, const RegistrationSettings& settings) {
   if (surfaces.pairs < kLeastPairs) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surfaces.Constraint(),

@@ -16,7 +16,8 @@ constexpr float kMostBins = 24;
 constexpr int kBesides = 3;
 constexpr std::size_t kSums = kBins + 1;  // of a ring
 constexpr float kBinsPerRadian = kBins / 6.2831853F;
-/// Range of the elevation between rings: closer ones give noise, distant ones see other things.
+/// Least and greatest distance between rings, in sines of their elevation. Closer rings give noise,
+/// and more distant rings meet other surfaces.
 constexpr double kLeastStep = 0.02;
 constexpr double kLargestStep = 0.14;
 constexpr float kFarthest_m = 1e4F;

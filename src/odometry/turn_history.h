@@ -15,9 +15,9 @@ namespace lidar::odometry {
 /// stuck sensor do harm for a few scans at most.
 class TurnHistory {
  public:
-  /// Takes an angular velocity [rad/s] and the specific force [m/s^2], in the sensor's
-  /// frame. Drops a sample that is not finite or not later than the one before. A clock that goes
-  /// back by a second clears the history.
+  /// Takes an angular velocity [rad/s] and the specific force [m/s^2], in the sensor's frame. Drops
+  /// a sample that is not finite or not later than the previous one. A clock that goes back by a
+  /// second clears the history.
   void Add(Time time, const Eigen::Vector3d& rate,
            const Eigen::Vector3d& force = Eigen::Vector3d::Zero());
   /// Returns the turn from `from` to `to`, which is not earlier, or nothing if samples are missing
@@ -31,7 +31,7 @@ class TurnHistory {
   /// samples are missing between them or accelerations are not trusted.
   std::optional<Moving> Move(const Moving& at, Time from, Time to) const;
   /// Compares the samples with the path from `before` to `found`, the states at `from` and `to`,
-  /// and with the path at the mean velocity of the call before.
+  /// and with the path at the mean velocity of the previous call.
   void TeachForce(Time from, Time to, const Moving& before, const Moving& found);
   bool force_trusted() const;
   const Eigen::Vector3d& bias() const { return bias_; }
