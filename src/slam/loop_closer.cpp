@@ -22,8 +22,8 @@ constexpr double kClosure_rad = 0.002;
 /// A closure is wrong if the solved poses contradict it by more than this.
 constexpr double kContradiction_m = 1.5;
 constexpr double kContradiction_rad = 0.05;
-/// Greatest distance between the same point of two maps. Beyond kOverlap_m a map counts as empty
-/// there.
+/// A point of one map fits the other map if that has a point or surface within kSame_m. If it has
+/// no point within kOverlap_m, it counts as empty there.
 constexpr double kSame_m = 0.4;
 constexpr double kOverlap_m = 2;
 constexpr double kMapVoxel_m = 1;
@@ -199,7 +199,7 @@ std::size_t LoopCloser::FindNearestToAnother() const {
   return found;
 }
 
-/// Moves the map's closures to the map before it.
+/// Moves the map's closures to the previous map.
 void LoopCloser::Forget(std::size_t forgotten) {
   const Pose to_previous = maps_[forgotten].solved.Inverse() * maps_[forgotten - 1].solved;
   maps_[forgotten + 1].scans += maps_[forgotten].scans;

@@ -68,7 +68,7 @@ class LoopCloser {
     odometry::StampedPose key;  // pose from the odometry; the points are in its frame
     odometry::Pose solved;      // pose in the map
     double driven_m = 0;        // length of the path before it
-    std::size_t scans = 0;      // number of scans between its key and the key before
+    std::size_t scans = 0;      // number of scans from the previous key to this one
     odometry::Points points;
     std::unique_ptr<Place> place;
 
