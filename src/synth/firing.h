@@ -24,7 +24,7 @@ struct Firing {
   double laser_delay_ns;   // from one laser to the next
   std::uint32_t columns;   // of a scan
   double first_azimuth, view;  // where a sweep begins, and its span
-  double sweeps;               // per scan; scans differ if this is no whole number
+  double sweeps;               // per scan; scans differ if this is not a whole number
   double swing, swings;        // amplitude and number per scan of the elevations' swings
   double fan;                  // from one laser to the next, in a plane that does not turn
   double azimuth_unit;         // of the reported azimuths; 0: exact

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An inertial measurement unit on the drive, with the errors that its data sheet states.
+// An inertial measurement unit that moves along the drive, with the errors that its data sheet
+// states.
 #pragma once
 #include <random>
 #include <vector>
@@ -9,7 +10,7 @@
 
 namespace lidar::synth {
 
-/// Errors of each axis of one kind of sensor, in its unit.
+/// Errors of each axis of a gyroscope or an accelerometer, in its unit of measurement.
 struct InertialErrors {
   double noise_density = 0;     // per square root of a hertz
   double offset = 0;            // standard deviation from unit to unit

@@ -108,7 +108,7 @@ SectorIndex::Arc Scanner::ArcOf(std::uint64_t scan, std::uint32_t first, std::ui
       high = std::max(high, offset);
     }
   }
-  // The pose also moves slightly between the two columns.
+  // The pose also changes slightly between the first and the last column.
   constexpr float kSlack = 0.02F;
   const float from = start + low - kSlack;
   return {from < 0 ? from + 4 : from, high - low + 2 * kSlack};

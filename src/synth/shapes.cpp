@@ -136,7 +136,7 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
   if (u < 0.25F || u > 0.75F || v < 0.28F || v > 0.78F) return;
   hit->distance +=
       std::min(kRecess * std::abs(long_side ? local.inverse.y : local.inverse.x), 2.0F);
-  // The paint identifies the house, at any anchor.
+  // The reflectivity identifies the house, because it does not depend on the anchor.
   const auto house = static_cast<std::uint64_t>(s.reflectivity * 1e6F);
   const auto window = static_cast<std::uint64_t>(storey) * 64 + static_cast<std::uint64_t>(bay);
   const bool curtain = Random(house * 4096 + window).Chance(0.55F);

@@ -53,7 +53,7 @@ struct Surroundings {
   }
 
   Terrain::Local land;
-  float u, v;  // place between two crossings, in kCrossingSpacing; 0.5 at a crossing
+  float u, v;  // place between two crossings, in units of kCrossingSpacing; 0.5 at a crossing
 };
 
 class Town final : public Scene {
