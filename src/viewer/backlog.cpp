@@ -35,7 +35,7 @@ void Backlog::Push(SharedSlice slice) {
   }
   bytes_ += CostOf(*slice);
   slices_.push_back(std::move(slice));
-  // No slice can refer to a slice without blocks, which is only for display, so an old one is
+  // A slice without blocks is only for display, because no slice can refer to it. So an old one is
   // dropped.
   for (auto it = slices_.begin(); it != slices_.end();)
     it = (*it)->blocks.empty() && !IsRecent(**it) ? Erase(it) : std::next(it);
