@@ -9,9 +9,11 @@
 namespace lidar::gst {
 namespace {
 
-// Greatest step of a new peer's sequence numbers. A sender without feedback drops most packets.
+// Limit for steps of a new peer's sequence numbers. It is large, because a sender without feedback
+// drops most packets.
 constexpr int kMaxGap = 500;
-// Greatest step of a known peer's sequence numbers. A sender that moved may have lost many packets.
+// The same limit for a known peer. It is larger, because a sender that moved may have lost many
+// packets.
 constexpr int kMaxKnownGap = 1 << 14;
 constexpr std::size_t kMostSources = 64;
 
@@ -106,7 +108,8 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
 }
 
 /// Finds or adds a candidate. If there are too many, a new candidate replaces the one with the
-/// lowest standing, and among equal ones the one that has been silent for longest.
+/// lowest standing. Among candidates of equal standing it replaces the one that has been silent for
+/// longest.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;

@@ -48,7 +48,7 @@ class PeerLatch {
   static constexpr int kProbation = 4;
   /// Time within which the packets of a stream arrive.
   static constexpr Duration kStreamTime = 1s;
-  /// A peer counts as a stream for this time after its first packet.
+  /// For this time after its first packet, the accepted peer counts at least as a stream.
   static constexpr Duration kStart = 200ms;
   /// An accepted peer is silent after this time without packets.
   static constexpr Duration kPeerSilence = 500ms;

@@ -283,7 +283,8 @@ static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenL
   return {GST_ELEMENT(self), true, std::move(places), send_dtls};
 }
 
-/// Holds packets back until there is a key: screamtx would count them as lost.
+/// Holds packets back until there is a key. Otherwise the SRTP layer would drop them behind
+/// screamtx, which would count them as lost.
 static void AwaitKey(GstLidarScreamSink* self, GstPad* pad) {
   std::unique_lock lock(self->state->mutex);
   const std::shared_ptr<SrtpLayer> srtp = self->state->srtp;

@@ -19,8 +19,8 @@ namespace {
 constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
 // Least change of a target that is sent to the encoder, relative to the target.
 constexpr double kWorthTelling = 0.02;
-// Requests for key units closer than this are the same request by several links: the interval of a
-// single link is longer.
+// Requests for key units within this time come from several links and count as one, because a
+// single link requests at longer intervals.
 constexpr Duration kKeyUnitInterval = std::chrono::milliseconds(400);
 
 constexpr std::size_t kMaxMisdirected = 64;  // reports held for the next tick

@@ -36,7 +36,7 @@ struct Misdirected {
   rtcp::CongestionFeedback report;
 };
 
-/// Copies of packets, changed targets and reports, to be passed on without the lock.
+/// Copied packets, changed targets, and misdirected reports. They are passed on without the lock.
 struct BondWork {
   std::vector<std::pair<PadPtr, BufferPtr>> copies;
   std::vector<std::pair<PadPtr, EventPtr>> targets;

@@ -35,7 +35,8 @@ std::string Interfaces::Lacks(const BondAddress& link, GSocketFamily family) con
     const auto found = by_name.find(link.interface);
     if (found == by_name.end()) return "there is no interface " + link.interface;
     if (!found->second.up) return "the interface " + link.interface + " is down";
-    // The kernel would send from the address of another interface.
+    // The kernel would send from an address of another interface if this one has none of the
+    // family.
     if (found->second.families.count(family) == 0)
       return "the interface " + link.interface + " has no address";
   }

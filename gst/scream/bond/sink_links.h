@@ -43,7 +43,7 @@ class SinkLinks {
     GstElement* src;
   };
 
-  /// Whether a link whose receiver is at `peer` takes the buffer as feedback.
+  /// Returns true if a link whose receiver is at `peer` takes the buffer as feedback.
   using Takes = std::function<bool(GstBuffer*, GSocketAddress* peer)>;
 
   SinkLinks(GstElement* bin, const Chain& first, const std::vector<OpenLink>& links,

@@ -12,7 +12,7 @@
 namespace lidar::gst {
 namespace {
 
-// Each new SSRC creates a pad, even if it is forged.
+// Greatest number of pads. Each new SSRC creates one, even a forged SSRC.
 constexpr std::size_t kMaxRoutes = 1'024;
 
 bool IsLidar(const GstCaps* caps) {
@@ -210,8 +210,8 @@ static auto FindEnded(RxState& state, guint payload_type, GstCaps* caps) {
 }
 
 /// Returns the pad of a new SSRC. A restarted sender gets the pad of its earlier SSRC, because an
-/// application links a pad once. The pad's stream goes on: with a STREAM_START, sinks would wait
-/// for those of the other pads. A flush that is in progress applies to the pad, too.
+/// application links a pad once. The pad gets no STREAM_START, because sinks would then wait for
+/// one on each other pad. A flush that is in progress applies to the pad, too.
 static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer** buffer) {
   RxState& state = *self->state;
   const CapsPtr caps(CapsOf(self, header));

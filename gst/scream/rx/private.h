@@ -86,7 +86,8 @@ struct RxState {
   // SSRCs that need a key unit, with the links that still have to send the request.
   std::set<std::pair<guint32, std::size_t>> key_requests;
 
-  // Pads by SSRC, with a pt-map. Only the streaming thread changes it; a flush reads it.
+  // Pads by SSRC, if there is a pt-map. Only the streaming thread changes `routes`; a flush reads
+  // them.
   std::map<guint32, RxRoute> routes;
   guint64 routes_begun = 0;
 

@@ -5,7 +5,8 @@ namespace lidar::gst {
 
 namespace {
 
-// The links of a sender alternate, and after a gap on a link its packets come late.
+// The window is large, because the links of a sender alternate, and packets come late after a gap
+// on their link.
 constexpr guint kReplayWindow = 4'096;  // packets
 
 }  // namespace

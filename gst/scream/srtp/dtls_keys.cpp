@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kDtlsTick{100};
 // A client gives up a handshake after this time, because DTLS doubles its pauses between
-// repetitions. A client with a key begins anew if its media stay unanswered as long.
+// repetitions. A client with a key begins anew if its media stay unanswered for the same time.
 constexpr std::chrono::seconds kDtlsPatience{5};
 constexpr std::chrono::seconds kDtlsPause{1};  // between handshakes that fail
 // A server keeps a handshake for this time, because it may have to repeat its last datagram.

@@ -31,7 +31,7 @@ struct DtlsCounts {
   std::uint64_t unkeyed = 0;  // packets of media that came before there was a key, and were dropped
 };
 
-/// Numbers of packets that were protected, and that passed.
+/// Number of packets that were protected, and number of packets that passed.
 struct SrtpTraffic {
   std::uint64_t sent = 0;
   std::uint64_t passed = 0;

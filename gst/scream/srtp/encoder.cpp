@@ -9,7 +9,8 @@
 namespace lidar::gst {
 namespace {
 
-// The links alternate, and a copy of an old packet may leave after many newer packets.
+// The window is large, because links alternate, and a copy of an old packet may leave after many
+// newer packets.
 constexpr guint kWindow = 4'096;  // packets
 
 }  // namespace
@@ -49,7 +50,8 @@ void SrtpEncoder::SetKey(const SrtpKey& key) {
   const BufferPtr buffer(gst_buffer_new_memdup(key.data(), key.size()));
   const std::lock_guard lock(mutex_);
   g_object_set(element_, "key", buffer.get(), nullptr);
-  // srtpenc of GStreamer 1.22 never frees a session whose first key came while it played.
+  // Starts srtpenc after its first key: if that key came in PLAYING, srtpenc of GStreamer 1.22
+  // would never free its session.
   if (!std::exchange(has_key_, true)) gst_element_set_state(element_, GST_STATE_PLAYING);
 }
 

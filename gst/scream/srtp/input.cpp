@@ -43,7 +43,7 @@ SrtpInput::SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_
   for (GstPad* pad : {entry_.get(), exit_.get()}) gst_pad_set_active(pad, TRUE);
 }
 
-/// Passes events and queries to the other side.
+/// Makes a pad that passes events and queries to the other side.
 PadPtr SrtpInput::NewPad(const char* name, GstPadDirection direction) {
   PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new(name, direction))));
   gst_pad_set_element_private(pad.get(), this);

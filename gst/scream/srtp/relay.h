@@ -10,7 +10,8 @@
 
 namespace lidar::gst {
 
-/// A pad that takes what the element pushes. Events end here, because the stream has its own.
+/// A pad that takes what the element pushes. Events end here, because the stream has its own
+/// events.
 class Relay {
  public:
   using Take = std::function<void(BufferPtr)>;

@@ -13,8 +13,8 @@ GstClockTime Shifted(EntryShift* s, GstClockTime entry, GstClockTime base_time, 
   return s->base_time == base_time ? entry + s->shift : entry;
 }
 
-/// Returns the clock time at which input that is not live may enter: a live source would have made
-/// it then.
+/// Returns the clock time at which input that is not live may enter: the time at which a live
+/// source would have made this input.
 GstClockTime EntryTime(GstElement* element, const TxStream& stream, GstBuffer* buffer) {
   const GstClockTime pts = GST_BUFFER_PTS(buffer);
   if (!GST_CLOCK_TIME_IS_VALID(pts) || stream.segment.format != GST_FORMAT_TIME)

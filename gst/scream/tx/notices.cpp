@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-// An outage may drop fewer frames than this, which needs no warning.
+// Fewer dropped frames need no warning, because an outage may cause them.
 constexpr guint64 kFramesUntilWarning = 20;
 // A sum with a longer interval may exceed the range of a time.
 constexpr Duration kLongestInterval = std::chrono::hours(24 * 365);
@@ -79,7 +79,7 @@ bool Notices::Evaluate(const scream::Controller& controller, Duration stats_inte
   }
   ecn_ = controller.ecn_state();
   const Time next = now + std::min(stats_interval, kLongestInterval);
-  if (stats_interval > Duration{0}) next_stats_ = std::min(next_stats_, next);  // it may be shorter
+  if (stats_interval > Duration{0}) next_stats_ = std::min(next_stats_, next);  // shorter interval
   if (stats_interval > Duration{0} && now >= next_stats_) {
     next_stats_ = next;
     stats_due_ = true;

@@ -25,7 +25,7 @@ bool TargetsAreDue(const TxStream& stream, Time now);
 /// Appends the events that are due.
 void TakeTargets(TxStream& stream, const scream::Controller& controller, Time now,
                  std::vector<PadEvent>* events);
-/// Returns the first target of `stream`; null afterwards.
+/// Returns the first target of `stream`, or null in later calls.
 EventPtr FirstTarget(TxStream& stream, const scream::Controller& controller, Time now);
 
 }  // namespace lidar::gst
