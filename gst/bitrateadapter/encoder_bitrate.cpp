@@ -153,7 +153,7 @@ std::optional<guint> SetEncoderBitrate(GstElement* encoder, const BitrateControl
   }
   const auto range = RangeOf(spec);
   if (!range) return std::nullopt;
-  // Many encoders take 0 for "automatic".
+  // At least 1, because many encoders take 0 for "automatic".
   const gdouble value = std::clamp(std::max(units, 1.0), range->first, range->second);
   GValue number = G_VALUE_INIT;
   g_value_init(&number, G_TYPE_DOUBLE);

@@ -188,7 +188,7 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   return result;
 }
 
-/// The limits have no meaning before the caps, and go only where buffers go.
+/// Sends changed limits before the next buffer, because they must follow the caps.
 static void BeforeTransform(GstBaseTransform* base, GstBuffer*) {
   State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
   {

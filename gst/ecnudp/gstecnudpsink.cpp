@@ -214,8 +214,8 @@ static gboolean Stop(GstBaseSink* base) {
   return TRUE;
 }
 
-/// Makes the address on `buffer` the destination: the element that set it (screamrx) validated the
-/// peer.
+/// Makes the address on `buffer` the destination. The element that set the address (screamrx) has
+/// validated the peer.
 static void FollowPeer(State& state, GstBuffer* buffer) {
   const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
   if (meta == nullptr || meta->addr == state.peer.get()) return;
@@ -231,7 +231,8 @@ static Marking CurrentMarking(State& state) {
       s.options.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.options.dscp << 2);
   Marking marking{dscp, static_cast<guint8>(s.ecn), s.reply, 0};
   if (s.interface.empty()) return marking;
-  // An interface that was removed comes back with another index.
+  // Looks up the index for each call, because an interface that was removed comes back with another
+  // index.
   const int fd = g_socket_get_fd(state.used.socket.get());
   if (const unsigned index = lidar::net::InterfaceIndex(fd, s.interface))
     marking.interface = index;
@@ -240,7 +241,7 @@ static Marking CurrentMarking(State& state) {
   return marking;
 }
 
-/// Warns once for each new kind of error: a path that is down for a while must not end the stream.
+/// Warns once for each new kind of error. A path that is down for a while must not end the stream.
 static void WarnOnce(GstLidarEcnUdpSink* self, const UdpBatchSender::Result& result) {
   State& state = StateOf(self);
   if (result.last_errno == 0) {

@@ -19,7 +19,7 @@ T Payload(cmsghdr* c) {
 
 void Enable(int fd, int level, int name) {
   const int on = 1;
-  // An option of the other address family fails, and is not needed then.
+  // An option of the other address family fails, but is not needed.
   if (setsockopt(fd, level, name, &on, sizeof on) != 0) return;
 }
 

@@ -42,12 +42,13 @@ DatagramInfo ReadInfo(msghdr* received);
 struct SendControl {
   alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(in6_pktinfo))] = {};
 };
-/// Makes `message`, whose destination is `to`, leave with `tos`, through the interface of that
-/// index (0: by the routes). Needs no privileges. `control` must live until the message is sent.
+/// Makes `message`, whose destination is `to`, leave with `tos` through the interface with the
+/// index `interface` (0: by the routes). Needs no privileges. `control` must live until the message
+/// is sent.
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message);
 
-/// Index of the interface of that name in the socket's network namespace; 0 if there is none.
+/// Index of the interface `name` in the socket's network namespace; 0 if there is none.
 unsigned InterfaceIndex(int fd, const std::string& name);
 
 /// Makes multicast leave through the interface of that name. Returns false with errno set on

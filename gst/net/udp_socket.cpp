@@ -25,8 +25,8 @@ bool HasRouteTo(GInetAddress* address) {
   return socket && g_socket_connect(socket.get(), there.get(), nullptr, nullptr) != FALSE;
 }
 
-/// Prefers an address with a route: GLib lists ::1 before 127.0.0.1 for localhost, even on a
-/// machine without IPv6.
+/// Prefers an address with a route, because GLib lists ::1 before 127.0.0.1 for localhost, even on
+/// a machine without IPv6.
 GInetAddress* Resolve(const std::string& host, GError** error) {
   if (GInetAddress* literal = g_inet_address_new_from_string(host.c_str())) return literal;
   std::unique_ptr<GResolver, GObjectUnref> resolver(g_resolver_get_default());

@@ -38,7 +38,8 @@ bool SameHost(GSocketAddress* a, GSocketAddress* b);
 /// Returns the host, without the brackets of an IPv6 literal.
 std::string WithoutBrackets(const std::string& host);
 
-/// Looks `host` (a name or a literal, brackets allowed) up; may block. Transfer full, or NULL.
+/// Looks up `host`, a name or a literal with or without brackets; may block. Transfer full, or
+/// NULL.
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error);
 
 /// Returns the host as ResolveUdpAddress() reads it, with the interface of a link-local address.
@@ -60,7 +61,7 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
 /// "host:port" for messages and logs.
 std::string AddressToString(GSocketAddress* address);
 
-/// Wakes poll() in another thread until it is cleared.
+/// Wakes poll() in another thread until Clear().
 class WakeFd {
  public:
   WakeFd();
