@@ -26,8 +26,8 @@ struct AssemblerState {
   /// The property `stats`; takes the mutex.
   StructurePtr Stats();
 
-  // Guards all down to `timer`. The sink pad's streaming lock orders the output: the chain function
-  // holds it, and the timer takes it before this mutex.
+  // Guards all members down to `timer`. The sink pad's streaming lock orders the output: the chain
+  // function holds it, and the timer takes it before this mutex.
   std::mutex mutex;
   AssemblerSettings settings;
   ScanQueue queue;

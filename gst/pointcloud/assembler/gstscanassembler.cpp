@@ -72,8 +72,8 @@ static void PushCaps(GstLidarScanAssembler* self, guint width) {
   if (segment) gst_pad_push_event(self->srcpad, segment.release());
 }
 
-/// Pushes the segment that waits for a first scan, which will not come. Caps must precede it, so
-/// they describe a full turn.
+/// Pushes the segment that waits for a first scan, which will not come. Caps must precede the
+/// segment; they describe a full turn.
 static void PushEarlySegment(GstLidarScanAssembler* self) {
   State& state = *self->state;
   guint width = 0;
@@ -184,7 +184,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     if (state.queue.counters().invalid != invalid)
       GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
                          slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
-    // Stamps may have restarted, and the timer may still wait for an earlier scan.
+    // Timestamps may have restarted, and the timer may still wait for an earlier scan.
     state.timer.Update(state.queue.NextDeadline());
   }
   return PushScans(self, &finished);
@@ -200,7 +200,7 @@ static void FinishDue(GstLidarScanAssembler* self, ScanQueue::Finished* finished
   gst_object_unref(clock);
 }
 
-/// The source pad's task: pushes scans whose time is over.
+/// The source pad's task: pushes scans whose deadline has passed.
 static void TimerLoop(gpointer data) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(data);
   State& state = *self->state;
@@ -254,13 +254,13 @@ static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
     std::lock_guard lock(state.mutex);
     scan_changes = state.info && CannotMix(*state.info, *info);
   }
-  // Open scans have the old slices, so they leave with the old caps.
+  // The slices of open scans have the old caps, so these scans leave with the old caps.
   if (scan_changes) PushAll(self);
   TakeCaps(self, caps, *std::move(info));
   return TRUE;
 }
 
-/// Holds the segment until the caps. Returns true if it took the event.
+/// Stores the segment until the caps are sent. Returns true if the function took the event.
 static bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
   State& state = *self->state;
   const GstSegment* segment = nullptr;
@@ -298,8 +298,8 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       PushEarlySegment(self);
       break;
     case GST_EVENT_GAP: {
-      // The open scan is flagged when it leaves, which marks the gap. Before the first scan there
-      // are no caps and no segment for it.
+      // A gap within a scan needs no event, because the incomplete scan is flagged. Before the
+      // first scan no caps and no segment were sent, so a GAP event cannot pass.
       std::unique_lock lock(state.mutex);
       if (state.queue.empty() && state.caps_sent) break;
       lock.unlock();

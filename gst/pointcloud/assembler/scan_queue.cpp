@@ -7,7 +7,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxOpen = 2;
-// No network reorders that many scans, so the sender has restarted.
+// The sender has restarted if a scan's id is this far below the newest: no network reorders so many
+// scans.
 constexpr int kRestart = 16;
 
 }  // namespace

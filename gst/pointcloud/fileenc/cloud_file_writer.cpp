@@ -40,8 +40,8 @@ TypeText TextOf(FieldType type) {
   return {'F', "double"};
 }
 
-/// Names come from caps, so they may contain characters that would break a header. Readers
-/// drop the second field of a name.
+/// Replaces characters that would break a header, because names come from caps. Makes names unique,
+/// because readers drop the second of two fields with the same name.
 std::vector<std::string> SafeNames(const PointFields& fields) {
   std::vector<std::string> names;
   for (const PointField& f : fields.all()) {

@@ -129,7 +129,7 @@ static std::string Write(GstBaseTransform* base, GstBuffer* in) {
   return reinterpret_cast<GstLidarCloudFileEncClass*>(G_OBJECT_GET_CLASS(base))->write(cloud);
 }
 
-/// The size of a file is known once it is written, so this makes the whole output.
+/// Makes the whole output, because the size of a file is known only when it is written.
 static GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** out) {
   auto text = std::make_unique<std::string>(Write(base, in));
   if (text->empty()) {

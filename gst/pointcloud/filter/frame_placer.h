@@ -23,8 +23,8 @@ class FramePlacer {
   /// Sets the frame of output clouds; empty: clouds keep their frame.
   void SetTarget(std::string target, std::chrono::nanoseconds patience);
   /// Finds the transform of a cloud of `frame` to the target. If there is none, it sets `transform`
-  /// to nothing, counts the cloud, and warns for `element` if the cloud before had one. Returns
-  /// FLUSHING if a flush or the end of the stream ended the wait.
+  /// to nothing, counts the cloud, and warns for `element` if the previous cloud had a transform.
+  /// Returns FLUSHING if a flush or the end of the stream ended the wait.
   GstFlowReturn Place(GstElement* element, GstBuffer* cloud, const std::string& frame,
                       std::optional<Transform>* transform);
   void Clear();

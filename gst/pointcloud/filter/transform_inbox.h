@@ -21,7 +21,7 @@ std::optional<Time> CaptureTimeOf(GstBuffer* buffer);
 class TransformInbox {
  public:
   /// Adds a sink pad of `pad_template` that takes TFMessages and odometry. The inbox must outlive
-  /// it.
+  /// the pad.
   GstPad* AddPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name);
   void ReleasePad(GstElement* element, GstPad* pad);
 

@@ -62,7 +62,7 @@ struct MergePadState {
   std::string own_fields;  // of the clouds; empty: not known
 };
 
-/// Greatest distance of two scans of one turn, if the scans have no duration.
+/// Greatest time between two scans of one turn, if the scans have no duration.
 constexpr GstClockTime kUsualScan = 100 * GST_MSECOND;
 
 struct Head {
@@ -110,7 +110,7 @@ static void MergePadForget(GstLidarPointCloudMergePad* pad) {
   pad->state->own_fields.clear();
 }
 
-/// Converts the returns of `buffer` to the common frame, with `fields`. Gives null on failure;
+/// Converts the returns of `buffer` to the common frame, with `fields`. Returns null on failure;
 /// `why` then has the reason for a user.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
                               const std::string& fields, std::string* why) {
@@ -200,7 +200,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
   return heads;
 }
 
-/// Drops scans of earlier turns than the newest. Returns true if there were any.
+/// Drops scans of turns before the newest turn. Returns true if there were any.
 static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
   GstClockTime newest = 0;
   for (const Head& head : heads) newest = std::max(newest, head.time);

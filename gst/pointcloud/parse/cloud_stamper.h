@@ -52,7 +52,7 @@ class CloudStamper {
   /// Returns the time that `clouds` take.
   GstClockTime TimeOf(guint64 clouds) const { return Grid().TimeOf(clouds); }
   /// Sets a missing capture time as if the sensor had begun when the first cloud came. Numbers a
-  /// cloud that is no slice as a scan of its own.
+  /// cloud that is not a slice as a scan of its own.
   void Stamp(GstBuffer* cloud);
   /// Leaves out a cloud. Its time stays empty.
   void LeaveOut() { ++place_.next; }

@@ -20,7 +20,7 @@ class CloudTimeline {
     guint64 rate_n = 10;      // clouds/s
     guint64 rate_d = 1;
 
-    /// Begin of a cloud, counted from 0, and the cloud at a time.
+    /// TimeOf() returns when a cloud begins, CloudAt() the cloud at a time. Clouds count from 0.
     GstClockTime TimeOf(guint64 cloud) const {
       return gst_util_uint64_scale(cloud, rate_d * GST_SECOND, rate_n);
     }
@@ -37,8 +37,8 @@ class CloudTimeline {
   /// Converts a segment in bytes to one in time that continues after the last cloud. Sets `place`
   /// to its beginning, as far as known.
   EventPtr ToTime(GstEvent* segment, Place* place);
-  /// Returns a segment that begins with cloud `next` and follows the last cloud: the grid has
-  /// changed.
+  /// Call it when the grid has changed. Returns a segment that begins with cloud `next` and
+  /// continues after the last cloud.
   EventPtr Continue(guint64 next);
   /// Converts SEGMENT_DONE to time; takes the event.
   EventPtr EndInTime(GstEvent* done) const;

@@ -278,7 +278,7 @@ static gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   return TRUE;
 }
 
-/// Drops what is left in the adapter, which is no whole cloud.
+/// Drops what is left in the adapter, which is not a whole cloud.
 static void Drain(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   const gsize left = gst_adapter_available(state.adapter.get());
