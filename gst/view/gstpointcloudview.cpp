@@ -305,7 +305,7 @@ static GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
   gst_video_frame_unmap(&frame);
   GST_BUFFER_PTS(out) = state.pts;
   GST_BUFFER_DURATION(out) = state.info->ScanDuration();
-  // The base class has copied the time of the last slice, or of the next scan.
+  // Replaces the time that the base class has copied from the last slice, or from the next scan.
   if (GST_CLOCK_TIME_IS_VALID(state.capture_time))
     gst_lidar_buffer_set_capture_time(out, state.capture_time);
   state.drawing = false;
@@ -337,8 +337,8 @@ static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer*
   return FinishPicture(base, out);
 }
 
-/// A slice that completes no picture is no loss: otherwise the base class would mark each picture
-/// as DISCONT.
+/// Returns OK for a slice that completes no picture. After DROPPED the base class would mark the
+/// next picture as DISCONT.
 static GstFlowReturn GenerateOutput(GstBaseTransform* base, GstBuffer** out) {
   const GstFlowReturn flow =
       GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)->generate_output(base, out);

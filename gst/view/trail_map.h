@@ -36,7 +36,7 @@ class TrailMap {
 
   explicit TrailMap(std::size_t most_points = kMostPoints);
 
-  /// Sets the pose of the sensor at `seconds`, and the velocity since the pose before.
+  /// Sets the pose of the sensor at `seconds`, and the velocity since the previous pose.
   void MoveTo(const GstLidarPose& pose, double seconds);
   /// Pose of the sensor, `later_s` after the last pose.
   Rigid PoseAfter(double later_s) const;
