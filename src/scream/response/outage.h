@@ -42,7 +42,7 @@ class Outage {
   Duration Silence(Time now) const { return active() ? Quiet(now) : Duration{0}; }
 
  private:
-  /// Silence of the receiver, beyond round trips, that is an outage.
+  /// The receiver's silence is an outage only if it exceeds two round trips by this time.
   static constexpr Duration kOutage = 200ms;
   static constexpr double kBackoff = 0.5;
   static constexpr double kRestart = 0.5;

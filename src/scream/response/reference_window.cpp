@@ -6,7 +6,7 @@
 namespace lidar::scream {
 namespace {
 
-/// Slope of the reaction over the distance to the inflection point, and floors of the scales.
+/// Slope of the reaction over the distance to the inflection point, and least values of the scales.
 constexpr double kInflectionSlope = 8;
 constexpr double kInflectionMin = 0.1;
 constexpr double kScaleMin = 0.25;
