@@ -10,7 +10,8 @@ using namespace std::chrono_literals;
 
 /// Assumed round trip until one is measured.
 constexpr Duration kUnknownRtt = 100ms;
-/// A report that is later than the round trip plus this shows a gap. Machines may be a little late.
+/// A link is in a gap if a report takes longer than a round trip plus this time, which allows for
+/// slow machines.
 constexpr Duration kReportMargin = 20ms;
 /// Least advantage for which a slice changes to another link.
 constexpr Duration kWorthLeaving = 5ms;

@@ -22,7 +22,7 @@ constexpr double kLeastVariance = 0.01;
 /// kFound, and until it falls below kStillFound.
 constexpr double kFound = 4;
 constexpr double kStillFound = 1;
-/// The queue did not run empty if it was longer by this than the time to the next packet.
+/// The queue did not run empty if its delay exceeded the time to the next packet by this.
 constexpr double kMarginMs = 1;
 /// If two links share a FIFO, packets that leave within kTogether meet the same queue: the queues
 /// that both links measure differ by less than kAlike of the longer one, on average over kQueues
