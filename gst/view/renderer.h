@@ -84,7 +84,7 @@ class Renderer {
   bool scale_known_ = false;
   float pixels_per_m_;  // from above
   TrailMap* map_;
-  // The view of the map: the point in its middle, and its turn.
+  // The view of the map: the point in the picture's middle, and the picture's turn.
   std::array<float, 3> middle_{};
   float cos_turn_ = 1;
   float sin_turn_ = 0;

@@ -17,7 +17,7 @@ using bonding::Scheduler;
 namespace {
 
 constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
-// Least change of a target that is sent to the encoder, relative to the target.
+// A target is sent to the encoder if it differs by this part from the last one sent.
 constexpr double kWorthTelling = 0.02;
 // Requests for key units within this time come from several links and count as one, because a
 // single link requests at longer intervals.
