@@ -128,7 +128,7 @@ float XOf(const std::string& frame) {
 
 TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
   constexpr guint kColumns = 100'000;  // 1.6 MB
-  constexpr int kClouds = 12;  // the sink closes a connection that takes nothing for 30 s
+  constexpr int kClouds = 12;          // the sink closes a connection that takes nothing for 30 s
   Sink sink;
   sink.SetCloudCaps(kColumns);
   sink.PushCloud(1, kColumns);
