@@ -99,6 +99,33 @@ TEST_F(TwoLinks, SendsASliceWhereItIsWholeFirst) {
   EXPECT_EQ(Packet(), SetOf({0}));
 }
 
+TEST_F(TwoLinks, ExpectsASliceAsLargeAsTheOneBefore) {
+  Settle();
+  SetPaths({Mbps(8), 20ms}, {Mbps(16), 60ms});
+  EXPECT_TRUE(Packet()[0]) << "1.2 ms and 10 ms";
+  const std::uint32_t slice = ++seq_;
+  for (int i = 0; i < 70; ++i) {
+    const PacketId id{kMedia, ++seq_};
+    const LinkSet links = scheduler_.OnPacket(now_, {id, kSize, slice});
+    for (std::size_t link = 0; link < 2; ++link)
+      if (links[link]) scheduler_.OnSent(now_, link, id);
+  }
+  EXPECT_EQ(Packet(), SetOf({1})) << "42 ms and 30 ms, not 84 ms and 10 ms";
+  EXPECT_EQ(Packet(), SetOf({0})) << "one packet";
+}
+
+TEST_F(TwoLinks, APacketThatTheSourceSendsAgainIsBookedOnce) {
+  Settle();
+  const std::uint64_t before = scheduler_.counters(0).packets;
+  const PacketId id{kMedia, ++seq_};
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(scheduler_.OnPacket(now_, {id, kSize, seq_}), SetOf({0}));
+    scheduler_.OnSent(now_, 0, id);
+  }
+  EXPECT_EQ(scheduler_.counters(0).packets, before + 1);
+  EXPECT_EQ(Packet(), SetOf({0})) << "no packet waits in its FIFO";
+}
+
 TEST_F(TwoLinks, AnAbandonedSourceLeavesNothingInTheFifos) {
   Settle();
   const PacketId other{kMedia + 1, 0};

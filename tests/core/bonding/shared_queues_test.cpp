@@ -17,9 +17,11 @@ class TwoFifos : public testing::Test {
   void Send(std::size_t link, std::size_t fifo, DataSize size) {
     queues_.OnSent(now_, link, size);
     Time& free = free_[fifo];
+    if (gaps_ && random_.Chance(1.0 / 200)) free = std::max(free, now_) + 300ms;
     free = std::max(free, now_) + size / Mbps(8);
     const auto ticks = static_cast<std::uint32_t>(Seconds(free - kStart + behind_[link]) * 65536);
     queues_.OnArrival(link, {now_, ticks, 0ms});
+    if (overtaken_) queues_.OnArrival(link, {now_ - 5ms, ticks, 0ms});
     changes_ += queues_.Shared(0, 1) != shared_ ? 1 : 0;
     shared_ = queues_.Shared(0, 1);
   }
@@ -40,6 +42,8 @@ class TwoFifos : public testing::Test {
   Time now_ = kStart;
   std::array<Time, 2> free_{kStart, kStart};
   std::array<Duration, 2> behind_{};  // delay of each link behind its queue
+  bool gaps_ = false;                 // the FIFOs stand still now and then
+  bool overtaken_ = false;            // packets arrive again behind later ones
   link::Random random_{1};
 };
 
@@ -51,6 +55,19 @@ TEST_F(TwoFifos, FindsOneQueue) {
   EXPECT_EQ(changes_, 1);
   queues_.Forget(1);
   EXPECT_FALSE(queues_.Shared(0, 1));
+}
+
+TEST_F(TwoFifos, LeavesOutPacketsThatWereOvertaken) {
+  overtaken_ = true;
+  Run(0, false);
+  EXPECT_TRUE(queues_.Shared(0, 1));
+  EXPECT_EQ(changes_, 1);
+}
+
+TEST_F(TwoFifos, FindsOneQueueThatStandsStillNowAndThen) {
+  gaps_ = true;
+  Run(0, false);
+  EXPECT_TRUE(queues_.Shared(0, 1));
 }
 
 TEST_F(TwoFifos, KnowsTheEmptyQueueOfTheWindowBeforeWhileOneStands) {
