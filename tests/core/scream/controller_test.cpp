@@ -38,6 +38,19 @@ TEST(Controller, ClosesTheWindowWithoutFeedbackButKeepsAMinimumRate) {
   EXPECT_EQ(longest, Duration(160ms));  // 1000 bytes at RATE_PACE_MIN
 }
 
+TEST(Controller, WantsTheTimerWhilePacketsWaitOrAreUnderWay) {
+  Controller c{Parameters()};
+  const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});
+  c.OnQueued(kStart, id, {1, DataSize::Bytes(1000), true, 0});
+  EXPECT_LE(c.NextTimer(), kStart);
+  c.OnTimer(kStart);
+  EXPECT_EQ(c.NextTimer(), kStart + 50ms);
+  c.OnSent(kStart, id, {1, 0, DataSize::Bytes(1000), Ecn::kEct1});
+  EXPECT_EQ(c.NextTimer(), kStart + 50ms);
+  c.OnRouteChange(kStart + 1ms);  // drops what is under way
+  EXPECT_EQ(c.NextTimer(), Time::max());
+}
+
 TEST(Controller, TakesOnlyItsCallersSilenceForAStandstill) {
   Controller c{Parameters()};
   const StreamId id = c.AddStream({1, Mbps(0.1), Mbps(1), Mbps(10)});

@@ -172,9 +172,13 @@ TEST_F(QueueDelayTest, JitterLowersTheScale) {
 }
 
 TEST_F(QueueDelayTest, ADriftingClockIsGivenANewBase) {
-  for (int i = 0; i < 1000 && !new_base_; ++i) Run(41, 20ms + i * 100us, 100ms);
+  int rounds = 0;
+  for (; rounds < 1000 && !new_base_; ++rounds) Run(41, 20ms + rounds * 100us, 100ms);
   EXPECT_TRUE(new_base_);
   EXPECT_EQ(delay_.qdelay(), Duration(0));
+  new_base_ = false;
+  Run(410, 70ms + rounds * 100us, 100ms);
+  EXPECT_FALSE(new_base_) << "ten round trips behind a queue are no drift";
 }
 
 TEST(RoundTripTime, SmoothsByAnEighth) {

@@ -53,6 +53,43 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
   EXPECT_EQ(path.model.report_gap(), Duration{0});
 }
 
+TEST(PathModel, KnowsNoQueueAndNoOtherFlowOfAnotherRoute) {
+  const Parameters p;
+  Path path(p);
+  for (int i = 0; i < 20; ++i) {  // losses at the longest queue
+    path.Arrive(20, 1ms, 0ms, Ecn::kEct1);
+    path.Arrive(1, 1ms, 20ms, Ecn::kEct1);
+    AckSummary loss;
+    loss.lost.emplace_back();
+    loss.lost.back().sent = path.now - kRtt - 20ms;
+    path.model.OnReport(path.now, loss, kSender);
+  }
+  path.Arrive(120, 100ms, 50ms, Ecn::kEct1);  // the delay never falls, as if clocks drifted
+  for (int report = 0; report < 10; ++report) {
+    AckSummary marks;
+    for (int packet = 0; packet < 10; ++packet) {
+      path.now += 10ms;
+      marks.acked.emplace_back();
+      marks.acked.back().sent = path.now - kRtt - 100ms;
+      marks.acked.back().arrival = marks.report = path.now - kRtt / 2;
+      marks.acked.back().arrived_ecn = Ecn::kCe;
+    }
+    path.model.OnReport(path.now, marks, kSender);
+  }
+  ASSERT_TRUE(path.model.loss_context().AtFullQueue());
+  ASSERT_GT(path.model.half_rate_until(), Time{});
+  ASSERT_TRUE(path.model.cross_traffic().unseen());
+  ASSERT_GT(path.model.queue_delay().qdelay_avg(), Duration{0});
+
+  path.model.Reset(path.now);
+  EXPECT_FALSE(path.model.loss_context().AtFullQueue());
+  EXPECT_EQ(path.model.half_rate_until(), Time{});
+  EXPECT_FALSE(path.model.cross_traffic().unseen());
+  EXPECT_EQ(path.model.queue_delay().qdelay(), Duration{0});
+  EXPECT_EQ(path.model.queue_delay().qdelay_avg(), Duration{0});
+  EXPECT_FALSE(path.model.evidence().Counts(path.now - 1ms)) << "it left by the old route";
+}
+
 TEST(PathModel, DescribesEachMeasurementAsItIs) {
   const Parameters p;
   Path path(p);

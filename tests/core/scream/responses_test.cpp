@@ -144,6 +144,22 @@ TEST_F(GapRecoveryTest, BelievesAsMuchAsBeforeOnceTheLinkWasMeasured) {
   EXPECT_EQ(restart->window.bytes(), 26500);
 }
 
+TEST_F(GapRecoveryTest, BelievesAsMuchAsBeforeOnceTheWindowWasBack) {
+  FallIntoAGap();
+  DataSize window = DataSize::Bytes(3000);
+  for (int i = 0; i < 20 && gaps_.in_gap(); ++i) {  // step by step, without a queue
+    path_.Arrive(1, 50ms, 0ms, Ecn::kEct1);
+    if (const auto restart = Update(window)) window = restart->window;
+  }
+  path_.Arrive(20, 1ms, 0ms, Ecn::kEct1);
+  EXPECT_FALSE(Update(kWindow));
+  const DataRate before = gaps_.rate_before().value();
+  path_.Arrive(8, 20ms, 100ms, Ecn::kCe);  // the next gap
+  EXPECT_FALSE(Update(DataSize::Bytes(3000)));
+  EXPECT_TRUE(gaps_.in_gap());
+  EXPECT_EQ(gaps_.rate_before()->bits_per_second(), before.bits_per_second());
+}
+
 TEST_F(GapRecoveryTest, ForgetsAGapOfWhichNothingWasSeenForThreeSeconds) {
   FallIntoAGap();
   path_.now += 3s;
