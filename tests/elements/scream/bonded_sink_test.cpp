@@ -14,6 +14,7 @@
 
 #include "tests/elements/scream/bonded_ends.h"
 #include "tests/elements/scream/rtp_support.h"
+#include "tests/elements/scream/srtp_protector.h"
 
 namespace lidar::test {
 namespace {
@@ -426,6 +427,21 @@ TEST_F(BondedSink, CountsWhatSrtpRefusesOnAnyLink) {
   EXPECT_EQ(Stats(sink_)["srtp-refused"], 3U);
   EXPECT_EQ(Stats(sink_)["srtp-received"], 3U);
   EXPECT_EQ(Stats(sink_)["srtp-copies"] + Stats(sink_)["srtp-key-changes"], 0U);
+}
+
+TEST_F(BondedSink, CountsAChangeOfTheKeyOnceWhicheverLinksShowIt) {
+  const gst::ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
+  if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
+  g_object_set(sink_, "srtp-key", std::string(60, '5').c_str(), nullptr);
+  Start();
+  g_object_set(sink_, "srtp-key", std::string(60, '6').c_str(), nullptr);
+  gst::Protector receiver(gst::SrtpKey(30, 0x66));
+  for (const std::size_t link : {0U, 1U}) {
+    BufferPtr report = receiver.ProtectReport();
+    SetSource(report.get(), "127.0.0.1", kPorts[link]);
+    Bring(link, std::move(report));
+    EXPECT_EQ(Stats(sink_)["srtp-key-changes"], 1U) << link;
+  }
 }
 
 TEST_F(BondedSink, CountsTheErrorsOfEachLinkAsItsOwn) {

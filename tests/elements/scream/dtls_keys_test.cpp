@@ -6,6 +6,7 @@
 #include <atomic>
 #include <mutex>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "gst/scream/srtp/dtls_keys.h"
@@ -74,7 +75,10 @@ class DtlsEnds : public ::testing::Test {
       ++*keys;
     };
     calls.traffic = [this] { return SrtpTraffic{sent_, passed_}; };
-    calls.warn = [this](const char*, const char*) { ++warnings_; };
+    calls.warn = [this](const char* what, const char*) {
+      warning_ = what;
+      ++warnings_;
+    };
     return std::make_unique<DtlsKeys>(certificates, is_client, calls);
   }
   void StartClient() {
@@ -121,6 +125,7 @@ class DtlsEnds : public ::testing::Test {
   gulong server_key_takes_ = 0;  // microseconds until the server uses its key
   std::atomic<unsigned> server_keys_{0}, client_keys_{0};
   std::atomic<unsigned> warnings_{0};
+  std::atomic<const char*> warning_{""};  // the last one
   std::atomic<std::uint64_t> sent_{0}, passed_{0};
   std::unique_ptr<DtlsKeys> server_, client_;
 };
@@ -329,11 +334,13 @@ TEST_F(DtlsEnds, AClientTriesAStrangerOnceASecond) {
   for (std::uint64_t tries = 1; tries <= 2; ++tries) {
     EXPECT_TRUE(test::Eventually([&] {
       carry();
-      return client_->counts().refused == tries;
+      return client_->counts().refused == tries && warnings_ > 0;
     }));
     up_.Take();
     g_usleep(300'000);  // three ticks of the client
     EXPECT_TRUE(up_.Take().empty());
+    EXPECT_EQ(warnings_, 1U);
+    EXPECT_NE(std::string(warning_).find("another certificate"), std::string::npos) << warning_;
     frozen_at += G_USEC_PER_SEC;
   }
 }
@@ -350,6 +357,7 @@ TEST_F(DtlsEnds, ASilenceIsToldOfOnceAndBehindAKeyAgain) {
     std::vector<Carried> hello;
     ASSERT_TRUE(test::Eventually([&] { return !(hello = up_.Take()).empty(); }));
     EXPECT_EQ(warnings_, silence);
+    EXPECT_STREQ(warning_, "The other end does not answer the DTLS handshake; it is tried again.");
     StartServer();
     for (const Carried& d : hello) Give(*server_, {5'001, d.bytes});
     ASSERT_TRUE(test::Eventually([&] {
