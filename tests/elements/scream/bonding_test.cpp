@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <string>
+#include <utility>
 
 #include "gst/scream/bond/addresses.h"
 #include "tests/elements/scream/bonded_ends.h"
@@ -497,14 +498,33 @@ TEST(BondAddresses, KeepTheInterfaceOfALinkLocalAddress) {
 }
 
 TEST(BondAddresses, RefuseAllElseWithAWord) {
-  for (const char* text :
-       {"", ",", "edge", "edge:", "edge:0", "edge:65536", "edge:99999999999999999999", "edge:5004@",
-        ":5004", "2001:db8::1:7", "edge:5004@averyveryverylonginterface",
-        "edge:5004@interface0123456", "a:1,a:1", "a:1, a:1", "a:1,b:1,c:1,d:1,e:1", "a:1,,b:1",
-        "edge:5004:wwan0", "edge:-1"}) {
+  const std::string no_link = "is no HOST:PORT@INTERFACE (an IPv6 address in brackets)";
+  const std::string no_interface = "is no interface's name and no address";
+  const std::string twice = "\"a:1\" is there twice", count = "1 to 4 links, please";
+  const std::pair<const char*, std::string> wrong[] = {
+      {"", count},
+      {",", "\"\" " + no_link},
+      {"edge", "\"edge\" " + no_link},
+      {"edge:", no_link},
+      {"edge:0", no_link},
+      {"edge:65536", no_link},
+      {"edge:99999999999999999999", no_link},
+      {"edge:5004@", "\"edge:5004@\": \"\" " + no_interface},
+      {":5004", no_link},
+      {"2001:db8::1:7", no_link},
+      {"edge:5004@averyveryverylonginterface", no_interface},
+      {"edge:5004@interface0123456", "\"interface0123456\" " + no_interface},
+      {"a:1,a:1", twice},
+      {"a:1, a:1", twice},
+      {"a:1,b:1,c:1,d:1,e:1", count},
+      {"a:1,,b:1", "\"\" " + no_link},
+      {"edge:5004:wwan0", no_link},
+      {"edge:-1", no_link},
+  };
+  for (const auto& [text, why] : wrong) {
     std::string error;
     EXPECT_FALSE(ParseBondAddresses(text, &error)) << text;
-    EXPECT_FALSE(error.empty()) << text;
+    EXPECT_NE(error.find(why), std::string::npos) << text << ": " << error;
   }
 }
 

@@ -345,6 +345,37 @@ TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
   }
 }
 
+/// Payload type 96 is LiDAR at first, and then something else.
+TEST_F(ScreamRx, JudgesTheAgeOfNothingThatIsLidarNoMore) {
+  g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
+  Start();
+  Rtp recorded;
+  recorded.payload = WholeSlice(lidar::rtp::ToNtp(GST_SECOND));
+  const auto old = [&] {
+    ++recorded.seq;
+    EXPECT_EQ(Push(recorded), GST_FLOW_OK);
+    return Stats(element)["packets-old"];
+  };
+  for (const char* encoding : {"X-LIDAR-DRACO", "TEST", "X-LIDAR-MIXING"}) {
+    const std::string caps =
+        "application/x-rtp, media=(string)application, payload=(int)96, clock-rate=(int)90000, "
+        "encoding-name=(string)" +
+        std::string(encoding);
+    gst_harness_set_src_caps_str(rtp.get(), caps.c_str());
+    const guint64 before = Stats(element)["packets-old"];
+    EXPECT_EQ(old() - before, caps.find("X-LIDAR") == std::string::npos ? 0U : 1U) << caps;
+  }
+  for (const char* encoding : {"X-LIDAR-DRACO", "TEST"}) {
+    gst_element_set_state(element, GST_STATE_NULL);
+    SetPtMap("96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=" +
+             std::string(encoding) + "\"");
+    gst_harness_play(rtp.get());
+    gst_harness_play(rtcp.get());
+    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+    EXPECT_EQ(old(), encoding == std::string("TEST") ? 0U : 1U) << encoding;
+  }
+}
+
 TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
   g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
   Start();

@@ -687,5 +687,22 @@ TEST_F(ScreamTx, KeepsThePathWhileItsReceiverIsThere) {
   EXPECT_EQ(Stats(element).Text("ecn-state"), "bleached");
 }
 
+TEST_F(ScreamTx, AReceiverElsewhereInTheNextRunIsNoNewPath) {
+  Start();
+  for (const char* host : {"192.0.2.1", "192.0.2.2"}) {
+    from.reset(g_inet_socket_address_new_from_string(host, 5004));
+    PushFrame(next_seq_, 2);
+    time.Advance(20 * GST_MSECOND);
+    Acknowledge();
+    EXPECT_GT(Stats(element)["rtt"], 0U) << host;
+    time.Advance(600 * GST_MSECOND);
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_harness_play(rtp.get());
+    gst_harness_play(rtcp.get());
+    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  }
+}
+
 }  // namespace
 }  // namespace lidar::test

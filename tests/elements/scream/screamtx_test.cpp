@@ -309,5 +309,16 @@ TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
   gst_element_set_state(element, GST_STATE_NULL);
 }
 
+TEST_F(ScreamTx, PostsItsStatisticsAtTheIntervalWhileNothingIsSent) {
+  g_object_set(element, "stats-interval", guint64{100 * GST_MSECOND}, nullptr);
+  const ElementBus bus(element);
+  Start();
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(bus.Wait(GST_MESSAGE_ELEMENT)) << i;  // the first is that of the start
+    time.Advance(100 * GST_MSECOND);
+  }
+  gst_element_set_state(element, GST_STATE_NULL);
+}
+
 }  // namespace
 }  // namespace lidar::test
