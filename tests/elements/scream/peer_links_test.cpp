@@ -155,6 +155,20 @@ TEST_F(PeerLinks, AreFewAndASilentOneGivesItsPlaceToANewOne) {
   EXPECT_TRUE(latch.IsPeer(first.get()));
 }
 
+TEST_F(PeerLinks, ASilentFirstLinkGivesItsPlaceAtOnce) {
+  std::vector<LinkAddress> others;
+  for (guint i = 0; i + 1 < PeerLatch::kMaxLinks; ++i) {
+    others.emplace_back(Address("10.3.0.1", 5000 + i));
+    SendBoth(first, others.back(), PeerLatch::kCopies + 1);
+  }
+  ASSERT_EQ(latch.links(), PeerLatch::kMaxLinks);
+  for (const Time end = now + PeerLatch::kPeerSilence + 50ms; now < end; now += 10ms, ++seq)
+    for (const LinkAddress& other : others) Send(other, seq);
+  SendBoth(others.front(), second, PeerLatch::kCopies + 1);
+  EXPECT_TRUE(latch.IsPeer(second.get()));
+  EXPECT_FALSE(latch.IsPeer(first.get()));
+}
+
 TEST_F(PeerLinks, OneWhoseAddressChangesEachSecondGoesOn) {
   int lost = 0;
   for (int change = 0; change < 600; ++change) {

@@ -119,6 +119,25 @@ TEST_F(ScreamTx, TellsTheEncoderItsOwnBoundsAndStartsWithinThem) {
   EXPECT_GE(Stats(element)["pace-bitrate"], 3'000'000U);
 }
 
+TEST_F(ScreamTx, ConvertsTheBoundsOfTheEncoderAnewWhereItsPacketsBecomeSmall) {
+  Start();
+  const GstLidarBitrateBounds bounds{300'000, 800'000, 500'000};
+  ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_lidar_event_new_bitrate_bounds(&bounds)));
+  const auto most = [&] { return Stats(element).Of("streams", 0)["max-bitrate"]; };
+  PushFrame(0, 1);
+  time.Advance(10 * GST_MSECOND);
+  EXPECT_LT(most(), 900'000U);
+  Rtp small;
+  small.size = 20;
+  small.marker = true;
+  for (small.seq = 1; small.seq < 600; ++small.seq) {
+    small.timestamp += 90;
+    ASSERT_EQ(Push(small), GST_FLOW_OK);
+  }
+  time.Advance(10 * GST_MSECOND);
+  EXPECT_GT(most(), 2'000'000U) << "two of three bytes are headers";
+}
+
 TEST_F(ScreamTx, StartsAfreshAfterEveryStateCycle) {
   g_object_set(element, "max-queue-delay", guint64{100 * GST_MSECOND}, nullptr);
   Start();
