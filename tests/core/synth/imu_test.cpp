@@ -137,6 +137,30 @@ TEST(Imu, HasOffsetsOfItsOwn) {
   EXPECT_NEAR(std::sqrt(squares / 100), spec.gyroscope.offset, 0.2 * spec.gyroscope.offset);
 }
 
+/// After its correlation time a Gauss-Markov process differs by sqrt(2 (1 - 1/e)) deviations.
+TEST(Imu, ItsBiasesWanderAsTheirInstabilityStates) {
+  ImuSpec spec = kMemsImu;
+  spec.gyroscope.noise_density = spec.accelerometer.noise_density = 0;
+  double gyroscope = 0;
+  double accelerometer = 0;
+  constexpr int kUnits = 50;
+  for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
+    const auto samples = AtRest(spec, seed);
+    const ImuSample& first = samples.front();
+    const ImuSample& last = samples.back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      gyroscope += std::pow(last.angular_velocity[axis] - first.angular_velocity[axis], 2);
+      accelerometer += std::pow(last.acceleration[axis] - first.acceleration[axis], 2);
+    }
+  }
+  const double wander = std::sqrt(2 * (1 - std::exp(-1))) / 0.618;
+  for (const auto& [squares, errors] :
+       {std::pair(gyroscope, spec.gyroscope), std::pair(accelerometer, spec.accelerometer)}) {
+    const double expected = wander * errors.bias_instability;
+    EXPECT_NEAR(std::sqrt(squares / (3 * kUnits)), expected, 0.15 * expected);
+  }
+}
+
 TEST(Imu, MeasuresEachPeriodOnce) {
   Imu imu(Trajectory(TrajectorySettings{}), kMemsImu, 1);
   EXPECT_EQ(imu.Until(milliseconds(25)).size(), 3U);

@@ -63,6 +63,27 @@ TEST_P(EveryScene, StaysWithinTheReachOfTheSensor) {
     EXPECT_TRUE(range == 0 || (range >= 300 && range <= 170'000)) << range;
 }
 
+TEST_P(EveryScene, SeesNothingNearerThanTheSensorCan) {
+  ScannerConfig config = Config(GetParam());
+  config.second_returns = true;
+  const auto returns = [&config] {
+    Scanner scanner(config);
+    Returns r;
+    scanner.Cast(40, {0, 512}, &r);
+    return r;
+  };
+  const Returns all = returns();
+  config.sensor.min_range_m = 8;
+  const Returns far = returns();
+  std::size_t gone = 0;
+  for (std::size_t i = 0; i < all.range_mm.size(); ++i) {
+    gone += all.range_mm[i] != 0 && all.range_mm[i] < 8'000;
+    EXPECT_TRUE(far.range_mm[i] == 0 || far.range_mm[i] >= 8'000) << far.range_mm[i];
+    EXPECT_TRUE(far.range2_mm[i] == 0 || far.range2_mm[i] >= 8'000) << far.range2_mm[i];
+  }
+  EXPECT_GT(gone, 0U);
+}
+
 TEST_P(EveryScene, GivesTwoEchoesWhereABeamMeetsTwoThings) {
   ScannerConfig config = Config(GetParam());
   config.second_returns = true;
