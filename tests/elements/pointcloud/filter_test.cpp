@@ -94,6 +94,26 @@ TEST_F(Filter, AModelGoesWherePointsAreNoLongerWhereItSays) {
   }
 }
 
+TEST_F(Filter, CloudsAreDenseAsTheyWereUnlessPointsAreBlankedOrRemoved) {
+  for (const bool dense : {false, true}) {
+    const std::string caps = CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1,
+                                       std::string(",is-dense=") + (dense ? "true" : "false"));
+    for (const auto& [settings, is_dense] :
+         std::vector<std::pair<std::string, bool>>{{"", dense},
+                                                   {"beam-step=2", dense},
+                                                   {"fields=x,y,z", dense},
+                                                   {"max-range=50", false},
+                                                   {"transform=1,0,0,0,0,0", false},
+                                                   {"crop-box=-9,-9,-9,9,9,9", false},
+                                                   {"voxel-size=0.1", false},
+                                                   {"max-range=50 invalid=remove", true}}) {
+      Start(settings, caps);
+      ASSERT_EQ(Push(std::vector<std::uint8_t>(24, 1)), GST_FLOW_OK);
+      EXPECT_EQ(Info()->is_dense, is_dense) << settings << " " << dense;
+    }
+  }
+}
+
 TEST_F(Filter, CountsOnThroughAChangeOfItsSettings) {
   Start("invalid=remove max-range=1", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
   std::vector<std::uint8_t> far_away;
@@ -212,6 +232,16 @@ TEST_F(Filter, MayBeFlushedByWhatItsEventsCause) {
   Push(std::vector<std::uint8_t>(24));
   gst_harness_push_event(h_.get(), test::NewSegment());
   EXPECT_EQ(Push(std::vector<std::uint8_t>(24)), GST_FLOW_OK);
+}
+
+TEST_F(Filter, ABoxBeginsBelowItsEndAlongEachAxis) {
+  const std::string caps = CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1);
+  for (const char* box : {"5,0,0,1,1,1", "0,5,0,1,1,1", "0,0,5,1,1,1"}) {
+    Start(std::string("crop-box=") + box, caps);
+    EXPECT_NE(Error(), "") << box;
+  }
+  Start("crop-box=1,1,1,1,1,1", caps);
+  EXPECT_EQ(Error(), "");
 }
 
 TEST_F(Filter, SaysWhatIsWrong) {
