@@ -121,6 +121,17 @@ TEST_F(View, WhatIsHighHidesWhatIsLowFromAbove) {
   EXPECT_GT(p[0], p[2]);  // the warm end of the colours
 }
 
+TEST_F(View, RingsLieBehindThePoints) {
+  Start("view=top point-size=3 color-by=height color-min=-9 color-max=9", Info(1));
+  Push(Cloud({{12.5F, 0, 0, 1}}));
+  Pull();
+  EXPECT_NE(Pixel(120, 50), Pixel(115, 50)) << "the ring of ten metres";
+  const auto beside_a_ring = Pixel(125, 50);
+  Push(Cloud({{10, 0, 0, 1}}));
+  Pull();
+  EXPECT_EQ(Pixel(120, 50), beside_a_ring);
+}
+
 TEST_F(View, InPerspectiveTheTargetIsInTheMiddle) {
   Start("eye-x=-10 eye-y=3 eye-z=5 target-x=20 target-y=-2 target-z=1 point-size=3", Info(2));
   Push(Cloud({{20, -2, 1, 1}, {-20, 0, 0, 1}}));
@@ -255,6 +266,23 @@ TEST_F(View, TheMapKeepsWhatWasSeenWhereItWas) {
   EXPECT_FALSE(IsDrawn(160, 25));
   EXPECT_TRUE(IsDrawn(95, 50));  // the driven way
   EXPECT_FALSE(IsDrawn(80, 50));
+}
+
+/// A map keeps the values of its colours, so other colours need another map.
+TEST_F(View, TheMapBeginsAnewWithOtherColoursOnly) {
+  for (const auto& [property, value, stays] :
+       {std::tuple("point-size", "2", true), std::tuple("color-max", "1", true),
+        std::tuple("color-by", "height", false), std::tuple("map", "false", false)}) {
+    Start("map=true view=top extent=100 point-size=1 color-by=intensity", Info(2));
+    const ElementPtr element(gst_harness_find_element(h_.get(), "pointcloudview"));
+    for (guint scan = 0; scan < 4; ++scan) {
+      const float wall = scan < 3 ? 25.0F : 500.0F;
+      if (scan == 3) gst_util_set_object_arg(G_OBJECT(element.get()), property, value);
+      PushFrom({0, 0, 0}, {{wall, 12, 0, 1}, {wall, 12.5F, 0, 1}}, scan);
+      Pull();
+    }
+    EXPECT_EQ(IsDrawn(150, 25), stays) << property;
+  }
 }
 
 TEST_F(View, TheColumnsOfASliceLieWhereTheSensorWasInItsSweep) {
