@@ -33,6 +33,18 @@ class OddClouds : public ::testing::Test {
   GstFlowReturn Push(const std::vector<float>& points, GstClockTime pts) {
     return gst_harness_push(h_.get(), Points(points, pts));
   }
+  /// Returns a floor and two walls.
+  static std::vector<float> Corner() {
+    std::vector<float> corner;
+    for (int a = -20; a < 20; ++a) {
+      for (int b = -20; b < 20; ++b) {
+        const float u = 0.5F * static_cast<float>(a);
+        const float v = 0.5F * static_cast<float>(b);
+        corner.insert(corner.end(), {u, v, -2, u, 10, v, 10, u, v});
+      }
+    }
+    return corner;
+  }
   guint64 Count(const char* name) { return test::StatOf(h_->element, name); }
   /// Returns the number of warnings since the last call.
   std::size_t CountWarnings() { return bus_->Texts(GST_MESSAGE_WARNING).size(); }
@@ -113,14 +125,7 @@ TEST_F(OddClouds, ThatFitNothingAreLostUntilAnotherMapBegins) {
   const auto push = [&](const std::vector<float>& points) {
     Push(points, time += 100 * GST_MSECOND);
   };
-  std::vector<float> corner;
-  for (int a = -20; a < 20; ++a) {
-    for (int b = -20; b < 20; ++b) {
-      const float u = 0.5F * static_cast<float>(a);
-      const float v = 0.5F * static_cast<float>(b);
-      corner.insert(corner.end(), {u, v, -2, u, 10, v, 10, u, v});
-    }
-  }
+  const std::vector<float> corner = Corner();
   const std::vector<float> elsewhere = {50, 2, 3};
   for (int i = 0; i < 4; ++i) push(corner);
   EXPECT_EQ(Count("scans-lost"), 0U);
@@ -137,6 +142,24 @@ TEST_F(OddClouds, ThatFitNothingAreLostUntilAnotherMapBegins) {
   EXPECT_EQ(Count("maps"), 3U) << "a map that one scan has fitted is not held on to";
   EXPECT_EQ(Count("scans-lost"), 10U);
   EXPECT_EQ(CountWarnings(), 0U);
+}
+
+TEST_F(OddClouds, EachLossOfThePositionIsWarnedOfOnce) {
+  Start(kXyz);
+  GstClockTime time = 0;
+  const auto push = [&](const std::vector<float>& points, int scans) {
+    for (int i = 0; i < scans; ++i) Push(points, time += 100 * GST_MSECOND);
+  };
+  const std::vector<float> elsewhere = {50, 2, 3};
+  push(Corner(), 4);
+  for (guint64 loss = 1; loss <= 3; ++loss) {
+    push(elsewhere, 2);
+    EXPECT_EQ(CountWarnings(), 1U) << loss;
+    push(Corner(), 2);
+    EXPECT_EQ(CountWarnings(), 0U) << loss;
+    EXPECT_EQ(Count("scans-lost"), 2 * loss);
+  }
+  EXPECT_EQ(Count("maps"), 1U);
 }
 
 TEST_F(OddClouds, OfOnePlaneDoNotShowTheMotionAlongIt) {
