@@ -151,6 +151,20 @@ void Print(const char* what, const Swing& s) {
               what, s.mean_mbps, 100 * s.deviation, 100 * s.peak_to_peak, 100 * s.tone);
 }
 
+TEST(SimulatedFrames, AreNotCompletedByAPacketThatComesTwice) {
+  auto config = Path(link::Capacity::Constant(DataRate::BitsPerSecond(20e6)), 1, false);
+  config.duration = seconds(10);
+  config.forward.loss = 0.1;
+  config.forward.path.duplicate = 0.3;
+  const auto result = scream::test::Simulate(config);
+  std::size_t incomplete = 0;
+  for (const auto& frame : result.flows.front().frames) {
+    EXPECT_LE(frame.delivered, frame.packets);
+    incomplete += !frame.complete();
+  }
+  EXPECT_GT(incomplete, 10U);
+}
+
 TEST(Swing, IsSeenWhereThereIsOne) {
   std::vector<double> rates;
   for (int i = 0; i < 600; ++i) rates.push_back(8 + 0.4 * std::sin(2 * M_PI * 0.5 * 0.1 * i));

@@ -47,6 +47,31 @@ TEST(Loop, AnEncoderThatDoesNotAdaptPutsOutTheCoarsestStep) {
   EXPECT_GE(r.complete + 1, r.captured);
 }
 
+TEST(Loop, CountsTheScansThatWereLeftOutAndThoseThatArrived) {
+  LoopCase c = Case("constant");
+  c.source.slices = 8;
+  c.capacity = link::Capacity::Constant(Mbps(1));  // less than the coarsest step takes
+  c.duration = 20s;
+  const LoopRun run = RunLoop(c);
+  const auto& frames = run.simulation.flows.front().frames;
+  std::size_t captured = 0, skipped = 0, complete = 0;
+  for (std::size_t i = 0; i + 8 <= frames.size(); i += 8) {
+    std::size_t left_out = 0, arrived = 0;
+    for (std::size_t k = i; k < i + 8; ++k) {
+      left_out += frames[k].bytes == 0;
+      arrived += frames[k].complete();
+    }
+    ++captured;
+    skipped += left_out > 0;
+    complete += arrived == 8;
+  }
+  EXPECT_GT(skipped, 0U);
+  EXPECT_EQ(run.report.captured, captured);
+  EXPECT_EQ(run.report.skipped, skipped);
+  EXPECT_EQ(run.report.complete, complete);
+  EXPECT_LE(run.report.in_time, complete);
+}
+
 TEST(Loop, TheSameRunGivesTheSameFigures) {
   LoopCase c = Case("drive_1");
   c.duration = 10s;
