@@ -242,6 +242,19 @@ TEST_F(Batcher, OneDamagedFrameIdChangesNothing) {
   EXPECT_EQ(stats_.restarts, 0U);
 }
 
+TEST_F(Batcher, DamagedFrameIdsWithGoodOnesBetweenChangeNothing) {
+  Packets damaged = packets_;
+  for (const std::size_t i : {20U, 21U, 22U, 100U, 140U, 180U}) damaged[i][3] ^= 0x40;
+  const auto slices = Run(damaged);
+  ASSERT_EQ(slices.size(), 24U);
+  EXPECT_EQ(slices.back().scan_id, 2U);
+  EXPECT_EQ(stats_.packets, packets_.size());
+  EXPECT_EQ(stats_.stray_packets, 6U);
+  EXPECT_EQ(stats_.lost_packets, 6U);
+  EXPECT_EQ(stats_.restarts, 0U);
+  for (const Slice& slice : slices) EXPECT_FALSE(slice.after_gap);
+}
+
 TEST_F(Batcher, FrameIdsThatStartOverAreARestart) {
   Packets twice(packets_.begin() + 128, packets_.end());
   twice.insert(twice.end(), packets_.begin(), packets_.begin() + 64);

@@ -109,6 +109,20 @@ TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
   EXPECT_EQ(StatOf(source.get(), "packets-wrong-size"), 6U);
 }
 
+TEST_F(OusterUdp, PacketsOfAnotherSizeBetweenGoodOnesAreOnlyCounted) {
+  const Harness h = Play(kJson);
+  const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(h->element), "src"));
+  const ElementBus bus(h->element);
+  constexpr std::size_t kRounds = 16;
+  for (std::size_t i = 0; i < kRounds; ++i) {
+    sender_->Send(std::vector<std::uint8_t>(6464));
+    sender_->Send(packets_[i]);
+    ASSERT_TRUE(Eventually([&] { return StatOf(source.get(), "packets") == i + 1; }));
+  }
+  EXPECT_EQ(StatOf(source.get(), "packets-wrong-size"), kRounds);
+  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING), std::vector<std::string>());
+}
+
 TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
   // The size is more than the kernel grants even to root.
   const std::string launch =
@@ -217,6 +231,16 @@ TEST_F(OusterSilence, AtTheStartIsReportedToo) {
   EXPECT_TRUE(IsNotReported());
   Pass(3 * GST_SECOND);
   EXPECT_TRUE(IsReported());
+}
+
+TEST_F(OusterSilence, IsReportedEachTimeAndOnce) {
+  for (int times = 0; times < 3; ++times) {
+    Send(kPacketsOfSlice);
+    Pass(GST_SECOND);
+    ASSERT_TRUE(IsReported()) << times;
+    Pass(10 * GST_SECOND);
+    EXPECT_TRUE(IsNotReported()) << times;
+  }
 }
 
 TEST_F(OusterSilence, DoesNotBeginInAPause) {
