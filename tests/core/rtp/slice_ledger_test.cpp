@@ -55,6 +55,7 @@ TEST_F(Ledger, ASliceIsOverdueOnceOneBehindItWasSeenLongEnoughAgo) {
   ASSERT_TRUE(limit);
   EXPECT_TRUE((*limit == SlicePosition{1, 2}));
   ledger.CloseBefore(*limit);
+  EXPECT_FALSE(ledger.Overdue(Time{milliseconds(110)})) << "closed";
   EXPECT_EQ(accounts().slices_lost, 1U);
   EXPECT_EQ(Admit(1, 1, 4, 120), Admission::kTooOld);
 }
