@@ -158,6 +158,23 @@ TEST(XyzSlices, OfIntensitiesThatAreAllZeroComeBackAsSuch) {
   }
 }
 
+TEST(XyzSlices, WithoutIntensitiesHaveNoneOfTheSliceBefore) {
+  const Points points = Rings(200);
+  SliceDecoder decoder(PlainFormat(), Geometry::kXyz, kMaxPoints);
+  for (const unsigned bits : {5U, 0U, 5U}) {
+    SliceSettings settings;
+    settings.intensity_bits = bits;
+    const auto bytes = Coded(points, settings).slice.bytes;
+    const auto shape = decoder.Decode({bytes.data(), bytes.size()});
+    ASSERT_TRUE(shape);
+    Points decoded(shape->width);
+    decoder.Write(reinterpret_cast<std::uint8_t*>(decoded.data()));
+    const bool any = std::any_of(decoded.begin(), decoded.end(),
+                                 [](const Point& point) { return point[3] > 0; });
+    EXPECT_EQ(any, bits > 0);
+  }
+}
+
 TEST(XyzSlices, WithoutAnyPointGiveNoStream) {
   EXPECT_EQ(Coded({}, {}).result, SliceResult::kEmpty);
   EXPECT_EQ(Coded(Points(50, Point{}), {}).result, SliceResult::kEmpty);
