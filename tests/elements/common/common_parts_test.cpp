@@ -4,13 +4,17 @@
 
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gst/common/certificates.h"
+#include "gst/common/coordinate_frames.h"
 #include "gst/common/history_query.h"
+#include "gst/common/packet_probe.h"
 #include "gst/common/pose_covariance.h"
 #include "gst/common/refs.h"
 #include "gst/common/seek_range.h"
+#include "gst/common/structure_json.h"
 #include "tests/support/test_certificates.h"
 
 namespace lidar::gst {
@@ -141,6 +145,106 @@ TEST(Covariances, CarryTheTrackingToRosAndBack) {
   EXPECT_EQ(TrackingOf(CovarianceOf(99, measured)), GST_LIDAR_TRACKING_LOST);
   EXPECT_EQ(TrackingOf({}), GST_LIDAR_TRACKING_OK);
   EXPECT_EQ(NoVelocity(), CovarianceOf(GST_LIDAR_TRACKING_LOST));
+}
+
+/// Drops buffers of 3 bytes, and lengthens others by a byte.
+GstPadProbeReturn ChangePackets(GstPad*, GstPadProbeInfo* info, gpointer) {
+  return MapPackets(info, [](BufferPtr packet) {
+    const gsize size = gst_buffer_get_size(packet.get());
+    return BufferPtr(size == 3 ? nullptr : gst_buffer_new_allocate(nullptr, size + 1, nullptr));
+  });
+}
+
+TEST(PacketProbes, ReplaceOrDropEachPacketAloneOrInAList) {
+  const auto new_pad = [](const char* name, GstPadDirection direction) {
+    return PadPtr(GST_PAD(gst_object_ref_sink(gst_pad_new(name, direction))));
+  };
+  const PadPtr src = new_pad("src", GST_PAD_SRC);
+  const PadPtr sink = new_pad("sink", GST_PAD_SINK);
+  std::vector<gsize> sizes;
+  gst_pad_set_element_private(sink.get(), &sizes);
+  gst_pad_set_chain_function(sink.get(), [](GstPad* pad, GstObject*, GstBuffer* buffer) {
+    static_cast<std::vector<gsize>*>(gst_pad_get_element_private(pad))
+        ->push_back(gst_buffer_get_size(buffer));
+    gst_buffer_unref(buffer);
+    return GST_FLOW_OK;
+  });
+  ASSERT_EQ(gst_pad_link(src.get(), sink.get()), GST_PAD_LINK_OK);
+  for (GstPad* pad : {sink.get(), src.get()}) gst_pad_set_active(pad, TRUE);
+  gst_pad_add_probe(src.get(), kPacketProbe, ChangePackets, nullptr, nullptr);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_pad_push_event(src.get(), gst_event_new_stream_start("packets"));
+  gst_pad_push_event(src.get(), gst_event_new_segment(&segment));
+  const auto push_list = [&](const std::vector<gsize>& list_sizes) {
+    GstBufferList* list = gst_buffer_list_new();
+    for (const gsize size : list_sizes)
+      gst_buffer_list_add(list, gst_buffer_new_allocate(nullptr, size, nullptr));
+    EXPECT_EQ(gst_pad_push_list(src.get(), list), GST_FLOW_OK);
+    return std::exchange(sizes, {});
+  };
+  using Sizes = std::vector<gsize>;
+  for (const gsize size : {2U, 3U, 5U})
+    EXPECT_EQ(gst_pad_push(src.get(), gst_buffer_new_allocate(nullptr, size, nullptr)),
+              GST_FLOW_OK);
+  EXPECT_EQ(std::exchange(sizes, {}), (Sizes{3, 6}));
+  EXPECT_EQ(push_list({2, 3, 5, 3}), (Sizes{3, 6}));
+  EXPECT_EQ(push_list({3, 3}), Sizes{});
+  for (GstPad* pad : {src.get(), sink.get()}) gst_pad_set_active(pad, FALSE);
+}
+
+TEST(Frames, AreThoseOfTheCapsOrTheUsualOnes) {
+  const StructurePtr caps(
+      gst_structure_new("x/y", GST_LIDAR_FRAME_ID, G_TYPE_STRING, "roof", nullptr));
+  EXPECT_EQ(FrameIn(caps.get(), GST_LIDAR_FRAME_ID, kCloudFrame), "roof");
+  EXPECT_EQ(FrameIn(caps.get(), GST_LIDAR_CHILD_FRAME_ID, kCloudFrame), "lidar");
+  EXPECT_EQ(FrameIn(caps.get(), GST_LIDAR_CHILD_FRAME_ID), "");
+}
+
+TEST(StructuresAsJson, HaveTheNumbersTextsAndStructuresOfTheirFields) {
+  const StructurePtr inner(gst_structure_new("inner", "a-b", G_TYPE_UINT, 4'000'000'000U, nullptr));
+  const StructurePtr outer(gst_structure_new(
+      "outer", "int", G_TYPE_INT, -5, "uint", G_TYPE_UINT, G_MAXUINT, "int64", G_TYPE_INT64,
+      G_MININT64, "uint64", G_TYPE_UINT64, G_MAXUINT64, "double", G_TYPE_DOUBLE, 0.25, "yes",
+      G_TYPE_BOOLEAN, TRUE, "no", G_TYPE_BOOLEAN, FALSE, "text", G_TYPE_STRING, "a \"b\"", "none",
+      G_TYPE_STRING, nullptr, "rate", GST_TYPE_FRACTION, 10, 1, "inner", GST_TYPE_STRUCTURE,
+      inner.get(), nullptr));
+  for (const bool is_list : {false, true}) {
+    GValue numbers = G_VALUE_INIT;
+    is_list ? gst_value_list_init(&numbers, 2) : gst_value_array_init(&numbers, 2);
+    for (const guint number : {1U, G_MAXUINT}) {
+      GValue value = G_VALUE_INIT;
+      g_value_init(&value, G_TYPE_UINT);
+      g_value_set_uint(&value, number);
+      is_list ? gst_value_list_append_and_take_value(&numbers, &value)
+              : gst_value_array_append_and_take_value(&numbers, &value);
+    }
+    gst_structure_take_value(outer.get(), is_list ? "list" : "array", &numbers);
+  }
+  nlohmann::json wanted = {{"int", -5},
+                           {"uint", G_MAXUINT},
+                           {"int64", G_MININT64},
+                           {"uint64", G_MAXUINT64},
+                           {"double", 0.25},
+                           {"yes", true},
+                           {"no", false},
+                           {"text", "a \"b\""},
+                           {"none", ""},
+                           {"rate", "10/1"},
+                           {"array", {1U, G_MAXUINT}},
+                           {"list", {1U, G_MAXUINT}},
+                           {"inner", {{"a-b", 4'000'000'000U}}}};
+  EXPECT_EQ(ToJson(outer.get(), FieldNames::kAsTheyAre), wanted);
+  wanted["inner"] = {{"a_b", 4'000'000'000U}};
+  EXPECT_EQ(ToJson(outer.get(), FieldNames::kWithoutDashes), wanted);
+  EXPECT_EQ(ToJson(static_cast<const GstStructure*>(nullptr), FieldNames::kAsTheyAre),
+            nlohmann::json::object());
+}
+
+TEST(StructuresAsJson, AreNullForElementsWithoutStatistics) {
+  EXPECT_TRUE(StatsAsJson(nullptr, FieldNames::kAsTheyAre).is_null());
+  const ElementPtr plain(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new("plain"))));
+  EXPECT_TRUE(StatsAsJson(plain.get(), FieldNames::kAsTheyAre).is_null());
 }
 
 TEST(Histories, AreAskedForAndAnsweredInOneQuery) {

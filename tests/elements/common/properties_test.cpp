@@ -251,6 +251,39 @@ TEST(PropertyTableDeathTest, EndsTheProgramWhereARowIsAskedForThatIsNotThere) {
   EXPECT_DEATH(FindRow(kNestedRows, "wiat"), "no property row is called \"wiat\"");
 }
 
+/// Returns the number that a value of kind T has in statistics or, as a guint, in a property.
+template <class T>
+guint64 Shown(T value, GType type = Kind<T>::Type()) {
+  GValue v = G_VALUE_INIT;
+  g_value_init(&v, type);
+  Kind<T>::Get(value, &v);
+  return G_VALUE_HOLDS_UINT64(&v) ? g_value_get_uint64(&v) : g_value_get_uint(&v);
+}
+
+TEST(Kinds, ShowNumbersBeyondTheirRangeAsItsEnds) {
+  EXPECT_EQ(Shown(Duration{-1}), 0U);
+  EXPECT_EQ(Shown(DataSize::Bytes(-1)), 0U);
+  EXPECT_EQ(Shown(DataSize::Bytes(-1), G_TYPE_UINT), 0U);
+  EXPECT_EQ(Shown(DataSize::Bytes(5'000'000'000)), 5'000'000'000U);
+  EXPECT_EQ(Shown(DataSize::Bytes(5'000'000'000), G_TYPE_UINT), G_MAXUINT);
+  EXPECT_EQ(Shown(DataRate::BitsPerSecond(-1)), 0U);
+  EXPECT_EQ(Shown(DataRate::BitsPerSecond(1e12)), G_MAXUINT);
+  EXPECT_EQ(Kind<gint>::Clamp(-1e12), G_MININT);
+  EXPECT_EQ(Kind<gint>::Clamp(1e12), G_MAXINT);
+  EXPECT_EQ(Kind<gint64>::Clamp(1e30), G_MAXINT64);
+}
+
+TEST(Kinds, TakeTheLongestTimeOfAPropertyForALongOne) {
+  GValue v = G_VALUE_INIT;
+  g_value_init(&v, G_TYPE_UINT64);
+  for (const guint64 ns : {guint64{G_MAXINT64}, guint64{G_MAXINT64} + 1, guint64{G_MAXUINT64}}) {
+    g_value_set_uint64(&v, ns);
+    Duration duration{};
+    Kind<Duration>::Set(&duration, &v);
+    EXPECT_EQ(duration, Duration::max()) << ns;
+  }
+}
+
 TEST(StatTable, ShowsEachFieldUnderItsNameAndType) {
   const StructurePtr s = ToStructure("counts", kStats, Counts{});
   const StructurePtr wanted(gst_structure_new(
