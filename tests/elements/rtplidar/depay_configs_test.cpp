@@ -320,6 +320,15 @@ TEST_F(OneWarning, OfPacketsOfAnotherPayloadType) {
   });
 }
 
+TEST_F(OneWarning, OfSlicesForAnotherDecoder) {
+  gst_harness_set_sink_caps_str(h_.get(), "application/x-other");
+  const auto packets = Packets(1);
+  ExpectOne([&] {
+    for (const auto& packet : packets)
+      gst_harness_push(h_.get(), gst_buffer_copy_deep(packet.get()));
+  });
+}
+
 TEST_F(OneWarning, OfPacketsThatCannotBeRead) {
   ExpectOne([&] {
     for (std::uint16_t i = 0; i < 30; ++i)
