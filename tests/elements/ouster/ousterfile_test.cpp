@@ -103,6 +103,20 @@ TEST(OusterFile, LoopsWithTimesThatGoOn) {
   EXPECT_GT(last, 300 * GST_MSECOND);
 }
 
+TEST(OusterFile, LoopsWithoutAPauseAndWithoutAnOverlap) {
+  const Harness h = FromFile(kThreeScans, kThreeScansMetadata, "loop=true");
+  std::vector<GstClockTime> starts;  // of scans
+  while (starts.size() < 7) {
+    const BufferPtr buffer(gst_harness_pull(h.get()));
+    ASSERT_TRUE(buffer);
+    GstLidarSlice slice{};
+    ASSERT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
+    if (slice.slice_index == 0) starts.push_back(GST_BUFFER_PTS(buffer.get()));
+  }
+  for (std::size_t i = 1; i < starts.size(); ++i)
+    EXPECT_NEAR(static_cast<double>(starts[i] - starts[i - 1]), 1e8, 1e5) << i;
+}
+
 TEST(OusterFile, RunsAgainAfterReady) {
   const std::string launch = "ouster_src location=" + DataPath("crc_test.pcap") + " ! fakesink";
   EXPECT_EQ(RunToEnd(launch), "");

@@ -130,6 +130,19 @@ TEST_F(Assembler, TakesSlicesInAnyOrder) {
   EXPECT_EQ(GST_BUFFER_PTS(scan.get()), 0U);
 }
 
+TEST_F(Assembler, HasTheTimesOfTheFirstSliceThoughItCameSecond) {
+  Push(Slice(0, 1));
+  BufferPtr first = Slice(0, 0);
+  GST_BUFFER_PTS(first.get()) += GST_MSECOND;
+  gst_lidar_buffer_set_capture_time(first.get(), 7 * GST_SECOND);
+  Push(std::move(first));
+  Push(Slice(0, 2));
+  Push(Slice(0, 3));
+  const BufferPtr scan = Pull();
+  EXPECT_EQ(GST_BUFFER_PTS(scan.get()), GST_MSECOND);
+  EXPECT_EQ(gst_lidar_buffer_get_capture_time(scan.get()), 7 * GST_SECOND);
+}
+
 TEST_F(Assembler, FlagsALostSliceAndLeavesItsColumnsZero) {
   for (const guint i : {0U, 1U, 3U}) Push(Slice(0, i));
   EXPECT_EQ(Waiting(), 0U);
@@ -308,6 +321,18 @@ TEST_F(Assembler, ForgetsOnFlush) {
   for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
   EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
   EXPECT_EQ(Waiting(), 0U);
+}
+
+TEST_F(Assembler, TakesEarlierScansBehindAFlush) {
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(7, i));
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 7U);
+  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
+  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(h_.get(), test::NewSegment());
+  for (guint i = 0; i < kSlices; ++i) Push(Slice(5, i));
+  ASSERT_EQ(Waiting(), 1U);
+  EXPECT_EQ(MetaOf(Pull()).scan_id, 5U);
+  EXPECT_EQ(Stat("late-slices"), 0U);
 }
 
 TEST_F(Assembler, PassesWholeScansAsTheyAre) {

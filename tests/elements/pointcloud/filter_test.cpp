@@ -170,6 +170,22 @@ TEST_F(Filter, ASliceBetweenTheColumnsThatStayIsAGap) {
   EXPECT_EQ(Info()->width, 1U);
 }
 
+TEST_F(Filter, CountsOverChangesOfItsSettings) {
+  Start("apply-pose=true", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
+  const std::vector<std::uint8_t> points(24, 1);
+  ASSERT_EQ(Push(points), GST_FLOW_OK);
+  g_object_set(h_->element, "column-step", 2, nullptr);
+  ASSERT_EQ(Push(points), GST_FLOW_OK);
+  EXPECT_EQ(test::StatOf(h_->element, "clouds-without-pose"), 2U);
+  g_object_set(h_->element, "apply-pose", FALSE, nullptr);
+  ASSERT_EQ(Push(points), GST_FLOW_OK);
+  EXPECT_EQ(test::StatOf(h_->element, "points-removed"), 1U);
+  g_object_set(h_->element, "column-step", 1, nullptr);
+  ASSERT_EQ(Push(points), GST_FLOW_OK);
+  EXPECT_EQ(test::StatOf(h_->element, "clouds-without-pose"), 2U);
+  EXPECT_EQ(test::StatOf(h_->element, "points-removed"), 1U);
+}
+
 TEST_F(Filter, PutsCloudsWhereTheirPoseSays) {
   Start("apply-pose=true transform=0,0,100,0,0,0", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
   std::vector<std::uint8_t> points;
