@@ -84,7 +84,7 @@ struct State {
 };
 
 const std::array<Property<DracoSettings>, 3> kProperties = {{
-    {"geometry", "What is coded: ranges or coordinates",
+    {"geometry", "What to code: ranges or coordinates",
      EnumField<DracoSettings, GeometryChoice>{&DracoSettings::geometry, GeometryType}},
     {"range-coder", "How ranges are coded",
      EnumField<DracoSettings, RangeCoder>{&DracoSettings::range_coder, RangeCoderType}},

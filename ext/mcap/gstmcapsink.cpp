@@ -101,22 +101,23 @@ static StructurePtr Stats(GObject* object) {
 }
 
 static const std::array<Property<Settings>, 9> kProperties = {{
-    {"location", "File to write; with a number (rec-%05d.mcap) a file after the other",
+    {"location", "File to write; with a number in it (rec-%05d.mcap), one file after the other",
      &Settings::location},
-    {"compression", "Of the chunks that get smaller by it",
+    {"compression", "Compression of chunks; a chunk that would not get smaller is not compressed",
      EnumField<Settings, Compression>{&Settings::compression, CompressionType}},
     {"chunk-size", "A chunk is written once it is larger [bytes]", &Settings::chunk_size, 1024,
      1 << 26},
-    {"chunk-duration", "... or once it lasts longer; what a crash costs at most [ns]",
+    {"chunk-duration",
+     "A chunk is also written once it lasts longer; a crash loses at most this time [ns]",
      At<&Settings::recorder, &RecorderSettings::writer, &WriterSettings::chunk_duration>, 1,
      3600e9},
     {"max-file-size", "A file ends with the scan that reaches this; 0: no limit [bytes]",
      At<&Settings::recorder, &RecorderSettings::max_file_size>},
     {"max-file-duration", "A file ends with the scan that reaches this; 0: no limit [ns]",
      At<&Settings::recorder, &RecorderSettings::max_file_duration>},
-    {"max-files", "The oldest file is removed before there are more; 0: no limit",
+    {"max-files", "Most files to keep: the oldest file is removed first; 0: no limit",
      At<&Settings::recorder, &RecorderSettings::max_files>},
-    {"sync-to-disk", "Each chunk is on the disk, not in memory, before the next begins",
+    {"sync-to-disk", "Wait until each chunk is on the disk before the next begins",
      At<&Settings::recorder, &RecorderSettings::sync>},
     {"stats", "messages, bytes, files, chunks", Stats},
 }};

@@ -100,7 +100,7 @@ static StructurePtr Stats(GObject* object) {
 }
 
 static const std::array<Property<Settings>, 3> kProperties = {{
-    {"location", "File to play; with a number (rec-%05d.mcap) all files of a recording",
+    {"location", "File to play; with a number in it (rec-%05d.mcap), all files of a recording",
      &Settings::location},
     {"topic", "Play this topic only; NULL: all", &Settings::topic},
     {"stats",

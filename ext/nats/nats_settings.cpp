@@ -17,20 +17,23 @@ const std::array<Property<NatsSettings>, 8>& NatsRows() {
   using Connection = nats::ConnectionSettings;
   constexpr auto connection = &NatsSettings::connection;
   static const std::array<Property<NatsSettings>, 8> kRows = {{
-      {"url", "Server; several of a cluster with commas between them",
+      {"url", "URL of the server, or of several servers of a cluster, comma-separated",
        At<connection, &Connection::url>},
       {"subject", "Subject of the stream, such as fleet.robot7.lidar.front",
        &NatsSettings::subject},
-      {"jetstream", "Stream of JetStream, which is kept on the server's disk; NULL: none",
+      {"jetstream", "JetStream's stream, which the server keeps on its disk; NULL: none",
        &NatsSettings::stream},
-      {"credentials-file", "User and key, as nsc writes them (.creds)",
+      {"credentials-file", "File with user and key, as nsc writes it (.creds)",
        At<connection, &Connection::credentials_file>},
-      {"token", "Token for the server; can only be set", At<connection, &Connection::token>, 0, 0,
+      {"token", "Token for the server; write-only", At<connection, &Connection::token>, 0, 0,
        G_PARAM_WRITABLE},
-      {"tls-ca-file", "Authorities to trust (PEM); set, the connection is TLS or none",
+      {"tls-ca-file",
+       "File with the authorities to trust (PEM); if set, the connection must be TLS",
        At<connection, &Connection::tls_ca_file>},
-      {"tls-cert-file", "Our own certificate (PEM)", At<connection, &Connection::tls_cert_file>},
-      {"tls-key-file", "The key of tls-cert-file (PEM)", At<connection, &Connection::tls_key_file>},
+      {"tls-cert-file", "File with the client's certificate (PEM)",
+       At<connection, &Connection::tls_cert_file>},
+      {"tls-key-file", "File with the private key of tls-cert-file (PEM)",
+       At<connection, &Connection::tls_key_file>},
   }};
   return kRows;
 }

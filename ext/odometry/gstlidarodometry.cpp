@@ -134,24 +134,25 @@ static StructurePtr ReadStats(GObject* object) {
 static const std::array<Property<Settings>, 10> kProperties = {{
     {"max-range", "Points farther away are left out; also the radius of the map [m]",
      At<&Settings::odometry, &OdometrySettings::max_range_m>, 1, 1000},
-    {"min-range", "Points nearer than that are left out: the vehicle itself [m]",
+    {"min-range", "Points nearer than this are left out, because they belong to the vehicle [m]",
      At<&Settings::odometry, &OdometrySettings::min_range_m>, 0, 100},
     {"voxel-size", "Edge of the map's cubes [m]",
      At<&Settings::odometry, &OdometrySettings::voxel_size_m>, 0.05, 20},
-    {"deskew", "Move points by when they were sampled",
+    {"deskew", "Correct points for the motion during the scan",
      At<&Settings::odometry, &OdometrySettings::deskew>},
     {"initial-pose",
-     "Pose of the first scan, such as another lidarodometry left it: \"x y z qx qy qz qw\" [m]; "
-     "NULL: the origin",
+     "Pose of the first scan, for example the last pose of an earlier run: \"x y z qx qy qz qw\" "
+     "[m]; NULL: the origin",
      &Settings::initial_pose},
     {"initial-velocity",
      "Velocity at the first scan, in the sensor's frame: \"vx vy vz wx wy wz\" [m/s, rad/s]; NULL: "
-     "found from the first two scans",
+     "estimated from the first two scans",
      &Settings::initial_velocity},
     {"trajectory", "File to write the poses to, in TUM's format; NULL: none",
      &Settings::trajectory},
     {"local-maps",
-     "Local maps, each of 40 m of the way, in which loops are searched; 0: loops are not closed",
+     "Most local maps, each of 40 m of the route, in which loops are searched; 0: loops are not "
+     "closed",
      &Settings::local_maps, 0, 10000},
     {"post-messages", "Post an element message \"odometry\" for each scan",
      &Settings::post_messages, 0, 0, GST_PARAM_MUTABLE_PLAYING},

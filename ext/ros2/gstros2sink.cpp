@@ -135,9 +135,10 @@ static StructurePtr Stats(GObject* object) {
 
 static const std::array<Property<Ros2SinkSettings>, 13> kProperties = {{
     Within<&Ros2SinkSettings::ros>(RosRows(), "topic"),
-    {"type", "What the topic holds",
+    {"type", "Type of the topic's messages",
      EnumField<Ros2SinkSettings>{&Ros2SinkSettings::type, SinkTypeType}},
-    {"compression", "Of type=compressed, as the plugin of point_cloud_transport of the same name",
+    {"compression",
+     "Compression with type=compressed, as by point_cloud_transport's plugin of the same name",
      EnumField<Ros2SinkSettings, CloudCompression>{&Ros2SinkSettings::compression,
                                                    CompressionType}},
     Within<&Ros2SinkSettings::ros>(RosRows(), "domain-id"),
@@ -146,10 +147,12 @@ static const std::array<Property<Ros2SinkSettings>, 13> kProperties = {{
     Within<&Ros2SinkSettings::ros>(RosRows(), "depth"),
     Within<&Ros2SinkSettings::ros>(RosRows(), "ros-distro"),
     {"frame-id",
-     "Frame of the data; NULL: as the caps say, else lidar for clouds, imu, or odom for odometry",
+     "Frame of the data; NULL: the frame in the caps, or lidar for clouds, imu for IMU samples, "
+     "odom for odometry",
      At<&Ros2SinkSettings::messages, &MessageSettings::frames, &Frames::frame_id>, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
-    {"child-frame-id", "Frame whose pose odometry is; NULL: as the caps say, else lidar",
+    {"child-frame-id",
+     "Frame whose pose the odometry estimates; NULL: the frame in the caps, or lidar",
      At<&Ros2SinkSettings::messages, &MessageSettings::frames, &Frames::child_frame_id>, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
     {"position-variance", "Variance of tracked poses along each axis; 0: not known [m^2]",

@@ -134,7 +134,7 @@ static StructurePtr Stats(GObject* object) {
 
 static const std::array<Property<Ros2SrcSettings>, 8> kProperties = {{
     Within<&Ros2SrcSettings::ros>(RosRows(), "topic"),
-    {"type", "What the topic holds",
+    {"type", "Type of the topic's messages",
      EnumField<Ros2SrcSettings, RosType>{&Ros2SrcSettings::type, SrcTypeType}},
     Within<&Ros2SrcSettings::ros>(RosRows(), "domain-id"),
     Within<&Ros2SrcSettings::ros>(RosRows(), "node-name"),

@@ -45,15 +45,15 @@ GType RosDistroType() {
 
 const std::array<Property<RosSettings>, 6>& RosRows() {
   static const std::array<Property<RosSettings>, 6> kRows = {{
-      {"topic", "Topic, as ROS 2 has it", &RosSettings::topic},
+      {"topic", "Name of the ROS 2 topic", &RosSettings::topic},
       {"domain-id", "DDS domain; -1: the variable ROS_DOMAIN_ID, or 0", &RosSettings::domain_id, -1,
        kMaxDomain},
-      {"node-name", "Node, with its namespace where it has one; NULL: the element's name",
+      {"node-name", "Name of the node, with its namespace if it has one; NULL: the element's name",
        &RosSettings::node_name},
-      {"qos", "Whether lost messages are sent again",
+      {"qos", "Reliability of DDS: whether lost messages are sent again",
        EnumField<RosSettings, RosQos>{&RosSettings::qos, RosQosType}},
-      {"depth", "Messages that are kept until they are taken [messages]", &RosSettings::depth, 1,
-       1000},
+      {"depth", "Depth of the history of DDS: messages that wait to be taken [messages]",
+       &RosSettings::depth, 1, 1000},
       {"ros-distro", "ROS 2 distribution of the peers, whose tools show nodes and types",
        EnumField<RosSettings, RosDistro>{&RosSettings::distro, RosDistroType}},
   }};

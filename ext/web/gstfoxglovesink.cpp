@@ -187,28 +187,32 @@ static StructurePtr ReadStats(GObject* object) {
 }
 
 static const std::array<Property<Settings>, 12> kProperties = {{
-    {"port", "TCP port; 0: one that is free, as stats tell", &Settings::port, 0, 65535},
-    {"bind-address", "Address to listen on; others than of this machine need a token",
+    {"port", "TCP port; 0: a free one, which stats name", &Settings::port, 0, 65535},
+    {"bind-address", "Address to listen on; an address that other machines reach needs a token",
      &Settings::bind_address},
-    {"token", "What clients must name: http://host:port/?token=...; NULL: nothing",
+    {"token", "Token that clients must send: http://host:port/?token=...; NULL: none",
      &Settings::token},
     {"token-secret",
      "Secret, of 32 bytes at least, of tokens that are JSON Web Tokens signed by HS256; they need "
      "exp, and may have topics",
      &Settings::token_secret},
     {"allowed-origins",
-     "Sites whose pages need no token, beside the own page: https://app.foxglove.dev,...",
+     "Sites whose pages need no token, in addition to the sink's own page: "
+     "https://app.foxglove.dev,...",
      &Settings::allowed_origins},
     {"tls-certificate", "PEM file of a certificate and its chain, for HTTPS; NULL: HTTP",
      &Settings::tls_certificate},
     {"tls-private-key", "PEM file of the certificate's key", &Settings::tls_private_key},
-    {"max-clients", "How many may be connected at a time", &Settings::max_clients, 1, 1000},
-    {"max-points", "The most points of a message, of more every n-th is sent; 0: all",
+    {"max-clients", "Most clients at a time", &Settings::max_clients, 1, 1000},
+    {"max-points",
+     "Most points of a message: of a larger cloud every n-th point is sent; 0: all points",
      &Settings::max_points},
     {"max-bitrate",
-     "What the coded slices of a viewer may take at most; it gets fewer scans; 0: no limit [bit/s]",
+     "Most bitrate of a viewer's coded slices; a viewer above it gets fewer scans; 0: no limit "
+     "[bit/s]",
      &Settings::max_bitrate},
-    {"sync", "Show buffers when the pipeline's clock says, not as they come", &Settings::sync},
+    {"sync", "Send buffers at their time by the pipeline's clock; false: as they arrive",
+     &Settings::sync},
     {"stats",
      "port, clients, clients-accepted, clients-refused, connections-evicted, messages-sent, "
      "messages-dropped, bytes-sent [bytes], scans-skipped, clouds, points-sent, scan-duration "

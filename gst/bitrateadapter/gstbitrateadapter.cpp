@@ -71,11 +71,11 @@ static guint Bitrate(GObject* object) {
 static const std::array<Property<Settings>, 7> kProperties = {{
     {"encoder", "Name of the encoder; empty: the first element of klass Encoder upstream",
      &Settings::encoder, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"property", "The encoder's bitrate property; empty: known by the encoder's factory",
+    {"property", "The encoder's bitrate property; empty: looked up by the encoder's factory",
      &Settings::property, 0, 0, GST_PARAM_MUTABLE_PLAYING},
     {"scale",
-     "Units of the encoder's property in one bit/s [unit/(bit/s)], 0.001 for kbit/s; "
-     "0: known by the encoder's factory",
+     "Units of the encoder's property in one bit/s [unit/(bit/s)], 0.001 for kbit/s; 0: chosen by "
+     "the encoder's factory",
      &Settings::scale, 0, 1e6, GST_PARAM_MUTABLE_PLAYING},
     {"min", "Never set less than this [bit/s]", &Settings::min_bps, 0, kMaxBps,
      GST_PARAM_MUTABLE_PLAYING},
@@ -83,7 +83,7 @@ static const std::array<Property<Settings>, 7> kProperties = {{
      GST_PARAM_MUTABLE_PLAYING},
     {"fraction", "Share of the target that this encoder gets", &Settings::fraction, 0.001, 1,
      GST_PARAM_MUTABLE_PLAYING},
-    {"bitrate", "What the encoder was told last [bit/s]; 0: nothing yet", Bitrate},
+    {"bitrate", "Bitrate that was set on the encoder last [bit/s]; 0: none yet", Bitrate},
 }};
 
 static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) {

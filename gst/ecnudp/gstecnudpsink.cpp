@@ -130,17 +130,17 @@ static const std::array<Property<SinkSettings>, 16> kProperties = {{
     {"ecn", "ECN bits of buffers without LidarEcnMeta",
      EnumField<SinkSettings>{&SinkSettings::ecn, EcnType}, 0, 0, GST_PARAM_MUTABLE_PLAYING},
     Within<&SinkSettings::options>(UdpOptionRows(), "qos-dscp"),
-    {"close-socket", "Close a socket given by the property socket on stop",
+    {"close-socket", "Close the socket of the property socket when the element stops",
      At<&SinkSettings::given, &GivenSocket::close>},
     {"reply",
-     "Send to the peer that the buffer's GstNetAddressMeta names (the last such where it has none) "
-     "instead of host and port",
+     "Send to the address in the buffer's GstNetAddressMeta instead of host and port; a buffer "
+     "without one goes to the latest such address",
      &SinkSettings::reply},
     {"interface",
-     "Network interface that datagrams leave by, which may come and go; empty for the routes' "
-     "choice",
+     "Network interface that datagrams leave by; it may disappear and return. Empty: as the routes "
+     "say",
      &SinkSettings::interface},
-    {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+    {"multicast-iface", "Network interface for multicast; empty: the kernel chooses it",
      &SinkSettings::multicast_iface},
     {"ttl-mc", "Time to live of multicast datagrams [hops]", &SinkSettings::ttl_mc, 0, 255},
     {"buffer-size", "Kernel send buffer [bytes]; 0 for its default", &SinkSettings::buffer_size, 0,
@@ -148,7 +148,7 @@ static const std::array<Property<SinkSettings>, 16> kProperties = {{
     {"socket", "Socket to send from; NULL opens one",
      At<&SinkSettings::given, &GivenSocket::socket>},
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarEcnUdpSink>},
-    {"peer-address", "Address that datagrams go to now; NULL when there is none", PeerAddress},
+    {"peer-address", "Present destination of datagrams; NULL: none", PeerAddress},
     {"stats", "packets-sent, bytes-sent [bytes], send-errors, dropped-no-peer", Stats},
 }};
 

@@ -99,7 +99,7 @@ static const std::array<Property<SrcSettings>, 11> kProperties = {{
     Within<&SrcSettings::options>(UdpOptionRows(), "buffer-size"),
     Within<&SrcSettings::options>(UdpOptionRows(), "timeout"),
     Within<&SrcSettings::options>(UdpOptionRows(), "caps"),
-    {"close-socket", "Close a socket given by the property socket on stop",
+    {"close-socket", "Close the socket of the property socket when the element stops",
      At<&SrcSettings::given, &GivenSocket::close>},
     {"socket", "Socket to receive from; NULL opens one",
      At<&SrcSettings::given, &GivenSocket::socket>},

@@ -110,18 +110,18 @@ static guint64 Age(GObject* object) {
 }
 
 static const std::array<Property<Settings>, 5> kProperties = {{
-    {"max-points", "Slices of more points are dropped, before anything is allocated for them",
+    {"max-points", "Most points of a slice; larger slices are dropped before memory is allocated",
      &Settings::max_points, 1, 1U << 24},
     {"max-decode-load",
-     "Processor time that decoding may take, as a part of one processor; slices beyond it are "
-     "dropped; 0: no limit",
+     "Share of one processor's time that decoding may take; slices beyond it are dropped; 0: no "
+     "limit",
      &Settings::max_decode_load, 0, 1, GST_PARAM_MUTABLE_PLAYING},
     {"age",
-     "Time since the newest slice was sampled, where the clocks of sensor and receiver are "
+     "Time since the newest slice was sampled, if the clocks of sensor and receiver are "
      "synchronised; 2^64 - 1: not known [ns]",
      Age},
     {"stats", "Counters", Stats},
-    {"stats-interval", "Posts stats as an element message that often; 0: never [ns]",
+    {"stats-interval", "Time between element messages with stats; 0: no messages [ns]",
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 

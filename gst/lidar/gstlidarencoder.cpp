@@ -77,11 +77,12 @@ using Settings = EncoderSettings;
 static const std::array<Property<Settings>, 12> kProperties = {{
     {"bitrate",
      "Bitrate of the encoded slices [bit/s]; 0: constant quality at the coarsest step that "
-     "max-error allows. An event target-bitrate goes before it",
+     "max-error allows. A target-bitrate event overrides it",
      &Settings::bitrate_bps, 0, G_MAXUINT, GST_PARAM_MUTABLE_PLAYING},
     {"max-error", "Largest distance between a point and its decoded point [m]",
      &Settings::max_error_m, 1e-4, 100, GST_PARAM_MUTABLE_PLAYING},
-    {"min-bitrate", "What max-error needs, measured [bit/s]; 0 before the first scan", MinBitrate},
+    {"min-bitrate", "Measured bitrate that max-error needs [bit/s]; 0 before the first scan",
+     MinBitrate},
     {"quantization-step",
      "Fixes the step of the grid [m], whatever the bitrate; max-error still holds. 0: automatic",
      &Settings::step_m, 0, 1000, GST_PARAM_MUTABLE_PLAYING},
@@ -89,22 +90,22 @@ static const std::array<Property<Settings>, 12> kProperties = {{
      &Settings::intensity_bits, 0, 8},
     {"rate-model", "Predicts the size of a slice",
      EnumField<Settings, lidar::rate::RateModel>{&Settings::rate_model, RateModelType}},
-    {"model-location", "File with the coefficients of the rate model; none: built-in",
+    {"model-location", "File with the coefficients of the rate model; NULL: built-in coefficients",
      &Settings::model_location},
-    {"degradation-preference", "What gives when the bitrate is below what max-error needs",
+    {"degradation-preference", "What to reduce when the bitrate is too low for max-error",
      EnumField<Settings, lidar::rate::DegradationPreference>{&Settings::degradation,
                                                              DegradationPreferenceType},
      0, 0, GST_PARAM_MUTABLE_PLAYING},
     {"threads",
-     "Most threads for one buffer, where the coder can divide it: more are faster, and a little "
-     "larger",
+     "Most threads for one buffer, if the coder can divide it; more threads are faster and need "
+     "slightly more bits",
      &Settings::threads, 1, 64},
     {"error-check",
      "Decodes every n-th slice again and posts its real point errors as the element message "
      "lidar-error-check; 0: none",
      &Settings::error_check, 0, G_MAXUINT, GST_PARAM_MUTABLE_PLAYING},
     {"stats", "Counters and the latest settings", Stats},
-    {"stats-interval", "Posts stats as an element message that often; 0: never [ns]",
+    {"stats-interval", "Time between element messages with stats; 0: no messages [ns]",
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 

@@ -80,24 +80,23 @@ GType ReferenceType() {
 }
 
 const std::array<Property<LidarEncSettings>, 6> kProperties = {{
-    {"geometry", "What is coded: ranges or points",
+    {"geometry", "What to code: ranges or coordinates",
      EnumField<LidarEncSettings, GeometryChoice>{&LidarEncSettings::geometry, GeometryType}},
-    {"effort", "How much computing slices are worth",
+    {"effort", "Processor time to spend on a slice, for fewer bits",
      EnumField<LidarEncSettings>{&LidarEncSettings::effort, EffortType}, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
     {"reference",
-     "What slices may be predicted from; what nobody acknowledges is predicted from nothing",
+     "What slices may be predicted from; without acknowledgements no slice is predicted from "
+     "another scan",
      EnumField<LidarEncSettings, Reference>{&LidarEncSettings::reference, ReferenceType}, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
     {"key-interval",
-     "Each sector comes at least so often as a slice that stands alone, for those who join late; "
-     "0: only when asked for [ns]",
+     "Longest time between slices of a sector that a late receiver can decode alone; 0: only on "
+     "request [ns]",
      &LidarEncSettings::key_interval, 0, 3600e9, GST_PARAM_MUTABLE_PLAYING},
-    {"fields",
-     "Further fields of points, which come back exactly; names with commas between them: ring,time",
+    {"fields", "Further fields of points to code without loss, comma-separated: ring,time",
      &LidarEncSettings::fields},
-    {"keep-order", "Points come back in the order in which they came",
-     &LidarEncSettings::keeps_order},
+    {"keep-order", "Keep the order of the points", &LidarEncSettings::keeps_order},
 }};
 
 struct State {

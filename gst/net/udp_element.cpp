@@ -30,7 +30,7 @@ const std::array<Property<UdpListen>, 4>& UdpListenRows() {
       {"address", "Local address to receive on; empty for any, IPv6 and IPv4", &UdpListen::address},
       {"port", "UDP port to receive on; 0 for any free one", &UdpListen::port, 0, 65535},
       {"multicast-group", "Multicast group to join; empty for none", &UdpListen::multicast_group},
-      {"multicast-iface", "Network interface for multicast; empty for the kernel's choice",
+      {"multicast-iface", "Network interface for multicast; empty: the kernel chooses it",
        &UdpListen::multicast_iface},
   }};
   return rows;
@@ -55,7 +55,7 @@ const std::array<Property<UdpOptions>, 4>& UdpOptionRows() {
        &UdpOptions::buffer_size, 0, G_MAXINT},
       {"timeout", "Silence after which a message GstEcnUdpSrcTimeout is posted [ns]; 0 for never",
        &UdpOptions::timeout, 0, static_cast<gdouble>(G_MAXINT64)},
-      {"caps", "Caps of the stream; NULL takes what downstream wants", &UdpOptions::caps},
+      {"caps", "Caps of the stream; NULL: the caps that downstream wants", &UdpOptions::caps},
   }};
   return rows;
 }

@@ -139,12 +139,12 @@ static StructurePtr Stats(GObject* object) {
 
 static const std::array<Property<Settings>, 2> kProperties = {{
     {"max-reorder-time",
-     "How long a slice may wait for missing packets once a later slice began; no other slice waits "
-     "with it [ns]",
+     "Longest time that a slice waits for missing packets after a later slice began; other slices "
+     "do not wait for it [ns]",
      &Settings::max_reorder_time, 0, 10.0 * GST_SECOND, GST_PARAM_MUTABLE_PLAYING},
     {"stats",
-     "Slices and scans received and missing, each counted once, beside the fields that every RTP "
-     "depayloader has",
+     "Counters of received and missing slices and scans, in addition to the fields of every RTP "
+     "depayloader",
      Stats},
 }};
 

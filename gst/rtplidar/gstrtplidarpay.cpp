@@ -75,14 +75,14 @@ static StructurePtr Stats(GObject* object) {
 
 static const std::array<Property<Settings>, 3> kProperties = {{
     {"config-interval",
-     "Time between repetitions of the stream config, by which receivers join late; 0: only before "
-     "the first slice and when it changes [s]",
+     "Time between repetitions of the stream config, which late receivers need; 0: only before the "
+     "first slice and after changes [s]",
      &Settings::config_interval_s, 0, 3600, GST_PARAM_MUTABLE_PLAYING},
     {"aggregate",
-     "Put small slices of one scan together into one packet: fewer headers, more delay (max-ptime "
-     "bounds it)",
+     "Aggregate small slices of one scan in a packet: fewer headers, more delay, which max-ptime "
+     "bounds",
      &Settings::aggregate, 0, 0, GST_PARAM_MUTABLE_PLAYING},
-    {"stats", "What was sent, beside the fields that every RTP payloader has", Stats},
+    {"stats", "Counters of sent data, in addition to the fields of every RTP payloader", Stats},
 }};
 
 static GstFlowReturn HandleBuffer(GstRTPBasePayload* base, GstBuffer* buffer) {

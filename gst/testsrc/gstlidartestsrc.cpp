@@ -101,12 +101,13 @@ const std::array<Row, 13> kProperties = {{
      EnumField<Settings>{&Settings::mode, ModeType}},
     {"scene", "World to drive through", EnumField<Settings>{&Settings::scene, SceneType}},
     {"speed", "Speed of the sensor [m/s]", &Settings::speed_mps, 0, 100},
-    {"roughness", "How far the car sways, heaves and tilts, relative to what the scene's road does",
+    {"roughness", "Amplitude of the car's sway, heave and tilt, relative to the scene's usual road",
      &Settings::roughness, 0, 20},
     {"noise", "Standard deviation of ranges on a bright target nearby [m]", &Settings::noise_m, 0,
      10},
-    {"mixed-pixels", "Ranges at edges lie between the two surfaces", &Settings::mixed_pixels},
-    {"seed", "Chooses the world and the noise: the same seed gives the same clouds",
+    {"mixed-pixels", "Simulate mixed pixels: ranges at edges lie between the two surfaces",
+     &Settings::mixed_pixels},
+    {"seed", "Seed of the world and the noise: the same seed gives the same clouds",
      &Settings::seed, 0, G_MAXUINT},
     {"slices-per-scan",
      "Buffers a scan is cut into, rounded down to a divisor of the columns (1 = whole scans, 0 = "
@@ -121,7 +122,7 @@ const std::array<Row, 13> kProperties = {{
      "File for the exact trajectory: one pose a buffer in TUM format, at its capture time",
      &Settings::trajectory_location},
     {"imu", "Add the pad imu, with the samples of an inertial measurement unit", &Settings::imu},
-    {"is-live", "Scan in the time of the clock, else as fast as possible", &Settings::is_live},
+    {"is-live", "Scan at the pace of the clock; false: as fast as possible", &Settings::is_live},
 }};
 
 // A source that is not live starts its capture times at 2024-01-01T00:00:00Z, so that its output is

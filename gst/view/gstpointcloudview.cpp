@@ -74,16 +74,17 @@ using Row = Property<Settings>;
 constexpr gdouble kFar = 10'000;
 constexpr gint kAnytime = GST_PARAM_MUTABLE_PLAYING;
 const std::array<Row, 16> kProperties = {{
-    {"view", "How the cloud is seen", EnumField<Settings>{&Settings::view, ViewType}, 0, 0,
+    {"view", "Projection of the cloud", EnumField<Settings>{&Settings::view, ViewType}, 0, 0,
      kAnytime},
-    {"color-by", "What the colours tell", EnumField<Settings>{&Settings::color_by, ColorType}, 0, 0,
-     kAnytime},
-    {"map", "Draw clouds over the map that their poses make, with the way (see lidarodometry)",
+    {"color-by", "Quantity that the colours show",
+     EnumField<Settings>{&Settings::color_by, ColorType}, 0, 0, kAnytime},
+    {"map",
+     "Draw clouds over the map that earlier clouds make by their poses, with the route (see "
+     "lidarodometry)",
      &Settings::map, 0, 0, kAnytime},
-    {"width", "Width of the video where downstream leaves it open [pixels]", &Settings::width, 16,
+    {"width", "Width of the video unless downstream fixes it [pixels]", &Settings::width, 16, 8192},
+    {"height", "Height of the video unless downstream fixes it [pixels]", &Settings::height, 16,
      8192},
-    {"height", "Height of the video where downstream leaves it open [pixels]", &Settings::height,
-     16, 8192},
     {"extent", "Width of the picture from above [m]", &Settings::extent_m, 1, kFar, kAnytime},
     {"eye-x", "Position of the camera in the sensor frame, forward [m]", &Settings::eye_x, -kFar,
      kFar, kAnytime},
@@ -101,10 +102,10 @@ const std::array<Row, 16> kProperties = {{
      5, 150, kAnytime},
     {"point-size", "Size of a point [pixels]; 0: by its distance", &Settings::point_size, 0, 64,
      kAnytime},
-    {"color-min", "Where the colours begin [m, or the unit of the field]", &Settings::color_min,
+    {"color-min", "Value of the first colour [m, or the unit of the field]", &Settings::color_min,
      -kFar, kFar, kAnytime},
-    {"color-max", "Where they end; not above color-min: automatic", &Settings::color_max, -kFar,
-     kFar, kAnytime},
+    {"color-max", "Value of the last colour; not above color-min: automatic", &Settings::color_max,
+     -kFar, kFar, kAnytime},
 }};
 
 struct State {

@@ -49,8 +49,7 @@ static StructurePtr Stats(GObject* object) { return StateOf(object).Stats(); }
 
 static const std::array<Property<Settings>, 2> kProperties = {{
     {"max-wait",
-     "How long a scan waits for slices that are late, in a live pipeline [ns]; added to the "
-     "latency",
+     "Longest time that a scan of a live pipeline waits for late slices [ns]; added to the latency",
      &Settings::max_wait, 0, static_cast<gdouble>(10 * GST_SECOND), GST_PARAM_MUTABLE_PLAYING},
     {"stats", "Counters: scans, incomplete, late-slices, duplicate-slices, invalid-slices", Stats},
 }};

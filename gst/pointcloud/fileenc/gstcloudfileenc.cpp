@@ -39,7 +39,7 @@ struct Settings {
 };
 
 const std::array<Property<Settings>, 1> kProperties = {{
-    {"binary", "Numbers as little-endian binary, else as text", &Settings::binary, 0, 0,
+    {"binary", "Write numbers as little-endian binary; false: as text", &Settings::binary, 0, 0,
      GST_PARAM_MUTABLE_PLAYING},
 }};
 

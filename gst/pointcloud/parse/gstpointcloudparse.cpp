@@ -43,7 +43,7 @@ struct Settings {
 };
 
 const std::array<Property<Settings>, 1> kProperties = {{
-    {"framerate", "Clouds per second [1/s]; 0/1: from the caps, 10/1 where they are silent",
+    {"framerate", "Clouds per second [1/s]; 0/1: from the caps, or 10/1 if the caps have none",
      &Settings::framerate},
 }};
 

@@ -138,7 +138,8 @@ static const std::array<Property<SinkSettings>, 27> kProperties = {{
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-address"),
     Within<&SinkSettings::target>(UdpTargetRows(), "bind-port"),
     {"strict-feedback",
-     "Take feedback only from the host and port that media goes to; else from any port of the host",
+     "Accept feedback only from the host and port that media goes to; false: from any port of the "
+     "host",
      &SinkSettings::strict_feedback},
     Proxy<SinkSettings>(UdpOptionRows(), "qos-dscp",
                         ChildOf<GstLidarScreamSink, &GstLidarScreamSink::sink>),
@@ -156,9 +157,8 @@ static const std::array<Property<SinkSettings>, 27> kProperties = {{
     {"estimated-bitrate", "Target of all streams together, IP included; notifies [bit/s]",
      Estimate},
     {"stats",
-     "Statistics; bitrates in bit/s, times in ns; `links` has those of each of several links, "
-     "whose "
-     "`bottleneck` is the same where they share one",
+     "Statistics; bitrates in bit/s, times in ns; `links` has those of each link; links with the "
+     "same `bottleneck` share one",
      Stats},
     Within<&SinkSettings::bond>(BondRows(), "bonding-addresses"),
     Within<&SinkSettings::bond>(BondRows(), "bonding-method"),

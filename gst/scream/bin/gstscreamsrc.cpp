@@ -87,7 +87,7 @@ static const std::array<Property<SrcSettings>, 22> kProperties = {{
     OfRx("pt-map"),
     {"socket", "Socket to use for both ways; NULL opens one",
      At<&SrcSettings::given, &GivenSocket::socket>},
-    {"close-socket", "Close a socket given by the property socket on stop",
+    {"close-socket", "Close the socket of the property socket when the element stops",
      At<&SrcSettings::given, &GivenSocket::close>},
     {"used-socket", "Socket in use; NULL when stopped", UsedSocket<GstLidarScreamSrc>},
     {"stats", "Counters of packets, bytes and reports", Stats},

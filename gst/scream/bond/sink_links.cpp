@@ -99,12 +99,12 @@ const std::array<Property<BondSettings>, 3>& BondRows() {
   using S = BondSettings;
   static const std::array<Property<BondSettings>, 3> rows = {{
       {"bonding-addresses",
-       "Links to send over, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS with commas between, "
-       "instead of host, port and bind-address; empty for one link",
+       "Links to send over, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, comma-separated, "
+       "instead of host, port and bind-address; empty: one link",
        &S::addresses},
-      {"bonding-method", "What goes over several links at once",
+      {"bonding-method", "Packets that go over several links at once",
        EnumField<S>{&S::method, BondMethodType}},
-      {"bonding-target", "What encoders are asked for", EnumField<S>{&S::target, BondTargetType}},
+      {"bonding-target", "Rate to request from encoders", EnumField<S>{&S::target, BondTargetType}},
   }};
   return rows;
 }

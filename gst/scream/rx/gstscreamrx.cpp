@@ -104,7 +104,7 @@ const RxProperties& RxPropertyTable() {
   using C = rtcp::FeedbackConfig;
   constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
   static const RxProperties table = {{
-      {"feedback-interval", "Longest wait of a packet for its report; less at high rate [ns]",
+      {"feedback-interval", "Longest time from a packet to its report; shorter at high rates [ns]",
        At<&S::feedback, &C::feedback_interval>, 1e6, 10e9, kLive},
       {"packets-per-feedback", "A report is sent after this many packets", &S::packets_per_feedback,
        1, 1000, kLive},
@@ -113,18 +113,16 @@ const RxProperties& RxPropertyTable() {
        EnumField<S>{&S::num_reports, NumReportsType}, 0, 0, kLive},
       {"feedback-on-marker", "Report at the end of each frame or slice",
        At<&S::feedback, &C::report_on_marker>, 0, 0, kLive},
-      {"eos-on-bye", "End the stream once every SSRC has said BYE", &S::eos_on_bye, 0, 0, kLive},
+      {"eos-on-bye", "End the stream once every SSRC has sent BYE", &S::eos_on_bye, 0, 0, kLive},
       {"packet-overhead", "UDP and IP header of a packet on the wire [bytes]", &S::packet_overhead,
        0, 1000, kLive},
       {"max-age",
-       "Drop LiDAR captured longer ago than this, or as much in the future, by this machine's "
-       "clock; "
-       "0 for any [ns]",
+       "Drop LiDAR data whose capture time differs more than this from this machine's clock; 0: "
+       "drop none [ns]",
        &S::max_age, 0, static_cast<gdouble>(G_MAXINT64), kLive},
       {"pt-map",
-       "Caps of each payload type (application/x-rtp-pt-map,96=(string)\"...\"); with it every "
-       "SSRC "
-       "leaves by a pad of its own",
+       "Caps of each payload type (application/x-rtp-pt-map,96=(string)\"...\"); with it each of "
+       "several streams leaves by a pad of its own",
        &S::pt_map},
       {"stats", "Counters of packets, bytes and reports", Stats},
   }};

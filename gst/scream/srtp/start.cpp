@@ -8,19 +8,19 @@ namespace lidar::gst {
 const std::array<Property<SrtpSettings>, 5>& SrtpRows() {
   static const std::array<Property<SrtpSettings>, 5> rows = {{
       {"srtp-key",
-       "SRTP master key and salt: hexadecimal digits, or file:PATH or env:NAME where they stand, "
-       "so that no list of processes shows them; empty for no SRTP. Set while playing, it is a new "
-       "key: at the receiver first",
+       "SRTP master key and salt: hexadecimal digits, or file:PATH or env:NAME to read them from, "
+       "so that no list of processes shows them; empty: no SRTP. To change the key while playing, "
+       "set it at the receiver first",
        &SrtpSettings::key, 0, 0, G_PARAM_WRITABLE | GST_PARAM_MUTABLE_PLAYING},
       {"srtp-cipher",
        "aes-128-icm (60 digits of key), aes-256-icm (92), aes-128-gcm (56) or aes-256-gcm (88)",
        &SrtpSettings::cipher},
-      {"srtp-auth", "hmac-sha1-80 or hmac-sha1-32; of no meaning with gcm", &SrtpSettings::auth},
+      {"srtp-auth", "hmac-sha1-80 or hmac-sha1-32; has no effect with gcm", &SrtpSettings::auth},
       {"dtls-certificate",
-       "File with our certificate and its private key, PEM: DTLS agrees on SRTP keys, in the place "
-       "of srtp-key",
+       "PEM file with our certificate and its private key: DTLS then negotiates the SRTP keys, "
+       "instead of srtp-key",
        &SrtpSettings::dtls_certificate},
-      {"dtls-peer-certificate", "File with the certificate of the only peer to trust, PEM",
+      {"dtls-peer-certificate", "PEM file with the certificate of the only peer to trust",
        &SrtpSettings::dtls_peer_certificate},
   }};
   return rows;

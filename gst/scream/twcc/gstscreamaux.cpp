@@ -96,8 +96,8 @@ static Property<AuxSettings> OfTx(const char* name) {
 
 static const std::array<Property<AuxSettings>, 9> kProperties = {{
     {"session",
-     "Session of rtpbin: names the pads sink_N and src_N, as its request-aux-sender wants them; "
-     "-1: sink and src. To be set before the pads are linked",
+     "Session of rtpbin: the pads are named sink_N and src_N, as its request-aux-sender needs "
+     "them; -1: sink and src. Set it before the pads are linked",
      &AuxSettings::session, -1, G_MAXINT},
     OfTx("min-bitrate"),
     OfTx("start-bitrate"),

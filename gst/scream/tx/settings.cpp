@@ -79,16 +79,17 @@ const TxProperties& TxPropertyTable() {
       {"max-bitrate", "Highest target of a pad without its own, IP included [bit/s]", &S::max_bps,
        1, kMaxBps, kLive},
       {"max-total-bitrate",
-       "Highest target of all pads together, IP included; 0: what the pads may have [bit/s]",
+       "Highest target of all pads together, IP included; 0: the sum of the pads' limits [bit/s]",
        &S::max_total_bps, 0, kMaxBps},
       {"ecn-mode", "ECN codepoint of sent packets; ect1 also selects the L4S reaction",
        EnumField<S>{&S::ecn_mode, EcnModeType}},
       {"max-queue-delay",
-       "Live input older than this, half as much again in a gap of the link, is dropped in whole "
-       "frames; other input waits [ns]",
+       "Greatest age of live input, half as much more in a gap of the link; older frames are "
+       "dropped whole. Other input waits [ns]",
        &S::max_queue_delay, 1e6, kMaxDelay},
       {"feedback-interval",
-       "How seldom a healthy receiver may report; above 0 it reports at the end of frames [ns]",
+       "Longest time between reports of a healthy receiver; above 0 it reports at the end of "
+       "frames [ns]",
        &S::feedback_interval, 0, kMaxDelay},
       {"stats-interval", "Time between element messages with the statistics; 0 for none [ns]",
        &S::stats_interval, 0, static_cast<gdouble>(G_MAXINT64), kLive},
@@ -96,14 +97,14 @@ const TxProperties& TxPropertyTable() {
        0, 1000, kLive},
       {"send-bye", "Send an RTCP BYE on the src pad before EOS", &S::send_bye, 0, 0, kLive},
       {"sender-report-interval",
-       "Time between reports to the receiver of how the sender sees the path, as RTCP on the src "
-       "pad; 100 ms at least, 0 for none [ns]",
+       "Time between RTCP reports to the receiver about the path as the sender measures it; at "
+       "least 100 ms; 0: none [ns]",
        &S::report_interval, 0, kMaxDelay, kLive},
       {"key-unit-on-loss",
-       "Ask a video encoder for a key frame also when the network lost packets, not only when the "
-       "queue dropped some",
+       "Request a key frame from a video encoder also after losses on the network, not only after "
+       "drops of the queue",
        &S::key_unit_on_loss, 0, 0, kLive},
-      {"pure-draft", "Exactly the draft: its constants, no optional part, no extension",
+      {"pure-draft", "Follow the draft exactly: its constants, no optional parts, no extensions",
        &S::pure_draft},
       {"tuning",
        "Constants and switches of the controller by name, as tuning,beta-loss=0.6; an unknown one "

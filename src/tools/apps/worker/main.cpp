@@ -63,12 +63,14 @@ void CheckWord(const std::string& option, const std::string& value) {
 }
 
 void AddConnection(CLI::App* app, nats::ConnectionSettings* c) {
-  app->add_option("--url", c->url, "Server; several of a cluster with commas between them")
+  app->add_option("--url", c->url,
+                  "URL of the server, or of several servers of a cluster, comma-separated")
       ->capture_default_str();
-  app->add_option("--credentials-file", c->credentials_file, "User and key (.creds)");
-  app->add_option("--tls-ca-file", c->tls_ca_file, "Authorities to trust (PEM)");
-  app->add_option("--tls-cert-file", c->tls_cert_file, "Our own certificate (PEM)");
-  app->add_option("--tls-key-file", c->tls_key_file, "The key of --tls-cert-file (PEM)");
+  app->add_option("--credentials-file", c->credentials_file, "File with user and key (.creds)");
+  app->add_option("--tls-ca-file", c->tls_ca_file, "File with the authorities to trust (PEM)");
+  app->add_option("--tls-cert-file", c->tls_cert_file, "File with the client's certificate (PEM)");
+  app->add_option("--tls-key-file", c->tls_key_file,
+                  "File with the private key of --tls-cert-file (PEM)");
 }
 
 void AddStatistics(CLI::App* app, fleet::StatisticsSettings* s) {
