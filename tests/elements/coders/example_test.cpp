@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "gst/lidar/gstlidardecoder.h"
@@ -105,6 +106,24 @@ TEST_F(ExampleCoder, IsWarnedOfWhereItsSlicesCannotBeDecoded) {
   klass->decode = decode;
   EXPECT_EQ(codec.Warnings(), 1U);
   EXPECT_FALSE(Holds(codec.PopCheck().get()));
+}
+
+/// Receivers would take an empty buffer for a lost slice.
+TEST_F(ExampleCoder, SendsNoSliceWithoutBytes) {
+  const Harness h = Encoder(kExample);
+  SetCaps(h.get(), OrganisedInfo(Sensor(), 64));
+  const ElementPtr enc(gst_bin_get_by_name(GST_BIN(h->element), "enc"));
+  GstLidarEncoderClass* klass = GST_LIDAR_ENCODER_GET_CLASS(enc.get());
+  const auto encode =
+      std::exchange(klass->encode, [](GstLidarEncoder*, const GstLidarEncodeSettings*, GByteArray*,
+                                      GstLidarCodedSlice*) { return GST_LIDAR_ENCODE_OK; });
+  EXPECT_EQ(gst_harness_push(h.get(), Slice(0)), GST_FLOW_OK);
+  klass->encode = encode;
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U);
+  EXPECT_EQ(test::StatOf(enc.get(), "slices-empty"), 1U);
+  EXPECT_EQ(test::StatOf(enc.get(), "slices"), 0U);
+  EXPECT_EQ(gst_harness_push(h.get(), Slice(1)), GST_FLOW_OK);
+  EXPECT_EQ(gst_harness_buffers_received(h.get()), 1U);
 }
 
 TEST_F(ExampleCoder, HasItsDamagedSlicesDropped) {

@@ -61,9 +61,9 @@ class StaticSensor : public ::testing::Test {
         sender_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
                                             gst_structure_new_empty("GstForceKeyUnit")));
   }
-  /// Passes the receiver's requests for key units to the sender. Expects that they are numbered
-  /// from 1 on. Returns true if there was a request.
-  bool CarryKeyRequest() {
+  /// Passes the receiver's requests for key units to the sender, unless they are lost. Expects that
+  /// they are numbered from 1 on. Returns true if there was a request.
+  bool CarryKeyRequest(bool arrives = true) {
     bool asked = false;
     while (EventPtr event{gst_harness_try_pull_upstream_event(receiver_.get())}) {
       if (!gst_event_has_name(event.get(), "GstForceKeyUnit")) continue;
@@ -71,7 +71,7 @@ class StaticSensor : public ::testing::Test {
       gst_structure_get_uint(gst_event_get_structure(event.get()), "count", &count);
       EXPECT_EQ(count, ++key_requests_);
       asked = true;
-      gst_harness_push_upstream_event(sender_.get(), event.release());
+      if (arrives) gst_harness_push_upstream_event(sender_.get(), event.release());
     }
     return asked;
   }
@@ -255,6 +255,18 @@ TEST_F(StaticSensor, IsAskedForSlicesThatStandAloneByAReceiverThatHasNone) {
   Scans(3);
   EXPECT_EQ(Decoded("slices"), 3 * kSlices);
   EXPECT_EQ(Mode(), "range-temporal1");
+}
+
+TEST_F(StaticSensor, IsAskedForSlicesThatStandAloneTwiceASecondAtMost) {
+  Start();
+  Scans(4);
+  RestartDecoder();
+  for (const gint64 later_us : {0, 400'000, 90'000, 20'000, 400'000, 90'000, 20'000}) {
+    clock_.Advance(later_us);
+    Scan();
+    EXPECT_EQ(CarryKeyRequest(false), later_us == 0 || later_us == 20'000) << later_us;
+  }
+  EXPECT_EQ(key_requests_, 3U);
 }
 
 /// The encoder keeps 4,096 reports until the next cloud, and drops the others.
