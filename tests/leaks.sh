@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/pipelines/environment.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# The registry is written once, here: a later scan of plugins would be a process without a report.
+# Plugins are scanned once, here: a scanner under the tracer would write no leak report.
 export GST_REGISTRY_1_0=$work/registry.bin
 gst-inspect-1.0 >"$work/plugins" || { echo "FAILED: the plugins cannot be listed"; exit 1; }
 export GST_REGISTRY_UPDATE=no GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7,leaks:7 GST_DEBUG_NO_COLOR=1 GST_DEBUG_FILE=$work/log/%p

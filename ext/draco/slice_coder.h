@@ -80,7 +80,7 @@ class SliceEncoder {
 
   /// Encodes the loaded points. May be called again for the same ones.
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
-  /// Continues the work of the encoder of the stream's last format.
+  /// Takes over what the encoder of the stream's previous format measured about the methods.
   void Continue(const SliceEncoder& before) { xyz_.Continue(before.xyz_); }
 
  private:

@@ -127,7 +127,7 @@ std::optional<History::Stored> History::First() {
   return Stored{stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
 }
 
-/// Returns up to `most` messages of about `most_bytes`, at least one if there is any.
+/// Returns up to `most` messages, of about `most_bytes` together; at least one if there is any.
 std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64 most_bytes) {
   jsSubOptions options;
   jsSubOptions_Init(&options);

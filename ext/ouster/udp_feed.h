@@ -37,8 +37,8 @@ class UdpFeed {
   guint port() const { return lidar_ ? ports_.lidar : 0; }
 
   enum class Outcome { kPackets, kTimeout, kWoken, kError };
-  /// Waits for datagrams, or only for Wake() while closed, and hands them over. Their bytes are
-  /// valid during the call.
+  /// Waits for datagrams, and passes each to `consume`; its bytes are valid during that call. While
+  /// the feed is closed, waits only for Wake().
   Outcome Receive(gint64 timeout_ns, const std::function<void(const ReceivedDatagram&)>& consume);
   /// Makes Receive() return kWoken until ClearWake().
   void Wake() { wake_.Wake(); }

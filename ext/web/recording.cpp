@@ -51,7 +51,7 @@ bool Recording::Open(Piece* piece) {
   return times.has_value();
 }
 
-/// Slices before `from_ns` stay only if later ones refer to them. Closes the archive at the end.
+/// Keeps slices before `from_ns` only if later ones refer to them. Leaves the archive closed.
 void Recording::Read(std::uint64_t from_ns, Piece* piece) {
   std::vector<viewer::SharedSlice> slices;
   viewer::SliceId last;

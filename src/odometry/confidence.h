@@ -21,9 +21,9 @@ class Confidence {
   /// measured its rotation.
   void Predict(const Pose& motion, Duration gap, bool turn_measured = false);
   /// Takes an alignment. `information` is that of the pose if the errors of its points are
-  /// independent. `unobserved` projects on the directions along which the prediction stays.
-  /// `correction` leads from the predicted pose to the found one. Returns the change of the
-  /// velocity.
+  /// independent. `unobserved` projects onto the directions in which the prediction is not
+  /// corrected. `correction` leads from the predicted pose to the found one. Returns the change of
+  /// the velocity.
   Twist Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
                 const Twist& correction);
   /// Begins to map from the present pose.

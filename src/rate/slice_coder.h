@@ -51,8 +51,8 @@ class SliceCoder {
   virtual StepRange Steps(double max_error_m) const = 0;
   /// Drops the rows whose element of `kept` is false; `kept` has loaded().rows elements.
   virtual void Thin(const std::vector<bool>& kept) = 0;
-  /// Encodes the loaded slice in place of an earlier encoding. The coder may use another step; the
-  /// bound `max_error_m` always holds.
+  /// Encodes the loaded slice in place of an earlier encoding. The coder may use another step than
+  /// that of `settings`; the bound `max_error_m` always holds.
   virtual CodingResult Encode(double max_error_m, const Settings& settings, CodedSlice* slice) = 0;
 };
 

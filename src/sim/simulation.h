@@ -87,7 +87,7 @@ struct FileConfig {
   Duration mean_pause{0};      ///< exponentially distributed
 };
 
-/// A greedy background flow that begins at `start` of the run.
+/// A greedy background flow that begins at the time `start` of the run.
 struct TcpConfig {
   TcpKind kind = TcpKind::kCubic;
   Duration start{0};

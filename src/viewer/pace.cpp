@@ -6,7 +6,7 @@
 namespace lidar::viewer {
 namespace {
 
-/// A delay this close to the shortest one confirms it, because a page draws once a frame.
+/// A delay at most this far above the shortest confirms it: a page draws once a display frame.
 constexpr Duration kSameDelay = std::chrono::milliseconds(20);
 /// A scan is sent at once, so it may exceed max-bitrate by the data of this time.
 constexpr Duration kCredit = std::chrono::milliseconds(100);

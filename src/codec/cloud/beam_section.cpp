@@ -165,8 +165,8 @@ bool BeamSectionEncoder::Encode(BeamTable table, const PixelErrors& errors,
   std::vector<std::uint8_t> block;
   const RangeSettings settings = SettingsOf(errors, levels, way, image);
   if (!CoderOf(table)->Encode(image, settings, &block)) return false;
-  // Residuals are coded by the decoded ranges. Further returns need only the bins, which are those
-  // of `image` unless the highest effort may choose others.
+  // The coding of residuals depends on the decoded ranges, that of further returns only on the
+  // bins. Below the highest effort, the decoded bins are those of `image`.
   RangeImage decoded;
   RangeGrid grid = settings.grid;
   const bool has_extras = !list->extras.empty();

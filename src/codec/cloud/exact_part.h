@@ -24,8 +24,7 @@ struct ExactPart {
   std::vector<std::uint32_t> order;  // place of each point in the old cloud
 
   bool empty() const { return fields.empty() && !keeps_order; }
-  /// Cost for a decoder, as a count of numbers. The models of a field cost as much as kModels
-  /// numbers.
+  /// Cost of decoding, in decoded numbers. The models of a field cost as much as kModels numbers.
   std::size_t Numbers(std::size_t points) const {
     constexpr std::size_t kModels = 256;
     return (points + kModels) * (fields.size() + (keeps_order ? 1 : 0));

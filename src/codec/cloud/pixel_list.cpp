@@ -36,7 +36,7 @@ class PixelCheck {
         errors_(errors),
         half_step_(table_.step() / 2 + 1) {}
 
-  /// Checks the first return of a pixel.
+  /// Returns true if the first return of a pixel decodes to within the error.
   bool Fits(std::size_t point) const {
     const PlacedPoint& p = placed_[point];
     constexpr double kFarthest = 1e5;

@@ -60,8 +60,8 @@ class TableCoder {
     return node - (1U << bits);
   }
 
-  /// `before` has the counters of the previous class, or is null. Counters of a node are `nodes`
-  /// apart.
+  /// `counters` has `nodes` counters for each context in turn. `before` has those of the previous
+  /// class, or is null.
   template <std::size_t kSize>
   void Counters(std::array<Counter, kSize>* counters, const std::array<Counter, kSize>* before,
                 std::uint32_t place, unsigned nodes) {

@@ -193,7 +193,7 @@ class NibbleModel {
 /// registers, so Store() must be called at the end.
 class NibbleModel::ZeroRun {
  public:
-  /// Returns true if the models learn at their last rate, which a run needs.
+  /// Returns true if all models have reached the final learning rate, as ZeroRun needs.
   static bool IsReady(const BlendedModels& models) {
     return std::all_of(models.begin(), models.end(), [](const NibbleModel* model) {
       return model->start_[kAge] == detail::Rates::kOldest;

@@ -16,8 +16,8 @@ inline Duration PacingReserve(const Parameters& p, const PathModel& path, Time n
                     p.shortest_pacing_reserve, p.pacing_reserve);
 }
 
-/// Returns PACKET_PACING_HEADROOM, or the headroom with which a frame leaves `reserve` before its
-/// period ends. On a full link a queue as long as `reserve` comes and goes with each frame.
+/// Returns PACKET_PACING_HEADROOM, or the headroom that ends a frame's sending `reserve` before its
+/// period ends. On a full link each frame makes a queue as long as `reserve`, and it drains again.
 inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duration reserve) {
   if (!p.extensions.capacity) return p.packet_pacing_headroom;
   const double longest = std::min(1.0, Seconds(frame_period) / Seconds(p.long_frame_period));

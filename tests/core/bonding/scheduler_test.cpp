@@ -269,7 +269,7 @@ TEST(ThreeLinks, AllGetACopyOfWhatWaitsWhereEachIsInAGap) {
     const LinkSet first = send(false);
     ASSERT_EQ(first.count(), 1U);
     const PacketId waits{kMedia, seq};
-    // The other links carry something that is not reported, too.
+    // The other links have a packet without a report, too, so each link is in a gap.
     for (std::size_t i = 0; i < 3 && in_gap; ++i)
       if (!first[i]) scheduler.OnSent(now, i, {kMedia + 1, static_cast<std::uint16_t>(i)});
     now += 61ms;

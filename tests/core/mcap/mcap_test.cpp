@@ -206,7 +206,7 @@ TEST(Mcap, MessagesOutsideOfChunksAreRead) {
 TEST(Mcap, AFileWithoutASummaryIsAsLongAsItsChunks) {
   FileMaker maker(WriterSettings{});
   const auto a = maker.AddChannel("a");
-  // The later second is written first.
+  // The newest message is written first.
   for (const std::uint64_t second : {7U, 3U, 5U}) {
     maker.Add(a, second * kSecond, "x");
     ASSERT_TRUE(maker.writer().Flush());

@@ -48,7 +48,7 @@ TEST_P(Transport, GoesThroughSrtpUnderCongestionControl) {
   gst_element_get_state(in.get(), nullptr, nullptr, test::kPatience_ns);
   const guint port = test::PortOf(in.get());
   EXPECT_NE(port, 0U);
-  // A source that is not live waits in the sender's queue, however busy the machine is.
+  // The source is not live: it waits for room in the sender's queue, so nothing is dropped.
   test::Pipeline sender(
       Sender("num-buffers=24") +
       " ! screamsink start-bitrate=20000000 host=127.0.0.1 port=" + std::to_string(port) + key);

@@ -224,8 +224,8 @@ TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
 TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   server_.Start();
   const auto ports = FreePorts(2);
-  // Opening a FIFO waits for a reader for ever. mcapsink opens this one, because its location has
-  // no number: %% stands for a single %.
+  // Opening a FIFO for writing blocks without a reader. mcapsink opens an existing file only if its
+  // location has no number; `%%` stands for a single %.
   ASSERT_EQ(mkfifo((server_.folder() + "/stuck%.mcap").c_str(), 0600), 0);
   const std::string stuck = server_.folder() + "/stuck%%.mcap";
   StartEdge(

@@ -73,7 +73,7 @@ TEST_F(Merge, ASensorThatStartsLaterIsJoinedAtItsTurn) {
   gst_pad_set_offset(pad.get(), 300 * GST_MSECOND);
   const auto outcome = p.Run();
   EXPECT_EQ(outcome.error, "");
-  // The first three and the last scans of the first sensor have no partner.
+  // The first sensor's first three and last two scans have no partner.
   const auto& merged = outcome.buffers.at("see");
   ASSERT_GE(merged.size(), 5U);
   EXPECT_EQ(merged.front().pts, 300 * GST_MSECOND);

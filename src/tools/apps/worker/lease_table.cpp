@@ -45,7 +45,7 @@ void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
   }
 }
 
-/// Sets the time from which others may take a robot whose entry was just seen.
+/// Sets when a worker other than the owner may take a robot whose entry was just seen.
 void LeaseTable::NoteFree(Robot* robot, bool damaged, Time now) const {
   const LeaseRecord& record = robot->record;
   const bool nobody = !damaged && (record.worker.empty() || record.worker == settings_.worker);
@@ -175,8 +175,8 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
       worst = at;
   }
   if (worst == robots_.end()) return false;
-  // A robot must keep at least as many places as the other gets; otherwise places would alternate
-  // for ever.
+  // A robot gives up a place only if it keeps at least as many as `waiting` then has. Otherwise the
+  // two would exchange the place for ever.
   const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
   const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
     return item.second.held && now - item.second.moved_at > kIdleSensor;

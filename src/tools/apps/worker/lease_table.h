@@ -82,7 +82,7 @@ class LeaseTable {
     bool wanted = false;
     bool held = false;
     std::uint64_t revision = 0;  // of the newest known entry; 0: unknown
-    // Time of a refused write. The store then has another entry, maybe with a lower revision.
+    // Time of a refused write. The store's entry then has another revision, maybe a lower one.
     std::optional<Time> doubted_since;
     LeaseRecord record;  // the record of that entry
     Time free_at{};      // end of the owner's lease

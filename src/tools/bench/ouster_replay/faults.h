@@ -43,8 +43,8 @@ class FaultInjector {
   explicit FaultInjector(std::uint64_t seed) : random_(seed) {}
   /// Returns the packets to send in place of `packet`.
   std::vector<OutPacket> Apply(const Faults& faults, OutPacket packet);
-  /// Returns the packet that is held back to be reordered, if there is one. For the end of a
-  /// stream.
+  /// Returns the packet that is held back to be reordered, if there is one. Call it at a stream's
+  /// end.
   std::vector<OutPacket> Finish();
   const FaultCounts& counts() const { return counts_; }
 
