@@ -218,10 +218,10 @@ class Sessions {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Runs a pipeline, written as for gst-launch-1.0, whose dtlssrtpdec and dtlssrtpenc have a "
-      "certificate of ours and trust one of the peer.\n"
-      "A peer with another one is refused before there are keys, and the next handshake is waited "
-      "for. Ends with 3 where none but such came.");
+      "Runs a pipeline, written as for gst-launch-1.0. Its dtlssrtpdec and dtlssrtpenc use our "
+      "certificate and trust one of the peer.\n"
+      "A peer with another certificate is refused before there are keys, and the program waits for "
+      "the next handshake. It exits with 3 if it refused all peers.");
   lidar::tools::AddVersionFlag(&app, "lidar-dtls-launch");
   Options options;
   app.add_option("--certificate", options.certificate, "Our certificate and private key, PEM")
@@ -229,9 +229,9 @@ int main(int argc, char** argv) {
   app.add_option("--peer-certificate", options.peer_certificate, "The peer's certificate, PEM")
       ->required();
   app.add_option("--stats", options.stats,
-                 "Elements, with commas, whose stats are printed at the end");
+                 "Elements whose stats are printed at the end, comma-separated");
   app.add_option("--duration", options.duration_s,
-                 "How long it plays from the handshake on [s]; without it, until Ctrl-C")
+                 "Time to play after the handshake [s]; default: until Ctrl-C")
       ->check(CLI::Range(0.1, 1e7));
   app.prefix_command();  // the first word that is not an option begins the pipeline
   app.footer("PIPELINE: elements, properties and links, after the options");

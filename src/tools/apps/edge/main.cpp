@@ -88,13 +88,14 @@ class Edge {
 
 int Main(int argc, char** argv) {
   CLI::App app(
-      "Receives a fleet of robots, each on a port of its own or all on one, and hands their "
-      "streams on to NATS and to MCAP files. Statistics go to NATS as JSON, and to Prometheus.");
+      "Receives a fleet of robots, each on a port of its own or all on one, publishes their "
+      "streams to NATS, and records them as MCAP files. Statistics go to NATS as JSON, and to "
+      "Prometheus.");
   tools::AddVersionFlag(&app, "lidar-edge");
   std::string path;
   bool check = false;
   app.add_option("CONFIG", path, "The configuration, JSON (see docs/fleet.md)")->required();
-  app.add_flag("--check", check, "Read the configuration, and end");
+  app.add_flag("--check", check, "Check the configuration, and exit");
   tools::Parse(&app, argc, argv);
   const EdgeConfig config = ReadConfig(path);
   if (check) return 0;

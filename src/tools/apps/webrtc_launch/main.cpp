@@ -235,7 +235,7 @@ void AddOptions(CLI::App* app, Options* o) {
   const auto port = CLI::Range(1U, 65535U);
   app->add_option("--aux", o->aux,
                   "What request-aux-sender of both ends returns; called caller-aux and callee-aux");
-  app->add_option("--stats", o->stats, "Elements, with commas, whose stats are printed");
+  app->add_option("--stats", o->stats, "Elements whose stats are printed, comma-separated");
   app->add_option("--interval", o->interval_s, "Time between prints of --stats [s]")
       ->check(CLI::Range(0.05, 3600.0))
       ->capture_default_str();

@@ -88,31 +88,32 @@ void AddFleet(CLI::App* app, WorkerSettings* s) {
   app->add_option("ROBOT", s->fleet.patterns,
                   "Robots to care for, such as r7, r7.front or '*'; * and ? are wildcards")
       ->required();
-  app->add_option("--max-robots", s->lease.most, "Robots that it takes at a time")
+  app->add_option("--max-robots", s->lease.most, "Most robots at a time")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   AddConnection(app, &s->pipeline.connection);
   app->add_option("--prefix", s->fleet.prefix, "First word of all subjects")->capture_default_str();
-  app->add_option("--jetstream", s->fleet.stream, "Stream of JetStream that keeps the slices")
+  app->add_option("--jetstream", s->fleet.stream, "JetStream's stream that keeps the slices")
       ->capture_default_str();
   app->add_option("--bucket", s->fleet.bucket, "Bucket of the key-value store for leases and poses")
       ->capture_default_str();
-  app->add_option("--replicas", s->fleet.replicas, "Servers that keep the bucket, where it is made")
+  app->add_option("--replicas", s->fleet.replicas,
+                  "Number of servers that keep a copy of the bucket, if this program creates it")
       ->check(CLI::Range(1, 5))
       ->capture_default_str();
 }
 
 void AddWork(CLI::App* app, Options* o) {
   app->add_option("--lease", o->lease_ms,
-                  "How long a worker may be silent before others take over [ms]")
+                  "Longest silence of a worker before others take over [ms]")
       ->check(CLI::Range(200, 60'000))
       ->capture_default_str();
   app->add_option("--decoder", o->worker.pipeline.decoder,
                   "lidardec, or dracodec for streams of dracoenc")
       ->capture_default_str();
   app->add_option("--rewind", o->rewind_s,
-                  "What the decoder reads before it goes on: the key-interval of the robots' "
-                  "lidarenc, and a little [s]")
+                  "Time of slices that the decoder reads before it continues: the key-interval of "
+                  "the robots' lidarenc, and a little more [s]")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   app->add_option("--odometry", o->odometry, "Property of lidarodometry, such as voxel-size=0.5");
@@ -121,8 +122,8 @@ void AddWork(CLI::App* app, Options* o) {
 Options ParseOptions(int argc, char** argv) {
   CLI::App app(
       "Takes robots whose streams JetStream keeps, finds their poses by lidarodometry, and "
-      "publishes them. Several of it share the robots: each has one worker at a time, and where a "
-      "worker dies, another goes on from the last pose.");
+      "publishes them. Several workers share the robots: each robot has one worker at a time, and "
+      "if a worker ends, another continues from the last pose.");
   tools::AddVersionFlag(&app, "lidar-worker");
   Options o;
   WorkerSettings& s = o.worker;

@@ -78,12 +78,13 @@ void AddSourceOptions(CLI::App* app, RunOptions* o) {
                              "os2-64", "os2-128", "vlp-16", "xt32", "at128", "mid-360"}))
       ->capture_default_str();
   app->add_option("--mode", o->mode,
-                  "Of an Ouster, columns x scans/s: 512x10, 1024x10, 1024x20, 2048x10")
+                  "Mode of an Ouster, columns x scans/s: 512x10, 1024x10, 1024x20, 2048x10")
       ->capture_default_str();
   app->add_option("--scene", o->scene, "Synthetic world: street, tunnel, field, town")
       ->capture_default_str();
-  app->add_option("--speed", o->speed_mps, "Of the vehicle [m/s]")->capture_default_str();
-  app->add_option("--seed", o->seed, "Of the synthetic world and the link")->capture_default_str();
+  app->add_option("--speed", o->speed_mps, "Speed of the vehicle [m/s]")->capture_default_str();
+  app->add_option("--seed", o->seed, "Seed of the synthetic world and the link")
+      ->capture_default_str();
   app->add_option("--slices", o->slices, "Slices a scan; 0: automatic, 1: whole scans")
       ->capture_default_str();
   auto* pcap = app->add_option("--pcap", o->pcap, "Stream an Ouster capture, over and over")
@@ -93,7 +94,7 @@ void AddSourceOptions(CLI::App* app, RunOptions* o) {
       ->check(CLI::ExistingDirectory)
       ->excludes(pcap);
   app->add_option("--metadata", o->metadata,
-                  "Sensor metadata of --pcap (JSON), where it does not lie beside it")
+                  "Sensor metadata of --pcap (JSON), if it is not beside the capture")
       ->check(CLI::ExistingFile)
       ->needs(pcap);
 }
@@ -112,7 +113,7 @@ void AddCodecOptions(CLI::App* app, RunOptions* o) {
       app->add_option("--fixed-step", o->fixed_step_m, "No adaptation: this quantisation step [m]")
           ->check(CLI::Range(0.0001, 10.0));
   app->add_option("--fixed-bits", o->fixed_bits,
-                  "No adaptation: the step that this many bits make of a cube of 200 m")
+                  "No adaptation: the step of a cube of 200 m with this many bits")
       ->check(CLI::Range(1, 20))
       ->excludes(step);
   app->add_option("--max-bitrate", o->max_bitrate_mbps, "The sender's upper limit [Mbit/s]")
@@ -191,7 +192,7 @@ std::string TargetOf(const Ports& ports) {
 }  // namespace
 
 void AddRunOptions(CLI::App* app, RunOptions* o) {
-  app->add_option("--duration", o->duration_s, "Of the stream [s]")
+  app->add_option("--duration", o->duration_s, "Duration of the stream [s]")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   app->add_option("--output", o->output, "Folder for the report")->capture_default_str();

@@ -87,22 +87,21 @@ int main(int argc, char** argv) {
       "lidar-trace: prints a capacity trace, lines of 'time_s rate_mbps', for lidar-link --trace.\n"
       "A drive through a 5G network with handover gaps of 0.1 to 2 s and fading cell edges, or\n"
       "with --gap, a constant rate with regular gaps. With --bound, what a sender that knew "
-      "traces\n"
-      "could deliver over links that they describe.\n",
+      "the\ntraces could deliver over their links.\n",
       "lidar-trace"};
   lidar::tools::AddVersionFlag(&app, "lidar-trace");
   Options o;
   const auto rate = CLI::Range(0.001, lidar::link::Capacity::kMaxMbps);
-  app.add_option("--duration", o.duration_s, "Of the trace [s]")
+  app.add_option("--duration", o.duration_s, "Duration of the trace [s]")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
-  app.add_option("--rate", o.rate_mbps, "Of a drive its mean, else outside of gaps [Mbit/s]")
+  app.add_option("--rate", o.rate_mbps, "Mean of a drive, or the rate outside of gaps [Mbit/s]")
       ->check(rate)
       ->capture_default_str();
-  app.add_option("--gap-rate", o.in_gaps_mbps, "In gaps [Mbit/s]")
+  app.add_option("--gap-rate", o.in_gaps_mbps, "Rate in gaps [Mbit/s]")
       ->check(CLI::Range(0.0, lidar::link::Capacity::kMaxMbps))
       ->capture_default_str();
-  app.add_option("--seed", o.seed, "Of the drive")->capture_default_str();
+  app.add_option("--seed", o.seed, "Seed of the drive")->capture_default_str();
   auto* gap = app.add_option("--gap", o.gap_s, "Length of regular gaps [s]")
                   ->check(CLI::Range(0.001, 3600.0));
   app.add_option("--every", o.every_s, "Time from one gap's end to the next one's [s]")

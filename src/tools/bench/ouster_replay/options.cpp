@@ -32,7 +32,7 @@ void AddSource(CLI::App* app, ReplayOptions* o, Text* t) {
   app->add_option("--metadata", o->metadata, "Metadata JSON of the capture")
       ->check(CLI::ExistingFile);
   app->add_flag("--once", o->once, "Stop at the end of the capture instead of starting over");
-  app->add_option("--speed", o->speed, "Send the capture so many times as fast")
+  app->add_option("--speed", o->speed, "Factor of the capture's speed")
       ->check(CLI::Range(0.01, 100.0));
   app->add_option("--synthesize", o->synth.model, "Model to synthesise: os0-32 ... os2-128")
       ->excludes(pcap);
@@ -49,7 +49,7 @@ void AddSource(CLI::App* app, ReplayOptions* o, Text* t) {
       ->transform(CLI::CheckedTransformer(scenes));
   app->add_option("--drive", o->synth.speed_mps, "Speed of the car [m/s]")
       ->check(CLI::Range(0.0, 100.0));
-  app->add_option("--seed", o->synth.seed, "Of the world and of the faults");
+  app->add_option("--seed", o->synth.seed, "Seed of the world and of the faults");
 }
 
 void AddSending(CLI::App* app, ReplayOptions* o) {
@@ -58,7 +58,7 @@ void AddSending(CLI::App* app, ReplayOptions* o) {
                   "Where packets go until udp_dest is set; \"\": nowhere");
   app->add_option("--source", o->source, "Address of this machine to send from");
   app->add_option("--multicast-iface", o->multicast_iface,
-                  "Interface to send from where udp_dest is a multicast group");
+                  "Interface to send from if udp_dest is a multicast group");
   app->add_option("--serial", o->serial, "Serial number to have; 0: as in the metadata")
       ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 40) - 1));
   app->add_option("--lidar-port", o->lidar_port, "0: as in the metadata")->check(port);
@@ -72,8 +72,7 @@ void AddSending(CLI::App* app, ReplayOptions* o) {
       ->check(port);
   app->add_flag("!--no-http", o->http, "Serve no HTTP API");
   app->add_flag("--old-firmware", o->old_firmware, "The HTTP API of firmware before 2.4");
-  app->add_option("--boot", o->boot_s, "How long a restart takes [s]")
-      ->check(CLI::Range(0.0, 3600.0));
+  app->add_option("--boot", o->boot_s, "Duration of a restart [s]")->check(CLI::Range(0.0, 3600.0));
   app->add_option("--duration", o->duration_s, "Stop after [s]; 0: never")
       ->check(CLI::Range(0.0, kLongest_s));
   app->add_option("--write-pcap", o->write_pcap, "Write a capture instead of sending");

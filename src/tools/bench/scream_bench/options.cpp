@@ -48,9 +48,8 @@ void AddRxOptions(CLI::App* app, BenchRxOptions* o) {
   app->add_option("--address", o->address, "Local address to receive on");
   app->add_option("--feedback", o->feedback,
                   "Send feedback to HOST:PORT, not to the media's source");
-  app->add_option(
-         "--num-reports", o->num_reports,
-         "num_reports of RFC 8888: count, or ericsson for a sender made of Ericsson's code")
+  app->add_option("--num-reports", o->num_reports,
+                  "num_reports of RFC 8888: count, or ericsson for a sender with Ericsson's code")
       ->check(CLI::IsMember({"count", "ericsson"}))
       ->capture_default_str();
   app->add_option("--log", o->log, "CSV file, one line a frame");
@@ -65,8 +64,8 @@ BenchOptions ParseBenchOptions(int argc, char** argv) {
       "scream-bench: measures a network path with SCReAM v2.\n"
       "A sender whose frames obey the target bitrate exactly, and its receiver. RTP timestamps "
       "are\n"
-      "Unix time at the frame's creation, so that the receiver knows the frames' age where both\n"
-      "clocks agree (else: their age over the youngest).",
+      "Unix time at the frame's creation, so the receiver can print the frames' age if both "
+      "clocks\nagree (else: their age relative to the youngest).",
       "scream-bench");
   AddVersionFlag(&app, "scream-bench");
   AddHelpAllFlag(&app);

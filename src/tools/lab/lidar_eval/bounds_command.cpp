@@ -127,7 +127,7 @@ void AddBoundsCommand(CLI::App* app) {
   command->add_option("--intensity-bits", o->intensity_bits, "0: geometry only")
       ->check(CLI::Range(0U, codec::IntensityScale::kMaxBits));
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
-  command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
+  command->add_option("--speed", o->source.speed_mps, "Speed of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write the table to this file as well");
   command->callback([o] { RunBounds(*o); });
 }

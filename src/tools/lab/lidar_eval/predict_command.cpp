@@ -97,7 +97,7 @@ void AddPredictCommand(CLI::App* app) {
   o->sampling.intensity_bits = 0;
   o->sampling.seed = 2;
   CLI::App* command = app->add_subcommand(
-      "predict", "How far a model file's predictions are off, for slices it was not trained on");
+      "predict", "Errors of a model file's predictions, for slices that it was not trained on");
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->sources, kSourceHelp)->required();
   command->add_option("--model", o->model, "Model file of lidar-train; empty: the built-in one");
@@ -110,8 +110,8 @@ void AddPredictCommand(CLI::App* app) {
   command->add_option("--max-step", o->max_step_m, "Coarsest step [m]")
       ->check(CLI::Range(1e-4, 10.0));
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
-  command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
-  command->add_option("--seed", o->sampling.seed, "Of the random settings");
+  command->add_option("--speed", o->source.speed_mps, "Speed of synthetic drives [m/s]");
+  command->add_option("--seed", o->sampling.seed, "Seed of the random settings");
   command->callback([o] {
     if (o->min_step_m >= o->max_step_m)
       throw CLI::ValidationError("--min-step", "must be below --max-step");

@@ -128,7 +128,7 @@ void AddRateDistortionCommand(CLI::App* app) {
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->sources, kSourceHelp)->required();
   command->add_option("--modes", o->modes, "Coding modes, comma-separated")->delimiter(',');
-  command->add_option("--effort", o->efforts, "Efforts of the own coder, in place of modes")
+  command->add_option("--effort", o->efforts, "Efforts of our coder, in place of modes")
       ->delimiter(',')
       ->check(CLI::Range(0U, codec::EffortControl::kHighest));
   command->add_option("--intensity-bits", o->intensity_bits, "0: geometry only")
@@ -138,7 +138,7 @@ void AddRateDistortionCommand(CLI::App* app) {
       ->check(CLI::Range(1U, 64U));
   AddErrorBounds(command, "--errors", &o->errors, "Error bounds [m], comma-separated");
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
-  command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
+  command->add_option("--speed", o->source.speed_mps, "Speed of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write the table to this file as well");
   command->add_option("--plot", o->plot, "Draw all sources into this PNG");
   command->callback([o] { RunRd(*o); });

@@ -7,14 +7,14 @@ void AddScanOptions(CLI::App* command, ScanArguments* a) {
   a->read.max_scans = 0;
   command->add_option("SOURCE", a->source, kSourceHelp)->required();
   command->add_option("--scans", a->read.max_scans, "Scans to read; 0: all");
-  command->add_option("--speed", a->read.speed_mps, "Of synthetic drives [m/s]");
+  command->add_option("--speed", a->read.speed_mps, "Speed of synthetic drives [m/s]");
   command
-      ->add_option("--roughness", a->read.roughness,
-                   "How far synthetic cars sway, heave and tilt, relative to what the scene's road "
-                   "does")
+      ->add_option(
+          "--roughness", a->read.roughness,
+          "Amplitude of synthetic cars' sway, heave and tilt, relative to the scene's usual road")
       ->check(CLI::Range(0.0, 20.0));
-  command->add_option("--seed", a->read.seed, "Of synthetic drives");
-  command->add_option("--noise", a->read.noise_m, "Of synthetic ranges, standard deviation [m]")
+  command->add_option("--seed", a->read.seed, "Seed of synthetic drives");
+  command->add_option("--noise", a->read.noise_m, "Standard deviation of synthetic ranges [m]")
       ->check(CLI::Range(0.0, 10.0));
   command->add_flag("--mixed-pixels", a->read.mixed_pixels,
                     "Synthetic ranges at edges lie between the two surfaces");
@@ -33,7 +33,7 @@ void AddScanOptions(CLI::App* command, ScanArguments* a) {
       ->check(CLI::Range(0.0, 0.9));
   command
       ->add_option("--gap", a->faults.gap_s,
-                   "Leave out the scans of so many seconds, ten seconds after the first [s]")
+                   "Leave out the scans of this time, ten seconds after the first scan [s]")
       ->check(CLI::Range(0.0, 3600.0));
   command->add_option("--every-beam", a->faults.every_beam, "Keep each n-th beam; 2: half of them")
       ->check(CLI::Range(1U, 64U));

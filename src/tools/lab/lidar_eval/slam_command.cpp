@@ -208,7 +208,8 @@ void RunAteCommand(const AteArguments& a) {
 
 void AddSlamCommand(CLI::App* app) {
   auto a = std::make_shared<SlamArguments>();
-  CLI::App* command = app->add_subcommand("slam", "The way of the sensor, from its scans");
+  CLI::App* command =
+      app->add_subcommand("slam", "Estimates the route of the sensor from its scans");
   command->option_defaults()->always_capture_default();
   AddScanOptions(command, &a->scans);
   command->add_option("--out", a->out, "Write the trajectory to this file, in TUM's format");
@@ -217,9 +218,11 @@ void AddSlamCommand(CLI::App* app) {
                       "Compare with this trajectory (TUM or KITTI); synthetic drives bring theirs");
   command->add_option("--errors", a->errors,
                       "Write error and deviation of each pose to this file, as CSV [m, rad]");
-  command->add_option("--voxel-size", a->slam.odometry.voxel_size_m, "Of the map [m]")
+  command->add_option("--voxel-size", a->slam.odometry.voxel_size_m, "Edge of the map's cubes [m]")
       ->check(CLI::Range(0.05, 20.0));
-  command->add_option("--max-range", a->slam.odometry.max_range_m, "Of points, and of the map [m]")
+  command
+      ->add_option("--max-range", a->slam.odometry.max_range_m,
+                   "Greatest range of points, and radius of the map [m]")
       ->check(CLI::Range(1.0, 1000.0));
   command->add_flag("--gyroscope", a->slam.gyroscope,
                     "Give the odometry a gyroscope, with the bias and noise of a data sheet; of "
@@ -236,12 +239,12 @@ void AddSlamCommand(CLI::App* app) {
 
 void AddAteCommand(CLI::App* app) {
   auto a = std::make_shared<AteArguments>();
-  CLI::App* command =
-      app->add_subcommand("ate", "How far a trajectory is from the true one: ATE, RPE, drift");
+  CLI::App* command = app->add_subcommand(
+      "ate", "Errors of a trajectory relative to the true one: ATE, RPE, drift");
   command->option_defaults()->always_capture_default();
   command->add_option("TRUTH", a->truth, "Trajectory in TUM's or KITTI's format, or kitti:FOLDER")
       ->required();
-  command->add_option("ESTIMATE", a->estimate, "Another")->required();
+  command->add_option("ESTIMATE", a->estimate, "Trajectory to compare with it")->required();
   command->add_option("--kitti-rate", a->kitti_rate, "Poses a second of KITTI files")
       ->check(CLI::Range(0.01, 1000.0));
   command->add_flag("--json", a->json, "Print JSON");

@@ -147,21 +147,22 @@ void AddStaticCommand(CLI::App* app) {
   auto o = std::make_shared<StaticOptions>();
   o->source.speed_mps = 0;
   o->source.max_scans = 100;
-  CLI::App* command = app->add_subcommand(
-      "static", "Bits a return where slices refer to scans that the receiver has");
+  CLI::App* command =
+      app->add_subcommand("static", "Bits a return if slices refer to scans that the receiver has");
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->sources, kSourceHelp)->required();
-  command->add_option("--effort", o->efforts, "Efforts of the own coder, comma-separated")
+  command->add_option("--effort", o->efforts, "Efforts of our coder, comma-separated")
       ->delimiter(',')
       ->check(CLI::Range(1U, codec::EffortControl::kHighest));
   AddErrorBounds(command, "--errors", &o->errors, "Error bounds [m], comma-separated");
   command->add_option("--slices", o->slices, "Slices per scan")->check(CLI::Range(1U, 64U));
-  command->add_option("--delay", o->delay, "Scans until a receiver's word is back")
+  command->add_option("--delay", o->delay, "Scans until a receiver's acknowledgement arrives")
       ->check(CLI::Range(1U, 100U));
-  command->add_option("--key-interval", o->key_interval_s, "As that of lidarenc [s]");
+  command->add_option("--key-interval", o->key_interval_s, "The key-interval of lidarenc [s]");
   command->add_option("--scans", o->source.max_scans, "Scans to read of each source");
-  command->add_option("--speed", o->source.speed_mps, "Of synthetic drives [m/s]");
-  command->add_option("--noise", o->source.noise_m, "Of synthetic ranges on a bright target [m]");
+  command->add_option("--speed", o->source.speed_mps, "Speed of synthetic drives [m/s]");
+  command->add_option("--noise", o->source.noise_m,
+                      "Standard deviation of synthetic ranges on a bright target [m]");
   command->callback([o] { RunStatic(*o); });
 }
 

@@ -67,7 +67,7 @@ void RunPcap(const PcapOptions& o) {
 void AddToPcapCommand(CLI::App* app) {
   auto o = std::make_shared<PcapOptions>();
   CLI::App* command = app->add_subcommand(
-      "to-pcap", "Packs scans into an Ouster capture, which ouster_src and ouster-replay take");
+      "to-pcap", "Packs scans into an Ouster capture for ouster_src and ouster-replay");
   command->option_defaults()->always_capture_default();
   command->add_option("SOURCE", o->source, kSourceHelp)->required();
   command->add_option("-o,--output", o->output, "Capture to write")->required();

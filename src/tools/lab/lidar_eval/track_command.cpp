@@ -115,12 +115,14 @@ void AddTrackCommand(CLI::App* app) {
   command->add_option("--targets", o->targets, "Targets from lines of 'time_s rate_mbps' instead")
       ->check(CLI::ExistingFile);
   command->add_option("--length", o->length, "Scans of each profile")->check(CLI::Range(3, 100000));
-  command->add_option("--rate", o->profile.steady_bps, "Of steady [bit/s]; 0: the middle");
-  command->add_option("--min-rate", o->profile.min_bps,
-                      "Of walk and jump [bit/s]; 0: a little above what the bound needs");
-  command->add_option("--max-rate", o->profile.max_bps,
-                      "Of walk and jump [bit/s]; 0: a little below the largest useful");
-  command->add_option("--seed", o->profile.seed, "Of walk and jump");
+  command->add_option("--rate", o->profile.steady_bps, "Rate of steady [bit/s]; 0: the middle");
+  command->add_option(
+      "--min-rate", o->profile.min_bps,
+      "Least rate of walk and jump [bit/s]; 0: a little above what the bound needs");
+  command->add_option(
+      "--max-rate", o->profile.max_bps,
+      "Greatest rate of walk and jump [bit/s]; 0: a little below the largest useful");
+  command->add_option("--seed", o->profile.seed, "Seed of walk and jump");
   command->add_option("--mode", o->mode, "Coding mode; empty: by the source");
   command->add_option("--max-error", o->track.max_error_m, "Error bound [m]")
       ->check(CLI::Range(0.0005, 10.0));
@@ -138,12 +140,13 @@ void AddTrackCommand(CLI::App* app) {
       {"maintain-accuracy", rate::DegradationPreference::kMaintainAccuracy},
       {"maintain-framerate", rate::DegradationPreference::kMaintainFramerate},
       {"balanced", rate::DegradationPreference::kBalanced}};
-  command->add_option("--degradation-preference", o->track.degradation, "What gives below r_min")
+  command
+      ->add_option("--degradation-preference", o->track.degradation, "What to reduce below r_min")
       ->transform(CLI::CheckedTransformer(preferences)
                       .description("maintain-accuracy|maintain-framerate|balanced"));
   command->add_option("--settle", o->settle, "First scans that do not count");
   command->add_option("--scans", o->read.max_scans, "Scans to read, played there and back");
-  command->add_option("--speed", o->read.speed_mps, "Of synthetic drives [m/s]");
+  command->add_option("--speed", o->read.speed_mps, "Speed of synthetic drives [m/s]");
   command->add_option("--csv", o->csv, "Write every scan to this file, one a profile");
   command->add_option("--plot", o->plot, "Draw it as this PNG, one a profile");
   command->callback([o] { RunTrack(*o); });

@@ -36,7 +36,7 @@ Options ParseOptions(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   app.add_option("SOURCE", o.sources, kSourceHelp)->required();
   app.add_option("-o,--output", o.output, "Model file to write (JSON)");
-  app.add_option("--model", o.model, "Which model: adaptive, paper or both")
+  app.add_option("--model", o.model, "Models to fit: adaptive, paper or both")
       ->check(CLI::IsMember({"adaptive", "paper", "both"}));
   app.add_option("--samples", o.sampling.samples, "Slices of each source")
       ->check(CLI::Range(rate::kMinSamples, std::size_t{100000}));
@@ -53,9 +53,9 @@ Options ParseOptions(int argc, char** argv) {
       ->check(CLI::Range(0U, codec::IntensityScale::kMaxBits));
   app.add_option("--scans", o.source.max_scans, "Scans to read of each source")
       ->check(CLI::Range(1, 100000));
-  app.add_option("--speed", o.source.speed_mps, "Of synthetic drives [m/s]");
-  app.add_option("--world-seed", o.source.seed, "Of synthetic worlds");
-  app.add_option("--seed", o.sampling.seed, "Of the random settings");
+  app.add_option("--speed", o.source.speed_mps, "Speed of synthetic drives [m/s]");
+  app.add_option("--world-seed", o.source.seed, "Seed of synthetic worlds");
+  app.add_option("--seed", o.sampling.seed, "Seed of the random settings");
   app.add_option("--description", o.description, "Text for the file's \"trained-on\"");
   Parse(&app, argc, argv, [&] {
     for (const std::string& name : o.sampling.modes) ModeNamed(name);

@@ -32,7 +32,7 @@ Options ParseOptions(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   app.add_option("SOURCE", o.sources, kSourceHelp)->required();
   app.add_option("-o,--output", o.output, "File to write");
-  app.add_option("--check", o.check, "File that must be what would be written");
+  app.add_option("--check", o.check, "Compare the result with this file; a difference is an error");
   app.add_flag("--leave-one-out", o.leave_one_out,
                "Print bits a return of each source with states trained on the others");
   app.add_option("--held-out", o.held_out,
