@@ -74,8 +74,8 @@ static const std::array<Property<Settings>, 7> kProperties = {{
     {"property", "The encoder's bitrate property; empty: looked up by the encoder's factory",
      &Settings::property, 0, 0, GST_PARAM_MUTABLE_PLAYING},
     {"scale",
-     "Units of the encoder's property in one bit/s [unit/(bit/s)], 0.001 for kbit/s; 0: chosen by "
-     "the encoder's factory",
+     "Units of the encoder's property in one bit/s [unit/(bit/s)], 0.001 for kbit/s; 0: looked "
+     "up by the encoder's factory",
      &Settings::scale, 0, 1e6, GST_PARAM_MUTABLE_PLAYING},
     {"min", "Never set less than this [bit/s]", &Settings::min_bps, 0, kMaxBps,
      GST_PARAM_MUTABLE_PLAYING},
