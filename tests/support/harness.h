@@ -27,4 +27,11 @@ inline GstEvent* NewSegment(GstFormat format = GST_FORMAT_TIME) {
   return gst_event_new_segment(&segment);
 }
 
+/// Flushes the stream, and begins a segment at 0.
+inline void Flush(GstHarness* h) {
+  gst_harness_push_event(h, gst_event_new_flush_start());
+  gst_harness_push_event(h, gst_event_new_flush_stop(TRUE));
+  gst_harness_push_event(h, NewSegment());
+}
+
 }  // namespace lidar::test

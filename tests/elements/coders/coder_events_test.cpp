@@ -51,9 +51,7 @@ TEST_P(LoneDecoder, MarksTheFirstCloudBehindAFlushAndNoOther) {
       ASSERT_TRUE(cloud);
       EXPECT_EQ(GST_BUFFER_IS_DISCONT(cloud.get()), round > 0 && i == 0) << round << ' ' << i;
     }
-    gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-    gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-    gst_harness_push_event(h_.get(), test::NewSegment());
+    test::Flush(h_.get());
   }
 }
 

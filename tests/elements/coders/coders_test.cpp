@@ -251,9 +251,7 @@ TEST_P(AnyCoder, ScansBeforeAndAfterAFlushAreTwo) {
   for (guint i = 0; i < 2; ++i)
     gst_harness_push(h.get(), OrganisedBuffer(model, 64, {7, i, 8, 64 * i}));
   EXPECT_EQ(test::StatOf(enc.get(), "scans-in"), 1U);
-  gst_harness_push_event(h.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h.get(), test::NewSegment());
+  test::Flush(h.get());
   gst_harness_push(h.get(), OrganisedBuffer(model, 64, {7, 2, 8, 128}));
   EXPECT_EQ(test::StatOf(enc.get(), "scans-in"), 2U);
 }
@@ -331,9 +329,7 @@ TEST_P(EitherCoder, HoldsTagsBackThroughAFlushUntilTheFirstSliceButNoGaps) {
   for (const char* title : {"first", "second"})
     gst_harness_push_event(h.get(), gst_event_new_tag(gst_tag_list_new(
                                         GST_TAG_TITLE, title, static_cast<void*>(nullptr))));
-  gst_harness_push_event(h.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h.get(), test::NewSegment());
+  test::Flush(h.get());
   ASSERT_EQ(gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, 0, 8, 0})), GST_FLOW_OK);
   std::map<GstEventType, int> events;
   while (const EventPtr event{gst_harness_try_pull_event(h.get())})

@@ -122,9 +122,7 @@ TEST_P(EitherCoder, MarksTheFirstSliceBehindAFlush) {
   };
   next(0);
   EXPECT_FALSE(next(1));
-  gst_harness_push_event(h.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h.get(), test::NewSegment());
+  test::Flush(h.get());
   EXPECT_TRUE(next(2));
   EXPECT_FALSE(next(3));
 }

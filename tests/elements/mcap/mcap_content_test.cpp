@@ -281,9 +281,7 @@ TEST_F(McapContent, AFlushedStreamGoesOnWhereItWas) {
   for (guint i = 0; i < 3; ++i)
     gst_harness_push(h.get(), Slice(1, i * GST_SECOND, kCapture + i * GST_SECOND));
   End(h.get());
-  gst_harness_push_event(h.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h.get(), NewSegment());
+  Flush(h.get());
   End(other.get());  // the first stream continues
   for (guint i = 0; i < 2; ++i)
     EXPECT_EQ(gst_harness_push(h.get(), Slice(2, i * GST_SECOND, kCapture)), GST_FLOW_OK);

@@ -107,9 +107,7 @@ TEST_F(OddClouds, AScanThatIsCutOffEndsWithTheStreamOrItsCapsAndNotWithAFlush) {
   push(1, 0);
   push(2, 0);
   EXPECT_EQ(Count("scans"), 1U) << "the next one began";
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h_.get(), test::NewSegment());
+  test::Flush(h_.get());
   push(3, 0);
   EXPECT_EQ(Count("scans"), 1U) << "nobody wants the one before the flush";
   gst_harness_set_src_caps_str(h_.get(), (std::string(kXyz) + ",is-dense=true").c_str());

@@ -315,9 +315,7 @@ TEST_F(Assembler, OtherCapsOfTheSameLayoutLeaveAScanOpen) {
 
 TEST_F(Assembler, ForgetsOnFlush) {
   Push(Slice(7, 0));
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h_.get(), test::NewSegment());
+  test::Flush(h_.get());
   for (guint i = 0; i < kSlices; ++i) Push(Slice(0, i));
   EXPECT_EQ(MetaOf(Pull()).scan_id, 0U);
   EXPECT_EQ(Waiting(), 0U);
@@ -326,9 +324,7 @@ TEST_F(Assembler, ForgetsOnFlush) {
 TEST_F(Assembler, TakesEarlierScansBehindAFlush) {
   for (guint i = 0; i < kSlices; ++i) Push(Slice(7, i));
   EXPECT_EQ(MetaOf(Pull()).scan_id, 7U);
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h_.get(), test::NewSegment());
+  test::Flush(h_.get());
   for (guint i = 0; i < kSlices; ++i) Push(Slice(5, i));
   ASSERT_EQ(Waiting(), 1U);
   EXPECT_EQ(MetaOf(Pull()).scan_id, 5U);
@@ -457,9 +453,7 @@ TEST_F(Assembler, NeverMixesColumnsAndPoints) {
         Push(MakeSlice({1, i, kSlices, i * kWidth}, after->FrameSize()));
       EXPECT_EQ(ColumnsOf(Pull()).size(), after->width * kSlices);
       EXPECT_EQ(Waiting(), 0U);
-      gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-      gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-      gst_harness_push_event(h_.get(), test::NewSegment());
+      test::Flush(h_.get());
     }
   }
 }
@@ -508,9 +502,7 @@ TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
 
 TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineAlsoBehindAFlush) {
   Push(Slice(0, 0));
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h_.get(), test::NewSegment());
+  test::Flush(h_.get());
   for (guint i = 0; i < 3; ++i) Push(Slice(1, i));
   ASSERT_TRUE(test::AwaitClockWait(h_.get(), test::kClockStart + 245 * GST_MSECOND));
   ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));

@@ -220,9 +220,7 @@ TEST_F(Filter, NoGapComesBeforeTheCaps) {
 TEST_F(Filter, HoldsTagsBackThroughAFlushUntilTheFirstCloud) {
   Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 2, 1));
   gst_harness_push_event(h_.get(), gst_event_new_tag(gst_tag_list_new_empty()));
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h_.get(), test::NewSegment());
+  test::Flush(h_.get());
   ASSERT_EQ(Push(std::vector<std::uint8_t>(24)), GST_FLOW_OK);
   std::vector<std::string> names;
   while (const EventPtr event{gst_harness_try_pull_event(h_.get())})

@@ -238,9 +238,7 @@ TEST_F(FilterByTransforms, TheFrameStaysWherePointsDo) {
 
 TEST_F(FilterByTransforms, CloudsWaitAgainBehindAFlush) {
   Start("target-frame=map tf-timeout=60000000000");
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h_.get(), test::NewSegment());
+  test::Flush(h_.get());
   {
     const Waiter cloud([this] { EXPECT_EQ(PushAt(100), GST_FLOW_OK); });
     EXPECT_TRUE(cloud.AwaitSleep());

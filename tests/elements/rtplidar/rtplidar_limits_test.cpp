@@ -10,9 +10,7 @@ namespace {
 
 /// Flushes as a seek does.
 void Flush(GstHarness* h) {
-  gst_harness_push_event(h, gst_event_new_flush_start());
-  gst_harness_push_event(h, gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h, NewSegment());
+  Flush(h);
 }
 
 class PayLimits : public ::testing::Test {

@@ -256,9 +256,7 @@ TEST(RtpLidarDepay, StartsAnewAfterAFlush) {
   packets.pop_back();
   Push(h.get(), packets);
   EXPECT_EQ(Pull(h.get()).size(), 3U);
-  gst_harness_push_event(h.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h.get(), NewSegment());
+  Flush(h.get());
   Push(h.get(), Packets(2));
   EXPECT_EQ(Pull(h.get()).size(), 8U);
 }

@@ -310,9 +310,7 @@ TEST_F(BondedSink, CopiesNothingOfBeforeAFlush) {
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(Send(++seq).size(), 1U);
     if (i > 0) break;
-    gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-    gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-    gst_harness_push_event(h_.get(), NewSegment());
+    Flush(h_.get());
   }
   const int before = packets_[0] + packets_[1];
   const guint64 copies = OfAllLinks(sink_, "packets-copies");

@@ -29,9 +29,7 @@ TEST_F(ScreamRx, GoesOnBehindAFlushAfterTheEnd) {
   Start();
   ASSERT_EQ(Push({}), GST_FLOW_OK);
   ASSERT_EQ(PushBye({0x1234}), GST_FLOW_EOS);
-  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
-  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(rtp.get(), NewSegment());
+  Flush(rtp.get());
   EXPECT_EQ(Push({}), GST_FLOW_OK);
 }
 

@@ -172,9 +172,7 @@ TEST_F(ScreamTx, AFlushDropsNoCapsThatWaitBehindPackets) {
   Start();
   PushFrame(0, 100);
   gst_harness_set_src_caps_str(rtp.get(), kVideoCaps);
-  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
-  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(rtp.get(), NewSegment());
+  Flush(rtp.get());
   while (BufferPtr(gst_harness_try_pull(rtp.get()))) continue;
   time.Advance(5 * GST_SECOND);
   PushFrame(77, 1);

@@ -397,9 +397,7 @@ TEST_F(ScreamTx, GoesOnBehindAFlushOfOneOfSeveralStreamsWhereTheNextElementHadSt
   ASSERT_TRUE(Eventually([&] { return Push({}) == GST_FLOW_FLUSHING; }));
   gst_pad_set_active(rtp->sinkpad, TRUE);
   gst_test_clock_set_time(time.clock(), time.now() + GST_SECOND);
-  gst_harness_push_event(second.get(), gst_event_new_flush_start());
-  gst_harness_push_event(second.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(second.get(), NewSegment());
+  Flush(second.get());
   ASSERT_EQ(gst_harness_push(second.get(), NewRtp({})), GST_FLOW_OK);
   EXPECT_TRUE(BufferPtr(gst_harness_pull(rtp.get())));
 }
@@ -478,9 +476,7 @@ TEST_F(ScreamTx, OneOfSeveralStreamsMayBeginAnewByAFlushAfterTheEndOfAll) {
   gst_harness_set_src_caps_str(second.get(), kVideoCaps);
   for (GstHarness* h : {rtp.get(), second.get()}) gst_harness_push_event(h, gst_event_new_eos());
   EXPECT_TRUE(Ends());
-  gst_harness_push_event(rtp.get(), gst_event_new_flush_start());
-  gst_harness_push_event(rtp.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(rtp.get(), NewSegment());
+  Flush(rtp.get());
   PushFrame(0, 1);
   EXPECT_TRUE(Leaves());
   gst_harness_push_event(rtp.get(), gst_event_new_eos());

@@ -535,9 +535,7 @@ TEST_F(View, RefusesACloudOfAnotherSizeThanItsCaps) {
 TEST_F(View, AFlushForgetsThePictureThatWasBegun) {
   Start("view=top point-size=1", Info(1));
   PushSlice({{25, 0, 0, 1}}, {0, 0, 2, 0});
-  gst_harness_push_event(h_.get(), gst_event_new_flush_start());
-  gst_harness_push_event(h_.get(), gst_event_new_flush_stop(TRUE));
-  gst_harness_push_event(h_.get(), test::NewSegment());
+  test::Flush(h_.get());
   PushSlice({{0, 15, 0, 1}}, {1, 0, 1, 0});
   Pull();
   EXPECT_FALSE(IsPoint(150, 50));
