@@ -27,6 +27,11 @@ class ScreamRx : public ::testing::Test {
     rtcp.reset(gst_harness_new_with_element(element, nullptr, "rtcp_src"));
     gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
   }
+  void Restart() {
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_harness_play(rtp.get());
+    gst_harness_play(rtcp.get());
+  }
   void SetPtMap(const std::string& types) {
     const gst::StructurePtr map(
         gst_structure_from_string(("application/x-rtp-pt-map," + types).c_str(), nullptr));

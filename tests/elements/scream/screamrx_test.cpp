@@ -160,9 +160,7 @@ TEST_F(ScreamRx, AnswersTheLatchedPeer) {
 TEST_F(ScreamRx, PassesOnceWhatCameByTwoLinksAndAnswersBoth) {
   Start();
   for (guint run = 1; run <= 2; ++run) {
-    gst_element_set_state(element, GST_STATE_NULL);
-    gst_harness_play(rtp.get());
-    gst_harness_play(rtcp.get());
+    Restart();
     for (guint16 seq = 0; seq < 20; ++seq) {
       Rtp r;
       r.seq = seq;
@@ -339,9 +337,7 @@ TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
     EXPECT_EQ(Push(recorded), GST_FLOW_OK);
     EXPECT_EQ(Stats(element)["packets-old"], 1U) << run;
     EXPECT_EQ(Stats(element)["packets-received"], 1U) << run;
-    gst_element_set_state(element, GST_STATE_NULL);
-    gst_harness_play(rtp.get());
-    gst_harness_play(rtcp.get());
+    Restart();
   }
 }
 
@@ -499,9 +495,7 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
   ASSERT_EQ(PushBye({0x1234}, "10.0.0.1"), GST_FLOW_EOS);
   Report();
-  gst_element_set_state(element, GST_STATE_NULL);
-  gst_harness_play(rtp.get());
-  gst_harness_play(rtcp.get());
+  Restart();
   for (const char* counter :
        {"packets-received", "ssrcs", "packets-foreign", "sender-reports", "goodbyes"})
     EXPECT_EQ(Stats(element)[counter], 0U) << counter;

@@ -696,11 +696,7 @@ TEST_F(ScreamTx, AReceiverElsewhereInTheNextRunIsNoNewPath) {
     Acknowledge();
     EXPECT_GT(Stats(element)["rtt"], 0U) << host;
     time.Advance(600 * GST_MSECOND);
-    gst_element_set_state(element, GST_STATE_NULL);
-    gst_harness_play(rtp.get());
-    gst_harness_play(rtcp.get());
-    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
-    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+    Restart();
   }
 }
 

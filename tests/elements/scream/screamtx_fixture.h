@@ -39,6 +39,14 @@ class ScreamTx : public ::testing::Test {
     gst_harness_set_src_caps_str(rtp.get(), caps);
     gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
   }
+  /// Stops, and starts again with the caps of Start().
+  void Restart() {
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_harness_play(rtp.get());
+    gst_harness_play(rtcp.get());
+    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
+    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+  }
   void TearDown() override {
     rtcp.reset();
     rtp.reset();

@@ -234,11 +234,7 @@ TEST_F(ScreamTxReports, BeginAfterTheirIntervalInEachRun) {
     EXPECT_TRUE(Reports().empty()) << run;
     Run(5);
     EXPECT_EQ(Reports().size(), 1U) << run;
-    gst_element_set_state(element, GST_STATE_NULL);
-    gst_harness_play(rtp.get());
-    gst_harness_play(rtcp.get());
-    gst_harness_set_src_caps_str(rtp.get(), kRtpCaps);
-    gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
+    Restart();
   }
 }
 
