@@ -24,7 +24,7 @@ struct Frames {
   std::string child_frame_id;
 };
 
-/// What a message needs in addition to its buffer.
+/// The data that a message needs in addition to its buffer.
 struct MessageSettings {
   Frames frames;
   CloudCompression compression = CloudCompression::kZstd;  // of CompressedPointCloud2

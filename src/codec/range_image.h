@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One slice of an organised scan as integers, the input and the output of the range codec.
+// A slice of an organised scan as integers: the input and the output of the range codec.
 #pragma once
 #include <cstddef>
 #include <cstdint>

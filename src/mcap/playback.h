@@ -85,7 +85,7 @@ class Playback {
   std::uint64_t unclosed_files_ = 0;
   std::uint64_t unreadable_files_ = 0;
   std::string why_unreadable_;
-  // What is left to play: a range of log times, from this file on.
+  // The range of log times to play, and the file to continue with.
   std::uint64_t begin_ = 0;
   std::uint64_t end_ = UINT64_MAX;
   std::size_t next_file_ = 0;

@@ -19,7 +19,7 @@ constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
 constexpr double kOnsetFall = 1.0 / 32;
 constexpr double kOnsetRise = 1.0 / 128;
-/// So many packets in a row that met a queue cannot be chance.
+/// This number of packets in a row that met a queue cannot be chance.
 constexpr int kQueueingPackets = 3;
 /// Least duration of the clock-drift remedy, which otherwise lasts five round trips.
 constexpr Duration kShortestHalfRate = 200ms;

@@ -100,7 +100,7 @@ TEST_P(EveryScene, GivesTwoEchoesWhereABeamMeetsTwoThings) {
   const double share = static_cast<double>(both) / static_cast<double>(r.range_mm.size());
   EXPECT_GT(share, 0.001);
   EXPECT_LT(share, 0.2);
-  // As many beams have a first return as without second returns.
+  // Second returns do not change the number of beams with a first return.
   EXPECT_NEAR(ShareOfReturns(r.range_mm), ShareOfReturns(Ranges(Config(GetParam()), 2)), 0.02);
 }
 
