@@ -27,7 +27,7 @@ inline GstEvent* NewSegment(GstFormat format = GST_FORMAT_TIME) {
   return gst_event_new_segment(&segment);
 }
 
-/// Flushes the stream, and begins a segment at 0.
+/// Flushes as a seek does, and begins a segment at 0.
 inline void Flush(GstHarness* h) {
   gst_harness_push_event(h, gst_event_new_flush_start());
   gst_harness_push_event(h, gst_event_new_flush_stop(TRUE));

@@ -8,11 +8,6 @@
 namespace lidar::test {
 namespace {
 
-/// Flushes as a seek does.
-void Flush(GstHarness* h) {
-  Flush(h);
-}
-
 class PayLimits : public ::testing::Test {
  protected:
   PayLimits() { gst_harness_set_src_caps_str(h_.get(), EncodedCaps().c_str()); }
