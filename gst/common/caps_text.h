@@ -97,7 +97,7 @@ inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Valu
 inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* why = nullptr) {
   std::string ignored;
   std::string& reason = why != nullptr ? *why : ignored;
-  reason = "they are not those of one stream in the system's memory";
+  reason = "the caps must describe one stream in system memory";
   if (gst_caps_is_any(caps) || gst_caps_get_size(caps) != 1 ||
       !gst_caps_features_is_equal(gst_caps_get_features(caps, 0),
                                   GST_CAPS_FEATURES_MEMORY_SYSTEM_MEMORY))
@@ -110,7 +110,7 @@ inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* 
     auto value = caps_text::ToScalar(gst_structure_get_value(s, name));
     if (!value) {
       reason = std::string("the field ") + name +
-               " is no string, number, fraction, flag, buffer or array of doubles";
+               " is not a string, number, fraction, flag, buffer or array of doubles";
       return std::nullopt;
     }
     scalar.fields.push_back({name, *std::move(value)});

@@ -37,7 +37,8 @@ inline bool ReadPem(const std::string& path, bool with_key, std::string* pem, st
   g_free(text);
   if (!CertificateIn(*pem).empty() && (!with_key || pem->find("PRIVATE KEY") != std::string::npos))
     return true;
-  *error = path + " is not PEM with a certificate" + (with_key ? " and its private key" : "");
+  *error =
+      path + " must be a PEM file with a certificate" + (with_key ? " and its private key" : "");
   return false;
 }
 

@@ -292,7 +292,7 @@ std::optional<std::string> WrongIn(const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value))
     if (!IsPrintable(*text)) return "has characters that cannot be printed";
   if (const auto* fraction = std::get_if<Fraction>(&value))
-    if (!IsFraction(*fraction)) return "is no fraction";
+    if (!IsFraction(*fraction)) return "is not a fraction";
   const auto is_finite = [](double v) { return std::isfinite(v); };
   const auto* one = std::get_if<float>(&value);
   const auto* two = std::get_if<double>(&value);
@@ -301,7 +301,7 @@ std::optional<std::string> WrongIn(const Value& value) {
       (more != nullptr && !std::all_of(more->begin(), more->end(), is_finite)))
     return "is not finite";
   if (more != nullptr && (more->empty() || more->size() > ScalarCaps::kMaxDoubles))
-    return "has not 1 to " + std::to_string(ScalarCaps::kMaxDoubles) + " values";
+    return "must have 1 to " + std::to_string(ScalarCaps::kMaxDoubles) + " values";
   return std::nullopt;
 }
 
@@ -331,17 +331,20 @@ std::optional<std::string> ScalarCaps::ToText(std::string* why) const {
   };
   if (!IsMediaType(media_type)) return refuse(media_type + " does not begin with application/x-");
   if (fields.size() > kMaxFields)
-    return refuse("more than " + std::to_string(kMaxFields) + " fields");
+    return refuse("the caps have more than " + std::to_string(kMaxFields) + " fields");
   std::string text = media_type;
   for (const Field& field : fields) {
-    if (!IsName(field.name)) return refuse("the name of the field " + field.name + " is not plain");
-    if (const auto wrong = WrongIn(field.value)) return refuse(field.name + " " + *wrong);
+    if (!IsName(field.name))
+      return refuse("the field name " + field.name +
+                    " must begin with a letter and have only letters, digits, -, _ and .");
+    if (const auto wrong = WrongIn(field.value))
+      return refuse("the field " + field.name + " " + *wrong);
     text.append(", ").append(field.name).append("=(");
     text.append(kTypeNames[field.value.index()]).append(")");
     AppendValue(field.value, &text);
   }
   if (text.size() > kMaxText)
-    return refuse("their text has more than " + std::to_string(kMaxText) + " bytes");
+    return refuse("the text of the caps has more than " + std::to_string(kMaxText) + " bytes");
   return text;
 }
 

@@ -157,20 +157,24 @@ TEST(ScalarCaps, WhatCannotBeWrittenSaysWhy) {
     return reason;
   };
   EXPECT_EQ(why("video/x-raw", {"n", 1}), "video/x-raw does not begin with application/x-");
-  EXPECT_EQ(why("application/x-a", {"a:b", 1}), "the name of the field a:b is not plain");
+  EXPECT_EQ(
+      why("application/x-a", {"a:b", 1}),
+      "the field name a:b must begin with a letter and have only letters, digits, -, _ and .");
   EXPECT_EQ(why("application/x-a", {"n", std::numeric_limits<double>::infinity()}),
-            "n is not finite");
+            "the field n is not finite");
   EXPECT_EQ(why("application/x-a", {"n", std::numeric_limits<float>::infinity()}),
-            "n is not finite");
-  EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Fraction{1, 0}}), "n is no fraction");
+            "the field n is not finite");
+  EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Fraction{1, 0}}),
+            "the field n is not a fraction");
   for (const auto count : {0U, 17U})
     EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Doubles(count)}),
-              "n has not 1 to 16 values");
-  EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Doubles{1, std::nan("")}}), "n is not finite");
+              "the field n must have 1 to 16 values");
+  EXPECT_EQ(why("application/x-a", {"n", ScalarCaps::Doubles{1, std::nan("")}}),
+            "the field n is not finite");
   EXPECT_EQ(why("application/x-a", {"n", std::string("a\nb")}),
-            "n has characters that cannot be printed");
+            "the field n has characters that cannot be printed");
   EXPECT_EQ(why("application/x-a", {"n", std::string(1U << 20, 'a')}),
-            "their text has more than 131072 bytes");
+            "the text of the caps has more than 131072 bytes");
   ScalarCaps many;
   many.media_type = "application/x-a";
   for (int i = 0; i < 64; ++i) many.fields.push_back({"n" + std::to_string(i), i});
@@ -178,7 +182,7 @@ TEST(ScalarCaps, WhatCannotBeWrittenSaysWhy) {
   EXPECT_TRUE(many.ToText(&reason)) << reason;
   many.fields.push_back({"n", 64});
   EXPECT_FALSE(many.ToText(&reason));
-  EXPECT_EQ(reason, "more than 64 fields");
+  EXPECT_EQ(reason, "the caps have more than 64 fields");
 }
 
 }  // namespace

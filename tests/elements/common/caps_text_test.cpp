@@ -63,7 +63,7 @@ TEST_P(OtherCaps, AreRefusedWithTheReason) {
   EXPECT_FALSE(CapsToText(caps.get(), &why));
   EXPECT_EQ(why, GetParam().why);
 }
-constexpr const char* kNotOne = "they are not those of one stream in the system's memory";
+constexpr const char* kNotOne = "the caps must describe one stream in system memory";
 INSTANTIATE_TEST_SUITE_P(
     All, OtherCaps,
     ::testing::Values(
@@ -72,10 +72,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"application/x-a(memory:GLMemory)", kNotOne},
         Refused{"video/x-raw", "video/x-raw does not begin with application/x-"},
         Refused{"application/x-a, n=(int)[ 1, 2 ]",
-                "the field n is no string, number, fraction, flag, buffer or array of doubles"},
-        Refused{"application/x-a, n=(double)<  >", "n has not 1 to 16 values"},
-        Refused{"application/x-a, n=(int)< 1, 2 >",
-                "the field n is no string, number, fraction, flag, buffer or array of doubles"}));
+                "the field n is not a string, number, fraction, flag, buffer or array of doubles"},
+        Refused{"application/x-a, n=(double)<  >", "the field n must have 1 to 16 values"},
+        Refused{
+            "application/x-a, n=(int)< 1, 2 >",
+            "the field n is not a string, number, fraction, flag, buffer or array of doubles"}));
 
 }  // namespace
 }  // namespace lidar::gst

@@ -122,9 +122,9 @@ TEST(Certificates, AreRefusedWithTheFileThatIsWrong) {
     EXPECT_FALSE(ReadCertificates(with_key, without, &read, &error));
     return error;
   };
-  EXPECT_EQ(why(peer, peer), peer + " is not PEM with a certificate and its private key");
-  EXPECT_EQ(why(other, peer), other + " is not PEM with a certificate and its private key");
-  EXPECT_EQ(why(own, other), other + " is not PEM with a certificate");
+  EXPECT_EQ(why(peer, peer), peer + " must be a PEM file with a certificate and its private key");
+  EXPECT_EQ(why(other, peer), other + " must be a PEM file with a certificate and its private key");
+  EXPECT_EQ(why(own, other), other + " must be a PEM file with a certificate");
   EXPECT_NE(why(own + ".none", peer).find(own + ".none"), std::string::npos);
   EXPECT_NE(why(own, peer + ".none").find(peer + ".none"), std::string::npos);
   EXPECT_EQ(CertificateIn("-----END CERTIFICATE----------BEGIN CERTIFICATE-----"), "");

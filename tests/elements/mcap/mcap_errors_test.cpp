@@ -355,7 +355,8 @@ TEST_F(McapErrors, CapsThatCouldNotBePlayedAreNotRecorded) {
   for (const std::string& caps : {good + ",levels=(int)<1,2>", good, good + ",levels=(int)<1,2>"})
     gst_harness_set_src_caps_str(h.get(), caps.c_str());
   const std::string why =
-      "Cannot be recorded: the field levels is no string, number, fraction, flag, buffer or array "
+      "Cannot be recorded: the field levels is not a string, number, fraction, flag, buffer or "
+      "array "
       "of doubles.";
   EXPECT_EQ(bus.Texts(GST_MESSAGE_ERROR), (std::vector<std::string>{why, why}));
 }

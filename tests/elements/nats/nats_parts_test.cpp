@@ -256,7 +256,7 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
   EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));  // no alignment=slice
   EXPECT_FALSE(FormatOf("application/x-voxels, alignment=slice, levels=(uint)<1,2>", &why));
   EXPECT_EQ(why,
-            "the field levels is no string, number, fraction, flag, buffer or array of doubles");
+            "the field levels is not a string, number, fraction, flag, buffer or array of doubles");
 }
 
 TEST_F(NatsParts, NestedTextIsRefusedAtOnce) {
