@@ -42,9 +42,10 @@ class Reader {
 
   bool ReadPoint() {
     if (!gst_structure_has_name(s_, GST_LIDAR_CLOUD_MEDIA_TYPE))
-      return Fail(std::string(gst_structure_get_name(s_)) + " is no " GST_LIDAR_CLOUD_MEDIA_TYPE);
+      return Fail(std::string(gst_structure_get_name(s_)) + " is not " GST_LIDAR_CLOUD_MEDIA_TYPE);
     const gchar* fields = gst_structure_get_string(s_, "fields");
-    if (fields == nullptr) return Fail("fields is missing, as in x:F32:0,y:F32:4,z:F32:8");
+    if (fields == nullptr)
+      return Fail("fields is missing, for example fields=x:F32:0,y:F32:4,z:F32:8");
     auto parsed = PointFields::Parse(fields, &why_);
     if (!parsed || !GetCount("point-step", &info_.point_step)) return false;
     if (info_.point_step < parsed->MinimumStep())
@@ -87,7 +88,7 @@ class Reader {
 std::optional<CloudInfo> CloudInfo::FromCaps(const GstCaps* caps, std::string* why) {
   std::string ignored;
   std::string& reason = why != nullptr ? *why : ignored;
-  reason = "there are none";
+  reason = "there are no caps";
   if (caps == nullptr || gst_caps_is_empty(caps) || gst_caps_is_any(caps)) return std::nullopt;
   return Reader(gst_caps_get_structure(caps, 0)).Read(&reason);
 }
@@ -95,7 +96,7 @@ std::optional<CloudInfo> CloudInfo::FromCaps(const GstCaps* caps, std::string* w
 std::optional<CloudInfo> CloudInfo::FromFrameCaps(const GstCaps* caps, std::string* why) {
   auto info = FromCaps(caps, why);
   if (!info || info->width > 0) return info;
-  if (why != nullptr) *why = "width is missing; pointcloudparse finds it";
+  if (why != nullptr) *why = "width is missing; pointcloudparse adds it";
   return std::nullopt;
 }
 

@@ -33,7 +33,7 @@ std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const Point
     const std::string name = word.substr(0, colon);
     const PointField* field = given.Find(name);
     if (field == nullptr) {
-      *why = "there is no field " + name + " among " + given.ToString();
+      *why = "there is no field " + name + "; the cloud has " + given.ToString();
       return std::nullopt;
     }
     // Coordinates are F32, unless another type is requested: all elements take F32.
@@ -64,17 +64,17 @@ std::optional<PointFilterSettings> ParseSettings(const FilterSettings& s, std::s
   parsed.voxel_size_m = s.voxel_size;
   parsed.crop_inside = s.crop_inside;
   parsed.invalid = s.invalid;
-  *why = "apply-pose and target-frame exclude each other";
+  *why = "apply-pose and target-frame cannot be set together";
   if (s.apply_pose && !s.target_frame.empty()) return std::nullopt;
   parsed.has_pose = s.apply_pose || !s.target_frame.empty();
   if (!s.transform.empty()) {
     parsed.transform = ParseTransform(s.transform);
-    *why = "transform wants 16 numbers, or x, y, z, roll, pitch, yaw";
+    *why = "transform must be 16 numbers, or x, y, z, roll, pitch, yaw";
     if (!parsed.transform) return std::nullopt;
   }
   if (!s.crop_box.empty()) {
     const auto box = ParseNumbers(s.crop_box);
-    *why = "crop-box wants six numbers: the least x, y, z, then the largest";
+    *why = "crop-box must be six numbers: the least x, y, z, then the largest";
     if (!box || box->size() != 6) return std::nullopt;
     for (std::size_t i = 0; i < 3; ++i)
       if ((*box)[i] > (*box)[i + 3]) return std::nullopt;
@@ -140,7 +140,7 @@ std::unique_ptr<FilterPlan> FilterPlan::Make(const FilterSettings& settings, con
   const cdr::PointLayout& points = plan->converter_->points();
   plan->filter_ = PointFilter::Make(*parsed, points.fields, points.point_step);
   if (!plan->filter_) {
-    *why = "these settings need x, y and z as F32 side by side, and the fields are " +
+    *why = "these settings need x, y and z as F32 side by side, but the fields are " +
            points.fields.ToString();
     return nullptr;
   }

@@ -215,17 +215,18 @@ static gboolean Start(GstBaseSrc* base) {
   const Settings settings = Snapshot(state);
   std::string unknown;
   if (!ParseChannels(settings.channels, &unknown)) {
-    GST_ELEMENT_ERROR(base, RESOURCE, SETTINGS,
-                      ("There is no channel \"%s\"; there are reflectivity, signal, ring and t.",
-                       unknown.c_str()),
-                      (nullptr));
+    GST_ELEMENT_ERROR(
+        base, RESOURCE, SETTINGS,
+        ("There is no channel \"%s\"; the channels are reflectivity, signal, ring and t.",
+         unknown.c_str()),
+        (nullptr));
     return FALSE;
   }
   const char* model = kModels[settings.model].value_nick;
   if (!settings.channels.empty() && lidar::synth::FindFiring(model) != nullptr) {
     GST_ELEMENT_ERROR(
         base, RESOURCE, SETTINGS,
-        ("The model %s has the fields that its driver publishes: leave channels out.", model),
+        ("The model %s has the fields that its driver publishes: do not set channels.", model),
         (nullptr));
     return FALSE;
   }
@@ -322,7 +323,7 @@ static void LogPose(GstLidarTestSrc* self, Duration at) {
   if (state.log->Write(UnixTime(self, at), state.maker->trajectory().At(at))) return;
   state.log.reset();
   GST_ELEMENT_WARNING(self, RESOURCE, NO_SPACE_LEFT,
-                      ("The trajectory cannot be written any more; the stream goes on."),
+                      ("The trajectory can no longer be written; the stream goes on."),
                       GST_ERROR_SYSTEM);
 }
 

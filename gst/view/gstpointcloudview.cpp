@@ -194,7 +194,8 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   if (state.info) why = "x, y and z are not F32 side by side";
   if (!state.info || !state.info->fields.HasPackedXyz()) {
     if (state.refused.Note(in))
-      GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a cloud to draw: %s.", why.c_str()),
+      GST_ELEMENT_ERROR(base, STREAM, FORMAT,
+                        ("The caps do not describe a cloud that can be drawn: %s.", why.c_str()),
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
     return FALSE;
   }
@@ -318,8 +319,10 @@ static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer*
   State& state = StateOf(base);
   const BufferMap bytes(in, GST_MAP_READ);
   if (!bytes || bytes.size() != state.info->FrameSize()) {
-    GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("A cloud of another size than its caps say."),
-                      (nullptr));
+    GST_ELEMENT_ERROR(
+        base, STREAM, FORMAT, ("A buffer does not match its caps."),
+        ("it has %" G_GSIZE_FORMAT " bytes, but the caps describe a cloud of %" G_GSIZE_FORMAT,
+         gst_buffer_get_size(in), state.info->FrameSize()));
     return GST_FLOW_ERROR;
   }
   GstLidarSlice slice{};

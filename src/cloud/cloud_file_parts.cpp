@@ -124,7 +124,7 @@ bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cl
         double value = 0;
         const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
         if (parsed.ec != std::errc() || parsed.ptr != word.data() + word.size()) {
-          *why = Quoted(word) + " is no number";
+          *why = Quoted(word) + " is not a number";
           return false;
         }
         if (f.type) WriteNumber(value, *f.type, to);

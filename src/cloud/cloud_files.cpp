@@ -56,7 +56,7 @@ std::optional<FileCloud> ReadKitti(ByteView file, std::string* why) {
     cloud.fields.push_back({name, FieldType::kF32, cloud.point_step});
     cloud.point_step += 4;
   }
-  *why = "its size is no multiple of 16 bytes";
+  *why = "its size is not a multiple of 16 bytes";
   if (file.size % kKittiPoint != 0) return std::nullopt;
   *why = "the cloud is larger than 1 GiB";
   if (file.size > cloud_file::kMaxCloud) return std::nullopt;

@@ -74,7 +74,7 @@ std::optional<LasHeader> ReadLasHeader(ByteView file, std::string* why) {
   if (file.size < kHeader10) return std::nullopt;
   LasHeader h;
   ByteReader r(file);
-  *why = "it is no LAS 1.0 to 1.4";
+  *why = "it is not LAS 1.0 to 1.4";
   r.Skip(24);  // signature, ids
   if (r.U8() != 1) return std::nullopt;
   const unsigned minor = r.U8();
@@ -89,11 +89,11 @@ std::optional<LasHeader> ReadLasHeader(ByteView file, std::string* why) {
   for (double& v : h.scale) v = r.LeF64();
   for (double& v : h.offset) v = r.LeF64();
   if (minor == 4) h.points = ByteReader(file.Sub(247, 8)).Le64();
-  *why = "its points are compressed (LAZ): write them as LAS";
+  *why = "its points are compressed (LAZ): convert the file to LAS";
   if ((h.format & 0xC0U) != 0) return std::nullopt;
   *why = "its point format is unknown, or its records are too short for it";
   if (h.format >= std::size(kFormats) || h.step < kFormats[h.format].size) return std::nullopt;
-  *why = "its scale or offset is no number";
+  *why = "its scale or offset is not a finite number";
   if (!AreUsable(h)) return std::nullopt;
   return h;
 }

@@ -71,7 +71,7 @@ std::optional<PcdHeader> ReadPcdHeader(cloud_file::Lines* lines) {
 }
 
 std::optional<std::vector<FileField>> Fields(const PcdHeader& h, std::string* why) {
-  *why = "FIELDS, SIZE, TYPE and COUNT do not fit together";
+  *why = "FIELDS, SIZE, TYPE and COUNT do not match";
   if (h.sizes.size() != h.fields.size() || h.types.size() != h.fields.size() ||
       (!h.counts.empty() && h.counts.size() != h.fields.size()))
     return std::nullopt;
@@ -94,7 +94,7 @@ std::optional<std::vector<FileField>> Fields(const PcdHeader& h, std::string* wh
 bool SetSize(const PcdHeader& h, FileCloud* cloud, std::string* why) {
   const std::uint64_t height = h.height.value_or(1);
   const std::uint64_t width = h.width.value_or(h.points.value_or(0));
-  *why = "WIDTH, HEIGHT and POINTS do not fit together";
+  *why = "WIDTH, HEIGHT and POINTS do not match";
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
   if (width > kMost || height > kMost || height == 0) return false;
   if (h.points && *h.points != width * height) return false;

@@ -66,7 +66,7 @@ struct PlyHeader {
     return true;
   }
   bool IsWhole(std::string* why) const {
-    *why = "its header has no format that we read";
+    *why = "its header has no known format";
     if (format == Format::kNone) return false;
     *why = "its vertices are not its first element";
     return vertices && !other_first && *vertices <= std::numeric_limits<std::int32_t>::max();
@@ -75,7 +75,7 @@ struct PlyHeader {
 
 std::optional<PlyHeader> ReadPlyHeader(cloud_file::Lines* lines, std::string* why) {
   PlyHeader header;
-  *why = "its header does not end";
+  *why = "its header has no end_header";
   while (const auto words = lines->Next()) {
     if (words->empty()) continue;
     if (words->front() == "end_header") {

@@ -144,11 +144,11 @@ static void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info
   if (!info.sensor_model || info.width >= info.sensor_model->columns_per_scan) return;
   if (std::exchange(state.missing_meta_reported, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, FORMAT,
-                      ("Clouds of %u of the sensor's %u columns come without LidarSliceMeta: each "
-                       "is taken for a scan.",
+                      ("Clouds with %u of the sensor's %u columns arrive without LidarSliceMeta: "
+                       "each of them is treated as a whole scan.",
                        info.width, info.sensor_model->columns_per_scan),
-                      ("gdppay, shmsink and other elements of GStreamer 1.22 leave metas behind: "
-                       "record and send RTP (rtplidarpay), which carries them."));
+                      ("gdppay, shmsink and other elements of GStreamer 1.22 drop metas: record "
+                       "and send RTP (rtplidarpay), which carries them."));
 }
 
 static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
@@ -161,8 +161,8 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   }
   if (!info) {
     gst_buffer_unref(buffer);
-    GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("No point cloud caps before the first buffer."),
-                      (nullptr));
+    GST_ELEMENT_ERROR(self, CORE, NEGOTIATION,
+                      ("A buffer arrived before the caps of a point cloud."), (nullptr));
     return GST_FLOW_NOT_NEGOTIATED;
   }
   SliceView slice{buffer, &*info, {}};
@@ -181,7 +181,7 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
             : GST_CLOCK_TIME_NONE;
     state.queue.Add(slice, deadline, &finished);
     if (state.queue.counters().invalid != invalid)
-      GST_WARNING_OBJECT(self, "slice %u of %u of scan %u does not fit: dropped",
+      GST_WARNING_OBJECT(self, "dropping slice %u of %u of scan %u, which does not fit a scan",
                          slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
     // Timestamps may have restarted, and the timer may still wait for an earlier scan.
     state.timer.Update(state.queue.NextDeadline());
@@ -243,7 +243,8 @@ static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
   auto info = CloudInfo::FromFrameCaps(caps, &why);
   if (!info) {
     if (state.refused.Note(caps))
-      GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Not the caps of a point cloud: %s.", why.c_str()),
+      GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                        ("The caps do not describe a cloud: %s.", why.c_str()),
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }

@@ -96,7 +96,7 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
     return TRUE;
   }
   if (state.refused.Note(in))
-    GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("Not the caps of a point cloud: %s.", why.c_str()),
+    GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("The caps do not describe a cloud: %s.", why.c_str()),
                       ("%" GST_PTR_FORMAT, static_cast<gpointer>(in)));
   return FALSE;
 }
@@ -110,8 +110,8 @@ static void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
   state.slices_reported = true;
   GST_ELEMENT_WARNING(
       base, STREAM, FORMAT,
-      ("Slices come instead of scans, so each scan becomes %u files.", slice.slice_count),
-      ("Put scanassembler in front, or slices-per-scan=1 at the source."));
+      ("Slices arrive instead of whole scans, so each scan becomes %u files.", slice.slice_count),
+      ("Put scanassembler in front, or set slices-per-scan=1 at the source."));
 }
 
 static std::string Write(GstBaseTransform* base, GstBuffer* in) {
@@ -133,8 +133,10 @@ static std::string Write(GstBaseTransform* base, GstBuffer* in) {
 static GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** out) {
   auto text = std::make_unique<std::string>(Write(base, in));
   if (text->empty()) {
-    GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("A cloud of another size than its caps say."),
-                      (nullptr));
+    GST_ELEMENT_ERROR(
+        base, STREAM, FORMAT, ("A buffer does not match its caps."),
+        ("it has %" G_GSIZE_FORMAT " bytes, but the caps describe a cloud of %" G_GSIZE_FORMAT,
+         gst_buffer_get_size(in), StateOf(base).info->FrameSize()));
     return GST_FLOW_ERROR;
   }
   std::string* owned = text.release();

@@ -30,11 +30,11 @@ void FramePlacer::Note(GstElement* element, const std::string& frame,
   if (answer.transform) return;
   ++without_;
   if (reported) return;
-  GST_ELEMENT_WARNING(
-      element, STREAM, FAILED,
-      ("A cloud of %s cannot be put into %s: %s. Such clouds are dropped and counted.",
-       frame.c_str(), target_.c_str(), answer.why.c_str()),
-      (nullptr));
+  GST_ELEMENT_WARNING(element, STREAM, FAILED,
+                      ("A cloud of the frame %s cannot be transformed into the frame %s: %s. Such "
+                       "clouds are dropped and counted.",
+                       frame.c_str(), target_.c_str(), answer.why.c_str()),
+                      (nullptr));
 }
 
 void FramePlacer::Clear() {

@@ -177,7 +177,7 @@ static bool MakePlan(GstLidarPointCloudFilter* self) {
   if (state.plan)
     state.refused.Reset();
   else if (state.refused.Note(state.caps.get()))
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("Clouds cannot be filtered so: %s.", why.c_str()),
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("These clouds cannot be filtered: %s.", why.c_str()),
                       ("%" GST_PTR_FORMAT, static_cast<gpointer>(state.caps.get())));
   return state.plan != nullptr;
 }
@@ -220,8 +220,9 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   if (flow != GST_FLOW_OK) return flow;
   BufferPtr out = placed ? state.plan->Apply(raw, *placed) : BufferPtr(gst_buffer_new());
   if (!out) {
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("A cloud of another size than its caps say."),
-                      (nullptr));
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("A buffer does not match its caps."),
+                      ("it has %" G_GSIZE_FORMAT " bytes, caps are %" GST_PTR_FORMAT,
+                       gst_buffer_get_size(raw), static_cast<gpointer>(state.caps.get())));
     return GST_FLOW_ERROR;
   }
   Count(&state);

@@ -122,9 +122,9 @@ static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer
     std::lock_guard lock(state.mutex);
     settings.transform = state.settings.transform;
   }
-  *why = "its caps are missing";
+  *why = "the caps are missing";
   if (!state.caps) return nullptr;
-  *why = "they have no times; pointcloudparse gives them";
+  *why = "they have no timestamps; pointcloudparse adds them";
   if (GST_AGGREGATOR_PAD(pad)->segment.format != GST_FORMAT_TIME) return nullptr;
   if (!state.plan || state.plan_transform != settings.transform || state.plan_fields != fields) {
     state.plan = FilterPlan::Make(settings, state.caps.get(), why);
@@ -132,7 +132,7 @@ static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer
     state.plan_fields = fields;
   }
   if (!state.plan) return nullptr;
-  *why = "a cloud has another size than its caps say";
+  *why = "a buffer does not match its caps";
   return state.plan->Apply(buffer);
 }
 
@@ -220,7 +220,7 @@ static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
       slice.slice_count < 2)
     return;
   self->state->slices_reported = true;
-  GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("Slices come instead of scans."),
+  GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("Slices arrive instead of whole scans."),
                       ("Put scanassembler in front of each pad."));
 }
 
@@ -235,9 +235,10 @@ static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* me
   std::string why;
   const BufferPtr cloud = MergePadRead(head.pad, buffer.get(), merged->fields, &why);
   if (!cloud) {
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
-                      ("Clouds of %s cannot be merged: %s.", GST_PAD_NAME(head.pad), why.c_str()),
-                      (nullptr));
+    GST_ELEMENT_ERROR(
+        self, STREAM, FORMAT,
+        ("The clouds of the pad %s cannot be merged: %s.", GST_PAD_NAME(head.pad), why.c_str()),
+        (nullptr));
     return false;
   }
   const BufferMap map(cloud.get(), GST_MAP_READ);

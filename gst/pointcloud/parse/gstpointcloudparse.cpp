@@ -120,8 +120,9 @@ static GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
   state.stamper.LeaveOut();
   state.discont = true;
   if (!std::exchange(state.empty_reported, true))
-    GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("A cloud is empty: it is left out."),
-                        ("It is number %" G_GUINT64_FORMAT ", from 1; others are not reported.",
+    GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("A cloud is empty and is left out."),
+                        ("It is cloud number %" G_GUINT64_FORMAT
+                         ", counted from 1; further empty clouds are not reported.",
                          state.stamper.count()));
   return GST_FLOW_OK;
 }
@@ -134,10 +135,10 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
   if (size % column != 0 || size / column > G_MAXINT) {
     GST_ELEMENT_ERROR(
         self, STREAM, FORMAT,
-        ("A cloud of %" G_GSIZE_FORMAT " bytes is not made of points of %u bytes in %u rows.", size,
-         state.info->point_step, state.info->height),
-        ("Check point-step and height in the caps of the source, and that the file is no "
-         "other format."));
+        ("A cloud of %" G_GSIZE_FORMAT
+         " bytes cannot be divided into points of %u bytes in %u rows.",
+         size, state.info->point_step, state.info->height),
+        ("Check point-step and height in the caps of the source, and the format of the file."));
     return GST_FLOW_ERROR;
   }
   PushCaps(self, static_cast<guint>(size / column));
@@ -153,15 +154,15 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
 /// Pushes a whole file with a header.
 static GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
   State& state = *self->state;
-  std::string why = "it cannot be mapped";
+  std::string why = "its buffer cannot be mapped";
   std::optional<FileBuffer> read;
   if (gst_buffer_get_size(file.get()) == 0) return SkipEmpty(self);
   if (const BufferMap map(file.get(), GST_MAP_READ); map)
     read = ReadCloudFile(*state.type, map.view(), &why);
   if (!read) {
-    GST_ELEMENT_ERROR(self, STREAM, DECODE,
-                      ("The %s file cannot be read: %s.", NameOf(*state.type), why.c_str()),
-                      ("It is number %" G_GUINT64_FORMAT ", from 1.", state.stamper.count() + 1));
+    GST_ELEMENT_ERROR(
+        self, STREAM, DECODE, ("The %s file cannot be read: %s.", NameOf(*state.type), why.c_str()),
+        ("It is file number %" G_GUINT64_FORMAT ", counted from 1.", state.stamper.count() + 1));
     return GST_FLOW_ERROR;
   }
   if (!state.info || state.info->height != read->info.height ||
@@ -222,16 +223,16 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* raw) {
   if (!state.info && !state.type) {
     if (state.refused.noted()) return GST_FLOW_NOT_NEGOTIATED;
     GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("The caps of the cloud are missing."),
-                      ("It is neither PCD, PLY, LAS nor KITTI's, so give "
-                       "application/x-pointcloud2 with point-step and fields to the source (caps "
-                       "property of multifilesrc, or a caps filter)."));
+                      ("The data are not a PCD, PLY, LAS or KITTI file, so set the caps "
+                       "application/x-pointcloud2 with point-step and fields at the source "
+                       "(property caps of multifilesrc, or a caps filter)."));
     return GST_FLOW_NOT_NEGOTIATED;
   }
   const gsize cloud = CloudSize(self);
   if (cloud > kMaxCloud) {
     GST_ELEMENT_ERROR(self, STREAM, FORMAT,
                       ("A file of %" G_GSIZE_FORMAT " bytes is too large for one cloud.", cloud),
-                      ("Give the caps a width where the file holds many clouds."));
+                      ("Set width in the caps if the file holds many clouds."));
     return GST_FLOW_ERROR;
   }
   state.stamper.SetCloudSize(cloud);
@@ -286,7 +287,7 @@ static void Drain(GstLidarPointCloudParse* self) {
     GST_ELEMENT_WARNING(
         self, STREAM, FORMAT,
         ("The stream ends within a cloud: %" G_GSIZE_FORMAT " bytes are left over.", left),
-        ("A file whose size is no multiple of width x height x point-step?"));
+        ("Check that the size of the file is a multiple of width x height x point-step."));
   }
   gst_adapter_clear(state.adapter.get());
 }

@@ -164,24 +164,23 @@ TEST(Pcd, SaysWhyItCannotBeRead) {
       {"FIELDS x a\nSIZE 4 1\nTYPE F U\nCOUNT 1 32\nPOINTS 1\nDATA ascii\n",
        "a point has too many fields"},
       {PcdHeader("ascii") + "1 2 3", "the file ends before its last point"},
-      {PcdHeader("ascii") + "1 2 3 0 0 1 1 2 three 0 0 1 1", "\"three\" is no number"},
-      {PcdHeader("ascii") + "1 1e400 3 0 0 1 4 5 6 0 0 1", "\"1e400\" is no number"},
-      {PcdHeader("ascii") + "1 2,5 3 0 0 1 4 5 6 0 0 1", "\"2,5\" is no number"},
-      {PcdHeader("ascii") + "1 1.#QNAN 3 0 0 1 4 5 6 0 0 1", "\"1.#QNAN\" is no number"},
-      {PcdHeader("ascii") + "1 2 \x80\x3F\x01 0 0 1 4 5 6 0 0 1", "\"???\" is no number"},
-      {PcdHeader("ascii") + "1 2 ~\x7F 0 0 1 4 5 6 0 0 1", "\"~?\" is no number"},
+      {PcdHeader("ascii") + "1 2 3 0 0 1 1 2 three 0 0 1 1", "\"three\" is not a number"},
+      {PcdHeader("ascii") + "1 1e400 3 0 0 1 4 5 6 0 0 1", "\"1e400\" is not a number"},
+      {PcdHeader("ascii") + "1 2,5 3 0 0 1 4 5 6 0 0 1", "\"2,5\" is not a number"},
+      {PcdHeader("ascii") + "1 1.#QNAN 3 0 0 1 4 5 6 0 0 1", "\"1.#QNAN\" is not a number"},
+      {PcdHeader("ascii") + "1 2 \x80\x3F\x01 0 0 1 4 5 6 0 0 1", "\"???\" is not a number"},
+      {PcdHeader("ascii") + "1 2 ~\x7F 0 0 1 4 5 6 0 0 1", "\"~?\" is not a number"},
       {PcdHeader("binary_compressed") + Text({4, 0, 0, 0, 32, 0, 0, 0, 255, 255, 255, 255}),
        "the compressed points are damaged"},
-      {"FIELDS x\nSIZE 4 4\nTYPE F\nDATA ascii\n",
-       "FIELDS, SIZE, TYPE and COUNT do not fit together"},
+      {"FIELDS x\nSIZE 4 4\nTYPE F\nDATA ascii\n", "FIELDS, SIZE, TYPE and COUNT do not match"},
       {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2\nHEIGHT 2\nPOINTS 3\nDATA ascii\n",
-       "WIDTH, HEIGHT and POINTS do not fit together"},
+       "WIDTH, HEIGHT and POINTS do not match"},
       {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 4294967296\nHEIGHT 1\nDATA ascii\n",
-       "WIDTH, HEIGHT and POINTS do not fit together"},
+       "WIDTH, HEIGHT and POINTS do not match"},
       {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 4294967297\nDATA ascii\n1\n",
-       "WIDTH, HEIGHT and POINTS do not fit together"},
+       "WIDTH, HEIGHT and POINTS do not match"},
       {"FIELDS x\nSIZE 4\nTYPE F\nWIDTH 1\nHEIGHT 0\nDATA ascii\n1\n",
-       "WIDTH, HEIGHT and POINTS do not fit together"},
+       "WIDTH, HEIGHT and POINTS do not match"},
       {"FIELDS x\nSIZE 4\nTYPE F\nPOINTS 1\nDATA\n1\n", "its header has no line DATA"},
   };
   for (const auto& [file, reason] : bad) {
@@ -257,10 +256,10 @@ TEST(Ply, BinaryOfBothByteOrdersIsRead) {
 
 TEST(Ply, SaysWhyItCannotBeRead) {
   const std::vector<std::pair<std::string, std::string>> bad = {
-      {"ply\nformat ascii 1.0\n", "its header does not end"},
-      {"ply\nelement vertex 1\nend_header\n", "its header has no format that we read"},
+      {"ply\nformat ascii 1.0\n", "its header has no end_header"},
+      {"ply\nelement vertex 1\nend_header\n", "its header has no known format"},
       {"ply\nformat\nelement vertex 1\nproperty float x\nend_header\n1\n",
-       "its header has no format that we read"},
+       "its header has no known format"},
       {"ply\nformat ascii 1.0\nelement vertex\nend_header\n",
        "its vertices are not its first element"},
       {"ply\nformat ascii 1.0\nend_header\n", "its vertices are not its first element"},
@@ -446,12 +445,13 @@ TEST(Las, SaysWhyItCannotBeRead) {
   };
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"LASF", "its header is cut off"},
-      {with([](Las& l) { l.minor = 5; }), "it is no LAS 1.0 to 1.4"},
-      {with([](Las& l) { l.format = 0x81; }), "its points are compressed (LAZ): write them as LAS"},
+      {with([](Las& l) { l.minor = 5; }), "it is not LAS 1.0 to 1.4"},
+      {with([](Las& l) { l.format = 0x81; }),
+       "its points are compressed (LAZ): convert the file to LAS"},
       {with([](Las& l) { l.format = 11; }),
        "its point format is unknown, or its records are too short for it"},
-      {with([](Las& l) { l.scale = std::nan(""); }), "its scale or offset is no number"},
-      {with([](Las& l) { l.offset = std::nan(""); }), "its scale or offset is no number"},
+      {with([](Las& l) { l.scale = std::nan(""); }), "its scale or offset is not a finite number"},
+      {with([](Las& l) { l.offset = std::nan(""); }), "its scale or offset is not a finite number"},
       {with([](Las& l) { l.points = 3; }), "the file ends before its last point"},
       {with([](Las& l) { l.points = 2'000'000'000; }), "the cloud is larger than 1 GiB"},
   };
@@ -495,7 +495,7 @@ TEST(Kitti, IsRead) {
   EXPECT_EQ(cloud->fields[3], (PointField{"intensity", FieldType::kF32, 12}));
   EXPECT_EQ(FloatAt(*cloud, 28), 8);
   EXPECT_FALSE(ReadKitti(View(std::string(17, 'a')), &why));
-  EXPECT_EQ(why, "its size is no multiple of 16 bytes");
+  EXPECT_EQ(why, "its size is not a multiple of 16 bytes");
   EXPECT_FALSE(ReadKitti({cloud->points.data(), (std::size_t{1} << 30) + 16}, &why));
   EXPECT_EQ(why, "the cloud is larger than 1 GiB");
 }

@@ -300,7 +300,7 @@ TEST(AssemblerWithoutCaps, RefusesBuffersWithAnError) {
   const BufferPtr slice = Slice(0, 0);
   EXPECT_EQ(gst_pad_push(h->srcpad, gst_buffer_ref(slice.get())), GST_FLOW_NOT_NEGOTIATED);
   EXPECT_EQ(GST_MINI_OBJECT_REFCOUNT_VALUE(slice.get()), 1);
-  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), "No point cloud caps before the first buffer.");
+  EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR), "A buffer arrived before the caps of a point cloud.");
 }
 
 TEST_F(Assembler, OtherCapsOfTheSameLayoutLeaveAScanOpen) {

@@ -261,19 +261,20 @@ TEST_F(Filter, ABoxBeginsBelowItsEndAlongEachAxis) {
 TEST_F(Filter, SaysWhatIsWrong) {
   const std::string caps = CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1);
   const std::vector<std::pair<std::string, std::string>> wrong = {
-      {"transform=1,2,3", "transform wants 16 numbers, or x, y, z, roll, pitch, yaw"},
-      {"crop-box=1,2,3", "crop-box wants six numbers: the least x, y, z, then the largest"},
-      {"crop-box=1,2,3,4,5,6,7", "crop-box wants six numbers: the least x, y, z, then the largest"},
-      {"crop-box=5,0,0,1,1,1", "crop-box wants six numbers: the least x, y, z, then the largest"},
-      {"apply-pose=true target-frame=map", "apply-pose and target-frame exclude each other"},
-      {"fields=x,q", "there is no field q among x:F32:0,y:F32:4,z:F32:8"},
+      {"transform=1,2,3", "transform must be 16 numbers, or x, y, z, roll, pitch, yaw"},
+      {"crop-box=1,2,3", "crop-box must be six numbers: the least x, y, z, then the largest"},
+      {"crop-box=1,2,3,4,5,6,7",
+       "crop-box must be six numbers: the least x, y, z, then the largest"},
+      {"crop-box=5,0,0,1,1,1", "crop-box must be six numbers: the least x, y, z, then the largest"},
+      {"apply-pose=true target-frame=map", "apply-pose and target-frame cannot be set together"},
+      {"fields=x,q", "there is no field q; the cloud has x:F32:0,y:F32:4,z:F32:8"},
       {"fields=x,x", "there are two fields x"},
       {"fields=x max-range=3",
-       "these settings need x, y and z as F32 side by side, and the fields are x:F32:0"},
+       "these settings need x, y and z as F32 side by side, but the fields are x:F32:0"},
   };
   for (const auto& [properties, why] : wrong) {
     Start(properties, caps);
-    EXPECT_EQ(Error(), "Clouds cannot be filtered so: " + why + ".");
+    EXPECT_EQ(Error(), "These clouds cannot be filtered: " + why + ".");
     EXPECT_NE(Push(std::vector<std::uint8_t>(12)), GST_FLOW_OK);
   }
   Start("", caps);

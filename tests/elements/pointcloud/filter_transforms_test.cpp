@@ -119,8 +119,9 @@ TEST_F(FilterByTransforms, CloudsWithoutAreCountedAndReportedOnce) {
   Start("target-frame=map tf-timeout=1000000");
   for (int i = 0; i < 3; ++i) EXPECT_EQ(PushAt(100), GST_FLOW_OK);
   EXPECT_EQ(Warning(),
-            "A cloud of os cannot be put into map: no transform names the frame map. Such clouds "
-            "are dropped and counted.");
+            "A cloud of the frame os cannot be transformed into the frame map: no transform names "
+            "the frame "
+            "map. Such clouds are dropped and counted.");
   EXPECT_EQ(Warning(), "");
   Tell(fixed_.get(), "map", "os", 0, 10);
   EXPECT_EQ(PushAt(100), GST_FLOW_OK);

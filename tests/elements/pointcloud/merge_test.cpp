@@ -98,13 +98,15 @@ TEST_F(Merge, ASensorThatSeesNothingIsNoError) {
 TEST_F(Merge, SaysWhatIsWrong) {
   const std::string scan = kSensor + " num-buffers=1 slices-per-scan=1 ! ";
   EXPECT_EQ(Play("pointcloudmerge name=m sink_0::transform=1,2 ! fakesink " + scan + "m.").error,
-            "Clouds of sink_0 cannot be merged: transform wants 16 numbers, or x, y, z, roll, "
+            "The clouds of the pad sink_0 cannot be merged: transform must be 16 numbers, or x, y, "
+            "z, roll, "
             "pitch, yaw.");
-  EXPECT_EQ(Play("pointcloudmerge name=m ! fakesink " + scan + "m.sink_0 " + scan +
-                 "pointcloudfilter fields=x,y,z ! m.sink_1")
-                .error,
-            "Clouds of sink_1 cannot be merged: there is no field intensity among "
-            "x:F32:0,y:F32:4,z:F32:8.");
+  EXPECT_EQ(
+      Play("pointcloudmerge name=m ! fakesink " + scan + "m.sink_0 " + scan +
+           "pointcloudfilter fields=x,y,z ! m.sink_1")
+          .error,
+      "The clouds of the pad sink_1 cannot be merged: there is no field intensity; the cloud has "
+      "x:F32:0,y:F32:4,z:F32:8.");
   EXPECT_NE(Play("pointcloudmerge name=m ! fakesink " + kSensor + " num-buffers=8 ! m.").warning,
             "");
 }
@@ -114,7 +116,8 @@ TEST_F(Merge, CloudsWithoutTimesAreAnError) {
                  "application/x-pointcloud2,width=10,height=1,point-step=16,"
                  "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\" ! pointcloudmerge ! fakesink")
                 .error,
-            "Clouds of sink_0 cannot be merged: they have no times; pointcloudparse gives them.");
+            "The clouds of the pad sink_0 cannot be merged: they have no timestamps; "
+            "pointcloudparse adds them.");
 }
 
 /// pointcloudmerge with two pads for clouds of one point.
