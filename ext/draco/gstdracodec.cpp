@@ -54,7 +54,7 @@ static gboolean SetFormat(GstLidarDecoder* base, GstCaps* caps, const GstLidarCl
   const auto geometry = GeometryOf(caps);
   coder = {};
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
-  decoded->refusal = "geometry must be xyz or range, and range needs a sensor-model";
+  decoded->refusal = "geometry must be xyz or range, and geometry=range needs a sensor-model";
   if (!geometry || (geometry == Geometry::kRange && !info.sensor_model)) return FALSE;
   coder.geometry = *geometry;
   decoded->is_organised = geometry == Geometry::kRange;

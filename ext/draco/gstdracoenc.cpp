@@ -116,7 +116,8 @@ static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* clou
   coder.with_intensity = with_intensity != FALSE;
   coded->refusal =
       "geometry=range needs a field range:U32 and a sensor-model with as many beams and at least "
-      "as many columns, xyz the fields x, y and z as F32 side by side; geometry=auto chooses";
+      "as many columns; geometry=xyz needs the fields x, y and z as F32 side by side; "
+      "geometry=auto chooses";
   std::optional<Geometry> geometry = settings.wanted_geometry();
   if (info.sensor_model && info.width > info.sensor_model->columns_per_scan) {
     if (geometry == Geometry::kRange) return FALSE;

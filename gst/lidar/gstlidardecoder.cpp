@@ -138,7 +138,7 @@ static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                                    cloud->framerate_n,
                                    cloud->framerate_d,
                                    model.get()};
-  decoded->refusal = "the coder is another";
+  decoded->refusal = "they belong to another coder";
   if (!GST_LIDAR_DECODER_GET_CLASS(self)->set_format(self, caps, &format, decoded)) return false;
   // Rows of pixels may have gaps in any slice, and the caps should not change with them.
   cloud->is_dense = decoded->is_organised == FALSE;
@@ -159,7 +159,7 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   stream.cloud.reset();
   if (!stream.refused.Note(caps)) return FALSE;
   GST_ELEMENT_ERROR(self, STREAM, FORMAT,
-                    ("The caps of this stream cannot be decoded: %s.", decoded.refusal),
+                    ("A stream with these caps cannot be decoded: %s.", decoded.refusal),
                     ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
   return FALSE;
 }
@@ -279,7 +279,7 @@ static bool MayDecode(GstLidarDecoder* self, gdouble max_load) {
   if (!std::exchange(state.stream.warned_of_load, true))
     GST_ELEMENT_WARNING(self, STREAM, DECODE,
                         ("Decoding this stream takes more than max-decode-load=%g of a processor. "
-                         "Slices are dropped; raise it, or look at the sender.",
+                         "Slices are dropped; raise max-decode-load, or check the sender.",
                          max_load),
                         (nullptr));
   return false;

@@ -122,7 +122,7 @@ static CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) 
     const GstLidarCloudFormat cloud{info->width,    info->height,      info->point_step,
                                     fields.c_str(), info->framerate_n, info->framerate_d,
                                     model.get()};
-    coded.refusal = "the coder cannot take it";
+    coded.refusal = "the coder does not accept it";
     if (!GST_LIDAR_ENCODER_GET_CLASS(self)->set_format(self, &cloud, settings.intensity_bits > 0,
                                                        &coded)) {
       if (coded.caps != nullptr) gst_caps_unref(coded.caps);

@@ -46,7 +46,7 @@ static gboolean SetFormat(GstLidarDecoder* base, GstCaps* caps, const GstLidarCl
   coder.format = {{info.fields, info.point_step}, info.height, info.sensor_model};
   const gchar* geometry = gst_structure_get_string(gst_caps_get_structure(caps, 0), "geometry");
   coder.has_points = g_strcmp0(geometry, "xyz") == 0;
-  decoded->refusal = "with geometry=range they lack a sensor-model";
+  decoded->refusal = "geometry=range needs a sensor-model";
   decoded->is_organised = !coder.has_points;
   return coder.has_points || info.sensor_model.has_value();
 }

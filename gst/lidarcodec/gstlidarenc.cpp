@@ -149,13 +149,13 @@ static void WarnOfFields(GstLidarEncoder* base, const LidarEncSettings& settings
   if ((!is_vain && missing.empty()) || std::exchange(state.warned_of_fields, true)) return;
   if (is_vain)
     GST_ELEMENT_WARNING(base, STREAM, ENCODE,
-                        ("This cloud is coded as ranges, without the further fields and the order "
-                         "that fields and keep-order ask for. Set geometry=xyz."),
+                        ("This cloud is coded as ranges, so the properties fields and keep-order "
+                         "have no effect. Set geometry=xyz."),
                         (nullptr));
   else
     GST_ELEMENT_WARNING(base, STREAM, ENCODE,
                         ("The property fields names %s, which this cloud lacks.", missing.c_str()),
-                        ("it has %s", fields.ToString().c_str()));
+                        ("the cloud has %s", fields.ToString().c_str()));
 }
 
 static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* cloud,

@@ -73,8 +73,8 @@ ModeCoefficients ReadMode(const Json& json, const std::string& path, Reader* rea
   mode.intensity = reader->Numbers<2>(json, path, "intensity");
   mode.intensity_returns = reader->Number(json, path, "intensity-returns");
   if (!(mode.min_x < mode.max_x)) reader->Fail(path + "log2-step-range is empty");
-  if (mode.intensity[1] < 0) reader->Fail(path + "intensity: sizes fall with the bits");
-  if (!mode.Falls()) reader->Fail(path + "step: sizes do not fall with the step");
+  if (mode.intensity[1] < 0) reader->Fail(path + "intensity: sizes must not fall as the bits grow");
+  if (!mode.Falls()) reader->Fail(path + "step: sizes must fall as the step grows");
   return mode;
 }
 
@@ -144,7 +144,7 @@ std::optional<ModelFile> ParseModelFile(std::string_view text, std::string* erro
   if (json.contains("adaptive"))
     file.adaptive = ReadAdaptive(reader.Object(json, "", "adaptive"), &reader);
   if (json.contains("paper")) file.paper = ReadPaper(reader.Object(json, "", "paper"), &reader);
-  if (!file.adaptive && !file.paper) reader.Fail("neither \"adaptive\" nor \"paper\" is there");
+  if (!file.adaptive && !file.paper) reader.Fail("\"adaptive\" and \"paper\" are both missing");
   if (!reader.ok()) return std::nullopt;
   return file;
 }

@@ -31,9 +31,10 @@ std::optional<GstLidarRawSlice> CloudInput::Read(GstLidarEncoder* encoder, const
   }
   const gsize row = gsize{info_.point_step} * info_.height;
   if (map.size() % row != 0 || (info_.width > 0 && map.size() != info_.FrameSize())) {
-    GST_ELEMENT_ERROR(encoder, STREAM, ENCODE, ("A buffer does not hold the cloud of its caps."),
-                      ("%" G_GSIZE_FORMAT " bytes for %u x %u points of %u bytes", map.size(),
-                       info_.width, info_.height, info_.point_step));
+    GST_ELEMENT_ERROR(
+        encoder, STREAM, ENCODE, ("A buffer does not match its caps."),
+        ("it has %" G_GSIZE_FORMAT " bytes, but the caps describe %u x %u points of %u bytes",
+         map.size(), info_.width, info_.height, info_.point_step));
     return std::nullopt;
   }
   CheckRanges(encoder, map.view(), slice.first_column);
@@ -49,8 +50,8 @@ void CloudInput::CheckRanges(GstLidarEncoder* encoder, ByteView raw, guint first
   if (!found) return;
   warned_of_ranges_ = true;
   GST_ELEMENT_WARNING(encoder, STREAM, ENCODE,
-                      ("The points of this cloud are not where its ranges and its sensor-model put "
-                       "them, and ranges are what is sent. Set geometry=xyz."),
+                      ("The points of this cloud do not match its ranges and its sensor-model, but "
+                       "only ranges are sent. Set geometry=xyz."),
                       ("the point of beam %u, column %u is %f m away", found->beam, found->column,
                        found->distance_m));
 }

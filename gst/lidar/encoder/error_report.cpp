@@ -37,15 +37,16 @@ std::optional<PointErrors> ErrorReport::Measure(const CloudInfo& info, ByteView 
 
 void ErrorReport::Warn(const CheckedSlice& slice, const std::optional<PointErrors>& errors) {
   if (!errors) {
-    GST_ELEMENT_WARNING(encoder_, STREAM, ENCODE,
-                        ("An encoded slice cannot be decoded. Use another coder, and report it."),
-                        ("slice %u of scan %u", slice.slice_index, slice.scan_id));
+    GST_ELEMENT_WARNING(
+        encoder_, STREAM, ENCODE,
+        ("An encoded slice cannot be decoded. Use another coder, and report this as a bug."),
+        ("slice %u of scan %u", slice.slice_index, slice.scan_id));
     return;
   }
   GST_ELEMENT_WARNING(
       encoder_, STREAM, ENCODE,
-      ("Points came back farther from where they were than max-error. If the cloud was moved after "
-       "the sensor, set geometry=xyz; else report it."),
+      ("Decoded points are farther from the original points than max-error. If an element has "
+       "moved the points, set geometry=xyz; otherwise report this as a bug."),
       ("slice %u of scan %u: %f m where %f m are allowed; %" G_GUINT64_FORMAT " points missing",
        slice.slice_index, slice.scan_id, errors->max_m, slice.max_error_m, errors->missing));
 }

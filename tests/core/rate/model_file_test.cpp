@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{R"({"format": "gst-lidar-rate-model", "version": 0})", "positive integer"},
         BadFile{R"({"format": "gst-lidar-rate-model", "version": -1})", "positive integer"},
         BadFile{R"({"format": "gst-lidar-rate-model", "version": 1.5})", "positive integer"},
-        BadFile{"{" HEADER "}", "neither"},
+        BadFile{"{" HEADER "}", "both missing"},
         BadFile{"{" HEADER R"(, "adaptive": 5})", "adaptive is missing or not an object"},
         BadFile{"{" HEADER R"(, "adaptive": {"modes": {}}})", "adaptive.fallback"},
         BadFile{"{" HEADER
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "step[1] is not a number"},
         BadFile{"{" HEADER
                 R"(, "adaptive": {"modes": {}, "fallback": )" MODE("[1, 1, 0, 0]", "[0, 1]") "}}",
-                "do not fall"},
+                "must fall as the step grows"},
         BadFile{"{" HEADER
                 R"(, "adaptive": {"modes": {}, "fallback": )" MODE("[1, -1, 0, 0]", "[1, 1]") "}}",
                 "range is empty"},
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
                 )"
                 R"("log2-step-range": [0, 1], "returns": 1, "intensity": [1, -2],
                 "intensity-returns": 1}}})",
-                "fall with the bits"},
+                "must not fall as the bits grow"},
         BadFile{"{" HEADER R"(, "paper": {"geometries": {}}})", "empty"},
         BadFile{"{" HEADER R"(, "paper": {"geometries": {"xyz": {"alpha": [1], "beta": 2}}}})",
                 "list of 9"},
