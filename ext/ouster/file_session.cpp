@@ -20,7 +20,7 @@ bool FileSession::Open() {
     return true;
   }
   GST_ELEMENT_ERROR(element(), RESOURCE, OPEN_READ,
-                    ("Cannot read the capture %s: %s", path.c_str(), why.c_str()),
+                    ("Cannot read the capture %s: %s.", path.c_str(), why.c_str()),
                     ("it must be a pcap or pcapng file, as 'tcpdump -i eth0 -s 0 -w FILE udp' "
                      "writes where the sensor's packets arrive"));
   return false;
@@ -60,7 +60,7 @@ GstFlowReturn FileSession::GoToTarget() {
   stream()->Reposition();
   if (place && pcap_->Reposition(place->first, place->offset)) return GST_FLOW_OK;
   GST_ELEMENT_ERROR(element(), RESOURCE, SEEK,
-                    ("Cannot go to another place in %s", settings().location.c_str()), (nullptr));
+                    ("Cannot seek in the capture %s.", settings().location.c_str()), (nullptr));
   return GST_FLOW_ERROR;
 }
 
@@ -90,7 +90,8 @@ bool FileSession::WaitUntil(GstClockTime running_time) {
 void FileSession::WarnIfCutShort() {
   if (pcap_->error().empty() || cut_reported_) return;
   cut_reported_ = true;
-  GST_ELEMENT_WARNING(element(), STREAM, DECODE, ("%s is cut short", settings().location.c_str()),
+  GST_ELEMENT_WARNING(element(), STREAM, DECODE,
+                      ("The capture %s is cut short.", settings().location.c_str()),
                       ("%s", pcap_->error().c_str()));
 }
 
@@ -100,16 +101,17 @@ GstFlowReturn FileSession::EndOfCapture() {
       "set the property metadata to the file that was saved with the capture";
   if (!pcap_->found_lidar_packets()) {
     GST_ELEMENT_ERROR(element(), STREAM, WRONG_TYPE,
-                      ("%s is no capture of the sensor in the metadata: %s", path,
+                      ("The capture %s does not match the metadata: %s.", path,
                        pcap_->DescribeContents().c_str()),
                       ("%s", kRemedy));
     return GST_FLOW_ERROR;
   }
   if (stream()->batcher().stats().packets == 0) {
-    GST_ELEMENT_ERROR(element(), STREAM, WRONG_TYPE,
-                      ("%s holds packets of another sensor than the metadata's (serial number %s)",
-                       path, stream()->metadata().serial_text.c_str()),
-                      ("%s", kRemedy));
+    GST_ELEMENT_ERROR(
+        element(), STREAM, WRONG_TYPE,
+        ("The capture %s has packets of another sensor than the metadata (serial number %s).", path,
+         stream()->metadata().serial_text.c_str()),
+        ("%s", kRemedy));
     return GST_FLOW_ERROR;
   }
   WarnIfCutShort();
@@ -150,10 +152,10 @@ GstFlowReturn FileSession::Take(const PcapFeed::Packet& packet) {
   const ByteView payload{packet.payload.data(), packet.payload.size()};
   if (Push(payload, arrival) != ouster::PacketVerdict::kNewInitId) return GST_FLOW_OK;
   if (!restart_reported_)
-    GST_ELEMENT_WARNING(element(), STREAM, WRONG_TYPE,
-                        ("The sensor was restarted or reconfigured between its metadata and its "
-                         "packets"),
-                        ("points are right as long as its mode and profile are the same"));
+    GST_ELEMENT_WARNING(
+        element(), STREAM, WRONG_TYPE,
+        ("The sensor was restarted or reconfigured between its metadata and its packets."),
+        ("points are right as long as its mode and profile are the same"));
   restart_reported_ = true;
   stream()->AcceptNewInitId();
   Push(payload, arrival);

@@ -81,7 +81,7 @@ std::string BaseUrl(std::string host) {
 std::unique_ptr<HttpClient> HttpClient::Create(const std::string& host, std::string* error) {
   std::string base_url = BaseUrl(host);
   if (base_url.empty()) {
-    *error = "hostname \"" + host + "\" is no name or address of a sensor";
+    *error = "hostname \"" + host + "\" is not a host name or an address";
     return nullptr;
   }
   return std::unique_ptr<HttpClient>(new HttpClient(std::move(base_url)));
@@ -135,7 +135,8 @@ std::string HttpClient::Escape(const std::string& text) {
 HttpResponse HttpClient::Perform(const std::string& path, const std::string* json) {
   HttpResponse response;
   if (curl_ == nullptr || multi_ == nullptr) {
-    response.error = "too little memory, or too few file descriptors, to ask " + base_url_;
+    response.error =
+        "too little memory, or too few file descriptors, to send a request to " + base_url_;
     return response;
   }
   const std::string url = base_url_ + "/api/v1/" + path;
@@ -161,12 +162,12 @@ HttpResponse HttpClient::Perform(const std::string& path, const std::string* jso
   response.body = std::move(answer.body);
   response.ok = code == CURLE_OK && response.status >= 200 && response.status < 300;
   if (answer.too_large)
-    response.error = url + " answers with more than any sensor has to say";
+    response.error = url + " answers with more data than any sensor";
   else if (code != CURLE_OK)
     response.error =
         base_url_ + ": " + (message[0] != '\0' ? message.data() : curl_easy_strerror(code));
   else if (!response.ok)
-    response.error = url + " answers with status " + std::to_string(response.status);
+    response.error = url + " answers with HTTP status " + std::to_string(response.status);
   return response;
 }
 

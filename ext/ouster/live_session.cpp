@@ -81,7 +81,8 @@ bool LiveSession::Open() {
   if (!CanOpenFiles(wanted)) {
     GST_ELEMENT_ERROR(
         element(), RESOURCE, NO_SPACE_LEFT,
-        ("The process may open too few files: fewer than %" G_GSIZE_FORMAT " are left", wanted),
+        ("The process has too few file descriptors left: ouster_src needs %" G_GSIZE_FORMAT ".",
+         wanted),
         ("raise the limit: ulimit -n 1024"));
     return false;
   }
@@ -103,7 +104,8 @@ bool LiveSession::OpenLink() {
   link_ = SensorLink::Create(
       settings(), [this] { udp_.Wake(); }, &why);
   if (!link_) {
-    GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("%s", why.c_str()), (nullptr));
+    GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("Cannot ask the sensor: %s.", why.c_str()),
+                      (nullptr));
     return false;
   }
   link_->Request();
@@ -122,17 +124,17 @@ bool LiveSession::OpenSockets(const ouster::Metadata& metadata) {
   if (udp_.IsOpen(ports)) return true;
   const auto opened = udp_.Open(s, ports);
   if (!opened.error.empty()) {
-    GST_ELEMENT_ERROR(element(), RESOURCE, OPEN_READ, ("%s", opened.error.c_str()), (nullptr));
+    GST_ELEMENT_ERROR(element(), RESOURCE, OPEN_READ, ("%s.", opened.error.c_str()), (nullptr));
     return false;
   }
   if (!opened.imu_error.empty())
-    GST_ELEMENT_WARNING(element(), RESOURCE, OPEN_READ, ("%s", opened.imu_error.c_str()),
-                        ("going on without IMU; imu=false turns this off"));
+    GST_ELEMENT_WARNING(element(), RESOURCE, OPEN_READ, ("%s.", opened.imu_error.c_str()),
+                        ("the stream goes on without IMU samples; imu=false avoids this warning"));
   receive_buffer_ = opened.granted_buffer;
   if (opened.granted_buffer < s.buffer_size)
     GST_ELEMENT_WARNING(
         element(), RESOURCE, SETTINGS,
-        ("The kernel granted a receive buffer of %u bytes instead of %u: packets may be lost",
+        ("The kernel granted a receive buffer of %u bytes instead of %u: packets may be lost.",
          opened.granted_buffer, s.buffer_size),
         ("raise it with: sysctl -w net.core.rmem_max=%u", s.buffer_size));
   return true;
@@ -201,15 +203,16 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   }
   const std::string why = Readable(result.error.text);
   if (result.error.permanent) {
-    GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("%s", why.c_str()),
-                      ("of the sensor %s", settings().hostname.c_str()));
+    GST_ELEMENT_ERROR(
+        element(), RESOURCE, SETTINGS,
+        ("The sensor %s cannot be used: %s.", settings().hostname.c_str(), why.c_str()), (nullptr));
     return false;
   }
   if (!settings().reconnect) {
     GST_ELEMENT_ERROR(
         element(), RESOURCE, OPEN_READ,
-        ("Cannot talk to the sensor %s: %s", settings().hostname.c_str(), why.c_str()),
-        ("is it powered, and is its name or address right?"));
+        ("Cannot talk to the sensor %s: %s.", settings().hostname.c_str(), why.c_str()),
+        ("is the sensor powered, and is its name or address right?"));
     return false;
   }
   // The API may be down while packets continue.
@@ -218,22 +221,22 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   if (!std::exchange(api_reported_, true))
     GST_ELEMENT_WARNING(
         element(), RESOURCE, OPEN_READ,
-        ("Cannot talk to the sensor %s: %s", settings().hostname.c_str(), why.c_str()),
-        ("asking again until it answers; is it powered, and is its name right?"));
+        ("Cannot talk to the sensor %s: %s.", settings().hostname.c_str(), why.c_str()),
+        ("ouster_src asks again until the sensor answers; is the sensor powered, and is its name "
+         "or address right?"));
   return true;
 }
 
 /// Returns true if the session waits for the stream. Posts an error and returns false without
 /// `reconnect`, or if no packet ever came, because a setting is wrong then.
 bool LiveSession::WaitWhileSwitchedOff() {
-  constexpr const char* kOff = "the sensor's lidar stream is switched off";
   if (heard_ && settings().reconnect) {
-    SetConnected(false, kOff);
+    SetConnected(false, "the sensor's lidar stream is switched off");
     return true;
   }
-  GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("%s", kOff),
-                    ("it has no udp_dest, port 0 or udp_profile_lidar OFF; udp-dest=@auto, "
-                     "lidar-port and udp-profile-lidar turn it on"));
+  GST_ELEMENT_ERROR(element(), RESOURCE, SETTINGS, ("The sensor's lidar stream is switched off."),
+                    ("its udp_dest is empty, its udp_port_lidar is 0 or its udp_profile_lidar is "
+                     "OFF; set udp-dest=@auto, lidar-port or udp-profile-lidar"));
   return false;
 }
 
@@ -270,7 +273,7 @@ void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arriv
   if ((link_ || may_be_another) && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
   new_init_id_us_ = 0;
   GST_ELEMENT_WARNING(element(), STREAM, WRONG_TYPE,
-                      ("The sensor restarted or was reconfigured since its metadata was read"),
+                      ("The sensor restarted or was reconfigured since its metadata was read."),
                       ("points are right as long as its mode and profile are the same"));
   stream()->AcceptNewInitId();
   Push(payload, arrival);
@@ -282,12 +285,13 @@ void LiveSession::HandleWrongSize(gsize size) {
   if (size_reported_ || link_) return;
   size_reported_ = true;
   const ouster::Metadata& m = stream()->metadata();
-  GST_ELEMENT_WARNING(
-      element(), STREAM, WRONG_TYPE,
-      ("Packets of %" G_GSIZE_FORMAT " bytes come where the metadata asks for %" G_GSIZE_FORMAT,
-       size, m.format.packet_size()),
-      ("is it the metadata of this sensor (%s, %s), and of the profile and mode it is in now?",
-       m.serial_text.c_str(), std::string(ToString(m.format.profile)).c_str()));
+  GST_ELEMENT_WARNING(element(), STREAM, WRONG_TYPE,
+                      ("Packets of %" G_GSIZE_FORMAT
+                       " bytes arrive, but the metadata describes packets of %" G_GSIZE_FORMAT ".",
+                       size, m.format.packet_size()),
+                      ("is the metadata (serial number %s, profile %s) from this sensor, and from "
+                       "its present profile and mode?",
+                       m.serial_text.c_str(), std::string(ToString(m.format.profile)).c_str()));
 }
 
 void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now) {
@@ -327,19 +331,21 @@ bool LiveSession::CheckSilence() {
   const std::string where =
       destination_.empty() ? std::string() : "; the sensor sends to " + destination_;
   if (!settings().reconnect) {
-    GST_ELEMENT_ERROR(element(), RESOURCE, READ,
-                      ("No packets from the sensor on UDP port %u for %" G_GINT64_FORMAT " ms%s",
-                       udp_.port(), silence / 1000, where.c_str()),
-                      ("is it powered, and does it send here? udp-dest=@auto tells it to"));
+    GST_ELEMENT_ERROR(
+        element(), RESOURCE, READ,
+        ("No packets from the sensor on UDP port %u for %" G_GINT64_FORMAT " ms%s.", udp_.port(),
+         silence / 1000, where.c_str()),
+        ("is the sensor powered, and does it send to this port? udp-dest=@auto makes it do so"));
     return false;
   }
   if (connected_) stream()->Flush();
   SetConnected(false, "no packets" + where);
   if (!silence_reported_) {
     silence_reported_ = true;
-    GST_ELEMENT_WARNING(element(), RESOURCE, READ,
-                        ("No packets from the sensor on UDP port %u%s", udp_.port(), where.c_str()),
-                        ("is it powered, and does it send here? udp-dest=@auto tells it to"));
+    GST_ELEMENT_WARNING(
+        element(), RESOURCE, READ,
+        ("No packets from the sensor on UDP port %u%s.", udp_.port(), where.c_str()),
+        ("is the sensor powered, and does it send to this port? udp-dest=@auto makes it do so"));
   }
   Ask();
   return true;
@@ -361,7 +367,7 @@ GstFlowReturn LiveSession::Poll() {
       if (flushing_) return GST_FLOW_FLUSHING;
       break;
     case UdpFeed::Outcome::kError:
-      GST_ELEMENT_ERROR(element(), RESOURCE, READ, ("Receiving failed: %s", g_strerror(errno)),
+      GST_ELEMENT_ERROR(element(), RESOURCE, READ, ("Receiving failed: %s.", g_strerror(errno)),
                         (nullptr));
       return GST_FLOW_ERROR;
     case UdpFeed::Outcome::kPackets:

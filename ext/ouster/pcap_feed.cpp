@@ -56,13 +56,12 @@ bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
 }
 
 std::string PcapFeed::DescribeContents() const {
-  if (sizes_.empty()) return "it holds no whole UDP datagrams (tcpdump -s 0 leaves them whole)";
+  if (sizes_.empty()) return "it has no whole UDP datagrams (tcpdump -s 0 captures whole ones)";
   const auto most = std::max_element(
       sizes_.begin(), sizes_.end(),
       [](const auto& a, const auto& b) { return a.second * a.first < b.second * b.first; });
-  return "it holds " + std::to_string(most->second) + " datagrams of " +
-         std::to_string(most->first) + " bytes where the metadata asks for packets of " +
-         std::to_string(packet_size_) + " bytes";
+  return "it has " + std::to_string(most->second) + " datagrams of " + std::to_string(most->first) +
+         " bytes, but the metadata describes packets of " + std::to_string(packet_size_) + " bytes";
 }
 
 }  // namespace lidar::gst

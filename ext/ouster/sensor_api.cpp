@@ -46,7 +46,7 @@ std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
   if (!s.azimuth_window.empty()) {
     const auto window = ParseWindow(s.azimuth_window);
     if (!window) {
-      *error = {"azimuth-window is not like \"180000,360000\" [millidegrees]", true};
+      *error = {"azimuth-window must be like \"180000,360000\" [millidegrees]", true};
       return std::nullopt;
     }
     wanted["azimuth_window"] = *window;
@@ -73,7 +73,7 @@ std::optional<ouster::Metadata> SensorApi::FetchMetadata(ApiError* error) {
   const HttpResponse response = client_.Get("sensor/metadata");
   if (!response.ok) {
     const bool too_old = response.status == kNotFound;
-    *error = {response.error + (too_old ? "; is its firmware older than 2.1?" : ""), too_old};
+    *error = {response.error + (too_old ? "; its firmware may be older than 2.1" : ""), too_old};
     return std::nullopt;
   }
   std::string why;
@@ -109,7 +109,7 @@ std::optional<std::string> SensorApi::ResolveAuto(ApiError* error) {
   const json staged = ParseObject(*text);
   if (staged.contains("udp_dest") && staged["udp_dest"].is_string())
     return staged["udp_dest"].get<std::string>();
-  *error = {"the sensor does not say which udp_dest it found", false};
+  *error = {"the sensor does not report the udp_dest that it chose for @auto", false};
   return std::nullopt;
 }
 
@@ -127,7 +127,7 @@ bool SensorApi::WriteConfig(const std::string& text, ApiError* error) {
   }
   if (response.ok) return true;
   const bool refused = response.status >= 400 && response.status < 500;
-  *error = {"the sensor does not take the configuration " + text + ": " + response.error +
+  *error = {"the sensor does not accept the configuration " + text + ": " + response.error +
                 (refused ? " " + response.body.substr(0, 200) : ""),
             refused};
   return false;
@@ -135,7 +135,7 @@ bool SensorApi::WriteConfig(const std::string& text, ApiError* error) {
 
 bool SensorApi::WaitUntilRunning(const std::function<bool()>& sleep, ApiError* error) {
   constexpr int kAttempts = 90;  // time for a motor to spin up
-  std::string last = "silent";
+  std::string last = "unknown";
   for (int i = 0; i < kAttempts; ++i) {
     const HttpResponse response = client_.Get("sensor/metadata");
     const json root = ParseObject(response.body);
@@ -147,8 +147,9 @@ bool SensorApi::WaitUntilRunning(const std::function<bool()>& sleep, ApiError* e
     }
     if (!sleep()) break;
   }
-  *error = {"the sensor is not running again after its configuration was changed, but " + last,
-            false};
+  *error = {
+      "the sensor does not run again after its configuration was changed; its status is " + last,
+      false};
   return false;
 }
 
@@ -171,7 +172,7 @@ bool SensorApi::Configure(const OusterSettings& settings, const std::function<bo
   if (!text) return false;
   const json refused = Missing(*wanted, ParseObject(*text));
   if (refused.empty()) return true;
-  *error = {"the sensor did not take " + Write(refused), true};
+  *error = {"the sensor did not apply " + Write(refused), true};
   return false;
 }
 

@@ -24,7 +24,7 @@ std::unique_ptr<SensorLink> SensorLink::Create(const OusterSettings& settings,
   try {
     link->thread_ = std::thread([raw = link.get()] { raw->Run(); });
   } catch (const std::system_error& e) {
-    *error = std::string("Cannot start a thread to ask the sensor: ") + e.what();
+    *error = std::string("cannot start a thread: ") + e.what();
     return nullptr;
   }
   return link;

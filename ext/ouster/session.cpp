@@ -79,7 +79,7 @@ std::optional<ouster::Metadata> Session::LoadMetadata() {
   const std::string path = settings_.MetadataPath();
   if (path.empty()) {
     GST_ELEMENT_ERROR(element_, RESOURCE, SETTINGS,
-                      ("None of hostname, metadata and location is set"),
+                      ("None of hostname, metadata and location is set."),
                       ("set hostname to the sensor, or metadata to what "
                        "'curl http://SENSOR/api/v1/sensor/metadata' prints"));
     return std::nullopt;
@@ -88,21 +88,22 @@ std::optional<ouster::Metadata> Session::LoadMetadata() {
   if (!text && settings_.from_file() && access(settings_.location.c_str(), R_OK) != 0) {
     GST_ELEMENT_ERROR(
         element_, RESOURCE, NOT_FOUND,
-        ("Cannot read the capture %s: %s", settings_.location.c_str(), g_strerror(errno)),
+        ("Cannot read the capture %s: %s.", settings_.location.c_str(), g_strerror(errno)),
         (nullptr));
     return std::nullopt;
   }
   if (!text) {
-    GST_ELEMENT_ERROR(element_, RESOURCE, NOT_FOUND, ("Cannot read the metadata %s", path.c_str()),
+    GST_ELEMENT_ERROR(element_, RESOURCE, NOT_FOUND, ("Cannot read the metadata %s.", path.c_str()),
                       ("set the property metadata to the sensor's JSON file"));
     return std::nullopt;
   }
   std::string why;
   auto metadata = ouster::ParseMetadata(*text, &why);
   if (!metadata)
-    GST_ELEMENT_ERROR(element_, STREAM, WRONG_TYPE,
-                      ("%s is no metadata of an Ouster sensor: %s", path.c_str(), why.c_str()),
-                      ("'curl http://SENSOR/api/v1/sensor/metadata' gives a sensor's own"));
+    GST_ELEMENT_ERROR(
+        element_, STREAM, WRONG_TYPE,
+        ("%s is not the metadata of an Ouster sensor: %s.", path.c_str(), why.c_str()),
+        ("'curl http://SENSOR/api/v1/sensor/metadata' prints the metadata of a sensor"));
   return metadata;
 }
 
@@ -114,13 +115,14 @@ bool Session::SetMetadata(ouster::Metadata metadata) {
     if (image) {
       options->points.mask_image.assign(image->begin(), image->end());
     } else {
-      why = "Cannot read the mask " + settings_.mask_location;
+      why = "cannot read the mask " + settings_.mask_location;
       options.reset();
     }
   }
   auto next = options ? ouster::SensorStream::Create(std::move(metadata), *options, &why) : nullptr;
   if (!next) {
-    GST_ELEMENT_ERROR(element_, RESOURCE, SETTINGS, ("%s", why.c_str()), (nullptr));
+    GST_ELEMENT_ERROR(element_, RESOURCE, SETTINGS,
+                      ("The settings cannot be used: %s.", why.c_str()), (nullptr));
     return false;
   }
   if (stream_) {

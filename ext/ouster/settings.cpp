@@ -118,12 +118,12 @@ std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& s, st
   options.points.channels = *std::move(channels);
   auto sectors = ouster::ParseSectors(s.azimuth_sectors);
   if (!sectors) {
-    *error = "azimuth-sectors is not like \"0-90,270-360\" [degrees]";
+    *error = "azimuth-sectors must be like \"0-90,270-360\" [degrees]";
     return std::nullopt;
   }
   options.points.sectors = *std::move(sectors);
   if (s.max_range > 0 && s.max_range <= s.min_range) {
-    *error = "max-range is not above min-range";
+    *error = "max-range must be above min-range";
     return std::nullopt;
   }
   options.points.returns = static_cast<ouster::Return>(s.returns);

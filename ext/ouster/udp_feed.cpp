@@ -16,9 +16,9 @@ std::string Explain(const GError& error, guint port) {
   std::string text = "Cannot receive on UDP port " + std::to_string(port) + ": " + error.message;
   if (g_error_matches(&error, G_IO_ERROR, G_IO_ERROR_ADDRESS_IN_USE))
     text +=
-        "; another program receives there, or an ouster_src with another address or "
-        "multicast-group: stop it, set another lidar-port (with hostname, the sensor is told), or "
-        "have the sensor send to a multicast-group";
+        "; another program receives on this port, or an ouster_src with another address or "
+        "multicast-group: stop it, set another lidar-port (with hostname, it is also set on the "
+        "sensor), or let the sensor send to a multicast-group";
   return text;
 }
 

@@ -39,13 +39,13 @@ std::optional<PixelMask> ParseMaskImage(ByteView pgm, const Metadata& metadata,
   const auto height = width ? ReadNumber(&rest) : std::nullopt;
   const auto brightest = height ? ReadNumber(&rest) : std::nullopt;
   if (!brightest || *brightest == 0 || *brightest > 255) {
-    *error = "the mask is no binary PGM of 8 bit";
+    *error = "the mask is not a binary PGM image with 8 bits a pixel";
     return std::nullopt;
   }
   rest = rest.Sub(1);  // a single white space ends the header
   if (*width != columns || *height != beams || rest.size < pixels) {
-    *error = "the mask is not " + std::to_string(columns) + " x " + std::to_string(beams) +
-             " pixels, as the sensor's scans are";
+    *error = "the mask must have " + std::to_string(columns) + " x " + std::to_string(beams) +
+             " pixels, as the sensor's scans";
     return std::nullopt;
   }
   PixelMask mask(pixels);

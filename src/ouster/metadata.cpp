@@ -171,11 +171,11 @@ class Builder {
     m_.format.beams = CountOr("pixels_per_column", listed, SensorModel::kMaxBeams);
     m_.format.columns_per_packet = CountOr("columns_per_packet", 16, 65535);
     if (m_.format.beams == 0 || m_.format.columns_per_packet == 0)
-      return Fail("lidar_data_format has no pixels_per_column or columns_per_packet");
+      return Fail("lidar_data_format.pixels_per_column or columns_per_packet is missing or wrong");
     if (std::size_t{m_.format.beams} * m_.model.columns_per_scan > kMaxPixels)
-      return Fail("lidar_data_format gives scans larger than any sensor's");
+      return Fail("lidar_data_format describes scans larger than any sensor's");
     if (m_.format.packet_size() > PacketFormat::kMaxPacketSize)
-      return Fail("lidar_data_format gives packets larger than UDP can carry");
+      return Fail("lidar_data_format describes packets larger than UDP can carry");
     m_.switched_off = m_.format.profile == Profile::kOff || GoesNowhere();
     m_.model.range_unit_mm = m_.format.range_unit_mm();
     ReadImuFormat();
@@ -209,7 +209,7 @@ class Builder {
     };
     if (!window->is_array() || window->size() != 2 || !is_column((*window)[0]) ||
         !is_column((*window)[1]))
-      return Fail("lidar_data_format.column_window is not two columns of the scan");
+      return Fail("lidar_data_format.column_window must be two columns of the scan");
     const auto first = (*window)[0].get<std::uint32_t>();
     const auto last = (*window)[1].get<std::uint32_t>();
     m_.window = {first, (last + columns - first) % columns + 1};
@@ -221,7 +221,7 @@ class Builder {
     const json* list = document_.Find(kBeams, key);
     const std::string name = std::string("beam_intrinsics.") + key;
     if (list == nullptr || !list->is_array() || list->size() != m_.format.beams)
-      return Fail(name + " must list pixels_per_column beams");
+      return Fail(name + " must be a list with an entry for each beam (pixels_per_column)");
     const auto take = [&](const json& v) {
       if (!v.is_number()) return false;
       const auto degrees = v.get<double>();
@@ -232,13 +232,13 @@ class Builder {
     for (const json& beam : *list) {
       if (beam.is_array() != *per_pixel) return Fail(name + " mixes numbers and lists");
       if (!*per_pixel) {
-        if (!take(beam)) return Fail(name + " holds something that is no angle");
+        if (!take(beam)) return Fail(name + " has an entry that is not an angle");
         continue;
       }
       if (beam.size() != m_.model.columns_per_scan)
-        return Fail(name + " must list an angle a column");
+        return Fail(name + " must list an angle for each column of the scan");
       if (!std::all_of(beam.begin(), beam.end(), take))
-        return Fail(name + " holds something that is no angle");
+        return Fail(name + " has an entry that is not an angle");
     }
     return true;
   }
@@ -251,7 +251,9 @@ class Builder {
         !ReadAngleList("beam_azimuth_angles", &angles.azimuth_deg, &azimuth_per_pixel))
       return false;
     if (altitude_per_pixel != azimuth_per_pixel)
-      return Fail("beam_altitude_angles and beam_azimuth_angles differ in shape");
+      return Fail(
+          "of beam_altitude_angles and beam_azimuth_angles, one has numbers and the other has "
+          "lists");
     const std::size_t per_beam = altitude_per_pixel ? m_.model.columns_per_scan : 1;
     m_.model.beams.resize(m_.format.beams);
     for (std::size_t i = 0; i < m_.model.beams.size(); ++i) {
@@ -272,7 +274,7 @@ class Builder {
       const json& shift = (*shifts)[i];
       if (!shift.is_number_integer() || shift.get<std::int64_t>() < -limit ||
           shift.get<std::int64_t>() > limit)
-        return Fail("lidar_data_format.pixel_shift_by_row holds something that is no shift");
+        return Fail("lidar_data_format.pixel_shift_by_row has an entry that is not a shift");
       m_.model.beams[i].pixel_shift = shift.get<int>();
     }
     return true;
@@ -288,7 +290,7 @@ class Builder {
       const json& v = (*list)[i];
       const double number = v.is_number() ? v.get<double>() : static_cast<double>(NAN);
       if (!(std::abs(number) <= kMaxTranslationMm))
-        return Fail(std::string(key) + " holds something that is no number of a transform");
+        return Fail(std::string(key) + " has an entry that is not a number of a transform");
       const bool is_translation = i % 4 == 3 && i < 12;
       (*out)[i] = is_translation ? number * 1e-3 : number;
     }

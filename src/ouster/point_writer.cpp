@@ -87,8 +87,9 @@ std::optional<std::vector<std::string>> ParseChannels(std::string_view text, std
   std::vector<std::string> names;
   for (const std::string_view name : Split(text)) {
     if (FindPixelChannel(name) == nullptr && name != kRing && name != kTime && name != kRange) {
-      *error = "there is no channel \"" + std::string(name) +
-               "\"; there are range, reflectivity, signal, near-ir, flags, window, ring and t";
+      *error =
+          "there is no channel \"" + std::string(name) +
+          "\"; the channels are range, reflectivity, signal, near-ir, flags, window, ring and t";
       return std::nullopt;
     }
     if (name != kRange && std::find(names.begin(), names.end(), name) == names.end())

@@ -158,7 +158,7 @@ TEST(Metadata, OfScansLargerThanAnySensorsIsRefused) {
   root["lidar_data_format"]["columns_per_packet"] = 1;
   std::string error;
   EXPECT_FALSE(Parse(root, &error));
-  EXPECT_EQ(error, "lidar_data_format gives scans larger than any sensor's");
+  EXPECT_EQ(error, "lidar_data_format describes scans larger than any sensor's");
 }
 
 TEST(Metadata, PixelsMayHaveAnglesOfTheirOwn) {

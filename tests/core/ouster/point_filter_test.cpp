@@ -156,8 +156,8 @@ TEST_P(Masks, AreBinaryPgmOfTheSizeOfAScan) {
   EXPECT_EQ(error, expected);
 }
 constexpr std::size_t kPixels = std::size_t{32} * 1024;
-constexpr const char* kNoPgm = "the mask is no binary PGM of 8 bit";
-constexpr const char* kNoScan = "the mask is not 1024 x 32 pixels, as the sensor's scans are";
+constexpr const char* kNoPgm = "the mask is not a binary PGM image with 8 bits a pixel";
+constexpr const char* kNoScan = "the mask must have 1024 x 32 pixels, as the sensor's scans";
 INSTANTIATE_TEST_SUITE_P(
     All, Masks,
     ::testing::Values(

@@ -435,7 +435,7 @@ TEST(OusterLive, ASensorThatDoesNotSayWhereItSendsIsAClearError) {
   });
   Receiver receiver(impostor.host(), "udp-dest=@auto reconnect=false");
   const std::string error = receiver.AwaitError();
-  EXPECT_NE(error.find("does not say which udp_dest it found"), std::string::npos) << error;
+  EXPECT_NE(error.find("does not report the udp_dest that it chose"), std::string::npos) << error;
 }
 
 /// Firmware other than that of ouster-replay accepts texts only without quotes.
@@ -454,7 +454,7 @@ TEST(OusterLive, AsksOldFirmwareForWhatIsActiveAndSetsTextsWithoutQuotes) {
     Receiver receiver(impostor.host(), "lidar-mode=512x10");
     error = receiver.AwaitError();
   }
-  EXPECT_NE(error.find("the sensor does not take the configuration"), std::string::npos) << error;
+  EXPECT_NE(error.find("the sensor does not accept the configuration"), std::string::npos) << error;
   EXPECT_EQ(config, "active");
   EXPECT_EQ(set, "lidar_mode 512x10");
 }
@@ -502,7 +502,7 @@ TEST(OusterLive, AsksItsSensorWithoutTheProxyOfTheEnvironment) {
   const Impostor impostor([](const tools::HttpRequest&) { return tools::HttpReply{404, {}, {}}; });
   Receiver receiver(impostor.host(), "reconnect=false");
   const std::string error = receiver.AwaitError();
-  EXPECT_NE(error.find("answers with status 404"), std::string::npos) << error;
+  EXPECT_NE(error.find("answers with HTTP status 404"), std::string::npos) << error;
 }
 
 TEST(OusterLive, AnAnswerOfMoreThanAMebibyteIsCutOff) {

@@ -100,9 +100,10 @@ TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
   const gst::MessagePtr warning = bus.Wait(GST_MESSAGE_WARNING);
   ASSERT_TRUE(warning);
   const std::string text = TextOf(warning.get());
-  EXPECT_NE(text.find("Packets of 6464 bytes come where the metadata asks for"), std::string::npos)
+  EXPECT_NE(text.find("Packets of 6464 bytes arrive, but the metadata describes packets of"),
+            std::string::npos)
       << text;
-  EXPECT_NE(text.find("is it the metadata of this sensor"), std::string::npos) << text;
+  EXPECT_NE(text.find("is the metadata (serial number"), std::string::npos) << text;
   for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[i]);
   const BufferPtr buffer(gst_harness_pull(h.get()));
   EXPECT_TRUE(buffer);
