@@ -157,7 +157,7 @@ const char* NameOf(CloudCompression compression) {
 }
 
 std::optional<cdr::MadeCloud> Decompress(const cdr::CompressedCloud& compressed, std::string* why) {
-  *why = "its compression is none of draco, zlib and zstd, or not built in";
+  *why = "its compression is not draco, zlib or zstd, or support for it was not built";
   if (!IsKnown(compressed.format)) return std::nullopt;
   cdr::MadeCloud made;
   made.cloud = compressed.cloud;

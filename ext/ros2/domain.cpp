@@ -55,7 +55,8 @@ std::unique_ptr<Domain> Domain::Join(std::uint32_t id, std::string* why) {
   if (shared.users == 0) {
     const dds_entity_t made = dds_create_domain(id, Configuration().c_str());
     if (made < 0 && made != DDS_RETCODE_PRECONDITION_NOT_MET) {
-      *why = std::string(dds_strretcode(-made)) + "; is the variable CYCLONEDDS_URI right?";
+      *why = std::string("cannot create the domain: ") + dds_strretcode(-made) +
+             "; check the variable CYCLONEDDS_URI";
       return nullptr;
     }
     shared.entity = made > 0 ? made : 0;

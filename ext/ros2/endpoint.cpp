@@ -89,28 +89,29 @@ bool Node::Open(const EndpointOptions& options, std::string* why) {
   const std::string enclave = "enclave=/;";
   dds_qset_userdata(qos.get(), enclave.data(), enclave.size());
   participant_ = dds_create_participant(options.domain, qos.get(), nullptr);
-  if (!Check(participant_, "no participant", why)) return false;
+  if (!Check(participant_, "cannot create a participant", why)) return false;
   const std::string type_name(cdr::InfoOf(options.type).dds_name);
   topic_ = NewTopic(participant_, {options.topic.c_str(), type_name.c_str()},
                     MaxSizeOf(options.type), &type_);
-  return Check(topic_, "no topic", why);
+  return Check(topic_, "cannot create the topic", why);
 }
 
 bool Node::Announce(const EndpointOptions& options, bool writes, std::string* why) {
   const ddsi_sertype* type = nullptr;
   const dds_entity_t topic =
       NewTopic(participant_, {cdr::kGraphTopic, cdr::kGraphDdsName}, 0, &type);  // no reader
-  if (!Check(topic, "no topic of the graph", why)) return false;
+  if (!Check(topic, "cannot create the topic of the ROS graph", why)) return false;
   const QosPtr qos = MakeQos(true, true, 1);
   const dds_entity_t writer = dds_create_writer(participant_, topic, qos.get(), nullptr);
-  if (!Check(writer, "no writer of the graph", why)) return false;
+  if (!Check(writer, "cannot create a writer for the ROS graph", why)) return false;
   cdr::ParticipantEntities entities;
   entities.participant = GuidOf(participant_);
   entities.node = options.node;
   (writes ? entities.writers : entities.readers).push_back(GuidOf(endpoint_));
   const auto bytes = cdr::WriteParticipantEntities(entities, options.gid_size);
   MessagePtr message = NewMessage(type, {{bytes.data(), bytes.size()}});
-  return Check(dds_writecdr(writer, message.release()), "the graph cannot be told", why);
+  return Check(dds_writecdr(writer, message.release()), "cannot announce the node in the ROS graph",
+               why);
 }
 
 std::unique_ptr<Reader> Reader::Create(const EndpointOptions& options, std::string* why) {
@@ -125,19 +126,22 @@ bool Reader::OpenReader(const EndpointOptions& options, std::string* why) {
   topic_name_ = options.topic;
   type_name_ = std::string(cdr::InfoOf(options.type).dds_name);
   endpoint_ = dds_create_reader(participant_, topic_, EndpointQos(options).get(), nullptr);
-  if (!Check(endpoint_, "no reader", why)) return false;
+  if (!Check(endpoint_, "cannot create a reader", why)) return false;
   dds_set_status_mask(endpoint_, DDS_REQUESTED_INCOMPATIBLE_QOS_STATUS);
   messages_ = dds_create_readcondition(endpoint_, DDS_ANY_STATE);
   guard_ = dds_create_guardcondition(participant_);
   waitset_ = dds_create_waitset(participant_);
   publications_ =
       dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr);
-  if (!Check(publications_, "no reader of publications", why)) return false;
+  if (!Check(publications_, "cannot create a reader of publications", why)) return false;
   const dds_entity_t found = dds_create_readcondition(publications_, DDS_ANY_STATE);
-  return Check(dds_waitset_attach(waitset_, guard_, kWake), "no waitset", why) &&
-         Check(dds_waitset_attach(waitset_, messages_, kMessages), "no waitset", why) &&
-         Check(dds_waitset_attach(waitset_, endpoint_, kStatus), "no waitset", why) &&
-         Check(dds_waitset_attach(waitset_, found, kPublications), "no waitset", why);
+  return Check(dds_waitset_attach(waitset_, guard_, kWake), "cannot attach to a waitset", why) &&
+         Check(dds_waitset_attach(waitset_, messages_, kMessages), "cannot attach to a waitset",
+               why) &&
+         Check(dds_waitset_attach(waitset_, endpoint_, kStatus), "cannot attach to a waitset",
+               why) &&
+         Check(dds_waitset_attach(waitset_, found, kPublications), "cannot attach to a waitset",
+               why);
 }
 
 Reader::Event Reader::Wait() {
@@ -203,7 +207,8 @@ std::unique_ptr<Writer> Writer::Create(const EndpointOptions& options, std::stri
   if (!writer->Open(options, why)) return nullptr;
   writer->endpoint_ =
       dds_create_writer(writer->participant_, writer->topic_, EndpointQos(options).get(), nullptr);
-  if (!Check(writer->endpoint_, "no writer", why) || !writer->Announce(options, true, why))
+  if (!Check(writer->endpoint_, "cannot create a writer", why) ||
+      !writer->Announce(options, true, why))
     return nullptr;
   return writer;
 }

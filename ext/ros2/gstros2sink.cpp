@@ -175,7 +175,7 @@ static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosT
   std::shared_ptr<Writer> writer = Writer::Create(*options, &why);
   if (!writer) {
     GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
-                      ("DDS cannot publish %s: %s", settings.topic.c_str(), why.c_str()),
+                      ("DDS cannot publish %s: %s.", settings.topic.c_str(), why.c_str()),
                       (nullptr));
     return false;
   }
@@ -222,7 +222,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   std::string why;
   auto messages = MessageWriter::Make(*type, caps, &why);
   if (!messages) {
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This cannot be published: %s.", why.c_str()),
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This stream cannot be published: %s.", why.c_str()),
                       ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
@@ -257,12 +257,13 @@ static void NoteIncompatible(GstLidarRos2Sink* self, Writer::Want want) {
     return;
   if (want == Writer::Want::kReliability)
     GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
-                        ("A subscriber of the topic wants what qos=sensor-data does not give."),
-                        ("use qos=reliable"));
+                        ("A subscriber of the topic requires reliable messages, which "
+                         "qos=sensor-data does not offer."),
+                        ("set qos=reliable"));
   else
     GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
-                        ("A subscriber of the topic wants what this element does not give, such as "
-                         "earlier messages (durability transient local)."),
+                        ("A subscriber of the topic requires a QoS that ros2sink does not offer, "
+                         "such as earlier messages (durability transient local)."),
                         ("subscribe with the durability volatile, and without a deadline"));
 }
 
@@ -307,8 +308,8 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   }
   if (!state.warned_refused)
     GST_ELEMENT_WARNING(self, STREAM, FORMAT,
-                        ("A buffer is not as its caps say; such buffers are dropped and counted."),
-                        ("%" G_GSIZE_FORMAT " bytes", gst_buffer_get_size(buffer)));
+                        ("A buffer does not match its caps; such buffers are dropped and counted."),
+                        ("the buffer has %" G_GSIZE_FORMAT " bytes", gst_buffer_get_size(buffer)));
   state.warned_refused = true;
   return GST_FLOW_OK;
 }

@@ -173,7 +173,7 @@ static gboolean Start(GstBaseSrc* base) {
   std::shared_ptr<Reader> reader = Reader::Create(*options, &why);
   if (!reader) {
     GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ,
-                      ("DDS cannot subscribe to %s: %s", settings.ros.topic.c_str(), why.c_str()),
+                      ("DDS cannot subscribe to %s: %s.", settings.ros.topic.c_str(), why.c_str()),
                       (nullptr));
     return FALSE;
   }
@@ -181,10 +181,10 @@ static gboolean Start(GstBaseSrc* base) {
   state.messages = std::make_unique<MessageReader>(
       settings.type, [base] { return CapsPtr(gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(base))); },
       IsForGood(settings));
-  state.incompatible = IsForGood(settings)
-                           ? "does not keep its transforms for those who come later (durability "
-                             "transient local)"
-                           : "is best-effort, which qos=reliable does not take";
+  state.incompatible =
+      IsForGood(settings)
+          ? "does not keep its transforms for later subscribers (durability transient local)"
+          : "is best-effort, which qos=reliable does not accept";
   state.warned_damaged = state.warned_type = state.warned_incompatible = false;
   const std::lock_guard lock(state.mutex);
   state.reader = std::move(reader);
@@ -216,9 +216,10 @@ static void NoteOtherType(GstLidarRos2Src* self, const Reader& reader) {
   if (std::exchange(StateOf(self).warned_type, true)) return;
   // The name comes from the network, and messages on the bus are valid UTF-8.
   const StringPtr type(g_utf8_make_valid(reader.other_type().c_str(), -1));
-  GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
-                      ("A publisher of the topic has the type %s, which is not taken.", type.get()),
-                      (nullptr));
+  GST_ELEMENT_WARNING(
+      self, STREAM, WRONG_TYPE,
+      ("A publisher of the topic has the type %s; its messages are not received.", type.get()),
+      (nullptr));
 }
 
 static void NoteIncompatible(GstLidarRos2Src* self) {
@@ -226,7 +227,7 @@ static void NoteIncompatible(GstLidarRos2Src* self) {
   if (std::exchange(state.warned_incompatible, true)) return;
   GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
                       ("A publisher of the topic %s.", state.incompatible),
-                      ("use qos=sensor-data where it is best-effort"));
+                      ("set qos=sensor-data if the publisher is best-effort"));
 }
 
 /// Warns once until a message is good again, because a broken publisher sends many damaged ones.
@@ -273,7 +274,7 @@ static GstFlowReturn NextBuffer(GstLidarRos2Src* self, Reader* reader) {
       case Reader::Event::kWoken:
         return GST_FLOW_FLUSHING;
       case Reader::Event::kFailed:
-        GST_ELEMENT_ERROR(self, RESOURCE, READ, ("DDS has failed."), (nullptr));
+        GST_ELEMENT_ERROR(self, RESOURCE, READ, ("Waiting for messages of DDS failed."), (nullptr));
         return GST_FLOW_ERROR;
       case Reader::Event::kOtherType:
         NoteOtherType(self, *reader);

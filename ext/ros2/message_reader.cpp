@@ -71,7 +71,7 @@ MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
     caps.reset(gst_caps_intersect_full(caps.get(), wanted.get(), GST_CAPS_INTERSECT_FIRST));
   caps.reset(gst_caps_fixate(caps.release()));
   if (gst_caps_is_empty(caps.get())) {
-    why_ = "downstream takes other caps";
+    why_ = "the next element does not accept these caps";
     return Verdict::kNotNegotiated;
   }
   if (!caps_ || !gst_caps_is_equal(caps.get(), caps_.get())) {
@@ -127,7 +127,7 @@ MessageReader::Verdict MessageReader::ToBuffer(const cdr::PointCloud2& cloud) {
   const bool same = converter_ && converter_->layout() == cloud.layout &&
                     is_dense_ == cloud.is_dense && frame_id_ == cloud.header.frame_id;
   if (!cdr::RowStride(cloud)) {
-    why_ = "its data are not as long as width, height and steps say";
+    why_ = "the length of its data does not match width, height and steps";
     return Verdict::kDamaged;
   }
   if (!same) {
@@ -146,7 +146,7 @@ MessageReader::Verdict MessageReader::ToBuffer(const cdr::PointCloud2& cloud) {
 MessageReader::Verdict MessageReader::ReadImu(ByteView message) {
   const auto imu = cdr::ReadImu(message);
   if (!imu) {
-    why_ = "the message is truncated or is no Imu";
+    why_ = "the message is truncated or is not an Imu";
     return Verdict::kDamaged;
   }
   CapsPtr caps = ImuCaps();
@@ -160,7 +160,7 @@ MessageReader::Verdict MessageReader::ReadImu(ByteView message) {
 MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
   const auto odometry = cdr::ReadOdometry(message);
   if (!odometry) {
-    why_ = "the message is truncated or is no Odometry";
+    why_ = "the message is truncated or is not an Odometry";
     return Verdict::kDamaged;
   }
   CapsPtr caps(gst_caps_new_simple(GST_LIDAR_ODOMETRY_MEDIA_TYPE, GST_LIDAR_FRAME_ID, G_TYPE_STRING,
@@ -176,7 +176,7 @@ MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
 MessageReader::Verdict MessageReader::ReadTransforms(ByteView message) {
   const auto transforms = cdr::ReadTransforms(message);
   if (!transforms) {
-    why_ = "the message is truncated or is no TFMessage";
+    why_ = "the message is truncated or is not a TFMessage";
     return Verdict::kDamaged;
   }
   if (transforms->empty()) return Verdict::kEmpty;

@@ -43,13 +43,13 @@ std::unique_ptr<MessageWriter> MessageWriter::Make(cdr::RosType type, const GstC
 bool MessageWriter::TakeCaps(const GstCaps* caps, std::string* why) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   if (!gst_structure_has_name(s, MediaTypeOf(type_))) {
-    *why = std::string(cdr::InfoOf(type_).name) + " is made of " + MediaTypeOf(type_);
+    *why = std::string(cdr::InfoOf(type_).name) + " needs caps of " + MediaTypeOf(type_);
     return false;
   }
   from_caps_ = {FrameIn(s, GST_LIDAR_FRAME_ID), FrameIn(s, GST_LIDAR_CHILD_FRAME_ID)};
   if (type_ == cdr::RosType::kImu) {
     const gchar* fields = gst_structure_get_string(s, "fields");
-    *why = std::string("samples must have the fields ") + kImuFields;
+    *why = std::string("the fields of IMU samples must be ") + kImuFields;
     return fields == nullptr || std::string_view(fields) == kImuFields;
   }
   if (!cdr::IsCloud(type_)) return true;

@@ -70,8 +70,8 @@ std::optional<dds::EndpointOptions> ToOptions(GstElement* element, const RosSett
       settings.domain_id >= 0 ? std::optional(settings.domain_id) : DomainOfEnvironment();
   if (!node || !topic) {
     GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
-                      ("ROS 2 takes no %s \"%s\": words of letters, digits and underscores, with "
-                       "single slashes between them.",
+                      ("The %s \"%s\" is not valid in ROS 2: it must be words of letters, digits "
+                       "and underscores, with single slashes between them.",
                        topic ? "node-name" : "topic",
                        topic ? settings.node_name.c_str() : settings.topic.c_str()),
                       (nullptr));
@@ -79,7 +79,7 @@ std::optional<dds::EndpointOptions> ToOptions(GstElement* element, const RosSett
   }
   if (!domain) {
     GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
-                      ("The variable ROS_DOMAIN_ID is no number from 0 to %d.", kMaxDomain),
+                      ("The variable ROS_DOMAIN_ID must be a number from 0 to %d.", kMaxDomain),
                       (nullptr));
     return std::nullopt;
   }

@@ -49,7 +49,7 @@ std::optional<MadeCloud> ReadLivox(ByteView message, std::string* why) {
   for (std::uint32_t i = 0; i < layout.width && r.ok(); ++i) CopyPoint(timebase, &r, &w);
   made.cloud.data = {made.points.data(), made.points.size()};
   if (r.ok()) return made;
-  if (why != nullptr) *why = "the message is truncated or is no CustomMsg of Livox";
+  if (why != nullptr) *why = "the message is truncated or is not a CustomMsg of Livox";
   return std::nullopt;
 }
 

@@ -74,7 +74,7 @@ std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why) {
   CdrReader r(message);
   PointCloud2 cloud = ReadCloud(&r);
   if (r.ok()) return cloud;
-  if (why != nullptr) *why = "the message is truncated or is no PointCloud2";
+  if (why != nullptr) *why = "the message is truncated or is not a PointCloud2";
   return std::nullopt;
 }
 
@@ -84,7 +84,7 @@ std::optional<CompressedCloud> ReadCompressedCloud(ByteView message, std::string
   compressed.cloud = ReadCloud(&r);
   compressed.format = r.Text();
   if (r.ok()) return compressed;
-  if (why != nullptr) *why = "the message is truncated or is no CompressedPointCloud2";
+  if (why != nullptr) *why = "the message is truncated or is not a CompressedPointCloud2";
   return std::nullopt;
 }
 

@@ -67,7 +67,7 @@ TEST(LivoxMessages, ThatAreCutAreRefused) {
   std::string why;
   for (std::size_t n = 0; n < message.size(); ++n) {
     EXPECT_FALSE(ReadLivox({message.data(), n}, &why)) << n;
-    EXPECT_EQ(why, "the message is truncated or is no CustomMsg of Livox");
+    EXPECT_EQ(why, "the message is truncated or is not a CustomMsg of Livox");
   }
   Bytes claims = message;
   claims[claims.size() - 3 * 20 - 3] = 0xff;  // a byte of the number of points
@@ -97,7 +97,7 @@ TEST(CompressedClouds, ComeBack) {
   std::string why;
   for (std::size_t n = 0; n < message.size(); ++n)
     EXPECT_FALSE(ReadCompressedCloud({message.data(), n}, &why)) << n;
-  EXPECT_EQ(why, "the message is truncated or is no CompressedPointCloud2");
+  EXPECT_EQ(why, "the message is truncated or is not a CompressedPointCloud2");
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST(PointCloud2, TruncatedOnesAreRefusedAtEachLength) {
   std::string why;
   for (std::size_t n = 0; n < message.size(); ++n)
     ASSERT_FALSE(ReadPointCloud2({message.data(), n}, &why)) << n;
-  EXPECT_EQ(why, "the message is truncated or is no PointCloud2");
+  EXPECT_EQ(why, "the message is truncated or is not a PointCloud2");
   EXPECT_TRUE(ReadPointCloud2(View(message)));
 }
 

@@ -282,7 +282,7 @@ TEST_F(Transport, DracoMayHaveMetadataAndLeaveDoublesOut) {
 TEST_F(Transport, OthersAreRefused) {
   std::string why;
   EXPECT_FALSE(Decompress({cloud_, "cloudini"}, &why));
-  EXPECT_EQ(why, "its compression is none of draco, zlib and zstd, or not built in");
+  EXPECT_EQ(why, "its compression is not draco, zlib or zstd, or support for it was not built");
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TEST(RosDomain, NamesTheVariableWhereItsConfigurationIsWrong) {
         Variables::Values{{"CYCLONEDDS_URI", "<General><NoSuchThing>1</NoSuchThing></General>"}});
     std::string why;
     EXPECT_FALSE(Domain::Join(kDomain, &why));
-    EXPECT_NE(why.find("; is the variable CYCLONEDDS_URI right?"), std::string::npos) << why;
+    EXPECT_NE(why.find("; check the variable CYCLONEDDS_URI"), std::string::npos) << why;
   }
   EXPECT_TRUE(Join());
 }

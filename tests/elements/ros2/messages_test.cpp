@@ -280,9 +280,10 @@ TEST(MotionMessages, ThatAreCutAreDamagedAndSayWhatTheyAreNot) {
     EXPECT_EQ(reader.Read(AsView(message)), Verdict::kDamaged);
     return reader.why();
   };
-  EXPECT_EQ(why(cdr::RosType::kImu, cdr::WriteImu({})), "the message is truncated or is no Imu");
+  EXPECT_EQ(why(cdr::RosType::kImu, cdr::WriteImu({})),
+            "the message is truncated or is not an Imu");
   EXPECT_EQ(why(cdr::RosType::kOdometry, cdr::WriteOdometry({})),
-            "the message is truncated or is no Odometry");
+            "the message is truncated or is not an Odometry");
 }
 
 TEST_F(CloudMessages, HaveTheirStampUnlessItIsZero) {
@@ -305,7 +306,7 @@ TEST_F(CloudMessages, WithoutRowsOrColumnsAreEmpty) {
 
 TEST_F(CloudMessages, OfAWrongLengthAreDamaged) {
   EXPECT_EQ(Read(23), Verdict::kDamaged);
-  EXPECT_EQ(reader_.why(), "its data are not as long as width, height and steps say");
+  EXPECT_EQ(reader_.why(), "the length of its data does not match width, height and steps");
   EXPECT_EQ(Read(24), Verdict::kBuffer);
 }
 
@@ -319,7 +320,7 @@ TEST_F(CloudMessages, BecomeWhatDownstreamTakesOrAreRefused) {
   wanted_.reset(gst_caps_from_string("application/x-pointcloud2,width=9"));
   reader_.Renegotiate();
   EXPECT_EQ(Read(), Verdict::kNotNegotiated);
-  EXPECT_EQ(reader_.why(), "downstream takes other caps");
+  EXPECT_EQ(reader_.why(), "the next element does not accept these caps");
 }
 
 TEST(TransformMessages, AreDamagedWhereTheyAreCutAndEmptyWhereTheySayNothing) {
@@ -329,7 +330,7 @@ TEST(TransformMessages, AreDamagedWhereTheyAreCutAndEmptyWhereTheySayNothing) {
   EXPECT_EQ(reader.Read(AsView(message)), Verdict::kBuffer);
   message.pop_back();
   EXPECT_EQ(reader.Read(AsView(message)), Verdict::kDamaged);
-  EXPECT_EQ(reader.why(), "the message is truncated or is no TFMessage");
+  EXPECT_EQ(reader.why(), "the message is truncated or is not a TFMessage");
   EXPECT_EQ(reader.Read(AsView(cdr::WriteTransforms({}))), Verdict::kEmpty);
 }
 
