@@ -138,8 +138,9 @@ std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps,
                                                  std::string* why) {
   const auto type = TypeOf(caps);
   if (!type) {
-    *why = std::string("clouds, coded slices, IMU samples and odometry can be recorded, and no ") +
-           gst_structure_get_name(gst_caps_get_structure(caps, 0));
+    *why =
+        std::string("mcapsink records clouds, coded slices, IMU samples and odometry, but not ") +
+        gst_structure_get_name(gst_caps_get_structure(caps, 0));
     return nullptr;
   }
   const std::string frame_id = FrameOf(caps, sensor_frame, GST_LIDAR_FRAME_ID,
@@ -147,7 +148,7 @@ std::unique_ptr<BufferWriter> BufferWriter::Make(const GstCaps* caps,
   switch (*type) {
     case MessageType::kImu:
       if (IsOurImu(caps)) return std::make_unique<ImuWriter>(frame_id);
-      *why = std::string("the samples of the IMU are not ") + kImuFields;
+      *why = std::string("the fields of IMU samples must be ") + kImuFields;
       return nullptr;
     case MessageType::kOdometry:
       return std::make_unique<OdometryWriter>(

@@ -127,11 +127,11 @@ static void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
   if (fault.error == ENOSPC || fault.error == EDQUOT)
     GST_ELEMENT_ERROR(self, RESOURCE, NO_SPACE_LEFT,
                       ("No space is left for \"%s\".", fault.path.c_str()),
-                      ("What was recorded before is complete. %s", reason));
+                      ("%s. The recording up to this point is complete.", reason));
   else if (fault.complete)
     GST_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE,
-                      ("\"%s\" is complete. With a number in location, as in rec-%%05d.mcap, what "
-                       "follows becomes another file.",
+                      ("\"%s\" is complete and is not overwritten. Put a number into location, as "
+                       "in rec-%%05d.mcap, to record further files.",
                        fault.path.c_str()),
                       (nullptr));
   else if (fault.opening)
@@ -140,7 +140,7 @@ static void PostFault(GstLidarMcapSink* self, const RecorderFault& fault) {
   else
     GST_ELEMENT_ERROR(self, RESOURCE, WRITE,
                       ("Writing \"%s\" failed: %s.", fault.path.c_str(), reason),
-                      ("What was recorded before is complete."));
+                      ("The recording up to this point is complete."));
 }
 
 /// Posts a message for each complete file.
@@ -191,7 +191,7 @@ static bool WithRecorder(GstLidarMcapSink* self, Work work) {
 /// Creates a recorder for the settings. If that fails, posts a message and returns false.
 static bool Start(GstLidarMcapSink* self) {
   State& state = *self->state;
-  std::string why = "there is no location";
+  std::string why = "it is not set";
   std::optional<RecorderFault> fault;
   {
     std::lock_guard lock(state.recording);
@@ -203,7 +203,7 @@ static bool Start(GstLidarMcapSink* self) {
     auto names =
         s.location.empty() ? std::nullopt : lidar::mcap::FileNames::Parse(s.location, &why);
     if (names && limited && !names->is_numbered()) {
-      why = "several files need a number in their name, as in rec-%05d.mcap";
+      why = "several files need a number in it, as in rec-%05d.mcap";
       names.reset();
     }
     state.timeline = {};
@@ -221,7 +221,8 @@ static bool Start(GstLidarMcapSink* self) {
   if (fault)
     PostFault(self, *fault);
   else
-    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("Wrong location: %s.", why.c_str()), (nullptr));
+    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                      ("The property location is wrong: %s.", why.c_str()), (nullptr));
   return false;
 }
 
@@ -332,7 +333,7 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   lock.unlock();
   GST_ELEMENT_ERROR(sink, STREAM, FORMAT,
                     ("The caps of \"%s\" change too often for one recording.", topic.c_str()),
-                    ("What was recorded before is complete."));
+                    ("The recording up to this point is complete."));
   return false;
 }
 
@@ -363,7 +364,7 @@ GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, Recorde
     return std::nullopt;
   });
   if (!understood)
-    GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("A buffer has another size than its caps say."),
+    GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("A buffer does not match its caps."),
                       ("%" GST_PTR_FORMAT, static_cast<gpointer>(buffer)));
   return recorded && understood ? GST_FLOW_OK : GST_FLOW_ERROR;
 }

@@ -147,7 +147,7 @@ static bool Open(GstLidarMcapSrc* self) {
     settings = state.settings;
     state.counters = {};
   }
-  std::string why = "there is no location";
+  std::string why = "location is not set";
   state.stopping = false;
   auto playback = settings.location.empty()
                       ? nullptr
@@ -244,7 +244,8 @@ static GstFlowReturn PlayItem(GstLidarMcapSrc* self, const lidar::mcap::Playback
   StreamGroup::Played played = streams.Read(item, pts);
   Count(self->state, played.buffer == nullptr, pts);
   if (played.buffer) return streams.Push(std::move(played));
-  GST_WARNING_OBJECT(self, "dropping a message on %s that is damaged", item.channel->topic.c_str());
+  GST_WARNING_OBJECT(self, "dropping a damaged message on the topic %s",
+                     item.channel->topic.c_str());
   return GST_FLOW_OK;
 }
 
@@ -382,7 +383,8 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
       GST_ELEMENT_CLASS(gst_lidar_mcap_src_parent_class)->change_state(element, transition);
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && result != GST_STATE_CHANGE_FAILURE) {
     if (state.task.Start()) return result;
-    GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("No thread can be started."), (nullptr));
+    GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("Cannot start the thread that plays the recording."),
+                      (nullptr));
     return GST_STATE_CHANGE_FAILURE;
   }
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {

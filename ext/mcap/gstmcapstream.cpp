@@ -59,7 +59,8 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   const auto scalar = writer ? ToScalarCaps(caps, &why) : std::nullopt;
   if (!scalar) {
     if (state.refused.Note(caps))
-      GST_ELEMENT_ERROR(state.sink, STREAM, WRONG_TYPE, ("Cannot be recorded: %s.", why.c_str()),
+      GST_ELEMENT_ERROR(state.sink, STREAM, WRONG_TYPE,
+                        ("This stream cannot be recorded: %s.", why.c_str()),
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }

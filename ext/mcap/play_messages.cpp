@@ -38,17 +38,18 @@ std::string MediaTypes(GstElement* element) {
 void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
                        const std::string& location, const std::string& topic) {
   GST_ELEMENT_ERROR(element, STREAM, WRONG_TYPE,
-                    ("\"%s\" holds nothing that can be played.", location.c_str()),
-                    ("wanted: %s; topics: %s", topic.empty() ? "any" : topic.c_str(),
-                     TopicNames(playback).c_str()));
+                    ("\"%s\" has no topic that can be played.", location.c_str()),
+                    ("wanted topic: %s; topics of the recording: %s",
+                     topic.empty() ? "any" : topic.c_str(), TopicNames(playback).c_str()));
 }
 
 void WarnOfUnclosed(GstElement* element, guint64 files) {
-  GST_ELEMENT_WARNING(element, STREAM, DEMUX,
-                      ("%" G_GUINT64_FORMAT " files of the recording break off, or are being "
-                       "written. They are played up to their last whole chunk.",
-                       files),
-                      (nullptr));
+  GST_ELEMENT_WARNING(
+      element, STREAM, DEMUX,
+      ("%" G_GUINT64_FORMAT " files of the recording were not closed, or are still being written. "
+                            "They are played up to their last whole chunk.",
+       files),
+      (nullptr));
 }
 
 void WarnOfUnreadable(GstElement* element, guint64 files, const std::string& why) {
@@ -74,7 +75,7 @@ void PostDamage(GstElement* element, const PlayedCounts& counts) {
 
 void PostNotTaken(GstElement* element) {
   GST_ELEMENT_ERROR(element, STREAM, WRONG_TYPE,
-                    ("The next element takes nothing of what the recording holds: %s.",
+                    ("The next element does not accept any stream of the recording: %s.",
                      MediaTypes(element).c_str()),
                     (nullptr));
 }

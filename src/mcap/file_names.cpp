@@ -41,7 +41,7 @@ std::optional<FileNames> FileNames::Parse(const std::string& location, std::stri
     } else {
       const auto conversion = ParseConversion(std::string_view(location).substr(i));
       if (!conversion || names.is_numbered_) {
-        *why = "a file name may have one number, as in rec-%05d.mcap";
+        *why = "the file name may have one number, as in rec-%05d.mcap, and no other % than %%";
         return std::nullopt;
       }
       names.is_numbered_ = true;

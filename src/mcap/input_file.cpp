@@ -23,7 +23,7 @@ std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string*
   std::unique_ptr<InputFile> file(
       new InputFile(fd, is_file ? static_cast<std::uint64_t>(status.st_size) : 0, cancelled));
   if (is_file) return file;
-  *why = "it is no file";
+  *why = "it is not a regular file";
   return nullptr;
 }
 

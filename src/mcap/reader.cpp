@@ -20,7 +20,7 @@ std::unique_ptr<Reader> Reader::Open(std::unique_ptr<Input> input, std::string* 
   if (input->size() == 0)
     *why = "it is empty";
   else if (!HasMagic(input.get(), 0))
-    *why = "it does not begin as an MCAP file";
+    *why = "it is not an MCAP file";
   else
     return std::unique_ptr<Reader>(new Reader(std::move(input), std::move(known)));
   return nullptr;

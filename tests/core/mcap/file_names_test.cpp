@@ -30,7 +30,9 @@ TEST(FileNames, HaveTheirNumberWhereTheLocationSays) {
 TEST(FileNames, SayWhatIsWrongWithALocation) {
   for (const char* wrong : {"%s", "%", "%5d", "%-5d", "%x", "a%d%d", "%021d", "%0", "%99999999999d",
                             "%+d", "% d", "a%05d-%s"})
-    EXPECT_EQ(NameOf(wrong, 1), "a file name may have one number, as in rec-%05d.mcap") << wrong;
+    EXPECT_EQ(NameOf(wrong, 1),
+              "the file name may have one number, as in rec-%05d.mcap, and no other % than %%")
+        << wrong;
   EXPECT_EQ(NameOf("run%d/rec.mcap", 1),
             "the number must be in the name of the file, not of a folder");
 }

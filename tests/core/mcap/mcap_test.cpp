@@ -253,7 +253,7 @@ TEST(Mcap, SaysWhyAFileIsNone) {
   EXPECT_EQ(Reader::Open(std::make_unique<test::MemoryInput>(Bytes()), &why), nullptr);
   EXPECT_EQ(why, "it is empty");
   EXPECT_EQ(Reader::Open(std::make_unique<test::MemoryInput>(Bytes(100, 'x')), &why), nullptr);
-  EXPECT_EQ(why, "it does not begin as an MCAP file");
+  EXPECT_EQ(why, "it is not an MCAP file");
 }
 
 TEST(Mcap, AChunkThatEndsBeforeItsBeginHasNoNegativeDuration) {

@@ -96,17 +96,22 @@ TEST_F(McapErrors, ADeviceWithoutSpaceStays) {
 }
 
 TEST_F(McapErrors, TheLocationIsCheckedBeforeTheFirstBuffer) {
-  EXPECT_EQ(RecordError(""), "Wrong location: there is no location.");
+  EXPECT_EQ(RecordError(""), "The property location is wrong: it is not set.");
   EXPECT_EQ(RecordError("location=/nowhere/a.mcap"),
             "Cannot write \"/nowhere/a.mcap\": No such file or directory.");
   EXPECT_EQ(RecordError("location=" + folder_),
             "Cannot write \"" + folder_ + "\": Is a directory.");
   EXPECT_EQ(RecordError(At("a-%s.mcap")),
-            "Wrong location: a file name may have one number, as in rec-%05d.mcap.");
+            "The property location is wrong: the file name may have one number, as in "
+            "rec-%05d.mcap, and no other "
+            "% than %%.");
   EXPECT_EQ(RecordError(At("a-%d-%d.mcap")),
-            "Wrong location: a file name may have one number, as in rec-%05d.mcap.");
-  EXPECT_EQ(RecordError("max-files=3" + At("a.mcap")),
-            "Wrong location: several files need a number in their name, as in rec-%05d.mcap.");
+            "The property location is wrong: the file name may have one number, as in "
+            "rec-%05d.mcap, and no other "
+            "% than %%.");
+  EXPECT_EQ(
+      RecordError("max-files=3" + At("a.mcap")),
+      "The property location is wrong: several files need a number in it, as in rec-%05d.mcap.");
   EXPECT_TRUE(Files().empty());
 }
 
@@ -126,14 +131,14 @@ TEST_F(McapErrors, AWrongLocationFailsTheStart) {
 
 TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
   EXPECT_EQ(Play("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap")).error,
-            "Cannot be recorded: clouds, coded slices, IMU samples and odometry can be recorded, "
-            "and no video/x-raw.");
+            "This stream cannot be recorded: mcapsink records clouds, coded slices, IMU samples "
+            "and odometry, but not video/x-raw.");
   EXPECT_TRUE(Files().empty());
   // The error comes with each attempt to start.
   Pipeline p("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap"));
   for (int round = 0; round < 2; ++round) {
     p.Forget();
-    EXPECT_EQ(p.Run().error.rfind("Cannot be recorded", 0), 0U) << round;
+    EXPECT_EQ(p.Run().error.rfind("This stream cannot be recorded", 0), 0U) << round;
   }
 }
 
@@ -142,7 +147,7 @@ TEST_F(McapErrors, SamplesOfOtherFieldsAreRefusedByName) {
   const ElementBus bus(h->element);
   gst_harness_set_src_caps_str(h.get(), "application/x-imu,sample-size=8,fields=(string)t:U64:0");
   EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
-            "Cannot be recorded: the samples of the IMU are not "
+            "This stream cannot be recorded: the fields of IMU samples must be "
             "t:U64:0,ax:F32:8,ay:F32:12,az:F32:16,gx:F32:20,gy:F32:24,gz:F32:28.");
 }
 
@@ -174,22 +179,23 @@ TEST_F(McapErrors, CapsThatChangeTooOftenAreRefusedAndWhatWasRecordedStays) {
 }
 
 TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
-  EXPECT_EQ(PlayError(""), "Cannot play \"\": there is no location.");
+  EXPECT_EQ(PlayError(""), "Cannot play \"\": location is not set.");
   EXPECT_EQ(PlayError("location=/nowhere.mcap"),
             "Cannot play \"/nowhere.mcap\": there is no such file.");
-  EXPECT_EQ(PlayError("location=/dev/zero"), "Cannot play \"/dev/zero\": it is no file.");
+  EXPECT_EQ(PlayError("location=/dev/zero"),
+            "Cannot play \"/dev/zero\": it is not a regular file.");
   ASSERT_EQ(mkfifo(Path("pipe.mcap").c_str(), 0600), 0);
   EXPECT_EQ(PlayError(At("pipe.mcap")),
-            "Cannot play \"" + Path("pipe.mcap") + "\": it is no file.");
+            "Cannot play \"" + Path("pipe.mcap") + "\": it is not a regular file.");
   std::ofstream(Path("empty.mcap")).flush();
   EXPECT_EQ(PlayError(At("empty.mcap")),
             "Cannot play \"" + Path("empty.mcap") + "\": it is empty.");
   std::ofstream(Path("text.mcap")) << "This is no recording.";
   EXPECT_EQ(PlayError(At("text.mcap")),
-            "Cannot play \"" + Path("text.mcap") + "\": it does not begin as an MCAP file.");
+            "Cannot play \"" + Path("text.mcap") + "\": it is not an MCAP file.");
   Record(1, "", "a.mcap");
   EXPECT_EQ(PlayError("topic=/other" + At("a.mcap")),
-            "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
+            "\"" + Path("a.mcap") + "\" has no topic that can be played.");
 }
 
 TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
@@ -203,8 +209,7 @@ TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
   ASSERT_TRUE(maker.Add(
       maker.AddChannel(gst::SchemaOf(gst::MessageType::kSlice), std::move(channel)), 1, "x"));
   Save(&maker);
-  EXPECT_EQ(PlayError(At("a.mcap")),
-            "\"" + Path("a.mcap") + "\" holds nothing that can be played.");
+  EXPECT_EQ(PlayError(At("a.mcap")), "\"" + Path("a.mcap") + "\" has no topic that can be played.");
 }
 
 TEST_F(McapErrors, ARecordingWhoseMessagesAreAllDamagedIsAnError) {
@@ -343,9 +348,9 @@ TEST_F(McapErrors, MessagesOfTwoTypesInOneTopicAreNoDamage) {
 
 TEST_F(McapErrors, APlayerSaysWhatTheNextElementDoesNotTake) {
   Record(1, "", "a.mcap");
-  EXPECT_EQ(Play("mcapsrc" + At("a.mcap") + " ! pointcloudview ! fakesink").error,
-            "The next element takes nothing of what the recording holds: "
-            "application/x-lidar-slice.");
+  EXPECT_EQ(
+      Play("mcapsrc" + At("a.mcap") + " ! pointcloudview ! fakesink").error,
+      "The next element does not accept any stream of the recording: application/x-lidar-slice.");
 }
 
 TEST_F(McapErrors, CapsThatCouldNotBePlayedAreNotRecorded) {
@@ -355,9 +360,8 @@ TEST_F(McapErrors, CapsThatCouldNotBePlayedAreNotRecorded) {
   for (const std::string& caps : {good + ",levels=(int)<1,2>", good, good + ",levels=(int)<1,2>"})
     gst_harness_set_src_caps_str(h.get(), caps.c_str());
   const std::string why =
-      "Cannot be recorded: the field levels is not a string, number, fraction, flag, buffer or "
-      "array "
-      "of doubles.";
+      "This stream cannot be recorded: the field levels is not a string, number, fraction, flag, "
+      "buffer or array of doubles.";
   EXPECT_EQ(bus.Texts(GST_MESSAGE_ERROR), (std::vector<std::string>{why, why}));
 }
 
