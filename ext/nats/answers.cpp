@@ -40,13 +40,13 @@ std::string_view TextOf(natsMsg* answer) {
 }  // namespace
 
 std::string ErrorOfAck(natsMsg* answer) {
-  if (natsMsg_IsNoResponders(answer)) return "no stream of JetStream takes the subject";
+  if (natsMsg_IsNoResponders(answer)) return "No JetStream stream keeps the subject";
   const std::string_view text = TextOf(answer);
   if (text.find("\"error\"") == text.npos && text.find("\"stream\"") != text.npos) return "";
   constexpr std::size_t kShownLetters = 200;
   const gst::StringPtr shown(
       g_utf8_make_valid(text.data(), static_cast<gssize>(std::min(text.size(), kShownLetters))));
-  return std::string("JetStream refuses a message: ") + shown.get();
+  return std::string("JetStream refused a message: ") + shown.get();
 }
 
 bool IsTooLarge(natsMsg* answer) {

@@ -34,9 +34,9 @@ std::string CheckFiles(const ConnectionSettings& s) {
        {&s.credentials_file, &s.tls_ca_file, &s.tls_cert_file, &s.tls_key_file})
     if (!path->empty() && access(path->c_str(), R_OK) != 0) return "cannot read " + *path;
   if (s.tls_cert_file.empty() != s.tls_key_file.empty())
-    return "tls-cert-file and tls-key-file belong together";
+    return "tls-cert-file and tls-key-file must be set together";
   if (!s.token.empty() && !s.credentials_file.empty())
-    return "token and credentials-file exclude each other";
+    return "token and credentials-file cannot be set together";
   return "";
 }
 

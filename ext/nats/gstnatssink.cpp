@@ -156,7 +156,8 @@ static lidar::nats::PublisherSettings ToPublisher(const NatsSinkSettings& settin
 /// Returns false after an error message.
 static bool CheckReplicas(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
   if (settings.replicas == 1 || !settings.nats.stream.empty()) return true;
-  GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("replicas needs jetstream."), (nullptr));
+  GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                    ("The property replicas needs the property jetstream."), (nullptr));
   return false;
 }
 
@@ -172,8 +173,8 @@ static bool CheckStreamSubjects(GstLidarNatsSink* self, const NatsSinkSettings& 
   if (covers && !all) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
                     ("jetstream-subjects \"%s\" %s.", pattern.c_str(),
-                     all ? "begins with a wildcard"
-                         : ("does not cover " + subject + " and " + subject + ".config.*").c_str()),
+                     all ? "must not begin with a wildcard"
+                         : ("must cover " + subject + " and " + subject + ".config.*").c_str()),
                     (nullptr));
   return false;
 }
@@ -192,7 +193,7 @@ static gboolean Start(GstBaseSink* base) {
   lidar::nats::PublisherEvents events;
   events.connection = [watch = state.watch](const auto& now) { watch->Note(now); };
   events.trouble = [watch = state.watch](const std::string& why) {
-    watch->Warn(why + "; messages wait, then they are dropped and counted.");
+    watch->Warn(why + "; until this is solved, messages wait or are dropped and counted.");
   };
   std::string why;
   auto publisher = Publisher::Start(ToPublisher(settings), std::move(events), &why);
@@ -232,7 +233,7 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
     return TRUE;
   }
   if (state.refused_caps.Note(caps))
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This cannot be published: %s.", why.c_str()),
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("This stream cannot be published: %s.", why.c_str()),
                       ("caps are %" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
   return FALSE;
 }
@@ -251,8 +252,8 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   }
   if (!std::exchange(state.warned_refused, true))
     GST_ELEMENT_WARNING(base, STREAM, FORMAT,
-                        ("A buffer is not as its caps say; such buffers are dropped and counted."),
-                        ("%" G_GSIZE_FORMAT " bytes", gst_buffer_get_size(buffer)));
+                        ("A buffer does not match its caps; such buffers are dropped and counted."),
+                        ("the buffer has %" G_GSIZE_FORMAT " bytes", gst_buffer_get_size(buffer)));
   return GST_FLOW_OK;
 }
 
@@ -262,15 +263,15 @@ static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool kee
   const PublisherCounters counters = publisher.counters();
   const auto lost = guint64{counters.waiting + counters.dropped};
   if (counters.messages == 0 && !keeps_trying)
-    GST_ELEMENT_ERROR(
-        base, RESOURCE, WRITE,
-        ("None of %" G_GUINT64_FORMAT " messages reached a NATS server. Start one, or set url.",
-         lost),
-        (nullptr));
+    GST_ELEMENT_ERROR(base, RESOURCE, WRITE,
+                      ("None of %" G_GUINT64_FORMAT
+                       " messages reached a NATS server. Start a server, or set url.",
+                       lost),
+                      (nullptr));
   else
     GST_ELEMENT_WARNING(base, RESOURCE, WRITE,
-                        ("At the end the NATS server does not have %" G_GUINT64_FORMAT
-                         " messages. A longer drain-timeout waits for it.",
+                        ("At the end of the stream the NATS server lacks %" G_GUINT64_FORMAT
+                         " messages. Set a longer drain-timeout to wait for them.",
                          lost),
                         (nullptr));
 }

@@ -238,10 +238,10 @@ static void NoteDamaged(GstLidarNatsSrc* self) {
   State& state = StateOf(self);
   state.account.Count(&SourceCounters::damaged);
   if (!std::exchange(state.warned_damaged, true))
-    GST_ELEMENT_WARNING(self, STREAM, DECODE,
-                        ("A message is none of natssink's, or damaged. Such messages are dropped "
-                         "and counted."),
-                        (nullptr));
+    GST_ELEMENT_WARNING(
+        self, STREAM, DECODE,
+        ("A message is damaged or not from natssink. Such messages are dropped and counted."),
+        (nullptr));
 }
 
 /// Returns true while no server is there, and warns once if that lasts.
@@ -256,7 +256,7 @@ static bool IsAway(State& state) {
              !std::exchange(state.warned_absent, true)) {
     state.watch->Warn("No NATS server answers at " +
                       lidar::nats::WithoutUser(state.now.nats.connection.url) +
-                      "; it is tried again.");
+                      "; natssrc keeps trying.");
   }
   return !connection.connected() && !connection.closed;
 }
@@ -361,7 +361,7 @@ static void NoteTrouble(GstLidarNatsSrc* self) {
   const std::string& trouble = state.subscriber->trouble();
   if (trouble == state.trouble) return;
   state.trouble = trouble;
-  state.watch->Warn("JetStream gives nothing: " + trouble + "; it is tried again.");
+  state.watch->Warn("JetStream delivers no messages: " + trouble + "; natssrc keeps trying.");
 }
 
 static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Delivery delivery,

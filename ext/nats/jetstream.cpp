@@ -124,13 +124,13 @@ bool Covers(const std::string& pattern, const std::string& subject) {
 }
 
 std::string CheckName(const std::string& name) {
-  if (name.size() > kMaxName) return "it has more than 64 letters";
+  if (name.size() > kMaxName) return "it has more than 64 characters";
   const auto is_good = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
            c == '_';
   };
   if (!std::all_of(name.begin(), name.end(), is_good))
-    return "it has something beside letters, digits, - and _";
+    return "only letters, digits, - and _ are allowed";
   return "";
 }
 

@@ -201,11 +201,12 @@ std::string AskSubject(const std::string& subject) { return subject + ".get-conf
 std::string CheckSubject(const std::string& subject) {
   if (subject.empty() || subject.size() > kMaxSubject) return "it is empty or too long";
   if (subject.front() == '.' || subject.back() == '.' || subject.find("..") != std::string::npos)
-    return "a word between two dots is empty";
+    return "it begins or ends with a dot, or has two dots in a row";
   const auto is_bad = [](char c) { return c <= ' ' || c > '~' || c == '*' || c == '>'; };
   if (std::any_of(subject.begin(), subject.end(), is_bad))
-    return "it has a blank, a wildcard or a letter beyond ASCII";
-  if (subject.front() == '$' || subject.front() == '_') return "the server keeps such names";
+    return "it has a blank, a wildcard or a character that is not ASCII";
+  if (subject.front() == '$' || subject.front() == '_')
+    return "names that begin with $ or _ belong to the server";
   return "";
 }
 

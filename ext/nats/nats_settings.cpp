@@ -53,7 +53,7 @@ bool CheckNatsSettings(GstElement* element, NatsSettings* settings) {
     if (check.why.empty()) continue;
     GST_ELEMENT_ERROR(
         element, RESOURCE, SETTINGS,
-        ("NATS takes no %s \"%s\": %s.", check.property, check.value.c_str(), check.why.c_str()),
+        ("The %s \"%s\" is not valid: %s.", check.property, check.value.c_str(), check.why.c_str()),
         (nullptr));
     return false;
   }
@@ -75,7 +75,7 @@ void ConnectionWatch::Warn(const std::string& text) {
 void ConnectionWatch::PostRefused(const nats::ConnectionState& state) {
   const StringPtr words(g_utf8_make_valid(state.last_error.c_str(), -1));
   GST_ELEMENT_ERROR(element_.get(), RESOURCE, NOT_AUTHORIZED,
-                    ("The NATS server refuses us: %s.", words.get()), (nullptr));
+                    ("The NATS server refused the connection: %s.", words.get()), (nullptr));
 }
 
 void ConnectionWatch::Note(const nats::ConnectionState& state) {
@@ -99,11 +99,12 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
                                 gst_structure_new("nats-connection-changed", "connected",
                                                   G_TYPE_BOOLEAN, state.connected(), nullptr)));
   if (closed && keeps_trying_)
-    Warn(std::string("The NATS server refuses us: ") + words.get() + "; it is tried again.");
+    Warn(std::string("The NATS server refused the connection: ") + words.get() +
+         "; the element keeps trying.");
   else if (closed)
     PostRefused(state);
   else if (is_new)
-    Warn(std::string("The NATS server complains: ") + words.get() + ".");
+    Warn(std::string("The NATS server reports an error: ") + words.get() + ".");
 }
 
 }  // namespace lidar::gst

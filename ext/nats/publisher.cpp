@@ -36,7 +36,7 @@ Publisher::Publisher(PublisherSettings settings, PublisherEvents events)
 std::shared_ptr<Publisher> Publisher::Start(const PublisherSettings& settings,
                                             PublisherEvents events, std::string* why) {
   std::shared_ptr<Publisher> publisher(new Publisher(settings, std::move(events)));
-  if (!publisher->answers_) *why = "memory is short";
+  if (!publisher->answers_) *why = "out of memory";
   const bool open = publisher->answers_ && (settings.keep_trying || publisher->Open(why)) &&
                     publisher->StartThread(why);
   if (!open) publisher->Stop();
@@ -47,7 +47,7 @@ bool Publisher::StartThread(std::string* why) {
   try {
     thread_ = std::thread([this] { Run(); });
   } catch (const std::system_error&) {
-    *why = "a thread cannot be started";
+    *why = "cannot start a thread";
     return false;
   }
   return true;
@@ -72,7 +72,7 @@ bool Publisher::Open(std::string* why) {
   if (!keeps()) return true;
   js_ = OpenJetStream(connection_->get());
   if (js_) return Subscribe(answers_->All(), &Publisher::OnAck, &acks_, why);
-  *why = "memory is short";
+  *why = "out of memory";
   return false;
 }
 
@@ -198,7 +198,7 @@ void Publisher::NoteTooLarge(Lock* lock, std::optional<std::uint64_t> number) {
     ++counters_.too_large;
   wake_.notify_all();
   Tell(lock, std::string(number ? "A message is" : "The caps are") +
-                 " larger than the stream takes (max_msg_size)");
+                 " larger than the stream allows (max_msg_size)");
 }
 
 void Publisher::Tell(Lock* lock, const std::string& why) {
@@ -318,7 +318,8 @@ void Publisher::PrepareStream(Lock* lock) {
   lock->lock();
   stream_ready_ = ready;
   retry_at_ = Clock::now() + StreamPause();
-  if (!ready) Tell(lock, "The stream " + settings_.stream.name + " cannot be made: " + why);
+  if (!ready)
+    Tell(lock, "The stream " + settings_.stream.name + " cannot be created or updated: " + why);
 }
 
 /// Returns the format of the next message, or of the last one.
@@ -357,7 +358,7 @@ void Publisher::SendConfig(Lock* lock) {
   lock->lock();
   if (status != NATS_MAX_PAYLOAD) return;
   config_unanswered_ = false;
-  Tell(lock, "The caps are larger than the server takes (max_payload)");
+  Tell(lock, "The caps are larger than the server allows (max_payload)");
 }
 
 void Publisher::SendNext(Lock* lock) {
@@ -372,7 +373,7 @@ void Publisher::SendNext(Lock* lock) {
   lock->lock();
   NoteSent(status, item->number, gst_buffer_get_size(item->buffer.get()));
   if (status == NATS_MAX_PAYLOAD)
-    Tell(lock, "A buffer is larger than the server takes (max_payload)");
+    Tell(lock, "A buffer is larger than the server allows (max_payload)");
   else if (status != NATS_OK)
     wake_.wait_for(*lock, kStreamRetry);  // the connection is about to be given up
 }

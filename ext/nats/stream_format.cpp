@@ -36,7 +36,7 @@ StreamFormat::Ptr StreamFormat::FromCaps(GstCaps* caps, std::string* why) {
     gint size = 0;
     gst_structure_get_int(s, "sample-size", &size);
     if (size <= 0) {
-      *why = "the samples of the IMU have no sample-size";
+      *why = "the caps of IMU samples have no sample-size";
       return nullptr;
     }
     format->multiple_ = static_cast<std::size_t>(size);
@@ -44,8 +44,9 @@ StreamFormat::Ptr StreamFormat::FromCaps(GstCaps* caps, std::string* why) {
     format->size_ = kPoseSize;
     format->longer_size_ = kPoseSizeWithCovariance;
   } else if (g_strcmp0(gst_structure_get_string(s, "alignment"), "slice") != 0) {
-    *why = std::string("clouds, coded slices, IMU samples and odometry can be published, and no ") +
-           gst_structure_get_name(s);
+    *why =
+        std::string("natssink publishes clouds, coded slices, IMU samples and odometry, but not ") +
+        gst_structure_get_name(s);
     return nullptr;
   }
   auto text = gst::CapsToText(caps, why);

@@ -672,7 +672,7 @@ TEST_F(LidarWorker, PrintsTheWarningsOfARobotsPipeline) {
   pipeline.Play();
   EXPECT_TRUE(
       Warns([&] { EXPECT_EQ(pipeline.Poll(), ""); },
-            "r1.front: natssrc: A message is none of natssink's, or damaged. Such messages are "
+            "r1.front: natssrc: A message is damaged or not from natssink. Such messages are "
             "dropped and counted.\n"));
 }
 

@@ -74,7 +74,7 @@ TEST_F(NatsErrors, AComplaintThatComesWithEachMessageIsToldOnce) {
                       "! natssink name=n url=" + server_.url("nats", "me:pw@"));
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return sender.stat("server-errors") >= 10; }));
-  EXPECT_EQ(sender.Warnings("The NATS server complains"), 1U);
+  EXPECT_EQ(sender.Warnings("The NATS server reports an error"), 1U);
 }
 
 TEST_F(NatsErrors, WhatIsLeftOutIsNotCountedAsLostAndLeavesAMarkedGap) {
@@ -138,7 +138,7 @@ TEST_F(NatsErrors, CapsAndBuffersThatTheServerDoesNotTakeAreTold) {
   NatsPipeline sender(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" + At());
   sender.Play();
   for (const std::string what : {"The caps are", "A buffer is"})
-    EXPECT_NE(sender.WaitForWarning(what + " larger than the server takes"), "");
+    EXPECT_NE(sender.WaitForWarning(what + " larger than the server allows"), "");
   EXPECT_EQ(sender.WaitForEnd(),
             "None of 8 messages reached the NATS server: they exceed its max_payload, or "
             "buffer-size.");
@@ -202,7 +202,7 @@ TEST_F(NatsErrors, AStreamThatReachesNoServerEndsWithAnError) {
                       "url=nats://127.0.0.1:1");
   sender.Play();
   EXPECT_EQ(sender.WaitForEnd(),
-            "None of 8 messages reached a NATS server. Start one, or set url.");
+            "None of 8 messages reached a NATS server. Start a server, or set url.");
   sender.Stop();
   EXPECT_EQ(sender.stat("messages-dropped"), 8U) << "at the stop";
 }
@@ -215,7 +215,7 @@ TEST_F(NatsErrors, AWrongTokenIsAnErrorAndTheRightOneIsTaken) {
                                      : "natssrc name=n" + with + end);
     refused.Play();
     const std::string text = refused.WaitForEnd();
-    EXPECT_NE(text.find("refuses us: Authorization Violation."), text.npos) << text;
+    EXPECT_NE(text.find("refused the connection: Authorization Violation."), text.npos) << text;
   }
   NatsPipeline receiver("natssrc name=n" + At("token=s3cret") + "! fakesink name=see sync=false");
   Listen(server_, &receiver);
@@ -228,7 +228,7 @@ TEST_F(NatsErrors, ASinkThatKeepsTryingIsTakenOnceTheServerWants) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n keep-trying=true" +
                       At("token=s3cret"));
   sender.Play();
-  EXPECT_NE(sender.WaitForWarning("refuses us"), "");
+  EXPECT_NE(sender.WaitForWarning("refused the connection"), "");
   EXPECT_EQ(sender.stat("connected"), 0U);
   server_.Start({"--auth", "s3cret"});
   NatsPipeline receiver("natssrc name=n" + At("token=s3cret") + "! fakesink name=see sync=false");
@@ -278,7 +278,7 @@ TEST_F(NatsErrors, CredentialsAreTakenFromAFile) {
   for (const std::string& with : {bad, At()}) {
     NatsPipeline refused("natssrc name=n" + with + "! fakesink name=see");
     refused.Play();
-    EXPECT_NE(refused.WaitForEnd().find("refuses us"), std::string::npos);
+    EXPECT_NE(refused.WaitForEnd().find("refused the connection"), std::string::npos);
   }
 }
 
@@ -383,32 +383,35 @@ INSTANTIATE_TEST_SUITE_P(
     All, NatsWrongSetting,
     ::testing::Values(
         WrongSetting{"natssink name=n subject=a..b",
-                     "NATS takes no subject \"a..b\": a word between two dots is empty."},
+                     "The subject \"a..b\" is not valid: it begins or ends with a dot, or has two "
+                     "dots in a row."},
         WrongSetting{"natssink name=n subject=fleet.>",
-                     "NATS takes no subject \"fleet.>\": it has a blank, a wildcard or a letter "
-                     "beyond ASCII."},
+                     "The subject \"fleet.>\" is not valid: it has a blank, a wildcard or a "
+                     "character that is "
+                     "not ASCII."},
         WrongSetting{
             "natssink name=n jetstream=a.b",
-            "NATS takes no jetstream \"a.b\": it has something beside letters, digits, - and _."},
+            "The jetstream \"a.b\" is not valid: only letters, digits, - and _ are allowed."},
         WrongSetting{"natssink name=n subject=a.b jetstream=s jetstream-subjects=a.*",
-                     "jetstream-subjects \"a.*\" does not cover a.b and a.b.config.*."},
+                     "jetstream-subjects \"a.*\" must cover a.b and a.b.config.*."},
         WrongSetting{"natssink name=n jetstream=s jetstream-subjects=>",
-                     "jetstream-subjects \">\" begins with a wildcard."},
+                     "jetstream-subjects \">\" must not begin with a wildcard."},
         WrongSetting{"natssink name=n url=,", "NATS cannot be used: url names no server."},
         WrongSetting{"natssrc name=n url=,", "NATS cannot be used: url names no server."},
-        WrongSetting{"natssink name=n replicas=3", "replicas needs jetstream."},
+        WrongSetting{"natssink name=n replicas=3",
+                     "The property replicas needs the property jetstream."},
         WrongSetting{"natssink name=n tls-ca-file=/none",
                      "NATS cannot be used: cannot read /none."},
         WrongSetting{"natssink name=n credentials-file=/none",
                      "NATS cannot be used: cannot read /none."},
         WrongSetting{"natssink name=n tls-cert-file=/etc/passwd",
-                     "NATS cannot be used: tls-cert-file and tls-key-file belong together."},
+                     "NATS cannot be used: tls-cert-file and tls-key-file must be set together."},
         WrongSetting{"natssink name=n tls-key-file=/etc/passwd",
-                     "NATS cannot be used: tls-cert-file and tls-key-file belong together."},
+                     "NATS cannot be used: tls-cert-file and tls-key-file must be set together."},
         WrongSetting{"natssink name=n token=t credentials-file=/etc/passwd",
-                     "NATS cannot be used: token and credentials-file exclude each other."},
+                     "NATS cannot be used: token and credentials-file cannot be set together."},
         WrongSetting{"natssink name=n jetstream=s jetstream-subjects=*.b",
-                     "jetstream-subjects \"*.b\" begins with a wildcard."},
+                     "jetstream-subjects \"*.b\" must not begin with a wildcard."},
         WrongSetting{"natssrc name=n durable=d ! fakesink", "durable needs jetstream."},
         WrongSetting{"natssrc name=n jetstream=s queue-group=q ! fakesink",
                      "queue-group with jetstream needs durable."}));

@@ -383,7 +383,7 @@ TEST_F(NatsJetStream, OfTwoWithOneDurableConsumerTheSecondWaitsForTheFirst) {
   ASSERT_TRUE(first->WaitForBuffers(8));
   NatsPipeline second("natssrc name=n durable=slam" + At(kBox) + "! fakesink name=see sync=false");
   second.Play();
-  EXPECT_NE(second.WaitForWarning("JetStream gives nothing"), "");
+  EXPECT_NE(second.WaitForWarning("JetStream delivers no messages"), "");
   first.reset();
   PublishSlices(8, At(kBox));
   EXPECT_TRUE(second.WaitForBuffers(8));
@@ -500,8 +500,8 @@ TEST_F(NatsJetStream, ASinkWhoseStreamIsDeletedSaysSoAndMakesItAnew) {
   const NatsClient client(server_.url());
   ASSERT_EQ(js_DeleteStream(client.js(), "box", nullptr, nullptr), NATS_OK);
   EXPECT_EQ(sender.WaitForWarning("JetStream"),
-            "no stream of JetStream takes the subject; messages wait, then they are dropped and "
-            "counted.");
+            "No JetStream stream keeps the subject; until this is solved, messages wait or are "
+            "dropped and counted.");
   const guint64 before = sender.stat("messages-acknowledged");
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= before + 20; }));
   sender.SendEos();
@@ -535,7 +535,7 @@ TEST_F(NatsJetStream, MessagesThatAreTooLargeForTheStreamDelayNoOthers) {
                       At(kBox) + kQuick + "num-buffers=8 ! c. " + kQuick +
                       "num-buffers=8 ! lidarenc ! c.");
   sender.Play();
-  EXPECT_NE(sender.WaitForWarning("A message is larger than the stream takes (max_msg_size)"), "");
+  EXPECT_NE(sender.WaitForWarning("A message is larger than the stream allows (max_msg_size)"), "");
   EXPECT_EQ(sender.WaitForEnd(), "");
   EXPECT_EQ(sender.stat("messages-too-large"), 8U);
   EXPECT_EQ(sender.stat("messages-acknowledged"), 8U);
@@ -547,7 +547,7 @@ TEST_F(NatsJetStream, AStreamThatTakesNoMessageEndsWithAnError) {
   NatsPipeline sender(kQuick + "num-buffers=8 ! lidarenc" + kSee + "! natssink name=n sync=false" +
                       kPatientDrain + At(kBox));
   sender.Play();
-  EXPECT_NE(sender.WaitForWarning("The caps are larger than the stream takes (max_msg_size)"), "");
+  EXPECT_NE(sender.WaitForWarning("The caps are larger than the stream allows (max_msg_size)"), "");
   EXPECT_EQ(sender.WaitForEnd(),
             "None of 8 messages reached the NATS server: they exceed its max_payload, the stream's "
             "max_msg_size, or buffer-size.");
@@ -622,7 +622,8 @@ TEST_F(NatsJetStream, AStreamThatCannotBeMadeIsToldOfWithTheReasonAndItsNumber) 
   NatsPipeline sender(kLive + "! lidarenc" + kSee +
                       "! natssink name=n subject=r1.front jetstream=other" + At());
   sender.Play();
-  const std::string warning = sender.WaitForWarning("The stream other cannot be made: ");
+  const std::string warning =
+      sender.WaitForWarning("The stream other cannot be created or updated: ");
   EXPECT_NE(warning.find("overlap"), warning.npos) << warning;
   EXPECT_NE(warning.find(" (10065); messages wait"), warning.npos) << warning;
 }
@@ -637,13 +638,15 @@ TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {
   sender.Play();
   receiver.Play();
   EXPECT_EQ(sender.WaitForWarning("The stream box"),
-            "The stream box cannot be made: the server has no JetStream; messages wait, then they "
-            "are dropped and counted.");
+            "The stream box cannot be created or updated: the server has no JetStream; until this "
+            "is solved, messages wait or are dropped and counted.");
   EXPECT_EQ(receiver.WaitForWarning("JetStream"),
-            "JetStream gives nothing: the server has no JetStream; it is tried again.");
+            "JetStream delivers no messages: the server has no JetStream; natssrc keeps trying.");
   // Both elements try again twice a second, and these messages take two seconds.
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages-waiting") >= 160; }));
-  EXPECT_EQ(sender.Warnings("cannot be made") + receiver.Warnings("gives nothing"), 0U)
+  EXPECT_EQ(
+      sender.Warnings("cannot be created or updated") + receiver.Warnings("delivers no messages"),
+      0U)
       << "said again";
 }
 

@@ -222,11 +222,12 @@ TEST_F(NatsParts, AFormatKnowsHowLargeItsBuffersAre) {
     EXPECT_EQ(read->Fits(size), pose->Fits(size)) << size;
   }
   EXPECT_FALSE(FormatOf("application/x-imu", &why));
-  EXPECT_EQ(why, "the samples of the IMU have no sample-size");
+  EXPECT_EQ(why, "the caps of IMU samples have no sample-size");
   EXPECT_FALSE(FormatOf("application/x-pointcloud2, width=(int)4", &why));
   EXPECT_FALSE(FormatOf("video/x-raw", &why));
-  EXPECT_EQ(why,
-            "clouds, coded slices, IMU samples and odometry can be published, and no video/x-raw");
+  EXPECT_EQ(
+      why,
+      "natssink publishes clouds, coded slices, IMU samples and odometry, but not video/x-raw");
 }
 
 TEST_F(NatsParts, TextOfStrangersMakesNoFormat) {
@@ -534,7 +535,7 @@ TEST_F(NatsParts, AnAnswerOfJetStreamNamesItsStreamOrIsAnError) {
   };
   EXPECT_EQ(error_of(R"({"stream":"s","seq":1})"), "");
   for (const char* bad : {"", "{}", R"({"error":{"code":503}})", R"({"stream":"s","error":{}})"})
-    EXPECT_EQ(error_of(bad), std::string("JetStream refuses a message: ") + bad);
+    EXPECT_EQ(error_of(bad), std::string("JetStream refused a message: ") + bad);
   EXPECT_EQ(error_of(std::string(300, 'x')).size(), 200 + error_of("").size());
 }
 
@@ -589,7 +590,7 @@ class NatsWatch : public NatsParts {
     return Posted();
   }
   static std::string Complaint(const std::string& text) {
-    return "warning: The NATS server complains: " + text + ".";
+    return "warning: The NATS server reports an error: " + text + ".";
   }
 
   gst::ElementPtr element_;
@@ -649,10 +650,11 @@ TEST_F(NatsWatch, TellsOfARefusalAsAnErrorOrOfEachAsAWarning) {
     state_.closed = state_.unanswered = true;
     EXPECT_EQ(Posted(), "") << "no server has answered";
     state_.unanswered = false;
-    EXPECT_EQ(Posted(), keeps_trying ? "warning: The NATS server refuses us: Authorization "
-                                       "Violation; it is tried again."
-                                     : "error: The NATS server refuses us: Authorization "
-                                       "Violation.");
+    EXPECT_EQ(Posted(),
+              keeps_trying
+                  ? "warning: The NATS server refused the connection: Authorization Violation; "
+                    "the element keeps trying."
+                  : "error: The NATS server refused the connection: Authorization Violation.");
     EXPECT_EQ(Posted(), "");
     if (!keeps_trying) continue;
     state_ = {};  // of the next connection
@@ -661,7 +663,8 @@ TEST_F(NatsWatch, TellsOfARefusalAsAnErrorOrOfEachAsAWarning) {
     state_.closed = true;
     state_.last_error = "Permissions";
     EXPECT_EQ(Posted(),
-              "away warning: The NATS server refuses us: Permissions; it is tried again.");
+              "away warning: The NATS server refused the connection: Permissions; the element "
+              "keeps trying.");
   }
 }
 

@@ -96,7 +96,7 @@ TEST_F(NatsRuns, OfASinkCountAlikeAndItsCountsStayAfterTheStop) {
       EXPECT_EQ(sink.stat("bytes"), 192U);
       EXPECT_EQ(sink.stat("buffers-refused"), 2U);
       EXPECT_EQ(sink.stat("messages-acknowledged"), where == At(kImuBox) ? 3U : 0U);
-      EXPECT_EQ(sink.Warnings("A buffer is not as its caps say"), 1U);
+      EXPECT_EQ(sink.Warnings("A buffer does not match its caps"), 1U);
       seen.insert(sink.stats());
       sink.Stop();
       EXPECT_EQ(sink.stat("messages"), 3U);
@@ -178,7 +178,7 @@ TEST_F(NatsRuns, TheBoxIsAsThePropertiesSayAlsoWhereItWasMadeBefore) {
     Feeder sink(At(kImuBox + want.properties));
     sink.Push(32);
     sink.End();
-    EXPECT_EQ(sink.Warnings("cannot be made"), 0U) << want.properties;
+    EXPECT_EQ(sink.Warnings("cannot be created or updated"), 0U) << want.properties;
     jsStreamInfo* found = nullptr;
     ASSERT_EQ(js_GetStreamInfo(&found, client.js(), "box", nullptr, nullptr), NATS_OK);
     const nats::StreamInfoPtr info(found);
@@ -191,7 +191,8 @@ TEST_F(NatsRuns, TheBoxIsAsThePropertiesSayAlsoWhereItWasMadeBefore) {
   // A single server cannot store replicas.
   Feeder copied(At("subject=r2.imu jetstream=copied replicas=3 drain-timeout=0"));
   copied.Push(32);
-  EXPECT_TRUE(Eventually([&] { return copied.Warnings("The stream copied cannot be made") > 0; }));
+  EXPECT_TRUE(Eventually(
+      [&] { return copied.Warnings("The stream copied cannot be created or updated") > 0; }));
 }
 
 TEST_F(NatsRuns, ASinkTellsOnceOfBuffersThatAreTooLargeUntilOneIsTaken) {
@@ -222,7 +223,7 @@ TEST_F(NatsRuns, OfAReplayAreAlike) {
   std::vector<std::string> stats;
   for (int run = 0; run < 2; ++run) {
     player.Play();
-    EXPECT_NE(player.WaitForWarning("A message is none of natssink's"), "") << run;
+    EXPECT_NE(player.WaitForWarning("A message is damaged or not from natssink"), "") << run;
     EXPECT_EQ(player.WaitForEnd(), "");
     stats.push_back(StatsText(player.nats()));
     player.Stop();
@@ -286,7 +287,7 @@ TEST_F(NatsRuns, DamageIsToldOfAgainAfterAGoodMessageAndAcknowledged) {
     PublishSlices(1, At(box));
     ASSERT_TRUE(receiver.WaitForBuffers(1 + round));
     EXPECT_EQ(receiver.stat("messages-damaged"), 3 * round);
-    EXPECT_EQ(receiver.Warnings("A message is none of natssink's"), 1U) << round;
+    EXPECT_EQ(receiver.Warnings("A message is damaged or not from natssink"), 1U) << round;
   }
   const NatsClient client(server_.url());
   EXPECT_TRUE(Eventually([&] {
