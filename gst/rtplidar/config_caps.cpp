@@ -59,7 +59,7 @@ std::optional<rtp::StreamConfig> NamedConfig(const GstCaps* caps, std::string* w
   rtp::StreamConfig config;
   config.coder = rtp::Coder::kNamed;
   config.caps = *std::move(scalar);
-  *why = "only slices travel, and their caps have alignment=slice";
+  *why = "only slices can be sent, and their caps have alignment=slice";
   return config;
 }
 
@@ -71,7 +71,7 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::
     return gst_structure_has_name(s, name.media_type);
   });
   const bool numbered = known != std::end(kCoders);
-  *why = "need packed fields with x, y and z as F32, and a sensor-model with geometry=range";
+  *why = "they need packed fields with x, y and z as F32, and with geometry=range a sensor-model";
   const auto config = numbered ? NumberedConfig(known->coder, s) : NamedConfig(caps, why);
   if (!config) return std::nullopt;
   // A receiver must be able to parse the config.

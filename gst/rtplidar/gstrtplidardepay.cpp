@@ -184,9 +184,9 @@ static bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
 static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
   if (std::exchange(self->state->warned_of_rival, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
-                      ("Two streams come in; that of SSRC %u is dropped.", rival),
-                      ("this element decodes one, SSRC %u; pt-map of screamsrc, or rtpssrcdemux, "
-                       "gives each a pad of its own",
+                      ("Two streams arrive; the stream of SSRC %u is dropped.", rival),
+                      ("rtplidardepay decodes one stream, SSRC %u; pt-map of screamsrc, or "
+                       "rtpssrcdemux, gives each stream a pad of its own",
                        ssrc));
 }
 
@@ -251,10 +251,11 @@ static GstBuffer* Process(GstRTPBaseDepayload* base, GstRTPBuffer* rtp) {
     unreadable = IsUnreadable(state);
   }
   if (unreadable)
-    GST_ELEMENT_WARNING(base, STREAM, DECODE,
-                        ("None of the packets can be read: they are no LiDAR stream, or encrypted. "
-                         "Where the sender has an srtp-key, set the same at screamsrc."),
-                        (nullptr));
+    GST_ELEMENT_WARNING(
+        base, STREAM, DECODE,
+        ("None of the packets can be read: they are not a LiDAR stream, or they are encrypted. If "
+         "the sender has an srtp-key, set the same key at screamsrc."),
+        (nullptr));
   if (rival && *rival == packet.ssrc)
     WarnOfRival(GST_LIDAR_RTP_DEPAY(base), *state.receiver.ssrc(), *rival);
   state.output.Push(std::move(slices), state.now);

@@ -89,7 +89,7 @@ std::optional<PaySlice> DescribeSlice(GstRTPBasePayload* base, PayState& state, 
     GST_ELEMENT_ERROR(base, STREAM, FORMAT,
                       ("The LidarSliceMeta of a buffer is out of range: slice %u of %u, column %u.",
                        slice.meta.slice_index, slice.meta.slice_count, slice.meta.first_column),
-                      ("at most %u slices a scan", rtp::kMaxSlicesPerScan));
+                      ("a scan may have at most %u slices", rtp::kMaxSlicesPerScan));
     return std::nullopt;
   }
   slice.pts = GST_BUFFER_PTS(buffer);
@@ -177,7 +177,7 @@ GstFlowReturn PaySliceBuffer(GstRTPBasePayload* base, PayState& state, GstBuffer
   if (!map || map.size() > rtp::kMaxUnitBytes) {
     GST_ELEMENT_ERROR(base, STREAM, FORMAT,
                       ("A slice of %" G_GSIZE_FORMAT " bytes cannot be sent.", map.size()),
-                      ("at most %" G_GSIZE_FORMAT " bytes", rtp::kMaxUnitBytes));
+                      ("a slice may have at most %" G_GSIZE_FORMAT " bytes", rtp::kMaxUnitBytes));
     return GST_FLOW_ERROR;
   }
   if (map.size() == 0) {

@@ -40,7 +40,7 @@ void WarnOfCoder(GstRTPBaseDepayload* base, const GstCaps* caps) {
                               : type == GST_LIDAR_DRACO_MEDIA_TYPE ? "dracodec"
                                                                    : "a decoder of " + type;
   GST_ELEMENT_WARNING(base, STREAM, WRONG_TYPE,
-                      ("The slices of this stream are for %s, and the next element does not take "
+                      ("The slices of this stream need %s, but the next element does not accept "
                        "them. They are dropped.",
                        decoder.c_str()),
                       ("caps are %" GST_PTR_FORMAT, static_cast<const void*>(caps)));
@@ -66,8 +66,8 @@ bool SliceOutput::MayChangeTo(const Config& config, Time now) {
   ++format_changes_;
   if (std::exchange(warned_of_changes_, true)) return false;
   GST_ELEMENT_WARNING(element_, STREAM, FORMAT,
-                      ("The stream changes its format more than once a second. Slices of another "
-                       "format than the last are dropped meanwhile; look at its sender."),
+                      ("The stream changes its format more than once a second. Slices whose format "
+                       "differs from the last one are dropped meanwhile; check the sender."),
                       (nullptr));
   return false;
 }

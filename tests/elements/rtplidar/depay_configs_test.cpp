@@ -246,8 +246,8 @@ TEST(RtpLidarDepay, NamesTheDecoderThatTheStreamIsFor) {
     const ElementBus bus(h->element);
     Push(h.get(), Pull(pay.get()));
     EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING),
-              std::string("The slices of this stream are for ") + decoder +
-                  ", and the next element does not take them. They are dropped.");
+              std::string("The slices of this stream need ") + decoder +
+                  ", but the next element does not accept them. They are dropped.");
   }
 }
 
@@ -259,10 +259,10 @@ TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
   Push(h.get(), PacketsOfVoxels(3));
   EXPECT_TRUE(Pull(h.get()).empty());
   EXPECT_EQ(Stat(h.get(), "slices-not-accepted"), 3 * kSlices);
-  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING),
-            std::vector<std::string>{
-                "The slices of this stream are for a decoder of application/x-voxels, "
-                "and the next element does not take them. They are dropped."});
+  EXPECT_EQ(
+      bus.Texts(GST_MESSAGE_WARNING),
+      std::vector<std::string>{"The slices of this stream need a decoder of application/x-voxels, "
+                               "but the next element does not accept them. They are dropped."});
 }
 
 /// Warnings of a depayloader whose packets cause the same warning again and again.
