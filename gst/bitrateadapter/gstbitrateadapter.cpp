@@ -132,7 +132,7 @@ static bool Apply(GstLidarBitrateAdapter* self, guint target_bps) {
   const auto set = control ? SetEncoderBitrate(encoder.get(), *control, bps) : std::nullopt;
   if (!set) {
     WarnOnce(self, "The bitrate of this encoder cannot be set.",
-             "Say how with the properties property and scale.");
+             "Name its bitrate property by the properties property and scale.");
     return false;
   }
   GST_LOG_OBJECT(self, "%s: %u bit/s of %u", GST_OBJECT_NAME(encoder.get()), *set, target_bps);

@@ -166,10 +166,10 @@ static void ConfigureSocket(GstLidarEcnUdpSink* self, GSocket* socket, const Sin
   g_socket_set_multicast_ttl(socket, static_cast<guint>(s.ttl_mc));
   if (!s.multicast_iface.empty() &&
       !lidar::net::SendMulticastFrom(g_socket_get_fd(socket), s.multicast_iface))
-    GST_ELEMENT_WARNING(
-        self, RESOURCE, SETTINGS,
-        ("The multicast-iface %s is not used: %s.", s.multicast_iface.c_str(), g_strerror(errno)),
-        ("multicast leaves by the interface that the kernel chooses"));
+    GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                        ("The multicast-iface %s cannot be used: %s.", s.multicast_iface.c_str(),
+                         g_strerror(errno)),
+                        ("multicast leaves by the interface that the kernel chooses"));
 }
 
 static gboolean Start(GstBaseSink* base) {
@@ -194,7 +194,7 @@ static gboolean Start(GstBaseSink* base) {
   if (peer && !state.to.valid()) {
     GST_ELEMENT_ERROR(
         self, RESOURCE, SETTINGS,
-        ("The host %s is not of the address family of the socket", s.target.host.c_str()),
+        ("The host %s does not have the address family of the socket.", s.target.host.c_str()),
         ("use an address of the other family, or another bind-address"));
     return FALSE;
   }
@@ -250,8 +250,8 @@ static void WarnOnce(GstLidarEcnUdpSink* self, const UdpBatchSender::Result& res
   }
   if (state.warned_errno == result.last_errno) return;
   state.warned_errno = result.last_errno;
-  GST_ELEMENT_WARNING(self, RESOURCE, WRITE, ("Sending failed: %s", g_strerror(result.last_errno)),
-                      ("to %s; datagrams are dropped and counted until it works again",
+  GST_ELEMENT_WARNING(self, RESOURCE, WRITE, ("Sending failed: %s.", g_strerror(result.last_errno)),
+                      ("to %s; datagrams are dropped and counted until sending works again",
                        AddressToString(state.peer.get()).c_str()));
 }
 

@@ -113,7 +113,7 @@ static void ConfigureBuffer(GstLidarEcnUdpSrc* self, int fd, guint wanted) {
   if (wanted == 0 || granted >= wanted) return;
   GST_ELEMENT_WARNING(
       self, RESOURCE, SETTINGS,
-      ("The kernel granted a receive buffer of %u bytes instead of %u", granted, wanted),
+      ("The kernel granted a receive buffer of %u bytes instead of %u.", granted, wanted),
       ("raise it with: sysctl -w net.core.rmem_max=%u", wanted));
 }
 
@@ -202,7 +202,7 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
     }
     if (n < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR &&
         errno != ECONNREFUSED) {
-      GST_ELEMENT_ERROR(self, RESOURCE, READ, ("Receiving failed: %s", g_strerror(errno)),
+      GST_ELEMENT_ERROR(self, RESOURCE, READ, ("Receiving failed: %s.", g_strerror(errno)),
                         (nullptr));
       return GST_FLOW_ERROR;
     }

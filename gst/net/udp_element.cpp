@@ -12,13 +12,13 @@ void FailToListen(GstElement* element, const UdpListen& listen, const GError* er
   const bool taken = g_error_matches(error, G_IO_ERROR, G_IO_ERROR_ADDRESS_IN_USE) != FALSE;
   GST_ELEMENT_ERROR(
       element, RESOURCE, OPEN_READ,
-      ("Cannot receive on UDP port %u: %s", listen.port, error->message),
+      ("Cannot receive on UDP port %u: %s.", listen.port, error->message),
       ("address '%s', multicast-group '%s'%s", listen.address.c_str(),
        listen.multicast_group.c_str(), taken ? "; is another program using the port?" : ""));
 }
 
 void FailToSend(GstElement* element, const char* what, const UdpTarget& t, const GError* error) {
-  GST_ELEMENT_ERROR(element, RESOURCE, OPEN_WRITE, ("%s: %s", what, error->message),
+  GST_ELEMENT_ERROR(element, RESOURCE, OPEN_WRITE, ("%s: %s.", what, error->message),
                     ("host %s port %u bind-address '%s' bind-port %u", t.host.c_str(), t.port,
                      t.bind_address.c_str(), t.bind_port));
 }

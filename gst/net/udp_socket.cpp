@@ -168,7 +168,7 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
   const InetAddressPtr address(Resolve(WithoutBrackets(group), error));
   if (!address) return false;
   if (!g_inet_address_get_is_multicast(address.get())) {
-    g_set_error(error, G_IO_ERROR, G_IO_ERROR_INVALID_ARGUMENT, "%s is no multicast group",
+    g_set_error(error, G_IO_ERROR, G_IO_ERROR_INVALID_ARGUMENT, "\"%s\" is not a multicast group",
                 group.c_str());
     return false;
   }

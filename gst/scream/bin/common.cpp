@@ -18,7 +18,7 @@ GstElement* AddChild(GstElement* bin, const char* factory) {
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children) {
   for (const Child& child : children) {
     if (child.element != nullptr) continue;
-    GST_ELEMENT_ERROR(bin, CORE, MISSING_PLUGIN, ("The element %s is missing", child.factory),
+    GST_ELEMENT_ERROR(bin, CORE, MISSING_PLUGIN, ("The element %s is missing.", child.factory),
                       ("check the installation with: gst-inspect-1.0 %s", child.factory));
     return false;
   }

@@ -164,7 +164,8 @@ static void HandleMessage(GstBin* bin, GstMessage* message) {
       GST_MESSAGE_SRC(message) == GST_OBJECT(self->src) && SaysNotLinked(message) &&
       !gst_pad_is_linked(src.get())) {
     gst_message_unref(message);
-    GST_ELEMENT_ERROR(bin, CORE, PAD, ("No element takes the stream, which is application/x-rtp."),
+    GST_ELEMENT_ERROR(bin, CORE, PAD,
+                      ("The src pad is not linked; its stream is application/x-rtp."),
                       ("link a depayloader, such as rtplidardepay"));
     return;
   }

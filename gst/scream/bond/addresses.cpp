@@ -46,14 +46,16 @@ std::optional<BondAddress> ParseOne(const std::string& text, std::string* error)
   link.target.host = peer.substr(0, colon);
   const bool open_v6 = link.target.host.find(':') != std::string::npos && peer.front() != '[';
   if (!port || link.target.host.empty() || open_v6) {
-    *error = "\"" + text + "\" is no HOST:PORT@INTERFACE (an IPv6 address in brackets)";
+    *error =
+        "\"" + text + "\" must be HOST:PORT or HOST:PORT@INTERFACE (an IPv6 address in brackets)";
     return std::nullopt;
   }
   link.target.port = *port;
   link.target.bind_address = AddressOf(local);
   if (link.target.bind_address.empty()) link.interface = local;
   if (link.interface.size() >= IFNAMSIZ || (at != std::string::npos && local.empty())) {
-    *error = "\"" + text + "\": \"" + local + "\" is no interface's name and no address";
+    *error =
+        "\"" + text + "\": \"" + local + "\" is neither the name of an interface nor an address";
     return std::nullopt;
   }
   return link;
@@ -70,12 +72,12 @@ std::optional<std::vector<BondAddress>> ParseBondAddresses(const std::string& te
     if (!link) return std::nullopt;
     const bool twice = std::any_of(links.begin(), links.end(),
                                    [&](const BondAddress& l) { return l.text == link->text; });
-    if (twice) *error = "\"" + link->text + "\" is there twice";
+    if (twice) *error = "\"" + link->text + "\" is listed twice";
     if (twice) return std::nullopt;
     links.push_back(std::move(*link));
   }
   if (links.empty() || links.size() > bonding::kMaxLinks) {
-    *error = "1 to " + std::to_string(bonding::kMaxLinks) + " links, please";
+    *error = "it must list 1 to " + std::to_string(bonding::kMaxLinks) + " links";
     return std::nullopt;
   }
   return links;

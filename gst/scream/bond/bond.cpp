@@ -116,10 +116,12 @@ static void TakeMisdirected(GstLidarScreamBond* self, const std::vector<Misdirec
   BondState& state = *self->state;
   for (const Misdirected& m : reports) TxTakeReport(state.links[m.owner], m.report);
   if (reports.empty() || std::exchange(state.warned_of_swaps, true)) return;
-  GST_ELEMENT_WARNING(self, RESOURCE, READ,
-                      ("Feedback of a link comes by another link; it is used for its own."),
-                      ("Look for what swaps packets between the links: a relay, or translated "
-                       "addresses. This is said once; feedback-ignored in links counts it."));
+  GST_ELEMENT_WARNING(
+      self, RESOURCE, READ,
+      ("Feedback about one link arrives on another link; it is used for the link that it is "
+       "about."),
+      ("Check whether a relay or address translation swaps packets between the links. This warning "
+       "comes once; feedback-ignored in links counts such feedback."));
 }
 
 static gpointer BondRun(gpointer data) {
@@ -152,7 +154,7 @@ static bool StartThread(GstLidarScreamBond* self) {
   state.thread = g_thread_try_new("screambond", BondRun, self, &error);
   const ErrorPtr owner(error);
   if (state.thread != nullptr) return true;
-  GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("No thread can be made: %s", error->message),
+  GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("Cannot start a thread: %s.", error->message),
                     ("screamsink needs one to send copies over another link"));
   return false;
 }

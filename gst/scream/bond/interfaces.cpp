@@ -38,7 +38,8 @@ std::string Interfaces::Lacks(const BondAddress& link, GSocketFamily family) con
     // The kernel would send from an address of another interface if this one has none of the
     // family.
     if (found->second.families.count(family) == 0)
-      return "the interface " + link.interface + " has no address";
+      return "the interface " + link.interface + " has no IPv" +
+             (family == G_SOCKET_FAMILY_IPV6 ? "6" : "4") + " address";
   }
   const std::string& local = link.target.bind_address;
   const bool loopback = local.compare(0, 4, "127.") == 0;

@@ -113,7 +113,7 @@ std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses) {
   std::string why;
   const auto parsed = ParseBondAddresses(addresses, &why);
   if (!parsed) {
-    GST_ELEMENT_ERROR(bin, RESOURCE, SETTINGS, ("bonding-addresses: %s", why.c_str()), (nullptr));
+    GST_ELEMENT_ERROR(bin, RESOURCE, SETTINGS, ("bonding-addresses: %s.", why.c_str()), (nullptr));
     return {};
   }
   const Interfaces now = Interfaces::Now();
@@ -125,15 +125,15 @@ std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses) {
     link.usable = link.socket && why.empty();
     any_usable = any_usable || link.usable;
     if (!link.usable)
-      GST_ELEMENT_WARNING(
-          bin, RESOURCE, OPEN_WRITE,
-          ("The link %s cannot be used: %s", address.text.c_str(), why.c_str()),
-          (link.socket ? "it is used once it can be" : "it is left out until the next start"));
+      GST_ELEMENT_WARNING(bin, RESOURCE, OPEN_WRITE,
+                          ("The link %s cannot be used: %s.", address.text.c_str(), why.c_str()),
+                          (link.socket ? "screamsink uses it as soon as it works"
+                                       : "screamsink leaves it out until the next start"));
     if (link.socket) links.push_back(std::move(link));
   }
   if (any_usable) return links;
-  GST_ELEMENT_ERROR(bin, RESOURCE, OPEN_WRITE, ("No link can be used: %s", why.c_str()),
-                    ("bonding-addresses %s", addresses.c_str()));
+  GST_ELEMENT_ERROR(bin, RESOURCE, OPEN_WRITE, ("No link can be used: %s.", why.c_str()),
+                    ("bonding-addresses are %s", addresses.c_str()));
   return {};
 }
 
@@ -154,7 +154,7 @@ void SinkLinks::Watch() {
   const Interfaces now = Interfaces::Now();
   for (std::size_t i = 0; i < links_.size(); ++i) {
     std::string trouble = now.Lacks(links_[i].address, FamilyOf(links_[i]));
-    if (Fails(i) && trouble.empty()) trouble = "its packets cannot leave";
+    if (Fails(i) && trouble.empty()) trouble = "its packets cannot be sent";
     if (links_[i].usable != trouble.empty()) Change(i, trouble);
   }
 }

@@ -36,10 +36,11 @@ constexpr bool CollidesWithRtcp(unsigned type) { return type >= 64 && type <= 95
 const char* FaultOf(std::string_view name, const GValue* value) {
   unsigned type = 0;
   const auto end = std::from_chars(name.data(), name.data() + name.size(), type).ptr;
-  if (end != name.data() + name.size() || type > 127) return "is no payload type (0 to 127)";
-  if (CollidesWithRtcp(type)) return "is RTCP on a port that carries both (64 to 95, RFC 5761)";
+  if (end != name.data() + name.size() || type > 127) return "is not a payload type (0 to 127)";
+  if (CollidesWithRtcp(type))
+    return "looks like RTCP on a port that carries both (64 to 95, RFC 5761)";
   const CapsPtr caps = CapsOfValue(value);
-  if (!caps || !gst_caps_is_fixed(caps.get())) return "has no fixed caps";
+  if (!caps || !gst_caps_is_fixed(caps.get())) return "must have fixed caps";
   return nullptr;
 }
 
@@ -150,8 +151,8 @@ void CheckPtMap(GstLidarScreamRx* self) {
   const auto check = [](GQuark field, const GValue* value, gpointer data) -> gboolean {
     const gchar* name = g_quark_to_string(field);
     if (const char* fault = FaultOf(name, value))
-      GST_ELEMENT_WARNING(data, RESOURCE, SETTINGS, ("pt-map: %s %s; it is ignored.", name, fault),
-                          (nullptr));
+      GST_ELEMENT_WARNING(data, RESOURCE, SETTINGS,
+                          ("pt-map: the entry %s %s; it is ignored.", name, fault), (nullptr));
     return TRUE;
   };
   gst_structure_foreach(map.get(), check, self);
@@ -175,8 +176,8 @@ static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   RxState& state = *self->state;
   gst_buffer_unref(buffer);
   if (!std::exchange(state.routes_full, true)) {
-    GST_ELEMENT_WARNING(self, STREAM, DEMUX, ("More than %zu streams.", kMaxRoutes),
-                        ("Further SSRCs are dropped until the element is started anew."));
+    GST_ELEMENT_WARNING(self, STREAM, DEMUX, ("More than %zu streams arrive.", kMaxRoutes),
+                        ("Further SSRCs are dropped until the element is restarted."));
   }
   RxLock lock(state.mutex);
   ++state.counters.foreign;
@@ -188,7 +189,7 @@ static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
 static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPad* pad) {
   if (std::exchange(self->state->warned_of_untaken, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, DEMUX,
-                      ("A stream with payload type %u (SSRC %u) is dropped: nobody takes it.",
+                      ("A stream with payload type %u (SSRC %u) is dropped: its pad is not linked.",
                        header.payload_type, header.ssrc),
                       ("link the pad %s, or a second branch from this element: each SSRC leaves by "
                        "a pad of its own",

@@ -180,12 +180,12 @@ bool DtlsKeys::GoesOn(Time now, Session* session) {
   if (state == State::kRefused) {
     ++refused_;
     WarnOnce(&told_of_stranger_,
-             "The other end has another certificate than the one to trust, and is refused.",
+             "The other end is refused: its certificate is not the one to trust.",
              "dtls-peer-certificate names the one to trust");
   } else if (state == State::kOpen && is_client_ && is_old) {
     WarnOnce(&told_of_silence_,
-             "The other end does not answer the DTLS handshake; it is tried again.",
-             "is it there, with dtls-certificate, and does it trust our certificate?");
+             "The other end does not answer the DTLS handshake, which is tried again.",
+             "is the other end running, with dtls-certificate, and does it trust our certificate?");
   }
   const bool is_of_use = state == State::kOpen || (state == State::kDone && !is_client_);
   return is_of_use && !is_old;

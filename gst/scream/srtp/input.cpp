@@ -282,9 +282,9 @@ void SrtpInput::Warn() {
   if (warned_) return;
   warned_ = true;
   GST_ELEMENT_WARNING(bin_, STREAM, DECRYPT,
-                      ("Packets arrive that do not fit the SRTP key, and are dropped."),
+                      ("Packets that do not match the SRTP key arrive and are dropped."),
                       ("check that both ends have the same srtp-key, srtp-cipher and srtp-auth; "
-                       "this is said once, the property stats counts them"));
+                       "this warning comes once, the property stats counts the packets"));
 }
 
 }  // namespace lidar::gst

@@ -54,12 +54,12 @@ bool ReadText(const std::string& source, std::string* text, std::string* error) 
 std::optional<SrtpPolicy> SrtpPolicyOf(const SrtpSettings& settings, std::string* error) {
   const Cipher* cipher = FindCipher(settings.cipher);
   if (cipher == nullptr) {
-    *error = "srtp-cipher is none of aes-128-icm, aes-256-icm, aes-128-gcm, aes-256-gcm";
+    *error = "srtp-cipher must be aes-128-icm, aes-256-icm, aes-128-gcm or aes-256-gcm";
     return std::nullopt;
   }
   const bool is_short = settings.auth == "hmac-sha1-32";
   if (!is_short && settings.auth != "hmac-sha1-80") {
-    *error = "srtp-auth is neither hmac-sha1-80 nor hmac-sha1-32";
+    *error = "srtp-auth must be hmac-sha1-80 or hmac-sha1-32";
     return std::nullopt;
   }
   if (cipher->authenticates) return SrtpPolicy{cipher->name, "null", "null", cipher->key_size, 16};

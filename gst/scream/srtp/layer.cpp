@@ -29,16 +29,16 @@ bool ReadKey(const SrtpSettings& settings, const SrtpPolicy& policy, SrtpKey* ke
 }
 
 bool ReadForDtls(const SrtpSettings& settings, Certificates* certificates, std::string* error) {
-  *error = "dtls-certificate and dtls-peer-certificate take the place of srtp-key";
+  *error = "srtp-key cannot be set together with dtls-certificate or dtls-peer-certificate";
   if (!settings.key.empty()) return false;
-  *error = "DTLS has aes-128-icm and hmac-sha1-80 only";
+  *error = "with DTLS, srtp-cipher must be aes-128-icm and srtp-auth hmac-sha1-80";
   const SrtpSettings usual;
   if (settings.cipher != usual.cipher || settings.auth != usual.auth) return false;
   *error = "the dtls plugin is missing; install gstreamer1.0-plugins-bad";
   GstElementFactory* factory = gst_element_factory_find("dtlsdec");
   if (factory == nullptr) return false;
   gst_object_unref(factory);
-  *error = "dtls-certificate and dtls-peer-certificate are needed both";
+  *error = "dtls-certificate and dtls-peer-certificate must be set together";
   if (settings.dtls_certificate.empty() || settings.dtls_peer_certificate.empty()) return false;
   return ReadCertificates(settings.dtls_certificate, settings.dtls_peer_certificate, certificates,
                           error);
@@ -134,7 +134,7 @@ BufferPtr SrtpLayer::Protect(GstBuffer* packet) {
 }
 
 bool SrtpLayer::ChangeKey(const std::string& source, std::string* error) {
-  *error = "DTLS agrees on the keys";
+  *error = "DTLS negotiates the keys";
   if (dtls_) return false;
   const auto key = ReadSrtpKey(source, policy_, error);
   if (!key) return false;
@@ -144,11 +144,11 @@ bool SrtpLayer::ChangeKey(const std::string& source, std::string* error) {
     if (digest == digests_.back()) return true;
     // The packet index begins at 0 with each key: a repeated key would encrypt two packets alike.
     if (std::find(digests_.begin(), digests_.end(), digest) != digests_.end()) {
-      *error = "this key was in use before; a key must be new";
+      *error = "this key was in use before; set a new key";
       return false;
     }
     if (!places_.sends_media && inputs_.front()->waiting_keys() >= kMaxWaitingKeys) {
-      *error = "two new keys wait already for the sender to use them";
+      *error = "two new keys already wait for the sender to use them";
       return false;
     }
   }

@@ -38,7 +38,7 @@ bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
 }
 
 bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key) {
-  std::string error = "SRTP begins and ends with a start from NULL";
+  std::string error = "SRTP can be turned on or off only in the state NULL";
   if (layer != nullptr && !key.empty() && layer->ChangeKey(key, &error)) return true;
   GST_ELEMENT_WARNING(bin, RESOURCE, SETTINGS, ("The SRTP key stays as it is: %s.", error.c_str()),
                       (nullptr));

@@ -119,10 +119,9 @@ static void OnReport(GstLidarScreamAux* self, GstEvent* event) {
       !std::exchange(state.warned, state.warned || state.numbers.stats().mismatched > 0);
   lock.unlock();
   if (warn)
-    GST_ELEMENT_WARNING(self, STREAM, FAILED,
-                        ("The session reports about packets that did not pass here"),
-                        ("all streams of the session have to pass screamaux, which stands right "
-                         "before rtpsession"));
+    GST_ELEMENT_WARNING(
+        self, STREAM, FAILED, ("The session reports packets that did not pass screamaux."),
+        ("put screamaux directly before rtpsession, so that all streams of the session pass it"));
   if (report) TxTakeReport(GST_LIDAR_SCREAM_TX(self->tx), *report);
 }
 

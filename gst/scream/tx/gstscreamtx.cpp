@@ -180,7 +180,7 @@ static bool TakesTuning(GstElement* element) {
   const TxSettings settings = Snapshot(StateOf(element));
   const std::string wrong = ReadTuning(settings.tuning.get(), &parameters);
   if (wrong.empty()) return true;
-  GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("tuning: %s", wrong.c_str()), (nullptr));
+  GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("tuning: %s.", wrong.c_str()), (nullptr));
   return false;
 }
 

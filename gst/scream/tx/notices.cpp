@@ -42,20 +42,18 @@ void WarnOfSilence(GstElement* element, GstPad* src, const char* when) {
   const std::string to = Destination(src);
   GST_ELEMENT_WARNING(
       element, RESOURCE, READ,
-      ("No feedback%s%s %s, as if nobody listened there.", to.empty() ? "" : " from ", to.c_str(),
+      ("No feedback%s%s %s: no receiver seems to answer.", to.empty() ? "" : " from ", to.c_str(),
        when),
-      ("Check host and port; that screamsrc, or screamrx with its rtcp_src linked, runs there; and "
-       "that no firewall is between. Without feedback only the lowest bitrate is sent. This is "
-       "said "
-       "once; messages scream-feedback-state-changed follow."));
+      ("Check host and port, that screamsrc (or screamrx with its rtcp_src linked) runs there, and "
+       "that no firewall blocks the packets. Without feedback only the lowest bitrate is sent. "
+       "This warning comes once; messages scream-feedback-state-changed follow."));
 }
 
 void WarnOfUnheeded(GstElement* element) {
-  GST_ELEMENT_WARNING(
-      element, STREAM, ENCODE,
-      ("Frames are dropped, and no encoder upstream follows target-bitrate."),
-      ("Put bitrateadapter behind the encoder, or give the encoder a lower bitrate; this is said "
-       "once, the property stats counts the frames."));
+  GST_ELEMENT_WARNING(element, STREAM, ENCODE,
+                      ("Frames are dropped, and no encoder upstream follows target-bitrate."),
+                      ("Put bitrateadapter behind the encoder, or give the encoder a lower "
+                       "bitrate; this warning comes once, the property stats counts the frames."));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ std::optional<gdouble> NumberOf(const GValue* v) {
 std::string RangeOf(const scream::Tunable& t) {
   if (t.is_switch()) return "true or false";
   std::ostringstream text;
-  text << "numbers from " << t.min << " to " << t.max;
+  text << "a number from " << t.min << " to " << t.max;
   return text.str();
 }
 
@@ -119,10 +119,10 @@ std::string ReadTuning(const GstStructure* tuning, scream::Parameters* parameter
   for (int i = 0; i < n; ++i) {
     const std::string name = gst_structure_nth_field_name(tuning, static_cast<guint>(i));
     const scream::Tunable* tunable = scream::FindTunable(name);
-    if (tunable == nullptr) return "\"" + name + "\" is none of " + scream::TunableNames();
+    if (tunable == nullptr) return "\"" + name + "\" is not one of " + scream::TunableNames();
     const auto value = NumberOf(gst_structure_get_value(tuning, name.c_str()));
     if (!value || !tunable->Set(*value, parameters))
-      return "\"" + name + "\" takes " + RangeOf(*tunable);
+      return "\"" + name + "\" must be " + RangeOf(*tunable);
   }
   return {};
 }

@@ -39,8 +39,8 @@ bool UpstreamReporter::Start() {
       this, &error);
   if (thread_ != nullptr) return true;
   const ErrorPtr owner(error);
-  GST_ELEMENT_ERROR(self_, RESOURCE, FAILED, ("No thread can be made: %s", error->message),
-                    ("screamtx needs one to tell the encoders their bitrate"));
+  GST_ELEMENT_ERROR(self_, RESOURCE, FAILED, ("Cannot start a thread: %s.", error->message),
+                    ("screamtx needs one to send the encoders their bitrate"));
   return false;
 }
 

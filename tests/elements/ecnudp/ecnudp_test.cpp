@@ -225,7 +225,7 @@ TEST(EcnUdp, TellsOnceOfAnErrorUntilDatagramsLeaveAgain) {
     for (int i = 0; i < 3; ++i) gst_harness_push(sink.get(), Payload(std::string(70'000, 'x')));
     const auto warnings = bus.Texts(GST_MESSAGE_WARNING);
     ASSERT_EQ(warnings.size(), 1U) << outage;
-    EXPECT_EQ(warnings[0], std::string("Sending failed: ") + g_strerror(EMSGSIZE));
+    EXPECT_EQ(warnings[0], std::string("Sending failed: ") + g_strerror(EMSGSIZE) + ".");
     EXPECT_EQ(Stat(sink.get(), "send-errors"), 3 * outage);
     gst_harness_push(sink.get(), Payload("fits"));
     EXPECT_EQ(Stat(sink.get(), "packets-sent"), outage);
@@ -489,7 +489,7 @@ TEST(EcnUdpSink, WarnsOfAnInterfaceThatIsNotThere) {
   g_object_set(sink.get(), "host", "239.201.7.1", "port", 9, "multicast-iface", "nosuch0", nullptr);
   const test::ElementBus bus(sink.get());
   gst_element_set_state(sink.get(), GST_STATE_PAUSED);
-  EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING).find("The multicast-iface nosuch0 is not used: "), 0U);
+  EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING).find("The multicast-iface nosuch0 cannot be used: "), 0U);
   gst_element_set_state(sink.get(), GST_STATE_NULL);
 }
 

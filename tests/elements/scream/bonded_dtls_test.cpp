@@ -243,7 +243,7 @@ TEST(Dtls, FailsWithAWordWhereItCannotStart) {
   const std::string no_file = Papers().Public("nobody"), key = std::string(60, '5');
   const std::pair<std::string, const char*> wrong[] = {
       {"dtls-certificate=" + Papers().WithKey("robot"), "both"},
-      {OfRobot() + "srtp-key=" + key, "place of srtp-key"},
+      {OfRobot() + "srtp-key=" + key, "srtp-key cannot be set together with dtls-certificate"},
       {OfRobot() + "srtp-cipher=aes-256-icm", "aes-128-icm"},
       {"dtls-certificate=" + no_file + " dtls-peer-certificate=" + no_file, "nobody"},
       {"dtls-certificate=" + Papers().Public("robot") +
@@ -266,7 +266,7 @@ TEST(Dtls, AKeyIsNotTakenFromElsewhere) {
                nullptr);
   const MessagePtr message = receiver.pipeline.Wait(GST_MESSAGE_WARNING);
   ASSERT_TRUE(message);
-  EXPECT_EQ(MessageText(message.get()), "The SRTP key stays as it is: DTLS agrees on the keys.");
+  EXPECT_EQ(MessageText(message.get()), "The SRTP key stays as it is: DTLS negotiates the keys.");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ using gst::MessagePtr;
 using gst::PadPtr;
 
 constexpr guint kPorts[] = {5'004, 5'006};
-constexpr const char* kSwapped = "Feedback of a link comes by another link";
+constexpr const char* kSwapped = "Feedback about one link arrives on another link";
 
 class BondedSink : public ::testing::Test {
  protected:
@@ -469,7 +469,7 @@ TEST_F(BondedSink, KeepsALinkThatSendsSomePacketsAndGivesUpOneThatSendsNone) {
     changed = ChangedLink();
     return !changed.empty();
   }));
-  EXPECT_EQ(changed, "127.0.0.1:5006@127.0.0.2 is not usable: its packets cannot leave");
+  EXPECT_EQ(changed, "127.0.0.1:5006@127.0.0.2 is not usable: its packets cannot be sent");
   EXPECT_EQ(OfLink("send-errors", 0), 1U);
   EXPECT_TRUE(Stats(sink_).Of("links", 0).True("usable"));
   EXPECT_FALSE(Stats(sink_).Of("links", 1).True("usable"));

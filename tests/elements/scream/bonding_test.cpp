@@ -114,12 +114,13 @@ TEST(Bonding, SaysWhatTheInterfaceOfALinkLacks) {
   const ElementBus bus(sink.get());
   g_object_set(sink.get(), "bonding-addresses", "127.0.0.1:9@127.0.0.1,127.0.0.1:9@lo", nullptr);
   for (const Case& c : {Case{true, true, ""}, Case{false, true, "the interface lo is down"},
-                        Case{true, false, "the interface lo has no address"}}) {
+                        Case{true, false, "the interface lo has no IPv4 address"}}) {
     loopback_has_carrier = c.carrier;
     loopback_has_ipv4 = c.ipv4;
     EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
-    EXPECT_EQ(bus.Text(GST_MESSAGE_WARNING),
-              c.trouble.empty() ? "" : "The link 127.0.0.1:9@lo cannot be used: " + c.trouble);
+    EXPECT_EQ(
+        bus.Text(GST_MESSAGE_WARNING),
+        c.trouble.empty() ? "" : "The link 127.0.0.1:9@lo cannot be used: " + c.trouble + ".");
     gst_element_set_state(sink.get(), GST_STATE_NULL);
   }
   loopback_has_carrier = loopback_has_ipv4 = true;
@@ -136,7 +137,7 @@ TEST(Bonding, SaysThatNoInterfaceHasTheLocalAddressOfALink) {
     EXPECT_EQ(gst_element_set_state(sink.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
     EXPECT_EQ(
         bus.Text(GST_MESSAGE_WARNING),
-        has_it ? "" : "The link [::1]:9@::1 cannot be used: no interface has the address ::1");
+        has_it ? "" : "The link [::1]:9@::1 cannot be used: no interface has the address ::1.");
     gst_element_set_state(sink.get(), GST_STATE_NULL);
   }
   loopback_has_ipv6 = true;
@@ -498,9 +499,10 @@ TEST(BondAddresses, KeepTheInterfaceOfALinkLocalAddress) {
 }
 
 TEST(BondAddresses, RefuseAllElseWithAWord) {
-  const std::string no_link = "is no HOST:PORT@INTERFACE (an IPv6 address in brackets)";
-  const std::string no_interface = "is no interface's name and no address";
-  const std::string twice = "\"a:1\" is there twice", count = "1 to 4 links, please";
+  const std::string no_link =
+      "must be HOST:PORT or HOST:PORT@INTERFACE (an IPv6 address in brackets)";
+  const std::string no_interface = "is neither the name of an interface nor an address";
+  const std::string twice = "\"a:1\" is listed twice", count = "it must list 1 to 4 links";
   const std::pair<const char*, std::string> wrong[] = {
       {"", count},
       {",", "\"\" " + no_link},

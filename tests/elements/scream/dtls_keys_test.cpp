@@ -357,7 +357,8 @@ TEST_F(DtlsEnds, ASilenceIsToldOfOnceAndBehindAKeyAgain) {
     std::vector<Carried> hello;
     ASSERT_TRUE(test::Eventually([&] { return !(hello = up_.Take()).empty(); }));
     EXPECT_EQ(warnings_, silence);
-    EXPECT_STREQ(warning_, "The other end does not answer the DTLS handshake; it is tried again.");
+    EXPECT_STREQ(warning_,
+                 "The other end does not answer the DTLS handshake, which is tried again.");
     StartServer();
     for (const Carried& d : hello) Give(*server_, {5'001, d.bytes});
     ASSERT_TRUE(test::Eventually([&] {

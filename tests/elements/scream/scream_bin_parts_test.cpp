@@ -141,9 +141,9 @@ TEST_F(ScreamBin, AKeyThatWasInUseIsRefusedAndSoIsAThirdThatWaits) {
     EXPECT_EQ(refusal('6'), "") << factory;
     EXPECT_EQ(refusal('7'), "") << factory;
     EXPECT_EQ(refusal('7'), "") << factory << ": it is the newest";
-    EXPECT_EQ(refusal('6'), stays + "this key was in use before; a key must be new.") << factory;
+    EXPECT_EQ(refusal('6'), stays + "this key was in use before; set a new key.") << factory;
     EXPECT_EQ(refusal('8'),
-              receives ? stays + "two new keys wait already for the sender to use them." : "")
+              receives ? stays + "two new keys already wait for the sender to use them." : "")
         << factory;
     const char newest = receives ? '7' : '8';
     To(GST_STATE_NULL);
@@ -231,9 +231,9 @@ TEST_F(ScreamBin, WhatCannotBeSecuredIsAnErrorThatSaysWhyAndKeepsNoSocket) {
       {"g" + digits, wrong + "aes-128-icm"},
       {digits + "5", "must be 88 hexadecimal digits (master key and salt) for aes-256-gcm",
        "aes-256-gcm"},
-      {digits + "5", "srtp-cipher is none of aes-128-icm, aes-256-icm, aes-128-gcm, aes-256-gcm",
+      {digits + "5", "srtp-cipher must be aes-128-icm, aes-256-icm, aes-128-gcm or aes-256-gcm",
        "aes"},
-      {digits + "5", "srtp-auth is neither hmac-sha1-80 nor hmac-sha1-32", "aes-128-icm", "null"},
+      {digits + "5", "srtp-auth must be hmac-sha1-80 or hmac-sha1-32", "aes-128-icm", "null"},
   };
   for (const char* factory : {"screamsink", "screamsrc"})
     for (const Case& c : cases) {
@@ -301,7 +301,7 @@ TEST_F(ScreamBin, TheSourceNamesAMissingNextElementOnlyWhereThereIsNone) {
     return bus.Text(GST_MESSAGE_ERROR);
   };
   EXPECT_EQ(text_of_error(GST_FLOW_NOT_LINKED),
-            "No element takes the stream, which is application/x-rtp.");
+            "The src pad is not linked; its stream is application/x-rtp.");
   EXPECT_EQ(text_of_error(GST_FLOW_ERROR), "Receiving failed");
   gst_element_post_message(udp.get(),
                            gst_message_new_error(GST_OBJECT(udp.get()), error.get(), ""));

@@ -749,11 +749,11 @@ TEST(Tuning, SaysWhatIsWrong) {
     return ReadTuning(Tuned(tuning).tuning.get(), &p);
   };
   EXPECT_EQ(wrong("tuning,beta-loss=0.6"), "");
-  EXPECT_NE(wrong("tuning,beta=0.6").find("\"beta\" is none of qdelay-target-lo, min-ref-wnd,"),
+  EXPECT_NE(wrong("tuning,beta=0.6").find("\"beta\" is not one of qdelay-target-lo, min-ref-wnd,"),
             std::string::npos);
-  EXPECT_EQ(wrong("tuning,beta-loss=1.5"), "\"beta-loss\" takes numbers from 0.1 to 1");
-  EXPECT_EQ(wrong("tuning,beta-loss=much"), "\"beta-loss\" takes numbers from 0.1 to 1");
-  EXPECT_EQ(wrong("tuning,capacity=2"), "\"capacity\" takes true or false");
+  EXPECT_EQ(wrong("tuning,beta-loss=1.5"), "\"beta-loss\" must be a number from 0.1 to 1");
+  EXPECT_EQ(wrong("tuning,beta-loss=much"), "\"beta-loss\" must be a number from 0.1 to 1");
+  EXPECT_EQ(wrong("tuning,capacity=2"), "\"capacity\" must be true or false");
   scream::Parameters p;
   const double no_number = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(scream::FindTunable("beta-loss")->Set(no_number, &p));

@@ -204,7 +204,7 @@ TEST_F(ScreamAux, WarnsOnceInEachRunOfStreamsThatPassBesideIt) {
     for (int i = 0; i < 3; ++i) Tell({{0, 1200}});
     const auto warnings = bus.Texts(GST_MESSAGE_WARNING);
     ASSERT_EQ(warnings.size(), 1U) << run;
-    EXPECT_EQ(warnings[0], "The session reports about packets that did not pass here");
+    EXPECT_EQ(warnings[0], "The session reports packets that did not pass screamaux.");
     gst_element_set_state(element, GST_STATE_READY);
     gst_element_set_state(element, GST_STATE_PLAYING);
   }

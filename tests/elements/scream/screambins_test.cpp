@@ -281,7 +281,8 @@ TEST(ScreamBins, AStreamThatNoElementTakesIsAnErrorThatNamesTheDepayloader) {
   sender.Play();
   const MessagePtr message = receiver.Wait(GST_MESSAGE_ERROR);
   ASSERT_TRUE(message);
-  EXPECT_EQ(MessageText(message.get()), "No element takes the stream, which is application/x-rtp.");
+  EXPECT_EQ(MessageText(message.get()),
+            "The src pad is not linked; its stream is application/x-rtp.");
   EXPECT_NE(MessageDetails(message.get()).find("rtplidardepay"), std::string::npos);
 }
 
@@ -309,7 +310,7 @@ TEST(ScreamBins, AnUnknownNameInTuningIsAnErrorThatListsTheNames) {
   const MessagePtr message = sender.Wait(GST_MESSAGE_ERROR);
   ASSERT_TRUE(message);
   const std::string text = MessageText(message.get());
-  EXPECT_NE(text.find("\"beta-los\" is none of"), std::string::npos);
+  EXPECT_NE(text.find("\"beta-los\" is not one of"), std::string::npos);
   EXPECT_NE(text.find("beta-loss"), std::string::npos);
 }
 

@@ -454,8 +454,8 @@ TEST_F(ScreamRx, WarnsOfWhatIsWrongWithPtMapAndOfAStreamThatNobodyTakes) {
   gst_harness_set_sink_caps_str(rtp.get(), "application/x-rtp,media=application");
   for (int run = 0; run < 2; ++run) {
     EXPECT_EQ(warnings(), 4U) << run;
-    for (const char* fault : {"72 is RTCP", "98 has no fixed caps", "200 is no payload type",
-                              "lidar is no payload type"})
+    for (const char* fault : {"72 looks like RTCP", "98 must have fixed caps",
+                              "200 is not a payload type", "lidar is not a payload type"})
       EXPECT_NE(texts.find(fault), std::string::npos) << texts;
     texts.clear();
     for (guint16 seq = 0; seq < 4; ++seq) {

@@ -145,7 +145,7 @@ TEST_F(SrtpIn, WarnsOnceOfPacketsThatDoNotFit) {
   Forge(100);
   const auto warnings = bus_.Texts(GST_MESSAGE_WARNING);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0], "Packets arrive that do not fit the SRTP key, and are dropped.");
+  EXPECT_EQ(warnings[0], "Packets that do not match the SRTP key arrive and are dropped.");
 }
 
 TEST_F(SrtpIn, TakesAStreamThatBeginsBehindAForgery) {
