@@ -105,7 +105,7 @@ std::optional<Grant> Admission::Check(SoupServerMessage* request, GHashTable* qu
   if (grant) return grant;
   if (!token.empty()) wrong_.Note(address, now_us);
   *refusal = {SOUP_STATUS_UNAUTHORIZED,
-              token.empty() ? "A token is needed.\n" : "The token is wrong, or has run out.\n"};
+              token.empty() ? "A token is needed.\n" : "The token is wrong, or has expired.\n"};
   return std::nullopt;
 }
 

@@ -35,7 +35,7 @@ std::string Certificate::NoticeOfEnd(std::int64_t now_s) {
   const Date utc(g_date_time_to_utc(end.get()), g_date_time_unref);
   const std::unique_ptr<gchar, decltype(&g_free)> text(
       g_date_time_format(utc.get(), "%Y-%m-%d %H:%M UTC"), g_free);
-  return "The certificate " + file_ + " ran out on " + text.get() + ": browsers refuse it.";
+  return "The certificate " + file_ + " expired on " + text.get() + ": browsers refuse it.";
 }
 
 std::string Certificate::Stamp() const {

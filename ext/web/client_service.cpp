@@ -142,7 +142,8 @@ void ClientService::Upgrade(SoupServerMessage* request) {
   const char* offered = soup_message_headers_get_list(headers, "Sec-WebSocket-Protocol");
   if (offered == nullptr || *offered == 0) {
     ++counters_.malformed;
-    return Answer(request, SOUP_STATUS_BAD_REQUEST, "The subprotocol is foxglove.sdk.v1.\n");
+    return Answer(request, SOUP_STATUS_BAD_REQUEST,
+                  "The WebSocket needs the subprotocol foxglove.sdk.v1.\n");
   }
   std::array<char*, foxglove::kSubprotocols.size() + 1> protocols{};
   std::transform(foxglove::kSubprotocols.begin(), foxglove::kSubprotocols.end(), protocols.begin(),
@@ -356,7 +357,7 @@ void ClientService::RenewCertificate() {
   std::string why;
   if (!certificate_.is_wanted()) return;
   if (!certificate_.Renew(&why) && config_.warn)
-    config_.warn("The renewed certificate cannot be read, the old one stays: " + why);
+    config_.warn("The renewed certificate cannot be read, so the old one stays in use: " + why);
   WarnOfEnd();
 }
 

@@ -207,7 +207,8 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   const Kind kind = KindOf(caps, &info, &why);
   if (kind == Kind::kNone) {
     if (state.refused.Note(caps))
-      GST_ELEMENT_ERROR(sink, STREAM, FORMAT, ("Not the caps of a cloud to show: %s.", why.c_str()),
+      GST_ELEMENT_ERROR(sink, STREAM, FORMAT,
+                        ("The caps do not describe a cloud that can be shown: %s.", why.c_str()),
                         ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
     return FALSE;
   }
@@ -366,7 +367,7 @@ GstFlowReturn Render(GstBaseSink* sink, GstBuffer* buffer) {
   }
   if (!good) {
     ++state.used->malformed;
-    GST_WARNING_OBJECT(sink, "a buffer that is damaged, or of another size than its caps say");
+    GST_WARNING_OBJECT(sink, "dropping a buffer that is damaged or does not match its caps");
   }
   return GST_FLOW_OK;
 }

@@ -227,8 +227,8 @@ static bool CheckAddress(GstElement* element, const Settings& s) {
       g_inet_address_new_from_string(s.bind_address.c_str()));
   if (!address) {
     GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
-                      ("\"%s\" is no address of a network interface.", s.bind_address.c_str()),
-                      ("bind-address takes an IPv4 or IPv6 address"));
+                      ("bind-address \"%s\" is not an IP address.", s.bind_address.c_str()),
+                      ("set it to an IPv4 or IPv6 address of this machine"));
     return false;
   }
   const bool has_token = !s.token.empty() || !s.token_secret.empty();
@@ -245,9 +245,9 @@ static bool CheckSecrets(GstElement* element, const Settings& s) {
   constexpr std::size_t kShortest = 32;  // RFC 7518, section 3.2
   const char* wrong = nullptr;
   if (!s.token_secret.empty() && s.token_secret.size() < kShortest)
-    wrong = "token-secret has less than 32 bytes.";
+    wrong = "token-secret must have at least 32 bytes.";
   if (s.tls_certificate.empty() != s.tls_private_key.empty())
-    wrong = "tls-certificate and tls-private-key need each other.";
+    wrong = "tls-certificate and tls-private-key must be set together.";
   if (wrong == nullptr) return true;
   GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("%s", wrong), (nullptr));
   return false;

@@ -17,7 +17,7 @@ std::optional<SliceCaps> SliceCaps::Parse(const GstCaps* caps, std::string* why)
   SliceCaps out;
   out.about.has_ranges = g_strcmp0(gst_structure_get_string(s, "geometry"), "xyz") != 0;
   if (out.about.has_ranges && !info->sensor_model) {
-    *why = "with geometry=range they lack a sensor-model";
+    *why = "geometry=range needs a sensor-model";
     return std::nullopt;
   }
   out.about.fields = info->fields.ToString();

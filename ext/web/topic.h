@@ -93,7 +93,7 @@ using SharedTopic = std::shared_ptr<Topic>;
 /// Says in words for a user why the topic cannot be opened.
 inline std::string TopicInUse(const std::string& name) {
   return "the topic \"" + name +
-         "\" is already used for something else; set the property topic of one of its pads";
+         "\" is already used for other data; set the property topic of one of its pads";
 }
 
 }  // namespace lidar::web

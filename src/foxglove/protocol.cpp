@@ -56,7 +56,7 @@ Request ParseUnsubscribe(const json& message) {
   if (list == nullptr) return Malformed("unsubscribe has no array \"subscriptionIds\"");
   for (const json& item : *list) {
     const auto id = Id(item);
-    if (!id) return Malformed("a subscription id is no number");
+    if (!id) return Malformed("a subscription id is not a number");
     request.unsubscribed.push_back(*id);
   }
   request.kind = Request::Kind::kUnsubscribe;
@@ -94,7 +94,7 @@ Request ParseReplay(const json& message) {
     return Malformed("replay needs a number from 1 to 65535 and a time");
   const auto seconds = time->get<double>();
   if (!(seconds >= 0 && seconds <= kLatest_s))
-    return Malformed("time is not in seconds since 1970");
+    return Malformed("time must be in seconds since 1970");
   request.number = static_cast<std::uint16_t>(*number);
   request.time_ns = static_cast<std::uint64_t>(seconds * 1e9);
   return request;

@@ -53,7 +53,7 @@ TEST(FoxgloveSink, AdmitsOnlyWhoKnowsTheToken) {
   EXPECT_EQ(refused.challenge, "Bearer");
   EXPECT_EQ(refused.body, "A token is needed.\n");
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secre")).body,
-            "The token is wrong, or has run out.\n");
+            "The token is wrong, or has expired.\n");
   EXPECT_EQ(HttpGet(sink.Url("http", "/session?token=secret")).status, 200U);
   EXPECT_TRUE(Peer(sink.Url("ws", "/?token=secret"), {"foxglove.sdk.v1"}).connected());
   EXPECT_EQ(sink.Stat("clients-refused"), 5U) << "a page that asks why is no other client";
@@ -98,12 +98,13 @@ TEST(FoxgloveSink, NeedsATokenWhereOthersCanReachIt) {
   if (HasIpv6()) {
     EXPECT_EQ(ErrorOf("port=0 bind-address=::1"), "");
   }
-  EXPECT_NE(ErrorOf("port=0 bind-address=robot").find("no address"), std::string::npos);
+  EXPECT_NE(ErrorOf("port=0 bind-address=robot").find("is not an IP address"), std::string::npos);
 }
 
 TEST(FoxgloveSink, RefusesSecretsThatCannotProtect) {
   EXPECT_NE(ErrorOf("port=0 token-secret=short").find("32 bytes"), std::string::npos);
-  EXPECT_NE(ErrorOf("port=0 tls-certificate=a.pem").find("need each other"), std::string::npos);
+  EXPECT_NE(ErrorOf("port=0 tls-certificate=a.pem").find("must be set together"),
+            std::string::npos);
   EXPECT_EQ(ErrorOf("port=0 bind-address=0.0.0.0 token-secret=" + std::string(32, 's')), "");
 }
 

@@ -388,8 +388,8 @@ TEST(FoxgloveSink, RefusesOneTopicForTwoKindsOfMessages) {
     Harness second(gst_harness_new_with_element(sink.element(), "sink_1", nullptr));
     gst_harness_set_src_caps_str(second.get(), caps);
     EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
-              "Cannot show this stream: the topic \"/points\" is already used for something else; "
-              "set the property topic of one of its pads.");
+              "Cannot show this stream: the topic \"/points\" is already used for other data; set "
+              "the property topic of one of its pads.");
     const std::array<double, 8> words = {};
     EXPECT_EQ(gst_harness_push(second.get(), gst_buffer_new_memdup(words.data(), sizeof words)),
               GST_FLOW_NOT_NEGOTIATED);
@@ -437,8 +437,7 @@ TEST_P(PosesOfClouds, AreNotShownIfTheirTopicIsInUseWhichIsSaidOnce) {
   EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING),
             std::vector<std::string>{
                 "The poses of the clouds are not shown: the topic \"" + topic +
-                "\" is already used for something else; set the property topic of one of its "
-                "pads."});
+                "\" is already used for other data; set the property topic of one of its pads."});
   // The next run shows the poses: the stream that uses the topic has not begun.
   gst_element_set_state(sink.element(), GST_STATE_NULL);
   gst_element_set_state(sink.element(), GST_STATE_PLAYING);

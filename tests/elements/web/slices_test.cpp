@@ -251,8 +251,8 @@ TEST(Slices, OfATopicInUseAreRefused) {
   gst::BufferPtr slice = edge.robot.Next();
   gst_harness_set_src_caps(edge.sink.harness(), edge.robot.caps().release());
   EXPECT_EQ(bus.Text(GST_MESSAGE_ERROR),
-            "Cannot show these slices: the topic \"/points/slices\" is already used for something "
-            "else; set the property topic of one of its pads.");
+            "Cannot show these slices: the topic \"/points/slices\" is already used for other "
+            "data; set the property topic of one of its pads.");
   EXPECT_EQ(gst_harness_push(edge.sink.harness(), slice.release()), GST_FLOW_NOT_NEGOTIATED);
 }
 
@@ -262,7 +262,7 @@ TEST(Slices, WhoseCapsLackSomethingAreRefused) {
       "their fields lack x, y and z as F32 side by side, or have gaps between them.";
   for (const auto& [caps, error] :
        {std::pair<std::string, std::string>{"geometry=range",
-                                            "with geometry=range they lack a sensor-model."},
+                                            "geometry=range needs a sensor-model."},
         {"geometry=xyz,fields=\"x:F32:0,y:F32:4\"", fields},
         {"geometry=xyz,fields=\"x:F32:0,y:F32:4,z:F64:8\"", fields},
         {"geometry=xyz,fields=\"x:F32:0,y:F32:4,z:F32:8,t:U32:16\"", fields}}) {

@@ -104,7 +104,7 @@ TEST_F(Tls, NamesTheDateOnWhichItsCertificateRanOut) {
   const ElementBus bus(element.get());
   EXPECT_EQ(gst_element_set_state(element.get(), GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
   const std::string text = bus.Text(GST_MESSAGE_WARNING);
-  EXPECT_NE(text.find("ran out on 2020-01-31 12:00 UTC"), std::string::npos) << text;
+  EXPECT_NE(text.find("expired on 2020-01-31 12:00 UTC"), std::string::npos) << text;
   gst_element_set_state(element.get(), GST_STATE_NULL);
 }
 
