@@ -197,8 +197,8 @@ static void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   if (lost && !stream.posted_lost) {
     GST_ELEMENT_WARNING(
         self, STREAM, FAILED,
-        ("The position was lost: a scan does not fit the map. Poses are "
-         "predictions until one fits again."),
+        ("The position was lost: a scan does not fit the map. Poses are predictions until a scan "
+         "fits again."),
         ("%.0f %% of the points have a neighbour in the map", 100 * estimate.inlier_share));
   }
   stream.posted_lost = lost;
@@ -215,8 +215,7 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
   if (stream.trajectory.Flush()) return;
   stream.posted_full = true;
   GST_ELEMENT_WARNING(self, RESOURCE, NO_SPACE_LEFT,
-                      ("The trajectory cannot be written any more; the stream goes on."),
-                      (nullptr));
+                      ("The trajectory can no longer be written; the stream goes on."), (nullptr));
 }
 
 /// Reads the drift that the loops have shown so far.
@@ -305,7 +304,7 @@ static GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
   }
   if (stream.collector.BeginsNewScan(slice)) FinishScan(self);
   if (!AddBuffer(self, buffer, slice, *at)) {
-    GST_WARNING_OBJECT(self, "a buffer of another size than its caps say");
+    GST_WARNING_OBJECT(self, "the size of a buffer does not match its caps: it gets no pose");
     return GST_FLOW_OK;
   }
   // The scan is aligned only when its last slice is there: earlier slices leave with a predicted
@@ -366,7 +365,8 @@ static gboolean Start(GstBaseTransform* base) {
   if (!start) {
     GST_ELEMENT_ERROR(
         self, RESOURCE, SETTINGS,
-        ("The initial-pose \"%s\" is not x y z qx qy qz qw.", settings.initial_pose.c_str()),
+        ("initial-pose is \"%s\", but must be a position and a unit quaternion, x y z qx qy qz qw.",
+         settings.initial_pose.c_str()),
         (nullptr));
     return FALSE;
   }
@@ -374,10 +374,11 @@ static gboolean Start(GstBaseTransform* base) {
   if (!settings.initial_velocity.empty()) {
     settings.odometry.start_velocity = lidar::odometry::ParseTwist(settings.initial_velocity);
     if (!settings.odometry.start_velocity) {
-      GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
-                        ("The initial-velocity \"%s\" is not vx vy vz wx wy wz.",
-                         settings.initial_velocity.c_str()),
-                        (nullptr));
+      GST_ELEMENT_ERROR(
+          self, RESOURCE, SETTINGS,
+          ("initial-velocity is \"%s\", but must be vx vy vz in m/s and wx wy wz in rad/s.",
+           settings.initial_velocity.c_str()),
+          (nullptr));
       return FALSE;
     }
   }

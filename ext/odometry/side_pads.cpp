@@ -15,7 +15,7 @@ GstFlowReturn ImuChain(GstPad* pad, GstObject*, GstBuffer* buffer) {
   const BufferPtr owned(buffer);
   const BufferMap map(buffer, GST_MAP_READ);
   if (!map || !InputOf(pad).Add(map.view()))
-    GST_WARNING_OBJECT(pad, "a buffer that is no samples as its caps have them");
+    GST_WARNING_OBJECT(pad, "dropping a buffer of IMU samples that does not match its caps");
   return GST_FLOW_OK;
 }
 
@@ -28,7 +28,7 @@ gboolean ImuEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   if (InputOf(pad).SetCaps(caps)) return TRUE;
   GST_ELEMENT_ERROR(
       parent, STREAM, FORMAT,
-      ("The samples of the IMU are not as ouster_src, ros2src and mcapsrc give them."),
+      ("The caps do not describe IMU samples in the format of ouster_src, ros2src and mcapsrc."),
       ("%" GST_PTR_FORMAT, static_cast<gpointer>(caps)));
   return FALSE;
 }

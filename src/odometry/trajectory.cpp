@@ -155,17 +155,17 @@ Trajectory ReadTrajectory(std::istream& in, Duration kitti_period, std::string* 
     if (row.count != kTumColumns && row.count != kKittiColumns)
       return fail(number, "a pose has 8 numbers (TUM) or 12 (KITTI)");
     if (columns != 0 && row.count != columns)
-      return fail(number, "not as long as the lines before");
+      return fail(number, "not as many numbers as in the lines before");
     columns = row.count;
-    if (!ToPose(row, &stamped.pose)) return fail(number, "the rotation is none");
+    if (!ToPose(row, &stamped.pose)) return fail(number, "the rotation is not valid");
     stamped.time = Time{} + kitti_period * static_cast<std::int64_t>(trajectory.size());
     if (columns == kTumColumns && !ParseTime(line, &stamped.time))
-      return fail(number, "the time is no number of seconds");
+      return fail(number, "the time is not a number of seconds");
     if (!trajectory.empty() && stamped.time < trajectory.back().time)
       return fail(number, "earlier than the line before");
     trajectory.push_back(stamped);
   }
-  if (trajectory.empty()) *error = "no pose in it";
+  if (trajectory.empty()) *error = "it has no pose";
   return trajectory;
 }
 
