@@ -30,7 +30,7 @@ expect 2 "os1-64" --model os9-64
 expect 2 "no-such-file" --trace no-such-file
 expect 2 "--rate" --rate 5 --steps 1,2
 expect 2 "line 1: expected two numbers" --trace "$folder/trace.txt"
-expect 2 "--trace stands once for each of the --links" --links 2 --trace "$folder/good.txt"
+expect 2 "--trace must be given once for each of the --links" --links 2 --trace "$folder/good.txt"
 expect 2 "lidarenc codes ranges" --geometry xyz --encoder lidarenc
 expect 2 "--start-bitrate must not be above --max-bitrate" --start-bitrate 9 --max-bitrate 8
 expect 1 "the sender ended early" --pcap "$folder/capture.pcap" --metadata "$folder/metadata.json"

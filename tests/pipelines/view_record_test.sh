@@ -58,7 +58,7 @@ if gst-inspect-1.0 mcapsink >/dev/null 2>&1; then
     "lidartestsrc num-buffers=0 model=os1-32"
   head -c -1000 "$folder/slices/rec-00000.mcap" >"$folder/cut.mcap"
   says() { local text=$1; shift; "$@" 2>&1 | grep -q "$text"; }
-  check "play.sh says that a file broke off" says "break off" "$root/pipelines/play.sh" --to none "$folder/cut.mcap"
+  check "play.sh says that a file broke off" says "were not closed" "$root/pipelines/play.sh" --to none "$folder/cut.mcap"
   check "play.sh plays slices to files" "$root/pipelines/play.sh" --to pcd --output "$folder/played" \
     "$folder/slices/rec-%05d.mcap"
   check "play.sh plays clouds to files" "$root/pipelines/play.sh" --to ply --topic /points --decoder none \

@@ -21,7 +21,7 @@ class BoundedEnd {
     ticks_left_ = kTicks;
     std::signal(SIGALRM, [](int) {
       if (--ticks_left_ > 0) return;
-      constexpr char kText[] = ": not all has ended in time; ending all the same\n";
+      constexpr char kText[] = ": did not end in time; exiting anyway\n";
       const char* const name = program_invocation_short_name;
       [[maybe_unused]] auto written = write(STDERR_FILENO, name, std::strlen(name));
       written = write(STDERR_FILENO, kText, sizeof kText - 1);

@@ -39,7 +39,7 @@ inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
   gst::ElementPtr pipeline(gst_parse_launchv(argv.data(), &raw));
   const gst::ErrorPtr error(raw);
   if (!error && GST_IS_BIN(pipeline.get())) return pipeline;
-  std::fprintf(stderr, "%s\n", error ? error->message : "one element alone is no pipeline");
+  std::fprintf(stderr, "%s\n", error ? error->message : "a single element is not a pipeline");
   return nullptr;
 }
 

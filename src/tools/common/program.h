@@ -30,7 +30,7 @@ inline void RefuseWrongNumbers(const CLI::App& app) {
     for (const std::string& text : option->results()) {
       double value = 0;
       if (is_float && CLI::detail::lexical_cast(text, value) && std::isnan(value))
-        throw CLI::ValidationError(option->get_name(), text + " is no number");
+        throw CLI::ValidationError(option->get_name(), text + " is not a number");
       if (is_unsigned && text.find('-') != std::string::npos)
         throw CLI::ValidationError(option->get_name(), text + " is negative");
     }

@@ -262,7 +262,7 @@ TEST_F(BagDatabaseFile, ColumnsThatAreComputedAreRefused) {
         ")");
     Run("INSERT INTO messages VALUES(1,1,1)");
     Close();
-    EXPECT_NE(RefusalOf(path_).find("messages computes data"), std::string::npos)
+    EXPECT_NE(RefusalOf(path_).find("messages has the generated column data"), std::string::npos)
         << RefusalOf(path_);
     std::filesystem::remove(path_);
   }
@@ -273,7 +273,8 @@ TEST_F(BagDatabaseFile, ColumnsThatAreComputedAreRefused) {
       "INSERT INTO topics VALUES(1,'/points')");
   Add(1, milliseconds(1), CloudMessage(milliseconds(1)));
   Close();
-  EXPECT_NE(RefusalOf(path_).find("topics computes type"), std::string::npos) << RefusalOf(path_);
+  EXPECT_NE(RefusalOf(path_).find("topics has the generated column type"), std::string::npos)
+      << RefusalOf(path_);
 }
 
 TEST_F(BagDatabaseFile, OtherColumnsBeforeThoseOfABagAreRefused) {
@@ -285,7 +286,7 @@ TEST_F(BagDatabaseFile, OtherColumnsBeforeThoseOfABagAreRefused) {
     Run("DROP TABLE messages");
     Run(std::string("CREATE TABLE messages(") + columns + ")");
     Close();
-    EXPECT_NE(RefusalOf(path_).find("its column"), std::string::npos) << RefusalOf(path_);
+    EXPECT_NE(RefusalOf(path_).find("it has the column"), std::string::npos) << RefusalOf(path_);
     std::filesystem::remove(path_);
   }
 }

@@ -134,7 +134,7 @@ TEST_F(Files, TargetsThatAreNoneAreRefusedWithTheirLine) {
         std::pair{"0 0\n", "line 1 is not 'time_s rate_mbps'"},
         std::pair{"0 4\n1 0 # silent\n", "line 2 is not 'time_s rate_mbps'"},
         std::pair{"0 -4\n", "line 1 is not 'time_s rate_mbps'"},
-        std::pair{"# nothing\n", "no target in it"}, std::pair{"", "no target in it"}}) {
+        std::pair{"# nothing\n", "has no target"}, std::pair{"", "has no target"}}) {
     const std::string path = Write("bad.txt", text);
     try {
       ReadTargets(path, 10);

@@ -118,7 +118,7 @@ def what_is_wrong_is_said(folder):
     times.write_text("0.0\nsoon\n")
     assert "line 2 is no time" in run("slam", f"kitti:{folder}", fails=True)
     times.write_text("")
-    assert "no time in it" in run("slam", f"kitti:{folder}", fails=True)
+    assert "times.txt: has no time" in run("slam", f"kitti:{folder}", fails=True)
     times.write_text(good + "1e3\n")
     assert "000004.bin" in run("slam", f"kitti:{folder}", fails=True)
     times.write_text(good)

@@ -257,7 +257,8 @@ TEST_F(FleetReporter, TellsOfAServerThatRefusesUsOnceUntilOneTakesUs) {
     EXPECT_TRUE(Eventually([&] { return errors() >= before + 3; }));
   }
   const std::string refusal =
-      "NATS gets no statistics: the server refuses us: Authorization Violation\n";
+      "Statistics are not sent to NATS: the server refused the connection: Authorization "
+      "Violation\n";
   EXPECT_EQ(testing::internal::GetCapturedStderr(), refusal + refusal);
 }
 
@@ -339,7 +340,7 @@ TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {
     }
   }
   const std::string told = testing::internal::GetCapturedStderr();
-  EXPECT_NE(told.find("NATS gets no statistics"), std::string::npos);
+  EXPECT_NE(told.find("Statistics are not sent to NATS"), std::string::npos);
   EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
   unlink(path.c_str());
 }

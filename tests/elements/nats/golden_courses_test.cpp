@@ -83,7 +83,10 @@ class Fleet {
     server_.Start();
     g_object_set(course_.element(), "url", server_.url().c_str(), nullptr);
     // JetStream is ready a little later than its server.
-    course_.Hide("message warning (JetStream gives nothing|The stream box cannot be made).*", "");
+    course_.Hide(
+        "message warning (JetStream delivers no messages|The stream box cannot be created or "
+        "updated).*",
+        "");
     course_.Hide("127[.]0[.]0[.]1:[0-9]+", "the server");
     Connect();
   }

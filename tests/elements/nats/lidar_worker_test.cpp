@@ -431,8 +431,8 @@ TEST_F(LidarWorker, HandsOnTheVelocityOfTheRecordUnlessTheScanOfItsPoseIsMissing
     ::testing::internal::CaptureStderr();
     EXPECT_EQ(pipeline.Poll(), "");
     EXPECT_EQ(::testing::internal::GetCapturedStderr(),
-              is_missing ? "r1.front: the scan of its last pose cannot be decoded; its poses are "
-                           "off by what it moved in 2.00 s\n"
+              is_missing ? "r1.front: the scan of its last pose cannot be decoded; its poses lack "
+                           "the motion of 2.00 s\n"
                          : "");
   }
 }
@@ -670,10 +670,9 @@ TEST_F(LidarWorker, PrintsTheWarningsOfARobotsPipeline) {
   worker::RobotPipeline pipeline(SettingsOf(server_.url()).pipeline, "r1.front", begin.stream,
                                  begin);
   pipeline.Play();
-  EXPECT_TRUE(
-      Warns([&] { EXPECT_EQ(pipeline.Poll(), ""); },
-            "r1.front: natssrc: A message is damaged or not from natssink. Such messages are "
-            "dropped and counted.\n"));
+  EXPECT_TRUE(Warns([&] { EXPECT_EQ(pipeline.Poll(), ""); },
+                    "r1.front: natssrc: A message is damaged or not from natssink. Such messages "
+                    "are dropped and counted.\n"));
 }
 
 TEST_F(LidarWorker, EndsWithTheReasonForWhichAServerRefusesIt) {
@@ -688,7 +687,7 @@ TEST_F(LidarWorker, EndsWithTheReasonForWhichAServerRefusesIt) {
     }
     return !why.empty();
   }));
-  EXPECT_EQ(why, "the NATS server refuses us: Authorization Violation");
+  EXPECT_EQ(why, "the NATS server refused the connection: Authorization Violation");
 }
 
 TEST_F(LidarWorker, MakesABucketAnewThatWasDeletedAndWritesToIt) {

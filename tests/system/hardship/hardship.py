@@ -230,7 +230,7 @@ def few_files(options):
                     preexec_fn=lambda n=limit: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)))
                 said = run.stdout + run.stderr
                 assert run.returncode >= 0, f"{name} with {limit} files: signal {-run.returncode}: {said[-300:]}"
-                clear = any(word in said for word in ("Too many open files", "too few files", "ulimit"))
+                clear = any(word in said for word in ("Too many open files", "too few file descriptors", "ulimit"))
                 failed = run.returncode != 0 or '"error":""' not in run.stdout
                 assert not failed or clear, f"{name} with {limit} files: {said[-300:]}"
                 told += failed

@@ -41,7 +41,7 @@ PYTHON
 # Without an answer the program fails.
 status=0
 "$build/src/tools/scream-bench" tx --host 127.0.0.1 --port "$port" --duration 1 >/dev/null 2>"$folder/tx.err" || status=$?
-[ $status = 1 ] && grep -q "Nobody has answered" "$folder/tx.err" || { echo "tx without rx: exit code $status"; cat "$folder/tx.err"; exit 1; }
+[ $status = 1 ] && grep -q "No feedback arrived" "$folder/tx.err" || { echo "tx without rx: exit code $status"; cat "$folder/tx.err"; exit 1; }
 
 check "IPv4" 127.0.0.1 "" "" sender
 check "IPv6" ::1 "--frame-jitter 20 --fps 30" "" receiver

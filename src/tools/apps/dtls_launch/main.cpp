@@ -124,7 +124,8 @@ bool MakePipeline(const std::vector<std::string>& words, Session* session) {
   gst_iterator_foreach(elements, Prepare, session);
   gst_iterator_free(elements);
   if (session->dtls_elements > 0) return true;
-  std::fprintf(stderr, "The pipeline has no dtlssrtpdec; use gst-launch-1.0 for others.\n");
+  std::fprintf(stderr,
+               "The pipeline has no dtlssrtpdec; use gst-launch-1.0 for other pipelines.\n");
   return false;
 }
 
@@ -202,7 +203,7 @@ class Sessions {
   int Result() const {
     if (had_keys_) return kGood;
     if (refused_) return kRefused;
-    std::fprintf(stderr, "No handshake was completed: is the other end there?\n");
+    std::fprintf(stderr, "No handshake was completed: is the other end running?\n");
     return kFailed;
   }
 

@@ -17,12 +17,12 @@ using nlohmann::json;
 class Section {
  public:
   Section(const json& object, std::string where) : object_(object), where_(std::move(where)) {
-    if (!object.is_object()) Fail("is no object");
+    if (!object.is_object()) Fail("must be an object");
   }
 
   void Read(const char* key, std::string* value) {
     if (const json* v = Find(key)) {
-      if (!v->is_string()) Fail(key, "is no string");
+      if (!v->is_string()) Fail(key, "must be a string");
       *value = v->get<std::string>();
     }
   }
@@ -31,14 +31,15 @@ class Section {
     if (const json* v = Find(key)) {
       if (!v->is_number_unsigned() || v->get<std::uint64_t>() < min ||
           v->get<std::uint64_t>() > max)
-        Fail(key, "is no whole number from " + std::to_string(min) + " to " + std::to_string(max));
+        Fail(key,
+             "must be a whole number from " + std::to_string(min) + " to " + std::to_string(max));
       *value = static_cast<T>(v->get<std::uint64_t>());
     }
   }
   void ReadAmount(const char* key, double* value, double min, double max) {
     if (const json* v = Find(key)) {
       if (!v->is_number() || !(v->get<double>() >= min && v->get<double>() <= max))
-        Fail(key, "is out of range");
+        Fail(key, "must be a number from " + json(min).dump() + " to " + json(max).dump());
       *value = v->get<double>();
     }
   }
@@ -49,7 +50,7 @@ class Section {
   }
   void Finish() const {
     for (const auto& item : object_.items())
-      if (known_.count(item.key()) == 0) Fail(item.key(), "is not known");
+      if (known_.count(item.key()) == 0) Fail(item.key(), "is not a known key");
   }
   [[noreturn]] void Fail(const std::string& key, const std::string& what) const {
     throw std::runtime_error(where_ + (where_.empty() ? "" : ".") + key + " " + what);
@@ -94,9 +95,9 @@ NatsConfig ReadNats(const json& object) {
   s.ReadCount("buffer-size", &nats.buffer_size, 65'536, 1 << 30);
   s.Finish();
   if (connection.url.empty()) s.Fail("url", "is empty");
-  if (!IsWord(nats.prefix)) s.Fail("prefix", "is no word of letters, digits, - and _");
+  if (!IsWord(nats.prefix)) s.Fail("prefix", "must be 1 to 64 letters, digits, - and _");
   if (!nats.jetstream.empty() && !IsWord(nats.jetstream))
-    s.Fail("jetstream", "is no word of letters, digits, - and _");
+    s.Fail("jetstream", "must be 1 to 64 letters, digits, - and _");
   return nats;
 }
 
@@ -125,10 +126,10 @@ void ReadPlace(Section* s, RobotConfig* robot) {
   s->Read("ssrc", &ssrc);
   if (!ssrc.empty()) {
     robot->ssrc = ReadSsrcs(ssrc);
-    if (!robot->ssrc) s->Fail("ssrc", "is no number, and no two with - between");
-    if (robot->port != 0) s->Fail("ssrc", "is of no use on a port of its own");
+    if (!robot->ssrc) s->Fail("ssrc", "must be a number, or two numbers FIRST-LAST");
+    if (robot->port != 0) s->Fail("ssrc", "cannot be set together with port");
   } else if (robot->port == 0) {
-    s->Fail("port", "is missing, and so is ssrc");
+    s->Fail("port", "or ssrc must be set");
   }
 }
 
@@ -138,10 +139,11 @@ void ReadSecurity(Section* s, RobotConfig* robot) {
   s->Read("dtls-certificate", &robot->dtls_certificate);
   s->Read("dtls-peer-certificate", &robot->dtls_peer_certificate);
   if (robot->dtls_certificate.empty() != robot->dtls_peer_certificate.empty())
-    s->Fail("dtls-certificate", "and dtls-peer-certificate need each other");
+    s->Fail("dtls-certificate", "and dtls-peer-certificate must be set together");
   if (robot->dtls_certificate.empty()) return;
-  if (!robot->srtp_key.empty()) s->Fail("srtp-key", "is of no use beside dtls-certificate");
-  if (robot->ssrc) s->Fail("dtls-certificate", "needs a port of its own: DTLS names no ssrc");
+  if (!robot->srtp_key.empty()) s->Fail("srtp-key", "cannot be set together with dtls-certificate");
+  if (robot->ssrc)
+    s->Fail("dtls-certificate", "needs port instead of ssrc: DTLS packets have no SSRC");
 }
 
 RobotConfig ReadRobot(const json& object, std::size_t index) {
@@ -156,11 +158,11 @@ RobotConfig ReadRobot(const json& object, std::size_t index) {
   s.ReadCount("record-max-files", &robot.record_max_files, 0, 1'000'000);
   s.ReadAmount("max-mbps", &robot.max_mbps, 0, 1e5);
   s.Finish();
-  if (!IsWord(robot.name)) s.Fail("name", "is no word of letters, digits, - and _");
-  if (!IsWord(robot.sensor)) s.Fail("sensor", "is no word of letters, digits, - and _");
+  if (!IsWord(robot.name)) s.Fail("name", "must be 1 to 64 letters, digits, - and _");
+  if (!IsWord(robot.sensor)) s.Fail("sensor", "must be 1 to 64 letters, digits, - and _");
   const bool limited = robot.record_max_files > 0 || robot.record_max_file_size > 0;
   if ((limited || !robot.record.empty()) && robot.record.find('%') == std::string::npos)
-    s.Fail("record", "has no number such as %05d: each session writes files of its own");
+    s.Fail("record", "must have a number such as %05d: each session writes new files");
   return robot;
 }
 
@@ -170,11 +172,11 @@ void CheckTwins(const std::vector<RobotConfig>& robots) {
   std::set<std::string> records;
   for (const RobotConfig& robot : robots) {
     if (robot.port != 0 && !ports.insert(robot.port).second)
-      throw std::runtime_error("port " + std::to_string(robot.port) + " has two robots");
+      throw std::runtime_error("port " + std::to_string(robot.port) + " is used by two robots");
     if (!names.insert(robot.name + "/" + robot.sensor).second)
       throw std::runtime_error(robot.name + " has two sensors called " + robot.sensor);
     if (!robot.record.empty() && !records.insert(robot.record).second)
-      throw std::runtime_error(robot.record + " is recorded by two robots");
+      throw std::runtime_error("record " + robot.record + " is used by two robots");
   }
 }
 
@@ -184,20 +186,20 @@ void CheckSharedPort(const EdgeConfig& config) {
     if (robot.ssrc) sharing.push_back(&robot);
     if (robot.port != 0 && robot.port == config.port)
       throw std::runtime_error("port " + std::to_string(robot.port) +
-                               " is for all robots, and for one");
+                               " is the shared port and also the port of " + robot.name);
   }
   if (sharing.empty() != (config.port == 0))
-    throw std::runtime_error(sharing.empty() ? "port is used by no robot"
-                                             : "port is missing, which robots with an ssrc need");
+    throw std::runtime_error(sharing.empty() ? "port is set, but no robot has an ssrc"
+                                             : "port must be set, because robots have an ssrc");
   if (sharing.size() > kMaxSharing)
-    throw std::runtime_error("one port is for " + std::to_string(kMaxSharing) + " robots at most");
+    throw std::runtime_error("at most " + std::to_string(kMaxSharing) + " robots can share a port");
   std::sort(sharing.begin(), sharing.end(), [](const RobotConfig* a, const RobotConfig* b) {
     return a->ssrc->first < b->ssrc->first;
   });
   for (std::size_t i = 1; i < sharing.size(); ++i)
     if (sharing[i]->ssrc->first <= sharing[i - 1]->ssrc->last)
       throw std::runtime_error(sharing[i - 1]->name + " and " + sharing[i]->name +
-                               " share an ssrc");
+                               " have overlapping ssrc");
 }
 
 /// A full JetStream stream drops its oldest messages, of any robot. So it must hold all that the
@@ -206,26 +208,26 @@ void CheckShares(const EdgeConfig& config) {
   const NatsConfig& nats = config.nats;
   if (nats.jetstream.empty() || nats.max_bytes == 0) return;
   if (nats.max_age_s == 0)
-    throw std::runtime_error("nats.max-bytes needs max-age: what is kept for good fills any room");
+    throw std::runtime_error("nats.max-bytes needs nats.max-age: without it the stream fills up");
   double mbps = 0;
   for (const RobotConfig& robot : config.robots) {
     if (robot.max_mbps == 0)
-      throw std::runtime_error("nats.max-bytes is for all robots, so " + robot.name +
-                               " needs max-mbps");
+      throw std::runtime_error("with nats.max-bytes every robot needs max-mbps: " + robot.name +
+                               " has none");
     mbps += robot.max_mbps;
   }
   const double needed = mbps * 125'000 * static_cast<double>(nats.max_age_s);
   if (needed > static_cast<double>(nats.max_bytes))
-    throw std::runtime_error(
-        "nats.max-bytes holds less than what all robots may send in max-age: " +
-        std::to_string(static_cast<std::uint64_t>(needed)) + " bytes");
+    throw std::runtime_error("nats.max-bytes must be at least " +
+                             std::to_string(static_cast<std::uint64_t>(needed)) +
+                             ", the bytes that all robots may send in max-age");
 }
 
 }  // namespace
 
 EdgeConfig ParseEdgeConfig(const std::string& json_text) {
   const json root = json::parse(json_text, nullptr, false, true);
-  if (root.is_discarded()) throw std::runtime_error("the configuration is no JSON");
+  if (root.is_discarded()) throw std::runtime_error("the configuration is not JSON");
   EdgeConfig config;
   Section s(root, "");
   s.Read("address", &config.address);
@@ -237,7 +239,7 @@ EdgeConfig ParseEdgeConfig(const std::string& json_text) {
   const json* robots = s.Find("robots");
   s.Finish();
   if (robots == nullptr || !robots->is_array() || robots->empty())
-    s.Fail("robots", "is no list of at least one robot");
+    s.Fail("robots", "must be a list of at least one robot");
   for (std::size_t i = 0; i < robots->size(); ++i)
     config.robots.push_back(ReadRobot((*robots)[i], i));
   CheckTwins(config.robots);

@@ -88,7 +88,7 @@ tools::FileDescriptor OpenSocket(const Address& address, bool shared) {
   if (may_bind &&
       bind(fd.get(), reinterpret_cast<const sockaddr*>(&address.storage), address.length) == 0)
     return fd;
-  Fail(std::string("the port for all robots cannot be opened: ") + std::strerror(errno));
+  Fail(std::string("cannot open the shared port: ") + std::strerror(errno));
 }
 
 const Program kNothing = {Step(BPF_RET | BPF_K, 0)};
@@ -103,14 +103,15 @@ SharedPort::SharedPort(const std::string& address, std::uint16_t port,
   for (std::size_t i = 0; i <= ranges.size(); ++i) {
     tools::FileDescriptor owner = OpenSocket(local, true);
     GSocket* socket = g_socket_new_from_fd(owner.get(), nullptr);
-    if (socket == nullptr) Fail("a socket cannot be used");
+    if (socket == nullptr) Fail("cannot use a socket of the shared port");
     sockets_.emplace_back(socket);
     const int fd = owner.Release();
     // The filter drops all datagrams until the robot's session begins.
-    if (!Attach(fd, SO_ATTACH_FILTER, kNothing)) Fail("a socket takes no filter");
+    if (!Attach(fd, SO_ATTACH_FILTER, kNothing))
+      Fail("cannot set a packet filter on the shared port");
     if (i == 0 && !Attach(fd, SO_ATTACH_REUSEPORT_CBPF, ChooseBySsrc(ranges)))
-      Fail(std::string("the kernel does not tell ") + std::to_string(ranges.size()) +
-           " robots apart on a port: " + std::strerror(errno) + " (net.core.optmem_max)");
+      Fail(std::string("cannot set the filter that separates ") + std::to_string(ranges.size()) +
+           " robots on the shared port: " + std::strerror(errno) + " (raise net.core.optmem_max)");
   }
 }
 

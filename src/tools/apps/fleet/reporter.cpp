@@ -43,7 +43,7 @@ void Reporter::Open(Clock::time_point now) {
 /// Prints a reason unless it repeats the last one.
 void Reporter::Tell(const std::string& why) {
   if (std::exchange(told_, why) == why) return;
-  std::fprintf(stderr, "NATS gets no statistics: %s\n", tools::Printable(why).c_str());
+  std::fprintf(stderr, "Statistics are not sent to NATS: %s\n", tools::Printable(why).c_str());
 }
 
 /// Returns true if connected. libnats closes a refused connection, so this function opens another
@@ -53,7 +53,7 @@ bool Reporter::Connected(Clock::time_point now) {
     return connection_ ? connection_->state() : nats::ConnectionState();
   };
   nats::ConnectionState state = current();
-  if (state.refused()) Tell("the server refuses us: " + state.last_error);
+  if (state.refused()) Tell("the server refused the connection: " + state.last_error);
   if ((!connection_ || state.closed) && now >= open_at_) {
     Open(now);
     state = current();

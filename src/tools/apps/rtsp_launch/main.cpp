@@ -61,7 +61,8 @@ void Check(const std::string& pipeline) {
   const bool good = payloader != nullptr && why.empty();
   gst_clear_object(&payloader);
   if (bin != nullptr) gst_object_unref(gst_object_ref_sink(bin));
-  if (!good) throw std::runtime_error(why.empty() ? "no element is called pay0" : why);
+  if (!good)
+    throw std::runtime_error(why.empty() ? "the pipeline has no element with name=pay0" : why);
 }
 
 /// Returns a factory whose viewers share one medium. By default a query in a viewer's URL starts

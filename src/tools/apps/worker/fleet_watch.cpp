@@ -202,7 +202,7 @@ void FleetWatch::ListRobots() {
     return Tell(&stream_trouble_,
                 s == NATS_NOT_FOUND
                     ? "there is no stream " + settings_.stream + " yet"
-                    : "the stream " + settings_.stream + " says nothing: " + nats::ErrorText(s));
+                    : "the stream " + settings_.stream + " cannot be read: " + nats::ErrorText(s));
   std::set<std::string> all;
   const jsStreamStateSubjects* subjects = info->State.Subjects;
   for (int i = 0; subjects != nullptr && i < subjects->Count; ++i) {

@@ -44,7 +44,7 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
         gst_value_deserialize(&read, value.c_str()) && !g_param_value_validate(spec, &read);
     if (taken) g_object_set_property(G_OBJECT(odometry), name.c_str(), &read);
     g_value_unset(&read);
-    if (!taken) throw std::runtime_error("lidarodometry takes no " + name + "=" + value);
+    if (!taken) throw std::runtime_error("lidarodometry does not accept " + name + "=" + value);
   }
   g_object_set(odometry, "post-messages", FALSE, nullptr);
   if (!begin) return;
@@ -203,8 +203,7 @@ std::string RobotPipeline::Poll() {
   if (const std::uint64_t late = late_ns_.exchange(0))
     std::fprintf(
         stderr,
-        "%s: the scan of its last pose cannot be decoded; its poses are off by what it moved "
-        "in %.2f s\n",
+        "%s: the scan of its last pose cannot be decoded; its poses lack the motion of %.2f s\n",
         GST_OBJECT_NAME(pipeline_.get()), static_cast<double>(late) * 1e-9);
   GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
   while (const gst::MessagePtr message{gst_bus_pop(bus)}) {

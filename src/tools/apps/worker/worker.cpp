@@ -56,7 +56,8 @@ Worker::Worker(const WorkerSettings& settings)
 
 void Worker::Step() {
   const nats::ConnectionState state = connection_->state();
-  if (state.refused()) throw std::runtime_error("the NATS server refuses us: " + state.last_error);
+  if (state.refused())
+    throw std::runtime_error("the NATS server refused the connection: " + state.last_error);
   TakeNews();
   TakeAnswers();
   if (table_.MissesEntries(Now())) watch_.Renew();
@@ -80,7 +81,7 @@ void Worker::TakeNews() {
   for (const FleetWatch::Entry& entry : news.entries) {
     const auto record = ParseLeaseRecord(entry.text);
     if (!record)
-      Warn(entry.robot, "its record is damaged; its last pose is not known: " +
+      Warn(entry.robot, "its lease record is damaged, so its last pose is not known: " +
                             tools::Printable(entry.text.substr(0, kShownLetters)));
     table_.OnEntry(entry.robot, entry.revision, record, Now());
   }
@@ -101,7 +102,9 @@ void Worker::CheckPlaces(const FleetWatch::News& news) {
       ++at;
       continue;
     }
-    Warn(at->first, "its record is ahead of the stream; only its pose counts");
+    Warn(at->first,
+         "its lease record names a message that the stream does not have; only the record's pose "
+         "is used");
     Progress pose = pipeline.progress().value_or(*pipeline.begin());
     pose.stream = 0;  // of no stream
     table_.SetProgress(at->first, pose);
@@ -206,7 +209,7 @@ Worker::Pipelines::iterator Worker::End(Pipelines::iterator at) {
                    [pipeline = std::move(at->second)]() mutable { pipeline.reset(); }),
         Now()};
   } catch (const std::system_error&) {
-    Warn(at->first, "there is no thread to stop its pipeline, so all waited for it");
+    Warn(at->first, "no thread can be started to stop its pipeline, so all robots waited for it");
   }
   return pipelines_.erase(at);
 }
@@ -240,7 +243,7 @@ void Worker::WaitForEnds() {
   const Time deadline = Now() + kStopTimeout;
   for (auto& [robot, ending] : ending_)
     if (ending.done.wait_for(deadline - Now()) != std::future_status::ready)
-      Warn(robot, "its pipeline does not stop in time; it is left to others all the same");
+      Warn(robot, "its pipeline does not stop in time; the robot is left to other workers anyway");
 }
 
 void Worker::HandOver() {

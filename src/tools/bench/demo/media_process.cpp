@@ -147,7 +147,7 @@ gboolean MediaProcess::OnSignal(gpointer data) {
   g_timeout_add(
       kDrainMs,
       [](gpointer loop) -> gboolean {
-        g_printerr("EOS did not come through in time\n");
+        g_printerr("EOS did not pass the pipeline in time\n");
         g_main_loop_quit(static_cast<GMainLoop*>(loop));
         return G_SOURCE_REMOVE;
       },

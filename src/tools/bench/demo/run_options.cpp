@@ -214,7 +214,7 @@ void CheckRunOptions(const RunOptions& o) {
     throw CLI::ValidationError(e.what());
   }
   if (!o.traces.empty() && o.traces.size() != o.links)
-    throw CLI::ValidationError("--trace stands once for each of the --links");
+    throw CLI::ValidationError("--trace must be given once for each of the --links");
   if (o.steps_mbps.empty()) throw CLI::ValidationError("--steps needs at least one rate");
   if (o.start_bitrate_mbps > o.max_bitrate_mbps)
     throw CLI::ValidationError("--start-bitrate must not be above --max-bitrate");

@@ -153,7 +153,7 @@ void Apply(const Text& t, LinkOptions* o) {
     throw CLI::ValidationError("--aqm-low", "must not be above --aqm-high");
   o->there.aqm.pi2.target = Ms(t.aqm_target_ms);
   if (t.aqm_classic && t.aqm != Kind::kPi2)
-    throw CLI::ValidationError("--aqm-classic", "is for --aqm pi2");
+    throw CLI::ValidationError("--aqm-classic", "needs --aqm pi2");
   o->there.aqm.pi2.knows_l4s = !t.aqm_classic;
   ApplyWay(t.there, t.rtt_ms / 2, &o->there);
   ApplyWay(t.back, t.rtt_ms / 2, &o->back);
@@ -204,7 +204,7 @@ LinkOptions ParseLinkOptions(int argc, char** argv) {
   Parse(&app, argc, argv, [&] {
     Apply(text, &options);
     if (options.listen.size() != options.forward.size())
-      throw CLI::ValidationError("--forward", "one for each --listen");
+      throw CLI::ValidationError("--forward", "must be given once for each --listen");
   });
   return options;
 }

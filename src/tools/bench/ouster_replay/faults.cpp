@@ -27,7 +27,7 @@ bool TakeCount(const nlohmann::json& value, int* count) {
 }  // namespace
 
 std::string Faults::Merge(const nlohmann::json& change) {
-  if (!change.is_object()) return "faults are a JSON object";
+  if (!change.is_object()) return "faults must be a JSON object";
   Faults next = *this;
   for (const auto& [key, value] : change.items()) {
     const bool taken = key == "loss"            ? TakeShare(value, &next.loss)

@@ -72,7 +72,7 @@ ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& f
   if (!profile) throw std::runtime_error("unknown udp_profile_lidar");
   const bool same = config["lidar_mode"] == first.lidar_mode && *profile == first.format.profile;
   if (!same && !options.pcap.empty())
-    throw std::runtime_error("a capture has one lidar_mode and one udp_profile_lidar");
+    throw std::runtime_error("lidar_mode and udp_profile_lidar of a capture cannot be changed");
   if (options.pcap.empty()) {
     m = MakeSynthMetadata(options.synth, {config["lidar_mode"].get<std::string>(), *profile,
                                           first.format.header, first.format.columns_per_packet});

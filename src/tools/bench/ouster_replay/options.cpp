@@ -100,7 +100,7 @@ ReplayOptions::Event ParseEvent(const std::string& text) {
                         event.faults.is_object();
   const json restart = is_event ? event.faults.value("restart", json(false)) : json();
   if (!restart.is_boolean())
-    throw CLI::ValidationError("--at", "\"" + text + "\" is not like 5 {\"silent\":true}");
+    throw CLI::ValidationError("--at", "\"" + text + "\" must be like 5 {\"silent\":true}");
   event.restart = restart;
   event.faults.erase("restart");
   const std::string error = Faults{}.Merge(event.faults);
@@ -116,9 +116,9 @@ void Convert(const Text& t, ReplayOptions* o) {
                          ? ouster::HeaderType::kFusa
                          : ouster::HeaderType::kStandard;
   if (o->pcap.empty() != o->metadata.empty())
-    throw CLI::ValidationError("--pcap", "--pcap and --metadata go together");
+    throw CLI::ValidationError("--pcap", "--pcap and --metadata must be given together");
   if (!o->write_pcap.empty() && !t.events.empty())
-    throw CLI::ValidationError("--at", "--write-pcap has no faults at a time");
+    throw CLI::ValidationError("--at", "cannot be used with --write-pcap");
   o->seed = o->synth.seed;
   o->faults = {
       {"loss", t.loss}, {"reorder", t.reorder}, {"duplicate", t.duplicate}, {"corrupt", t.corrupt}};

@@ -82,7 +82,7 @@ std::string Sensor::ConfigJson(bool staged) const {
 }
 
 std::string Sensor::SetConfig(const json& config, const Change& change, const std::string& peer) {
-  if (!config.is_object()) return "a configuration is a JSON object";
+  if (!config.is_object()) return "a configuration must be a JSON object";
   if (config.contains("udp_dest") && !IsDestination(config["udp_dest"]))
     return "cannot send to udp_dest " + config["udp_dest"].dump();
   std::lock_guard lock(mutex_);

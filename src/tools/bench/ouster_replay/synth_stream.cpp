@@ -26,7 +26,7 @@ Mode ParseMode(const std::string& text) {
     for (const std::uint32_t rate : {5U, 10U, 20U})
       if (text == std::to_string(columns) + "x" + std::to_string(rate)) return {columns, rate};
   throw std::runtime_error("there is no mode \"" + text +
-                           "\": there are 512, 1024, 2048 and 4096 columns x 5, 10 and 20");
+                           "\"; modes are 512, 1024, 2048 and 4096 columns x 5, 10 and 20");
 }
 
 synth::Sensor MakeSensor(const std::string& model, std::uint32_t columns) {
@@ -77,7 +77,7 @@ ouster::Metadata MakeSynthMetadata(const SynthOptions& options, const SynthForma
     throw std::runtime_error("the columns of a packet must divide those of a scan");
   if (m.format.packet_size() > ouster::PacketFormat::kMaxPacketSize)
     throw std::runtime_error("packets of " + std::to_string(m.format.packet_size()) +
-                             " bytes are larger than UDP carries: take fewer columns a packet");
+                             " bytes are larger than UDP carries: set fewer columns a packet");
   return m;
 }
 

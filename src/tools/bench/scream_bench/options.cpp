@@ -85,7 +85,7 @@ BenchOptions ParseBenchOptions(int argc, char** argv) {
   }
   Parse(&app, argc, argv, [&] {
     if (options.tx.min_bitrate > options.tx.max_bitrate)
-      throw CLI::ValidationError("--min-bitrate", "is above --max-bitrate");
+      throw CLI::ValidationError("--min-bitrate", "must not be above --max-bitrate");
   });
   options.is_sender = tx->parsed();
   if (duration_s > 0) options.duration = FromSeconds(duration_s);

@@ -104,7 +104,7 @@ std::pair<std::string, gint> ParseFeedback(const std::string& text) {
   const HostPort to = Split(text, "");
   guint64 port = 0;
   if (to.host.empty() || !g_ascii_string_to_unsigned(to.port.c_str(), 10, 1, 65535, &port, nullptr))
-    throw std::runtime_error("--feedback wants HOST:PORT");
+    throw std::runtime_error("--feedback must be HOST:PORT");
   return {to.host, static_cast<gint>(port)};
 }
 
@@ -264,7 +264,9 @@ int Receiver::Run() {
       [this] { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); });
   Finish();
   if (result != 0 || meter_.packets() > 0) return result;
-  std::fprintf(stderr, "Nothing has come: does \"scream-bench tx\" send, and does UDP pass?\n");
+  std::fprintf(
+      stderr,
+      "No packets arrived: is \"scream-bench tx\" running, and does UDP pass the network?\n");
   return 1;
 }
 

@@ -212,7 +212,9 @@ int Sender::Run() {
   const bool unheard =
       Number(last.get(), "packets-sent") > 0 && Number(last.get(), "feedback-accepted") == 0;
   if (result != 0 || !unheard) return result;
-  std::fprintf(stderr, "Nobody has answered: is \"scream-bench rx\" there, and does UDP pass?\n");
+  std::fprintf(
+      stderr,
+      "No feedback arrived: is \"scream-bench rx\" running, and does UDP pass the network?\n");
   return 1;
 }
 

@@ -119,9 +119,9 @@ class BagDatabase final : public MessageReader {
       const auto* chars = sqlite3_column_text(columns.get(), 1);
       const std::string name(chars == nullptr ? "" : reinterpret_cast<const char*>(chars));
       if (sqlite3_column_int(columns.get(), 6) != 0)
-        Fail("the table " + table + " computes " + name);
+        Fail("the table " + table + " has the generated column " + name);
       if (i < names.size() ? name != names[i] : sqlite3_stricmp(name.c_str(), "_rowid_") == 0)
-        Fail("the table " + table + " is not that of a bag of ROS 2: its column " + name);
+        Fail("the table " + table + " is not that of a ROS 2 bag: it has the column " + name);
     }
     if (result != SQLITE_DONE) FailWithItsReason();
   }
@@ -143,7 +143,7 @@ class BagDatabase final : public MessageReader {
       const auto* chars = sqlite3_column_text(rows.statement.get(), column);
       const auto size =
           static_cast<std::size_t>(sqlite3_column_bytes(rows.statement.get(), column));
-      if (size > kLongestName) Fail("a name of a topic is too long");
+      if (size > kLongestName) Fail("the name of a topic is too long");
       return chars == nullptr ? "" : std::string(reinterpret_cast<const char*>(chars), size);
     };
     for (std::size_t count = 0; Step(&rows); ++count) {
@@ -186,13 +186,12 @@ class BagDatabase final : public MessageReader {
         advice = "; save the rest: sqlite3 " + path_ + " .recover | sqlite3 saved.db3";
         break;
       case SQLITE_READONLY:
-        advice = "; its last write did not end; undo that: sqlite3 " + path_ + " .tables";
+        advice = "; its last write was interrupted; undo it: sqlite3 " + path_ + " .tables";
         break;
       default:
         break;
     }
-    Fail(std::string("cannot be read as a bag of ROS 2: ") + sqlite3_errmsg(database_.get()) +
-         advice);
+    Fail(std::string("cannot be read as a ROS 2 bag: ") + sqlite3_errmsg(database_.get()) + advice);
   }
 
   std::string path_;

@@ -40,16 +40,17 @@ std::string ChooseTopic(const std::string& path, const std::string& wanted,
   const auto clouds = TopicsOf(reader, cdr::InfoOf(cdr::RosType::kPointCloud2).name);
   const auto slices = TopicsOf(reader, cdr::CodedSlice::kName);
   if (clouds.empty() && !slices.empty())
-    throw std::runtime_error(path + ": holds coded slices, no clouds; make clouds of them: " +
+    throw std::runtime_error(path + ": has coded slices, not clouds; decode them: " +
                              "gst-launch-1.0 -e mcapsrc location=" + path +
                              " ! lidardec ! scanassembler ! mcapsink location=clouds.mcap");
   if (clouds.empty()) throw std::runtime_error(path + ": no topic of PointCloud2 messages in it");
   if (wanted.empty() && clouds.size() == 1) return *clouds.begin();
   if (wanted.empty())
-    throw std::runtime_error(path + ": clouds of several topics; say FILE,TOPIC with one of " +
-                             Join(clouds));
+    throw std::runtime_error(
+        path + ": has clouds on several topics; choose one as FILE,TOPIC: " + Join(clouds));
   if (clouds.count(wanted) > 0) return wanted;
-  throw std::runtime_error(path + ": no clouds on " + wanted + "; there are on " + Join(clouds));
+  throw std::runtime_error(path + ": no clouds on " + wanted + "; there are clouds on " +
+                           Join(clouds));
 }
 
 /// Reads one number of a converted point.
@@ -122,7 +123,7 @@ class Recording final : public ScanStream {
   bool TakePoints(const cdr::PointCloud2& cloud, Scan* scan) {
     // The claimed size is checked before anything is allocated.
     if (!cdr::RowStride(cloud)) {
-      why_ = "a cloud's data are not as long as its width and height say";
+      why_ = "the length of a cloud's data does not match its width and height";
       return false;
     }
     if (!converter_ || !(converter_->layout() == cloud.layout))

@@ -78,7 +78,7 @@ class KittiSequence final : public ScanStream {
     std::vector<float> phases;
     if (std::filesystem::exists(phases_file)) phases = ReadFloats(phases_file, 1);
     if (!phases.empty() && phases.size() != points.size() / 4)
-      throw std::runtime_error(phases_file + ": not a phase for each point");
+      throw std::runtime_error(phases_file + ": needs one phase for each point");
     const std::vector<std::uint16_t> rings = RingsOfPhases(phases);
     for (std::size_t i = 0; i < points.size() / 4; ++i) {
       const float* p = &points[4 * i];
@@ -125,22 +125,22 @@ std::vector<Time> ReadKittiTimes(const std::string& folder) {
     const auto fail = [&](const char* what) {
       throw std::runtime_error(path + ": line " + std::to_string(times.size() + 1) + what);
     };
-    if (!(std::abs(seconds) < kLatest_s)) fail(" is no time in seconds");
+    if (!(std::abs(seconds) < kLatest_s)) fail(" is not a time in seconds");
     const Time time = Time{} + FromSeconds(seconds);
     if (!times.empty() && time <= times.back()) fail(" is not later than the one before");
     times.push_back(time);
   }
   if (!text.eof())
     throw std::runtime_error(path + ": line " + std::to_string(times.size() + 1) +
-                             " is no time in seconds");
+                             " is not a time in seconds");
   return times;
 }
 
 std::unique_ptr<ScanStream> OpenKittiSequence(const std::string& folder) {
   if (!std::filesystem::is_directory(folder + "/velodyne"))
-    throw std::runtime_error(folder + ": no folder velodyne in it, as KITTI's sequences have");
+    throw std::runtime_error(folder + ": has no folder velodyne, which a KITTI sequence needs");
   std::vector<Time> times = ReadKittiTimes(folder);
-  if (times.empty()) throw std::runtime_error(folder + "/times.txt: no time in it");
+  if (times.empty()) throw std::runtime_error(folder + "/times.txt: has no time");
   return std::make_unique<KittiSequence>(folder, std::move(times));
 }
 

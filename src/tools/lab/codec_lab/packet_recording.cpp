@@ -56,7 +56,7 @@ std::vector<Beam> ParseBeams(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%u:%lf:%lf%c", &n, &top, &bottom, &rest) != 3 || n < 2 ||
       n > 256 || !(top > bottom) || top > 90 || bottom < -90)
-    throw std::runtime_error("beams \"" + text + "\" are neither hdl64 nor like 64:2:-24.8");
+    throw std::runtime_error("beams \"" + text + "\" must be hdl64 or like 64:2:-24.8");
   std::vector<Beam> beams;
   for (unsigned i = 0; i < n; ++i) beams.push_back({0, top - (top - bottom) * i / (n - 1), 0});
   return beams;

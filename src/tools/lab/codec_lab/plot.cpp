@@ -26,7 +26,8 @@ void Plot(const std::string& png, const std::string& commands) {
       "set tics nomirror\n";
   std::fputs((settings + commands + "\n").c_str(), gnuplot);
   if (pclose(gnuplot) != 0)
-    throw std::runtime_error("gnuplot failed (Debian package gnuplot-nox), no plot " + png);
+    throw std::runtime_error("gnuplot failed (Debian package gnuplot-nox) and did not write " +
+                             png);
 }
 
 std::string Format(const char* format, ...) {

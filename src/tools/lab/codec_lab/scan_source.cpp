@@ -39,7 +39,7 @@ ouster::Metadata ReadMetadata(const std::string& path) {
   const auto metadata = ouster::ParseMetadata(ReadFile(path), &error);
   if (!metadata) throw std::runtime_error(path + ": " + error);
   if (!metadata->pixel_angles.empty())
-    throw std::runtime_error(path + ": sensors with an angle for each pixel have no beams");
+    throw std::runtime_error(path + ": sensors with an angle for each pixel are not supported");
   return *metadata;
 }
 
@@ -83,7 +83,8 @@ class Capture final : public ScanStream {
         any_ = true;
         return timed;
       }
-      if (ended_ && !any_) throw std::runtime_error(pcap_ + ": no scan of that sensor");
+      if (ended_ && !any_)
+        throw std::runtime_error(pcap_ + ": has no scan of the sensor in the metadata");
       if (ended_) return std::nullopt;
       const auto captured = reader_->Next();
       ended_ = !captured;
@@ -198,7 +199,7 @@ std::unique_ptr<ScanStream> OpenSynthetic(const std::string& text, const SourceO
                           : synth::MakeSensor(parts[1], static_cast<std::uint32_t>(columns));
   if (!sensor)
     throw std::runtime_error(
-        text + ": no such sensor; os0-32 to os2-128, vlp-16, xt32, at128 and mid-360 are");
+        text + ": no such sensor; there are os0-32 to os2-128, vlp-16, xt32, at128 and mid-360");
   config.sensor = *sensor;
   if (parts[2] == "street")
     config.scene = synth::SceneKind::kStreet;
@@ -209,9 +210,9 @@ std::unique_ptr<ScanStream> OpenSynthetic(const std::string& text, const SourceO
   else if (parts[2] == "town")
     config.scene = synth::SceneKind::kTown;
   else
-    throw std::runtime_error(text + ": no such scene; street, tunnel, field and town are");
+    throw std::runtime_error(text + ": no such scene; there are street, tunnel, field and town");
   if (options.max_scans == 0)
-    throw std::runtime_error(text + ": a synthetic drive has no end; say how many scans");
+    throw std::runtime_error(text + ": a synthetic drive has no end; set the number of scans");
   config.speed_mps = options.speed_mps;
   config.roughness = options.roughness;
   config.seed = options.seed;

@@ -201,7 +201,7 @@ std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
   if (xyz && draco::CheckDraco(bytes, {kMaxPoints}).value().is_kd_tree) return std::nullopt;
   draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);
   const auto shape = decoder.Decode(bytes);
-  if (!shape) throw std::runtime_error("a slice does not decode");
+  if (!shape) throw std::runtime_error("a slice cannot be decoded");
   std::vector<std::uint8_t> raw(std::size_t{shape->width} * shape->height *
                                 format_.layout.point_step);
   decoder.Write(raw.data());
@@ -211,12 +211,12 @@ std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
     float decoded[3];
     std::memcpy(decoded, &raw[at], sizeof decoded);
     if (!xyz && decoded[0] == 0 && decoded[1] == 0 && decoded[2] == 0) continue;
-    if (point == returns_) throw std::runtime_error("a return was invented");
+    if (point == returns_) throw std::runtime_error("decoding added a return");
     const double distance = Distance(&points_[3 * point++], decoded);
     errors.mean_m += distance / static_cast<double>(returns_);
     errors.max_m = std::max(errors.max_m, distance);
   }
-  if (point != returns_) throw std::runtime_error("a return was lost");
+  if (point != returns_) throw std::runtime_error("decoding lost a return");
   return errors;
 }
 

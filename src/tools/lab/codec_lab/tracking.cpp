@@ -109,7 +109,7 @@ std::vector<double> ReadTargets(const std::string& path, double scans_per_second
       targets.push_back(held);
     held = 1e6 * mbps;
   }
-  if (held <= 0) throw std::runtime_error(path + ": no target in it");
+  if (held <= 0) throw std::runtime_error(path + ": has no target");
   targets.push_back(held);
   return targets;
 }

@@ -29,7 +29,7 @@ Pose ReadSensorPose(const std::string& path) {
   std::istringstream in(ReadFile(path));
   for (std::string line; std::getline(in, line);)
     if (line.rfind("Tr:", 0) == 0) return ReadPoses(line.substr(3) + "\n", path).front().pose;
-  throw std::runtime_error(path + ": no row Tr: in it");
+  throw std::runtime_error(path + ": has no row Tr:");
 }
 
 }  // namespace

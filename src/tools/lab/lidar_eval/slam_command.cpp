@@ -151,7 +151,7 @@ void RunSlamCommand(const SlamArguments& a) {
     if (options.max_scans > 0)
       bar(static_cast<double>(done) / static_cast<double>(options.max_scans));
   });
-  if (r.estimate.empty()) throw std::runtime_error(source + ": no scan in it");
+  if (r.estimate.empty()) throw std::runtime_error(source + ": has no scan");
   if (!a.out.empty()) Save(a.out, options.close_loops ? r.closed : r.estimate, a.kitti);
   const Trajectory truth = FindTruth(a, r, scans->scans_per_second());
   const auto error = Compare(truth, r.estimate);

@@ -67,7 +67,7 @@ class Link {
 
   codec::SliceEncoder MakeEncoder() const {
     auto encoder = codec::SliceEncoder::Create(source_.format());
-    if (!encoder) throw std::runtime_error("only ranges of a sensor can be referred to");
+    if (!encoder) throw std::runtime_error("references need a sensor's ranges");
     encoder->set_effort(effort_);
     return *std::move(encoder);
   }
@@ -89,7 +89,7 @@ class Link {
     ++sizes_.slices;
     if (encoder_->Mode().rfind("range-temporal", 0) == 0) ++sizes_.with_reference;
     if (!decoder_->Decode({slice_.bytes.data(), slice_.bytes.size()}))
-      throw std::runtime_error("a slice does not decode");
+      throw std::runtime_error("a slice cannot be decoded");
     keeper_.OnEncoded(std::move(slice_.blocks));
     slice_.blocks.clear();
   }

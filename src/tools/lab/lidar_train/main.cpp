@@ -125,7 +125,8 @@ int Run(const Options& options) {
   const bool complete =
       (options.model == "paper" || file.adaptive) && (options.model == "adaptive" || file.paper);
   if (!complete) {
-    std::cerr << "lidar-train: no fit; more --samples, or other --modes or sources, are needed\n";
+    std::cerr << "lidar-train: no model could be fitted; use more --samples, or other --modes or "
+                 "sources\n";
     return 1;
   }
   if (options.output.empty()) return 0;

@@ -100,7 +100,7 @@ int Run(const Options& o) {
   if (!o.output.empty()) tools::WriteFile(o.output, text);
   if (!o.check.empty()) {
     if (ReadFile(o.check) != text) {
-      std::cerr << o.check << ": not what this training gives\n";
+      std::cerr << o.check << ": differs from the result of this training\n";
       return 1;
     }
   }

@@ -271,7 +271,7 @@ double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
       states.CopyTo(setting.effort, bins.step_mm, setting.level_bits, model.get());
       if (!coder.Code(setting.effort, model.get(), &decoded, &decoder) || !decoder.AtEnd() ||
           decoded.bins != bins.bins || decoded.levels != bins.levels) {
-        throw std::runtime_error(set.name + ": a slice did not come back as it was");
+        throw std::runtime_error(set.name + ": a decoded slice differs from the original");
       }
     }
   }
