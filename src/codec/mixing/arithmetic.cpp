@@ -25,7 +25,8 @@ constexpr std::array<std::uint32_t, 65> kLog = {
     31185, 31818, 32445, 33067, 33682, 34292, 34896, 35494, 36087, 36675, 37258, 37835, 38407,
     38975, 39537, 40095, 40648, 41196, 41740, 42280, 42815, 43345, 43872, 44394, 44912, 45426};
 
-/// Interpolates between the entries of a table whose steps are 2^shift apart.
+/// Returns the value at `at` by linear interpolation. Entry i of `table` is the value at i *
+/// 2^shift.
 template <class Table>
 constexpr std::uint32_t Interpolate(const Table& table, std::uint32_t at, unsigned shift) {
   const std::size_t i = at >> shift;

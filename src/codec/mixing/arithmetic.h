@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The numbers of the mixing coder: probabilities, their logits, and the tables between them.
+// The arithmetic of the mixing coder: probabilities, logits, and tables that convert one to the
+// other.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -7,21 +8,21 @@
 
 namespace lidar::codec::mixing {
 
-/// Probabilities of a 1 are in 1/65536, from kLeastChance to kMostChance.
+/// A chance is the probability that a bit is 1, in 1/65536. It is from kLeastChance to kMostChance.
 constexpr std::int32_t kOne = 65'536;
 constexpr std::int32_t kLeastChance = 16;
 constexpr std::int32_t kMostChance = kOne - 17;
 /// Logits are in 1/256 nat, from -kMostLogit to kMostLogit.
 constexpr std::int32_t kMostLogit = 2'047;
 
-/// Position of the highest 1 bit, counted from 1; 0 for 0.
+/// Returns the number of bits of `value` without leading zeros; 0 for 0.
 inline int BitLength(std::uint32_t value) { return value == 0 ? 0 : 32 - __builtin_clz(value); }
 
 inline std::int32_t ClampLogit(std::int32_t logit) {
   return std::min(std::max(logit, -kMostLogit), kMostLogit);
 }
 
-/// The compiler computes the tables with integers, so that they are the same on every machine.
+/// The compiler computes the tables from integers, so the tables are the same on every machine.
 struct Tables {
   constexpr Tables();
   std::array<std::uint16_t, 4'096> chance{};      // of logit i - 2048
@@ -35,7 +36,7 @@ inline std::int32_t Chance(std::int32_t logit) {
 }
 inline std::int32_t Logit(std::uint32_t chance) { return kTables.logit[chance >> 4]; }
 
-/// 256 ln(value); `value` is from 1 to 65,535.
+/// Returns 256 ln(`value`). `value` is from 1 to 65,535.
 inline std::int32_t Log(std::uint32_t value) {
   const int bits = BitLength(value);
   const std::uint32_t mantissa = (value << 16 >> (bits - 1)) - 65'536;
@@ -43,18 +44,19 @@ inline std::int32_t Log(std::uint32_t value) {
   return ((bits - 1) * kLog2 >> 8) + kTables.log_mantissa[mantissa >> 8];
 }
 
-/// Rate at which a counter learns after `bits` bits, in 1/65536.
+/// Returns the rate, in 1/65536, at which a counter adapts when it has seen `bits` bits.
 constexpr std::uint16_t RateAfter(unsigned bits) {
   return static_cast<std::uint16_t>(bits == 0 ? 40'000 : kOne / (static_cast<int>(bits) + 2));
 }
 
-/// An adaptive chance. Its rate falls to 255 within about 300 bits. Lanes hold eight counters.
+/// An adaptive estimate of the chance that a bit is 1. It adapts more slowly with each bit: within
+/// about 300 bits, `rate` falls to 255.
 struct Counter {
   std::uint16_t rate = RateAfter(0);
   std::uint16_t chance = kOne / 2;
 
-  /// Vote of a counter whose logit is `logit`: the fewer bits the counter has seen, the nearer to
-  /// 0.
+  /// Returns the vote of the counter. `logit` is the logit of `chance`. The vote is this logit, but
+  /// nearer to 0 if the counter has seen only a few bits.
   std::int32_t Vote(std::int32_t logit) const {
     const std::int32_t sure = 65'535 - (rate + (rate >> 1));
     return logit * 2 * (sure >> 1) >> 16;
@@ -63,7 +65,7 @@ struct Counter {
     const std::uint32_t mirror = bit ? 65'535 : 0;
     const std::uint32_t miss = chance ^ mirror;
     chance = static_cast<std::uint16_t>((miss - (miss * rate >> 16)) ^ mirror);
-    // The rate becomes about rate / (1 + rate), as a part of kOne: 1/n after n bits.
+    // As a fraction of kOne, the rate becomes about rate / (1 + rate). This is 1/n after n bits.
     const std::uint32_t square = std::uint32_t{rate} * rate >> 16;
     rate = static_cast<std::uint16_t>(rate - (rate * (rate - (square >> 1)) >> 16));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Chooses the cheapest of the bins that each return may take.
+// For each return, chooses the bin that is cheapest to code from the bins that the return may have.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,24 +11,27 @@
 
 namespace lidar::codec::mixing {
 
-/// A beam search along each row. The models stay as they are before the row. A cheap bin may make
-/// the next ones expensive, so the search follows two ways.
+/// A beam search along a row of pixels. The search finds out the costs of bins with the models as
+/// they are before the row. Since a cheap bin may make the following bins expensive, the search
+/// keeps the two cheapest sequences of bins, which are called ways.
 template <class Effort>
 class BinSearch {
  public:
-  /// `steps` is a buffer that later searches use again.
+  /// `steps` is a buffer for the search. The caller keeps it, so that later searches need no new
+  /// one.
   BinSearch(Model* model, std::int64_t step_mm, std::vector<SearchStep>* steps)
       : parts_{{{model, &meter_, step_mm}, {model, &meter_, step_mm}}}, steps_(*steps) {}
 
-  /// A row of returns, as RangePart takes it.
+  /// A row of pixels. `above` and `north` are the arguments of RangePart::StartRow().
   struct Row {
     const Azimuth* above;
     const std::int32_t* north;
-    const std::uint8_t* spare;  // number of further bins that each return may take
+    const std::uint8_t* spare;  // for each return, the number of further bins that it may have
     std::uint32_t columns;
   };
 
-  /// `bins` has the first bin of each return, which the chosen bin replaces.
+  /// Replaces the bins of a row by those of the cheapest way. On entry, `bins` has the first bin
+  /// that each return may have, and kNoReturn for the other pixels.
   void Choose(const Row& row, std::int32_t* bins) {
     for (Part& part : parts_) part.StartRow(row.above, row.north);
     steps_.clear();
@@ -47,12 +50,13 @@ class BinSearch {
 
  private:
   using Part = RangePart<Effort, CostMeter>;
-  static constexpr unsigned kMostWays = 2;  // more ways save 0.2 %
-  /// A way that costs this much more than the best one hardly ever wins.
+  static constexpr unsigned kMostWays = 2;  // more ways would save only 0.2 %
+  /// A way is dropped if it costs this much more than the cheapest way. A way this far behind
+  /// hardly ever becomes the cheapest one.
   static constexpr std::int64_t kMostBehind = 1'065;  // 6 bits
   struct Way {
     std::int64_t cost = 0;
-    std::uint32_t steps = 0;  // index in steps_ + 1
+    std::uint32_t steps = 0;  // 1 + index of the newest step in steps_; 0: none
   };
   struct Trial {
     std::int64_t cost;
@@ -74,7 +78,8 @@ class BinSearch {
         const std::int64_t most = found_ > 0 ? trials_[0].cost + kMostBehind : INT64_MAX;
         Offer({ways_[k].cost + part.CostOf(bin, most - ways_[k].cost), bin, k});
       };
-      // The likely cheapest bin comes first, so that others are given up early.
+      // Tries the bin that is probably the cheapest first. It limits how far the costs of the other
+      // bins need to be computed.
       const std::int32_t likely = std::clamp(part.Predicted(), first, last);
       try_bin(likely);
       for (std::int32_t bin = first; bin <= last; ++bin)
@@ -85,7 +90,8 @@ class BinSearch {
     return found_ > 0 && cost > trials_[0].cost + kMostBehind;
   }
 
-  /// Keeps the two cheapest trials; of trials that end in the same two bins, only the cheapest.
+  /// Keeps `trial` if it is one of the two cheapest. If the last two bins of two trials are equal,
+  /// only the cheaper of these trials is kept.
   void Offer(const Trial& trial) {
     if (IsHopeless(trial.cost)) return;
     if (found_ == 0) {
@@ -107,7 +113,7 @@ class BinSearch {
     return a.bin == b.bin && parts_[a.way].row().west[0] == parts_[b.way].row().west[0];
   }
 
-  /// Turns each kept trial into a way that is one step longer.
+  /// Makes each kept trial a way, which is one step longer than the way that the trial extends.
   void Go(const Azimuth& above) {
     const std::array<typename Part::Row, kMostWays> before = {parts_[0].row(), parts_[1].row()};
     std::array<typename Part::Row, kMostWays> after;
@@ -139,10 +145,10 @@ class BinSearch {
   }
 
   CostMeter meter_;
-  std::array<Part, kMostWays> parts_;  // each has the state at the end of its way
+  std::array<Part, kMostWays> parts_;  // part k has the state at the end of way k
   std::array<Way, kMostWays> ways_{};  // the cheapest first
   unsigned count_ = 0;
-  std::array<Trial, kMostWays> trials_{};  // of a return, the cheapest first
+  std::array<Trial, kMostWays> trials_{};  // for the current return, the cheapest first
   unsigned found_ = 0;
   std::vector<SearchStep>& steps_;
 };

@@ -5,7 +5,8 @@ namespace lidar::codec::mixing {
 
 void BinaryEncoder::Finish() {
   for (unsigned shift = 32; shift >= 8; shift -= 8) {
-    // Lowest number from low_ on whose unwritten lower bits are 0.
+    // The lowest number >= low_ whose lower `shift` bits are 0. These bits need not be written,
+    // because a decoder reads zeros after the last byte.
     const std::uint64_t unit = std::uint64_t{1} << shift;
     const std::uint64_t value = (low_ + unit - 1) / unit * unit;
     if (value > high_) continue;

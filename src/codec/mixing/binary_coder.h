@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A binary range coder without carries: one bit at a time, each with a chance of its own.
+// A binary range coder without carries. It codes one bit at a time. The caller states for each bit
+// the chance that the bit is 1.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -12,10 +13,11 @@ namespace lidar::codec::mixing {
 class BinaryEncoder {
  public:
   static constexpr bool kDecodes = false;
-  /// Appends to `out`.
+  /// The bytes are appended to `out`.
   explicit BinaryEncoder(std::vector<std::uint8_t>* out) : out_(out) {}
 
-  /// `chance` of a 1 is from kLeastChance to kMostChance. Returns `bit`.
+  /// Writes and returns `bit`. `chance`, the chance that a bit is 1, is from kLeastChance to
+  /// kMostChance.
   bool Code(bool bit, std::int32_t chance) {
     const std::uint32_t split =
         low_ + static_cast<std::uint32_t>(
@@ -28,9 +30,9 @@ class BinaryEncoder {
     }
     return bit;
   }
-  /// Always false, unlike that of a decoder.
+  /// Returns false, because an encoder reads nothing. Templates call overran() of either coder.
   static constexpr bool overran() { return false; }
-  /// Writes the bytes that identify the last interval. A decoder reads zeros after them.
+  /// Writes the last bytes. A decoder reads zeros after them.
   void Finish();
 
  private:
@@ -47,22 +49,23 @@ class BinaryDecoder {
     for (int i = 0; i < 4; ++i) code_ = code_ << 8 | NextByte();
   }
 
-  /// The first argument serves BinaryEncoder only.
+  /// Reads and returns a bit. The first parameter is unused. It only gives Code() the same
+  /// parameters as in BinaryEncoder.
   [[gnu::always_inline]] bool Code(bool /*bit*/, std::int32_t chance) {
     const std::uint32_t split =
         low_ + static_cast<std::uint32_t>(
                    std::uint64_t{high_ - low_} * static_cast<std::uint32_t>(chance) >> 16);
     const bool bit = code_ <= split;
-    // A branch would often be mispredicted.
+    // Masks replace a branch, which the processor would often predict wrongly.
     const std::uint32_t ones = bit ? UINT32_MAX : 0;
     high_ ^= (high_ ^ split) & ones;
     low_ += (split + 1 - low_) & ~ones;
     if (__builtin_expect((low_ ^ high_) < 1U << 24, 0)) Refill();
     return bit;
   }
-  /// Returns true if bits were read past the end.
+  /// Returns true if bits were read past the end of the bytes.
   bool overran() const { return missing_ > 4; }
-  /// Returns true if exactly all bytes were used.
+  /// Returns true if all bytes were read, and no bits past their end.
   bool AtEnd() const { return next_ == end_ && !overran(); }
 
  private:

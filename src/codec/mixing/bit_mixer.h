@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Logistic mixing: codes a bit by the weighted sum of the votes of counters and other logits.
-// Weights and counters then learn from the bit.
+// Logistic mixing. The chance of a bit is computed from the weighted sum of logits: the votes of
+// counters, and other logits. Weights and counters then learn from the bit.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,26 +14,26 @@ namespace lidar::codec::mixing {
 
 constexpr unsigned kInputs = 2 * kLanes;
 
-/// Weights of a decision's inputs, in 1/kWeightOne.
+/// A set of weights, one for each input of a decision, in 1/kWeightOne.
 struct alignas(32) Weights {
   std::array<std::int16_t, kInputs> values{};
 };
 constexpr unsigned kWeightShift = 13;
 constexpr std::int32_t kWeightOne = 1 << kWeightShift;
 
-/// Step of the weights for an error `bit - chance`; fits an int16.
+/// Returns the step by which weights learn from the error `bit - chance`. It fits an int16.
 inline std::int32_t StepOf(bool bit, std::int32_t chance) {
   constexpr std::int32_t kSpeed = 5;
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
-/// The step in refined models, whose inputs are doubled.
+/// Like StepOf(), but for refined models. BitMixer::CodeFast() doubles their inputs, too.
 inline std::int32_t FastStepOf(bool bit, std::int32_t chance) {
   constexpr std::int32_t kSpeed = 6;
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
-/// Maps a logit to the share of 1s among the bits that had it.
+/// Maps a logit to the share of 1s among the earlier bits that had about this logit.
 class ChanceMap {
  public:
   ChanceMap() {
@@ -41,7 +41,8 @@ class ChanceMap {
       chances_[static_cast<std::size_t>(i)] =
           static_cast<std::uint16_t>(Chance((i << kShift) - kMiddle));
   }
-  /// Returns the mean of two chances: the one of `logit`, and the share of 1s so far.
+  /// Returns the mean of two chances: the chance that `logit` stands for, and the share of 1s among
+  /// the earlier bits with about this logit.
   std::int32_t Refined(std::int32_t logit) const {
     const std::int32_t place = ClampLogit(logit) + kMiddle;
     const auto i = static_cast<std::size_t>(place >> kShift);
@@ -49,7 +50,7 @@ class ChanceMap {
     const std::int32_t been = (chances_[i] * (kPart + 1 - part) + chances_[i + 1] * part) >> kShift;
     return std::clamp((Chance(logit) + been) >> 1, kLeastChance, kMostChance);
   }
-  /// Learns a bit that had this logit.
+  /// Updates the map after a bit that was coded with `logit`.
   void Learn(std::int32_t logit, bool bit) {
     const std::int32_t place = ClampLogit(logit) + kMiddle + kPart / 2 + 1;
     std::uint16_t& chance = chances_[static_cast<std::size_t>(place >> kShift)];
@@ -65,17 +66,18 @@ class ChanceMap {
   std::array<std::uint16_t, kEntries> chances_{};
 };
 
-/// Codes decisions by kCounters counters and kExtra other logits. The last input is a constant.
+/// Codes a decision: a bit that is predicted by kCounters counters and kExtra other logits. The
+/// last input of the mixer is a constant.
 ///
-/// A mixer lives for one decision and is inlined, so that counters, votes and sums stay in
-/// registers. With calls, efforts 2 and 3 take 1.3 times as long.
+/// A mixer is made for each decision anew and is inlined, so that counters, votes and sums stay in
+/// registers. With calls instead, efforts 2 and 3 would take 1.3 times as long.
 template <unsigned kCounters, unsigned kExtra, class Lanes = FastLanes>
 class BitMixer {
  public:
   static_assert(kCounters + kExtra < kInputs);
 
-  /// `counter_at(0 .. kCounters - 1)` gives the different counters of the next bit, and `logit_at`
-  /// the other logits.
+  /// Collects the inputs for the next bit. `counter_at(i)` returns counter i, for i from 0 to
+  /// kCounters - 1. These must be different counters. `logit_at(i)` returns the other logit i.
   template <class CounterAt, class LogitAt>
   [[gnu::always_inline]] void Ask(CounterAt&& counter_at, LogitAt&& logit_at) {
     AskEight<0>(counter_at, logit_at);
@@ -96,7 +98,8 @@ class BitMixer {
     Learn(bit);
     return bit;
   }
-  /// Mixes by two sets of weights. Each learns from the error that it would have made alone.
+  /// Codes a bit by two sets of weights: the mean of their logits predicts the bit. Each set then
+  /// learns from the error that it would have made alone.
   template <class Coder>
   [[gnu::always_inline]] bool Code(bool bit, Weights* first, Weights* second, Coder* coder) {
     static_assert(kTeaches<Coder>);
@@ -108,13 +111,13 @@ class BitMixer {
     Learn(bit);
     return bit;
   }
-  /// Returns the chance of a 1 that Code() would use.
+  /// Returns the chance of a 1 that Code() would use with these two sets.
   [[gnu::always_inline]] std::int32_t ChanceBy(const Weights* first, const Weights* second) const {
     return Chance((LogitBy(*first) + LogitBy(*second)) >> 1);
   }
 
-  /// Mixes by the mean of some sets of weights, which learn fast, and refines the chance by `map`
-  /// unless it is null.
+  /// Codes a bit by the mean logit of several sets of weights. These learn faster than in Code().
+  /// If `map` is not null, it refines the chance.
   template <std::size_t kSets, class Coder>
   [[gnu::always_inline]] bool CodeFast(bool bit, const std::array<Weights*, kSets>& sets,
                                        ChanceMap* map, Coder* coder) {
@@ -132,7 +135,7 @@ class BitMixer {
     Learn(bit);
     return bit;
   }
-  /// Returns the chance of a 1 that CodeFast() would use.
+  /// Returns the chance of a 1 that CodeFast() would use with these sets and this map.
   template <std::size_t kSets>
   [[gnu::always_inline]] std::int32_t FastChanceBy(const std::array<Weights*, kSets>& sets,
                                                    const ChanceMap& map) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Logits of a value near a centre: a logistic distribution of learnt width.
+// Computes logits for decisions about a value near a centre. The distance of the value from the
+// centre has a logistic distribution, whose width is learnt.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,8 +12,9 @@ namespace lidar::codec::mixing {
 
 class Centre {
  public:
-  /// `offset` is the distance from the prediction to the centre, in 1/16 bin. `*spread` is the mean
-  /// distance of values from the centre so far, in 1/4096 bin; Learn() updates it.
+  /// Sets the centre. `offset` is the distance from the prediction to the centre, in 1/16 bin.
+  /// `*spread` is the mean distance of earlier values from the centre, in 1/4096 bin. Learn()
+  /// updates it.
   void Set(std::int32_t offset, std::int32_t* spread) {
     offset_ = std::clamp(offset, -kMostOffset, kMostOffset);
     exact_ = offset;
@@ -20,8 +22,9 @@ class Centre {
     inverse_ = (1 << 22) / *spread;
   }
 
-  /// Logit of a decision on the difference from the prediction (kSmallNodes). Call it for nodes in
-  /// the order of the code.
+  /// Returns the logit of decision `node` on the difference from the prediction (see kSmallNodes).
+  /// The decisions must be asked for in the order in which they are coded, because a call continues
+  /// from the result of the call before it.
   [[gnu::always_inline]] std::int32_t Opinion(unsigned node) {
     if (node == 0) {
       below_ = Below(-8);
@@ -37,7 +40,7 @@ class Centre {
     return Ratio(beyond, within);
   }
 
-  /// Learns from `value`, the difference from the prediction in 1/16 bin.
+  /// Updates the spread by `value`, the difference from the prediction in 1/16 bin.
   void Learn(std::int32_t value) {
     constexpr std::int32_t kMostDistance = 96;
     const std::int32_t distance = std::min(std::abs(value - exact_), kMostDistance);
@@ -58,7 +61,8 @@ class Centre {
   std::int32_t offset_ = 0;
   std::int32_t exact_ = 0;
   std::int32_t inverse_ = 0;
-  std::int32_t below_ = 0;  // chance beyond the last edge, on each side
+  /// The chances that the value is beyond the last edge that Opinion() computed, on either side.
+  std::int32_t below_ = 0;
   std::int32_t above_ = 0;
   std::int32_t* spread_ = nullptr;
 };

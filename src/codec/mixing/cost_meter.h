@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A coder that writes nothing, and adds up what the bits would cost.
+// A coder that writes nothing, but adds up what it would cost to code the bits.
 #pragma once
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace lidar::codec::mixing {
 
-/// Costs are in 1/256 nat, integers, so that they are the same on every machine.
+/// Costs are integers, in 1/256 nat, so that they are the same on every machine.
 class CostMeter {
  public:
   bool Code(bool bit, std::int32_t chance) {
@@ -27,7 +27,8 @@ class CostMeter {
   std::int32_t cost_ = 0;
 };
 
-/// True if coding a bit teaches the model.
+/// True if models learn from the bits that a Coder codes. While costs are measured, the models must
+/// stay unchanged.
 template <class Coder>
 constexpr bool kTeaches = true;
 template <>

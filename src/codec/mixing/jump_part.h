@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes distances of more than a few steps from the prediction. The value then often lies on a
-// surface that a neighbour has seen.
+// Codes jumps: differences of more than 3 bins from the prediction. The value is then often on a
+// surface that a neighbour is on, too.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace lidar::codec::mixing {
 
-/// Context of a jump.
 struct JumpContext {
   std::uint32_t uneven = 0;
-  std::uint32_t range_class = 0;  // and direction: 32 values
-  std::uint32_t gap_class = 0;    // of gap and step between neighbours: 16 values
-  /// Distances of neighbours in the direction of the jump.
+  std::uint32_t range_class = 0;  // class of the range and direction of the jump: 32 values
+  std::uint32_t gap_class = 0;    // class of the gap and the step between neighbours: 16 values
+  /// For each neighbour, the distance that a jump to its bin would have. It is 0 or less if the
+  /// neighbour's bin is in the opposite direction, or too near for a jump.
   std::array<std::int32_t, kCandidates> candidates{};
-  std::array<std::int32_t, Refinement::kFurther> further{};  // of refined models
+  std::array<std::int32_t, Refinement::kFurther> further{};  // in refined models
 };
 
 template <unsigned kUsed, class Coder, bool kRefined = false>
@@ -29,11 +29,12 @@ class JumpPart {
 
   static constexpr std::uint32_t kTooFar = 1U << 26;
 
-  /// `distance` is 1 or more. Returns kTooFar for a damaged stream.
+  /// Codes `distance`, which is at least 1, and returns it. Returns kTooFar if the stream is
+  /// damaged.
   std::uint32_t Code(std::uint32_t distance, const JumpContext& context) {
     context_ = &context;
-    // An Exp-Golomb code: first the length, then the bits below the highest one. Each bit is 1 if
-    // the distance reaches `middle`.
+    // An Exp-Golomb code: first the length of the distance, then the bits below its highest bit.
+    // Each bit that is coded is 1 if the distance is at least `Split::middle`.
     unsigned length = 0;
     const auto last = static_cast<unsigned>(BitLength(distance) - 1);
     while (CodeNode(length < last, std::min(length, kLengthNodes - 1), context.gap_class,
@@ -55,10 +56,10 @@ class JumpPart {
   static constexpr unsigned kMostLength = 26;
   struct Split {
     std::uint32_t middle;
-    std::uint32_t half;  // of the interval that is split
+    std::uint32_t half;  // half the width of the interval that is split
   };
-  /// Places of candidates relative to the interval, 1 to 10; 0: the candidate is in the other
-  /// direction.
+  /// Returns the place of each candidate relative to the interval: from 1, far below its middle, to
+  /// 10, far above. 0 means that the candidate is in the opposite direction, or is the prediction.
   template <unsigned kCount, class Candidates>
   static std::array<std::int32_t, kCount> PlacesOf(const Split& split,
                                                    const Candidates& candidates) {
@@ -70,7 +71,7 @@ class JumpPart {
     for (unsigned i = 0; i < kCount; ++i) {
       const std::int32_t candidate = candidates[i];
       const std::int32_t d = candidate - middle;
-      const std::int32_t side = d >> 31;  // -1 below the middle
+      const std::int32_t side = d >> 31;  // -1 if below the middle
       const std::int32_t size = d ^ side;
       const std::int32_t far = (size >= eighth ? 1 : 0) + (size >= quarter ? 1 : 0) +
                                (size >= half ? 1 : 0) + (size >= 4 * half ? 1 : 0);

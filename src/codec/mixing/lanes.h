@@ -21,12 +21,17 @@ namespace lidar::codec::mixing {
 
 constexpr unsigned kLanes = 8;
 
-/// Serves any processor. The variants for some processors have the same functions:
-/// - Of() packs eight numbers. Load() and Store() move `kCount` counters; other lanes have no vote.
-/// - Votes() takes counters and their logits. Learnt() returns counters after a bit.
-/// - Join() merges two groups; in each lane one of them is zero. Twice() doubles numbers.
-/// - Dot(), Plus() and Total() make a sum of products, in parts. Teach(): weight += (input step +
-///   2^16) / 2^17, rounded down, in the bounds of an int16.
+/// Lanes in plain C++, for any processor. The variants for some processors have the same functions:
+/// - Of() packs eight numbers. Load() and Store() copy `kCount` counters from and to memory. The
+///   other lanes have votes of 0.
+/// - Votes() returns the votes of counters with the given logits. Learnt() returns counters as they
+///   are after a bit.
+/// - Join() merges two groups of numbers. In each lane, at least one of the two numbers must be 0.
+///   Twice() doubles numbers.
+/// - Dot() multiplies inputs by weights and returns the sum in parts. Plus() adds two sums in
+///   parts. Total() adds up the parts of a sum.
+/// - Teach() adds (input step + 2^16) / 2^17, rounded down, to each weight, and clamps it to an
+///   int16.
 struct PlainLanes {
   using Eight = std::array<std::int16_t, kLanes>;
   using Sum = std::int32_t;
@@ -80,7 +85,7 @@ struct PlainLanes {
 };
 
 #if defined(__x86_64__)
-/// Every x86-64 has SSE2.
+/// Lanes for x86-64. Every x86-64 processor has SSE2.
 struct Sse2Lanes {
   using Eight = __m128i;
   using Sum = __m128i;
@@ -144,7 +149,7 @@ struct Sse2Lanes {
     std::memcpy(&word, from, sizeof word);
     return _mm_cvtsi32_si128(word);
   }
-  /// Returns two rates, then two chances.
+  /// Returns the rates of two counters, then their chances.
   template <unsigned kCount, unsigned kFirst>
   [[gnu::always_inline]] static __m128i Pair(const Counter* const* from) {
     __m128i first = _mm_setzero_si128();
@@ -307,7 +312,7 @@ struct WasmLanes {
   }
 
  private:
-  /// The upper halves of 32-bit products.
+  /// Returns the upper halves of 32-bit products.
   [[gnu::always_inline]] static v128_t Upper(v128_t low, v128_t high) {
     return wasm_i16x8_shuffle(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
   }

@@ -12,14 +12,14 @@
 
 namespace lidar::codec::mixing {
 
-/// A return next to the one that is coded.
+/// A neighbour of the return whose level is coded.
 struct LevelAt {
-  std::int32_t bin = -1;  // -1: no return is known
+  std::int32_t bin = -1;  // -1: the neighbour has no return
   std::int32_t level = 0;
   std::int32_t residual = 0;  // -3 to 3
 };
 
-/// Uses the first kContexts of the contexts in SetContexts().
+/// Codes levels. Uses the first kContexts of the contexts in SetContexts().
 template <unsigned kContexts, class Coder>
 class LevelPart {
  public:
@@ -31,13 +31,13 @@ class LevelPart {
         step_mm_(step_mm) {}
 
   struct Around {
-    std::int32_t bin;  // of the return itself
+    std::int32_t bin;  // of the return whose level is coded
     LevelAt w, ww, n, nw, ne, nn;
   };
 
   void StartRow() { zero_run_ = 0; }
-  /// Returns the level, or -1 for a damaged stream. `residual` gets its difference from the
-  /// prediction, limited to -3 to 3.
+  /// Codes `level` and returns it, or returns -1 if the stream is damaged. Sets `residual` to the
+  /// difference of the level from its prediction, limited to -3 to 3.
   std::int32_t Code(std::int32_t level, const Around& around, std::int32_t* residual) {
     Look(around);
     SetContexts(around);
@@ -49,8 +49,8 @@ class LevelPart {
   }
 
  private:
-  /// Returns 2 within 2 bins of the return, 1 within 8; 0 on another surface, or if there is no
-  /// return.
+  /// Returns how near the neighbour `at` is to `bin`: 2 if it is within 2 bins, 1 if within 8 bins.
+  /// Returns 0 if it is farther away, and thus on another surface, or has no return.
   static std::uint32_t Closeness(const LevelAt& at, std::int32_t bin) {
     if (at.bin < 0) return 0;
     const std::int32_t apart = std::abs(at.bin - bin);
@@ -87,16 +87,17 @@ class LevelPart {
   static std::uint32_t Size(const LevelAt& at) {
     return static_cast<std::uint32_t>(std::abs(at.residual));
   }
-  /// Scales a level of any number of bits to 0 to 31.
+  /// Scales a level, which has any number of bits, to 0 to 31.
   std::uint32_t Height(std::int32_t level) const {
     return static_cast<std::uint32_t>(level * 32 / (most_ + 1));
   }
-  /// Class of the distance by which the return is behind a neighbour, or in front of it.
+  /// Returns the class of the distance from the neighbour `at` to `bin`, which is negative if `bin`
+  /// is nearer to the sensor.
   std::uint32_t Depth(const LevelAt& at, std::int32_t bin) const {
     return at.bin < 0 ? 3U : StepClass(std::clamp(bin - at.bin, -4, 4) * kStep);
   }
 
-  /// Mean level of neighbours, weighted by closeness.
+  /// The mean level of neighbours (`sum` / `count`), weighted by their closeness to the return.
   struct Weighed {
     std::int32_t sum = 0;
     std::int32_t count = 0;
@@ -166,7 +167,7 @@ class LevelPart {
     return negative ? -coded : coded;
   }
 
-  /// Codes 1 to 255: the bit length, then the lower bits as a binary tree.
+  /// Codes a number from 1 to 255: first its bit length, then its lower bits as a binary tree.
   std::int32_t CodeRest(std::int32_t rest, bool negative) {
     const int last = BitLength(static_cast<std::uint32_t>(rest)) - 1;
     int length = 0;

@@ -11,13 +11,14 @@
 
 namespace lidar::codec::mixing {
 
-/// Refined models have one more context, of pixels further along the row.
+/// Codes the mask. If kRefined, there is one more context, which has further pixels of the row.
 template <unsigned kContexts, class Coder, bool kRefined = false>
 class MaskPart {
  public:
   MaskPart(Model* model, Coder* coder) : model_(*model), coder_(*coder) {}
 
-  /// `above[i]` is the azimuth of pixel i, from AlignedRow: indices past both ends are read, too.
+  /// Begins a row. `above[i]` is the azimuth of pixel i. `above` points into an AlignedRow, because
+  /// indices past both ends of the row are read, too.
   void StartRow(const Azimuth* above) {
     above_ = above;
     west_ = (above[0].returns & 1) != 0 ? 0xFF : 0;
@@ -27,7 +28,7 @@ class MaskPart {
     north_west_ = above[-1].returns;
   }
 
-  /// Codes pixel `i`. `near_class` is the range class of the nearest return.
+  /// Codes whether pixel `i` has a return. `near_class` is the range class of the nearest return.
   [[gnu::always_inline]] bool Code(bool bit, std::uint32_t i, std::uint32_t near_class) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
     SetContexts(i, near_class);
@@ -42,7 +43,8 @@ class MaskPart {
     Keep(bit, i);
     return bit;
   }
-  /// Codes pixel `i` by `code(bit, counter_at)`; counter_at(k) returns the counter of context k.
+  /// Does the same as Code(), but has the bit coded by `code(bit, counter_at)`. `counter_at(k)`
+  /// returns the counter of context k.
   template <class Code>
   bool CodeBy(bool bit, std::uint32_t i, std::uint32_t near_class, Code&& code) {
     nearby_ |= (above_[static_cast<std::ptrdiff_t>(i) + 8 - 1].returns & 1U) << 9;
@@ -79,7 +81,7 @@ class MaskPart {
   }
 
   [[gnu::always_inline]] void SetContexts(std::uint32_t i, std::uint32_t near_class) {
-    // Bit 0 is two columns to the left, bit 2 is right above.
+    // The five pixels above: bit 0 is two columns to the left of pixel i, bit 2 directly above it.
     const std::uint32_t five = nearby_ & 31;
     const std::uint32_t north = above_[i].returns;
     const std::uint32_t east = above_[i + 1].returns;
@@ -107,9 +109,9 @@ class MaskPart {
   Model& model_;
   Coder& coder_;
   const Azimuth* above_ = nullptr;
-  std::uint32_t west_ = 0;    // last pixels of the row, the newest in bit 0
-  std::uint32_t run_ = 0;     // number of equal pixels up to the last one
-  std::uint32_t nearby_ = 0;  // pixels of the row above, from two columns to the left on
+  std::uint32_t west_ = 0;    // the last pixels of the row, the newest in bit 0
+  std::uint32_t run_ = 0;     // the number of equal pixels up to the last one
+  std::uint32_t nearby_ = 0;  // pixels of the row above; bit 0: two columns to the left
   std::uint32_t north_west_ = 0;
   std::array<std::uint32_t, kContexts> contexts_{};
 };

@@ -15,7 +15,7 @@ namespace {
 
 using mixing::SliceBins;
 
-// The first byte of a payload.
+// The fields in the first byte of a payload.
 constexpr unsigned kEffortMask = 3;
 constexpr unsigned kGapsBit = 4;
 constexpr unsigned kSearchedBit = 8;
@@ -35,7 +35,7 @@ std::int64_t StepMm(const RangeGrid& grid) {
 
 void PrepareMixing() { mixing::Trained(); }
 
-/// Buffers and models of encoder and decoder.
+/// The buffers and models that encoder and decoder have in common.
 struct MixingCoderState {
   explicit MixingCoderState(const SensorModel& sensor)
       : alignment(sensor), coder(alignment), model(std::make_unique<mixing::Model>()) {}
@@ -57,7 +57,7 @@ struct MixingCoderState {
 struct MixingEncoder::State : MixingCoderState {
   using MixingCoderState::MixingCoderState;
 
-  /// Returns false if a range is too long.
+  /// Loads the image into `slice`. Returns false if a range is too long.
   bool Load(const RangeImage& image, const MixingSettings& settings) {
     slice.beams = image.beams;
     slice.columns = image.columns;
@@ -87,10 +87,11 @@ struct MixingEncoder::State : MixingCoderState {
     return true;
   }
 
-  /// Finds the bins that each return may take.
+  /// Finds all bins that each return may have. Sets `slice.bins` to the first of them, and
+  /// `slice.spare` to the number of further bins.
   void Spare(const RangeImage& image, const MixingSettings& settings) {
     constexpr std::int32_t kMostSpare = 255;
-    // Decoders refuse larger bins.
+    // A decoder refuses larger bins.
     const auto last_bin =
         std::min<std::int64_t>(settings.grid.BinOf(RangeGrid::kMaxRangeMm), mixing::kMaxBins - 1);
     slice.spare.assign(image.size(), 0);
@@ -142,7 +143,8 @@ bool MixingEncoder::Encode(const RangeImage& image, const MixingSettings& settin
 struct MixingDecoder::State : MixingCoderState {
   using MixingCoderState::MixingCoderState;
 
-  /// Reads the header. Returns nothing if it is damaged or of another version.
+  /// Reads the header and returns the effort. Returns nothing if the header is damaged or of
+  /// another version.
   std::optional<unsigned> ReadHead(ByteReader* reader) {
     const unsigned first = reader->U8();
     const unsigned effort = first & kEffortMask;
@@ -194,7 +196,7 @@ bool MixingDecoder::Decode(ByteView payload, const RangeGrid& grid, unsigned int
   for (std::size_t i = 0; i < image->size(); ++i) {
     const std::int32_t bin = s.slice.bins[i];
     image->ranges[i] = bin < 0 ? 0 : grid.RangeOf(static_cast<std::uint32_t>(bin));
-    // A range of 0 means no return.
+    // The range of a return is not 0, because 0 means that there is no return.
     if (bin > last_bin || (bin >= 0 && image->ranges[i] == 0)) return false;
   }
   image->intensity.assign(s.slice.levels.begin(), s.slice.levels.end());

@@ -9,7 +9,8 @@
 
 namespace lidar::codec::mixing {
 
-// Number of values of each context, in the order of docs/mixing-coder.md.
+// The number of values of each context. The order is that of the contexts in mask_part.h,
+// range_part.h, jump_part.h and level_part.h.
 constexpr std::array<std::uint32_t, 6> kMaskContexts = {5'632, 4'096, 560, 4'096, 2'048, 1'024};
 constexpr std::array<std::uint32_t, 13> kRangeContexts = {
     1'331, 1'372, 484, 512, 1'372, 1'936, 121, 120, 512, 24, 2'401, 1'024, 484};
@@ -17,11 +18,12 @@ constexpr std::array<std::uint32_t, 3> kJumpContexts = {24, 32, 64};
 constexpr std::array<std::uint32_t, 14> kLevelContexts = {
     24, 225, 1'331, 1'024, 512, 1'331, 1'024, 1'024, 225, 405, 735, 1'372, 1'024, 225};
 
-/// Decisions on small differences from a prediction: zero or not, the sign, and for each sign
-/// whether it is more than 1, 2, 3.
+/// The number of decisions (nodes) on a small difference from a prediction. They are: whether it is
+/// 0, its sign, and for each sign whether its size is more than 1, 2 and 3.
 constexpr unsigned kSmallNodes = 8;
-/// Nodes of a jump's Exp-Golomb code: kLengthNodes code the length. The other nodes code the bits
-/// below the highest one, a node for each level and place.
+/// The number of nodes in the Exp-Golomb code of a jump. The first kLengthNodes code the length.
+/// The others code the bits below the highest one. Their node depends on the position of the bit
+/// and on the number of bits coded before it.
 constexpr unsigned kJumpNodes = 48;
 constexpr unsigned kLengthNodes = 24;
 
@@ -39,39 +41,43 @@ constexpr std::uint32_t Total(const std::array<std::uint32_t, kSize>& contexts) 
   return sum;
 }
 
-/// Models of mask and bins.
+/// The counters for mask and bins.
 struct BinCounters {
   std::array<Counter, Total(kMaskContexts)> mask;
   std::array<Counter, kSmallNodes * Total(kRangeContexts)> range;
   std::array<Counter, kJumpNodes * Total(kJumpContexts)> jump;
   std::array<Counter, kJumpNodes * kCandidates * kPlaces> candidates;
-  /// Mean distance from each centre, by unevenness and with or without a gap, in 1/4096 bin.
+  /// The mean distance of values from each centre, in 1/4096 bin: one number for each class of
+  /// unevenness, with and without a gap before the pixel.
   std::array<std::int32_t, kCentres * kUnevenClasses * 2> spread;
 };
+/// The weights for mask and bins.
 struct BinWeights {
   std::array<Weights, 16> mask;
   std::array<Weights, kSmallNodes * kUnevenClasses> range;
   std::array<Weights, kSmallNodes * 64> event;
   std::array<Weights, kJumpNodes> jump;
 };
-/// Models of intensities.
+/// The counters for intensities.
 struct LevelCounters {
   std::array<Counter, kSmallNodes * Total(kLevelContexts)> small;
   std::array<Counter, 512> rest;
 };
+/// The weights for intensities.
 struct LevelWeights {
   std::array<Weights, kSmallNodes * kUnevenClasses> uneven;
   std::array<Weights, kSmallNodes * kSurfaces> surfaces;
 };
 
-/// The additional parts of refined models, for sensors on which the start states were not trained.
+/// The additional parts of refined models, which are for sensors on which the start states were not
+/// trained.
 struct Refinement {
   static constexpr unsigned kMaskSets = 16;
   static constexpr unsigned kColumnSets = 64;
   static constexpr unsigned kRunSets = 16;
   static constexpr unsigned kRangeSets = 64;
   static constexpr unsigned kGapSets = 16;
-  static constexpr unsigned kFurther = 3;  // candidates
+  static constexpr unsigned kFurther = 3;  // candidates of a jump
   static constexpr std::uint32_t kMaskContext = 4'096;
 
   std::array<Weights, kMaskSets * kColumnSets> mask_columns;
@@ -90,7 +96,8 @@ struct Model {
   LevelWeights level_weights;
   Refinement refinement;
 
-  /// Turns fresh models of mask and bins into refined ones, which learn faster.
+  /// Turns models of mask and bins that are in their start states into refined models. Refined
+  /// models learn faster.
   void Refine();
 };
 

@@ -14,10 +14,10 @@
 
 namespace lidar::codec::mixing {
 
-/// Bins from this one on are not coded, so that sums of a few bins fit 32 bits.
+/// Only bins below this number are coded, so that sums of a few values in 1/16 bin fit 32 bits.
 constexpr std::int32_t kMaxBins = 1 << 25;
 
-/// Surroundings of a return.
+/// The values to the left of a return and above it, and what is derived from the neighbours.
 struct Surroundings {
   std::int32_t w = 0;
   std::int32_t n = 0;
@@ -26,29 +26,31 @@ struct Surroundings {
   std::uint32_t range_class = 0;
 };
 
-/// `Effort` has the numbers of contexts, centres and candidates, and two flags: for weights by
-/// events in addition to those by unevenness, and for refined models.
+/// Codes bins. `Effort` has the numbers of contexts, centres and candidates, and two flags. With
+/// kEvents, the weights chosen by event are used in addition to those chosen by unevenness. With
+/// kRefined, refined models are used.
 template <class Effort, class Coder>
 class RangePart {
  public:
-  /// State of a row after the returns so far.
+  /// The state of a row after the pixels that are already coded.
   struct Row {
-    std::array<std::int32_t, 3> west{};  // last returns, newest first
+    std::array<std::int32_t, 3> west{};  // the last returns, newest first
     std::int32_t residual_west = 0;
     std::int32_t residual_west2 = 0;
     std::int32_t residual_north_west = 0;
     std::int32_t gap = 0;  // pixels since the last return
     std::int32_t zero_run = 0;
-    std::int32_t other = kUnknown;      // surface that the last jump left
-    std::int32_t other2 = kUnknown;     // surface that the jump before it left
-    std::int32_t latest = CentreOf(0);  // latest return of the slice
+    std::int32_t other = kUnknown;      // value to the left of the last jump
+    std::int32_t other2 = kUnknown;     // value to the left of the jump before the last
+    std::int32_t latest = CentreOf(0);  // the newest return of the slice
   };
 
   /// `step_mm` is the width of a bin.
   RangePart(Model* model, Coder* coder, std::int64_t step_mm)
       : jump_(model, coder), model_(*model), coder_(*coder), step_mm_(step_mm) {}
 
-  /// `above[i]` is the azimuth of pixel i, and `north[i]` the nearest value above it, or kUnknown.
+  /// Begins a row. `above[i]` is the azimuth of pixel i. `north[i]` is the value of the nearest
+  /// return above pixel i, or kUnknown if the rows above have no return.
   void StartRow(const Azimuth* above, const std::int32_t* north) {
     above_ = above;
     north_ = north;
@@ -58,16 +60,18 @@ class RangePart {
     row_.residual_north_west = above[-1].residual;
     row_.latest = latest;
   }
-  /// Class of the range nearest to pixel `i`.
+  /// Returns the range class of the return before pixel `i`. If the row has none yet, returns the
+  /// class of the value above pixel `i`.
   std::uint32_t NearClass(std::uint32_t i) const {
     return RangeClass(row_.west[0] != kUnknown ? row_.west[0] : north_[i]);
   }
-  /// Pixel `i` has no return.
+  /// Notes that pixel `i` has no return.
   void Skip(std::uint32_t i) {
     ++row_.gap;
     row_.residual_north_west = above_[i].residual;
   }
-  /// Codes the bin of pixel `i` and stores it in `azimuth`. Returns -1 for a damaged stream.
+  /// Codes the bin of pixel `i`, stores its value in `azimuth` and returns the bin. Returns -1 if
+  /// the stream is damaged.
   [[gnu::always_inline]] std::int32_t Code(std::int32_t bin, std::uint32_t i, Azimuth* azimuth) {
     Look(i);
     SetContexts(i);
@@ -80,28 +84,30 @@ class RangePart {
     Keep(CentreOf(bin), difference, azimuth);
     return bin;
   }
-  /// Surroundings of pixel `i`, for a coder other than Code().
+  /// Returns the surroundings of pixel `i`, for a caller that codes the pixel without Code().
   Surroundings SurroundingsOf(std::uint32_t i) {
     Look(i);
     return {w_, n_, median_, uneven_, range_class_};
   }
-  /// Learns the bin of the pixel, which another coder has found.
+  /// Stores the bin of the pixel that SurroundingsOf() or Consider() selected, as Code() would do.
   void See(std::int32_t bin, Azimuth* azimuth) {
     Keep(CentreOf(bin), mirror_ * (bin - (median_ >> 4)), azimuth);
   }
 
-  /// Bins are tried out with a CostMeter. Resume() continues a row from the state that row() gave.
+  /// The following functions are for a search, which tries out bins with a CostMeter. Resume()
+  /// returns to a state that row() returned before.
   const Row& row() const { return row_; }
   void Resume(const Row& row) { row_ = row; }
-  /// Selects pixel `i`, whose bins CostOf() then rates. Resume() and See() do not change the
-  /// costs.
+  /// Selects pixel `i`. CostOf() then returns the costs of its bins. Resume() and See() do not
+  /// change these costs.
   void Consider(std::uint32_t i) {
     Look(i);
     SetContexts(i);
     asked_ = 0;
   }
   std::int32_t Predicted() const { return median_ >> 4; }
-  /// Cost of `bin`. The sum stops above `most`, and is then too low.
+  /// Returns the cost of `bin`. If the cost is above `most`, the result may be too low, but is
+  /// above `most`, too.
   std::int32_t CostOf(std::int32_t bin, std::int64_t most) {
     const std::int32_t difference = mirror_ * (bin - Predicted());
     CodeNode(difference != 0, 0);
@@ -217,7 +223,7 @@ class RangePart {
     return &model_.weights.range[node * kUnevenClasses + uneven_];
   }
   Weights* EventWeightsOf(unsigned node) { return &model_.weights.event[node * 64 + event_set_]; }
-  /// Sets of weights of refined models.
+  /// Returns the sets of weights that refined models use for `node`.
   std::array<Weights*, 3> SetsOf(unsigned node) {
     const std::uint32_t set = range_class_ * 4 + gap_class_;
     return {WeightsOf(node), EventWeightsOf(node),
@@ -237,8 +243,8 @@ class RangePart {
       return mixer.Code(bit, WeightsOf(node), EventWeightsOf(node), &coder_);
     }
   }
-  /// Chance of a node, computed once for all bins that are tried. The nodes of each sign must come
-  /// in the order of the code.
+  /// Returns the chance for `node`. It is computed only once for all bins that are tried. The first
+  /// calls for the nodes of a sign must be in ascending order, as Centre::Opinion() requires.
   std::int32_t ChanceOf(unsigned node) {
     if ((asked_ >> node & 1) != 0) return chances_[node];
     asked_ |= 1U << node;
@@ -319,7 +325,7 @@ class RangePart {
 
   // Set for each return.
   std::uint32_t index_ = 0;
-  std::uint32_t phase_ = 0;  // class
+  std::uint32_t phase_ = 0;  // class of the neighbours' mean
   std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0, www_ = 0;
   std::int32_t other_ = kUnknown;
   std::int32_t gradient_ = 0;
@@ -330,9 +336,9 @@ class RangePart {
   std::uint32_t gap_class_ = 0;
   std::uint32_t range_class_ = 0;
   std::uint32_t event_set_ = 0;
-  std::array<Counter*, kContexts> rows_{};  // first node of each context
+  std::array<Counter*, kContexts> rows_{};  // counter of node 0 in each context
   std::array<Centre, kCentres> centres_;
-  std::uint32_t asked_ = 0;  // bits of nodes whose chance is known
+  std::uint32_t asked_ = 0;  // bit k: chances_[k] is known
   std::array<std::int32_t, kSmallNodes> chances_{};
 };
 

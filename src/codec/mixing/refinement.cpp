@@ -6,10 +6,10 @@
 namespace lidar::codec::mixing {
 namespace {
 
-/// Weight of an input without training.
+/// The weight of an input for which no weights were trained.
 constexpr std::int16_t kNewWeight = 800;
-// Counters adapt at first at least as fast as after 4 bits, and in further candidates as after 8
-// bits.
+// The lowest rates at which counters begin to adapt: the rate after 4 bits, and for the counters of
+// the further candidates the rate after 8 bits.
 constexpr std::uint16_t kLeastBinRate = RateAfter(4);
 constexpr std::uint16_t kLeastFurtherRate = RateAfter(8);
 
@@ -18,14 +18,15 @@ void Hasten(std::array<Counter, kSize>* counters) {
   for (Counter& counter : *counters) counter.rate = std::max(counter.rate, kLeastBinRate);
 }
 
-/// Fills each row of `sets` with copies of the weights of that row.
+/// Divides `sets` into as many equal parts as there are `rows`. Fills part i with copies of
+/// rows[i].
 template <std::size_t kRows, std::size_t kSize>
 void Repeat(const std::array<Weights, kRows>& rows, std::array<Weights, kSize>* sets) {
   constexpr std::size_t kEach = kSize / kRows;
   for (std::size_t i = 0; i < kSize; ++i) (*sets)[i] = rows[i / kEach];
 }
 
-/// Means of the weights of each node.
+/// Returns for each node the mean of its sets of weights.
 std::array<Weights, kSmallNodes> MeansOf(
     const std::array<Weights, kSmallNodes * kUnevenClasses>& sets) {
   std::array<Weights, kSmallNodes> means;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto kMargin = static_cast<std::ptrdiff_t>(AlignedRow<Azimuth>::kMargin);
 
-/// Numbers of contexts, centres and candidates of an effort.
+/// The numbers of contexts, centres and candidates that an effort uses, and its flags.
 struct Effort1 {
   static constexpr unsigned kLevelContexts = 6;
   static constexpr unsigned kMaskContexts = 3;
@@ -44,7 +44,8 @@ struct Refined : Effort {
   static constexpr bool kRefined = true;
 };
 
-/// A decoder returns bits even past the end of its stream, so callers must stop there.
+/// Returns true if a decoder has read past the end of its stream. The caller must then stop,
+/// because the decoder itself continues to return bits.
 bool Overran(const BinaryDecoder& coder) { return coder.overran(); }
 template <class Coder>
 bool Overran(const Coder& /*coder*/) {
@@ -105,7 +106,8 @@ bool SliceCoder::CodeBins(Model* model, SliceBins* slice, Coder* coder) {
   return true;
 }
 
-/// Codes bins by the pixels' memory if TemporalPart::Knows(), and the others as CodeBins() does.
+/// Codes the bins of a slice. For a pixel of which TemporalPart::Knows() is true, the bin is
+/// predicted by the pixel's memory. The bins of the other pixels are coded as CodeBins() does.
 template <class Effort, class Coder>
 bool SliceCoder::CodeRecalledBins(Model* model, SliceBins* slice, Coder* coder,
                                   const Recollection& recollection) {
@@ -164,7 +166,7 @@ bool SliceCoder::CodeLevels(Model* model, SliceBins* slice, Coder* coder) {
     Azimuth* const above = above_.At(beam);
     const std::size_t row = std::size_t{beam} * slice->columns;
     const auto at = [](const Azimuth& azimuth) {
-      // Bins of this pass are raised by one, so that 0 means no return.
+      // In this pass `values[0]` is the bin plus 1, so that 0 means no return.
       return LevelAt{azimuth.values[0] - 1, azimuth.level, azimuth.level_residual};
     };
     typename Part::Around around{};

@@ -18,31 +18,33 @@ namespace lidar::codec::mixing {
 
 struct TemporalModel;
 
-/// Difference of the newest pixel of an azimuth from its recalled value.
+/// How the newest pixel at an azimuth differs from what its memory predicted.
 struct Surprise {
-  std::uint8_t shift = 3;  // 0 to 6: by -3 to 3 bins; kChanged: by more
-  bool returns = false;    // a return is new, or is missing
+  std::uint8_t shift = 3;  // 0 to 6: the bin differs by -3 to 3; kChanged: by more
+  bool returns = false;    // true: there is a return unlike in the last scan, or vice versa
 
   static constexpr std::uint8_t kChanged = 7;
 };
 
-/// Row-major, beam by beam. A decoder fills bins and levels.
+/// The bins and levels of a slice, in row-major order. A row is a beam. A decoder fills `bins` and
+/// `levels`.
 struct SliceBins {
   std::uint32_t beams = 0;
   std::uint32_t columns = 0;
   std::int64_t step_mm = 1;          // width of a bin, roughly
   unsigned level_bits = 0;           // 0: no levels
   bool has_gaps = true;              // false: every pixel has a return
-  bool refined = false;              // by refined models, from effort 2 on
+  bool refined = false;              // uses refined models; ignored at effort 1
   std::vector<std::int32_t> bins;    // kNoReturn, or below kMaxBins
-  std::vector<std::uint8_t> levels;  // empty without level_bits
-  /// Number of bins above the one in `bins` that each return may take, too; the encoder takes the
-  /// cheapest. Empty: none.
+  std::vector<std::uint8_t> levels;  // empty if level_bits is 0
+  /// For each return, the number of further bins, above the one in `bins`, that the return may
+  /// have. At effort kSearchingEffort an encoder chooses the cheapest of these bins. If `spare` is
+  /// empty, there is no choice.
   std::vector<std::uint8_t> spare;
 };
 constexpr std::int32_t kNoReturn = -1;
 
-/// Memory of a slice's pixels, and the model that uses it.
+/// What earlier scans had in the pixels of a slice, and the model that predicts the slice from it.
 struct Memory {
   const PixelMemory* pixels = nullptr;  // of all pixels of the slice, or null
   TemporalModel* model = nullptr;       // learns from the slice
@@ -52,21 +54,21 @@ struct Recollection {
   RangeGrid grid;  // of the slice
 };
 
-/// A step of a search.
+/// A step of a bin search: the bin that was chosen, and the step before it.
 struct SearchStep {
   std::int32_t bin;
   std::uint32_t before;  // index of the previous step + 1; 0: none
 };
 
-/// Lowest effort at which an encoder can choose between bins.
+/// The lowest effort at which an encoder can choose between bins.
 constexpr unsigned kSearchingEffort = 3;
 
-/// Keeps its buffers between slices.
+/// Codes slices. Keeps its buffers between slices.
 class SliceCoder {
  public:
   explicit SliceCoder(const AzimuthAlignment& alignment) : alignment_(alignment) {}
 
-  /// Codes all of `slice` at an effort from 1 to 3; false for a damaged stream.
+  /// Codes all of `slice`. `effort` is from 1 to 3. Returns false if the stream is damaged.
   template <class Coder>
   bool Code(unsigned effort, Model* model, SliceBins* slice, Coder* coder,
             const Recollection* recollection = nullptr);

@@ -11,10 +11,10 @@
 namespace lidar::codec::mixing {
 namespace {
 
-// Logits in the table are multiples of this.
+// The logits in the table are multiples of this step.
 constexpr std::int32_t kLogitStep = 160;
 constexpr std::int32_t kMostLogitSteps = 12;
-/// Rate classes: after 0, 8, 16 and 32 bits seen.
+/// The rates that counters in the table may have: those after 0, 8, 16 and 32 bits.
 constexpr std::array<std::uint16_t, 4> kRates = {RateAfter(0), RateAfter(8), RateAfter(16),
                                                  RateAfter(32)};
 constexpr std::int32_t kWeightStep = 256;
@@ -39,8 +39,8 @@ std::uint32_t RateClass(unsigned rate) {
   return c;
 }
 
-/// Codes the table's numbers of up to 8 bits. Each context has a binary tree of counters, which
-/// follow the table's statistics.
+/// Codes the numbers of the table, which have up to 8 bits. Each context has a binary tree of
+/// counters. These adapt while the table is coded.
 template <class Coder>
 class TableCoder {
  public:
@@ -60,8 +60,8 @@ class TableCoder {
     return node - (1U << bits);
   }
 
-  /// `counters` has `nodes` counters for each context in turn. `before` has those of the previous
-  /// class, or is null.
+  /// Codes `counters`, which has `nodes` counters for each context in turn. `before` has the
+  /// counters of the previous class, which help to predict these, or is null.
   template <std::size_t kSize>
   void Counters(std::array<Counter, kSize>* counters, const std::array<Counter, kSize>* before,
                 std::uint32_t place, unsigned nodes) {
@@ -116,7 +116,7 @@ class TableCoder {
   }
 
  private:
-  // Number of the first context of each kind.
+  // The number of the first context of each kind.
   static constexpr std::uint32_t kLogits = 4'096;
   static constexpr std::uint32_t kWeights = 24'576;
   static constexpr std::uint32_t kSpread = 32'000;
@@ -125,7 +125,7 @@ class TableCoder {
   std::vector<std::array<Counter, 256>> counters_;
 };
 
-/// Writes, or with a decoder reads, all of `states`; an encoder leaves them rounded.
+/// Writes all of `states` and rounds them to the values written. With a decoder, reads `states`.
 template <class Coder>
 void CodeAll(StartStates* states, Coder* coder) {
   TableCoder<Coder> table(coder);
@@ -220,7 +220,7 @@ const StartStates& Trained() {
   static const std::unique_ptr<const StartStates> states = [] {
     auto read = std::make_unique<StartStates>();
     const std::vector<std::uint8_t> table = CommittedTable();
-    // A test makes sure that the table can be read.
+    // Read() does not fail, because a test makes sure that the table can be read.
     if (!read->Read({table.data(), table.size()})) read->Reset();
     return read;
   }();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Initial counters and weights of a slice, trained on real scans. They are part of the format
-// (docs/mixing-coder.md).
+// The initial counters and weights of a slice. They were trained on real scans, and are part of the
+// format (docs/mixing-coder.md).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,16 +12,16 @@
 namespace lidar::codec::mixing {
 
 constexpr std::uint8_t kTableVersion = 2;
-/// Payloads of refined models, which begin with the same states.
+/// The version of payloads with refined models. These begin with the states of the same table.
 constexpr std::uint8_t kRefinedVersion = 3;
 constexpr unsigned kEfforts = 3;
 
-/// Largest bin width [mm] of each class but the last. Each class has counters of its own.
+/// The largest bin width [mm] of each class except the last. Each class has its own counters.
 constexpr std::array<std::int64_t, 4> kStepClassEnds = {11, 29, 69, 139};
 constexpr unsigned kStepClasses = kStepClassEnds.size() + 1;
 unsigned StepClassOf(std::int64_t step_mm);
 
-/// Intensities of up to 6 bits are one class, those of more bits the other.
+/// Levels of up to 6 bits have class 0, levels of more bits class 1.
 constexpr unsigned kLevelClasses = 2;
 inline unsigned LevelClassOf(unsigned bits) { return bits > 6 ? 1 : 0; }
 
@@ -32,17 +32,17 @@ struct StartStates {
   std::array<LevelCounters, kLevelClasses> level_counters;
   std::array<std::array<LevelWeights, kLevelClasses>, kEfforts> level_weights;
 
-  /// Sets all chances to a half, and all weights alike.
+  /// Sets all chances to a half, and all weights to the same value.
   void Reset();
-  /// Rounds to values that a table can hold. A counter then has the rate of one with few bits, so a
-  /// slice can still change it.
+  /// Rounds the states to values that a table can have. Each counter then has the rate of a counter
+  /// that has seen at most 32 bits, so it still adapts to a slice.
   void Round();
-  /// Appends the table of rounded states.
+  /// Appends the table to `out`. The table has the states after rounding.
   void Write(std::vector<std::uint8_t>* out) const;
-  /// Returns false if `table` is anything but a whole table.
+  /// Reads the states from `table`. Returns false if `table` is truncated or has further bytes.
   bool Read(ByteView table);
 
-  /// Sets `model` to the initial states. If `level_bits` is 0, its models of levels do not change.
+  /// Sets `model` to the initial states. If `level_bits` is 0, the models of levels do not change.
   void CopyTo(unsigned effort, std::int64_t step_mm, unsigned level_bits, Model* model) const {
     model->counters = counters[StepClassOf(step_mm)];
     model->weights = weights[effort - 1];
@@ -52,10 +52,10 @@ struct StartStates {
   }
 };
 
-/// The states of this version, from the table that is compiled in.
+/// Returns the states of this version, from the table that is compiled in.
 const StartStates& Trained();
 
-/// The table (start_table.txt) that StartStates::Write() made.
+/// Returns the table (start_table.txt) that StartStates::Write() made.
 std::vector<std::uint8_t> CommittedTable();
 
 }  // namespace lidar::codec::mixing

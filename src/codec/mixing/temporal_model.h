@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The model of successive scans of the temporal coder. It continues from block to block.
+// The temporal coder's model of successive scans. It is not reset for each block: what it learnt
+// from a block serves to code the next one.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,7 +13,7 @@ constexpr unsigned kSpreadClasses = 12;
 constexpr unsigned kCountClasses = 5;
 constexpr unsigned kPhases = 9;
 
-// Number of values of each context, in the order of docs/temporal-coder.md.
+// The number of values of each context, in the order of the contexts in temporal_part.h.
 constexpr std::array<std::uint32_t, 8> kTemporalContexts = {540, 1'536, 441, 264,
                                                             576, 256,   363, 144};
 constexpr std::array<std::uint32_t, 3> kTemporalMaskContexts = {1'024, 256, 480};
@@ -22,9 +23,9 @@ constexpr unsigned kTemporalMaskSets = 16;
 struct TemporalModel {
   std::array<Counter, kSmallNodes * Total(kTemporalContexts)> counters;
   std::array<Counter, Total(kTemporalMaskContexts)> mask;
-  /// Mean distances in 1/4096 bin: from the recalled value by spread and count, and from the
-  /// spatial prediction by unevenness.
+  /// The mean distance of values from the recalled one, in 1/4096 bin, by spread and count.
   std::array<std::int32_t, kSpreadClasses * kCountClasses> recalled_spread;
+  /// The mean distance of values from the spatial prediction, in 1/4096 bin, by unevenness.
   std::array<std::int32_t, kUnevenClasses> spatial_spread;
   std::array<Weights, kSmallNodes * kSpreadClasses> weights;
   std::array<Weights, kTemporalMaskSets> mask_weights;

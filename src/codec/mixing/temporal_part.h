@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes pixels by the ranges that they saw before.
+// Codes pixels. Each is predicted by the ranges that the same pixel had in earlier scans.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,7 +24,8 @@ class TemporalPart {
         model_(*model),
         coder_(*coder) {}
 
-  /// `pixels` has the `count` pixels of the row, and `above[i]` is the azimuth of pixel i.
+  /// Begins a row. `pixels` has the memories of the `count` pixels in the row. `above[i]` is the
+  /// azimuth of pixel i.
   void StartRow(const PixelMemory* pixels, std::uint32_t count, Surprise* above) {
     pixels_ = pixels;
     count_ = count;
@@ -33,7 +34,7 @@ class TemporalPart {
     north_west_ = above[-1];
     west_bit_ = false;
   }
-  /// Call it first for each pixel.
+  /// Selects pixel `i`. Must be called before the other functions for this pixel.
   void Look(std::uint32_t i) {
     const PixelMemory& p = pixels_[i];
     constexpr std::uint64_t kScale = std::uint64_t{kStep} * RangeGrid::kParts / PixelMemory::kPerMm;
@@ -55,7 +56,8 @@ class TemporalPart {
            (west_.shift != Surprise::kChanged || above_[index_].shift != Surprise::kChanged);
   }
 
-  /// `mask_counters(k)` returns the counter of MaskPart's context k.
+  /// Codes whether the pixel has a return. `mask_counters(k)` returns the counter of context k in
+  /// MaskPart.
   template <class CounterAt>
   bool CodeReturn(bool bit, CounterAt&& mask_counters) {
     const PixelMemory& p = pixels_[index_];
@@ -80,8 +82,8 @@ class TemporalPart {
     return mixer.Code(bit, &model_.mask_weights[(h & 7) * 2 + west], &coder_);
   }
 
-  /// Codes the bin of a pixel for which Knows() is true. Returns kFarAway if the bin is not near
-  /// the recalled one.
+  /// Codes the bin of a pixel for which Knows() is true, and returns it. If the bin is more than 3
+  /// bins from the recalled one, returns kFarAway, and the caller must code the bin.
   std::int32_t CodeBin(std::int32_t bin, const Surroundings& around) {
     base_ = value_ / kStep;
     const std::int32_t phase = value_ - CentreOf(base_);
@@ -99,7 +101,7 @@ class TemporalPart {
     return Keep(base_ + mirror_ * signed_size, signed_size);
   }
 
-  /// Notes the bin of the pixel, however it was coded.
+  /// Notes the bin of the pixel. Must be called for each return, however its bin was coded.
   void SeeBin(std::int32_t bin) {
     Surprise s;
     if (known_) {
