@@ -50,8 +50,8 @@ void AdaptiveCoder::Reset(const BlockShape& shape) {
   levels_.model.Reset(InitialModelsOfLevels());
 }
 
-/// Calls code_row(beam, row, first) for each row that has returns; `first` is the index of its
-/// first one. Stops, and returns false, if a call returns false.
+/// Calls code_row(beam, row, first) for each row that has returns. `first` is the index of the
+/// row's first return in the block. If a call returns false, stops and returns false.
 template <class CodeRow>
 bool AdaptiveCoder::ForEachRow(const BlockShape& shape, CodeRow&& code_row) {
   Reset(shape);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Prediction of a block's integers, and the adaptive rANS coder of the residuals.
+// Codes the integers of a block: predicts each integer, and codes the residuals by rANS symbols
+// with adaptive models.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,21 +14,21 @@
 
 namespace lidar::codec {
 
-/// A block without its values: which pixels have returns.
+/// A block without its values: which of its pixels have returns.
 struct BlockShape {
   const AzimuthAlignment& alignment;
   const Mask& mask;
   std::uint32_t columns;
 };
 
-/// Writes the columns of the 1s in `count` bytes of `mask`, and returns their number. `columns` has
-/// room for kListMargin more than these.
+/// Finds the 1s in the first `count` bytes of `mask`. Writes their columns to `columns` and returns
+/// their number. `columns` must have room for kListMargin more entries.
 std::size_t ListReturns(const std::uint8_t* mask, std::uint32_t count, std::uint16_t* columns);
 constexpr std::size_t kListMargin = 8;
 
-/// Calls code_row(beam, count, first) for each row that has returns. `columns` holds the columns of
-/// its `count` returns, and `first` is the index of the first one. Stops, and returns false, if a
-/// call returns false.
+/// Calls code_row(beam, count, first) for each row that has returns. During the call, `columns` has
+/// the columns of the row's `count` returns. `first` is the index of the first of these returns in
+/// the block. If a call returns false, stops and returns false.
 template <class CodeRow>
 bool ForEachRowOf(const BlockShape& shape, std::vector<std::uint16_t>* columns,
                   CodeRow&& code_row) {
@@ -45,20 +46,21 @@ bool ForEachRowOf(const BlockShape& shape, std::vector<std::uint16_t>* columns,
 
 class AdaptiveCoder {
  public:
-  /// Pieces of RansEncoder that a value may take.
+  /// The largest number of pieces that a value adds to a RansEncoder.
   static constexpr std::size_t kMostPieces = SymbolModel::kMostPieces;
 
-  /// Values are below kMaxBins.
+  /// Encodes `lists`. The values must be below kMaxBins.
   void Encode(const BlockShape& shape, const IntegerLists& lists, RansEncoder* encoder);
-  /// Adds the symbols that Encode() would write.
+  /// Counts the symbols that Encode() would write, and adds the counts to `values` and `levels`.
   void Count(const BlockShape& shape, const IntegerLists& lists, SymbolCounts* values,
              SymbolCounts* levels);
-  /// Fills the ranges of `image`, and its intensity unless this is empty. Returns false if the
-  /// stream is damaged, or a range is not below kMaxBins.
+  /// Fills the ranges of `image`, and its intensity unless image->intensity is empty. Returns false
+  /// if the stream is damaged, or if a value is not below kMaxBins.
   bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
               RangeImage* image);
 
-  /// Replaces the values by their residuals, and the other way round. Levels do not change.
+  /// ToResiduals() replaces the values by their residuals. FromResiduals() replaces residuals by
+  /// the values. Levels do not change.
   void ToResiduals(const BlockShape& shape, IntegerLists* lists);
   bool FromResiduals(const BlockShape& shape, IntegerLists* lists);
 
@@ -68,9 +70,9 @@ class AdaptiveCoder {
   void Reset(const BlockShape& shape);
   template <class CodeRow>
   bool ForEachRow(const BlockShape& shape, CodeRow&& code_row);
-  /// Ranges or intensities.
+  /// A list of a block: the bins of the ranges, or the levels of the intensities.
   struct Channel {
-    std::uint32_t limit;  // values are below it
+    std::uint32_t limit;  // all values are below this limit
     RowPredictor predictor = {};
     SymbolModel model = {};
   };

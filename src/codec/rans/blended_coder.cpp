@@ -109,7 +109,8 @@ void BlendedChannel::StartRow(std::uint32_t beam) {
 void BlendedChannel::EndRow(std::uint32_t beam) { above_.CloseTurn(beam); }
 
 unsigned BlendedChannel::Behind(const View& view, std::int32_t sense) {
-  // A candidate somewhat nearer than the shortest jump, kLongMagnitude, predicts short jumps well.
+  // The shortest jump is kLongMagnitude. The limit is a little less, because a candidate just below
+  // kLongMagnitude still predicts short jumps well.
   constexpr std::int32_t kNearest = 28;
   unsigned behind = 0;
   for (unsigned k = 0; k < kCandidates; ++k)

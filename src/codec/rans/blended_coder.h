@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes a block's integers by rANS symbols, each predicted by a blend of four contexts.
+// Codes the integers of a block by rANS symbols. The models of four contexts, blended, predict each
+// symbol.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,20 +11,21 @@
 
 namespace lidar::codec {
 
-/// Coder of one list: of bins or levels (docs/wire-format.md, "Blended models").
+/// Codes one list of a block: bins or levels (docs/wire-format.md, "Blended models").
 class BlendedChannel {
  public:
-  /// Pieces of RansEncoder that a value may take.
+  /// The largest number of pieces that a value adds to a RansEncoder.
   static constexpr std::size_t kMostPieces = 5;
 
-  /// Values are below `limit`.
+  /// All values are below `limit`.
   explicit BlendedChannel(std::int32_t limit) : limit_(limit) {}
   void Reset(const BlockShape& shape, const InitialModels& start);
-  /// Codes the values of a row whose returns are in `columns`.
+  /// Encodes `values`, one for each of the `count` returns of a row. `columns` has their columns.
   template <class T>
   void EncodeRow(std::uint32_t beam, const std::uint16_t* columns, std::size_t count,
                  const T* values, RansEncoder* encoder);
-  /// Returns false if a value is not below the limit.
+  /// Decodes `values`, likewise. Returns false if the stream ends too early, or if a value is not
+  /// below the limit.
   bool DecodeRow(std::uint32_t beam, const std::uint16_t* columns, std::size_t count,
                  std::int32_t* values, RansDecoder* decoder);
 
@@ -31,33 +33,34 @@ class BlendedChannel {
   static constexpr std::int32_t kUnknown = -1;
   static constexpr unsigned kBlended = std::tuple_size_v<BlendedModels>;
   static constexpr unsigned kCandidates = 3;
-  /// Number of contexts of each kind.
+  /// The number of contexts of each kind.
   static constexpr std::array<std::uint32_t, kBlended> kSizes = {kContexts * 4, 7 * 7 * 7 * 4,
                                                                  11 * 11 * 11, 15 * 8 * 4 * 2};
-  /// The last values of the beams above at an azimuth.
+  /// The newest values of the beams above, at one azimuth.
   struct Known {
     std::int32_t value = kUnknown;
-    std::int32_t before = kUnknown;  // value of the beam above that one
+    std::int32_t before = kUnknown;  // the value before `value`, of a higher beam
     std::int32_t residual = 0;       // of `value`, -3 to 3
   };
-  /// State of a row after the values so far.
+  /// The state of a row after the values coded so far.
   struct Row {
     std::int32_t west = kUnknown;
     std::int32_t west2 = kUnknown;
     std::int32_t residual = 0;      // of the last value, -3 to 3
-    std::int32_t other = kUnknown;  // surface that the last jump left
+    std::int32_t other = kUnknown;  // value to the left of the last jump
     std::uint32_t next = 0;         // column after the last value
   };
-  /// The context of a value, from the values before it.
+  /// What the values coded before it tell about a value.
   struct View {
     std::int32_t median;
     std::int32_t mirror;  // 1 or -1
     std::int32_t west;
-    std::array<std::int32_t, kCandidates> candidates;  // surfaces to which a jump may lead
+    std::array<std::int32_t, kCandidates> candidates;  // values near which a jump may end
     BlendedModels models;
   };
-  /// Returns a bit for each candidate that lies in the direction of a jump, and nearly as far as
-  /// the shortest jump or farther.
+  /// Returns a bit for each candidate to which a jump may lead. The direction of the jump is
+  /// `sense`. The bit is 1 if the candidate lies in this direction, and is not much nearer than the
+  /// shortest jump.
   static unsigned Behind(const View& view, std::int32_t sense);
   void StartRow(std::uint32_t beam);
   View Look(std::uint32_t column);
@@ -70,24 +73,24 @@ class BlendedChannel {
 
   std::int32_t limit_;
   AlignedRow<Known> above_;
-  std::vector<std::int32_t> north_;  // values above, from the pixel before the row on
-  Known* known_ = nullptr;           // of the row's first pixel
+  std::vector<std::int32_t> north_;  // [i + 1]: the value above pixel i
+  Known* known_ = nullptr;           // at the azimuth of the row's first pixel
   bool blind_ = true;                // the row has no value above it
   std::int32_t latest_ = 0;          // value of the latest return
   std::uint32_t columns_ = 0;
   Row row_;
   std::array<std::vector<NibbleModel>, kBlended> models_;
   std::array<NibbleModel, 1U << kCandidates> choices_;
-  std::array<NibbleModel, kCandidates> distances_;  // from a candidate
+  std::array<NibbleModel, kCandidates> distances_;  // of a value from a candidate
   LongModel longs_;
 };
 
 class BlendedCoder {
  public:
-  /// Pieces of RansEncoder that a value may take.
+  /// The largest number of pieces that a value adds to a RansEncoder.
   static constexpr std::size_t kMostPieces = BlendedChannel::kMostPieces;
 
-  /// Does what AdaptiveCoder does, in fewer bits and more time.
+  /// Encode() and Decode() do the same as those of AdaptiveCoder, in fewer bits and more time.
   void Encode(const BlockShape& shape, const IntegerLists& lists, RansEncoder* encoder);
   bool Decode(const BlockShape& shape, const RangeGrid& grid, RansDecoder* decoder,
               RangeImage* image);

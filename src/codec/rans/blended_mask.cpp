@@ -9,17 +9,19 @@ namespace {
 
 constexpr std::uint32_t kBytes = 0x01010101;
 
-/// The bytes of four pixels, the first in the lowest bits.
+/// Returns the bytes of four pixels as a number. The first byte is in the lowest bits.
 std::uint32_t FourAt(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8 | std::uint32_t{bytes[2]} << 16 |
          std::uint32_t{bytes[3]} << 24;
 }
-/// Packs the lowest bits of four bytes.
+/// Returns the lowest bits of four bytes as a number of four bits.
 std::uint32_t PackFour(std::uint32_t four) { return (four & kBytes) * 0x10204080U >> 28; }
-/// Sum of four bytes of less than 64.
+/// Returns the sum of four bytes, each of which is less than 64.
 std::uint32_t SumOf(std::uint32_t four) { return four * kBytes >> 24; }
 
-/// Counts over the last pixels of a row; bit 0 of `before` is the last one.
+/// Tables about the last eight pixels of a row, which are the bits of `before`; bit 0 is the last
+/// pixel. `ones` counts the returns, `runs` the equal pixels up to the last one. `reversed` is a
+/// number of four bits with their order reversed.
 struct LeftTable {
   constexpr LeftTable() {
     for (unsigned before = 0; before < 256; ++before) {
@@ -37,7 +39,7 @@ struct LeftTable {
 };
 constexpr LeftTable kLeft;
 
-/// Class of the number of equal pixels to the left: 1, 2, 3, 4-7, 8-14, more.
+/// Returns the class of the number of equal pixels to the left: 1, 2, 3, 4-7, 8-14, more.
 std::uint32_t RunClass(std::uint32_t before) {
   const std::uint32_t near = kLeft.runs[before & 255];
   if (near < 4) return near - 1;
@@ -46,8 +48,8 @@ std::uint32_t RunClass(std::uint32_t before) {
   return (before & 0x7FFF) == all ? 5 : 4;
 }
 
-/// Returns true if no pixel that chooses a group's models has a return. `above` points to the byte
-/// above the group's first pixel.
+/// Returns true if there is no return among the pixels that choose the models of a group. `above`
+/// points to the byte above the group's first pixel.
 bool IsAmongEmpty(const std::uint8_t* above, std::uint32_t before) {
   constexpr std::uint32_t kThreeBeams = 7 * kBytes;
   const std::uint32_t beside =
@@ -65,7 +67,7 @@ void BlendedMask::Reset(const AzimuthAlignment& alignment, std::uint32_t columns
   row_.assign(std::size_t{MaskCoder::Groups(columns)} * kGroup, 0);
 }
 
-/// `above` points to the byte above the group's first pixel.
+/// Returns the models of a group. `above` points to the byte above the group's first pixel.
 [[gnu::always_inline]] inline BlendedModels BlendedMask::ModelsOf(const std::uint8_t* above,
                                                                   std::uint32_t before) {
   const std::uint32_t here = FourAt(above);
@@ -86,15 +88,17 @@ void BlendedMask::Reset(const AzimuthAlignment& alignment, std::uint32_t columns
   return models;
 }
 
-/// Returns the models of a group among empty pixels.
+/// Returns the models of a group that has only empty pixels around it.
 BlendedModels BlendedMask::EmptyModels() {
   const std::array<std::uint8_t, 3 * kGroup> above{};
   return ModelsOf(&above[kGroup], 0);
 }
 
-/// Calls code(lane, models, pixels) for the groups of a row; `code` returns the bits of the group.
-/// Among empty pixels, which may be most, code_empty(lane, interval, pixels) comes first: it codes
-/// the group, and returns true, if the group has no return.
+/// Calls code(lane, models, pixels) for each group of a row. `code` returns the bits of the group.
+///
+/// If all pixels around a group are empty, as most are in many masks, code_empty(lane, interval,
+/// pixels) may be called first. If the group is empty, too, `code_empty` codes it and returns true;
+/// `code` is then not called.
 template <class CodeFour, class CodeEmpty>
 [[gnu::always_inline]] inline void BlendedMask::CodeRow(std::uint32_t beam, std::uint32_t columns,
                                                         CodeFour&& code, CodeEmpty&& code_empty) {

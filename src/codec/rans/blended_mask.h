@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes which pixels have a return: four at a time, by a blend of four contexts.
+// Codes which pixels have a return. Four pixels are a symbol. The models of four contexts, blended,
+// predict it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace lidar::codec {
 
-/// Does what MaskCoder does, in fewer bits and more time.
+/// Does the same as MaskCoder, in fewer bits and more time.
 class BlendedMask {
  public:
   void Encode(const Mask& mask, const AzimuthAlignment& alignment, std::uint32_t columns,
@@ -23,7 +24,7 @@ class BlendedMask {
  private:
   static constexpr std::uint32_t kGroup = MaskCoder::kGroup;
   static constexpr unsigned kBlended = std::tuple_size_v<BlendedModels>;
-  /// Number of contexts of each kind.
+  /// The number of contexts of each kind.
   static constexpr std::array<std::uint32_t, kBlended> kSizes = {MaskCoder::kContexts, 2'048, 4'050,
                                                                  1'728};
 
@@ -34,8 +35,9 @@ class BlendedMask {
   void CodeRow(std::uint32_t beam, std::uint32_t columns, CodeFour&& code, CodeEmpty&& code_empty);
 
   std::array<std::vector<NibbleModel>, kBlended> models_;
-  AlignedRow<std::uint8_t> above_;  // a bit for each beam above, the nearest in bit 0; 1: a return
-  std::vector<std::uint8_t> row_;   // the coded row, with room to the next multiple of four
+  /// For each azimuth, a bit per beam above: 1 if the beam has a return. Bit 0 is the nearest beam.
+  AlignedRow<std::uint8_t> above_;
+  std::vector<std::uint8_t> row_;  // the row being coded, padded to a multiple of four
 };
 
 }  // namespace lidar::codec

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The adaptive models before the first return of a block.
+// The states that the adaptive models have before the first return of a block.
 #pragma once
 #include <array>
 

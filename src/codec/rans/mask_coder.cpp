@@ -6,8 +6,8 @@
 namespace lidar::codec {
 namespace {
 
-// Initial chance of a return in 1/64, by the returns above (1), to the left (2) and above right
-// (4). Part of the format.
+// The initial chance of a return, in 1/64. The index is the sum of 1 if there is a return above, 2
+// if there is one to the left, and 4 if there is one above right. Part of the format.
 constexpr std::array<std::uint32_t, 8> kChance = {2, 24, 36, 55, 15, 32, 47, 63};
 
 std::array<NibbleModel, 256> MakeInitialModels() {
@@ -39,7 +39,7 @@ unsigned PackEight(const std::uint8_t* bytes) {
   return static_cast<unsigned>(eight * 0x0102040810204080U >> 56);
 }
 
-/// Spreads four bits to bytes.
+/// Sets four bytes to the four bits of `four`, beginning with the lowest bit.
 void Unpack(unsigned four, std::uint8_t* bytes) {
   const std::uint32_t spread = four * 0x00204081U & 0x01010101U;
   for (unsigned i = 0; i < 4; ++i) bytes[i] = static_cast<std::uint8_t>(spread >> (8 * i));
@@ -58,14 +58,14 @@ void MaskCoder::Reset(const AzimuthAlignment& alignment, std::uint32_t columns) 
   row_.assign(std::size_t{Groups(columns)} * kGroup, 0);
 }
 
-/// Calls code(lane, model, pixels) for all groups of a row in the order of coding; `code` returns
-/// the bits of the group. Then keeps `row_` for the beam below.
+/// Calls code(lane, model, pixels) for each group of a row, in the order of coding. `code` returns
+/// the bits of the group. At the end the row is kept in `above_` for the next beam.
 template <class CodeFour>
 [[gnu::always_inline]] inline void MaskCoder::CodeRow(std::uint32_t beam, std::uint32_t columns,
                                                       CodeFour&& code) {
   std::uint8_t* above = above_.At(beam);
   const RowLanes lanes(Groups(columns));
-  unsigned left[kRansLanes];  // the two pixels to the left, if known: bits 6 and 7
+  unsigned left[kRansLanes];  // bits 6 and 7 of the context: two pixels to the left
   for (unsigned lane = 0; lane < kRansLanes; ++lane) {
     const std::uint8_t* start = above + kGroup * (lane < lanes.lanes ? lanes.Start(lane) : 0);
     left[lane] = static_cast<unsigned>(start[-1] << 6 | start[-2] << 7);

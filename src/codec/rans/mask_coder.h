@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes which pixels have a return: four at a time, in the context of their neighbours.
+// Codes which pixels have a return. Four pixels are a symbol, coded in the context of their
+// neighbours.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,26 +12,28 @@
 
 namespace lidar::codec {
 
-/// Bytes of 0 or 1, beam by beam.
+/// A byte for each pixel, beam by beam: 1 if the pixel has a return, else 0.
 using Mask = std::vector<std::uint8_t>;
 
 class MaskCoder {
  public:
-  /// `mask` has alignment.beams() rows of `columns`.
+  /// Encodes `mask`, which has alignment.beams() rows of `columns` pixels.
   void Encode(const Mask& mask, const AzimuthAlignment& alignment, std::uint32_t columns,
               RansEncoder* encoder);
-  /// Fills `mask`, which has its size. Returns false if the stream ends too early.
+  /// Fills `mask`. The caller has already given it its size. Returns false if the stream ends too
+  /// early.
   bool Decode(const AzimuthAlignment& alignment, std::uint32_t columns, RansDecoder* decoder,
               Mask* mask);
-  /// Pieces of RansEncoder that a mask takes.
+  /// Returns the number of pieces that a mask adds to a RansEncoder.
   static std::size_t Pieces(std::uint32_t beams, std::uint32_t columns) {
     return std::size_t{beams} * Groups(columns);
   }
-  static constexpr std::uint32_t kGroup = 4;  // pixels a symbol
+  static constexpr std::uint32_t kGroup = 4;  // pixels per symbol
   static std::uint32_t Groups(std::uint32_t columns) { return (columns + kGroup - 1) / kGroup; }
   static constexpr unsigned kContexts = 256;
-  /// The models before the first pixel. The bits of a context from bit 0: the pixel above to the
-  /// left, the four above, the one to their right, and the two to the left.
+  /// Returns the models before the first pixel. A context has these bits, from bit 0 on: the pixel
+  /// above left of the group, the four pixels above the group, the pixel above right of it, and the
+  /// last two pixels to the left of it.
   static const std::array<NibbleModel, kContexts>& InitialModels();
 
  private:
@@ -40,7 +43,7 @@ class MaskCoder {
 
   std::array<NibbleModel, kContexts> models_;
   AlignedRow<std::uint8_t> above_;
-  std::vector<std::uint8_t> row_;  // the coded row, with room to the next multiple of four
+  std::vector<std::uint8_t> row_;  // the row being coded, padded to a multiple of four
 };
 
 }  // namespace lidar::codec

@@ -19,7 +19,7 @@ constexpr unsigned kNibbles = 16;
 constexpr unsigned kProbabilityBits = 15;
 constexpr std::uint32_t kProbabilityOne = 1U << kProbabilityBits;
 
-/// Interval of a symbol in 0 .. kProbabilityOne.
+/// The interval of a symbol within 0 .. kProbabilityOne. Its size is the symbol's probability.
 struct Interval {
   std::uint16_t start;
   std::uint16_t size;
@@ -27,8 +27,9 @@ struct Interval {
 
 namespace detail {
 
-/// For each symbol, the starts that Update() moves towards: low up to the symbol, high after it.
-/// Their slope keeps intervals from vanishing.
+/// For each symbol, the starts of intervals towards which Update() moves a model. The starts up to
+/// the symbol are low, the starts after it are high. Each start is larger than the one before, so
+/// no interval becomes empty.
 struct Targets {
   constexpr Targets() {
     for (unsigned symbol = 0; symbol < kNibbles; ++symbol)
@@ -40,8 +41,8 @@ struct Targets {
 };
 inline constexpr Targets kTargets;
 
-/// Shifts that set the speed of learning. It falls with the number of updates, because the first
-/// few samples show most about a context.
+/// The speed of learning, as a shift, for each age of a model (number of updates). A young model
+/// learns fastest, because the first few samples say the most about a context.
 struct Rates {
   static constexpr unsigned kMiddleAge = 24;
   static constexpr unsigned kOldest = 400;
@@ -56,19 +57,21 @@ inline constexpr Rates kRates;
 }  // namespace detail
 
 class NibbleModel;
-/// Models whose mean predicts a symbol.
+/// Four models. The mean of their distributions predicts a symbol.
 using BlendedModels = std::array<NibbleModel*, 4>;
 /// Blended models learn twice as fast as single ones.
 constexpr int kBlendedHaste = 1;
 
-/// See F. Giesen, "Mixing discrete probability distributions" (2015): the cumulative distribution
-/// moves towards one that has nearly all of its mass on the symbol seen. Every symbol keeps a
-/// probability above zero, because the starts and the targets of each step are strictly increasing.
+/// The cumulative distribution of symbols (F. Giesen, "Mixing discrete probability distributions",
+/// 2015). An update moves it towards a distribution that has nearly all of its mass on the symbol
+/// seen. No symbol gets the probability 0, because both the starts before an update and the starts
+/// of this target are strictly increasing.
 class NibbleModel {
  public:
-  /// Uniform.
+  /// Makes all symbols equally probable.
   NibbleModel() : NibbleModel(UniformCounts()) {}
-  /// Proportional to `counts`. A count of 0 gets a small probability.
+  /// Makes probabilities proportional to `counts`. A symbol with a count of 0 gets a small
+  /// probability.
   explicit NibbleModel(const std::array<std::uint16_t, kNibbles>& counts) {
     std::uint32_t total = 0;
     for (const std::uint16_t c : counts) total += c;
@@ -87,7 +90,7 @@ class NibbleModel {
     return {start, static_cast<std::uint16_t>(end - start)};
   }
 
-  /// The symbol whose interval holds `slot` < kProbabilityOne.
+  /// Returns the symbol whose interval contains `slot`. `slot` must be less than kProbabilityOne.
   unsigned Find(std::uint32_t slot) const {
 #ifdef __SSE2__
     const __m128i v = _mm_set1_epi16(static_cast<std::int16_t>(slot));
@@ -97,8 +100,8 @@ class NibbleModel {
         _mm_movemask_epi8(_mm_packs_epi16(_mm_cmpgt_epi16(low, v), _mm_cmpgt_epi16(high, v)));
     return static_cast<unsigned>(__builtin_ctz(static_cast<unsigned>(above) | 0x10000U)) - 1U;
 #elif defined(__aarch64__)
-    // The starts rise, so the starts up to `slot` end at the symbol's. The comparison gives -1
-    // (65535) for each of them.
+    // The starts are in ascending order, so the number of starts that are <= `slot` is the symbol
+    // plus 1. The comparison gives -1 (65535) for each of these starts.
     const int16x8_t v = vdupq_n_s16(static_cast<std::int16_t>(slot));
     const uint16x8_t up_to_slot = vaddq_u16(vcleq_s16(vld1q_s16(start_.data()), v),
                                             vcleq_s16(vld1q_s16(start_.data() + 8), v));
@@ -118,7 +121,7 @@ class NibbleModel {
 #endif
   }
 
-  /// Each unit of `kHaste` doubles the speed of learning.
+  /// Updates the model by `symbol`. Each unit of `kHaste` doubles the speed of learning.
   template <int kHaste = 0>
   void Update(unsigned symbol) {
     const int age = start_[kAge];
@@ -141,8 +144,9 @@ class NibbleModel {
 
   class ZeroRun;
 
-  /// The mean of four distributions, rounded down after each of two steps. The starts of each rise,
-  /// so those of the mean do, too.
+  /// Returns the mean of four distributions. It is computed as the mean of two means, and each mean
+  /// is rounded down. The starts of all four distributions are strictly increasing, so the starts
+  /// of their mean are, too.
   static NibbleModel Blend(const BlendedModels& models) {
     NibbleModel blend{Unset()};
     for (unsigned i = 0; i < kNibbles; i += 8) {
@@ -185,15 +189,16 @@ class NibbleModel {
     return counts;
   }
 
-  // [0] is always 0, [16] is kProbabilityOne (read unsigned), [17] the number of updates so far.
+  // [0] to [15] are the starts of the symbols' intervals. [0] is always 0. [16] is kProbabilityOne
+  // (read unsigned). [17] is the number of updates so far, at most Rates::kOldest.
   alignas(64) std::array<std::int16_t, 32> start_{};
 };
 
-/// Blends four different models as long as symbol 0 follows. Copies of the models stay in
-/// registers, so Store() must be called at the end.
+/// Blends four different models during a run of symbols 0. It works on copies of the models, which
+/// stay in registers. Store() must be called at the end, to update the models themselves.
 class NibbleModel::ZeroRun {
  public:
-  /// Returns true if all models have reached the final learning rate, as ZeroRun needs.
+  /// Returns true if all models have reached the final learning rate, which ZeroRun requires.
   static bool IsReady(const BlendedModels& models) {
     return std::all_of(models.begin(), models.end(), [](const NibbleModel* model) {
       return model->start_[kAge] == detail::Rates::kOldest;
@@ -209,13 +214,13 @@ class NibbleModel::ZeroRun {
       for (unsigned half = 0; half < 2; ++half)
         std::memcpy(&models[k]->start_[half * kLanes], &starts_[k][half], sizeof(Vector));
   }
-  /// The blended interval of symbol 0.
+  /// Returns the blended interval of symbol 0.
   Interval interval() const {
     const auto start = [&](unsigned k) { return static_cast<std::uint32_t>(starts_[k][0][1]); };
     return {0, static_cast<std::uint16_t>(
                    (((start(0) + start(1)) >> 1) + ((start(2) + start(3)) >> 1)) >> 1)};
   }
-  /// Learns a symbol 0, as Update<kBlendedHaste>() does.
+  /// Updates the copies after a symbol 0, as Update<kBlendedHaste>() does.
   void Update() {
     constexpr auto kRate =
         static_cast<std::int16_t>(detail::kRates.rates[detail::Rates::kOldest] - kBlendedHaste);

@@ -16,7 +16,7 @@ bool RowPredictor::Prepare(std::uint32_t beam, const RowReturns& row) {
   std::size_t first = 0;
   while (first < count && above[row.columns[first]].value == kUnknown) ++first;
   if (first == count) return false;
-  // If the value above a return is unknown, the return takes that of its predecessor in the row.
+  // If the value above a return is unknown, the value above the previous return of the row is used.
   std::int32_t last = above[row.columns[first]].value;
   for (std::size_t i = 0; i < count; ++i) {
     const Known* at = above + row.columns[i];

@@ -22,8 +22,8 @@ constexpr unsigned kContexts = 15;
 
 namespace detail {
 
-/// Contexts by sums of absolute differences: a context for each half octave. The last one has no
-/// upper limit.
+/// The context for each sum of absolute differences. There is a context for each half octave. The
+/// last context has no upper limit.
 struct ContextTable {
   static constexpr unsigned kMost = 128;
   constexpr ContextTable() {
@@ -40,7 +40,7 @@ inline constexpr ContextTable kContextTable;
 
 }  // namespace detail
 
-/// Differences and sums that wrap: values of damaged streams may be anything.
+/// Sum() and Difference() wrap around, because values of damaged streams may be of any size.
 inline std::int32_t Sum(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }
@@ -48,31 +48,34 @@ inline std::int32_t Difference(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
 }
 
-/// A value once it is coded.
+/// A value after it was coded.
 struct Coded {
   std::int32_t value;
   std::int32_t magnitude;  // of the residual
 };
 
-/// Columns of the returns of one row, in order.
+/// The columns of the returns of one row, in order, and their division into lanes.
 struct RowReturns {
   const std::uint16_t* columns;
   RowLanes lanes;
 };
 
-/// A channel (ranges or intensities) of a slice, row by row. The neighbours of a return are W, N,
-/// NE and NW. W is the return to the left in the same lane. N and NE are in the nearest beams above
-/// that have a return at their azimuths. NW is the N of W. The prediction is the median of W, N and
-/// W + N - NW (the MED predictor of LOCO-I), which follows planes and keeps to one side of an edge.
+/// Predicts a channel (ranges or intensities) of a slice, row by row.
 ///
-/// All but W is known before the row is coded and is prepared for the whole row. The lanes of a row
-/// do not wait for each other.
+/// The neighbours of a return are W, N, NE and NW. W is the return before it in the same lane. N is
+/// above the return, and NE above the pixel to its right: each is in the nearest beam above that
+/// has a return there. NW is the N of W. The prediction is the median of W, N and W + N - NW (the
+/// MED predictor of LOCO-I). On a plane it follows the plane, and at an edge it keeps to one side.
+///
+/// All neighbours but W are known before a row is coded, and are prepared for the whole row. No
+/// lane depends on another lane of the same row.
 class RowPredictor {
  public:
   void Reset(const AzimuthAlignment& alignment, std::uint32_t columns);
 
-  /// Calls code(lane, index, prediction) for all returns of a row in the order of coding. Returns
-  /// false if a value is not below `limit`, a power of two; Reset() must then be called next.
+  /// Calls code(lane, index, prediction) for all returns of a row, in the order of coding. `limit`
+  /// is a power of two. Returns false if a value is not below it. In this case, Reset() must be
+  /// called before the next row.
   template <class Code>
   [[gnu::always_inline]] bool CodeRow(std::uint32_t beam, const RowReturns& row,
                                       std::uint32_t limit, Code&& code) {
@@ -83,12 +86,12 @@ class RowPredictor {
     }
     return Keep(beam, row, limit);
   }
-  /// The values of the row that was coded last.
+  /// Returns the values of the row that was coded last.
   const std::int32_t* values() const { return values_.data(); }
 
  private:
   static constexpr std::int32_t kUnknown = -1;
-  /// Finds the neighbours above the row; returns false if there are none at all.
+  /// Finds the neighbours in the beams above. Returns false if the whole row has none.
   bool Prepare(std::uint32_t beam, const RowReturns& row);
   bool Keep(std::uint32_t beam, const RowReturns& row, std::uint32_t limit);
 
@@ -100,15 +103,16 @@ class RowPredictor {
     for (unsigned lane = 0; lane < kRansLanes; ++lane) {
       const std::size_t start = lane < lanes.lanes ? lanes.Start(lane) : 0;
       west[lane] = kBlind ? latest_ : row[start].north;
-      // No neighbour is known here, so the context is that of the largest errors.
+      // Without neighbours, the first predictions are poor. They have the context of the largest
+      // errors.
       error[lane] = kBlind ? std::int32_t{detail::ContextTable::kMost} : 0;
     }
     ForEachInTurns(
         lanes, [&](unsigned lane, std::size_t i) __attribute__((always_inline)) {
           Return& at = row[i];
           const std::int32_t w = west[lane];
-          // No comparisons here: a compiler could turn them into jumps, which would be
-          // mispredicted.
+          // There are no comparisons here, because a compiler could turn them into jumps, which a
+          // processor would mispredict.
           const std::int32_t to_north = kBlind ? 0 : Difference(at.north, w);
           const std::int32_t below = to_north & to_north >> 31;
           const std::int32_t above = to_north & ~(to_north >> 31);
@@ -121,8 +125,8 @@ class RowPredictor {
                                        2 * static_cast<std::uint32_t>(error[lane]);
           p.context =
               detail::kContextTable.contexts[std::min(uneven, detail::ContextTable::kMost + 0U)];
-          // A value that differs from the prediction tends towards the other neighbour, so the
-          // sign of the difference has a meaning.
+          // If a value differs from the prediction, it is mostly on the side of the other
+          // neighbour, W or N. The mirrored sign of the difference is therefore predictable.
           p.mirror = -above >> 31;
           const Coded coded = code(lane, i, p);
           error[lane] = at.error = coded.magnitude;
@@ -132,9 +136,10 @@ class RowPredictor {
 
   struct Known {
     std::int32_t value = kUnknown;
-    std::int32_t error = 0;  // size of its residual
+    std::int32_t error = 0;  // magnitude of its residual
   };
-  /// A return of the row: its surroundings before it is coded, then its value and error.
+  /// A return of the row. Before it is coded, `north`, `uneven` and `gradient` describe its
+  /// neighbours. Afterwards, `value` and `error` are set.
   struct Return {
     union {
       std::int32_t north;

@@ -24,8 +24,8 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
   const auto pieces = static_cast<std::size_t>(next_ - pieces_.data());
   std::array<std::uint64_t, kRansLanes> states;
   states.fill(kRansLow);
-  // A piece takes at most one word. One further word is written, but not used. Words are stored
-  // from the end on, because decoding reverses their order.
+  // A piece adds at most one word. The loop also writes to the word before the last one that it
+  // adds. Words are stored from the end backwards, because decoding reverses their order.
   if (words_.size() < pieces + 1) words_.resize(pieces + 1);
   std::uint32_t* const words_end = words_.data() + words_.size();
   std::uint32_t* word = words_end;
@@ -35,7 +35,7 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
     const unsigned count = piece.bits >> 2 & 63;
     std::uint64_t& state = states[piece.bits & 3];
     std::uint64_t x = state;
-    // True if the state would outgrow its bits with this piece.
+    // True if the state would have too many bits after this piece.
     const bool full = x >= size << (kRansLowBits + kRansWordBits - kProbabilityBits - count);
     word[-1] = static_cast<std::uint32_t>(x);
     word -= full ? 1 : 0;
@@ -57,7 +57,8 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
 }
 
 RansDecoder::RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded) {
-  // Bytes after the end: the states of the shortest stream, and the words that are read ahead.
+  // Zeros follow the bytes: for the states, if the stream is too short for them, and for words that
+  // are read past the end.
   constexpr std::size_t kStates = 1 + kRansLanes * kRansStateBytes;
   padded->assign(bytes.size + kStates + (ahead + 2) * sizeof(std::uint32_t), 0);
   if (bytes.size > 0) std::memcpy(padded->data(), bytes.data, bytes.size);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An entropy coder: four interleaved rANS states for symbols and the plain bits after them.
+// An entropy coder with four interleaved rANS states. It codes symbols, and plain bits that may
+// follow a symbol.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,30 +12,33 @@
 
 namespace lidar::codec {
 
-/// J. Duda, "Asymmetric numeral systems" (2013), with states of 56 bits, refilled by 32 bits at a
-/// time. Four independent chains of symbols, the lanes, have a state each, so that a processor
-/// works on all of them at once.
+/// The coder is that of J. Duda, "Asymmetric numeral systems" (2013). States have 56 bits and are
+/// refilled by 32 bits at a time. There are four independent sequences of symbols, called lanes.
+/// Each has its own state, so that a processor can work on all lanes at once.
 constexpr unsigned kRansLanes = 4;
 constexpr unsigned kRansLowBits = 24;
 constexpr std::uint64_t kRansLow = std::uint64_t{1} << kRansLowBits;
 constexpr unsigned kRansWordBits = 32;
 constexpr unsigned kRansStateBytes = (kRansLowBits + kRansWordBits) / 8;
-/// Fewest bytes of a written state; the most are kRansStateBytes. An unused lane writes no bytes.
+/// The smallest number of bytes of a written state. The largest is kRansStateBytes. The state of an
+/// unused lane is not written.
 constexpr unsigned kRansShortestState = kRansStateBytes - 2;
-/// Most bits that a state of kRansLow can give: with a symbol, and without one.
+/// The largest number of plain bits that can be read at once, even from a state of kRansLow:
+/// kMaxJointBits together with a symbol, kMaxPlainBits without a symbol.
 constexpr unsigned kMaxJointBits = kRansLowBits - kProbabilityBits;
 constexpr unsigned kMaxPlainBits = kRansLowBits;
 
-/// Collects symbols and bits in the order of decoding; Finish() codes them backwards.
+/// Collects symbols and bits in the order in which they will be decoded. Finish() codes them in
+/// reverse order.
 class RansEncoder {
  private:
   struct Piece {
     Interval interval;
-    std::uint32_t bits;  // 24 bits, their count in 6, the lane in 2
+    std::uint32_t bits;  // from the highest: 24 plain bits, 6 for their count, 2 for the lane
   };
 
  public:
-  /// Starts a stream of at most `pieces` calls of Put() and PutBits().
+  /// Starts a stream. At most `pieces` calls of Put() and PutBits() may follow.
   void Start(std::size_t pieces) {
     if (pieces_.size() < pieces) pieces_.resize(pieces);
     next_ = pieces_.data();
@@ -42,7 +46,8 @@ class RansEncoder {
   /// Appends the stream to `out`.
   void Finish(std::vector<std::uint8_t>* out);
 
-  /// Writes to an encoder until it goes out of scope; only one Writer at a time.
+  /// Writes to an encoder. The encoder has what was written as soon as the Writer goes out of
+  /// scope. Only one Writer may exist at a time.
   class Writer {
    public:
     explicit Writer(RansEncoder* encoder) : encoder_(encoder), next_(encoder->next_) {}
@@ -50,22 +55,24 @@ class RansEncoder {
     Writer& operator=(const Writer&) = delete;
     ~Writer() { encoder_->next_ = next_; }
 
-    /// Adds a symbol, and the low `count` <= kMaxJointBits of `bits`, whose other bits are 0.
+    /// Adds a symbol, followed by the lowest `count` bits of `bits`. `count` is at most
+    /// kMaxJointBits. The other bits of `bits` must be 0.
     template <int kHaste = 0>
     [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, NibbleModel* model,
                                     std::uint32_t bits = 0, unsigned count = 0) {
       *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
       model->Update<kHaste>(symbol);
     }
-    /// The same by the mean of `models`.
+    /// Does the same, but predicts the symbol by the mean of `models`.
     [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, const BlendedModels& models,
                                     std::uint32_t bits = 0, unsigned count = 0) {
       *next_++ = {NibbleModel::BlendedInterval(models, symbol), bits << 8 | count << 2 | lane};
       for (NibbleModel* model : models) model->Update<kBlendedHaste>(symbol);
     }
-    /// Adds the symbol of an interval.
+    /// Adds a symbol, which has this interval.
     void Put(unsigned lane, Interval interval) { *next_++ = {interval, lane}; }
-    /// Adds the low `count` <= kMaxPlainBits of `bits`, whose other bits are 0.
+    /// Adds the lowest `count` bits of `bits`. `count` is at most kMaxPlainBits. The other bits of
+    /// `bits` must be 0.
     void PutBits(unsigned lane, std::uint32_t bits, unsigned count) {
       *next_++ = {{0, kProbabilityOne}, bits << 8 | count << 2 | lane};
     }
@@ -81,31 +88,35 @@ class RansEncoder {
   Piece* next_ = nullptr;
 };
 
-/// Copies are cheap, so a loop uses a copy of its own, which can live in registers.
+/// Decodes what a RansEncoder wrote. A loop should use its own copy of the decoder, because the
+/// copy can stay in registers. Copying is cheap.
 class RansDecoder {
  public:
-  /// `padded` keeps the words, with room for `ahead` calls of GetBits() past the end. Callers check
-  /// overran() at least once in `ahead` calls.
+  /// Copies `bytes` to `padded`, which must live as long as the decoder. `padded` has room for
+  /// `ahead` calls of GetBits() past the end, so callers must check overran() at least once in
+  /// `ahead` calls.
   RansDecoder(ByteView bytes, std::size_t ahead, std::vector<std::uint8_t>* padded);
 
-  /// Returns true if bytes past the end were read: the stream is damaged, and callers must stop.
+  /// Returns true if bytes past the end were read. The stream is then damaged, and callers must
+  /// stop.
   bool overran() const { return position_ > end_; }
 
-  /// The next call must be GetBits() of the same lane, with a count of 0 if no bits follow.
+  /// Reads a symbol. The next call must be GetBits() of the same lane. If no bits follow the
+  /// symbol, its `count` is 0.
   template <int kHaste = 0>
   unsigned Get(unsigned lane, NibbleModel* model) {
     const unsigned symbol = Take(lane, *model);
     model->Update<kHaste>(symbol);
     return symbol;
   }
-  /// The same by the mean of `models`.
+  /// Does the same, but predicts the symbol by the mean of `models`.
   [[gnu::always_inline]] unsigned Get(unsigned lane, const BlendedModels& models) {
     const unsigned symbol = Take(lane, NibbleModel::Blend(models));
     for (NibbleModel* model : models) model->Update<kBlendedHaste>(symbol);
     return symbol;
   }
-  /// Takes symbol 0, of this interval, and no bits. Returns false, with nothing taken, if another
-  /// symbol follows.
+  /// Reads a symbol 0 without plain bits. `zero` is the interval of symbol 0. If another symbol
+  /// follows, reads nothing and returns false.
   [[gnu::always_inline]] bool GetZero(unsigned lane, Interval zero) {
     const std::uint64_t x = states_[lane];
     const auto slot = static_cast<std::uint32_t>(x & (kProbabilityOne - 1));
@@ -117,19 +128,20 @@ class RansDecoder {
   std::uint32_t GetBits(unsigned lane, unsigned count) {
     return GetBits(lane, count, (1U << count) - 1);
   }
-  /// `mask` has `count` ones.
+  /// Reads `count` plain bits. `mask` must have `count` ones.
   std::uint32_t GetBits(unsigned lane, unsigned count, std::uint32_t mask) {
     std::uint64_t x = states_[lane];
     const auto bits = static_cast<std::uint32_t>(x) & mask;
     x >>= count;
-    // A state in ten needs a refill, so a jump would be mispredicted. States are below 2^63.
+    // About one state in ten needs a refill, so a processor would often mispredict a jump. The
+    // shift gives 1 if x < kRansLow, because states are below 2^63.
     const std::uint64_t refill = (x - kRansLow) >> 63;
     states_[lane] = x << (kRansWordBits * refill) | (LoadWord() & (0 - refill));
     position_ += sizeof(std::uint32_t) * refill;
     return bits;
   }
-  /// Returns true if the states are back at the encoder's first ones and each word was used. A
-  /// damaged stream hardly ever passes.
+  /// Returns true if every word was used and the states are those with which the encoder began.
+  /// After a damaged stream, this is hardly ever so.
   bool AtEnd() const;
 
  private:
@@ -152,15 +164,17 @@ class RansDecoder {
   const std::uint8_t* end_ = nullptr;
 };
 
-/// A row of pieces is cut into lanes of nearly the same length, coded in turns: the first piece of
-/// each lane, the second of each, and so on. A short row is one lane.
+/// A row of pieces, divided into lanes of nearly the same length. The lanes are coded in turns: the
+/// first piece of each lane, then the second piece of each lane, and so on. A short row has one
+/// lane.
 struct RowLanes {
   explicit RowLanes(std::size_t count) : all(count) {
     lanes = count >= kShortestLane * kRansLanes ? kRansLanes : 1;
     turns = count / lanes;
     rest = count % lanes;
   }
-  /// Lanes before `rest` have one piece more than `turns`.
+  /// Returns the index of the first piece of `lane`. The first `rest` lanes have one piece more
+  /// than the others.
   std::size_t Start(std::size_t lane) const { return lane * turns + (lane < rest ? lane : rest); }
 
   static constexpr std::size_t kShortestLane = 64;
@@ -170,7 +184,7 @@ struct RowLanes {
   std::size_t rest;
 };
 
-/// Calls code(lane, index) for all pieces of a row, in the order of coding.
+/// Calls code(lane, index) for each piece of a row, in the order of coding.
 template <class Code>
 [[gnu::always_inline]] inline void ForEachInTurns(const RowLanes& row, Code&& code) {
   if (row.lanes == 1) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Signed integers as symbols of 16 classes and raw bits, adaptively for each context.
+// Codes signed integers, each as a symbol for one of 16 classes, followed by plain bits. The
+// probabilities of symbols adapt in each context.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,20 +11,21 @@
 
 namespace lidar::codec {
 
-/// Values of a symbol: a sign (0 or -1), and one of 2^bits magnitudes from `base` on.
+/// The values of a symbol. They have the sign `sign` (0 or -1) and one of 2^bits magnitudes, of
+/// which `base` is the smallest.
 struct ResidualClass {
   std::int16_t base;
   std::int8_t bits;
   std::int8_t sign;
-  std::uint32_t mask;  // as many ones as bits
+  std::uint32_t mask;  // has `bits` ones
 };
 struct Residual {
   std::int32_t magnitude;
   std::int32_t sign;  // 0 or -1
 };
 
-/// The classes are 0, and with each sign 1, 2, 3-4, 5-8, 9-16, 17-32, and 33 or more. From 33 on a
-/// second symbol has the length of the rest.
+/// The classes are 0 and, once for each sign: 1, 2, 3-4, 5-8, 9-16, 17-32, and 33 or more. In the
+/// last class, a second symbol follows: the bit length of the magnitude minus 33.
 constexpr std::uint32_t kLongMagnitude = 33;
 constexpr unsigned kFirstLongSymbol = 13;
 constexpr std::array<ResidualClass, kNibbles> kResidualClasses = {{{0, 0, 0, 0},
@@ -43,7 +45,7 @@ constexpr std::array<ResidualClass, kNibbles> kResidualClasses = {{{0, 0, 0, 0},
                                                                    {33, 0, -1, 0},
                                                                    {0, 0, 0, 0}}};
 
-/// Positive class of each magnitude up to kLongMagnitude.
+/// The symbol of each magnitude up to kLongMagnitude, with a positive sign.
 struct ClassOfMagnitude {
   constexpr ClassOfMagnitude() {
     for (unsigned m = 0; m <= kLongMagnitude; ++m)
@@ -55,13 +57,13 @@ struct ClassOfMagnitude {
 };
 inline constexpr ClassOfMagnitude kClassOfMagnitude;
 
-/// Counts of each symbol, for InitialModels.
+/// The number of times that each symbol occurs. InitialModels are made from these numbers.
 struct SymbolCounts {
   std::array<std::array<std::uint64_t, kNibbles>, kContexts> residuals{};
   std::array<std::uint64_t, kNibbles> longs{};
 };
 
-/// A residual as a symbol and the bits that follow it.
+/// A residual, converted to a symbol and the bits that follow it.
 struct ClassedResidual {
   [[gnu::always_inline]] ClassedResidual(std::uint32_t magnitude, bool negative) {
     const unsigned positive = kClassOfMagnitude.symbol[std::min(magnitude, kLongMagnitude)];
@@ -74,18 +76,18 @@ struct ClassedResidual {
   }
   unsigned symbol;
   unsigned bits;
-  std::uint32_t low;   // of `bits` bits
-  std::uint32_t rest;  // if it is long
+  std::uint32_t low;   // the plain bits
+  std::uint32_t rest;  // magnitude - kLongMagnitude, if is_long
   bool is_long;
 };
 
-/// Codes the excess of long magnitudes over kLongMagnitude.
+/// Codes the part of long magnitudes that exceeds kLongMagnitude.
 class LongModel {
  public:
   void Reset(const NibbleModel& start) { model_ = start; }
-  /// The first symbol of `rest`.
+  /// Returns the symbol of `rest`, which is its bit length, but at most kLongest.
   static unsigned SymbolOf(std::uint32_t rest) { return std::min(BitLength(rest), kLongest); }
-  /// Codes as many bits as fit together with the length, then the higher bits on their own.
+  /// Codes the length together with as many lower bits as allowed, then the remaining bits alone.
   void Encode(std::uint32_t rest, unsigned lane, RansEncoder::Writer* writer) {
     const unsigned length = SymbolOf(rest);
     const unsigned bits = PlainBits(length);
@@ -111,7 +113,8 @@ class LongModel {
   static unsigned BitLength(std::uint32_t v) {
     return v == 0 ? 0 : 32 - static_cast<unsigned>(__builtin_clz(v));
   }
-  /// Number of written bits of a rest of `length` bits, whose highest bit is 1.
+  /// Returns the number of bits that are written for a number of `length` bits. Its highest bit is
+  /// not written, unless the length is kLongest.
   static unsigned PlainBits(unsigned length) {
     if (length == kLongest) return kLongestBits;
     return length > 0 ? length - 1 : 0;
@@ -120,11 +123,11 @@ class LongModel {
   NibbleModel model_;
 };
 
-/// A residual is a symbol and some bits. Only rare long ones take another path, so a processor has
-/// hardly a jump to mispredict.
+/// Codes residuals, each as a symbol and some plain bits. Only long residuals take another path.
+/// They are rare, so a processor mispredicts hardly any jump.
 class SymbolModel {
  public:
-  /// Pieces of RansEncoder that a residual may take.
+  /// The largest number of pieces that a residual adds to a RansEncoder.
   static constexpr std::size_t kMostPieces = 3;
 
   void Reset(const InitialModels& start) {
