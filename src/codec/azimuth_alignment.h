@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the pixels of neighbouring beams that look into the same direction.
+// Finds the pixels of neighbouring beams that have the same azimuth.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,9 +9,10 @@
 
 namespace lidar::codec {
 
-/// The beams of a spinning sensor fire together at different azimuths, so a column of the slice is
-/// skewed. Coders go beam by beam, and keep a value of the beams above for each azimuth. The
-/// neighbours above pixel i of beam b are AlignedRow::At(b)[i - 1 .. i + 1].
+/// The beams of a spinning sensor fire at the same time, but at different azimuths. Therefore the
+/// pixels of a column have different azimuths. Coders process a slice beam by beam, and keep a
+/// value from the beams above for each azimuth. The neighbours above pixel i of beam b are
+/// AlignedRow::At(b)[i - 1 .. i + 1].
 class AzimuthAlignment {
  public:
   AzimuthAlignment() = default;
@@ -23,12 +24,12 @@ class AzimuthAlignment {
   std::uint32_t span() const { return span_; }
 
  private:
-  std::vector<std::uint32_t> offsets_;  // pixel shifts; the smallest is 0
+  std::vector<std::uint32_t> offsets_;  // pixel shifts of the beams, minus the smallest shift
   std::uint32_t span_ = 0;
   std::uint32_t columns_per_scan_ = 0;
 };
 
-/// The last known value of every azimuth of a slice.
+/// The newest value at each azimuth of a slice.
 template <class T>
 class AlignedRow {
  public:
@@ -40,10 +41,10 @@ class AlignedRow {
     closed_ = columns == alignment.columns_per_scan() && alignment.span() + 2 * kMargin <= columns;
     values_.assign(size_, initial);
   }
-  /// Returns pixel 0 of `beam`; indices in [-kMargin .. columns + kMargin) are valid.
+  /// Returns the value at pixel 0 of `beam`. Indices in [-kMargin .. columns + kMargin) are valid.
   T* At(std::uint32_t beam) { return &values_[kMargin + alignment_->offset(beam)]; }
-  /// Call it after At(beam)[0 .. columns) was written, because in a full turn the last and the
-  /// first column are neighbours.
+  /// Must be called after At(beam)[0 .. columns) was written. In a full turn, the last and the
+  /// first column are neighbours, so each of them is copied to the margin beside the other.
   void CloseTurn(std::uint32_t beam) {
     if (!closed_) return;
     const std::size_t begin = kMargin + alignment_->offset(beam);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The memory that a block leaves to later blocks of its sector (docs/temporal-coder.md): the ranges
-// that each pixel has seen, and the models that code by them.
+// The memory that a block passes on to later blocks of the same sector (docs/temporal-coder.md):
+// the earlier ranges of each pixel, and the models that use them.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,21 +14,22 @@
 
 namespace lidar::codec {
 
-/// The ranges that a pixel has seen.
+/// What is known about the earlier ranges of a pixel.
 struct PixelMemory {
-  std::uint32_t mean = 0;    // of the range, in 1/8 mm
-  std::uint16_t spread = 0;  // mean distance from the mean, in 1/8 mm
-  std::uint8_t count = 0;    // returns in the mean, up to kMostCount
+  std::uint32_t mean = 0;    // mean range, in 1/8 mm
+  std::uint16_t spread = 0;  // mean distance of ranges from `mean`, in 1/8 mm
+  std::uint8_t count = 0;    // number of returns in `mean`, up to kMostCount
   std::uint8_t returns = 0;  // bit n: the n-th scan before the newest one had a return
 
   static constexpr std::uint32_t kPerMm = 8;
   static constexpr std::uint8_t kMostCount = 16;
 
-  /// Adds the next scan: `range_mm`, decoded on a grid of `step` [1/8 mm]; 0: no return.
+  /// Adds the range of the next scan. `range_mm` was decoded on a grid of `step` [1/8 mm]. It is 0
+  /// if the pixel has no return.
   void See(std::uint32_t range_mm, std::int64_t step);
 };
 
-/// The width of a bin in units of PixelMemory.
+/// Returns the width of a bin in 1/8 mm, the unit of PixelMemory.
 inline std::int64_t StepOf(const RangeGrid& grid) {
   return std::int64_t{grid.unit_mm()} * grid.parts() * PixelMemory::kPerMm / RangeGrid::kParts;
 }
@@ -37,7 +38,7 @@ struct BlockMemory {
   std::uint32_t beams = 0;
   std::uint32_t columns = 0;
   std::uint32_t first_column = 0;
-  std::uint32_t crc = 0;  // name of the block: CRC over it and its header
+  std::uint32_t crc = 0;  // name of the block: CRC of the block and its header
   std::vector<PixelMemory> pixels;
   mixing::TemporalModel model;
 
@@ -49,17 +50,17 @@ struct BlockMemory {
   }
   std::size_t bytes() const { return sizeof *this + pixels.size() * sizeof(PixelMemory); }
 };
-/// Encoders, decoders and stores share a memory, so it is constant.
+/// A memory is constant, because encoders, decoders and stores share it.
 using BlockMemoryPtr = std::shared_ptr<const BlockMemory>;
 
 /// The memories before and after a block.
 struct BlockLink {
   BlockMemoryPtr reference;           // memory that the block is coded with; null: none
-  std::shared_ptr<BlockMemory> left;  // the block's own memory; null: no block can refer to it
+  std::shared_ptr<BlockMemory> left;  // memory after the block; null: no block can refer to it
 };
 
-/// Returns the memory after `image`, whose ranges are the decoded ones. The model of `before`, the
-/// memory before the image, continues; null: the model starts anew.
+/// Returns the memory after `image`, whose ranges are the decoded ones. The memory continues
+/// `before`, the memory before `image`. If `before` is null, the memory and its model begin anew.
 std::shared_ptr<BlockMemory> Remember(const RangeImage& image, const RangeGrid& grid,
                                       const BlockMemory* before);
 

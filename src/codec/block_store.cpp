@@ -42,7 +42,7 @@ BlockMemoryPtr BlockStore::Recall(std::uint32_t crc, const RangeImage& place) {
       continue;
     }
     const BlockMemoryPtr found = block;
-    // Keeps a few older blocks, because slices may overtake each other.
+    // A few older blocks are kept, because slices that refer to them may arrive late.
     DropFirst(older - std::min(older, kOvertaking), *found);
     return found;
   }

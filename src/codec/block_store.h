@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The blocks to which later blocks may refer, in bounded memory.
+// Stores the blocks to which later blocks may refer, in bounded memory.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,19 +9,21 @@
 
 namespace lidar::codec {
 
-/// An encoder refers to newer and newer blocks of a sector, so blocks older than a reference can be
-/// dropped.
+/// An encoder refers to ever newer blocks of a sector. Blocks older than a reference can therefore
+/// be dropped.
 class BlockStore {
  public:
-  /// Limits of the blocks of a sector, and of the bytes of all blocks. Encoders have lower limits,
-  /// so a block to which they refer is still here.
+  /// The largest number of blocks of a sector, and the largest size of all blocks. An encoder has
+  /// lower limits, so the store still has the blocks to which the encoder refers.
   static constexpr std::size_t kMostOfSector = 24;
   static constexpr std::size_t kMostBytes = 64U << 20;
-  /// Number of blocks older than a reference that are kept for late slices.
+  /// The number of blocks older than a reference that are kept. Slices that arrive late may need
+  /// them.
   static constexpr std::size_t kOvertaking = 3;
 
   void Add(BlockMemoryPtr block);
-  /// Returns the block named `crc` at `place`, or null. Drops much older blocks of its sector.
+  /// Returns the block with this `crc` and the same sector as `place`, or null. Drops older blocks
+  /// of the sector, except for kOvertaking of them.
   BlockMemoryPtr Recall(std::uint32_t crc, const RangeImage& place);
 
   std::size_t size() const { return blocks_.size(); }

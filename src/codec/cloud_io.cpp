@@ -22,7 +22,8 @@ void Store(T value, std::uint8_t* bytes) {
   std::memcpy(bytes, &value, sizeof value);
 }
 
-/// Returns null for a field of another type, too: caps may come from a network.
+/// Returns the field, or null if it is missing or of another type. The type must be checked because
+/// caps may come from a network.
 const PointField* FindTyped(const PointFields& fields, const char* name, FieldType type) {
   return fields.Has(name, type) ? fields.Find(name) : nullptr;
 }
@@ -74,7 +75,8 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
   for (std::size_t i = 0; i < count; ++i, point += layout.point_step)
     image->ranges[i] = Load<std::uint32_t>(point);
   if (!with_intensity || !HasIntensity(layout.fields)) return FullScale::kByte;
-  // A driver may leave any number at a missing return. It must not set the scale of the others.
+  // Where a return is missing, a driver may leave any number as its intensity. This number must not
+  // determine the scale, so it is replaced by 0.
   const std::uint8_t* first = raw.data + layout.fields.Find("intensity")->offset;
   const auto intensity_of = [&](std::size_t i) {
     const auto value = Load<float>(first + i * layout.point_step);
@@ -89,7 +91,8 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
 }
 
 std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm) {
-  constexpr unsigned kSample = 64;  // returns, whose divisor is nearly always that of all
+  // The divisor of this many returns is nearly always the divisor of all returns.
+  constexpr unsigned kSample = 64;
   std::uint32_t unit = 0;
   unsigned seen = 0;
   for (auto r = ranges.begin(); r != ranges.end() && unit != 1 && seen < kSample; ++r) {
@@ -109,7 +112,7 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
   const std::size_t count = raw.size / layout.point_step;
   const std::uint32_t xyz_offset = layout.fields.Find("x")->offset;
   const PointField* intensity = with_intensity ? layout.fields.Find("intensity") : nullptr;
-  cloud->xyz.resize(3 * count);  // writes no zeros if the last cloud was as large
+  cloud->xyz.resize(3 * count);  // writes no zeros if the last cloud had as many points
   float* next = cloud->xyz.data();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* point = raw.data + i * layout.point_step;
@@ -132,7 +135,7 @@ void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
   const PointField* range = FindTyped(layout.fields, "range", FieldType::kU32);
   const PointField* intensity =
       image.intensity.empty() ? nullptr : FindTyped(layout.fields, "intensity", FieldType::kF32);
-  // If the layout has no other fields, every byte is written below.
+  // If the layout has only these fields, every byte is written below, and raw needs no zeros.
   const PointFields kept = KeptFields(layout.fields, intensity != nullptr, range != nullptr);
   if (kept != layout.fields || layout.point_step != kept.MinimumStep())
     std::memset(raw, 0, image.size() * layout.point_step);

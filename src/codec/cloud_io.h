@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts the raw clouds of buffers to the input of the codecs, and back.
+// Converts the raw clouds in buffers to the input of the codecs, and back.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,9 +14,9 @@
 
 namespace lidar::codec {
 
-/// Points without order. Either all of them have an intensity, or none.
+/// Points without order. Either all of them have an intensity, or none has.
 struct XyzCloud {
-  std::vector<float> xyz;  // metres, three a point
+  std::vector<float> xyz;  // [m], three per point
   std::vector<float> intensity;
 
   std::size_t size() const { return xyz.size() / 3; }
@@ -35,7 +35,7 @@ struct CloudLayout {
   }
 };
 
-/// The contents of a stream's caps, which apply to each raw slice.
+/// What the caps of a stream say about each raw slice.
 struct CloudFormat {
   CloudLayout layout;
   std::uint32_t height = 1;  // beams, if the cloud is organised
@@ -47,38 +47,40 @@ struct CloudFormat {
 
 constexpr unsigned kFineIntensityBits = IntensityScale::kMaxBits;
 
-/// The fields of an encoded slice, packed: x, y, z, intensity if it is wanted and in `input`, and
-/// range if it is wanted.
+/// Returns the fields of a slice after decoding, packed. They are x, y and z. There is also the
+/// intensity if `with_intensity` and `input` has it, and the range if `with_range`.
 PointFields KeptFields(const PointFields& input, bool with_intensity, bool with_range);
 
-/// The fields of `kept` other than x, y, z and intensity, which are decoded exactly.
+/// Returns the fields of `kept` other than x, y, z and intensity. These fields are decoded exactly.
 std::vector<PointField> ExactFields(const PointFields& kept);
 
 /// Returns true if there is an intensity of type F32, which the codecs need.
 bool HasIntensity(const PointFields& fields);
 
-/// Fills `image`, whose beams, columns and first_column are set, from the points of `raw`, one for
-/// each pixel. Intensities, if they are wanted and present, become levels of kFineIntensityBits.
-/// Returns the full scale of the levels.
+/// Fills the ranges of `image` from the points of `raw`. There is a point for each pixel. The
+/// caller has set the beams, columns and first_column of `image`. If `with_intensity` and the
+/// layout has intensities, these become levels of kFineIntensityBits. Returns the full scale of the
+/// levels.
 FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_intensity,
                          RangeImage* image);
-/// The common divisor of all ranges [mm]: coarser than the sensor's unit, or finer if the cloud was
-/// filtered. If it is above RangeGrid::kMaxUnitMm, or if there are no returns, the result is the
-/// largest divisor of the sensor's unit that divides all ranges.
+/// Returns the greatest common divisor of all ranges [mm]. It may be a multiple of the sensor's
+/// unit, or a smaller number if the cloud was filtered. If it is above RangeGrid::kMaxUnitMm, or if
+/// there are no returns, returns the largest divisor of the sensor's unit that divides all ranges.
 std::uint32_t CommonUnit(const std::vector<std::uint32_t>& ranges, std::uint32_t sensor_unit_mm);
 
-/// Fills `cloud` with the points of `raw` that are finite and not all zero. Intensities that are
-/// negative or not finite become 0. `rows`, if not null, gets the index of each point in `raw`.
+/// Fills `cloud` with those points of `raw` whose coordinates are finite and not all 0. Intensities
+/// that are negative or not finite become 0. If `rows` is not null, it gets the index that each
+/// point of `cloud` has in `raw`.
 void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCloud* cloud,
              std::vector<std::uint32_t>* rows = nullptr);
 
-/// Writes the pixels of `image` as points, missing returns as zeros; `raw` has image.size() *
-/// point_step bytes.
+/// Writes the pixels of `image` as points to `raw`, which has image.size() * point_step bytes. A
+/// pixel without a return becomes a point with zeros.
 void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
                      const RangeProjection& projection, const CloudLayout& layout,
                      std::uint8_t* raw);
-/// Writes `cloud` as points, point i at place order[i], or i if `order` is empty. Other fields are
-/// zero.
+/// Writes the points of `cloud` to `raw`. Point i becomes point order[i], or point i if `order` is
+/// empty. Fields that `cloud` does not have are set to zero.
 void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw,
               const std::vector<std::uint32_t>& order = {});
 

@@ -8,9 +8,10 @@ namespace {
 
 constexpr Duration kWindow{1'000'000'000};
 constexpr unsigned kFewestSlices = 8;
-// Part of a window's slices that may be late, because a machine has busy moments.
+// The part of a window's slices that may be late, because a machine may be busy for a moment.
 constexpr double kLatePart = 0.1;
-// A window ends early after this many slices in a row that take more than twice their time.
+// A window ends early after this many consecutive slices that take more than twice the allowed
+// time.
 constexpr unsigned kMuchTooLate = 3;
 // A higher effort is tried if it probably needs no more than this part of the allowed time.
 constexpr double kRoom = 0.75;
@@ -38,7 +39,8 @@ void EffortControl::OnSlice(Duration sweep, std::size_t returns, Duration spent)
   much_too_late_ = 0;
 }
 
-/// `cost` is that of the window [s per return].
+/// Changes the effort at the end of a window, if necessary. `cost` is the time that the slices of
+/// the window took [s per return].
 void EffortControl::Reconsider(double cost) {
   LearnRatio(cost);
   if (much_too_late_ >= kMuchTooLate || window_.late > kLatePart * window_.slices) {
@@ -52,8 +54,8 @@ void EffortControl::Reconsider(double cost) {
   ++effort_;
 }
 
-/// Updates a level's ratio by the first window after a raise. Bounds limit the change, because the
-/// machine may have been busy.
+/// Updates the ratio of the current level, if this is the first window after a raise. The change is
+/// limited, because the machine may have been busy during the window.
 void EffortControl::LearnRatio(double cost) {
   if (cost_below_ > 0 && cost > 0) {
     double& ratio = levels_[effort_].ratio;

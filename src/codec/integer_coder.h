@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The interface of an external coder of integers: lists of a block's bins and levels.
+// The interface of an external coder. It codes lists of integers: the bins and levels of a block.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,13 +18,13 @@ class IntegerCoder {
  public:
   virtual ~IntegerCoder() = default;
 
-  /// Appends the stream of `lists`, which are not empty, to `out`. With `delta`, each integer is
-  /// predicted by the one before. Returns false if the coder fails.
+  /// Encodes `lists`, which are not empty, and appends the stream to `out`. If `delta`, the coder
+  /// predicts each integer by the integer before it. Returns false if the coder fails.
   virtual bool Encode(const IntegerLists& lists, bool delta,
                       std::vector<std::uint8_t>* out) const = 0;
 
-  /// Fills `lists` from a stream of exactly `count` integers, with levels or without. Returns false
-  /// for any other stream.
+  /// Decodes `stream` to `lists`. Returns false if the stream does not have exactly `count` values,
+  /// or has levels although `has_levels` is false, or vice versa.
   virtual bool Decode(ByteView stream, std::uint32_t count, bool has_levels,
                       IntegerLists* lists) const = 0;
 };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Intensities as a few levels, and back.
+// Converts intensities to a few levels, and back.
 #pragma once
 #include <algorithm>
 #include <cstdint>
 
 namespace lidar::codec {
 
-/// Largest intensity of a slice's levels: 1 as in KITTI, or that of integers of 8 or 16 bits as
-/// sensors give them. Larger values are cut off.
+/// The intensity of the highest level. It is 1 as in KITTI, or the largest integer of 8 or 16 bits,
+/// as sensors send them. Higher intensities get the highest level, too.
 enum class FullScale : std::uint8_t { kOne = 0, kByte = 1, kWord = 2 };
 
 class IntensityScale {
@@ -32,13 +32,14 @@ class IntensityScale {
 
   unsigned bits() const { return bits_; }
   FullScale full() const { return full_; }
-  /// NaN becomes level 0.
+  /// Returns the level of `intensity`. NaN has level 0.
   std::uint8_t LevelOf(float intensity) const {
     const float level = (intensity - offset_) / step_ + 0.5F;
     const float top = static_cast<float>((1U << bits_) - 1);
     return static_cast<std::uint8_t>(level > 0 ? std::min(level, top) : 0.0F);
   }
-  /// Returns this scale's level for a level of the 8-bit scale with the same full scale.
+  /// Converts `fine`, a level of the 8-bit scale with the same full scale, to a level of this
+  /// scale.
   std::uint8_t Coarsen(std::uint8_t fine) const {
     if (full_ != FullScale::kOne) return static_cast<std::uint8_t>(fine >> (kMaxBits - bits_));
     return static_cast<std::uint8_t>((fine * ((1U << bits_) - 1) + 127) / 255);

@@ -12,7 +12,7 @@
 namespace lidar::codec {
 namespace {
 
-// The first byte of a payload of kTemporal.
+// The values of the first byte in a payload of kTemporal.
 constexpr std::uint8_t kStandsAlone = 0;
 constexpr std::uint8_t kHasReference = 1;
 
@@ -20,8 +20,8 @@ bool HasGaps(const RangeImage& image) {
   return std::find(image.ranges.begin(), image.ranges.end(), 0U) != image.ranges.end();
 }
 
-/// A grid of two thirds of the step: as a rule one or two of its bins decode to within the error of
-/// `grid`.
+/// Returns a grid with two thirds of the step of `grid`. For most ranges, one or two of its bins
+/// decode to a range within the error of `grid`.
 RangeGrid FinerGrid(const RangeGrid& grid) {
   constexpr std::uint32_t kThirds = 3 * RangeGrid::kParts;
   return {grid.unit_mm(), std::max((2 * grid.parts() + kThirds / 2) / kThirds, 1U)};
@@ -36,8 +36,8 @@ std::uint32_t ErrorMm(const RangeGrid& grid) {
   return static_cast<std::uint32_t>(std::lround(1e3 * grid.error_m()));
 }
 
-/// Several bins may decode to within the error. Each return takes the bin that is nearest to the
-/// mean in its pixel's memory.
+/// Moves the ranges of `image` to bins of `grid`. Several bins may decode to within `error_mm` of a
+/// range. Of these, the one nearest to the mean in the pixel's memory is chosen.
 RangeImage AsRecalled(const RangeImage& image, const BlockMemory& memory, const RangeGrid& grid,
                       std::uint32_t error_mm) {
   RangeImage chosen = image;
@@ -95,7 +95,7 @@ bool RangeEncoder::Encode(const RangeImage& image, const RangeSettings& settings
   return true;
 }
 
-/// Returns the coder that was used; nothing on failure.
+/// Fills `payload_` and `mask_bytes_`. Returns the coder that was used, or nothing on failure.
 std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
                                                       const RangeSettings& settings,
                                                       BlockLink* link) {
@@ -116,13 +116,13 @@ std::optional<RangeCoder> RangeEncoder::EncodePayload(const RangeImage& image,
     EncodeByRans(&blended_mask_, &blended_, image.columns);
     return settings.coder;
   }
-  // The mixing coder refuses slices with too long ranges, and outputs with too few bytes for their
-  // pixels. The adaptive coder codes these slices.
+  // The mixing coder refuses an image if a range is too long, or if its payload would have too few
+  // bytes for so many pixels. The adaptive coder codes these images.
   EncodeByRans(&mask_coder_, &coder_, image.columns);
   return RangeCoder::kAdaptive;
 }
 
-/// Encodes by kMixing, with a choice between bins if that saves bits.
+/// Encodes an image by kMixing. Chooses between bins if that probably saves bits.
 bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& settings) {
   MixingSettings mixing{settings.grid, settings.intensity, settings.effort};
   mixing.refined = settings.refined;
@@ -136,17 +136,21 @@ bool RangeEncoder::EncodeMixing(const RangeImage& image, const RangeSettings& se
   return mixing_.Encode(image, mixing, &payload_);
 }
 
-/// Estimates by the adaptive coder, which is ten times as fast. If the bins of a grid are mostly
-/// noise, finer bins cost log2(1.5) = 0.58 bits a return more, and a choice between them saves
-/// nothing. On smooth surfaces finer bins cost less than that.
+/// Returns true if a choice between bins probably saves bits. This is estimated by the adaptive
+/// coder, which is ten times as fast as kMixing.
+///
+/// If the bins of `grid` are mostly noise, finer bins cost log2(1.5) = 0.58 bits more per return,
+/// and a choice between them saves nothing. On smooth surfaces, finer bins cost less than 0.58
+/// bits.
 bool RangeEncoder::ChoiceSaves(const RangeImage& image, const RangeGrid& grid) {
   const double bits = AdaptiveBits(image, grid);
   const double finer = AdaptiveBits(image, FinerGrid(grid));
-  // The factors fit slices of captures and synthetic drives, coded both ways at 1 to 10 cm.
+  // The factors were fitted to slices of captures and synthetic drives. Each slice was coded with
+  // and without a choice, at 1 to 10 cm.
   return finer <= 0.85 * bits + 0.76 * static_cast<double>(returns());
 }
 
-/// Bits that the ranges take in the adaptive coder.
+/// Returns the number of bits that the ranges need in the adaptive coder.
 double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid) {
   RangeSettings geometry;
   geometry.grid = grid;
@@ -157,8 +161,9 @@ double RangeEncoder::AdaptiveBits(const RangeImage& image, const RangeGrid& grid
   return 8.0 * static_cast<double>(bytes);
 }
 
-/// Returns false if no later block can refer to this one: then kMixing codes it. If bins may be
-/// chosen, codes it a second time on a finer grid and takes the smaller result.
+/// Encodes an image by kTemporal. Returns false if that is impossible. The image is then coded by
+/// kMixing, and no later block can refer to it. If bins may be chosen, encodes the image a second
+/// time, on a finer grid, and keeps the smaller payload.
 bool RangeEncoder::EncodeLinked(const RangeImage& image, const RangeSettings& settings,
                                 BlockLink* link) {
   const BlockMemory* reference = link->reference.get();
@@ -206,8 +211,8 @@ bool RangeEncoder::EncodeOn(const RangeGrid& grid, std::uint32_t error_mm, const
 void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& settings) {
   mask_.resize(image.size());
   lists_.values.resize(image.size());
-  // The loop computes BinOf() without divisions. Adding half_part keeps a quotient so far from an
-  // integer that rounding cannot change the bin.
+  // The loop computes BinOf() without divisions. `half_part` is added so that a quotient is never
+  // close to an integer. Rounding therefore cannot change a bin.
   const RangeGrid& grid = settings.grid;
   const double per_mm = RangeGrid::kParts / (1.0 * grid.parts() * grid.unit_mm());
   const double half_part = 0.5 / grid.parts();
@@ -217,7 +222,8 @@ void RangeEncoder::CollectReturns(const RangeImage& image, const RangeSettings& 
   for (std::size_t i = 0; i < size; ++i) mask[i] = ranges[i] != 0 ? 1 : 0;
   std::int32_t* const values = lists_.values.data();
   std::size_t count = 0;
-  // Tests several pixels at once, because most are empty in a cloud whose near points are in cells.
+  // Several pixels are tested at once, because most of them are empty if the cloud coder has put
+  // the near points into cells.
   constexpr std::size_t kAtOnce = 8;
   for (std::size_t first = 0; first < size; first += kAtOnce) {
     const std::size_t end = std::min(first + kAtOnce, size);
@@ -310,7 +316,8 @@ double RangeDecoder::error_m() const {
   return was_chosen ? 1e-3 * mixing_.error_mm() : header_.grid.error_m();
 }
 
-/// If there is a store, `left` gets the block's memory for it.
+/// Decodes a payload of kTemporal. If `store` is not null, sets `left` to the memory after the
+/// block, which the caller adds to `store`.
 bool RangeDecoder::DecodeLinked(const RangeHeader& header, ByteView payload, BlockStore* store,
                                 RangeImage* image, std::shared_ptr<BlockMemory>* left) {
   ByteReader reader(payload);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Range geometry: slices of an organised scan, coded as range integers.
+// Codes slices of an organised scan in range geometry: as integers, one range for each pixel.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -23,25 +23,27 @@ namespace lidar::codec {
 struct RangeSettings {
   RangeCoder coder = RangeCoder::kAdaptive;
   RangeGrid grid;
-  IntensityScale intensity;      // 0 bits: geometry only
-  std::uint32_t kept_beams = 0;  // number of beams if others were left out on purpose; 0: all
-  unsigned effort = 1;           // of kMixing, 1 to 3
+  IntensityScale intensity;      // with 0 bits, only geometry is coded
+  std::uint32_t kept_beams = 0;  // number of beams if others were left out on purpose; 0: all beams
+  unsigned effort = 1;           // effort of kMixing, 1 to 3
   bool refined = false;          // as in MixingSettings
 };
 
-/// Encodes slices of one sensor. Keeps its buffers between slices; not for several threads at once.
+/// Encodes slices of one sensor. Keeps its buffers between slices. Not thread-safe.
 class RangeEncoder {
  public:
-  /// `integers` codes the payloads of external coders. It may be null, and must outlive the
-  /// encoder.
+  /// `integers` codes the payloads of external coders. It may be null. It must outlive the encoder.
   explicit RangeEncoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
       : alignment_(model), integers_(integers), mixing_(model) {}
 
-  /// Appends one block to `out`. Returns false if the image does not fit the sensor or the coder is
-  /// missing. Ranges are multiples of the grid's unit. The image's levels are of 8 bits and become
-  /// those of settings.intensity. An image without any return gives a block that decodes to such an
-  /// image. With `link`, blocks of kMixing become kTemporal if they can, so that others may refer
-  /// to them.
+  /// Appends `image` to `out` as one block. Returns false if the image does not fit the sensor, or
+  /// if the coder is external and missing.
+  ///
+  /// Ranges must be multiples of the grid's unit. The levels of the image must have 8 bits. They
+  /// are converted to those of `settings.intensity`. The image need not have any return.
+  ///
+  /// With a `link`, a block of kMixing becomes kTemporal if possible, so that later blocks may
+  /// refer to it.
   bool Encode(const RangeImage& image, const RangeSettings& settings,
               std::vector<std::uint8_t>* out, BlockLink* link = nullptr);
 
@@ -73,28 +75,32 @@ class RangeEncoder {
   IntegerLists lists_;
   std::vector<std::uint8_t> mask_bytes_;
   std::vector<std::uint8_t> payload_;
-  RangeGrid grid_;  // of the payload
+  RangeGrid grid_;  // grid of the payload
 };
 
-/// Decodes blocks of one sensor; any bytes give an image or false.
+/// Decodes blocks of one sensor. A block may consist of any bytes: if they are not an image,
+/// Decode() returns false.
 class RangeDecoder {
  public:
-  /// If `integers` is null, blocks of external coders are refused.
+  /// If `integers` is null, Decode() refuses blocks of external coders.
   explicit RangeDecoder(const SensorModel& model, const IntegerCoder* integers = nullptr)
       : alignment_(model), integers_(integers), mixing_(model) {}
 
   std::uint32_t columns_per_scan() const { return alignment_.columns_per_scan(); }
 
-  /// Decodes the next block of `reader`; `scale` gets the scale of the levels. Returns false, with
-  /// `image` undefined, for a block that is damaged, of another sensor, or larger than
-  /// `max_points`. Blocks that others may refer to go into `store`, and references come from there.
+  /// Decodes the next block of `reader`. Sets `scale` to the scale of its levels. Returns false if
+  /// the block is damaged, is of another sensor, or has more than `max_points` pixels. `image` is
+  /// then undefined.
+  ///
+  /// If the block refers to another block, that block must be in `store`. If later blocks may refer
+  /// to the block, it is added to `store`.
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale,
               BlockStore* store = nullptr);
   /// Returns true if the last Decode() failed because a block that it refers to is missing.
   bool lacks_reference() const { return lacks_reference_; }
-  /// The header of the block decoded last.
+  /// Returns the header of the block decoded last.
   const RangeHeader& header() const { return header_; }
-  /// The largest error of that block.
+  /// Returns the largest error of the ranges in the block decoded last.
   double error_m() const;
 
  private:
@@ -105,7 +111,7 @@ class RangeDecoder {
                     RangeImage* image);
   bool DecodeIntegers(const RangeHeader& header, ByteView mask, ByteView payload,
                       RangeImage* image);
-  /// Spreads the lists, which now hold ranges, over the pixels that have returns.
+  /// Writes the lists to the pixels that have returns. The values of the lists are already ranges.
   void Scatter(RangeImage* image);
 
   AzimuthAlignment alignment_;

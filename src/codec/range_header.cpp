@@ -7,7 +7,7 @@
 namespace lidar::codec {
 namespace {
 
-// Bits of the second byte.
+// Flags in the second byte of a header.
 constexpr unsigned kGapsFlag = 0x80;
 constexpr unsigned kThinnedFlag = 0x40;
 

@@ -27,18 +27,19 @@ struct RangeHeader {
   std::uint32_t first_column = 0;
   std::uint32_t columns = 0;
   RangeGrid grid;
-  IntensityScale intensity;        // 0 bits: geometry only
+  IntensityScale intensity;        // with 0 bits, only geometry is coded
   std::uint32_t kept_beams = 0;    // number of beams if others were left out to save bits; 0: all
-  bool has_gaps = false;           // some pixels have no return; a mask marks the others
+  bool has_gaps = false;           // some pixels have no return; a mask marks those that have
   std::uint32_t mask_size = 0;     // bytes of the mask, if it is a stream of its own
   std::uint32_t payload_size = 0;  // bytes of the payload, which follows the mask
 
   void Write(std::vector<std::uint8_t>* out) const;
-  /// Reads a header and moves `reader` past it. Returns nothing for an unknown version or coder,
-  /// numbers outside of their limits, or lengths past the end.
+  /// Reads a header and moves `reader` past it. Returns nothing if the version or coder is unknown,
+  /// if a number is outside of its limits, or if a length is beyond the end of the bytes.
   static std::optional<RangeHeader> Read(ByteReader* reader);
 
-  /// Our own coders have the mask in the payload's stream.
+  /// Returns true if the mask has a stream of its own. Our own coders code it in the payload
+  /// instead.
   bool has_mask_stream() const { return has_gaps && coder < RangeCoder::kAdaptive; }
 
   static constexpr std::uint8_t kVersion = 3;

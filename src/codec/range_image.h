@@ -7,7 +7,7 @@
 
 namespace lidar::codec {
 
-/// Row-major, beam by beam: pixel i of a beam is at [beam * columns + i].
+/// The pixels are in row-major order, beam by beam: pixel i of a beam is at [beam * columns + i].
 struct RangeImage {
   std::uint32_t beams = 0;
   std::uint32_t columns = 0;

@@ -24,7 +24,7 @@ void ReferenceKeeper::Restart(Slot* slot) {
 void ReferenceKeeper::OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id,
                                      std::uint32_t index) {
   if (receiver_ != receiver) {
-    // A second receiver, or a restarted one, lacks the blocks of the first.
+    // A second receiver, or a receiver after a restart, does not have the blocks of the first one.
     if (receiver_) alone_since_ = now + kPatience;
     receiver_ = receiver;
     Forget();
@@ -56,8 +56,8 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
   if (now < alone_since_) return false;
   Slot& slot = slots_[slice.index];
   if (key_interval_ > Duration{0}) {
-    // The sectors stand alone in different scans, because a scan with only such slices would be
-    // much larger than others.
+    // Each sector restarts in another scan. If all slices of a scan had no reference, that scan
+    // would be much larger than the others.
     const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
     const auto turn = [&](Time t) { return (t.time_since_epoch() + head_start) / key_interval_; };
     if (turn(now) != turn(slot.begun.value_or(now))) Restart(&slot);
@@ -78,7 +78,8 @@ BlockMemoryPtr ReferenceKeeper::Reference(const RangeImage& image) const {
 
 void ReferenceKeeper::OnEncoded(std::vector<BlockMemoryPtr> blocks) {
   if (current_ == nullptr || blocks.empty()) return;
-  // An acknowledgement has only scan id and index, which must not stand for two slices.
+  // An acknowledgement consists of scan id and index. It would be ambiguous if two slices had the
+  // same numbers.
   const auto same = [&](const Sent& sent) { return sent.scan_id == name_.scan_id; };
   if (std::any_of(current_->sent.begin(), current_->sent.end(), same)) return Restart(current_);
   for (const BlockMemoryPtr& block : blocks) bytes_ += block->bytes();

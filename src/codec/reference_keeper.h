@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The slices that an encoder may refer to: the newest that its receiver has acknowledged.
+// Keeps the slices to which an encoder may refer. In each sector, this is the newest slice that the
+// receiver has acknowledged.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,45 +14,49 @@
 
 namespace lidar::codec {
 
-/// Numbers of a slice at its source.
+/// The numbers that identify a slice at its source.
 struct SliceName {
   std::uint32_t scan_id = 0;
   std::uint32_t index = 0;
   std::uint32_t count = 1;
 };
 
-/// Slices stand alone if no receiver, or more than one, acknowledges them. Times of calls never go
-/// back. For one thread at a time.
+/// There are references only if exactly one receiver acknowledges slices. Otherwise each slice is
+/// coded without a reference. The time must not decrease from call to call. Not thread-safe.
 class ReferenceKeeper {
  public:
-  /// Longest time between slices that stand alone, for late receivers; 0: no limit.
+  /// Sets the longest time between two slices of a sector without reference. Receivers that start
+  /// later can decode these slices. 0: no limit.
   void set_key_interval(Duration interval) { key_interval_ = interval; }
 
-  /// Notes that `receiver` has all of the slice.
+  /// Notes that `receiver` has received the whole slice.
   void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id, std::uint32_t index);
-  /// Lets the next slices stand alone.
+  /// Lets the next slice of each sector have no reference.
   void OnKeyRequest();
 
-  /// Begins the next slice. Returns false if it cannot become a reference.
+  /// Begins the next slice. Returns false if later slices cannot refer to it.
   bool Begin(Time now, const SliceName& slice);
-  /// Returns true if the receiver has an earlier slice of the sector.
+  /// Returns true if the receiver has an earlier slice of the same sector, to which the slice may
+  /// refer.
   bool HasReference() const { return current_ != nullptr && !current_->reference.empty(); }
-  /// Blocks of the earlier slice.
+  /// Returns the blocks of the earlier slice.
   std::vector<BlockMemoryPtr> references() const {
     return HasReference() ? current_->reference : std::vector<BlockMemoryPtr>{};
   }
-  /// Returns the earlier slice's block with the columns of `image`, or null.
+  /// Returns the block of the earlier slice that has the same beams and columns as `image`, or
+  /// null.
   BlockMemoryPtr Reference(const RangeImage& image) const;
-  /// Takes the memories of the blocks of the slice that Begin() began. Call it once at most.
+  /// Keeps the memories of the blocks in the slice that Begin() began. Must be called at most once
+  /// for a slice.
   void OnEncoded(std::vector<BlockMemoryPtr> blocks);
 
-  /// Bytes of all memories.
+  /// Returns the size of all memories.
   std::size_t bytes() const { return bytes_; }
 
-  /// Lower than the limits of BlockStore, because slices may be reordered.
+  /// These limits are lower than those of BlockStore, because slices may arrive in another order.
   static constexpr std::size_t kMostOfSlice = 20;
   static constexpr std::size_t kMostBytes = 48U << 20;
-  /// Silence after which a receiver is assumed to be gone.
+  /// The time without acknowledgements after which a receiver is assumed to be gone.
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
  private:
@@ -59,11 +64,11 @@ class ReferenceKeeper {
     std::uint32_t scan_id = 0;
     std::vector<BlockMemoryPtr> blocks;
   };
-  /// A sector, over all scans.
+  /// A sector: the slices that have the same index in their scans.
   struct Slot {
-    std::deque<Sent> sent;                  // slices since the reference, the oldest first
+    std::deque<Sent> sent;                  // slices after the reference, the oldest first
     std::vector<BlockMemoryPtr> reference;  // empty: none
-    std::optional<Time> begun;              // the newest slice
+    std::optional<Time> begun;              // when the newest slice was begun
   };
   void Forget();
   void Release(const std::vector<BlockMemoryPtr>& blocks);
@@ -77,7 +82,7 @@ class ReferenceKeeper {
 
   std::optional<std::uint32_t> receiver_;
   Time last_heard_{};
-  Time alone_since_{};  // from then on there is only one receiver
+  Time alone_since_{};  // before this time there may be two receivers
 };
 
 }  // namespace lidar::codec

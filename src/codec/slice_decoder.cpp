@@ -25,7 +25,7 @@ std::optional<SliceDecoder::Shape> SliceDecoder::Decode(ByteView stream) {
   return Shape{image_.columns, image_.beams, image_.first_column, is_dense};
 }
 
-/// Decodes the blocks after the first one and appends them on its right.
+/// Decodes the blocks after the first one and appends their columns to the image.
 bool SliceDecoder::AppendBlocks(ByteReader* reader) {
   const std::uint32_t turn = decoder_.columns_per_scan();
   std::uint32_t columns = image_.columns;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes the slices of one stream in range geometry; any bytes give a cloud or nothing.
+// Decodes the slices of a stream in range geometry. A slice may consist of any bytes: they give a
+// cloud or an error.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,11 +12,11 @@
 
 namespace lidar::codec {
 
-/// For one thread at a time.
+/// Not thread-safe.
 class SliceDecoder {
  public:
-  /// `format` must have a sensor model. `integers` must outlive the decoder; if it is null, slices
-  /// of external coders are refused.
+  /// `format` must have a sensor model. `integers` must outlive the decoder. If it is null,
+  /// Decode() refuses slices of external coders.
   SliceDecoder(const CloudFormat& format, std::uint32_t max_points,
                const IntegerCoder* integers = nullptr);
 
@@ -25,23 +26,22 @@ class SliceDecoder {
     std::uint32_t first_column = 0;
     bool is_dense = true;  // no point is missing
   };
-  /// Decodes a slice and keeps it for Write(). Returns nothing for a stream that is damaged, of
-  /// another sensor, or larger than max_points.
+  /// Decodes a slice and keeps it for Write(). Returns nothing if the slice is damaged, is of
+  /// another sensor, or has more than max_points points.
   std::optional<Shape> Decode(ByteView stream);
-  /// True if the last Decode() failed for lack of a slice that it refers to.
+  /// Returns true if the last Decode() failed because a slice to which it refers is missing.
   bool lacks_reference() const { return decoder_.lacks_reference(); }
-  /// Lets slices refer to `block`, as if this decoder had decoded it.
+  /// Adds `block` to the blocks to which slices may refer, as if this decoder had decoded it.
   void Know(BlockMemoryPtr block) { store_.Add(std::move(block)); }
-  /// Quality of a slice.
   struct Quality {
     double step_m = 0;
-    double error_m = 0;  // bound of the error of all points
+    double error_m = 0;  // largest error of any point
     unsigned intensity_bits = 0;
-    double keep_fraction = 1;  // part of the beams; others were left out to save bits
+    double keep_fraction = 1;  // part of the beams that the encoder did not leave out
   };
-  /// The quality of the slice decoded last.
+  /// Returns the quality of the slice decoded last.
   const Quality& quality() const { return quality_; }
-  /// Writes width * height points of the format.
+  /// Writes the decoded slice as width * height points of the format.
   void Write(std::uint8_t* raw) const;
 
  private:

@@ -12,7 +12,7 @@
 namespace lidar::codec {
 namespace {
 
-/// Copies columns [first, first + sector->columns) of `image`.
+/// Copies the columns [first, first + sector->columns) of `image` to `sector`.
 void CopySector(const RangeImage& image, std::uint32_t first, RangeImage* sector) {
   sector->beams = image.beams;
   sector->ranges.resize(sector->size());
@@ -26,7 +26,8 @@ void CopySector(const RangeImage& image, std::uint32_t first, RangeImage* sector
   }
 }
 
-/// Calls task(0 .. count - 1), each in a thread of its own as long as the system provides threads.
+/// Calls task(i) for each i below `count`. Each call has its own thread, as long as the system
+/// provides threads.
 template <class Task>
 void CallInThreads(std::uint32_t count, const Task& task) {
   std::vector<std::thread> workers;
@@ -35,7 +36,7 @@ void CallInThreads(std::uint32_t count, const Task& task) {
   try {
     for (; next < count; ++next) workers.emplace_back(std::cref(task), next);
   } catch (const std::system_error&) {
-    // This thread calls the other tasks.
+    // The remaining tasks are called in this thread.
   }
   task(0);
   for (; next < count; ++next) task(next);

@@ -14,8 +14,8 @@
 namespace lidar::codec {
 
 struct SliceSettings {
-  double max_error_m = 0.02;  // bound of the 3D error of every point
-  double step_m = 0;          // of the grid; 0: the coarsest that max_error_m allows
+  double max_error_m = 0.02;  // largest 3D error of any point
+  double step_m = 0;          // step of the grid; 0: the coarsest that max_error_m allows
   unsigned intensity_bits = 0;
 };
 
@@ -23,60 +23,62 @@ struct EncodedSlice {
   std::vector<std::uint8_t> bytes;
   std::size_t returns = 0;
   double step_m = 0;
-  double error_m = 0;                  // bound with this step
+  double error_m = 0;                  // largest error with this step
   std::vector<BlockMemoryPtr> blocks;  // memories for later slices; may be empty
 };
 
 enum class SliceResult {
   kEncoded,
-  kEmpty,       // no return to encode
+  kEmpty,       // no points to encode, or too many
   kOutOfReach,  // no grid meets max_error_m
 };
 
-/// Encodes a stream of one format. For one thread at a time.
+/// Encodes the slices of a stream, which all have one format. Not thread-safe.
 class SliceEncoder {
  public:
-  /// Returns nothing if `format` has no ranges. `integers` is needed for external coders, and must
-  /// outlive the encoder.
+  /// Creates an encoder. Returns nothing if `format` has no ranges. `integers` is needed for
+  /// external coders, and must outlive the encoder.
   static std::optional<SliceEncoder> Create(const CloudFormat& format,
                                             RangeCoder coder = RangeCoder::kAdaptive,
                                             const IntegerCoder* integers = nullptr);
 
-  /// Loads the ranges of `raw`, which holds whole beams of the format, for Encode().
+  /// Loads the ranges of `raw` for Encode(), and its intensities if `with_intensity`. `raw` has all
+  /// beams of the format.
   void Load(ByteView raw, std::uint32_t first_column, bool with_intensity);
-  /// Number of returns that are loaded.
+  /// Returns the number of returns that are loaded.
   std::size_t returns() const { return returns_; }
-  /// Longest range [m].
+  /// Returns the longest range that is loaded [m].
   double extent_m() const { return extent_m_; }
-  /// Resolution of the loaded ranges [mm]: their CommonUnit().
+  /// Returns the unit of the loaded ranges [mm], as CommonUnit() finds it.
   std::uint32_t range_unit_mm() const { return unit_mm_; }
   bool has_intensity() const { return has_intensity_; }
-  /// Returns the name of the coder for statistics and predictors: "range-adaptive",
-  /// "range-mixing2", "range-temporal2".
+  /// Returns the name of the coder for statistics and predictors, such as "range-adaptive",
+  /// "range-mixing2" or "range-temporal2".
   std::string Mode() const;
-  /// Lets the loaded slice refer to those that the receiver has, if that saves bits and the effort
-  /// is above 0. `keeper` has begun this slice, and must outlive its coding. Null: slices stand
-  /// alone.
+  /// Lets the loaded slice refer to slices that the receiver has, if the effort is above 0 and if
+  /// that saves bits. `keeper` must have begun this slice, and must outlive its coding. If `keeper`
+  /// is null, the slice has no references.
   void LinkBy(const ReferenceKeeper* keeper);
-  /// Effort of our own coder: 0 is RangeCoder::kAdaptive, 1 to EffortControl::kHighest are kMixing,
-  /// each slower than the one below, with smaller slices.
+  /// Sets the effort of our own coder. Effort 0 is RangeCoder::kAdaptive. Efforts from 1 to
+  /// EffortControl::kHighest are kMixing: a higher effort takes more time and gives smaller slices.
   void set_effort(unsigned effort);
 
-  /// Keeps the loaded beams whose element of `kept` is true.
+  /// Removes the returns of each loaded beam whose element of `kept` is false.
   void Thin(const std::vector<bool>& kept);
-  /// Number of beams that Thin() chooses from.
+  /// Returns the number of beams from which Thin() chooses.
   std::size_t rows() const { return image_.beams; }
 
-  /// Most blocks of a slice. Each has a thread of its own, and at least kMinBlockReturns returns.
+  /// Sets the largest number of blocks in a slice. Each block is encoded by its own thread. There
+  /// are fewer blocks if they would have less than kMinBlockReturns returns on average.
   void set_threads(unsigned threads) { threads_ = threads; }
 
-  /// Encodes the loaded slice; may be called again.
+  /// Encodes the loaded slice. May be called several times for the same slice.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
 
   static constexpr std::size_t kMinBlockReturns = 8'000;
 
  private:
-  /// A sector that a thread of its own encodes.
+  /// A block of the slice. A thread of its own encodes it.
   struct Block {
     Block(const SensorModel& model, const IntegerCoder* integers) : encoder(model, integers) {}
     RangeEncoder encoder;
@@ -97,7 +99,7 @@ class SliceEncoder {
   const IntegerCoder* integers_;
   std::vector<Block> blocks_;
   RangeImage image_;
-  std::uint32_t kept_beams_ = 0;  // by Thin(); 0: all
+  std::uint32_t kept_beams_ = 0;  // number of beams that Thin() kept; 0: all
   bool has_intensity_ = false;
   FullScale full_scale_ = FullScale::kByte;
   unsigned threads_ = 1;
@@ -106,7 +108,7 @@ class SliceEncoder {
   std::uint32_t unit_mm_ = 1;
 
   Standstill standstill_;
-  const ReferenceKeeper* keeper_ = nullptr;  // of the loaded slice; null: it stands alone
+  const ReferenceKeeper* keeper_ = nullptr;  // has begun the loaded slice; null: no references
   bool refers_ = false;                      // the loaded slice may refer to others
   double last_step_m_ = 0.04;
 };

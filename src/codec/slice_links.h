@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// References of a coded slice, read without decoding it.
+// Reads from a coded slice to which blocks it refers, without decoding it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,14 +9,14 @@
 
 namespace lidar::codec {
 
-/// A block that others may refer to, or that refers to another.
+/// A block of kTemporal. Other blocks may refer to it, and it may refer to another block.
 struct BlockName {
-  std::uint32_t crc = 0;                   // name of the block: CRC over it
-  std::optional<std::uint32_t> reference;  // name of the block that it needs
+  std::uint32_t crc = 0;                   // name of the block: CRC of the block
+  std::optional<std::uint32_t> reference;  // name of the block to which it refers
 };
 
-/// Returns the blocks of a slice in range geometry that have links. Returns nothing for bytes that
-/// every decoder refuses; a decoder may refuse others, too.
+/// Returns those blocks of `slice` that are of kTemporal. The slice must be in range geometry.
+/// Returns nothing for bytes that every decoder refuses. A decoder may refuse other slices, too.
 std::optional<std::vector<BlockName>> LinksOf(ByteView slice);
 
 }  // namespace lidar::codec

@@ -6,13 +6,14 @@
 namespace lidar::codec {
 namespace {
 
-// Assumed distance of a return without a prediction [steps].
+// The distance that is assumed between a return and its prediction if it has no prediction [steps].
 constexpr double kSurpriseSteps = 8;
 
-/// Returns the bits that a distance costs, roughly.
+/// Returns roughly the number of bits that a distance costs.
 double Cost(double steps) { return std::log2(1 + steps); }
 
-/// `recalled(i)` is the earlier range of pixel i [mm]; 0: unknown.
+/// Returns true if earlier ranges predict the pixels better than their left neighbours do.
+/// `recalled(i)` returns the earlier range of pixel i [mm], or 0 if it is unknown.
 template <class Recalled>
 bool IsWorthIt(const RangeImage& image, double step_m, Recalled&& recalled) {
   const double per_mm = 1e-3 / step_m;
@@ -28,8 +29,8 @@ bool IsWorthIt(const RangeImage& image, double step_m, Recalled&& recalled) {
     beside += Cost(last > 0 ? std::abs(range - last) * per_mm : kSurpriseSteps);
     last = range;
   }
-  // This is cautious. In measurements, references save bytes while `before` is up to 1.5 times
-  // `beside`.
+  // The condition is cautious. In measurements, references saved bytes even if `before` was up to
+  // 1.5 times `beside`.
   return before < beside;
 }
 
@@ -44,7 +45,7 @@ bool Resembles(const RangeImage& image, const BlockMemory& memory, double step_m
 }
 
 bool Standstill::OnImage(const RangeImage& image, double step_m) {
-  // A source whose first columns keep changing would fill the map.
+  // The map is cleared because a source whose first columns keep changing would fill it.
   if (last_.size() > kMostSectors || (last_.size() + 1) * image.size() > kMostPixels) last_.clear();
   std::vector<std::uint32_t>& last = last_[image.first_column];
   const bool known = last.size() == image.size();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Numbers below 2^28 as LEB128: seven bits a byte, the lowest first, four bytes at most.
+// Writes and reads numbers below 2^28 as LEB128: seven bits per byte, the lowest bits first, and at
+// most four bytes.
 #pragma once
 #include <cstdint>
 
@@ -13,7 +14,7 @@ inline void WriteVarint(std::uint32_t value, ByteWriter* writer) {
   writer->U8(static_cast<std::uint8_t>(value));
 }
 
-/// A longer number makes `*ok` false.
+/// Returns the next number of `reader`. Sets `*ok` to false if the number has more than four bytes.
 inline std::uint32_t ReadVarint(ByteReader* reader, bool* ok) {
   std::uint32_t value = 0;
   for (unsigned shift = 0; shift < 28; shift += 7) {
