@@ -75,7 +75,7 @@ FullScale ReadRangeImage(ByteView raw, const CloudLayout& layout, bool with_inte
   for (std::size_t i = 0; i < count; ++i, point += layout.point_step)
     image->ranges[i] = Load<std::uint32_t>(point);
   if (!with_intensity || !HasIntensity(layout.fields)) return FullScale::kByte;
-  // Where a return is missing, a driver may leave any number as its intensity. This number must not
+  // A driver may leave any number as the intensity of a missing return. This number must not
   // determine the scale, so it is replaced by 0.
   const std::uint8_t* first = raw.data + layout.fields.Find("intensity")->offset;
   const auto intensity_of = [&](std::size_t i) {
@@ -135,7 +135,8 @@ void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
   const PointField* range = FindTyped(layout.fields, "range", FieldType::kU32);
   const PointField* intensity =
       image.intensity.empty() ? nullptr : FindTyped(layout.fields, "intensity", FieldType::kF32);
-  // If the layout has only these fields, every byte is written below, and raw needs no zeros.
+  // If the layout has only these fields, every byte of `raw` is written below, so no zeros are
+  // needed.
   const PointFields kept = KeptFields(layout.fields, intensity != nullptr, range != nullptr);
   if (kept != layout.fields || layout.point_step != kept.MinimumStep())
     std::memset(raw, 0, image.size() * layout.point_step);

@@ -79,8 +79,8 @@ void ReadXyz(ByteView raw, const CloudLayout& layout, bool with_intensity, XyzCl
 void WriteRangeImage(const RangeImage& image, const IntensityScale& scale,
                      const RangeProjection& projection, const CloudLayout& layout,
                      std::uint8_t* raw);
-/// Writes the points of `cloud` to `raw`. Point i becomes point order[i], or point i if `order` is
-/// empty. Fields that `cloud` does not have are set to zero.
+/// Writes the points of `cloud` to `raw`. Point i is written at index order[i], or at index i if
+/// `order` is empty. Fields that `cloud` does not have are set to zero.
 void WriteXyz(const XyzCloud& cloud, const CloudLayout& layout, std::uint8_t* raw,
               const std::vector<std::uint32_t>& order = {});
 

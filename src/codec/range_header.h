@@ -29,7 +29,7 @@ struct RangeHeader {
   RangeGrid grid;
   IntensityScale intensity;        // with 0 bits, only geometry is coded
   std::uint32_t kept_beams = 0;    // number of beams if others were left out to save bits; 0: all
-  bool has_gaps = false;           // some pixels have no return; a mask marks those that have
+  bool has_gaps = false;           // some pixels have no return; a mask marks the returns
   std::uint32_t mask_size = 0;     // bytes of the mask, if it is a stream of its own
   std::uint32_t payload_size = 0;  // bytes of the payload, which follows the mask
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads from a coded slice to which blocks it refers, without decoding it.
+// Finds out to which blocks a coded slice refers, without decoding the slice.
 #pragma once
 #include <cstdint>
 #include <optional>

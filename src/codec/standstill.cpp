@@ -9,7 +9,7 @@ namespace {
 // The distance that is assumed between a return and its prediction if it has no prediction [steps].
 constexpr double kSurpriseSteps = 8;
 
-/// Returns roughly the number of bits that a distance costs.
+/// Returns roughly how many bits it costs to code a distance.
 double Cost(double steps) { return std::log2(1 + steps); }
 
 /// Returns true if earlier ranges predict the pixels better than their left neighbours do.

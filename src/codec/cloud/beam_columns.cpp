@@ -15,7 +15,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-constexpr double kCovered = 0.6;  // part of all points
+constexpr double kCovered = 0.6;  // part of all points that must be on beams
 
 std::vector<BeamAzimuths> AzimuthsOf(const std::vector<Sighting>& points, const FoundBeams& found) {
   std::vector<BeamAzimuths> all;
@@ -29,7 +29,8 @@ std::vector<BeamAzimuths> AzimuthsOf(const std::vector<Sighting>& points, const 
   return all;
 }
 
-/// Subtracts the angle that a beam adds to its azimuths if it does not pass through the origin.
+/// Subtracts the angle that is added to the azimuths of a beam if it does not pass through the
+/// origin.
 void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   for (BeamAzimuth& a : *azimuths) {
     const double angle = SideAngle(beam, static_cast<double>(a.rho_m));
@@ -37,16 +38,17 @@ void StraightenBeam(const BeamTable::Beam& beam, BeamAzimuths* azimuths) {
   }
 }
 
-/// Rounds to a length that a table can hold.
+/// Rounds a length to a multiple of the unit that lengths have in a table.
 std::int32_t InLengthUnits(double um) {
   constexpr std::int32_t kUnit = BeamTable::kLengthUnitUm;
   return kUnit * static_cast<std::int32_t>(std::lround(um / kUnit));
 }
 
-/// Finds the position of range 0 along each beam, up to a multiple of the unit in which the sensor
-/// measures. Each beam has a zero point of its own.
+/// Finds the reach of each beam: the position of range 0 along the beam. Beams have different
+/// reaches. A reach can only be found up to a multiple of the unit in which the sensor measures
+/// ranges.
 void FindReaches(const std::vector<Sighting>& points, const FoundBeams& found, BeamTable* table) {
-  constexpr double kClear = 0.8;  // best: 1
+  constexpr double kClear = 0.8;  // 1 is the best value
   const BeamLocator locator(*table);
   for (const double unit_mm : {8.0, 5.0, 4.0, 2.0, 1.0}) {
     std::vector<std::complex<double>> phases(table->rows());
@@ -120,7 +122,7 @@ std::optional<BeamTable> FindBentColumns(const FoundBeams& found,
   return table;
 }
 
-/// Rounds elevations and offsets, because digits that the points do not determine would cost bits.
+/// Rounds elevations and offsets. Digits that the points do not determine would cost bits.
 void RoundAngles(BeamTable* table) {
   constexpr std::int32_t kUnit = 8;
   const auto rounded = [](std::int32_t angle) { return (angle + kUnit / 2) & ~(kUnit - 1); };
@@ -137,7 +139,7 @@ std::optional<BeamTable> FindExactBeams(const std::vector<Sighting>& points) {
   };
   constexpr double kClearly = 0.9;
   const FoundBeams meeting = FindMeetingBeams(points);
-  // A bending beam looks like several if elevations are rounded.
+  // If elevations are rounded, one bending beam looks like several beams.
   const FoundBeams bending = FindBendingBeams(points);
   if (good(bending, kClearly) && 2 * bending.beams.size() < meeting.beams.size())
     return FindBentColumns(bending, AzimuthsOf(points, bending));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the columns of a cloud: the azimuths at which its beams see points.
+// Finds the columns of a cloud: the azimuths at which its beams have points.
 #pragma once
 #include <optional>
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Returns nothing if most points lie on no beam, or in no columns.
+/// Finds the beams and columns of a cloud. Returns nothing if too few points are on beams, or if
+/// the points of a beam are not in columns.
 std::optional<BeamTable> FindBeams(const std::vector<Sighting>& points);
 
 }  // namespace lidar::codec::cloud

@@ -37,7 +37,8 @@ class Placer {
     placed_.resize(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) PlaceOnBeam(locator, points_[i], &placed_[i]);
   }
-  /// Places points that are already on beams. Returns the part of the points near their pixels.
+  /// Places points in columns. They must already be on beams. Returns the part of the points that
+  /// are near their pixels.
   double PlaceInColumns() {
     const ColumnFinder finder(table_);
     std::size_t near = 0;
@@ -45,7 +46,8 @@ class Placer {
       near += PlaceInColumn(finder, points_[i], &placed_[i]);
     return PartOf(near, points_.size());
   }
-  /// Places points on beams and in columns, in one pass.
+  /// Places points on beams and in columns, in one pass. Returns the part of the points that are
+  /// near their pixels.
   double Place() {
     const BeamLocator locator(table_);
     const ColumnFinder finder(table_);
@@ -57,7 +59,7 @@ class Placer {
     }
     return PartOf(near, points_.size());
   }
-  /// Returns the azimuth less the offset of the beam.
+  /// Returns the azimuth of `p` minus the offset of its beam.
   std::int32_t StraightOf(const PlacedPoint& p) const {
     return (p.azimuth - table_.beams[p.beam].offset) & (kTurn - 1);
   }
@@ -92,7 +94,7 @@ class Placer {
   std::vector<PlacedPoint>& placed_;
 };
 
-/// Returns the part of the points near their pixels.
+/// Returns the part of the points that are near their pixels.
 double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>& placed) {
   std::size_t near = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -100,7 +102,7 @@ double FitOf(const std::vector<Sighting>& points, const std::vector<PlacedPoint>
   return PartOf(near, points.size());
 }
 
-/// Turns all beams by the mean distance of the points from their columns.
+/// Adds the mean distance of the points from their columns to the offsets of all beams.
 void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
   const double columns = 2 * M_PI * table->turn / BeamTable::kParts / kTurn;
   std::complex<double> phases;
@@ -112,7 +114,8 @@ void ShiftColumns(const std::vector<PlacedPoint>& placed, BeamTable* table) {
 
 }  // namespace
 
-/// Finds the path of the points. Returns false if too few of them are on it.
+/// Finds a path of the points, and places the points on it. Returns false if there is none, or if
+/// too few points are near it.
 bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points,
                                 const std::vector<Pulse>& pulses,
                                 std::vector<PlacedPoint>* placed) {
@@ -125,8 +128,8 @@ bool BeamKeeper::PlaceOnNewPath(const std::vector<Sighting>& points,
   return true;
 }
 
-/// Places points by the beams of earlier clouds. Returns false if the points fit worse than the
-/// points of those clouds.
+/// Places points on the beams of earlier clouds. Returns false if clearly fewer of the points are
+/// near their pixels than in the cloud in which the beams were found.
 bool BeamKeeper::PlaceByOld(const std::vector<Sighting>& points, const std::vector<Pulse>& pulses,
                             std::vector<PlacedPoint>* placed) {
   constexpr double kAlike = 0.97;
@@ -161,7 +164,7 @@ const BeamTable* BeamKeeper::Place(const std::vector<Sighting>& points,
   constexpr unsigned kAtFirst = 4;
   const bool is_power = (fails_ & (fails_ - 1)) == 0;
   if (fails_ > kAtFirst && !is_power && fails_ % kLongestPause != 0) {
-    // No points are placed on a path, because PlaceByOld() found no new path.
+    // If the table has a path, the points are not placed, because PlaceByOld() found no new path.
     return table_ && !table_->has_path() ? &*table_ : nullptr;
   }
   if (PlaceOnNewPath(points, pulses, placed)) {

@@ -10,8 +10,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Limits of elevations, in units: the least gap between two beams, and the greatest width of a
-/// beam.
+/// Limits of elevations, in angle units: the least gap between two beams, and the greatest width of
+/// a beam.
 constexpr double kGap = 60;         // 0.005 degrees
 constexpr double kWidest = 350;     // 0.03 degrees
 constexpr std::size_t kFewest = 8;  // points
@@ -33,14 +33,16 @@ constexpr double kNearest = 1;  // [m]
 
 using Histogram = std::vector<std::uint32_t>;
 
-/// Bin of the tangent from this height to the point; SIZE_MAX: it is too steep.
+/// Returns the histogram bin of the tangent of a line from the height `height_m` of the z axis to
+/// the point. Returns SIZE_MAX if the line is too steep.
 std::size_t ClassOf(const Sighting& s, double height_m, double classes_per_tangent) {
   const double tangent = (s.z_m - height_m) / s.rho_m;
   if (std::abs(tangent) >= kMostTangent) return SIZE_MAX;
   return static_cast<std::size_t>((tangent + kMostTangent) * classes_per_tangent);
 }
 
-/// Finds for each window of tangents the height at which their histogram is sharpest.
+/// Returns the best height for each window of tangents. The histogram of the tangents, as seen from
+/// this height, has the sharpest peaks.
 std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
   std::vector<double> heights(kWindows, 0);
   std::vector<double> best(kWindows, 0);
@@ -65,11 +67,12 @@ std::vector<double> SharpestHeights(const std::vector<Sighting>& points) {
   return heights;
 }
 
-/// Finds peaks in the histogram of tangents, with each window at its own height.
+/// Finds lines as peaks in the histogram of tangents. The tangents of each window are seen from the
+/// window's own height.
 std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
   constexpr std::size_t kFiner = 2;
   constexpr double kPerTangent = kFiner / kTangentStep;
-  constexpr std::size_t kReach = 7;  // a tangent of 0.0014, 0.08 degrees
+  constexpr std::size_t kReach = 7;  // a tangent of 0.0014, i.e. 0.08 degrees
   const std::vector<double> heights = SharpestHeights(points);
   std::vector<double> histogram(kFiner * kTangents + 1, 0);
   for (const Sighting& s : points) {
@@ -101,7 +104,7 @@ std::vector<BeamLine> FirstLines(const std::vector<Sighting>& points) {
   return lines;
 }
 
-/// Finds the line that is nearest to a point. Sorts the beams.
+/// Finds the beam whose line is nearest to a point. The constructor sorts the beams.
 class NearestLine {
  public:
   explicit NearestLine(std::vector<FoundBeam>* beams) : beams_(*beams) {
@@ -114,13 +117,14 @@ class NearestLine {
     low_ = heights.empty() ? 0 : *std::min_element(heights.begin(), heights.end());
     high_ = heights.empty() ? 0 : *std::max_element(heights.begin(), heights.end());
   }
-  /// Returns the beam whose line is nearest within `reach_m`, except `other_than`; null: none.
+  /// Returns the beam whose line is nearest to the point. Returns null if no line is within
+  /// `reach_m`. The beam `other_than` is left out.
   FoundBeam* Find(const Sighting& s, double reach_m, const FoundBeam* other_than = nullptr) const {
-    constexpr double kSteepest = 1.81;      // length of a line of kMostTangent, divided by its rho
+    constexpr double kSteepest = 1.81;      // at least sqrt(1 + kMostTangent^2)
     constexpr std::ptrdiff_t kAround = 32;  // bounds the time if many lines are near a point
     const double rho = std::max(s.rho_m, 1e-3);
-    // Lines with tangents outside of these limits pass the point at a distance above reach_m,
-    // whatever their height.
+    // Lines with tangents outside of these limits are farther than `reach_m` from the point,
+    // whatever their height is.
     const std::ptrdiff_t first = Below((s.z_m - low_ + kSteepest * reach_m) / rho);
     const std::ptrdiff_t end = Below((s.z_m - high_ - kSteepest * reach_m) / rho);
     const std::ptrdiff_t middle = Below((s.z_m - middle_) / rho);
@@ -148,7 +152,7 @@ class NearestLine {
   double high_;
 };
 
-/// Gives each point to the nearest line within `reach_m`.
+/// Assigns each point to the beam with the nearest line, if this line is within `reach_m`.
 void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
   for (FoundBeam& beam : found->beams) beam.points.clear();
   found->points = 0;
@@ -161,7 +165,8 @@ void Assign(const std::vector<Sighting>& points, double reach_m, FoundBeams* fou
   }
 }
 
-/// Drops a beam if other lines are near to most of its points, too. Begins with the smallest beam.
+/// Removes all points from a beam if other beams are near to most of these points, too. Begins with
+/// the beam that has the fewest points.
 void DropNeedless(const std::vector<Sighting>& points, double reach_m, FoundBeams* found) {
   constexpr double kMost = 0.8;
   const NearestLine lines(&found->beams);
@@ -174,14 +179,14 @@ void DropNeedless(const std::vector<Sighting>& points, double reach_m, FoundBeam
     const auto elsewhere =
         std::count_if(beam->points.begin(), beam->points.end(), [&](std::uint32_t p) {
           const FoundBeam* other = lines.Find(points[p], reach_m, beam);
-          return other != nullptr && !other->points.empty();  // a dropped beam holds no points
+          return other != nullptr && !other->points.empty();  // a dropped beam has no points
         });
     if (static_cast<double>(elsewhere) >= kMost * static_cast<double>(beam->points.size()))
       beam->points.clear();
   }
 }
 
-/// Fits a line by least squares. The old height is a prior.
+/// Fits the line of a beam to its points by least squares. The old height of the line is a prior.
 void Refit(const std::vector<Sighting>& points, FoundBeam* beam) {
   constexpr double kPrior = 0.01;  // weight of the prior for each point [m^2]
   const auto n = static_cast<double>(beam->points.size());
@@ -198,7 +203,7 @@ void Refit(const std::vector<Sighting>& points, FoundBeam* beam) {
     square += away * away;
     product += away * (points[i].z_m - z);
   }
-  // The prior is the tangent from the old height to the middle of the points.
+  // The prior of the tangent is that of the line from the old height to the middle of the points.
   const double old = (z - beam->line.height_m) / std::max(rho, 1e-3);
   const double weight = kPrior * n;
   beam->line.tangent = (product + weight * old) / (square + weight);
@@ -291,8 +296,8 @@ class BendingBeams {
   }
 
   const std::vector<Sighting>& points_;
-  std::vector<double> classes_;  // of the points' elevations
-  std::vector<double> peaks_;    // in falling order
+  std::vector<double> classes_;  // of the points' elevations, not rounded
+  std::vector<double> peaks_;    // in descending order
 };
 
 }  // namespace
@@ -328,8 +333,8 @@ FoundBeams FindBendingBeams(const std::vector<Sighting>& points) {
 FoundBeams FindPassingBeams(const std::vector<Sighting>& points) {
   FoundBeams found;
   for (const BeamLine& line : FirstLines(points)) found.beams.push_back({line, {}});
-  // Fits the lines found so far first, because further lines show only after the points of these
-  // lines are left out.
+  // The lines found so far are fitted first, and their points are left out. Only then can further
+  // lines be found.
   for (const double reach_m : {0.04, 0.02}) {
     Assign(points, reach_m, &found);
     for (FoundBeam& beam : found.beams)

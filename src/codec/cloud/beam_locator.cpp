@@ -16,7 +16,7 @@ BeamLocator::BeamLocator(const BeamTable& table) {
   }
   constexpr std::uint32_t kAround = 3;
   if (table.has_offsets()) around_ = kAround;
-  // Sets for each bucket the last beam above its upper edge.
+  // Each bucket gets the last beam that is above its upper edge.
   buckets_.assign(kBuckets, 0);
   std::uint32_t next = 0;
   for (std::uint32_t beam = 0; beam < lines_.size(); ++beam) {
@@ -28,14 +28,16 @@ BeamLocator::BeamLocator(const BeamTable& table) {
   for (std::uint32_t beam = 0; beam < lines_.size(); ++beam) far_m_.push_back(FarFrom(beam));
 }
 
-/// Returns the distance along the ground beyond which line `guess` or the next one is the nearest
-/// line to each point with this guess. The slope of such a point, as seen from the middle height,
-/// is between the slopes of these two lines, or below both by up to the width of a bucket.
+/// Returns a distance along the ground. If a point with this guess is farther away, the line
+/// nearest to the point is either line `guess` or the next one.
+///
+/// The slope of such a point, as seen from the middle height, is between the slopes of these two
+/// lines, or below both by at most the width of a bucket.
 double BeamLocator::FarFrom(std::uint32_t guess) const {
   const auto beams = static_cast<std::uint32_t>(lines_.size());
   constexpr double kNever = std::numeric_limits<double>::infinity();
   constexpr double kLeastCosine = 0.1;
-  // The slopes of points above the first beam or below the last one have no bound.
+  // Points above the first beam, or below the last one, may have any slope.
   if (guess == 0 || guess + 1 >= beams) return kNever;
   const std::uint32_t first = guess < around_ ? 0 : guess - around_;
   const std::uint32_t end = std::min(guess + around_ + 2, beams);
@@ -46,8 +48,9 @@ double BeamLocator::FarFrom(std::uint32_t guess) const {
   const double most = upper.sine / upper.cosine;
   const double edge = lower.sine / lower.cosine;
   const double width = 1.1 / (0.4999 * kBuckets) * (1 + std::abs(edge)) * (1 + std::abs(edge));
-  // away() is the distance of a point 1 m along the ground from a line, if the line is moved to the
-  // middle height. off_m() is how much the line's own height changes a distance.
+  // away() is for a point that is 1 m away along the ground. It is the distance of the point from a
+  // line, if the line is moved to the middle height. off_m() is by how much the true height of the
+  // line changes a distance.
   const auto away = [](const Line& line, double slope) { return slope * line.cosine - line.sine; };
   const auto off_m = [&](const Line& line) {
     return std::abs(line.height_m - middle_height_m_) * line.cosine;

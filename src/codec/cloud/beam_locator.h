@@ -12,13 +12,13 @@ class BeamLocator {
  public:
   struct Found {
     std::uint32_t beam = 0;
-    double along_m = 0;  // of the beam
-    double above_m = 0;  // height of the point above it
+    double along_m = 0;  // position of the point along the beam
+    double above_m = 0;  // height of the point above the beam
   };
 
   explicit BeamLocator(const BeamTable& table);
 
-  /// Returns the nearest beam.
+  /// Returns the beam that is nearest to the point.
   Found Find(const Sighting& s) const {
     const std::uint32_t guess =
         buckets_[BucketOf(s.z_m - middle_height_m_, std::max(s.rho_m, 1e-6))];
@@ -56,7 +56,8 @@ class BeamLocator {
     const Line& line = lines_[beam];
     return (s.z_m - line.height_m) * line.cosine - s.rho_m * line.sine;
   }
-  /// Maps a direction to its bucket, by a quotient that rises with the elevation from -1 to 1.
+  /// Returns the bucket of a direction. It is computed from a quotient that rises with the
+  /// elevation, from -1 to 1.
   static std::uint32_t BucketOf(double z, double rho) {
     return static_cast<std::uint32_t>((1 - z / (rho + std::abs(z))) * (0.4999 * kBuckets));
   }

@@ -12,14 +12,14 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Guesses a field of the next beam in the way that was best for the beams so far: the value of one
-/// of the last eight beams, because sensors repeat their patterns; the last value plus its last
-/// change; or the mean.
+/// Guesses a field of the next beam. There are ten ways to guess, and the one that was best for the
+/// last beams is used. The first eight ways take the value of one of the last eight beams, because
+/// sensors repeat their patterns. The others are the last value plus the last change, and the mean.
 class FieldGuess {
  public:
   static constexpr unsigned kWays = 10;
 
-  /// Returns the best way; the first of equal ones.
+  /// Returns the best way. If several ways are equally good, returns the first of them.
   unsigned way() const {
     return static_cast<unsigned>(std::min_element(costs_.begin(), costs_.end()) - costs_.begin());
   }
@@ -27,7 +27,8 @@ class FieldGuess {
     if (way < kLast) return last_[way];
     return way == kLast ? 2 * last_[0] - last_[1] : mean_ / kMeanParts;
   }
-  /// `value` is an angle modulo `turn`, or no angle if `turn` is 0.
+  /// Updates the guesses by the true value. `value` is an angle modulo `turn`, or not an angle if
+  /// `turn` is 0.
   void See(std::int32_t value, std::int32_t turn) {
     for (unsigned way = 0; way < kWays; ++way) {
       std::int32_t off = std::abs(value - By(way));
@@ -55,7 +56,8 @@ class BeamFields {
  public:
   explicit BeamFields(Coder* coder) : coder_(*coder) {}
 
-  /// Codes the next value of a field, a multiple of `unit`. Angles are modulo `turn`.
+  /// Codes the next value of a field. It is a multiple of `unit`. If `turn` is not 0, it is an
+  /// angle modulo `turn`.
   std::int32_t Code(unsigned field, std::int32_t value, std::int32_t unit, std::int32_t turn = 0) {
     FieldGuess& guess = guesses_[field];
     const unsigned way = guess.way();
@@ -68,8 +70,8 @@ class BeamFields {
         wanted, {field, field * 32 + static_cast<std::uint32_t>(length), field * 16 + way},
         &coder_);
     length = mixing::BitLength(static_cast<std::uint32_t>(std::abs(number)));
-    // A damaged stream may have any number, so the value is limited. No field has values as large
-    // as kLimit.
+    // A damaged stream may have any number, so the value is limited. Valid values are smaller than
+    // kLimit.
     const std::int32_t back =
         turn > 0 ? (from + number) & (around - 1) : std::clamp(from + number, -kLimit, kLimit);
     guess.See(back, around);

@@ -5,7 +5,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes all beams of a table without a path, top to bottom. Returns false for a damaged stream.
+/// Codes all beams of `table`, from top to bottom. The table must not have a path. Returns false if
+/// the stream is damaged.
 template <class Coder>
 bool CodeBeams(BeamTable* table, Coder* coder);
 

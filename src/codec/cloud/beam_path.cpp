@@ -10,7 +10,7 @@
 namespace lidar::codec::cloud {
 
 BeamPath::Terms BeamPath::TermsAt(std::uint32_t column) const {
-  // Chebyshev polynomials, by their recursion.
+  // The Chebyshev polynomials are computed by their recursion.
   std::array<double, kPathDegrees[0] + 1> powers{};
   const double x = (2.0 * column + 1) / columns_ - 1;
   powers[0] = 1;
@@ -31,7 +31,7 @@ BeamPath::Terms BeamPath::TermsAt(std::uint32_t column) const {
 
 std::vector<PathDirection> BeamPath::Trace(const std::vector<PathBeam>& beams, std::uint32_t first,
                                            std::uint32_t count) const {
-  // Leaves out terms that no curve uses, because they would take half of the time.
+  // Terms that no curve uses are left out, because they would take half of the time.
   std::vector<std::size_t> used;
   std::vector<std::array<double, 2>> factors;  // of the used terms, for each beam
   for (std::size_t term = 0; term < kPathTerms; ++term)

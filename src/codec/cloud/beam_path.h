@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beams of sensors whose scans do not repeat. Each beam follows curves of its own.
+// The paths of beams, for sensors whose scans do not repeat. Each beam follows its own curves.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,25 +7,25 @@
 
 namespace lidar::codec::cloud {
 
-/// A curve is a sum of polynomials, multiplied by 1, by the cosine and the sine of the turn, and by
-/// those of twice the turn. These are the degrees of the polynomials.
+/// The degrees of the polynomials in a curve. A curve is the sum of a polynomial, of two
+/// polynomials that are multiplied by the cosine and the sine of the turn, and of two polynomials
+/// that are multiplied by the cosine and the sine of twice the turn.
 constexpr std::array<unsigned, 3> kPathDegrees = {15, 7, 3};
 constexpr unsigned kPathTerms = 40;
 constexpr std::uint32_t kMostPathBeams = 16;
 
-/// Factors of the terms, in kPathUnit.
+/// The factors of a curve's terms, in units of kPathUnit.
 using PathCurve = std::array<std::int32_t, kPathTerms>;
 constexpr std::int32_t kPathUnit = 4;
 
-/// The two curves of a beam: of the angle that it adds to the azimuth of the turn, and of its
-/// elevation.
+/// The two curves of a beam: the angle that is added to the azimuth of the turn, and the elevation.
 struct PathBeam {
   PathCurve azimuth{};
   PathCurve elevation{};
 };
 
 struct PathDirection {
-  std::int32_t azimuth = 0;  // without wrapping
+  std::int32_t azimuth = 0;  // not wrapped
   std::int32_t elevation = 0;
 };
 
@@ -34,21 +34,21 @@ class BeamPath {
   static constexpr unsigned kRateBits = 11;
   static constexpr std::int32_t kMostRate = (1 << 27) - 1;
 
-  /// Azimuths turn by `rate` a column.
+  /// The azimuth of the turn changes by `rate` from one column to the next.
   BeamPath(std::int32_t rate, std::uint32_t columns) : rate_(rate), columns_(columns) {}
 
   using Terms = std::array<double, kPathTerms>;
   Terms TermsAt(std::uint32_t column) const;
-  /// Returns the azimuth without curves and wrapping.
+  /// Returns the azimuth of the turn, without curves and not wrapped.
   std::int64_t TurnAt(std::uint32_t column) const {
     return std::int64_t{rate_} * column >> kRateBits;
   }
-  /// Returns the directions of `count` columns, beam by beam.
+  /// Returns the directions of `count` columns, beginning with column `first`, beam by beam.
   std::vector<PathDirection> Trace(const std::vector<PathBeam>& beams, std::uint32_t first,
                                    std::uint32_t count) const;
 
  private:
-  std::int32_t rate_;  // in 1/2^kRateBits units a column
+  std::int32_t rate_;  // per column, in 1/2^kRateBits of an angle unit
   std::uint32_t columns_;
 };
 

@@ -14,7 +14,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Makes the sensor model that the range coder needs, whose columns are those of the table.
+/// Makes a sensor model with the beams and columns of the table. The range coder needs one.
 SensorModel ModelOf(const BeamTable& table) {
   SensorModel model;
   model.columns_per_scan = table.columns();
@@ -32,8 +32,8 @@ std::vector<std::int32_t> BinsOf(const RangeImage& image, const RangeGrid& grid)
   return bins;
 }
 
-/// A sum of logarithms of factors. Takes a logarithm only of the product of many factors, which is
-/// faster.
+/// The sum of the logarithms of many factors. For speed, factors are multiplied, and the logarithm
+/// of their product is computed only now and then.
 class LogSum {
  public:
   /// `factor` is from 1 to 2^23.
@@ -51,7 +51,7 @@ class LogSum {
   double bits_ = 0;
 };
 
-/// Chooses the guess with which residuals need the fewest bits.
+/// Returns the guess with which the residuals need the fewest bits.
 ResidualGuess BestGuess(const RangeImage& image, std::uint32_t tangent_um,
                         const std::vector<std::int32_t>& residuals) {
   std::array<LogSum, kResidualGuesses> costs{};
@@ -100,7 +100,8 @@ std::vector<ExtraBin> ExtraBins(const PixelList& list, const std::vector<std::in
   return extras;
 }
 
-/// Sets `decoded` and `grid` to the ranges that a decoder gets for `image`, and to their grid.
+/// Sets `decoded` to the ranges that a decoder gets for `image`, and `grid` to the grid of these
+/// ranges.
 bool ComeBack(const RangeImage& image, const RangeSettings& settings,
               const std::vector<std::uint8_t>& block, const BeamTable& table, RangeImage* decoded,
               RangeGrid* grid) {
@@ -116,7 +117,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
     }
     return true;
   }
-  // The encoder may have chosen bins other than the nearest.
+  // The encoder may have chosen bins other than the nearest ones, so `block` is decoded.
   RangeDecoder decoder(ModelOf(table));
   IntensityScale scale;
   ByteReader reader(block.data(), block.size());
@@ -125,7 +126,7 @@ bool ComeBack(const RangeImage& image, const RangeSettings& settings,
   return true;
 }
 
-/// Codes residuals to within `settings->tangent_um`, unless that is 0.
+/// Codes residuals with errors of up to `settings->tangent_um`. If that is 0, codes nothing.
 void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
                      std::vector<std::int32_t>* residuals, mixing::BinaryEncoder* bits) {
   if (settings->tangent_um == 0) return;
@@ -133,7 +134,8 @@ void EncodeResiduals(const RangeImage& image, ResidualSettings* settings,
   CodeResiduals(image, *settings, residuals, bits);
 }
 
-/// A flag in the byte of the azimuths' guess: further returns have contexts of four neighbours.
+/// A flag in the byte with the guess of the azimuths. It says that further returns are coded in the
+/// context of four neighbours.
 constexpr unsigned kByFourFlag = 4;
 
 void WriteSettings(const ResidualSettings& settings, unsigned flag, ByteWriter* writer) {
@@ -165,8 +167,8 @@ bool BeamSectionEncoder::Encode(BeamTable table, const PixelErrors& errors,
   std::vector<std::uint8_t> block;
   const RangeSettings settings = SettingsOf(errors, levels, way, image);
   if (!CoderOf(table)->Encode(image, settings, &block)) return false;
-  // The coding of residuals depends on the decoded ranges, that of further returns only on the
-  // bins. Below the highest effort, the decoded bins are those of `image`.
+  // Residuals are coded by the decoded ranges, further returns only by the decoded bins. Below the
+  // highest effort, the decoded bins are those of `image`.
   RangeImage decoded;
   RangeGrid grid = settings.grid;
   const bool has_extras = !list->extras.empty();
@@ -216,14 +218,15 @@ struct DecodedSection {
   RangeImage image;
   std::vector<std::int32_t> residuals;
   std::vector<std::int32_t> bends;
-  std::vector<BeamTable::Slope> slopes;   // of the beams
-  std::vector<PathDirection> directions;  // of the pixels, on a path
+  std::vector<BeamTable::Slope> slopes;   // one for each beam
+  std::vector<PathDirection> directions;  // one for each pixel, on a path
   std::vector<ExtraBin> extras;
-  bool by_four = false;  // further returns have contexts of four neighbours
+  bool by_four = false;  // further returns are coded in the context of four neighbours
   std::size_t returns = 0;
 };
 
-/// Removes `flag` from the guess. `is_set`, which may be null, gets whether the flag was set.
+/// Reads the settings of residuals. `flag` is a bit of the guess's byte, but not of the guess. If
+/// `is_set` is not null, sets it to whether this bit is 1.
 bool ReadSettings(ByteReader* reader, ResidualSettings* settings, unsigned flag, bool* is_set) {
   bool ok = true;
   settings->tangent_um = ReadVarint(reader, &ok);
@@ -234,7 +237,7 @@ bool ReadSettings(ByteReader* reader, ResidualSettings* settings, unsigned flag,
   return ok && reader->ok() && guess < kResidualGuesses;
 }
 
-/// `residuals` stays empty if the settings ask for none.
+/// Decodes `residuals`. Leaves it empty if there are no residuals in the stream.
 bool DecodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                      std::vector<std::int32_t>* residuals, mixing::BinaryDecoder* bits) {
   if (settings.tangent_um == 0) return true;
@@ -289,10 +292,10 @@ bool DecodeRest(ByteReader* reader, std::size_t max_points, DecodedSection* sect
   return section->extras.size() == extras && bits.AtEnd();
 }
 
-/// Writes the points of pixels.
+/// Computes the points of pixels and appends them to a cloud.
 class PixelWriter {
  public:
-  /// Makes room for all points of the section after those of `cloud`.
+  /// Makes room for all points of the section after the points that `cloud` already has.
   PixelWriter(const DecodedSection& section, XyzCloud* cloud, PointPlaces* places)
       : section_(section), angles_(section.table), cloud_(*cloud), places_(places) {
     const std::size_t before = cloud->xyz.size();

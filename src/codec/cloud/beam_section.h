@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The part of a coded cloud that beams see: an image of ranges, and what the image lacks.
+// The beam section of a coded cloud: an image with the ranges of points on beams, and what such an
+// image does not contain.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,7 +17,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Levels of the points of a list, at full resolution; null: geometry only.
+/// The intensity levels of a list's points, with full resolution. If `levels` is null, only
+/// geometry is coded.
 struct PointLevels {
   const std::vector<std::uint8_t>* levels = nullptr;
   IntensityScale scale;  // scale of the coded levels
@@ -28,27 +30,31 @@ struct RangeWay {
   unsigned effort = 1;  // of kMixing
 };
 
-/// Keeps its buffers between sections.
+/// Encodes beam sections. Keeps its buffers between sections.
 class BeamSectionEncoder {
  public:
-  /// Appends the section. Returns false if the range coder refuses the image.
+  /// Encodes `list` as a section and appends it to `out`. Returns false if the range coder refuses
+  /// the image.
   bool Encode(BeamTable table, const PixelErrors& errors, const PointLevels& levels,
               const RangeWay& way, PixelList* list, std::vector<std::uint8_t>* out);
 
  private:
   RangeEncoder* CoderOf(const BeamTable& table);
 
-  std::unique_ptr<RangeEncoder> coder_;  // of rows_ and columns_
+  std::unique_ptr<RangeEncoder> coder_;  // for rows_ and columns_
   std::uint32_t rows_ = 0;
   std::uint32_t columns_ = 0;
 };
 
-/// Keeps its buffers between sections.
+/// Decodes beam sections. Keeps its buffers between sections.
 class BeamSectionDecoder {
  public:
-  /// Appends the points of the next section of `reader`: beam by beam, in the order of columns, the
-  /// returns of a pixel side by side. Sets `places` if it is not null. Returns false, with `cloud`
-  /// and `places` undefined, if the section is damaged or has more than `max_points`.
+  /// Decodes the next section of `reader` and appends its points to `cloud`. The points come beam
+  /// by beam, in the order of columns. The returns of a pixel follow one another. If `places` is
+  /// not null, sets it to the pixels of the points.
+  ///
+  /// Returns false if the section is damaged or has more than `max_points` points. `cloud` and
+  /// `places` are then undefined.
   bool Decode(ByteReader* reader, std::size_t max_points, const IntensityScale& scale,
               XyzCloud* cloud, PointPlaces* places = nullptr);
 

@@ -21,16 +21,16 @@ std::int32_t ReadSigned(ByteReader* reader, bool* ok) {
   return (value & 1) != 0 ? -size : size;
 }
 
-/// Flags of a table.
+/// The flags of a table.
 constexpr unsigned kOffsetsFlag = 1;
 constexpr unsigned kGrainsFlag = 2;
 constexpr unsigned kReachesFlag = 4;
-constexpr unsigned kPeriodShift = 3;  // stored less one
+constexpr unsigned kPeriodShift = 3;  // the period is stored minus 1
 constexpr unsigned kBendsFlag = 32;
 constexpr unsigned kPathFlag = 64;
 constexpr unsigned kLaterFlag = 128;
 
-/// Arc tangents of k / kParts.
+/// The arc tangents of k / kParts, for each k up to kParts.
 class ArcTable {
  public:
   static constexpr int kParts = 64;
@@ -40,7 +40,7 @@ class ArcTable {
       angles_[k] = angles_[k - 1] + OfSmall(1.0 / kParts / (1 + last * k / kParts));
     }
   }
-  /// The arc tangent of a number up to 1 / kParts, as exact as a double.
+  /// Returns the arc tangent of `t`, which is at most 1 / kParts, with the precision of a double.
   static constexpr double OfSmall(double t) {
     const double s = t * t;
     return t * (1 - s * (1.0 / 3 - s * (1.0 / 5 - s * (1.0 / 7 - s / 9))));
@@ -52,20 +52,21 @@ class ArcTable {
 };
 constexpr ArcTable kArcs;
 
-/// Sines of k / kParts turns.
+/// The sines of k / kParts turns, for each k below kParts.
 class SineTable {
  public:
   static constexpr std::int32_t kParts = 1'024;
   constexpr SineTable() {
     for (int k = 0; k < kParts; ++k) {
-      // The nearest quarter of a turn decides the sign and the series.
+      // The nearest quarter of a turn decides which series is used, and with which sign.
       const int quarter = (k + kParts / 8) / (kParts / 4);
       const double rest = (k - quarter * (kParts / 4)) * (2 * M_PI / kParts);
       const double series = quarter % 2 == 0 ? SineOf(rest) : CosineOf(rest);
       sines_[k] = quarter % 4 < 2 ? series : -series;
     }
   }
-  /// Sine and cosine of up to an eighth of a turn, as exact as a double.
+  /// SineOf() and CosineOf() are for angles of up to an eighth of a turn. They have the precision
+  /// of a double.
   static constexpr double SineOf(double t) {
     double sum = 0;
     for (int n = 19; n > 1; n -= 2) sum = -(sum + 1) * t * t / (n * (n - 1));
@@ -97,7 +98,8 @@ double AngleOf(double y, double x) {
   return y < 0 ? -angle : angle;
 }
 
-/// Calls of std::sin() and std::cos() take four times as long.
+/// Computes the cosine and the sine from kSines. Calls of std::sin() and std::cos() would take four
+/// times as long.
 BeamTable::Slope::Slope(double angle) {
   constexpr std::int32_t kPart = kTurn / SineTable::kParts;
   const std::int32_t k = ToNearest(angle * (1.0 / kPart));
@@ -192,7 +194,8 @@ ColumnFinder::Found ColumnFinder::Find(std::uint32_t beam, std::int32_t azimuth)
   return {table_.ColumnOf(b, best), residual};
 }
 
-/// Looks at the firing `first` and the two beside it, without jumps, which would be mispredicted.
+/// Returns the nearest of three firings: `first`, the firing before it and the firing after it. The
+/// code has no jumps, because a processor would mispredict them.
 ColumnFinder::Found ColumnFinder::NearestOf(const BeamTable::Beam& beam, std::uint32_t first,
                                             std::int32_t away) const {
   const std::int32_t* const at = &around_[first];
@@ -261,7 +264,7 @@ std::optional<BeamTable> BeamTable::Read(ByteReader* reader) {
     if (!ok || !reader->ok() || (flags & (kOffsetsFlag | kReachesFlag)) != 0) return std::nullopt;
     return table;
   }
-  // The code below reads beams as earlier encoders wrote them.
+  // Earlier encoders wrote the beams here.
   std::int64_t elevation = kTurn / 4;
   Beam beam;
   for (std::uint32_t i = 0; i < rows; ++i) {

@@ -16,7 +16,7 @@ constexpr std::uint32_t kDriftGrains = 36'000;  // 0.01 degrees
 constexpr double kDriftGrain = static_cast<double>(kTurn) / kDriftGrains;
 constexpr double kSector = static_cast<double>(kTurn) / kSectors;
 
-/// Returns the middle of the widest gap between points.
+/// Returns the azimuth in the middle of the widest gap in which no beam has a point.
 std::int32_t WidestGap(const std::vector<BeamAzimuths>& beams) {
   std::vector<std::int32_t> all;
   for (const BeamAzimuths& azimuths : beams)
@@ -35,7 +35,8 @@ std::int32_t WidestGap(const std::vector<BeamAzimuths>& beams) {
   return middle & (kTurn - 1);
 }
 
-/// Mean distance of the columns of each sector from their places at equal steps.
+/// The mean drift of columns in each sector of a turn. The drift of a column is its distance from
+/// the place that it would have at equal steps.
 class Drift {
  public:
   bool known(double azimuth) const { return counts_[SectorOf(azimuth)] > 0; }
@@ -47,8 +48,8 @@ class Drift {
     const std::size_t sector = SectorOf(azimuth);
     return counts_[sector] == 0 ? 0 : sums_[sector] / static_cast<double>(counts_[sector]);
   }
-  /// Returns the drift of all sectors. An unknown sector has the drift of the known sector before
-  /// it, or of the first known one.
+  /// Returns the drift of all sectors, smoothed. If the drift of a sector is unknown, it is that of
+  /// the last known sector before it, or else of the first known sector.
   std::vector<double> Curve() const {
     std::vector<double> curve(kSectors);
     double last = 0;
@@ -81,13 +82,15 @@ class Drift {
   std::vector<std::size_t> counts_ = std::vector<std::size_t>(kSectors, 0);
 };
 
-/// A point's azimuth, and the distance of its column from the column's place at equal steps.
+/// A point's azimuth, and the distance of its column from the place that it would have at equal
+/// steps.
 struct Drifted {
   double azimuth;
   double drift;
 };
 
-/// Follows the columns of a beam from point to point. The drift of other beams bridges gaps.
+/// Returns the drift of a beam's points. Follows the columns of the beam from one point to the
+/// next. Where the beam has a gap, the drift of other beams is used.
 std::vector<Drifted> FollowBeam(const BeamAzimuths& azimuths, std::int32_t first, double step,
                                 const Drift& known) {
   std::vector<double> sorted;
@@ -137,7 +140,7 @@ bool SetPlaces(const Drift& drift, double step, BeamTable* table) {
 
 bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table) {
   const std::int32_t first = WidestGap(beams);
-  // Rounds the step to whole grains, so that places at equal steps cost nothing.
+  // The step is rounded to whole grains, so that places at equal steps cost nothing.
   step = std::max(std::round(step / kDriftGrain), 1.0) * kDriftGrain;
   std::vector<std::size_t> order(beams.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds columns whose step changes slowly with the azimuth, as those of oscillating mirrors do.
+// Finds columns whose step changes slowly with the azimuth. Sensors with oscillating mirrors have
+// such columns.
 #pragma once
 #include <vector>
 
@@ -8,7 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Sets the places of all columns and the offsets of all beams. Returns false for too many columns.
+/// Sets the places of all columns and the offsets of all beams. Returns false if there are too many
+/// columns.
 bool FindDriftingPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
 
 }  // namespace lidar::codec::cloud

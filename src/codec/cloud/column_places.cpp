@@ -11,7 +11,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Returns a sample of the azimuths, less the offsets of their beams, in rising order.
+/// Returns a sorted sample of the azimuths, minus the offsets of their beams.
 std::vector<std::int32_t> StraightSample(const std::vector<BeamAzimuths>& beams,
                                          const BeamTable& table) {
   constexpr std::size_t kOfColumn = 16;
@@ -29,7 +29,7 @@ std::vector<std::int32_t> StraightSample(const std::vector<BeamAzimuths>& beams,
   return sample;
 }
 
-/// Returns the cost of the distances from the columns [bit].
+/// Returns the number of bits that the distances of all points from their columns would cost.
 double ResidualBits(const std::vector<BeamAzimuths>& beams, const BeamTable& table) {
   const ColumnFinder finder(table);
   double bits = 0;
@@ -42,7 +42,7 @@ double ResidualBits(const std::vector<BeamAzimuths>& beams, const BeamTable& tab
   return bits;
 }
 
-/// Follows the columns around the turn, with a step that adapts.
+/// Finds the places of columns by following them around the turn. The step adapts to the points.
 std::vector<double> FollowColumns(const std::vector<std::int32_t>& sample, double step) {
   constexpr std::size_t kFewestInColumn = 4;
   std::vector<double> places;
@@ -73,8 +73,8 @@ void SetPlaces(const std::vector<double>& places, BeamTable* table) {
   }
 }
 
-/// Finds delays and offsets of beams that look ahead of others or behind them. Uneven steps belong
-/// to firings, which all beams share.
+/// Finds the delays and offsets of beams that point ahead of other beams or behind them. The uneven
+/// steps are those of the firings, which are the same for all beams.
 class DelaySearch {
  public:
   DelaySearch(const std::vector<BeamAzimuths>& beams, const std::vector<double>& places,
@@ -112,7 +112,7 @@ class DelaySearch {
   struct Fit {
     std::int32_t delay = 0;
     double offset = 0;
-    double miss = 0;  // mean distance
+    double miss = 0;  // mean distance of points from the places
   };
 
   std::size_t FiringAt(std::size_t column, std::int32_t delay) const {
@@ -146,7 +146,7 @@ class DelaySearch {
     }
     return best;
   }
-  /// Moves each place by the mean distance of the points of `beams` from it.
+  /// Moves each place by the mean distance between the place and the points of `beams`.
   void Average(const std::vector<std::size_t>& beams) {
     std::vector<double> sums(size_, 0);
     std::vector<std::uint32_t> counts(size_, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the columns of beams that do not see points at even steps.
+// Finds the columns of beams whose points are not at equal steps.
 #pragma once
 #include <vector>
 
@@ -9,30 +9,31 @@ namespace lidar::codec::cloud {
 
 /// Shifts the offset of each beam so that its points lie in the middle of their columns.
 void Recentre(const std::vector<BeamAzimuths>& beams, BeamTable* table);
-/// Gives the columns places of their own if this saves more bits than it costs.
+/// Gives the columns a list of places, if this saves more bits than the list costs.
 void FindPlaces(const std::vector<BeamAzimuths>& beams, double step, BeamTable* table);
-/// Finds places for azimuths that a sensor rounds to multiples of `quantum`, which is about as
-/// large as a step. All beams see the same multiples, each with a delay. Returns false if the beams
-/// do not agree.
+/// Finds places for a sensor that rounds azimuths to multiples of `quantum`, which is about as
+/// large as a step. The firings of all beams have the same places, but each beam has its own delay.
+/// Returns false if the points of different beams do not agree.
 bool FindRoundedPlaces(const std::vector<BeamAzimuths>& beams, double quantum, double step,
                        BeamTable* table);
-/// Finds beams whose steps are uneven in a periodic way.
+/// Finds the swings of beams whose steps are uneven in a periodic way.
 void FindSwings(const std::vector<BeamAzimuths>& beams, BeamTable* table);
 
-/// An azimuth less the offset of its beam.
+/// An azimuth minus the offset of its beam.
 struct StraightAzimuth {
   std::int32_t azimuth;
   std::uint32_t beam;
 };
-/// Moves the columns to those of the next cloud. Returns false if too few or too many are found.
+/// Adapts the columns of `table` to the next cloud. Returns false if too few or too many columns
+/// are found.
 bool UpdateColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);
 
 // Parts of the functions above:
 
-/// Adds places for the firings without points.
+/// Returns `places`, with places added for the firings without points.
 std::vector<std::uint32_t> WithGapsFilled(const std::vector<std::uint32_t>& places, double step,
                                           std::uint32_t grains);
-/// Sets the delays so that column 0 of each beam is the first one from azimuth 0 on.
+/// Sets the delays so that column 0 of each beam is the first column at or after azimuth 0.
 void AlignDelays(BeamTable* table);
 /// Rotates the swings so that they fit the firings of the next cloud.
 void TurnSwings(const std::vector<StraightAzimuth>& azimuths, BeamTable* table);

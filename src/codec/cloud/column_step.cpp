@@ -14,7 +14,8 @@ namespace {
 constexpr std::int32_t kLeastStep = kTurn / static_cast<std::int32_t>(BeamTable::kMostColumns);
 constexpr std::int32_t kMostStep = kTurn / 64;
 
-/// Returns the most common step between neighbouring points of a beam, in units; 0: none.
+/// Returns the most common step between neighbouring points of a beam, in angle units. Returns 0 if
+/// there is none.
 std::int32_t UsualStep(const BeamAzimuths& azimuths) {
   constexpr std::int32_t kClass = 64;  // 0.0055 degrees
   std::map<std::int32_t, std::size_t> histogram;
@@ -34,9 +35,10 @@ std::int32_t UsualStep(const BeamAzimuths& azimuths) {
 
 std::complex<double> PhaseOf(double columns) { return std::polar(1.0, 2 * M_PI * columns); }
 
-/// Returns a measure of how well a sample of points lies in columns: up to 1 for each point.
+/// Returns a measure of how well a sample of points lies in columns. It is at most the number of
+/// points in the sample.
 double Alignment(const std::vector<BeamAzimuths>& beams, double step) {
-  constexpr std::size_t kSample = 150;  // of each beam
+  constexpr std::size_t kSample = 150;  // points of each beam
   double sum = 0;
   for (const BeamAzimuths& azimuths : beams) {
     const std::size_t stride = azimuths.size() / kSample + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beams whose steps from column to column are uneven in a periodic way.
+// Finds beams whose steps from column to column are uneven in a periodic way.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// The places at which most of a beam's points lie: one place for each of `period` successive
+/// The places at which most points of a beam lie: one place for each of `period` successive
 /// columns.
 struct Swing {
   std::array<double, BeamTable::kMostPeriod> at{};  // distance from the column, in columns
@@ -20,7 +20,7 @@ struct Swing {
 
 Swing FindSwing(const BeamAzimuths& azimuths, std::uint32_t beam, const BeamTable& table,
                 std::uint32_t period) {
-  constexpr std::size_t kParts = 32;  // bins a column
+  constexpr std::size_t kParts = 32;  // bins per column
   const double step = static_cast<double>(kTurn) * BeamTable::kParts / table.turn;
   std::vector<double> histogram(period * kParts, 0);
   const ColumnFinder finder(table);

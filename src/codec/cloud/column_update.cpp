@@ -10,7 +10,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Moves columns that have equal steps, and changes the step.
+/// Adapts columns that have equal steps: changes the step, and the offsets of all beams.
 bool UpdateEvenColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* table) {
   constexpr std::size_t kSample = 2'048;
   constexpr std::size_t kParts = 16;
@@ -30,7 +30,8 @@ bool UpdateEvenColumns(const std::vector<StraightAzimuth>& azimuths, BeamTable* 
   return table->columns() > 0 && table->columns() <= BeamTable::kMostColumns;
 }
 
-/// Returns the grains with many points, one for each firing.
+/// Returns the places of the firings. They are the grains with many points, one grain for each
+/// firing.
 std::vector<std::uint32_t> VotedPlaces(const std::vector<StraightAzimuth>& azimuths,
                                        const BeamTable& table) {
   std::vector<std::uint32_t> votes(table.grains, 0);

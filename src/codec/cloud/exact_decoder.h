@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes clouds with their exact fields, in their original order, from unchecked bytes.
+// Decodes clouds with exact fields and in their original order. The bytes need not be checked
+// before.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,21 +12,22 @@
 
 namespace lidar::codec::cloud {
 
-/// For one thread at a time.
+/// Not thread-safe.
 class ExactDecoder {
  public:
-  /// `fields` are those that slices keep exactly, in this order.
+  /// `fields` are the fields that slices keep exactly, in this order.
   ExactDecoder(std::vector<PointField> fields, std::uint32_t max_points)
       : fields_(std::move(fields)), geometry_(max_points) {}
 
-  /// Returns false, with the cloud undefined, for bytes that CloudDecoder refuses, and for fields
-  /// that are damaged or of other types.
+  /// Decodes a slice. Returns false if CloudDecoder refuses `stream`, or if the exact fields are
+  /// damaged or have other types. The cloud is then undefined.
   bool Decode(ByteView stream);
   const CloudDecoder& geometry() const { return geometry_; }
-  /// Exact fields and order of the points.
+  /// Returns the exact fields and the order of the points.
   const ExactPart& part() const { return part_; }
   std::size_t size() const { return geometry_.cloud().size(); }
-  /// Writes the points in their original order, if the slice keeps it, with the fields of `layout`.
+  /// Writes the points with the fields of `layout`. If the slice keeps the original order of the
+  /// points, writes them in this order.
   void Write(const CloudLayout& layout, std::uint8_t* raw) const;
 
  private:

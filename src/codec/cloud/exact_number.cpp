@@ -12,7 +12,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Doubles hold all integers below kExact.
+/// A double can represent all integers below kExact.
 constexpr unsigned kExactBits = 53;
 constexpr double kExact = static_cast<double>(std::uint64_t{1} << kExactBits);
 constexpr std::array<double, NumberForm::kMostDecimals + 1> kPowers = {1,   1e1, 1e2, 1e3, 1e4,
@@ -40,7 +40,7 @@ unsigned BitsIn(FieldType type) { return static_cast<unsigned>(8 * SizeOf(type))
 
 std::uint64_t MaskOf(FieldType type) { return UINT64_MAX >> (64 - BitsIn(type)); }
 
-/// Returns the place in the order of all floats: -0 is before 0.
+/// Returns the position of a float in the ascending order of all floats. -0 is just before 0.
 std::int64_t Ordinal(std::uint64_t bits, FieldType type) {
   const std::uint64_t sign = std::uint64_t{1} << (BitsIn(type) - 1);
   const auto size = static_cast<std::int64_t>(bits & (sign - 1));
@@ -52,7 +52,8 @@ std::uint64_t AtOrdinal(std::int64_t ordinal, FieldType type) {
   return sign | (static_cast<std::uint64_t>(-1 - ordinal) & (sign - 1));
 }
 
-/// Returns 0 for NaN and from 2^53 on, where doubles skip integers.
+/// Returns the integer nearest to `value`. Returns 0 for NaN and for values from 2^53 on, because
+/// doubles cannot represent all integers there.
 std::int64_t NearestInteger(double value) {
   return std::abs(value) < kExact ? static_cast<std::int64_t>(std::floor(value + 0.5)) : 0;
 }

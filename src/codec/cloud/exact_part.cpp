@@ -20,8 +20,9 @@ namespace {
 
 using Model = NumberModel<3>;
 
-/// A number is predicted by the beam's last number, by FiringGuess, or by the beam's number some
-/// firings ago. The latter suits drivers that restart time with each packet.
+/// The ways to predict a number: by the last number of the beam, by FiringGuess, or, if the guess
+/// is larger, by the number of the beam that many firings ago. The last way suits drivers that
+/// restart time with each packet.
 constexpr std::uint32_t kByBeam = 0;
 constexpr std::uint32_t kByFiring = 1;
 constexpr std::uint32_t kMostFiringsAgo = 64;
@@ -31,28 +32,28 @@ struct FieldCode {
   std::uint32_t guess = kByBeam;
 };
 
-/// Keys by which points are sorted, so that their order takes few steps.
+/// The keys by which the points may be sorted. A good key is one for which the original order takes
+/// few steps.
 constexpr unsigned kAsVisited = 0;
 constexpr unsigned kAsDecoded = 1;
 constexpr unsigned kByFirstField = 2;
 
-/// The header.
 struct ExactHeader {
   FiringOrder firing;  // if there are beams
   std::vector<FieldCode> fields;
-  std::optional<unsigned> order_key;  // none: order is not kept
+  std::optional<unsigned> order_key;  // none: the order is not kept
 };
 
 std::uint32_t Class(std::int64_t number, std::int64_t most) {
   return static_cast<std::uint32_t>(std::clamp(number, -most, most) + most);
 }
 
-/// Codes distances of ranks; a large one takes 64 plain bits.
+/// Codes the distances of ranks from their guesses. A large distance takes 64 plain bits.
 template <class Coder>
 class RankCoder {
  public:
   explicit RankCoder(Coder* coder) : coder_(*coder) {}
-  /// `distance` of a rank from its guess.
+  /// Codes and returns `distance`.
   std::int64_t Code(std::int64_t distance, const Model::Contexts& contexts) {
     constexpr std::int32_t kEscape = Model::kTooLarge - 1;
     const bool fits = distance > -kEscape && distance < kEscape;
@@ -100,7 +101,7 @@ Visited VisitOf(const PointPlaces& places, const FiringOrder& firing) {
   return {places, firing, firing.Visit(places)};
 }
 
-/// Codes a field of the first `count` points visited.
+/// Codes a field of the first `count` points that are visited.
 template <class Ranks>
 bool CodeField(const Visited& v, const FieldCode& code, std::size_t count, Ranks* ranks,
                std::vector<std::uint64_t>* numbers) {
@@ -108,7 +109,7 @@ bool CodeField(const Visited& v, const FieldCode& code, std::size_t count, Ranks
     std::int64_t level = 0;
     std::int64_t distance = 0;
   };
-  std::vector<Beam> beams(std::size_t{v.places.beams} + 1);  // the last one is of loose points
+  std::vector<Beam> beams(std::size_t{v.places.beams} + 1);  // the last one is for loose points
   FiringGuess guess(v.places.beams);
   RepeatGuess repeat(v.places.beams, code.guess > kByFiring ? code.guess : 0);
   std::int64_t last = 0;
@@ -148,7 +149,7 @@ bool CodeField(const Visited& v, const FieldCode& code, std::size_t count, Ranks
   return true;
 }
 
-/// Returns all points in the order of `key`.
+/// Returns the indices of all points, sorted by `key`.
 std::vector<std::uint32_t> Sequence(const Visited& v, unsigned key,
                                     const std::vector<ExactField>& fields) {
   std::vector<std::uint32_t> sequence = v.visit;
@@ -164,7 +165,7 @@ std::vector<std::uint32_t> Sequence(const Visited& v, unsigned key,
   return sequence;
 }
 
-/// Returns for each point, in the old order, its place in the sequence.
+/// Returns the place in `sequence` of each point, in the original order of the points.
 std::vector<std::uint32_t> PlacesInSequence(const std::vector<std::uint32_t>& sequence,
                                             const std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> places(order.size());
@@ -172,18 +173,19 @@ std::vector<std::uint32_t> PlacesInSequence(const std::vector<std::uint32_t>& se
   return places;
 }
 
-/// The free places of a sequence. A call takes nearly constant time.
+/// The free places of a sequence. Each call takes nearly constant time.
 class FreePlaces {
  public:
   explicit FreePlaces(std::uint32_t count) : next_(std::size_t{count} + 1) {
     std::iota(next_.begin(), next_.end(), 0U);
   }
-  /// Returns the first free place from `place` on, or the end.
+  /// Returns the first free place that is not before `place`, or the number of places if there is
+  /// none.
   std::uint32_t From(std::uint32_t place) {
     while (next_[place] != place) place = next_[place] = next_[next_[place]];
     return place;
   }
-  /// Returns false if `place` was taken before.
+  /// Takes `place`. Returns false if it was already taken.
   bool Take(std::uint32_t place) {
     if (next_[place] != place) return false;
     next_[place] = place + 1;
@@ -191,12 +193,12 @@ class FreePlaces {
   }
 
  private:
-  /// A free place has its own number here; a taken one has a later place, at most the next free
-  /// one.
+  /// The entry of a free place is the place itself. The entry of a taken place is a later place,
+  /// but not later than the next free place.
   std::vector<std::uint32_t> next_;
 };
 
-/// Codes the order as steps through a sequence.
+/// Codes the original order of the points as steps through `sequence`.
 template <class Coder>
 bool CodeOrder(const std::vector<std::uint32_t>& sequence, std::vector<std::uint32_t>* order,
                Coder* coder) {
@@ -225,7 +227,7 @@ bool CodeOrder(const std::vector<std::uint32_t>& sequence, std::vector<std::uint
   return true;
 }
 
-/// Codes the slot of each beam.
+/// Codes the delay and the rank of each beam.
 template <class Coder>
 bool CodeSlots(std::uint32_t columns, FiringOrder* firing, Coder* coder) {
   const auto model = std::make_unique<Model>();
@@ -263,10 +265,10 @@ bool CodeAll(const PointPlaces& places, ExactHeader* header, ExactPart* part, Co
   return CodeOrder(sequence, &part->order, coder);
 }
 
-// Flags of the first byte.
+// The flags in the first byte of a section.
 constexpr unsigned kOrderFlag = 1;
 constexpr unsigned kDescendsFlag = 2;
-// Bits of a field's first byte.
+// The type of a field begins at this bit of its first byte.
 constexpr unsigned kTypeShift = 5;
 
 void WriteHeader(const ExactHeader& header, ByteWriter* writer) {
@@ -284,7 +286,7 @@ void WriteHeader(const ExactHeader& header, ByteWriter* writer) {
   if (!header.firing.slots.empty()) WriteVarint(header.firing.first, writer);
 }
 
-/// Reads the header up to the end of its fields.
+/// Reads the header of a section up to the end of the fields.
 bool ReadFields(ByteReader* reader, unsigned* flags, std::vector<FieldCode>* fields) {
   *flags = reader->U8();
   const unsigned count = reader->U8();
@@ -320,8 +322,8 @@ bool ReadHeader(ByteReader* reader, const PointPlaces& places, ExactHeader* head
   return ok && reader->ok() && (places.beams == 0 || header->firing.first < places.columns);
 }
 
-/// Finds the firing order by the order of the points or, if too few points fit this, by the field
-/// that fits best.
+/// Finds the order of firings from the order of the points. If too few points agree with it, finds
+/// it from the field with which most points agree.
 FiringOrder BestFiringOrder(const PointPlaces& places, const ExactPart& part) {
   if (places.beams == 0) return {};
   std::vector<std::int64_t> clock(part.order.begin(), part.order.end());
@@ -342,8 +344,8 @@ FiringOrder BestFiringOrder(const PointPlaces& places, const ExactPart& part) {
   return best;
 }
 
-/// Returns the number of firings after which beams repeat most of their numbers; kByFiring: beams
-/// do not repeat them.
+/// Returns the number of firings after which beams repeat most of their numbers. Returns kByFiring
+/// if they do not repeat them.
 std::uint32_t BestPeriod(const Visited& v, const std::vector<std::uint64_t>& numbers) {
   constexpr std::size_t kSample = 4'096;
   std::uint32_t best = kByFiring;
@@ -385,7 +387,7 @@ FieldCode BestCode(const Visited& visited, const ExactField& field) {
   return best;
 }
 
-/// Returns the sorting key that codes the points' order in the fewest steps.
+/// Returns the key with which the original order of the points takes the fewest steps.
 unsigned BestOrderKey(const Visited& visited, const ExactPart& part) {
   unsigned best = kAsVisited;
   std::size_t least = SIZE_MAX;

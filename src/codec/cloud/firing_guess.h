@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Guesses of the numbers that a driver gives to the shots of a firing.
+// Guesses the numbers in the exact fields of points, such as their times. Points of a firing have
+// similar numbers.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +12,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Guesses a level as the sum of a base of the firing and an offset of the beam, and learns both.
+/// Guesses a level as the sum of two numbers: the base of the firing and the offset of the beam.
+/// Both are learnt from the levels so far.
 class FiringGuess {
  public:
   explicit FiringGuess(std::uint32_t beams) : beams_(beams) {}
@@ -26,7 +28,7 @@ class FiringGuess {
     }
     return Plus(base_, beams_[beam].offset);
   }
-  /// Learns the true level of the point of the last LevelOf().
+  /// Updates base and offset by the true level of the point for which LevelOf() was called last.
   void Learn(std::uint32_t beam, std::uint32_t firing, std::int64_t level) {
     Beam& b = beams_[beam];
     const std::int64_t off = Minus(level, Plus(base_, b.offset));
@@ -34,7 +36,7 @@ class FiringGuess {
     if (!begun_ || (starts_ && b.is_known)) {
       base_ = Plus(base_, off);
     } else if (b.is_known && std::abs(off / 2) < kNear / 2) {
-      // Rounding puts levels on both sides of the guess, so a small difference changes offset and
+      // Rounded levels are on both sides of the guess, so a small difference changes offset and
       // base only in part.
       b.offset = Plus(b.offset, off / 8);
       base_ = Plus(base_, off / (count_ + 1));
@@ -60,23 +62,24 @@ class FiringGuess {
     bool is_known = false;
   };
   std::vector<Beam> beams_;
-  std::int64_t base_ = 0;      // used by the last guess
-  std::int64_t base_now_ = 0;  // of the firing of the last point
+  std::int64_t base_ = 0;      // base in the last guess
+  std::int64_t base_now_ = 0;  // base of the last point's firing
   std::int64_t first_base_ = 0;
   std::uint32_t firing_ = 0;
   std::uint32_t first_firing_ = 0;
-  std::int64_t count_ = 0;  // points of the firing
+  std::int64_t count_ = 0;  // points of the firing so far
   bool begun_ = false;
   bool starts_ = true;  // the point is the first of its firing
 };
 
-/// Keeps the last level of each beam in each firing of a period. Without a period it keeps nothing.
+/// Keeps the last level of each beam in each firing of a period, as a guess for the next period. If
+/// the period is 0, keeps nothing.
 class RepeatGuess {
  public:
   RepeatGuess(std::uint32_t beams, std::uint32_t period)
       : period_(period), levels_(std::size_t{beams} * period) {}
 
-  /// Returns the place of the level, empty at first; null without a period.
+  /// Returns where the level is stored. It is empty at first. Returns null if the period is 0.
   std::optional<std::int64_t>* At(std::uint32_t beam, std::uint32_t firing) {
     if (levels_.empty()) return nullptr;
     return &levels_[std::size_t{beam} * period_ + firing % period_];

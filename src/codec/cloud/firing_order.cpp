@@ -9,12 +9,12 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// A time and a column of a beam.
+/// The time and the column in which a beam fired.
 struct Shot {
   std::int64_t clock = 0;
   std::uint32_t column = 0;
 };
-using Shots = std::vector<Shot>;  // by clock
+using Shots = std::vector<Shot>;  // sorted by clock
 
 std::vector<Shots> ShotsOfBeams(const PointPlaces& places, const std::vector<std::int64_t>& clock) {
   std::vector<Shots> beams(places.beams);
@@ -35,15 +35,15 @@ bool Descends(const Shots& shots) {
   return 2 * falls > shots.size();
 }
 
-/// Returns the last shot that is not after `clock`, or the first.
+/// Returns the last shot that is not later than `clock`. If there is none, returns the first shot.
 const Shot& LastAt(const Shots& shots, std::int64_t clock) {
   const auto after = std::upper_bound(shots.begin(), shots.end(), clock,
                                       [](std::int64_t t, const Shot& s) { return t < s.clock; });
   return after == shots.begin() ? shots.front() : *(after - 1);
 }
 
-/// Returns the most common number of columns by which a shot is behind the latest one of
-/// `reference`, and the number of such shots.
+/// Returns the most common delay of shots, and the number of shots that have it. The delay of a
+/// shot is the number of columns by which it is behind the latest shot of `reference`.
 std::pair<std::uint32_t, std::size_t> DelayOf(const Shots& shots, const Shots& reference,
                                               std::uint32_t columns) {
   std::map<std::uint32_t, std::size_t> votes;
@@ -55,7 +55,8 @@ std::pair<std::uint32_t, std::size_t> DelayOf(const Shots& shots, const Shots& r
   return *most;
 }
 
-/// Sorts beams by the mean time after the shot of `reference` in the same firing.
+/// Sets the rank of each beam in a firing. The beams are sorted by the mean time that passes from
+/// the shot of `reference` to their own shot in the same firing.
 void RankBeams(const std::vector<Shots>& beams, const Shots& reference, std::uint32_t columns,
                FiringOrder* order) {
   std::vector<std::int64_t> clock_of(columns, INT64_MIN);

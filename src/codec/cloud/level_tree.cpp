@@ -15,17 +15,17 @@ using mixing::Counter;
 using mixing::Weights;
 
 constexpr unsigned kNodes = 256;
-constexpr unsigned kClasses = 32;  // of a level
+constexpr unsigned kClasses = 32;  // classes of a level
 
-/// Codes levels one by one, from the highest bit on.
+/// Codes levels one after the other. The bits of a level are coded from the highest to the lowest.
 class LevelModel {
  public:
   explicit LevelModel(unsigned bits) : bits_(bits), coarse_(bits > 5 ? bits - 5 : 0) {
     for (Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
   }
 
-  /// `last` is the preceding level, and `mean` the mean level of the neighbours. `place` is 0 for
-  /// the first point of a cell.
+  /// Codes and returns `level`. `last` is the previous level, and `mean` the mean level of the
+  /// neighbours. `place` is 0 for the first point of a cell, else 1.
   template <class Coder>
   unsigned Code(unsigned level, unsigned last, unsigned mean, unsigned place, Coder* coder) {
     const std::array<std::uint32_t, 4> contexts = {
@@ -49,7 +49,8 @@ class LevelModel {
   std::array<Weights, kNodes> weights_{};
 };
 
-/// Returns the mean level of the coded neighbours of a cell.
+/// Returns the mean level of those neighbours of a cell that are already coded. If there are none,
+/// returns `otherwise`.
 unsigned MeanOf(const NodeMap& map, std::uint64_t key, const std::vector<std::uint8_t>& means,
                 unsigned otherwise) {
   unsigned known = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes the intensities of points that come cell by cell.
+// Codes the intensities of points that are sorted by cells.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes `levels` of 1 to 8 `bits`: one level for each point of `cells`. Within a cell the levels
-/// rise. Returns false for a damaged stream.
+/// Codes `levels`: one level of 1 to 8 `bits` for each point of `cells`. The levels of a cell are
+/// in ascending order. Returns false if the stream is damaged.
 template <class Coder>
 bool CodeLevels(const CellList& cells, unsigned bits, std::vector<std::uint8_t>* levels,
                 Coder* coder);

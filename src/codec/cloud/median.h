@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The upper median.
+// The upper median of some values.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Returns 0 for no values.
+/// Returns the upper median of `values`, or 0 if there are none.
 template <class T>
 T MedianOf(std::vector<T> values) {
   if (values.empty()) return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the nodes of one level of a tree by their positions.
+// Finds the nodes in one level of a tree by their positions.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// An open hash table that grows, so that it is never more than half full. The hash depends on the
-/// address of the table, because a cloud whose cells all collide could be crafted for a known hash.
+/// An open hash table. It grows, so that it is never more than half full. The hash depends on the
+/// address of the table: for a known hash, an attacker could craft a cloud whose cells all collide.
 class NodeMap {
  public:
   static constexpr std::uint32_t kAbsent = UINT32_MAX;
@@ -40,9 +40,11 @@ class NodeMap {
   static constexpr std::uint64_t kStepX = std::uint64_t{1} << 42;
   static constexpr std::uint64_t kStepY = std::uint64_t{1} << 21;
   static constexpr std::uint64_t kStepZ = 1;
-  /// Positions plus one, so that neighbours of position 0 have keys, too. A field of 21 bits holds
-  /// each position of a cloud in a tree of kMostDepth, because DepthFor() leaves the cells at the
-  /// tree's edge free.
+  /// Returns the key of a position. The key has the coordinates plus 1, so that neighbours of
+  /// position 0 have keys, too.
+  ///
+  /// Each coordinate has a field of 21 bits. This suffices even in a tree of kMostDepth, because
+  /// DepthFor() leaves the cells at the edge of a tree empty.
   static std::uint64_t KeyOf(const CellPosition& p) {
     return (p[0] + 1) * kStepX + (p[1] + 1) * kStepY + (p[2] + 1) * kStepZ;
   }

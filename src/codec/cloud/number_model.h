@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes signed integers bit by bit, by mixed contexts.
+// Codes signed integers bit by bit. The bits are predicted by several contexts.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace lidar::codec::cloud {
 
-/// Codes bits of `kNodes` kinds by contexts. Counters are made when their context first occurs,
-/// because small clouds have few contexts.
+/// Codes bits of `kNodes` kinds. Each bit is predicted by several contexts. The counters of a
+/// context are created when the context first occurs, because a small cloud has few contexts.
 template <unsigned kContexts, std::uint32_t kNodes>
 class BitModel {
  public:
-  static constexpr std::uint32_t kValues = 512;  // of a context
+  static constexpr std::uint32_t kValues = 512;  // number of values of a context
   using Contexts = std::array<std::uint32_t, kContexts>;
 
   BitModel() {
     for (mixing::Weights& w : weights_) w.values.fill(mixing::kWeightOne / 3);
-    counters_.reserve(kContexts * kValues);  // pointers to them stay valid
+    counters_.reserve(kContexts * kValues);  // so that pointers to counters stay valid
   }
 
   template <class Coder>
@@ -51,12 +51,13 @@ class BitModel {
   }
 
  private:
-  std::array<std::array<std::uint16_t, kValues>, kContexts> places_{};  // index + 1; 0: none yet
+  /// The index in counters_ of each context's counters, plus 1. It is 0 if there are none yet.
+  std::array<std::array<std::uint16_t, kValues>, kContexts> places_{};
   std::vector<Counters> counters_;
   std::array<mixing::Weights, kNodes> weights_{};
 };
 
-/// Codes signed integers by contexts: zero or not, sign, length, and further bits.
+/// Codes signed integers. Bits say whether a number is 0, its sign, its length, and its lower bits.
 template <unsigned kContexts>
 class NumberModel : public BitModel<kContexts, 128> {
  public:
@@ -64,7 +65,7 @@ class NumberModel : public BitModel<kContexts, 128> {
   static constexpr std::int32_t kTooLarge = 1 << 26;
   using Contexts = typename BitModel<kContexts, kNodes>::Contexts;
 
-  /// Returns kTooLarge for a damaged stream.
+  /// Codes and returns `number`. Returns kTooLarge if the stream is damaged.
   template <class Coder>
   std::int32_t Code(std::int32_t number, const Contexts& contexts, Coder* coder) {
     const auto found = this->Find(contexts);

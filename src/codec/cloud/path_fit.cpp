@@ -11,17 +11,17 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// A point of one laser.
+/// A point that a laser measured.
 struct Sample {
   std::uint32_t point = 0;
   std::uint32_t column = 0;
   double time = 0;
-  double azimuth = 0;  // less the azimuth of the turn, without wrapping
+  double azimuth = 0;  // minus the azimuth of the turn, not wrapped
 };
 using Line = std::vector<Sample>;  // in the order of firing
 
-/// Returns the points of each laser, by time. Returns no lines if there are too many lasers or too
-/// few points.
+/// Returns the points of each laser, sorted by time. Returns no lines if there are too many lasers
+/// or too few points.
 std::vector<Line> LinesOf(const std::vector<Pulse>& pulses) {
   constexpr std::size_t kLeastPoints = 64;
   std::vector<Line> lines;
@@ -46,7 +46,7 @@ void ForPairs(const std::vector<Line>& lines, Call&& call) {
     for (std::size_t i = 1; i < line.size(); ++i) call(line[i - 1], line[i]);
 }
 
-/// Returns the time from column to column, or 0.
+/// Returns the time from one column to the next, or 0 if it is unknown.
 double PeriodOf(const std::vector<Line>& lines) {
   std::vector<double> steps;
   ForPairs(lines, [&](const Sample& a, const Sample& b) {
@@ -69,7 +69,7 @@ double PeriodOf(const std::vector<Line>& lines) {
   return period;
 }
 
-/// Sets the columns of all samples. Returns their number, or 0 if there are too many.
+/// Sets the columns of all samples. Returns the number of columns, or 0 if there are too many.
 std::uint32_t CountColumns(std::vector<Line>* lines) {
   const double period = PeriodOf(*lines);
   if (!(period > 0)) return 0;
@@ -79,8 +79,8 @@ std::uint32_t CountColumns(std::vector<Line>* lines) {
   double columns = 0;
   for (Line& line : *lines) {
     if (line.empty()) continue;
-    // The lasers of a column fire one after the other within its period. Times may be early by an
-    // eighth of it.
+    // The lasers of a column fire one after the other, within the period of the column. A time may
+    // be too early by up to an eighth of the period.
     const double start = std::floor((line.front().time - first) / period + 0.125);
     for (Sample& s : line) {
       const double column = start + std::round((s.time - line.front().time) / period);
@@ -92,8 +92,8 @@ std::uint32_t CountColumns(std::vector<Line>* lines) {
   return static_cast<std::uint32_t>(columns);
 }
 
-/// Sets the azimuths of all samples, less those of the turn, and returns their mean rise per
-/// column.
+/// Sets the azimuth of each sample, minus the azimuth of the turn. Returns by how much these
+/// azimuths rise from one column to the next, on average.
 double Unwrap(const std::vector<Sighting>& points, const BeamPath& path, std::vector<Line>* lines) {
   double sum = 0;
   double squares = 0;
@@ -118,8 +118,8 @@ double Unwrap(const std::vector<Sighting>& points, const BeamPath& path, std::ve
   return squares > 0 ? sum / squares : 0;
 }
 
-/// Returns the turn from one column to the next, in 1/2^kRateBits of an angle's unit; 0: there is
-/// no plausible turn.
+/// Returns the angle of the turn from one column to the next, in 1/2^kRateBits of an angle unit.
+/// Returns 0 if there is no plausible turn.
 std::int32_t RateOf(const std::vector<Sighting>& points, std::uint32_t columns,
                     std::vector<Line>* lines) {
   std::vector<double> steps;
@@ -139,7 +139,7 @@ std::int32_t RateOf(const std::vector<Sighting>& points, std::uint32_t columns,
   return in_steps(rate + Unwrap(points, rough, lines));
 }
 
-/// Least squares of two curves.
+/// Fits the two curves of a beam by least squares.
 class CurveFit {
  public:
   void Add(const BeamPath::Terms& terms, double azimuth, double elevation) {
@@ -150,10 +150,10 @@ class CurveFit {
     }
     count_ += 1;
   }
-  /// Returns nothing if a factor does not fit the format.
+  /// Returns the curves, or nothing if a factor is too large for the format.
   std::optional<PathBeam> Solve() {
-    // The stiffness keeps a curve low over columns without points, because high factors take more
-    // bits.
+    // The stiffness keeps factors small where columns have no points, because large factors need
+    // more bits.
     for (std::size_t i = 0; i < kPathTerms; ++i) products_[i][i] += kStiffness * (count_ + 1);
     Factorise();
     PathBeam beam;
@@ -165,7 +165,7 @@ class CurveFit {
  private:
   static constexpr double kStiffness = 1e-8;
 
-  /// Replaces the products by their Cholesky factor.
+  /// Replaces the matrix of products by its Cholesky factor.
   void Factorise() {
     for (std::size_t i = 0; i < kPathTerms; ++i)
       for (std::size_t k = 0; k <= i; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the path of beams by the time of each point and the laser that measured it.
+// Finds the path of beams. It needs the time of each point, and the laser that measured the point.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace lidar::codec::cloud {
 
-/// Returns the path of `points`, which were measured at `pulses`, and places them on it. Returns
-/// nothing if the lasers do not fire at even steps of time, or do not turn.
+/// Finds the path of `points`, and places the points on it. `pulses` has the time and the laser of
+/// each point. Returns nothing if the lasers do not fire at equal intervals, or do not turn.
 std::optional<BeamTable> FindPath(const std::vector<Sighting>& points,
                                   const std::vector<Pulse>& pulses,
                                   std::vector<PlacedPoint>* placed);

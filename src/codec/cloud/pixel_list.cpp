@@ -9,14 +9,14 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Distance of a point from its beam and column [m].
+/// The distance [m] of a decoded point from the original one: along the beam, upwards and sideways.
 struct Distances {
   double along = 0;
   double up = 0;
   double side = 0;
 };
 
-/// Rounding of coordinates, as in PointErrors::rounding_m.
+/// Returns the error of rounding coordinates [m], as in PointErrors::rounding_m.
 double Rounding(double range_m) {
   return 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * range_m;
 }
@@ -26,7 +26,7 @@ bool Within(const Distances& off, double error_m, double range_m) {
   return off.along * off.along + off.up * off.up + off.side * off.side <= most * most;
 }
 
-/// Checks whether points decode to within the error.
+/// Checks whether points would be decoded to within the error.
 class PixelCheck {
  public:
   PixelCheck(const PlacedCloud& cloud, const PixelErrors& errors)
@@ -36,7 +36,7 @@ class PixelCheck {
         errors_(errors),
         half_step_(table_.step() / 2 + 1) {}
 
-  /// Returns true if the first return of a pixel decodes to within the error.
+  /// Returns true if `point`, as the first return of its pixel, is decoded to within the error.
   bool Fits(std::size_t point) const {
     const PlacedPoint& p = placed_[point];
     constexpr double kFarthest = 1e5;
@@ -47,7 +47,8 @@ class PixelCheck {
     }
     return Fits(point, {std::abs(static_cast<double>(p.residual)) + 0.5, OwnBend(p)});
   }
-  /// Checks a further return, in the direction of the first return `first`.
+  /// Returns true if `point`, as a further return, is decoded to within the error. It is decoded in
+  /// the direction of the pixel's first return, which is `first`.
   bool FitsWith(std::size_t point, std::size_t first) const {
     const PlacedPoint& p = placed_[point];
     const PlacedPoint& other = placed_[first];
@@ -67,7 +68,7 @@ class PixelCheck {
   }
 
  private:
-  /// Largest errors of the angles of a decoded point, in units.
+  /// The largest errors of a decoded point's angles, in angle units.
   struct Angles {
     double azimuth;
     double elevation;
@@ -85,13 +86,13 @@ class PixelCheck {
     off.side = angles.azimuth * kRadians * s.rho_m + SideError(table_.beams[p.beam], s.rho_m);
     return Within(off, errors_.error_m, s.range_m);
   }
-  /// Returns the error that rounding causes in a residual. The width of the residual's class
-  /// follows from the decoded range, which may be shorter than the original.
+  /// Returns the largest error of a residual that is due to rounding. The width of a class of
+  /// residuals depends on the decoded range, which may be shorter than the original range.
   double HalfWidth(std::uint32_t tangent_um, std::uint32_t range_mm) const {
     const double back_mm = std::max(range_mm - 1e3 * errors_.range_m - 1, 1.0);
     return 0.5 * ResidualWidth(tangent_um, static_cast<std::uint32_t>(back_mm)) + 1;
   }
-  /// Returns the error of SideAngle() [m] that follows from the error of the decoded range.
+  /// Returns the error [m] of SideAngle() that is due to the error of the decoded range.
   double SideError(const BeamTable::Beam& beam, double rho_m) const {
     if (beam.side_um == 0) return 0;
     const double off = errors_.range_m + 1e-3;
@@ -113,13 +114,13 @@ struct FittingPoint {
   std::uint32_t range_mm;
 };
 
-/// The points that fit a pixel. The list is compact, and later passes need not read the placed
+/// The points that fit a pixel. This list is compact, so later passes need not read all placed
 /// points again.
 struct Fitting {
   std::vector<FittingPoint> points;
   std::uint32_t first_column = UINT32_MAX;
   std::uint32_t last_column = 0;
-  std::size_t asked = 0;  // number of points from `nearest_m` on
+  std::size_t asked = 0;  // number of points at `nearest_m` or farther
 };
 
 Fitting FindFitting(const PlacedCloud& cloud, const PixelCheck& check, double nearest_m,
@@ -144,8 +145,8 @@ Fitting FindFitting(const PlacedCloud& cloud, const PixelCheck& check, double ne
   return fitting;
 }
 
-/// Sets the columns of the image, from the first with a point to the last. Returns false if the
-/// image is too large.
+/// Sets the size of the image. Its columns are those from the first column with a point to the last
+/// one. Returns false if the image is too large.
 bool PlaceImage(const BeamTable& table, const Fitting& fitting, const PixelErrors& errors,
                 PixelList* list) {
   RangeImage& image = list->image;

@@ -15,7 +15,7 @@ using mixing::BitLength;
 
 constexpr std::int32_t kUnknownResidual = INT32_MIN;
 
-/// The last two residuals of a beam, and its last quotient.
+/// The last two residuals of a beam, and the quotient that was coded last.
 struct ResidualHistory {
   std::int32_t last = 0;
   std::int32_t before = 0;
@@ -24,12 +24,12 @@ struct ResidualHistory {
 
 }  // namespace
 
-/// Quotients of numbers up to 2^24, rounded, without a division for each.
+/// Divides numbers of up to 2^24 by `width` and rounds the quotients, without a division for each.
 class Rounder {
  public:
   explicit Rounder(std::int32_t width) : half_(width / 2), per_width_(1.0 / width) {}
   std::int32_t Of(std::int32_t number) const {
-    // Adding 0.5 keeps a quotient so far from an integer that rounding cannot change the result.
+    // Adding 0.5 keeps the quotient so far from an integer that rounding cannot change the result.
     const auto size = static_cast<std::int32_t>((std::abs(number) + half_ + 0.5) * per_width_);
     return number < 0 ? -size : size;
   }
@@ -47,7 +47,7 @@ bool CodePlaces(BeamTable* table, Coder* coder) {
   constexpr std::uint32_t kLongest = 31;
   std::int64_t place = -usual;
   std::array<std::uint32_t, 2> last = {8, 8};
-  std::uint32_t run = 0;  // of equal numbers
+  std::uint32_t run = 0;  // length of a run of equal numbers
   for (std::uint32_t& coded : table->places) {
     const std::array<std::uint32_t, 3> contexts = {last[0], last[0] * 16 + last[1],
                                                    run * 16 + last[0]};
@@ -70,7 +70,7 @@ bool CodePath(std::vector<PathBeam>* path, Coder* coder) {
   for (PathBeam& beam : *path) {
     std::uint32_t part = 0;
     for (const auto curve : {&PathBeam::azimuth, &PathBeam::elevation}) {
-      std::uint32_t length = 0;  // of the number before
+      std::uint32_t length = 0;  // bit length of the previous number
       for (std::uint32_t term = 0; term < kPathTerms; ++term) {
         std::int32_t& factor = (beam.*curve)[term];
         const std::int32_t guess = (last.*curve)[term];
@@ -142,7 +142,8 @@ class ExtraCoder {
     if (level_bits_ > 0) levels_ = std::make_unique<Model>();
   }
 
-  /// Returns false for a damaged stream.
+  /// Codes the further returns of all pixels, which are `limit` at most. Returns false if the
+  /// stream is damaged.
   bool Code(std::size_t limit, std::vector<ExtraBin>* extras) {
     std::size_t at = 0;
     for (std::uint32_t row = 0; row < bins_.size(); row += columns_) {
@@ -167,7 +168,7 @@ class ExtraCoder {
   using CountModel = BitModel<3, 8>;
   static constexpr std::int32_t kNoReturn = INT32_MAX;
 
-  /// Codes the further returns of a pixel, from extra `at` on.
+  /// Codes the further returns of a pixel. They begin at (*extras)[*at]. Moves `at` behind them.
   bool CodePixel(std::uint32_t pixel, std::size_t limit, std::vector<ExtraBin>* extras,
                  std::size_t* at) {
     std::uint32_t count = 0;
@@ -183,7 +184,8 @@ class ExtraCoder {
   static std::uint32_t LengthOf(std::int32_t v) {
     return static_cast<std::uint32_t>(BitLength(static_cast<std::uint32_t>(std::abs(v))));
   }
-  /// Returns how much farther a neighbour is; kNoReturn: it has no return.
+  /// Returns by how many bins a neighbour is farther than the pixel, or kNoReturn if the neighbour
+  /// has no return.
   std::int32_t StepTo(std::uint32_t pixel, std::int64_t distance) const {
     const std::int64_t at = pixel + distance;
     if (at < 0 || at >= static_cast<std::int64_t>(bins_.size())) return kNoReturn;
@@ -215,7 +217,7 @@ class ExtraCoder {
                  : typename Model::Contexts{nearby_ * 16 + jumps_, nearby_, jumps_};
     return counts_->CodeBit(more, std::min(count, 3U), contexts, &coder_);
   }
-  /// Returns false for a damaged stream.
+  /// Codes a further return of `pixel`. Returns false if the stream is damaged.
   bool CodeReturn(std::uint32_t pixel, ExtraBin* extra) {
     constexpr std::uint32_t kNearNode = 4;
     constexpr std::uint32_t kNear = Model::kValues / 2;  // the first context of near returns
@@ -252,7 +254,7 @@ class ExtraCoder {
   std::unique_ptr<CountModel> counts_ = std::make_unique<CountModel>();
   std::unique_ptr<Model> distances_ = std::make_unique<Model>();
   std::unique_ptr<Model> levels_;    // null without levels
-  std::vector<std::uint8_t> above_;  // of each column: 1 if its last pixel has further returns
+  std::vector<std::uint8_t> above_;  // for each column: 1 if its last pixel has further returns
   std::uint32_t left_ = 0;
   std::uint32_t nearby_ = 0;
   std::uint32_t jumps_ = 0;

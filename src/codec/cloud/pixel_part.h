@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes what an image of first returns lacks: the distance of each azimuth from its column, and the
-// further returns of a pixel.
+// Codes what an image of first returns does not contain: the distances of azimuths from their
+// columns, and the further returns of pixels.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace lidar::codec::cloud {
 
-/// The first guess of a pixel's residual.
+/// How a pixel's residual is guessed: as 0, as the last residual of the column, or as the last or
+/// the last but one of the row.
 enum class ResidualGuess : std::uint8_t { kNone = 0, kColumn = 1, kLast = 2, kBeforeLast = 3 };
 constexpr unsigned kResidualGuesses = 4;
 
@@ -27,25 +28,25 @@ bool CodePlaces(BeamTable* table, Coder* coder);
 template <class Coder>
 bool CodePath(std::vector<PathBeam>* path, Coder* coder);
 
-/// Codes the residuals of all pixels that have a decoded range in `image`, and sets `residuals` to
-/// the decoded ones. Returns false for a damaged stream.
+/// Codes the residuals of all pixels that have a range in `image`. The ranges must be the decoded
+/// ones. Sets `residuals` to what a decoder gets. Returns false if the stream is damaged.
 template <class Coder>
 bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                    std::vector<std::int32_t>* residuals, Coder* coder);
 
-/// A further return, by the bins of the image's grid.
+/// A further return of a pixel. Its range is a bin of the image's grid.
 struct ExtraBin {
   std::uint32_t pixel = 0;
-  std::int32_t bin = 0;  // less the bin of the first return
+  std::int32_t bin = 0;  // bin minus the bin of the first return
   std::uint8_t level = 0;
 };
 struct ExtraSettings {
   unsigned level_bits = 0;
   bool by_four = true;    // contexts of four neighbours; false: of two, as earlier encoders had
-  std::size_t limit = 0;  // most further returns
+  std::size_t limit = 0;  // largest number of further returns
 };
-/// Codes the further returns of `bins`, the bins of all pixels (-1: no return). Returns false for a
-/// damaged stream.
+/// Codes the further returns of pixels. `bins` has the bin of each pixel's first return, or -1 if
+/// the pixel has no return. Returns false if the stream is damaged.
 template <class Coder>
 bool CodeExtras(const std::vector<std::int32_t>& bins, std::uint32_t columns,
                 const ExtraSettings& settings, std::vector<ExtraBin>* extras, Coder* coder);

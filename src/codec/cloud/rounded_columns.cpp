@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Columns of sensors that round azimuths.
+// Finds the columns of sensors that round azimuths.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Votes for the multiples of `quantum` at which firings lie, with a delay for each beam.
+/// Finds the multiples of `quantum` at which the sensor fires. The points of each beam vote for
+/// them, shifted by the delay of the beam.
 class RoundedColumns {
  public:
   RoundedColumns(const std::vector<BeamAzimuths>& beams, double quantum, double step)
@@ -19,7 +20,8 @@ class RoundedColumns {
         grains_(static_cast<std::uint32_t>(std::lround(kTurn / quantum))) {
     votes_.assign(grains_, 0);
   }
-  /// Returns false if the beams do not agree.
+  /// Sets the places of the columns and the offsets and delays of the beams. Returns false if the
+  /// beams do not agree.
   bool Find(BeamTable* table) {
     std::vector<std::uint32_t> order(beams_.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) {
@@ -54,7 +56,8 @@ class RoundedColumns {
     const auto size = static_cast<std::int32_t>(grains_);
     return static_cast<std::uint32_t>((static_cast<std::int32_t>(grain) - delay + size) % size);
   }
-  /// Rates all delays by a sample, and the best of them by all points.
+  /// Returns the delay with the most votes. All delays are rated by a sample of the points. The
+  /// best ones are then rated by all points.
   std::int32_t BestDelay(std::uint32_t beam) const {
     constexpr std::int32_t kMost = 160;
     constexpr std::size_t kSample = 256;
@@ -74,7 +77,7 @@ class RoundedColumns {
     }
     return best;
   }
-  /// Returns the votes at the places of about `sample` points.
+  /// Returns the votes at the places that about `sample` points of the beam have with this delay.
   std::uint64_t VotesFor(std::uint32_t beam, std::int32_t delay, std::size_t sample) const {
     const std::vector<std::uint32_t>& grains = grains_of_[beam];
     const std::size_t stride = grains.size() / sample + 1;

@@ -27,7 +27,8 @@ inline std::int32_t StepOf(bool bit, std::int32_t chance) {
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;
 }
 
-/// Like StepOf(), but for refined models. BitMixer::CodeFast() doubles their inputs, too.
+/// Returns the step for refined models. Their weights learn faster: BitMixer::CodeFast() also
+/// doubles the inputs.
 inline std::int32_t FastStepOf(bool bit, std::int32_t chance) {
   constexpr std::int32_t kSpeed = 6;
   return ((bit ? kOne : 0) - chance) * kSpeed >> 4;

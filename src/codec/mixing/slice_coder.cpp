@@ -166,7 +166,7 @@ bool SliceCoder::CodeLevels(Model* model, SliceBins* slice, Coder* coder) {
     Azimuth* const above = above_.At(beam);
     const std::size_t row = std::size_t{beam} * slice->columns;
     const auto at = [](const Azimuth& azimuth) {
-      // In this pass `values[0]` is the bin plus 1, so that 0 means no return.
+      // `values[0]` is the bin plus 1 in this pass, so that 0 means no return.
       return LevelAt{azimuth.values[0] - 1, azimuth.level, azimuth.level_residual};
     };
     typename Part::Around around{};

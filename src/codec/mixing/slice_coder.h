@@ -21,7 +21,7 @@ struct TemporalModel;
 /// How the newest pixel at an azimuth differs from what its memory predicted.
 struct Surprise {
   std::uint8_t shift = 3;  // 0 to 6: the bin differs by -3 to 3; kChanged: by more
-  bool returns = false;    // true: there is a return unlike in the last scan, or vice versa
+  bool returns = false;    // true: only one of the last scan and this one has a return
 
   static constexpr std::uint8_t kChanged = 7;
 };
@@ -44,7 +44,7 @@ struct SliceBins {
 };
 constexpr std::int32_t kNoReturn = -1;
 
-/// What earlier scans had in the pixels of a slice, and the model that predicts the slice from it.
+/// The memory of a slice's pixels, and the model that predicts the slice from this memory.
 struct Memory {
   const PixelMemory* pixels = nullptr;  // of all pixels of the slice, or null
   TemporalModel* model = nullptr;       // learns from the slice

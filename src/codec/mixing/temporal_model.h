@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The temporal coder's model of successive scans. It is not reset for each block: what it learnt
-// from a block serves to code the next one.
+// The temporal coder's model of successive scans. It is not reset for each block: what it has
+// learnt from a block is used for the next block.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes the integers of a block by rANS symbols. The models of four contexts, blended, predict each
-// symbol.
+// Codes the integers of a block by rANS symbols. Each symbol is predicted by a blend of the models
+// of four contexts.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -24,8 +24,8 @@ class BlendedChannel {
   template <class T>
   void EncodeRow(std::uint32_t beam, const std::uint16_t* columns, std::size_t count,
                  const T* values, RansEncoder* encoder);
-  /// Decodes `values`, likewise. Returns false if the stream ends too early, or if a value is not
-  /// below the limit.
+  /// Decodes the `values` of a row. `columns` has the columns of its `count` returns. Returns false
+  /// if the stream ends too early, or if a value is not below the limit.
   bool DecodeRow(std::uint32_t beam, const std::uint16_t* columns, std::size_t count,
                  std::int32_t* values, RansDecoder* decoder);
 
@@ -50,7 +50,7 @@ class BlendedChannel {
     std::int32_t other = kUnknown;  // value to the left of the last jump
     std::uint32_t next = 0;         // column after the last value
   };
-  /// What the values coded before it tell about a value.
+  /// What is known about a value before it is coded.
   struct View {
     std::int32_t median;
     std::int32_t mirror;  // 1 or -1
@@ -58,9 +58,8 @@ class BlendedChannel {
     std::array<std::int32_t, kCandidates> candidates;  // values near which a jump may end
     BlendedModels models;
   };
-  /// Returns a bit for each candidate to which a jump may lead. The direction of the jump is
-  /// `sense`. The bit is 1 if the candidate lies in this direction, and is not much nearer than the
-  /// shortest jump.
+  /// Returns a bit for each candidate. It is 1 if the candidate lies in the direction `sense` and
+  /// is not much nearer than the shortest jump.
   static unsigned Behind(const View& view, std::int32_t sense);
   void StartRow(std::uint32_t beam);
   View Look(std::uint32_t column);

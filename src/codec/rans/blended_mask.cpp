@@ -96,9 +96,9 @@ BlendedModels BlendedMask::EmptyModels() {
 
 /// Calls code(lane, models, pixels) for each group of a row. `code` returns the bits of the group.
 ///
-/// If all pixels around a group are empty, as most are in many masks, code_empty(lane, interval,
-/// pixels) may be called first. If the group is empty, too, `code_empty` codes it and returns true;
-/// `code` is then not called.
+/// Most pixels of a mask may be empty. If all pixels around a group are empty, code_empty(lane,
+/// interval, pixels) may be called first. If the group itself is empty, `code_empty` codes it and
+/// returns true. In this case `code` is not called.
 template <class CodeFour, class CodeEmpty>
 [[gnu::always_inline]] inline void BlendedMask::CodeRow(std::uint32_t beam, std::uint32_t columns,
                                                         CodeFour&& code, CodeEmpty&& code_empty) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes which pixels have a return. Four pixels are a symbol. The models of four contexts, blended,
-// predict it.
+// Codes which pixels have a return. Four pixels are a symbol, which is predicted by a blend of the
+// models of four contexts.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -41,8 +41,8 @@ struct Targets {
 };
 inline constexpr Targets kTargets;
 
-/// The speed of learning, as a shift, for each age of a model (number of updates). A young model
-/// learns fastest, because the first few samples say the most about a context.
+/// The shift that sets the speed of learning, for each age of a model (number of updates). A young
+/// model learns fastest, because the first few samples say the most about a context.
 struct Rates {
   static constexpr unsigned kMiddleAge = 24;
   static constexpr unsigned kOldest = 400;

@@ -103,7 +103,7 @@ class RowPredictor {
     for (unsigned lane = 0; lane < kRansLanes; ++lane) {
       const std::size_t start = lane < lanes.lanes ? lanes.Start(lane) : 0;
       west[lane] = kBlind ? latest_ : row[start].north;
-      // Without neighbours, the first predictions are poor. They have the context of the largest
+      // The first predictions are poor without neighbours. They have the context of the largest
       // errors.
       error[lane] = kBlind ? std::int32_t{detail::ContextTable::kMost} : 0;
     }
@@ -125,8 +125,9 @@ class RowPredictor {
                                        2 * static_cast<std::uint32_t>(error[lane]);
           p.context =
               detail::kContextTable.contexts[std::min(uneven, detail::ContextTable::kMost + 0U)];
-          // If a value differs from the prediction, it is mostly on the side of the other
-          // neighbour, W or N. The mirrored sign of the difference is therefore predictable.
+          // The prediction is often W or N itself. If the value differs from it, the value is
+          // mostly on the side of the other one of W and N, so the mirrored sign of the difference
+          // is predictable.
           p.mirror = -above >> 31;
           const Coded coded = code(lane, i, p);
           error[lane] = at.error = coded.magnitude;

@@ -24,8 +24,8 @@ void RansEncoder::Finish(std::vector<std::uint8_t>* out) {
   const auto pieces = static_cast<std::size_t>(next_ - pieces_.data());
   std::array<std::uint64_t, kRansLanes> states;
   states.fill(kRansLow);
-  // A piece adds at most one word. The loop also writes to the word before the last one that it
-  // adds. Words are stored from the end backwards, because decoding reverses their order.
+  // A piece adds at most one word. The loop writes one word more, which is not used. Words are
+  // stored backwards from the end, because decoding reverses their order.
   if (words_.size() < pieces + 1) words_.resize(pieces + 1);
   std::uint32_t* const words_end = words_.data() + words_.size();
   std::uint32_t* word = words_end;

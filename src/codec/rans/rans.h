@@ -133,7 +133,7 @@ class RansDecoder {
     std::uint64_t x = states_[lane];
     const auto bits = static_cast<std::uint32_t>(x) & mask;
     x >>= count;
-    // About one state in ten needs a refill, so a processor would often mispredict a jump. The
+    // A processor would often mispredict a jump, because about one state in ten needs a refill. The
     // shift gives 1 if x < kRansLow, because states are below 2^63.
     const std::uint64_t refill = (x - kRansLow) >> 63;
     states_[lane] = x << (kRansWordBits * refill) | (LoadWord() & (0 - refill));
