@@ -11,11 +11,11 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Margin for the rounding of floats: errors are assumed to be larger by this part, and grids are
-/// finer by twice this part.
+/// A margin for the rounding of floats, as a part of the error. The error of a grid is assumed to
+/// be larger by this part. ForError() makes the grid finer by twice this part.
 constexpr double kRoom = 1e-4;
 
-/// Does what std::floor() does, without a call.
+/// Returns std::floor(value), without a function call.
 double Floor(double value) {
   const auto whole = static_cast<double>(static_cast<std::int64_t>(value));
   return whole > value ? whole - 1 : whole;
@@ -38,13 +38,14 @@ std::vector<std::uint32_t> Sums(const std::vector<std::uint32_t>& counts) {
   return first;
 }
 
-/// The cells whose middles are within the error of a point.
+/// Finds the cells whose middles are within the error of a point.
 class NearCells {
  public:
   static constexpr std::size_t kMost = 8;
-  /// Cells around a cell: the cell x, y and z steps away is cell 13 + x + 3 y + 9 z.
+  /// The number of cells around a cell, with the cell itself. The cell that is x, y and z steps
+  /// away has the place 13 + x + 3 y + 9 z.
   static constexpr unsigned kAround = 27;
-  /// A point's own cell.
+  /// A point's own cell, which is the cell that contains the point.
   struct Own {
     std::array<double, 3> cell;  // in steps from the middle of the grid
     std::uint64_t key = 0;
@@ -56,13 +57,13 @@ class NearCells {
         half_(CellGrid::HalfOf(depth)),
         square_bound_(grid.error_m() * grid.error_m()) {}
 
-  /// Writes the key of the point's own cell, then those of its neighbours that are near enough.
-  /// Returns the end of the keys.
+  /// Writes the key of the point's own cell to `keys`, then the keys of those neighbours whose
+  /// middles are near enough. Returns the end of the keys.
   std::uint64_t* Write(const Point& point, std::uint64_t* keys) const {
     const Own own = OwnOf(point);
     const Sides sides = SidesOf(point, own);
     *keys++ = own.key;
-    // A jump for each neighbour would often be mispredicted.
+    // There is no jump for each neighbour, because a processor would often mispredict it.
     for (unsigned i = 1; i < kMost; ++i) {
       std::uint64_t key = own.key;
       for (unsigned k = 0; k < 3; ++k) {
@@ -83,7 +84,8 @@ class NearCells {
     }
     return own;
   }
-  /// Returns a bit for each cell around the point's own cell that is near enough.
+  /// Returns a bit for each cell around the point's own cell. It is 1 if the middle of the cell is
+  /// near enough.
   std::uint32_t AroundOf(const Point& point, const Own& own) const {
     constexpr std::array<int, 3> kPlaces = {1, 3, 9};
     const Sides sides = SidesOf(point, own);
@@ -98,7 +100,7 @@ class NearCells {
     }
     return around;
   }
-  /// Returns the key of one of the cells around the cell of `key`.
+  /// Returns the key of the cell that has `place` among the cells around the cell of `key`.
   static std::uint64_t KeyAround(std::uint64_t key, unsigned place) {
     return key - kSteps[0] - kSteps[1] - kSteps[2] + place % 3 * kSteps[0] +
            place / 3 % 3 * kSteps[1] + place / 9 * kSteps[2];
@@ -107,11 +109,11 @@ class NearCells {
  private:
   static constexpr std::array<std::uint64_t, 3> kSteps = {NodeMap::kStepX, NodeMap::kStepY,
                                                           NodeMap::kStepZ};
-  /// Only two cells along each axis can be near: the own cell, and the neighbour on the point's
-  /// side.
+  /// Along each axis, two cells can be near enough: the point's own cell, and the neighbour on the
+  /// side on which the point is.
   struct Sides {
-    std::array<std::array<double, 3>, 2> squares;  // of the distances from the middles
-    std::array<bool, 3> is_below;                  // is the neighbour below the cell?
+    std::array<std::array<double, 3>, 2> squares;  // squared distances from the middles
+    std::array<bool, 3> is_below;                  // whether the neighbour is below the own cell
   };
 
   Sides SidesOf(const Point& point, const Own& own) const {
@@ -126,7 +128,8 @@ class NearCells {
     }
     return sides;
   }
-  /// Bit k of `i` is set if the cell is the neighbour along axis k.
+  /// Returns true if the middle of a cell is near enough. Bit k of `i` is 1 if the cell is the
+  /// neighbour along axis k, and 0 if it is the own cell.
   bool IsNear(const Sides& sides, unsigned i) const {
     return !(sides.squares[i & 1][0] + sides.squares[i >> 1 & 1][1] + sides.squares[i >> 2][2] >
              square_bound_);
@@ -135,14 +138,14 @@ class NearCells {
   CellGrid grid_;
   double step_;
   double half_;
-  double square_bound_;  // of the distance from a cell's middle
+  double square_bound_;  // largest squared distance from a cell's middle
 };
 
 /// Points, grouped by their own cells. Merge() joins cells.
 class OwnCells {
  public:
   OwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth) {
-    constexpr std::size_t kUsual = 8;  // points a cell
+    constexpr std::size_t kUsual = 8;  // points per cell
     const NearCells near(grid, depth);
     map_.Reset(points.size() / kUsual);
     cell_of_point_.reserve(points.size());
@@ -151,14 +154,14 @@ class OwnCells {
       const std::uint32_t index = IndexOf(own.key);
       Cell& cell = cells_[index];
       ++cell.count;
-      // Most cells have points on all sides, so after a few points no other cell is near to all of
-      // them.
+      // `around` has the cells that are near enough to all points so far. It is soon 0 in most
+      // cells, because they have points on all sides.
       if (cell.around != 0) cell.around &= near.AroundOf(point, own);
       cell_of_point_.push_back(index);
     }
   }
-  /// Gives a cell's points to a neighbour that is near enough to all of them, the one with the most
-  /// points.
+  /// Gives the points of a cell to a neighbour that is near enough to all of them. If there are
+  /// several such neighbours, the one with the most points gets them.
   void Merge() {
     for (std::uint32_t i = 0; i < cells_.size(); ++i) {
       std::uint32_t best = i;
@@ -185,7 +188,7 @@ class OwnCells {
     std::sort(sorted.begin(), sorted.end());
     covered->cells.Clear();
     covered->cells.depth = depth;
-    std::vector<std::uint32_t> next(cells_.size());  // place of a cell's next point
+    std::vector<std::uint32_t> next(cells_.size());  // index of a cell's next point in the order
     std::uint32_t sum = 0;
     for (const auto& [code, i] : sorted) {
       covered->cells.codes.push_back(code);
@@ -202,8 +205,8 @@ class OwnCells {
   struct Cell {
     std::uint64_t key;
     std::uint32_t count;
-    std::uint32_t around;  // cells around it that are near enough to all of its points
-    std::uint32_t into;    // the cell that has its points
+    std::uint32_t around;  // bits of the cells around it that are near enough to all of its points
+    std::uint32_t into;    // the cell that now has its points
   };
 
   std::uint32_t IndexOf(std::uint64_t key) {
@@ -238,9 +241,9 @@ class Choices {
   std::uint64_t CodeOf(std::uint32_t cell) const {
     return MortonCode(NodeMap::PositionOf(keys_[cell]));
   }
-  /// Returns the number of remaining points that may belong to this cell.
+  /// Returns the number of remaining points that may belong to the cell.
   std::uint32_t left(std::uint32_t cell) const { return left_[cell]; }
-  /// Gives the cell all its remaining points, and appends them to `order`.
+  /// Assigns all remaining points that may belong to the cell to it, and appends them to `order`.
   void Take(std::uint32_t cell, std::vector<std::uint32_t>* order) {
     for (std::uint32_t k = first_of_cell_[cell]; k < first_of_cell_[cell + 1]; ++k) {
       const std::uint32_t point = points_[k];
@@ -254,10 +257,10 @@ class Choices {
 
  private:
   /// Fills the lists of cells and choices. The keys of several points are computed before the first
-  /// of them is looked up, so that no look-up waits for its key.
+  /// of these keys is looked up, so that no look-up waits for its key.
   void FindCells(const std::vector<Point>& points, const NearCells& near) {
     constexpr std::size_t kAtOnce = 64;
-    constexpr std::size_t kUsual = 4;  // near cells of a point, as a rule
+    constexpr std::size_t kUsual = 4;  // usual number of near cells of a point
     std::array<std::uint64_t, kAtOnce * NearCells::kMost> keys;
     map_.Reset(points.size() / 2);
     first_of_point_.reserve(points.size() + 1);
@@ -286,16 +289,17 @@ class Choices {
   }
 
   NodeMap map_;
-  std::vector<std::uint64_t> keys_;  // of cells
+  std::vector<std::uint64_t> keys_;  // keys of the cells
   std::vector<std::uint32_t> left_;
   std::vector<std::uint32_t> first_of_point_;
-  std::vector<std::uint32_t> cells_;  // point by point
+  std::vector<std::uint32_t> cells_;  // the cells of each point, point by point
   std::vector<std::uint32_t> first_of_cell_;
-  std::vector<std::uint32_t> points_;  // cell by cell
+  std::vector<std::uint32_t> points_;  // the points of each cell, cell by cell
   std::vector<std::uint8_t> taken_;
 };
 
-/// Stacks of cells, by the number of points that a cell may still get. This number only falls.
+/// Stacks of cells. Each stack has the cells that may still get a certain number of points. This
+/// number never rises for a cell.
 class CellQueues {
  public:
   explicit CellQueues(const Choices& choices) : next_(choices.size()) {
@@ -316,8 +320,8 @@ class CellQueues {
 
  private:
   static constexpr std::uint32_t kEnd = UINT32_MAX;
-  std::vector<std::uint32_t> first_ = {kEnd};  // by number of points
-  std::vector<std::uint32_t> next_;            // by cell
+  std::vector<std::uint32_t> first_ = {kEnd};  // the top of each stack, by number of points
+  std::vector<std::uint32_t> next_;            // the next cell in the same stack, by cell
 };
 
 }  // namespace
@@ -349,8 +353,8 @@ bool CellGrid::Reaches(double farthest_m) const {
 }
 
 double CellGrid::SurelyHolds() const {
-  // Each coordinate of a cell's middle is rounded by up to half of kRounding times its size. The
-  // sum of the three roundings must fit the room that error_m() leaves.
+  // Each coordinate of a cell's middle is rounded, which changes it by at most half of kRounding
+  // times its size. The sum of the three changes must be within the margin of error_m().
   constexpr double kRounding = static_cast<double>(std::numeric_limits<float>::epsilon());
   return 3 * (static_cast<double>(step_m) * kRoom / kRounding - static_cast<double>(step_m));
 }

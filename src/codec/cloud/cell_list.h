@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points as counts of occupied cells of a cubic grid.
+// Represents points by the occupied cells of a cubic grid, and by the number of points in each
+// cell.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,18 +8,19 @@
 
 namespace lidar::codec::cloud {
 
-/// A grid has 2^depth cells along each axis. The sensor is in its middle, a corner of eight cells.
+/// The largest depth of a grid. A grid has 2^depth cells along each axis. The sensor is in the
+/// middle, where eight cells meet.
 constexpr unsigned kMostDepth = 21;
 
 using CellPosition = std::array<std::uint32_t, 3>;  // from 0 to 2^depth - 1
 
-/// Cells in the order of their Morton codes, each once.
+/// The occupied cells of a grid, in the order of their Morton codes.
 struct CellList {
   unsigned depth = 1;
   std::vector<std::uint64_t> codes;
-  std::vector<std::uint32_t> counts;  // of points; at least 1
+  std::vector<std::uint32_t> counts;  // number of points in each cell; at least 1
 
-  /// Adds a point. Points must come cell by cell.
+  /// Adds a point in the cell with this code. Points must be added in the order of their codes.
   void AddPoint(std::uint64_t code) {
     if (codes.empty() || codes.back() != code) {
       codes.push_back(code);
@@ -32,7 +34,8 @@ struct CellList {
   }
 };
 
-/// Moves bit i to bit 3 i of a Morton code: 21 bits to 63.
+/// Returns the lowest 21 bits of `v`, spread over 63 bits. Bit i is moved to bit 3 i of a Morton
+/// code.
 inline std::uint64_t SpreadBits(std::uint64_t v) {
   v &= 0x1FFFFF;
   v = (v | v << 32) & 0x1F00000000FFFF;

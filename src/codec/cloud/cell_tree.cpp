@@ -22,8 +22,8 @@ std::uint32_t Hash(std::uint64_t value) {
   return static_cast<std::uint32_t>(value * 0x9E3779B97F4A7C15U >> 48);
 }
 
-/// Direction of the cell at `p` of a grid of 2^depth cells along each axis, in half cells from the
-/// middle.
+/// The direction from the middle of a grid to the cell at `p`, in half cells. The grid has 2^depth
+/// cells along each axis.
 struct Direction {
   Direction(const CellPosition& p, unsigned depth) {
     const auto at = [&](unsigned k) {
@@ -34,9 +34,10 @@ struct Direction {
     z = at(2);
     rho = static_cast<std::int64_t>(std::sqrt(static_cast<double>(x * x + y * y)));
   }
-  /// Tangent of the elevation in 1/parts, within +-limit.
+  /// Returns the tangent of the elevation in 1/`parts`, clamped to +-`limit`.
   std::int64_t Tangent(std::int64_t parts, std::int64_t limit) const {
-    // Doubles are exact enough to round these quotients down correctly, and divide faster.
+    // Doubles are exact enough to round these quotients down correctly. A division of doubles is
+    // faster.
     const auto quotient = static_cast<std::int64_t>(
         static_cast<double>(z * parts) / static_cast<double>(std::max<std::int64_t>(rho, 1)));
     return std::clamp(quotient, -limit, limit);
@@ -51,12 +52,12 @@ struct Direction {
   std::int64_t z = 0;
 };
 
-/// The 4 x 4 x 4 cells around the children of a node: (x, y, z) is bit x + 4 y + 16 z. The children
-/// have coordinates 1 and 2.
+/// A bit for each of 4 x 4 x 4 cells: the children of a node, and the cells around them. Cell (x,
+/// y, z) is bit x + 4 y + 16 z. The children have coordinates 1 and 2.
 using CellBits = std::uint64_t;
 constexpr std::array<unsigned, 8> kChildAt = {21, 22, 25, 26, 37, 38, 41, 42};
 
-/// The neighbours of a node that touch a given child of the node.
+/// Returns, for each child of a node, the neighbours of the node that touch this child.
 constexpr std::array<std::uint32_t, 8> NodesByChild() {
   std::array<std::uint32_t, 8> nodes{};
   for (unsigned child = 0; child < 8; ++child)
@@ -81,8 +82,8 @@ constexpr std::array<CellBits, 256> SpreadChildren() {
 }
 constexpr std::array<CellBits, 256> kSpread = SpreadChildren();
 
-/// A neighbour of a node: the shift in CellBits from the node's children to the neighbour's, and
-/// the neighbour's children that are among the 4 x 4 x 4 cells.
+/// A neighbour of a node. `shift` is the distance in CellBits from the node's children to the
+/// neighbour's children. `inside` are the neighbour's children that are among the 4 x 4 x 4 cells.
 struct Neighbour {
   int shift = 0;
   unsigned inside = 0;
@@ -111,11 +112,12 @@ constexpr unsigned kOwnPlace = 13;
 /// A parent whose children may be neighbours of a node.
 struct ParentBeside {
   unsigned parent = 0;                   // place among the 27 around the node's parent
-  unsigned near = 0;                     // which children may be neighbours
-  std::array<std::uint8_t, 8> places{};  // their places among the 27 around the node
+  unsigned near = 0;                     // bits of its children that may be neighbours
+  std::array<std::uint8_t, 8> places{};  // places of these children among the 27 around the node
 };
-/// Returns the parents by the node's place in its own parent. Bit k of the second index is set if a
-/// parent is beside the node's own parent along axis k.
+/// Returns the parents whose children may be neighbours. The first index is the node's place in its
+/// own parent. Bit k of the second index is 1 if a parent is beside the node's own parent along
+/// axis k.
 constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {
   std::array<std::array<ParentBeside, 8>, 8> all{};
   for (unsigned child = 0; child < 8; ++child)
@@ -142,7 +144,8 @@ constexpr std::array<std::array<ParentBeside, 8>, 8> FindParentsBeside() {
 }
 constexpr auto kParentsBeside = FindParentsBeside();
 
-/// Bits read as the digits of a number in base 3, beginning with the lowest bit or the highest.
+/// Returns a table. Entry i is the number whose digits in base 3 are the bits of i. If
+/// `lowest_first`, the lowest bit is the lowest digit, otherwise the highest digit.
 template <unsigned kDigits>
 constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
   std::array<std::uint32_t, 1U << kDigits> numbers{};
@@ -154,7 +157,8 @@ constexpr std::array<std::uint32_t, 1U << kDigits> Base3(bool lowest_first) {
 constexpr auto kFaces3 = Base3<6>(true);
 constexpr auto kLayer3 = Base3<8>(false);
 
-/// The 27 cells around a cell, x fastest; bit 13 is the cell itself.
+/// Returns a bit for each of the 27 cells around a cell. The index of x changes fastest. Bit 13 is
+/// the cell itself.
 std::uint32_t About(CellBits cells, unsigned at) {
   const CellBits from = cells >> (at - 21);
   const auto plane = [&](unsigned z) {
@@ -175,7 +179,7 @@ std::uint32_t Ones(std::uint32_t bits) {
   return ((bits + (bits >> 4)) & 0x0F0F0F0F) * 0x01010101 >> 24;
 }
 
-/// States of the 26 cells around a cell.
+/// The states of the 26 cells around a cell.
 struct Tally {
   static constexpr std::uint32_t kItself = 1U << 13;
 
@@ -218,10 +222,10 @@ struct CellTree::Model {
   std::array<Weights, 1024> count_weights;
 };
 
-/// A parent and the 26 nodes around it.
+/// A parent node and the 26 nodes around it.
 struct CellTree::Family {
   std::array<std::uint8_t, 27> occupancy{};
-  std::array<std::uint32_t, 27> first_children{};  // indices
+  std::array<std::uint32_t, 27> first_children{};  // index of each node's first child
 };
 
 struct CellTree::Surroundings {
@@ -251,7 +255,7 @@ void CellTree::FillLevels(const CellList& cells) {
   }
 }
 
-/// Enters the parents in map_, and counts their children.
+/// Adds the parents to `map_`, and finds the index of each parent's first child.
 void CellTree::ListParents(const Level& parents) {
   map_.Reset(parents.codes.size());
   first_children_.resize(parents.codes.size());
@@ -279,7 +283,8 @@ CellTree::Family CellTree::FamilyOf(const Level& parents, std::uint32_t parent) 
   return family;
 }
 
-/// Sets the occupied cells of coded neighbours; all cells of the others are unknown.
+/// Sets the occupied and the unknown cells around a node's children. All children of a neighbour
+/// are unknown if the neighbour is not coded yet.
 void CellTree::Look(const Place& place, const Family& family, Surroundings* around) const {
   const auto& occupancy = levels_[place.depth - 1].occupancy;
   *around = {};
@@ -387,9 +392,9 @@ bool CellTree::CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& 
 
 /// Context of a cell's count.
 struct CellTree::CountContext {
-  std::uint32_t last = 0;   // count of the cell before
-  std::uint32_t mean = 0;   // mean count of neighbours, in halves
-  std::uint32_t range = 0;  // class
+  std::uint32_t last = 0;   // count of the previous cell
+  std::uint32_t mean = 0;   // mean count of the neighbours, in halves
+  std::uint32_t range = 0;  // class of the range
 };
 
 template <class Coder>
@@ -409,7 +414,7 @@ std::uint32_t CellTree::CodeCount(std::uint32_t count, const CountContext& conte
     mixer.Ask([&](unsigned k) __attribute__((always_inline)) { return &model_->counts[k][at[k]]; });
     return mixer.Code(bit, &model_->count_weights[node], coder);
   };
-  // Small counts are unary, others an Exp-Golomb code.
+  // Small counts have a unary code. Larger counts have an Exp-Golomb code.
   constexpr std::uint32_t kSmall = 12;
   std::uint32_t value = 1;
   while (value < kSmall && code(count > value, value)) ++value;

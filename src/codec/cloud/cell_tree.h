@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes occupied cells and their counts: an octree, level by level, every bit by mixed contexts.
+// Codes occupied cells and their counts. The cells are the leaves of an octree, which is coded
+// level by level. Several contexts predict each bit.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,13 +14,13 @@
 
 namespace lidar::codec::cloud {
 
-/// Bounds of a decoder's work.
+/// The limits of a decoder's work.
 struct CellLimits {
-  std::size_t points = 0;  // exact number
-  std::size_t nodes = 0;   // of all levels
+  std::size_t points = 0;  // exact number of points
+  std::size_t nodes = 0;   // largest number of nodes in all levels
 };
 
-/// Keeps its buffers between clouds.
+/// Codes lists of cells. Keeps its buffers between clouds.
 class CellTree {
  public:
   CellTree();
@@ -27,10 +28,11 @@ class CellTree {
   CellTree& operator=(CellTree&&) noexcept;
   ~CellTree();
 
-  /// Codes all of `cells`; a decoder fills all but `depth`. Returns false for a damaged stream.
+  /// Codes `cells`. A decoder fills `cells`, except for the depth, which the caller has set.
+  /// Returns false if the stream is damaged or exceeds `limits`.
   template <class Coder>
   bool Code(CellList* cells, const CellLimits& limits, Coder* coder);
-  /// Number of nodes that the last Code() visited.
+  /// Returns the number of nodes that the last Code() visited.
   std::size_t nodes() const { return nodes_; }
 
  private:
@@ -39,7 +41,7 @@ class CellTree {
   struct Surroundings;
   struct Family;
   struct CountContext;
-  /// A node and its place.
+  /// A node, and where it is in the tree.
   struct Place {
     CellPosition position;
     std::uint32_t node = 0;  // index in its level
@@ -49,7 +51,7 @@ class CellTree {
   };
   struct Level {
     std::vector<std::uint64_t> codes;
-    std::vector<std::uint8_t> occupancy;  // of the children
+    std::vector<std::uint8_t> occupancy;  // a bit for each child
   };
 
   void FillLevels(const CellList& cells);
@@ -69,7 +71,7 @@ class CellTree {
   std::unique_ptr<Model> model_;
   std::array<Level, kMostDepth + 1> levels_;
   NodeMap map_;
-  std::vector<std::uint32_t> first_children_;  // of the parents: index of each one's first child
+  std::vector<std::uint32_t> first_children_;  // index of each parent's first child
   std::size_t nodes_ = 0;
 };
 

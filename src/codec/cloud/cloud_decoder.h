@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes the points that CloudEncoder encodes; any bytes give a cloud or nothing.
+// Decodes the points that CloudEncoder encodes. A slice may consist of any bytes: they give a cloud
+// or an error.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,20 +14,20 @@
 
 namespace lidar::codec::cloud {
 
-/// For one thread at a time.
+/// Not thread-safe.
 class CloudDecoder {
  public:
   explicit CloudDecoder(std::uint32_t max_points) : max_points_(max_points) {}
 
-  /// Returns false, with the cloud undefined, for a stream that is damaged, of another version, or
-  /// of more than max_points.
+  /// Decodes a slice. Returns false if the stream is damaged, is of another version, or has more
+  /// than max_points points. The cloud is then undefined.
   bool Decode(ByteView stream);
-  /// The points decoded last: those of beams by beam and column, those of cells by Morton code,
-  /// then those too far away for cells.
+  /// Returns the points decoded last: first the points of beams, sorted by beam and column, then
+  /// the points of cells, sorted by Morton code, then the points that are too far away for cells.
   const XyzCloud& cloud() const { return cloud_; }
-  /// The section of exact fields within the stream, or null.
+  /// Returns the exact section of the stream, or null.
   ByteView exact_section() const { return exact_section_; }
-  /// The places of the points, if there is an exact section.
+  /// Returns the places of the points, if there is an exact section.
   const PointPlaces& places() const { return places_; }
   double step_m() const { return static_cast<double>(header_.grid.step_m); }
   double error_m() const { return header_.grid.error_m(); }

@@ -18,7 +18,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Choosing cells takes some 100 bytes a point.
+/// The largest number of points for which cells are chosen. The choice takes some 100 bytes of
+/// memory per point.
 constexpr std::size_t kMostToChoose = 1U << 20;
 constexpr std::size_t kMostPoints = (1U << 28) - 1;
 
@@ -37,8 +38,8 @@ bool HasPulses(const PointFields& fields) {
   return fields.Has("line", FieldType::kU8) && fields.Find("timestamp") != nullptr;
 }
 
-/// Returns the largest coordinate without sign. The bits of such floats are in the order of the
-/// floats.
+/// Returns the largest coordinate, without sign. The bits of floats without sign have the same
+/// order as the floats, so the bits are compared.
 float FarthestOf(const std::vector<float>& xyz) {
   std::int32_t most = 0;
   for (const float v : xyz) {
@@ -51,12 +52,12 @@ float FarthestOf(const std::vector<float>& xyz) {
   return farthest;
 }
 
-/// Shares the error between ranges and azimuths so that the cloud becomes small.
+/// Divides the error between ranges and azimuths in the way that probably gives the smallest cloud.
 PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
-  // A part of the points suffices.
+  // It suffices to use a part of the points.
   constexpr std::size_t kSample = 8'192;
   cloud.stride = cloud.points->size() / kSample + 1;
-  // Bits of a point without a pixel, and of a residual.
+  // The assumed number of bits of a point without a pixel, and of a residual.
   constexpr double kRestBits = 10;
   constexpr double kResidualBits = 0.8;
   const bool has_path = cloud.table->has_path();
@@ -92,16 +93,16 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   return best;
 }
 
-/// The way to code ranges at an effort below the highest.
+/// Returns how ranges are coded at an effort below the highest.
 RangeWay WayOf(unsigned effort) {
   constexpr std::array<RangeCoder, EffortControl::kHighest> kCoders = {
       RangeCoder::kAdaptive, RangeCoder::kBlended, RangeCoder::kMixing};
   return {kCoders[effort], effort};
 }
 
-/// Returns the distance from the sensor, in multiples of the error, up to which cells are cheaper
-/// than ranges: there the mean step between pixels is below kCloseTogether times the error. kMost
-/// limits the distance, because many cells take more time than ranges.
+/// Returns the distance from the sensor up to which cells are cheaper than ranges, in multiples of
+/// the error. Up to this distance the mean step between pixels is below kCloseTogether times the
+/// error. The distance is at most kMost, because many cells take more time than ranges.
 double UsualReach(const BeamTable& table) {
   constexpr double kMost = 70;
   constexpr double kCloseTogether = 0.45;
@@ -111,7 +112,7 @@ double UsualReach(const BeamTable& table) {
   const double beam = std::max(all / std::max(table.rows() - 1, 1U), column);
   return std::min(kCloseTogether / (kRadians * std::sqrt(column * beam)), kMost);
 }
-/// Reaches to try, in multiples of the usual one.
+/// The reaches that are tried, in multiples of the usual reach.
 constexpr std::array<double, 8> kReaches = {0, 0.3, 0.5, 0.7, 1, 1.4, 2, 3};
 
 }  // namespace
@@ -139,7 +140,8 @@ void CloudEncoder::Load(ByteView raw, bool with_intensity) {
   }
 }
 
-/// Takes the lines and times of sensors whose scans do not repeat.
+/// Loads the lines and times of the points, if there are any. They help with sensors whose scans do
+/// not repeat.
 void CloudEncoder::LoadPulses(ByteView raw, const std::vector<std::uint32_t>& rows) {
   pulses_.clear();
   if (!HasPulses(layout_.fields)) return;
@@ -184,8 +186,8 @@ void CloudEncoder::Thin(const std::vector<bool>& kept) {
   pulses_ = std::move(pulses);
 }
 
-/// Moves points that the grid cannot hold to far_ids_. Returns the largest coordinate of the
-/// others.
+/// Moves the points that the grid cannot hold to `far_ids_`, and the others to `near_`. Returns the
+/// largest coordinate in `near_`, without sign.
 float CloudEncoder::SortOutFarPoints(const CellGrid& grid) {
   float most = 0;
   const double surely = grid.SurelyHolds();
@@ -213,7 +215,7 @@ float CloudEncoder::SortOutFarPoints(const CellGrid& grid) {
   return most;
 }
 
-/// Separates points that the grid can hold from those too far away.
+/// Separates the points that the grid can hold from the points that are too far away.
 void CloudEncoder::SortOut(CloudHeader* header) {
   far_ids_.clear();
   float most = FarthestOf(cloud_.xyz);
@@ -234,7 +236,8 @@ void CloudEncoder::SortOut(CloudHeader* header) {
   header->far_points = static_cast<std::uint32_t>(far_ids_.size());
 }
 
-/// Moves points nearer than `nearest_m` to the end of the lists. The others are the seen points.
+/// Moves the points nearer than `nearest_m` to the end of `near_`. The points before them are the
+/// seen points, which may be in pixels.
 void CloudEncoder::PutNearestLast(double nearest_m) {
   seen_ = near_.size();
   if (nearest_m <= 0) return;
@@ -297,8 +300,9 @@ void CloudEncoder::CodeCells(const std::vector<Point>& points,
   candidate->nodes = tree_.nodes();
 }
 
-/// Codes the points of near_ with these indices. Counts vary more if points share few cells, so the
-/// highest effort also tries each point's own cell, and keeps the smaller stream.
+/// Codes points as cells: those with the indices `ids` in `near_`. The highest effort also tries
+/// each point's own cell, and keeps the smaller stream. This may be smaller because the counts vary
+/// more if points share few cells.
 void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate) {
   candidate->header.points = static_cast<std::uint32_t>(ids.size());
   if (ids.empty()) return;
@@ -319,7 +323,8 @@ void CloudEncoder::EncodeCells(const std::vector<std::uint32_t>& ids, Candidate*
   candidate->nodes = other.nodes;
 }
 
-/// Returns false if too few of the points that are far enough lie in pixels.
+/// Codes the points by beams, and the points that fit no pixel as cells. Returns false if too few
+/// of the points that are not too near are in pixels.
 bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors, double nearest_m,
                                const RangeWay& way, Candidate* candidate) {
   if (!FillPixels({&sightings_, &placed_, &table}, errors, nearest_m, &pixels_)) return false;
@@ -337,13 +342,13 @@ bool CloudEncoder::EncodeBeams(const BeamTable& table, const PixelErrors& errors
   return true;
 }
 
-/// Returns 0 with exact fields, because these cost more for points in cells than the cells save.
+/// Returns the distance up to which points become cells, in multiples of the error. Returns 0 if
+/// there are exact fields, because these cost more for points in cells than the cells save.
 double CloudEncoder::ReachOf(const BeamTable& table) const {
   return choice_.empty() ? UsualReach(table) : 0;
 }
 
-/// Codes the exact fields of all points: of the points in pixels_ if there is a `table`, then of
-/// the others.
+/// Codes the exact fields of all points. If there is a `table`, the points in `pixels_` come first.
 void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) const {
   if (choice_.empty()) return;
   PointPlaces places;
@@ -381,8 +386,8 @@ void CloudEncoder::EncodeExact(const BeamTable* table, Candidate* candidate) con
   candidate->order = std::move(part.order);
 }
 
-/// Codes the beams at each effort, and keeps the smallest coding. Near points go to cells, up to
-/// the distance that is cheapest at effort 1.
+/// Codes the beams at each effort, and sets `best` to the smallest result. Near points become
+/// cells, up to the distance that is cheapest at effort 1.
 bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelErrors& errors,
                                         Candidate* best) {
   const unsigned effort = effort_;
@@ -391,7 +396,7 @@ bool CloudEncoder::EncodeBeamsInAllWays(const BeamTable& table, const PixelError
   const auto attempt = [&](unsigned lower, double reach) {
     Candidate candidate;
     candidate.header = header;
-    effort_ = std::max(lower, 2U);  // so that cells do not merge, which would be larger
+    effort_ = std::max(lower, 2U);  // so that cells are not merged, which would take more bits
     const bool coded = EncodeBeams(table, errors, reach * errors.error_m,
                                    {RangeCoder::kMixing, lower}, &candidate);
     effort_ = effort;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Encodes clouds without a sensor model, with points in any order.
+// Encodes clouds that have no sensor model, with points in any order.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace lidar::codec::cloud {
 
-/// Fields that are coded exactly, and whether the order of points is coded, too.
+/// The fields that are coded exactly, and whether the order of the points is kept.
 struct ExactChoice {
   std::vector<PointField> fields;  // of the layout
   bool keeps_order = false;
@@ -30,44 +30,45 @@ struct ExactChoice {
   }
 };
 
-/// Encodes a stream of one format. For one thread at a time.
+/// Encodes the clouds of a stream, which all have one format. Not thread-safe.
 class CloudEncoder {
  public:
-  /// Returns nothing if `layout` lacks x, y and z as adjacent F32.
+  /// Creates an encoder. Returns nothing if `layout` does not have x, y and z as adjacent F32
+  /// fields.
   static std::optional<CloudEncoder> Create(const CloudLayout& layout, ExactChoice exact = {});
 
-  /// Loads the points that are finite and not all zero, for Encode().
+  /// Loads the points whose coordinates are finite and not all 0, for Encode().
   void Load(ByteView raw, bool with_intensity);
-  /// Number of loaded points.
+  /// Returns the number of loaded points.
   std::size_t returns() const { return cloud_.size(); }
-  /// Longest side of the points' box [m].
+  /// Returns the longest side of the box around the points [m].
   double extent_m() const;
   bool has_intensity() const { return !cloud_.intensity.empty(); }
   /// Returns the name of the coder for statistics and predictors.
   std::string Mode() const { return "xyz-cloud" + std::to_string(effort_); }
-  /// Effort: at 0 a point without a beam has its own cell, at 1 such cells merge, from 2 on points
-  /// share few cells, and at EffortControl::kHighest all ways are tried.
+  /// Sets the effort. At effort 0, a point without a beam gets its own cell. At 1, these cells are
+  /// merged. From 2 on, points share few cells. At EffortControl::kHighest, all ways are tried.
   void set_effort(unsigned effort) { effort_ = std::min(effort, EffortControl::kHighest); }
-  /// Keeps the loaded points whose element of `kept` is true.
+  /// Removes each loaded point whose element of `kept` is false.
   void Thin(const std::vector<bool>& kept);
 
-  /// Encodes the loaded points; may be called again.
+  /// Encodes the loaded points. May be called several times for the same points.
   SliceResult Encode(const SliceSettings& settings, EncodedSlice* slice);
-  /// Returns true if `decoded`, a decoding of the last slice, has the exact fields and the order of
-  /// the loaded points.
+  /// Returns true if `decoded` has the exact fields and the order of the loaded points. It must
+  /// have been decoded from the last slice.
   bool HasComeBack(const ExactPart& decoded) const;
 
  private:
   CloudEncoder(CloudLayout layout, ExactChoice exact)
       : layout_(std::move(layout)), choice_(std::move(exact)) {}
-  /// A coding of the loaded points.
+  /// A result of coding the loaded points.
   struct Candidate {
     CloudHeader header;
-    std::vector<std::uint8_t> beams;         // the section
-    std::vector<std::uint8_t> cells;         // the stream
-    std::vector<std::uint8_t> exact;         // the section
-    std::vector<std::uint32_t> cell_points;  // indices of near_, in the order of decoding
-    std::vector<std::uint32_t> order;        // indices of cloud_, likewise, for the exact section
+    std::vector<std::uint8_t> beams;         // the beam section
+    std::vector<std::uint8_t> cells;         // the stream of the cells
+    std::vector<std::uint8_t> exact;         // the exact section
+    std::vector<std::uint32_t> cell_points;  // indices in near_, in the order of decoding
+    std::vector<std::uint32_t> order;        // indices in cloud_, in the order of decoding
     std::size_t nodes = 0;
     std::size_t numbers = 0;
 
@@ -77,7 +78,7 @@ class CloudEncoder {
   void SortOut(CloudHeader* header);
   void PutNearestLast(double nearest_m);
   float SortOutFarPoints(const CellGrid& grid);
-  /// Chooses the cells of points.
+  /// A function that chooses the cells of points.
   using Cover = decltype(&CoverByOwnCells);
   void EncodeCells(const std::vector<std::uint32_t>& ids, Candidate* candidate);
   void CodeCells(const std::vector<Point>& points, const std::vector<std::uint32_t>& ids,
@@ -95,16 +96,16 @@ class CloudEncoder {
   ExactChoice choice_;
   unsigned effort_ = 1;
   XyzCloud cloud_;
-  std::vector<ExactField> exact_;        // fields of cloud_
-  std::vector<Pulse> pulses_;            // of cloud_; empty: there is no line or time
-  std::vector<std::uint32_t> order_;     // of the last slice
-  std::vector<Point> near_;              // on the grid
-  std::vector<std::uint8_t> levels_;     // of near_, at full resolution; empty: geometry only
-  std::vector<std::uint32_t> near_ids_;  // of cloud_
+  std::vector<ExactField> exact_;     // exact fields of cloud_
+  std::vector<Pulse> pulses_;         // pulses of cloud_; empty: there is no line or time
+  std::vector<std::uint32_t> order_;  // order of the points in the last slice
+  std::vector<Point> near_;           // the points that the grid can hold
+  std::vector<std::uint8_t> levels_;  // levels of near_, at full resolution; empty: geometry only
+  std::vector<std::uint32_t> near_ids_;  // indices of near_ in cloud_
   std::vector<std::uint32_t> far_ids_;
   std::size_t seen_ = 0;             // number of the first points of near_ that may be in pixels
   std::vector<Sighting> sightings_;  // of the seen points
-  std::vector<Pulse> sighted_;       // their pulses, or none
+  std::vector<Pulse> sighted_;       // pulses of the seen points, or empty
   std::vector<PlacedPoint> placed_;  // of the seen points
   BeamKeeper keeper_;
   CoveredPoints covered_;

@@ -12,7 +12,7 @@ namespace {
 constexpr unsigned kVersion = 1;
 constexpr unsigned kBeamsFlag = 16;
 constexpr unsigned kExactFlag = 32;
-constexpr unsigned kScaleShift = 4;  // of the second byte
+constexpr unsigned kScaleShift = 4;  // in the second byte
 
 }  // namespace
 

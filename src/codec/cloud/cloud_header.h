@@ -14,21 +14,22 @@ namespace lidar::codec::cloud {
 
 struct CloudHeader {
   bool has_beams = false;        // a beam section follows the far points
-  bool has_exact_part = false;   // fields or an order follow the cells
-  IntensityScale intensity;      // 0 bits: geometry only
-  std::uint32_t points = 0;      // in cells
-  std::uint32_t far_points = 0;  // past the largest grid
+  bool has_exact_part = false;   // an exact section follows the cells
+  IntensityScale intensity;      // with 0 bits, only geometry is coded
+  std::uint32_t points = 0;      // points in cells
+  std::uint32_t far_points = 0;  // points outside of the largest grid
   CellGrid grid;
   unsigned depth = 1;
-  std::uint32_t stream_size = 0;  // bytes of the cells
+  std::uint32_t stream_size = 0;  // size of the stream of the cells
 
   void Write(std::vector<std::uint8_t>* out) const;
-  /// Returns nothing for another version and for numbers that no encoder writes.
+  /// Reads a header. Returns nothing if the version is unknown, or if a number is one that no
+  /// encoder writes.
   static std::optional<CloudHeader> Read(ByteReader* reader);
 };
 
-/// Most nodes that a slice of `slice_bytes` may have. A node costs a decoder a microsecond, but its
-/// sender perhaps a hundredth of a bit.
+/// Returns the largest number of nodes in a slice of `slice_bytes`. A limit is needed because a
+/// node takes a decoder a microsecond, although a sender may need only a hundredth of a bit for it.
 constexpr std::size_t MostNodes(std::size_t slice_bytes) {
   constexpr std::size_t kFree = 4'096;
   constexpr std::size_t kNodesPerByte = 64;
