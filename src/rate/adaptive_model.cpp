@@ -12,13 +12,13 @@ namespace {
 constexpr double kUnitStep = 0.01;
 // The model ignores slices with fewer returns, because headers are most of their bytes.
 constexpr std::uint32_t kFewReturns = 64;
-// An uncoded return has fewer bytes, so a larger size is a fault.
+// A larger size per return is a fault, because even an uncoded return has fewer bytes.
 constexpr double kMostBytesAReturn = 64;
 constexpr double kMinSlope = 0.6;
 constexpr double kMaxSlope = 1.6;
 constexpr int kBisections = 40;
-// Codecs report only the sum of geometry and intensity. Without a bound the split drifts until one
-// part vanishes.
+// The estimated ratio of intensity to geometry is within this factor of the fit. Codecs report only
+// the sum of both. Without a limit, the estimate would drift until one of the two vanishes.
 constexpr double kMostOffFit = 4;
 
 double X(double step_m) { return std::log2(std::max(step_m, 1e-9) / kUnitStep); }
@@ -108,8 +108,8 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
     }
     settings.step_m = kUnitStep * std::exp2((low + high) / 2);
   }
-  // Takes the finer allowed step unless its size exceeds kMostOver times `bytes`, or the size at
-  // the coarser step is nearer to `bytes`.
+  // Chooses the finer allowed step, with two exceptions: its size exceeds kMostOver times `bytes`,
+  // or the size at the coarser step is nearer to `bytes`.
   constexpr double kMostOver = 1.06;
   const AllowedSteps steps = StepsAround(settings.step_m, limits);
   settings.step_m = steps.coarser_m;
@@ -123,7 +123,7 @@ Settings AdaptiveModel::Choose(const SliceFeatures& slice, double bytes,
 void AdaptiveModel::LearnGeometry(Learned* learned, const SliceFeatures& slice, double x,
                                   double observed, bool again) {
   constexpr double kGain = 0.3;
-  constexpr double kNoise = 0.02;  // (log2 units)^2: smaller moves of the step are ignored
+  constexpr double kNoise = 0.02;  // (log2 units)^2: smaller moves of the step have little effect
   const ModeCoefficients& mode = Mode(slice.mode);
   const double n = N(slice.returns);
   const double error = observed - GeometryLog2(slice, kUnitStep * std::exp2(x));
@@ -170,7 +170,7 @@ void AdaptiveModel::OnEncoded(const SliceFeatures& slice, const Settings& settin
     learned_[slice.mode] = Learned(*known);
   last_mode_ = slice.mode;
   Learned& learned = learned_[slice.mode];
-  double kept = 0;  // log2 of the share after thinning
+  double kept = 0;  // log2 of the part of the returns that was kept
   if (encoded.keep_fraction < 1) {
     kept = std::log2(std::max(encoded.keep_fraction, 1e-6));
     const double error = observed - learned.thinning * kept - std::log2(predicted.geometry_bytes);

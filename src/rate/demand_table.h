@@ -10,11 +10,11 @@ namespace lidar::rate {
 
 constexpr unsigned kMaxIntensityBits = 16;
 
-/// Predicted bytes of a slice or of several slices.
+/// The predicted bytes of a slice, or of several slices.
 struct Demand {
   double coarsest = 0;                                    // geometry at the coarsest step
   double finest = 0;                                      // geometry at the finest useful step
-  std::array<double, kMaxIntensityBits + 1> intensity{};  // by the number of bits
+  std::array<double, kMaxIntensityBits + 1> intensity{};  // index: number of bits
 
   double AtCoarsest(unsigned bits) const { return coarsest + intensity[bits]; }
   double AtFinest(unsigned bits) const { return finest + intensity[bits]; }
@@ -25,12 +25,13 @@ struct Demand {
 class DemandTable {
  public:
   void Set(std::uint32_t slice_index, std::uint32_t slice_count, const Demand& demand);
-  /// Sums over the slices from `first` to the end of the scan. Unknown slices count as the mean of
-  /// the others.
+  /// Returns the sum over the slices from `first` to the end of the scan. A slice whose demand is
+  /// unknown counts as the mean of the others.
   Demand Sum(std::uint32_t first = 0) const;
-  /// Divides `surplus` bytes among the slices from `first` to the end of the scan. Each gets the
-  /// same, up to the difference of its sizes at the coarsest and finest step. An unknown slice has
-  /// no limit. Returns the share of a slice below its limit.
+  /// Divides `surplus` bytes among the slices from `first` to the end of the scan. All slices get
+  /// the same number of bytes, but none gets more than its limit: the difference of its sizes at
+  /// the finest and the coarsest step. A slice whose demand is unknown has no limit. Returns the
+  /// number of bytes for a slice that is below its limit.
   double EvenShare(std::uint32_t first, double surplus) const;
 
  private:

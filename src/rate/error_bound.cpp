@@ -9,13 +9,13 @@
 namespace lidar::rate {
 namespace {
 
-// Mean distance from the middle of a unit cube to its points.
+// The mean distance from the middle of a unit cube to its points.
 constexpr double kMeanInCube = 0.480296;
 // The finest step if the sensor's resolution is unknown. No LiDAR is more accurate.
 constexpr double kFinestXyzStep = 0.001;
 constexpr double kFinestStepAtAll = 1e-6;
 
-/// Sum of |k - (n - 1) / 2| over the n values of a bin.
+/// Returns the sum of |k - (n - 1) / 2| over the n values k of a bin, which begin at 0.
 double SumInBin(double n) { return std::fmod(n, 2) > 0.5 ? (n * n - 1) / 4 : n * n / 4; }
 
 }  // namespace

@@ -1,30 +1,34 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The residual error optimizer: the largest distance by which a uniform grid moves a point, and the
-// coarsest grid within an error.
+// The residual error optimizer. It computes the largest distance by which a uniform grid moves a
+// point, and the coarsest grid for an error.
 #pragma once
 #include "src/cloud/coded_geometry.h"
 #include "src/cloud/range_grid.h"
 
 namespace lidar::rate {
 
-/// Bounds by construction, without measurement (docs/rate-control.md).
+/// Computes bounds of errors from the construction of a grid, without measurements
+/// (docs/rate-control.md).
 class ErrorBound {
  public:
   static ErrorBound Xyz() { return ErrorBound(Geometry::kXyz, 0); }
-  /// `unit_mm`: resolution of the ranges, not 0. The grid is a RangeGrid.
+  /// The grid is a RangeGrid. `unit_mm` is the resolution of the ranges, and is not 0.
   static ErrorBound Range(unsigned unit_mm) { return ErrorBound(Geometry::kRange, unit_mm); }
 
-  /// Largest distance [m] between a point and its decoded point.
+  /// Returns the largest distance [m] between a point and its decoded point.
   double MaxError(double step_m) const;
-  /// Mean distance [m] between points and decoded points if the points are spread evenly.
+  /// Returns the mean distance [m] between points and their decoded points, if the points are
+  /// evenly distributed.
   double MeanError(double step_m) const;
-  /// The coarsest step [m] whose MaxError is not above `error_m`. Errors below the sensor's
-  /// resolution give the finest step.
+  /// Returns the coarsest step [m] whose MaxError() is not above `error_m`. If `error_m` is below
+  /// the sensor's resolution, returns the finest step.
   double CoarsestStep(double error_m) const;
-  /// Finest useful step [m]: finer ones only code digits that the sensor does not have.
+  /// Returns the finest useful step [m]. Finer steps would only code digits that the sensor does
+  /// not measure.
   double FinestStep() const;
-  /// Steps are FinestStep() plus multiples of this [m]; 0 for xyz: any step. Steps of ranges are
-  /// small enough for nearly continuous sizes.
+  /// Returns the unit of steps [m]. A step is FinestStep() plus a multiple of the unit. The unit is
+  /// 0 for xyz, which can have any step. For ranges it is so small that sizes are nearly
+  /// continuous.
   double step_unit() const;
   Geometry geometry() const { return geometry_; }
 

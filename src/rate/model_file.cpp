@@ -13,14 +13,15 @@ using Json = nlohmann::json;
 constexpr const char* kFormat = "gst-lidar-rate-model";
 constexpr double kLargest = 1e12;  // larger coefficients are a mistake
 
-/// Returns a reference to the member, or to null. A copy of deep JSON would exhaust the stack.
+/// Returns a reference to the member, or to a null value. A copy is avoided, because copying deeply
+/// nested JSON would exhaust the stack.
 const Json& Member(const Json& parent, const char* name) {
   static const Json kNone;
   const auto found = parent.find(name);
   return found == parent.end() ? kNone : *found;
 }
 
-/// Reads members and keeps the first fault.
+/// Reads the members of objects, and keeps the first fault.
 class Reader {
  public:
   explicit Reader(std::string* error) : error_(error) { error_->clear(); }
@@ -129,7 +130,8 @@ std::optional<ModelFile> ParseModelFile(std::string_view text, std::string* erro
   try {
     json = Json::parse(text);
   } catch (const Json::parse_error& e) {
-    // The exception's text quotes bytes of the file, but messages may hold only UTF-8.
+    // The text of the exception is not used. It quotes bytes of the file, but a message may have
+    // only UTF-8.
     reader.Fail("not JSON, or cut off, at byte " + std::to_string(e.byte));
     return std::nullopt;
   } catch (const Json::exception& e) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The file with a predictor's coefficients: JSON, documented in docs/rate-control.md.
+// The file with the coefficients of the predictors. It is JSON, and is documented in
+// docs/rate-control.md.
 #pragma once
 #include <memory>
 #include <optional>
@@ -14,21 +15,22 @@ namespace lidar::rate {
 enum class RateModel { kAdaptive, kPaper };
 
 struct ModelFile {
-  std::string trained_on;  // for people
+  std::string trained_on;  // a description for users
   std::optional<AdaptiveCoefficients> adaptive;
   std::optional<PaperCoefficients> paper;
 };
 
-/// Returns nothing if the file is invalid or of a later version; `error` then has the fault for a
-/// user.
+/// Parses a model file. Returns nothing if the file is invalid or of a later version. `error` then
+/// describes the fault for a user.
 std::optional<ModelFile> ParseModelFile(std::string_view json, std::string* error);
 std::string WriteModelFile(const ModelFile& file);
 
-/// Returns null if the file has no coefficients for `kind`; `error` then has the reason.
+/// Makes a predictor. Returns null if the file has no coefficients for `kind`. `error` then has the
+/// reason.
 std::unique_ptr<SizeModel> MakeModel(const ModelFile& file, RateModel kind, std::string* error);
-/// The model of the file that is compiled in.
+/// Makes a predictor from the file that is compiled in.
 std::unique_ptr<SizeModel> MakeBuiltInModel(RateModel kind);
-/// The text of the file that is compiled in.
+/// Returns the text of the file that is compiled in.
 std::string_view BuiltInModelFile();
 
 constexpr int kModelFileVersion = 1;

@@ -17,13 +17,14 @@ using Samples = std::vector<const Sample*>;
 double X(const Sample& s) { return std::log2(s.settings.step_m / kUnitStep); }
 double N(const Sample& s) { return std::log2(s.slice.returns / 1000.0); }
 
-/// Minimises |A c - b|; features that depend linearly on others get no coefficient.
+/// Returns the c that minimises |A c - b|. A feature that depends linearly on other features gets
+/// no coefficient.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   return a.colPivHouseholderQr().solve(b);
 }
 
-/// Returns the spread of the slices' numbers of returns, in doublings. A small spread does not
-/// determine the exponent of the returns.
+/// Returns the spread of the numbers of returns, in doublings. If the spread is small, the exponent
+/// of the returns cannot be determined.
 double ReturnsSpread(const Samples& samples) {
   const auto [low, high] = std::minmax_element(
       samples.begin(), samples.end(),
@@ -54,7 +55,8 @@ void FitIntensity(const Samples& all, ModeCoefficients* mode) {
   std::copy_if(all.begin(), all.end(), std::back_inserter(samples), [](const Sample* s) {
     return s->settings.intensity_bits > 0 && s->intensity_bytes > 1;
   });
-  // Model without samples: half a bit per return and intensity bit. The first slice corrects it.
+  // The model without samples: half a bit for each return and intensity bit. The first slice
+  // corrects it.
   mode->intensity = {std::log2(1000 / 16.0), 1};
   mode->intensity_returns = 1;
   if (samples.size() < kMinSamples) return;

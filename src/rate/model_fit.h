@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Least squares for the predictors: converts samples of real encodings to coefficients.
+// Fits the coefficients of the predictors to samples of real encodings, by least squares.
 #pragma once
 #include <optional>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace lidar::rate {
 
-/// A slice, encoded once.
+/// A slice that was encoded once.
 struct Sample {
   SliceFeatures slice;
   Settings settings;
@@ -18,17 +18,18 @@ struct Sample {
   unsigned source = 0;  // capture or scene: cross-validation leaves out whole sources
 };
 
-/// Fits a cubic for each mode. Returns nothing if a mode has fewer than kMinSamples or its sizes do
-/// not fall with the step.
+/// Fits a cubic for each mode. Returns nothing if a mode has fewer than kMinSamples samples, or if
+/// its sizes do not fall as the step rises.
 std::optional<AdaptiveCoefficients> FitAdaptive(const std::vector<Sample>& samples);
-/// The paper's regression. Returns nothing with fewer than kMinSamples.
+/// Does the regression of the paper. Returns nothing if there are fewer than kMinSamples samples
+/// for a geometry.
 std::optional<PaperCoefficients> FitPaper(const std::vector<Sample>& samples);
 
 struct FitError {
   double mean = 0;  // of |predicted / real - 1|
   double percentile_95 = 0;
 };
-/// The errors of predictions without any correction.
+/// Returns the errors of a model's predictions, without any correction.
 FitError ErrorOf(const SizeModel& model, const std::vector<Sample>& samples);
 
 constexpr std::size_t kMinSamples = 20;

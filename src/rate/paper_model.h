@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The predictor of the paper: bytes as a polynomial of quantisation bits, level and points.
+// The predictor of the paper. It computes bytes by a polynomial of quantisation bits, compression
+// level and number of points.
 #pragma once
 #include <array>
 #include <map>
@@ -9,11 +10,12 @@
 
 namespace lidar::rate {
 
-/// Second order in q, c and N / 1000: q, c, N, q q, q c, q N, c c, c N, N N.
+/// The features of a polynomial of second order in q, c and N / 1000: q, c, N, q q, q c, q N, c c,
+/// c N, N N.
 constexpr std::size_t kPaperFeatures = 9;
 std::array<double, kPaperFeatures> PaperFeatures(double q, double c, double returns);
 
-/// r = alpha' Phi(q, c, N) + beta, in bytes.
+/// The polynomial r = alpha' Phi(q, c, N) + beta, in bytes. Phi are the PaperFeatures().
 struct PaperPolynomial {
   std::array<double, kPaperFeatures> alpha{};
   double beta = 0;
@@ -24,13 +26,14 @@ struct PaperCoefficients {
   std::map<std::string, PaperPolynomial> geometries;  // by "xyz", "range"
 };
 
-/// Converts between the step of a grid and quantisation bits of a box of `extent_m`.
+/// BitsOfStep() and StepOfBits() convert between the step of a grid and the quantisation bits of a
+/// box with sides of `extent_m`.
 double BitsOfStep(double extent_m, double step_m);
 double StepOfBits(double extent_m, double bits);
-/// "xyz" or "range", of a mode such as "xyz-kd6".
+/// Returns the geometry of a mode: "xyz" for "xyz-kd6", for example.
 std::string GeometryOf(const std::string& mode);
 
-/// Does not learn while it runs: as in the paper, the polynomial is fitted once.
+/// Predicts by a polynomial that was fitted once, as in the paper. It does not learn while it runs.
 class PaperModel : public SizeModel {
  public:
   explicit PaperModel(PaperCoefficients coefficients) : coefficients_(std::move(coefficients)) {}
@@ -38,7 +41,8 @@ class PaperModel : public SizeModel {
   /// The polynomial has no term for intensity bits, so the bytes always include the intensity bits
   /// of its training.
   PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const override;
-  /// argmin |r - bytes| over q = 8..24 and, for xyz, c = 0..9, within the limits of the step.
+  /// Chooses q from 8 to 24, and for xyz also c from 0 to 9, so that |r - bytes| is smallest. Only
+  /// steps within `limits` are considered.
   Settings Choose(const SliceFeatures& slice, double bytes,
                   const SettingLimits& limits) const override;
   void OnEncoded(const SliceFeatures&, const Settings&, const EncodedSize&) override {}

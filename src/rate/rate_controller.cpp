@@ -7,19 +7,20 @@
 namespace lidar::rate {
 namespace {
 
-// A scan compensates for half of the earlier scans' excess, because all of it at once would double
-// the noise.
+// Each scan spends or repays only half of the bytes that earlier scans saved or sent in excess. The
+// whole at once would double the noise of the sizes.
 constexpr double kRepayGain = 0.5;
-// Limit of saved bytes, as a part of a scan's budget. The network does not keep unused capacity.
+// The largest number of saved bytes, as a part of a scan's budget. It is small, because the network
+// does not keep unused capacity for later.
 constexpr double kMaxSaved = 0.05;
 // A slice is encoded a second time if it exceeds its budget by more than kOver of this budget and
 // by more than kOverOfScan of the scan's budget. Later slices even out smaller errors.
 constexpr double kOver = 0.015;
 constexpr double kOverOfScan = 0.01;
-constexpr double kUnder = 3;         // limit of a shortfall, relative to that of an excess
+constexpr double kUnder = 3;         // a shortfall may be this many times larger than an excess
 constexpr double kSameStep = 0.004;  // steps closer than this are the same
-// The second encoding aims lower by this many doublings for each doubling between the first size
-// and the budget, because the model's slope may be wrong.
+// The second encoding aims at a size below the budget, because the slope of the model may be wrong.
+// The size is lower by this many doublings for each doubling between the first size and the budget.
 constexpr double kReencodeMargin = 0.02;
 constexpr double kBoundsChange = 0.03;
 constexpr double kMaxTarget = 1e12;
@@ -105,10 +106,12 @@ double RateController::SliceBudget() const {
   if (!parameters_.closed_loop) return share;
   const std::uint32_t left = slice_.slice_count - slice_.slice_index;
   const double rest = repay_ + ledger_ + share * (left - 1);
-  // Each slice gets what its error bound needs, and an equal share of the rest. So the quality is
-  // uniform if the budget is near the minimum, and transmission times are uniform if it is far
-  // above. Slices with few or no returns, outside of the sensor's window, leave their unused share
-  // to others.
+  // Each slice gets the bytes that its error bound needs, and an equal share of the rest. The
+  // quality is therefore uniform if the budget is near the minimum. If the budget is far above the
+  // minimum, the transmission times are uniform.
+  //
+  // Slices outside of the sensor's window have few returns or none. The other slices get the bytes
+  // that these slices do not use.
   const Demand needed = demand_.Sum(slice_.slice_index);
   const unsigned bits = plan_.intensity_bits;
   const double own = model_->Predict(slice_, {parameters_.limits.coarsest_step_m, bits, 0}).total();

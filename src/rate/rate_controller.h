@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Spends a target bitrate on slices: each gets a budget, settings, and at most one second encoding.
+// Divides a target bitrate among slices. Each slice gets a budget and settings, and may be encoded
+// a second time.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,12 +14,14 @@
 namespace lidar::rate {
 
 struct ControllerParameters {
-  /// `coarsest_step_m` comes from max-error (ErrorBound), so the error bound holds at any target.
+  /// `limits.coarsest_step_m` comes from max-error (see ErrorBound), so the error bound holds at
+  /// any target.
   SettingLimits limits;
-  /// The controller lowers the intensity bits to this before it skips or thins.
+  /// The controller lowers the intensity bits to this number before it skips scans or thins them.
   unsigned min_intensity_bits = 4;
   DegradationPreference degradation = DegradationPreference::kMaintainAccuracy;
-  /// false: the paper's open loop, without carry-over and second encoding.
+  /// If false, the loop is open as in the paper: no bytes are carried over to later scans, and no
+  /// slice is encoded a second time.
   bool closed_loop = true;
 };
 
@@ -30,9 +33,9 @@ struct Decision {
   std::optional<DataSize> budget;  // empty: constant quality
 };
 
-/// Bitrates of media, for the event `bitrate-bounds`.
+/// The bounds of the media bitrate, for the event `bitrate-bounds`.
 struct RateBounds {
-  DataRate min;      // at the coarsest step that the error allows, least intensity bits
+  DataRate min;      // at the coarsest step that the error allows, with the fewest intensity bits
   DataRate nominal;  // at the coarsest step, with all intensity bits
   DataRate max;      // at the finest useful step
 };
@@ -46,26 +49,28 @@ struct ControllerStats {
   double saved_bytes = 0;  // carried over; negative: a debt
 };
 
-/// Call NextSlice(), encode the slice, and call OnEncoded(). If OnEncoded() returns settings,
-/// encode once more and call it again. Not thread-safe.
+/// Decides how slices are encoded. For each slice, call NextSlice(), encode the slice, and call
+/// OnEncoded(). If OnEncoded() returns settings, encode the slice once more with these settings,
+/// and call OnEncoded() again. Not thread-safe.
 class RateController {
  public:
   RateController(ControllerParameters parameters, std::unique_ptr<SizeModel> model);
 
-  /// Bitrate for the encoded slices without transport overhead. Without a target: constant quality
-  /// at the coarsest step.
+  /// Sets the bitrate of the encoded slices, without transport overhead. Without a target, the
+  /// quality is constant, at the coarsest step.
   void SetTarget(std::optional<DataRate> target);
-  /// Sets parameters from the next slice on.
+  /// Sets the parameters for the next slices.
   void SetParameters(const ControllerParameters& parameters) { parameters_ = parameters; }
 
   Decision NextSlice(const SliceFeatures& slice);
-  /// Returns settings for a second encoding of the slice; nothing: the slice is sent as it is.
+  /// Returns settings if the slice should be encoded a second time. Returns nothing if it should be
+  /// sent as it is.
   std::optional<Settings> OnEncoded(const EncodedSize& encoded);
 
-  /// Zero before the first slice.
+  /// Returns the bounds of the media bitrate. They are 0 before the first slice.
   RateBounds bounds() const;
-  /// Returns the bounds if one has moved by more than 3 % since they were last returned. Returns
-  /// them at most once a scan, after its last slice.
+  /// Returns the bounds if one of them has changed by more than 3 % since they were last returned.
+  /// Returns them at most once per scan, after the last slice of the scan.
   std::optional<RateBounds> TakeChangedBounds();
   const ControllerStats& stats() const { return stats_; }
 
@@ -82,13 +87,13 @@ class RateController {
 
   SliceFeatures slice_;
   Decision decision_;
-  bool pending_ = false;    // NextSlice() was called, its OnEncoded() not yet
-  bool reencoded_ = false;  // the slice gets its second encoding
+  bool pending_ = false;    // NextSlice() was called, but OnEncoded() not yet
+  bool reencoded_ = false;  // the slice is being encoded a second time
   bool started_ = false;
   bool measured_ = false;
   DemandTable demand_;
   ScanPlan plan_;
-  double saved_ = 0;   // bytes from scans before this one
+  double saved_ = 0;   // bytes saved in earlier scans
   double repay_ = 0;   // part of saved_ that this scan spends or repays
   double ledger_ = 0;  // this scan's share of the target so far, minus the bytes sent
   bool bounds_due_ = false;

@@ -27,24 +27,24 @@ struct SlicePlace {
 };
 
 struct LoopResult {
-  bool skipped = false;  // the controller left it out to save bitrate
-  std::string mode;      // of coding
+  bool skipped = false;  // the controller left the slice out to save bitrate
+  std::string mode;      // coding mode
   CodingResult result = CodingResult::kEmpty;
   CodedSlice slice;  // if encoded()
   unsigned intensity_bits = 0;
   double keep_fraction = 1;
-  double max_error_m = 0;  // error bound to be kept
+  double max_error_m = 0;  // the error bound that was required
 
   bool encoded() const { return !skipped && result == CodingResult::kEncoded; }
 };
 
-/// For one thread at a time.
+/// Encodes slices at a target bitrate. Not thread-safe.
 class RateLoop {
  public:
   explicit RateLoop(std::unique_ptr<SizeModel> model) : controller_({}, std::move(model)) {}
 
-  /// Encodes the slice that `coder` has loaded, twice if the first size misses the budget by far.
-  /// Without a target: constant quality.
+  /// Encodes the slice that `coder` has loaded. If its first size is far from the budget, encodes
+  /// it a second time. Without a target, the quality is constant.
   LoopResult Encode(const SlicePlace& place, const LoopSettings& settings,
                     std::optional<DataRate> target, SliceCoder* coder);
   RateController& controller() { return controller_; }

@@ -7,11 +7,14 @@
 namespace lidar::rate {
 namespace {
 
-// A debt of a tenth of a scan causes no skip, because coarser steps of the next scans repay it.
+// A scan is sent even if it lacks up to a tenth of its bytes, because the next scans repay this
+// debt by coarser steps.
 constexpr double kTolerance = 0.1;
-// A cloud that is thinned further is useless, so scans are skipped in addition.
+// The least part of a scan that is kept. A cloud that is thinned further would be useless, so scans
+// are skipped in addition.
 constexpr double kMinKeep = 1.0 / 16;
-// Intensity bits rise again only with a margin, so that they do not flicker.
+// The number of intensity bits rises only if there is a margin in the budget. Otherwise it would
+// change too often.
 constexpr double kRoomToRaise = 0.9;
 
 unsigned IntensityBits(const ScanPlanInputs& in) {

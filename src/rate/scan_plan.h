@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Degradation if the target is below what the error bound needs: first of intensity, then of scans
-// or points.
+// Decides how to degrade scans if the target is below what the error bound needs. Intensity bits
+// are reduced first, then scans or points are left out.
 #pragma once
 #include <vector>
 
@@ -14,10 +14,10 @@ enum class DegradationPreference {
   kBalanced,           // both by the same factor
 };
 
-/// Holds for all slices of one scan.
+/// The decision for all slices of a scan.
 struct ScanPlan {
   bool skip = false;
-  /// True if the budget is below what the error bound needs. The step then stays the coarsest, even
+  /// True if the budget is below what the error bound needs. The coarsest step is then used, even
   /// if bytes are left over from earlier scans.
   bool degraded = false;
   double keep_fraction = 1;  // of the returns
@@ -36,8 +36,9 @@ struct ScanPlanInputs {
 
 ScanPlan PlanScan(const ScanPlanInputs& inputs, DegradationPreference preference);
 
-/// Returns which of `count` rows (beams, columns or points) a thinned slice keeps: `fraction` of
-/// them, evenly, always the same ones, and at least one.
+/// Returns for each of `count` rows (beams, columns or points) whether a thinned slice keeps it. A
+/// part of `fraction` is kept, but at least one row. The rows that are kept are evenly distributed,
+/// and are the same in each call.
 std::vector<bool> ThinningPattern(std::size_t count, double fraction);
 
 }  // namespace lidar::rate

@@ -21,7 +21,8 @@ AllowedSteps StepsAround(double step_m, const SettingLimits& limits) {
 
 double ClampStep(double step_m, const SettingLimits& limits) {
   const AllowedSteps steps = StepsAround(step_m, limits);
-  // The nearest step in the logarithm, because bytes follow the logarithm of the step.
+  // The logarithms of steps are compared, because the number of bytes depends on the logarithm of
+  // the step.
   return step_m * step_m > steps.finer_m * steps.coarser_m ? steps.coarser_m : steps.finer_m;
 }
 

@@ -10,24 +10,24 @@ namespace lidar::rate {
 
 /// The input of the predictors, for any codec.
 struct SliceFeatures {
-  std::uint32_t scan_id = 0;  // a change starts a scan
+  std::uint32_t scan_id = 0;  // a new value starts a scan
   std::uint32_t slice_index = 0;
   std::uint32_t slice_count = 1;
   double scans_per_second = 10;
   std::uint32_t returns = 0;  // points that would be coded if none were thinned
   double extent_m = 0;        // longest side of the slice's box (xyz), or its longest range
   /// The coding mode of the slice: "xyz" or "range", a dash, and the codec's name for its coder
-  /// ("range-adaptive", "xyz-kd6"). Each has its own coefficients and corrections.
+  /// ("range-adaptive", "xyz-kd6"). Each mode has its own coefficients and corrections.
   std::string mode;
 };
 
 struct Settings {
-  double step_m = 0;            // of the uniform grid
+  double step_m = 0;            // step of the uniform grid
   unsigned intensity_bits = 0;  // 0: geometry only
   unsigned level = 0;           // compression level; only the paper's model chooses it
 };
 
-/// Limits of the predictor's choices.
+/// The limits within which a predictor chooses settings.
 struct SettingLimits {
   double finest_step_m = 0.001;
   double coarsest_step_m = 0.04;
@@ -46,31 +46,32 @@ struct PredictedSize {
 struct EncodedSize {
   DataSize size;
   double step_m = 0;         // the step that was used
-  double keep_fraction = 1;  // of the returns, after thinning
+  double keep_fraction = 1;  // part of the returns that was left after thinning
 };
 
-/// A compression parameter predictor.
+/// Predicts the sizes of slices, and chooses settings by these predictions.
 class SizeModel {
  public:
   virtual ~SizeModel() = default;
-  /// Bytes of the slice with nothing thinned.
+  /// Returns the predicted bytes of the slice if nothing is thinned.
   virtual PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const = 0;
-  /// The settings within `limits` whose prediction is nearest to `bytes`.
+  /// Returns the settings within `limits` whose predicted size is nearest to `bytes`.
   virtual Settings Choose(const SliceFeatures& slice, double bytes,
                           const SettingLimits& limits) const = 0;
-  /// Learns from an encoded slice. A second call for the same slice is a re-encoding.
+  /// Learns from an encoded slice. A second call for the same slice means that it was encoded
+  /// again.
   virtual void OnEncoded(const SliceFeatures& slice, const Settings& settings,
                          const EncodedSize& encoded) = 0;
 };
 
-/// The nearest allowed steps on both sides of a step. They are equal if the step itself is allowed,
-/// or if one side has no allowed step.
+/// The allowed steps that are nearest to a step on both sides. They are equal if the step itself is
+/// allowed, or if there is no allowed step on one side.
 struct AllowedSteps {
   double finer_m = 0;
   double coarser_m = 0;
 };
 AllowedSteps StepsAround(double step_m, const SettingLimits& limits);
-/// The nearest allowed step.
+/// Returns the allowed step that is nearest to `step_m`.
 double ClampStep(double step_m, const SettingLimits& limits);
 
 }  // namespace lidar::rate

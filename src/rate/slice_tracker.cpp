@@ -26,7 +26,8 @@ void SliceTracker::Observe(std::uint32_t slice_index, std::uint32_t slice_count,
   }
   last_ = anchor;
   if (slice_index >= slice_count) return;
-  // A scan of one slice shows no drift, because its innovation is the slice's own noise.
+  // If scans have only one slice, no drift is tracked, because the innovation is then the noise of
+  // this slice.
   if (sectors_[slice_index] && slice_count > 1) {
     const double innovation = error + kDriftWeight * drift_;
     drift_ += kDriftGain * (innovation - drift_);
