@@ -19,7 +19,7 @@ struct PixelMemory {
   std::uint32_t mean = 0;    // mean range, in 1/8 mm
   std::uint16_t spread = 0;  // mean distance of ranges from `mean`, in 1/8 mm
   std::uint8_t count = 0;    // number of returns in `mean`, up to kMostCount
-  std::uint8_t returns = 0;  // bit n: the n-th scan before the newest one had a return
+  std::uint8_t returns = 0;  // bit n: whether the n-th scan before the newest had a return
 
   static constexpr std::uint32_t kPerMm = 8;
   static constexpr std::uint8_t kMostCount = 16;

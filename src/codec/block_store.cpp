@@ -6,7 +6,7 @@
 
 namespace lidar::codec {
 
-/// Removes the `count` oldest blocks of the sector of `like`.
+/// Removes the `count` oldest blocks that are of the same sector as `like`.
 void BlockStore::DropFirst(std::size_t count, const BlockMemory& like) {
   const auto is_due = [&](const BlockMemoryPtr& block) {
     if (count == 0 || !block->IsSectorOf(like)) return false;

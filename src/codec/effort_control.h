@@ -18,7 +18,8 @@ class EffortControl {
 
   /// Returns the effort for the next slice.
   unsigned effort() const { return effort_; }
-  /// Notes that a slice with `returns`, swept in `sweep`, was coded at effort() in `spent`.
+  /// Notes that a slice was coded at effort(). It has `returns`, its sweep took `sweep`, and its
+  /// coding took `spent`.
   void OnSlice(Duration sweep, std::size_t returns, Duration spent);
 
  private:

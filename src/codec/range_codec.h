@@ -96,7 +96,7 @@ class RangeDecoder {
   /// to the block, it is added to `store`.
   bool Decode(ByteReader* reader, std::size_t max_points, RangeImage* image, IntensityScale* scale,
               BlockStore* store = nullptr);
-  /// Returns true if the last Decode() failed because a block that it refers to is missing.
+  /// Returns true if the last Decode() failed because its block refers to a block that is missing.
   bool lacks_reference() const { return lacks_reference_; }
   /// Returns the header of the block decoded last.
   const RangeHeader& header() const { return header_; }

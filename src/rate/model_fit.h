@@ -15,7 +15,7 @@ struct Sample {
   Settings settings;
   double geometry_bytes = 0;
   double intensity_bytes = 0;
-  unsigned source = 0;  // capture or scene: cross-validation leaves out whole sources
+  unsigned source = 0;  // capture or scene; cross-validation leaves out whole sources
 };
 
 /// Fits a cubic for each mode. Returns nothing if a mode has fewer than kMinSamples samples, or if

@@ -38,8 +38,8 @@ class PaperModel : public SizeModel {
  public:
   explicit PaperModel(PaperCoefficients coefficients) : coefficients_(std::move(coefficients)) {}
 
-  /// The polynomial has no term for intensity bits, so the bytes always include the intensity bits
-  /// of its training.
+  /// The polynomial has no term for intensity bits. Its bytes therefore always include as many
+  /// intensity bits as the polynomial was trained with.
   PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const override;
   /// Chooses q from 8 to 24, and for xyz also c from 0 to 9, so that |r - bytes| is smallest. Only
   /// steps within `limits` are considered.

@@ -12,7 +12,7 @@ AllowedSteps StepsAround(double step_m, const SettingLimits& limits) {
   const double step = std::clamp(step_m, finest, coarsest);
   const double unit = limits.step_unit_m;
   if (unit <= 0) return {step, step};
-  constexpr double kRounding = 1e-9;  // 41 units of a millimetre are not an exact double
+  constexpr double kRounding = 1e-9;  // for example, 41 mm is not an exact double
   const double finer = finest + std::floor((step - finest) / unit + kRounding) * unit;
   const double coarser = finer + unit;
   const bool exact = step - finer < kRounding;

@@ -21,13 +21,13 @@ struct Seen {
   std::uint32_t point;
 };
 
-// Grid of heights and tangents for the first search.
+// The grid of heights and tangents in which lines are searched first.
 constexpr double kMostHeight = 0.5;  // [m]
 constexpr double kHeightStep = 0.01;
 constexpr double kMostTangent = 1.5;
 constexpr double kTangentStep = 0.0004;
 constexpr auto kTangents = static_cast<std::size_t>(2 * kMostTangent / kTangentStep);
-constexpr std::size_t kWindow = 125;  // tangents that share a height
+constexpr std::size_t kWindow = 125;  // number of tangents that share a height
 constexpr std::size_t kWindows = kTangents / kWindow;
 constexpr double kNearest = 1;  // [m]
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the beam that sees a point.
+// Finds the beam that measured a point.
 #pragma once
 #include <cstdint>
 #include <vector>

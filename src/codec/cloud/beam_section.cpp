@@ -36,7 +36,7 @@ std::vector<std::int32_t> BinsOf(const RangeImage& image, const RangeGrid& grid)
 /// of their product is computed only now and then.
 class LogSum {
  public:
-  /// `factor` is from 1 to 2^23.
+  /// Adds the logarithm of `factor`, which is from 1 to 2^23.
   void Add(double factor) {
     constexpr double kLarge = 0x1p900;
     product_ *= factor;

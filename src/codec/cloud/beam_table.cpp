@@ -171,7 +171,7 @@ ColumnFinder::Found ColumnFinder::Find(std::uint32_t beam, std::int32_t azimuth)
     const std::uint32_t column = nearest >= columns ? 0 : nearest;
     return {column, Wrapped(away - angles[table_.FiringOf(beam, column)])};
   }
-  // A bucket holds less than one column.
+  // A bucket has less than one column on average.
   const std::uint32_t first = buckets_.empty()
                                   ? static_cast<std::uint32_t>(parts >> (kTurnBits + 8))
                                   : buckets_[place >> kShift];

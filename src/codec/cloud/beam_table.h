@@ -29,7 +29,7 @@ struct Sighting {
   double z_m = 0;
   std::int32_t azimuth = 0;  // counter-clockwise, below kTurn
 };
-/// Converts the first `count` points.
+/// Converts the first `count` points to sightings.
 void SightAll(const std::vector<Point>& points, std::size_t count,
               std::vector<Sighting>* sightings);
 
@@ -61,7 +61,7 @@ struct BeamTable {
   static constexpr std::int32_t kMostOffsetUm = 1'000'000;
   static constexpr std::int32_t kLengthUnitUm = 50;  // unit of heights, sides and reaches
   static constexpr std::uint32_t kMostGrains = 1U << 18;
-  /// Unit of swings: 0.0014 degrees.
+  /// The unit of swings: 0.0014 degrees.
   static constexpr std::int32_t kSwingUnit = 16;
   /// The units of elevations and offsets if beams bend. They may be coarse, because the residuals
   /// of points make up for them.
@@ -75,7 +75,7 @@ struct BeamTable {
   std::vector<std::uint32_t> places;  // places of the columns, in grains, ascending
   bool bends = false;                 // each point has its own elevation
   bool beams_follow = true;  // CodeBeams() codes the beams; false: they are in the table (old)
-  // A table with a path uses only these fields.
+  // Only a table with a path uses these fields.
   std::int32_t rate = 0;       // of the turn, for BeamPath; 0: no path
   std::vector<PathBeam> path;  // one for each beam
 
@@ -130,7 +130,7 @@ inline double SideAngle(const BeamTable::Beam& beam, double rho_m) {
   return beam.side_um == 0 ? 0 : kUnits * beam.side_um / std::max(rho_m, 1e-3);
 }
 
-/// Wraps an angle to -kTurn / 2 to kTurn / 2.
+/// Wraps an angle to the range from -kTurn / 2 to kTurn / 2.
 inline std::int32_t Wrapped(std::int32_t angle) {
   return ((angle + kTurn / 2) & (kTurn - 1)) - kTurn / 2;
 }
@@ -161,7 +161,7 @@ class ColumnAngles {
 /// Finds the column of an azimuth.
 class ColumnFinder {
  public:
-  /// A column, and the distance of the azimuth from it.
+  /// A column, and the distance of an azimuth from this column.
   struct Found {
     std::uint32_t column = 0;
     std::int32_t residual = 0;

@@ -398,7 +398,7 @@ void CoverByFewCells(const std::vector<Point>& points, const CellGrid& grid, uns
   CellQueues queues(choices);
   struct Taken {
     std::uint64_t code;
-    std::size_t first;  // of its points
+    std::size_t first;  // index of its first point in `order`
     std::size_t end;
   };
   std::vector<Taken> taken;

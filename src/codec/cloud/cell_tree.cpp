@@ -71,8 +71,8 @@ constexpr std::array<std::uint32_t, 8> NodesByChild() {
 }
 constexpr std::array<std::uint32_t, 8> kNodesBy = NodesByChild();
 
-/// Returns, for each set of children (bit n: child n), their bits in CellBits, shifted so that
-/// child 0 is bit 0.
+/// Returns the bits that each set of children has in CellBits. Bit n of the index is child n. The
+/// results are shifted so that child 0 is bit 0.
 constexpr std::array<CellBits, 256> SpreadChildren() {
   std::array<CellBits, 256> spread{};
   for (unsigned children = 0; children < 256; ++children)
@@ -111,7 +111,7 @@ constexpr unsigned kOwnPlace = 13;
 
 /// A parent whose children may be neighbours of a node.
 struct ParentBeside {
-  unsigned parent = 0;                   // place among the 27 around the node's parent
+  unsigned parent = 0;                   // its place among the 27 around the node's parent
   unsigned near = 0;                     // bits of its children that may be neighbours
   std::array<std::uint8_t, 8> places{};  // places of these children among the 27 around the node
 };

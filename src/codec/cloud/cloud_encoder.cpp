@@ -75,14 +75,14 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
     const auto grid = RangeGrid::ForError(std::abs(part) * error_m, unit_mm);
     errors.range_m = grid.error_m();
     if (part < 0) {
-      // A tenth is left for the rounding to integers.
+      // A tenth of the error is left for the rounding to integers.
       const double both_m = 0.9 * std::sqrt(error_m * error_m - errors.range_m * errors.range_m);
       const double each_m = bends || has_path ? both_m / std::sqrt(2.0) : both_m;
       errors.tangent_um = std::max(static_cast<std::uint32_t>(1e6 * each_m), 1U);
       if (bends || has_path) errors.bend_um = errors.tangent_um;
     }
     const double fitting_bits = (part < 0 ? kResidualBits : 0) - std::log2(grid.step_m());
-    // Skips the slow count if this choice would lose even with all points in pixels.
+    // The slow count is skipped if this choice would lose even with all points in pixels.
     if (best.error_m > 0 && all * std::min(fitting_bits, kRestBits) >= least) continue;
     const auto fitting = static_cast<double>(CountFitting(cloud, errors));
     const double bits = kRestBits * (all - fitting) + fitting * fitting_bits;

@@ -28,8 +28,8 @@ struct PixelErrors {
 struct PixelList {
   RangeImage image;
   std::vector<std::uint32_t> points;    // index of each pixel's first return
-  std::vector<std::int32_t> residuals;  // of each pixel's azimuth
-  std::vector<std::int32_t> bends;      // of each pixel's elevation
+  std::vector<std::int32_t> residuals;  // residual of each pixel's azimuth
+  std::vector<std::int32_t> bends;      // residual of each pixel's elevation
   std::vector<ExtraReturn> extras;
   std::vector<std::uint32_t> rest;  // indices of all other points
   std::size_t returns = 0;          // number of pixels with a return

@@ -20,11 +20,11 @@ struct ResidualSettings {
   ResidualGuess guess = ResidualGuess::kNone;
 };
 
-/// Codes the places of a table's columns. Returns false for a damaged stream.
+/// Codes the places of a table's columns. Returns false if the stream is damaged.
 template <class Coder>
 bool CodePlaces(BeamTable* table, Coder* coder);
 
-/// Codes the curves of a table's path. Returns false for a damaged stream.
+/// Codes the curves of a table's path. Returns false if the stream is damaged.
 template <class Coder>
 bool CodePath(std::vector<PathBeam>* path, Coder* coder);
 
@@ -42,7 +42,7 @@ struct ExtraBin {
 };
 struct ExtraSettings {
   unsigned level_bits = 0;
-  bool by_four = true;    // contexts of four neighbours; false: of two, as earlier encoders had
+  bool by_four = true;    // context of four neighbours; false: of two, as in earlier encoders
   std::size_t limit = 0;  // largest number of further returns
 };
 /// Codes the further returns of pixels. `bins` has the bin of each pixel's first return, or -1 if

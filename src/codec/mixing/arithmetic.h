@@ -25,8 +25,8 @@ inline std::int32_t ClampLogit(std::int32_t logit) {
 /// The compiler computes the tables from integers, so the tables are the same on every machine.
 struct Tables {
   constexpr Tables();
-  std::array<std::uint16_t, 4'096> chance{};      // of logit i - 2048
-  std::array<std::int16_t, 4'096> logit{};        // of the chance 16 i + 8
+  std::array<std::uint16_t, 4'096> chance{};      // chance of the logit i - 2048
+  std::array<std::int16_t, 4'096> logit{};        // logit of the chance 16 i + 8
   std::array<std::uint16_t, 256> log_mantissa{};  // 256 ln(1 + i / 256)
 };
 extern const Tables kTables;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes jumps: differences of more than 3 bins from the prediction. The value is then often on a
-// surface that a neighbour is on, too.
+// Codes jumps: differences of more than 3 bins from the prediction. After a jump, the value is
+// often on the same surface as a neighbour.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -88,7 +88,8 @@ inline std::uint32_t RangeClass(std::int32_t value, std::int64_t step_mm) {
   return std::min(HalfOctave(static_cast<std::uint32_t>(mm >> 7)), 15U);
 }
 
-/// Maps a residual of -3 to 3, times `mirror` (1 or -1), to 0 to 6.
+/// Returns the class, 0 to 6, of a residual from -3 to 3. If `mirror` is -1, the residual is taken
+/// with the opposite sign.
 inline std::uint32_t ResidualClass(std::int32_t residual, std::int32_t mirror) {
   return static_cast<std::uint32_t>(residual * mirror + 3);
 }

@@ -59,7 +59,7 @@ inline constexpr Rates kRates;
 class NibbleModel;
 /// Four models. The mean of their distributions predicts a symbol.
 using BlendedModels = std::array<NibbleModel*, 4>;
-/// Blended models learn twice as fast as single ones.
+/// Blended models learn twice as fast as single models.
 constexpr int kBlendedHaste = 1;
 
 /// The cumulative distribution of symbols (F. Giesen, "Mixing discrete probability distributions",
