@@ -41,7 +41,8 @@ class AlignedRow {
     closed_ = columns == alignment.columns_per_scan() && alignment.span() + 2 * kMargin <= columns;
     values_.assign(size_, initial);
   }
-  /// Returns the value at pixel 0 of `beam`. Indices in [-kMargin .. columns + kMargin) are valid.
+  /// Returns a pointer to the value at pixel 0 of `beam`. Indices in [-kMargin .. columns +
+  /// kMargin) are valid.
   T* At(std::uint32_t beam) { return &values_[kMargin + alignment_->offset(beam)]; }
   /// Must be called after At(beam)[0 .. columns) was written. In a full turn, the last and the
   /// first column are neighbours, so each of them is copied to the margin beside the other.

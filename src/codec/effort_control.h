@@ -23,7 +23,7 @@ class EffortControl {
   void OnSlice(Duration sweep, std::size_t returns, Duration spent);
 
  private:
-  /// The slices of about a second. At the end of a window the effort may change.
+  /// A window of about a second. At its end the effort may change.
   struct Window {
     Duration swept{};
     unsigned slices = 0;

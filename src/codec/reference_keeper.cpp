@@ -56,7 +56,7 @@ bool ReferenceKeeper::Begin(Time now, const SliceName& slice) {
   if (now < alone_since_) return false;
   Slot& slot = slots_[slice.index];
   if (key_interval_ > Duration{0}) {
-    // Each sector restarts in another scan. If all slices of a scan had no reference, that scan
+    // The sectors restart in different scans. If all slices of a scan had no reference, that scan
     // would be much larger than the others.
     const Duration head_start = key_interval_ * slice.index / std::max(slice.count, 1U);
     const auto turn = [&](Time t) { return (t.time_since_epoch() + head_start) / key_interval_; };

@@ -25,13 +25,13 @@ struct SliceName {
 /// coded without a reference. The time must not decrease from call to call. Not thread-safe.
 class ReferenceKeeper {
  public:
-  /// Sets the longest time between two slices of a sector without reference. Receivers that start
-  /// later can decode these slices. 0: no limit.
+  /// Sets the longest time between two slices of a sector that have no reference. Receivers that
+  /// start later can decode these slices. 0: no limit.
   void set_key_interval(Duration interval) { key_interval_ = interval; }
 
   /// Notes that `receiver` has received the whole slice.
   void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id, std::uint32_t index);
-  /// Lets the next slice of each sector have no reference.
+  /// Has the next slice of each sector coded without a reference.
   void OnKeyRequest();
 
   /// Begins the next slice. Returns false if later slices cannot refer to it.
@@ -53,7 +53,8 @@ class ReferenceKeeper {
   /// Returns the size of all memories.
   std::size_t bytes() const { return bytes_; }
 
-  /// These limits are lower than those of BlockStore, because slices may arrive in another order.
+  /// These limits are lower than those of BlockStore. Slices may arrive in another order, but the
+  /// receiver must still have the blocks to which they refer.
   static constexpr std::size_t kMostOfSlice = 20;
   static constexpr std::size_t kMostBytes = 48U << 20;
   /// The time without acknowledgements after which a receiver is assumed to be gone.

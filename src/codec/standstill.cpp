@@ -6,7 +6,7 @@
 namespace lidar::codec {
 namespace {
 
-// The distance that is assumed between a return and its prediction if it has no prediction [steps].
+// The distance [steps] that is assumed for a return without a prediction.
 constexpr double kSurpriseSteps = 8;
 
 /// Returns roughly how many bits it costs to code a distance.

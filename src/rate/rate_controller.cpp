@@ -7,8 +7,8 @@
 namespace lidar::rate {
 namespace {
 
-// Each scan spends or repays only half of the bytes that earlier scans saved or sent in excess. The
-// whole at once would double the noise of the sizes.
+// Each scan spends or repays only half of the bytes that earlier scans saved or sent in excess. To
+// spend or repay all of them at once would double the noise of the sizes.
 constexpr double kRepayGain = 0.5;
 // The largest number of saved bytes, as a part of a scan's budget. It is small, because the network
 // does not keep unused capacity for later.

@@ -33,8 +33,8 @@ constexpr double kNearest = 1;  // [m]
 
 using Histogram = std::vector<std::uint32_t>;
 
-/// Returns the histogram bin of the tangent of a line from the height `height_m` of the z axis to
-/// the point. Returns SIZE_MAX if the line is too steep.
+/// Returns the histogram bin for the tangent of a line. The line leads from the height `height_m`
+/// on the z axis to the point. Returns SIZE_MAX if it is too steep.
 std::size_t ClassOf(const Sighting& s, double height_m, double classes_per_tangent) {
   const double tangent = (s.z_m - height_m) / s.rho_m;
   if (std::abs(tangent) >= kMostTangent) return SIZE_MAX;
@@ -203,7 +203,7 @@ void Refit(const std::vector<Sighting>& points, FoundBeam* beam) {
     square += away * away;
     product += away * (points[i].z_m - z);
   }
-  // The prior of the tangent is that of the line from the old height to the middle of the points.
+  // The prior is the tangent of the line from the old height to the middle of the points.
   const double old = (z - beam->line.height_m) / std::max(rho, 1e-3);
   const double weight = kPrior * n;
   beam->line.tangent = (product + weight * old) / (square + weight);

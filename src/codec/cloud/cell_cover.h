@@ -34,7 +34,8 @@ struct CellGrid {
   double Middle(std::uint32_t at, unsigned depth) const {
     return MiddleFromCentre(static_cast<double>(at) - HalfOf(depth));
   }
-  /// Does the same for a cell whose lower edge is `cells` cells from the centre of the grid.
+  /// Does the same as Middle(), for a cell whose lower edge is `cells` cells from the centre of the
+  /// grid.
   double MiddleFromCentre(double cells) const {
     return static_cast<double>(static_cast<float>((cells + 0.5) * static_cast<double>(step_m)));
   }
@@ -60,8 +61,8 @@ struct CoveredPoints {
 /// Assigns each point to its own cell. A tree of `depth` must have room for all points.
 void CoverByOwnCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                      CoveredPoints* covered);
-/// Does the same, but then merges cells with a neighbour whose middle is within the error of all
-/// points in the cell. Fast, and nearly as good as CoverByFewCells().
+/// Does the same as CoverByOwnCells(), but then merges cells with a neighbour whose middle is
+/// within the error of all points in the cell. Fast, and nearly as good as CoverByFewCells().
 void CoverByMergedCells(const std::vector<Point>& points, const CellGrid& grid, unsigned depth,
                         CoveredPoints* covered);
 /// Assigns all points to few cells. Most points are within the error of several cells' middles. The

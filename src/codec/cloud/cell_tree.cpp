@@ -390,7 +390,7 @@ bool CellTree::CodeLevel(unsigned depth, unsigned leaf_depth, const CellLimits& 
   return true;
 }
 
-/// Context of a cell's count.
+/// The context in which a cell's count is coded.
 struct CellTree::CountContext {
   std::uint32_t last = 0;   // count of the previous cell
   std::uint32_t mean = 0;   // mean count of the neighbours, in halves

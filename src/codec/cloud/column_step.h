@@ -16,8 +16,8 @@ struct BeamAzimuth {
 /// The azimuths of a beam, in ascending order.
 using BeamAzimuths = std::vector<BeamAzimuth>;
 
-/// Each beam has a most common step. Returns the smallest of these steps that beams with a tenth of
-/// all points have in common. Returns 0 if there is none.
+/// Finds the most common step of each beam, and counts the points of the beams that have the same
+/// step. Returns the smallest step that has at least a tenth of all points, or 0 if there is none.
 std::int32_t UsualStep(const std::vector<BeamAzimuths>& beams);
 /// Returns the mean step. Only neighbouring points that are a few steps of about `usual` apart are
 /// used. Returns 0 if there are none.

@@ -77,7 +77,8 @@ class RoundedColumns {
     }
     return best;
   }
-  /// Returns the votes at the places that about `sample` points of the beam have with this delay.
+  /// Returns the sum of the votes at the places of about `sample` points. The places are those that
+  /// the points of the beam have with this delay.
   std::uint64_t VotesFor(std::uint32_t beam, std::int32_t delay, std::size_t sample) const {
     const std::vector<std::uint32_t>& grains = grains_of_[beam];
     const std::size_t stride = grains.size() / sample + 1;

@@ -30,7 +30,8 @@ class BinaryEncoder {
     }
     return bit;
   }
-  /// Returns false, because an encoder reads nothing. Templates call overran() of either coder.
+  /// Returns false, because an encoder reads nothing. Templates call overran() of encoders and
+  /// decoders.
   static constexpr bool overran() { return false; }
   /// Writes the last bytes. A decoder reads zeros after them.
   void Finish();

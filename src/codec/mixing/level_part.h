@@ -194,7 +194,7 @@ class LevelPart {
   const std::int64_t step_mm_;
   std::uint32_t zero_run_ = 0;
 
-  // Set for each return.
+  // These members are set for each return.
   std::int32_t n_ = 0, nw_ = 0, ne_ = 0, w_ = 0;
   std::int32_t predicted_ = 0;
   std::int32_t mirror_ = 1;

@@ -18,8 +18,8 @@ constexpr std::array<std::uint32_t, 3> kJumpContexts = {24, 32, 64};
 constexpr std::array<std::uint32_t, 14> kLevelContexts = {
     24, 225, 1'331, 1'024, 512, 1'331, 1'024, 1'024, 225, 405, 735, 1'372, 1'024, 225};
 
-/// The number of decisions (nodes) on a small difference from a prediction. They are: whether it is
-/// 0, its sign, and for each sign whether its size is more than 1, 2 and 3.
+/// The number of decisions (nodes) on a small difference from a prediction: whether the difference
+/// is 0, its sign, and for each sign whether its size is more than 1, 2 and 3.
 constexpr unsigned kSmallNodes = 8;
 /// The number of nodes in the Exp-Golomb code of a jump. The first kLengthNodes code the length.
 /// The others code the bits below the highest one. Their node depends on the position of the bit

@@ -17,7 +17,7 @@ namespace lidar::codec::mixing {
 /// Only bins below this number are coded, so that sums of a few values in 1/16 bin fit 32 bits.
 constexpr std::int32_t kMaxBins = 1 << 25;
 
-/// The values to the left of a return and above it, and what is derived from the neighbours.
+/// The neighbours of a return (`w` to the left, `n` above), and what is derived from them.
 struct Surroundings {
   std::int32_t w = 0;
   std::int32_t n = 0;
@@ -317,13 +317,13 @@ class RangePart {
   Coder& coder_;
   std::int64_t step_mm_;
 
-  // Set for each row.
+  // These members are set for each row.
   const Azimuth* above_ = nullptr;
   const std::int32_t* north_ = nullptr;
   bool blind_ = false;
   Row row_;
 
-  // Set for each return.
+  // These members are set for each return.
   std::uint32_t index_ = 0;
   std::uint32_t phase_ = 0;  // class of the neighbours' mean
   std::int32_t n_ = 0, nw_ = 0, ne_ = 0, nee_ = 0, nn_ = 0, w_ = 0, ww_ = 0, www_ = 0;

@@ -23,9 +23,11 @@ constexpr unsigned kTemporalMaskSets = 16;
 struct TemporalModel {
   std::array<Counter, kSmallNodes * Total(kTemporalContexts)> counters;
   std::array<Counter, Total(kTemporalMaskContexts)> mask;
-  /// The mean distance of values from the recalled one, in 1/4096 bin, by spread and count.
+  /// The mean distance of values from the recalled one, in 1/4096 bin, for each class of spread and
+  /// count.
   std::array<std::int32_t, kSpreadClasses * kCountClasses> recalled_spread;
-  /// The mean distance of values from the spatial prediction, in 1/4096 bin, by unevenness.
+  /// The mean distance of values from the spatial prediction, in 1/4096 bin, for each class of
+  /// unevenness.
   std::array<std::int32_t, kUnevenClasses> spatial_spread;
   std::array<Weights, kSmallNodes * kSpreadClasses> weights;
   std::array<Weights, kTemporalMaskSets> mask_weights;

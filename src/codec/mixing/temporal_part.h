@@ -195,14 +195,14 @@ class TemporalPart {
   TemporalModel& model_;
   Coder& coder_;
 
-  // Set for each row.
+  // These members are set for each row.
   const PixelMemory* pixels_ = nullptr;
   std::uint32_t count_ = 0;
   Surprise* above_ = nullptr;
   Surprise west_, west2_, north_west_;
   bool west_bit_ = false;
 
-  // Set for each pixel.
+  // These members are set for each pixel.
   std::uint32_t index_ = 0;
   bool known_ = false;
   std::int32_t value_ = 0;  // recalled, in 1/16 bin

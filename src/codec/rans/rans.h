@@ -43,7 +43,7 @@ class RansEncoder {
     if (pieces_.size() < pieces) pieces_.resize(pieces);
     next_ = pieces_.data();
   }
-  /// Appends the stream to `out`.
+  /// Codes what was collected, and appends the stream to `out`.
   void Finish(std::vector<std::uint8_t>* out);
 
   /// Writes to an encoder. The encoder has what was written as soon as the Writer goes out of
@@ -63,7 +63,7 @@ class RansEncoder {
       *next_++ = {model->IntervalOf(symbol), bits << 8 | count << 2 | lane};
       model->Update<kHaste>(symbol);
     }
-    /// Does the same, but predicts the symbol by the mean of `models`.
+    /// Adds a symbol and bits, too. The symbol is predicted by the mean of `models`.
     [[gnu::always_inline]] void Put(unsigned lane, unsigned symbol, const BlendedModels& models,
                                     std::uint32_t bits = 0, unsigned count = 0) {
       *next_++ = {NibbleModel::BlendedInterval(models, symbol), bits << 8 | count << 2 | lane};
@@ -109,7 +109,7 @@ class RansDecoder {
     model->Update<kHaste>(symbol);
     return symbol;
   }
-  /// Does the same, but predicts the symbol by the mean of `models`.
+  /// Reads a symbol, too. The symbol is predicted by the mean of `models`.
   [[gnu::always_inline]] unsigned Get(unsigned lane, const BlendedModels& models) {
     const unsigned symbol = Take(lane, NibbleModel::Blend(models));
     for (NibbleModel* model : models) model->Update<kBlendedHaste>(symbol);
