@@ -125,9 +125,8 @@ class RowPredictor {
                                        2 * static_cast<std::uint32_t>(error[lane]);
           p.context =
               detail::kContextTable.contexts[std::min(uneven, detail::ContextTable::kMost + 0U)];
-          // The prediction is often W or N itself. If the value differs from it, the value is
-          // mostly on the side of the other one of W and N, so the mirrored sign of the difference
-          // is predictable.
+          // The prediction is often W or N. A different value is mostly on the side of the other of
+          // these two neighbours, so the mirrored sign of the difference is predictable.
           p.mirror = -above >> 31;
           const Coded coded = code(lane, i, p);
           error[lane] = at.error = coded.magnitude;
