@@ -31,7 +31,7 @@ class ReferenceKeeper {
 
   /// Notes that `receiver` has received the whole slice.
   void OnAcknowledged(Time now, std::uint32_t receiver, std::uint32_t scan_id, std::uint32_t index);
-  /// Has the next slice of each sector coded without a reference.
+  /// Has the next slices of each sector coded without a reference.
   void OnKeyRequest();
 
   /// Begins the next slice. Returns false if later slices cannot refer to it.
