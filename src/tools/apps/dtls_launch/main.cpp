@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// gst-launch for pipelines with DTLS-SRTP. Trusts exactly one certificate.
+// gst-launch for pipelines with DTLS-SRTP. Accepts exactly one certificate of a peer.
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,8 @@ struct Options {
   std::vector<std::string> pipeline;
 };
 
-/// A handshake and its result. Threads of the pipeline set the flags.
+/// A pipeline that makes one handshake, and the result of this handshake. Threads of the pipeline
+/// set the flags.
 struct Session {
   explicit Session(const Certificates& c) : certificates(c) {}
   ~Session() {
@@ -49,11 +50,11 @@ struct Session {
 };
 
 constexpr GstClockTime kPoll = 100 * GST_MSECOND;
-// Pause between handshakes: limits the restarts that forged packets can cause.
+// The pause between two handshakes. It limits how often forged packets can restart the pipeline.
 constexpr gulong kPauseUs = 200'000;
 
-/// Refuses an untrusted certificate. A certificate arrives before the keys do, and no packet passes
-/// after `refused`.
+/// Sets `refused` if the peer's certificate is not the trusted one. The certificate arrives before
+/// the keys do, and no packet passes after `refused` is set.
 void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   gchar* pem = nullptr;
   g_object_get(dtls, "peer-pem", &pem, nullptr);
@@ -61,7 +62,8 @@ void OnPeerCertificate(GObject* dtls, GParamSpec*, Session* session) {
   if (pem == nullptr || CertificateIn(pem) != session->certificates.peer) session->refused = true;
 }
 
-/// Drops all packets after `refused`: the rest of the handshake, and data under its keys.
+/// Drops all packets once `refused` is set. These are the rest of the handshake, and data that are
+/// encrypted with its keys.
 void DropOnceRefused(GstElement* decoder, Session* session) {
   GstPad* pad = gst_element_get_static_pad(decoder, "sink");
   gst_pad_add_probe(
@@ -73,7 +75,8 @@ void DropOnceRefused(GstElement* decoder, Session* session) {
   gst_object_unref(pad);
 }
 
-/// Holds packets back until the handshake sets a key: srtpenc would encrypt with a random one.
+/// Holds packets back until the handshake has set a key, because srtpenc would otherwise encrypt
+/// them with a random key.
 void HoldUntilThereIsAKey(GstElement* encoder, Session* session) {
   g_object_set_data(G_OBJECT(encoder), "session", session);
   GstIterator* pads = gst_element_iterate_sink_pads(encoder);
@@ -129,7 +132,7 @@ bool MakePipeline(const std::vector<std::string>& words, Session* session) {
   return false;
 }
 
-/// Returns true for a DTLS element, and for elements within one.
+/// Returns true if the object is a DTLS element, or if it is inside of one.
 bool IsOfDtls(GstObject* source) {
   for (GstObject* o = source; o != nullptr; o = GST_OBJECT_PARENT(o)) {
     const GstElementFactory* factory =
@@ -141,8 +144,9 @@ bool IsOfDtls(GstObject* source) {
 
 enum class End { kOver, kFailed, kNoHandshake };
 
-/// Plays until EOS, an error, a refused certificate, or `*run` is false. A `duration_s` other than
-/// 0 limits the time after the keys. EOS does not pass dtlssrtpenc, whose handshake never ends.
+/// Plays until EOS or an error, until a certificate is refused, or until `*run` is false. If
+/// `duration_s` is not 0, it limits the time after the keys were received. EOS does not pass
+/// through dtlssrtpenc, because its part for the handshake never ends.
 End Play(Session* session, double duration_s, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);
@@ -163,7 +167,7 @@ End Play(Session* session, double duration_s, const bool* run, std::string* why)
   return session->refused ? End::kNoHandshake : End::kOver;
 }
 
-/// Runs sessions in sequence: forged packets end a handshake, not the program.
+/// Runs one session after another, so that forged packets can end a handshake but not the program.
 class Sessions {
  public:
   Sessions(const Options& options, const Certificates& certificates)
@@ -192,7 +196,7 @@ class Sessions {
   }
 
  private:
-  /// Prints a reason unless it repeats the last one, so that forged packets cannot fill a log.
+  /// Prints `why` unless it is the same as the last time, so that forged packets cannot fill a log.
   void Tell(const Session& session, const std::string& why) {
     if (session.has_keys) told_.clear();
     if (std::exchange(told_, why) == why) return;

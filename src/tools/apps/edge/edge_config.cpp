@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// An object with a fixed set of keys: a misspelt key is an error.
+/// A JSON object whose set of keys is fixed. Any other key, such as a misspelt one, is an error.
 class Section {
  public:
   Section(const json& object, std::string where) : object_(object), where_(std::move(where)) {
@@ -66,7 +66,7 @@ class Section {
   std::set<std::string> known_;
 };
 
-/// Whether `text` can be a word of a NATS subject and the value of a Prometheus label.
+/// Returns true if `text` can be a word of a NATS subject and also the value of a Prometheus label.
 bool IsWord(const std::string& text) {
   const auto is_good = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -76,7 +76,8 @@ bool IsWord(const std::string& text) {
 }
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 50;
-constexpr std::size_t kMaxSharing = 1'000;  // a kernel filter has 4,096 steps, 3 for each robot
+// A kernel filter has at most 4,096 steps, and each robot needs 3.
+constexpr std::size_t kMaxSharing = 1'000;
 
 NatsConfig ReadNats(const json& object) {
   NatsConfig nats;
@@ -111,7 +112,7 @@ std::optional<std::uint32_t> ReadSsrc(std::string_view text) {
   return result.ec == std::errc() && result.ptr == end ? std::optional(value) : std::nullopt;
 }
 
-/// Parses "FIRST-LAST", or a single SSRC.
+/// Parses a range of SSRCs, which is "FIRST-LAST" or a single SSRC.
 std::optional<SsrcRange> ReadSsrcs(const std::string& text) {
   const auto dash = text.find('-');
   const auto first = ReadSsrc(std::string_view(text).substr(0, dash));
@@ -202,8 +203,9 @@ void CheckSharedPort(const EdgeConfig& config) {
                                " have overlapping ssrc");
 }
 
-/// A full JetStream stream drops its oldest messages, of any robot. So it must hold all that the
-/// robots may send within max-age.
+/// Checks that the JetStream stream has room for all data that the robots may send within max-age.
+/// A full stream drops its oldest messages, so one robot could otherwise displace the messages of
+/// other robots.
 void CheckShares(const EdgeConfig& config) {
   const NatsConfig& nats = config.nats;
   if (nats.jetstream.empty() || nats.max_bytes == 0) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: receives a fleet of robots and hands their streams on to NATS and to files.
+// lidar-edge: receives the streams of a fleet of robots, and forwards them to NATS and to files.
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,8 @@ namespace lidar::edge {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{50};
-constexpr std::chrono::seconds kEnd{6};  // limit if a server, disk or client hangs
+// The longest time that the end may take if a server, disk or client hangs.
+constexpr std::chrono::seconds kEnd{6};
 
 std::atomic<bool> stopping{false};
 
@@ -58,7 +59,8 @@ class Edge {
         fleet::StatisticsSettings{config.http_address, config.http_port, config.interval_s},
         connection);
   }
-  /// Ends all sessions at the same time.
+  /// Asks all receivers to end at the same time. Otherwise their destructors would wait for one
+  /// session after another.
   ~Edge() {
     for (const auto& receiver : receivers_) receiver->AskToEnd();
   }

@@ -14,8 +14,9 @@ using gst::ElementPtr;
 using gst::PadPtr;
 using tools::SetText;
 
-// Limits of data that wait for a slow disk. The number of buffers bounds the overhead of tiny
-// buffers, and the time bounds the number of events between them.
+// Limits of the queue in front of the recorder, which fills while the disk is slow. The limit of
+// buffers bounds the overhead of tiny buffers. The limit of time bounds the number of events
+// between the buffers.
 constexpr guint kRecordQueue = 8U << 20;  // bytes
 constexpr guint kRecordQueueBuffers = 16'384;
 constexpr GstClockTime kRecordQueueTime = 30 * GST_SECOND;
@@ -30,7 +31,8 @@ void Link(GstElement* from, GstElement* to) {
   if (!gst_element_link(from, to)) throw std::runtime_error("elements cannot be linked");
 }
 
-/// The sinks of all robots use the same stream, which the first one creates.
+/// Adds a sink that publishes the stream to NATS. If `nats.jetstream` is set, the sinks of all
+/// robots use this JetStream stream, which the first of the sinks creates.
 void AddNats(GstElement* pipeline, GstElement* from, const NatsConfig& nats,
              const RobotConfig& robot) {
   GstElement* sink = Add(pipeline, "natssink");
@@ -85,7 +87,7 @@ ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSoc
 void AddRecorder(GstElement* pipeline, const RobotConfig& robot) {
   GstElement* recorder = gst_bin_new(kRecorder);
   gst_bin_add(GST_BIN(pipeline), recorder);
-  // A slow disk harms the recording only.
+  // If the disk is slow, the queue drops data, so that only the recording suffers.
   GstElement* queue = Add(recorder, "queue");
   gst_util_set_object_arg(G_OBJECT(queue), "leaky", "downstream");
   g_object_set(queue, "max-size-buffers", kRecordQueueBuffers, "max-size-time", kRecordQueueTime,
@@ -116,7 +118,7 @@ void RemoveRecorder(GstElement* pipeline) {
 }
 
 bool IsFromRecorder(GstMessage* message) {
-  // Compares names: the recorder may have left the pipeline already.
+  // Compares names, because the recorder may have been removed from the pipeline already.
   for (const char* name : {kRecorder, "queue", "mcapsink"})
     if (g_strcmp0(GST_MESSAGE_SRC_NAME(message), name) == 0) return true;
   return false;

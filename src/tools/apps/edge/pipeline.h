@@ -15,17 +15,19 @@ namespace lidar::edge {
 /// socket on the common port, or NULL. Throws std::runtime_error if an element is missing.
 gst::ElementPtr MakePipeline(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
 
-/// Adds a recorder in the pipeline's state. Its errors appear on the bus, and do not stop the
-/// stream. Throws std::runtime_error if an element is missing.
+/// Adds a recorder to the pipeline, and sets it to the state of the pipeline. Errors of the
+/// recorder appear on the bus of the pipeline, but do not stop the stream. Throws
+/// std::runtime_error if an element is missing.
 void AddRecorder(GstElement* pipeline, const RobotConfig& robot);
-/// Does nothing without a recorder.
+/// Removes the recorder if there is one.
 void RemoveRecorder(GstElement* pipeline);
-/// Whether the message comes from the recorder.
+/// Returns true if the message comes from the recorder.
 bool IsFromRecorder(GstMessage* message);
 
-/// Ends the stream, and waits until all received data are written and sent. Errors of the recorder
-/// go to `on_recorder_error`, which removes it; the other branches continue. Returns false after
-/// another error or `timeout`.
+/// Ends the stream, and waits until all received data are written and sent. Calls
+/// `on_recorder_error` for an error of the recorder. This function must then remove the recorder,
+/// and the other branches continue. Returns false after any other error, or when `timeout` has
+/// passed.
 bool Drain(GstElement* pipeline, GstClockTime timeout,
            const std::function<void(GstMessage*)>& on_recorder_error);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A robot's receiver: its sessions on a thread of their own, so that its failures harm no other
-// robot.
+// Runs the sessions of one robot on a thread of their own, so that a failure of this robot does not
+// affect the other robots.
 #pragma once
 #include <condition_variable>
 #include <mutex>
@@ -12,14 +12,14 @@ namespace lidar::edge {
 
 class Receiver {
  public:
-  /// Passes its arguments to Session, and throws as Session does.
+  /// Passes its arguments to Session, and throws what the constructor of Session throws.
   Receiver(const EdgeConfig& config, const RobotConfig& robot, GSocket* socket);
-  /// Ends the session, and waits for it.
+  /// Ends the session, and waits for the thread.
   ~Receiver();
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
 
-  /// Ends the session once its files are complete. Does not wait.
+  /// Asks the thread to complete the files and to end the session. Does not wait.
   void AskToEnd();
 
   const Session& session() const { return session_; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decides from a robot's received bytes whether it is present, and how far it exceeds its limit.
+// Decides from the number of bytes received from a robot whether the robot is present, and how far
+// it exceeds its limit.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,13 +12,15 @@ namespace lidar::edge {
 
 class RobotWatch {
  public:
-  static constexpr Duration kTimeout = std::chrono::seconds(10);  // silence of a robot that left
+  // A robot is gone if it is silent for longer.
+  static constexpr Duration kTimeout = std::chrono::seconds(10);
   static constexpr double kCredit = 3;  // seconds of data that a robot may send beyond its limit
 
-  /// 0: no limit.
+  /// If `max_mbps` is 0, there is no limit.
   explicit RobotWatch(double max_mbps) : limit_(max_mbps * 125'000) {}
 
-  /// Begins a session, which counts bytes from 0. Keeps the excess of earlier sessions.
+  /// Begins a session, in which the number of received bytes begins at 0. The excess of earlier
+  /// sessions still counts.
   void Begin() {
     bytes_ = 0;
     is_there_ = false;
@@ -35,15 +38,15 @@ class RobotWatch {
 
   bool is_there() const { return is_there_; }
   bool IsGone() const { return is_there_ && noted_at_ - heard_at_ > kTimeout; }
-  /// Returns how long to shut out a robot that exceeds its limit by more than kCredit, so that its
-  /// mean stays below the limit; 0 for others.
+  /// Returns how long to shut the robot out so that its mean rate stays below the limit. Returns 0
+  /// unless the robot is more than kCredit seconds of data ahead of its limit.
   Duration ToShutOut() const {
     const bool is_ahead = limit_ > 0 && ahead_ > kCredit * limit_;
     return is_ahead ? FromSeconds(ahead_ / limit_) : Duration{};
   }
 
  private:
-  double limit_;  // bytes a second
+  double limit_;  // bytes per second
   double ahead_ = 0;
   std::uint64_t bytes_ = 0;
   bool is_there_ = false;

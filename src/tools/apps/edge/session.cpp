@@ -18,9 +18,10 @@ using gst::StructurePtr;
 using std::chrono::seconds;
 using tools::StatsOf;
 
-constexpr seconds kFirstPause{2};  // after a failure
+constexpr seconds kFirstPause{2};  // pause after the first failure
 constexpr seconds kLongestPause{64};
-constexpr seconds kHealthySession{10};  // a session of this age did not fail at once
+// A failure after a longer session or recording resets the pause.
+constexpr seconds kHealthySession{10};
 constexpr GstClockTime kFinish = 3 * GST_SECOND;
 
 }  // namespace
@@ -32,7 +33,7 @@ Session::Session(const EdgeConfig& config, const RobotConfig& robot, GSocket* so
       robot_watch_(robot.max_mbps),
       failures_(kFirstPause, kLongestPause),
       record_failures_(kFirstPause, kLongestPause) {
-  if (!robot.record.empty()) {  // throws now if it cannot record
+  if (!robot.record.empty()) {  // throws here if an element of the recorder is missing
     AddRecorder(pipeline_.get(), robot);
     RemoveRecorder(pipeline_.get());
   }
@@ -61,7 +62,7 @@ void Session::Begin(Time now) {
   watch_at_.reset();
   robot_watch_.Begin();
   if (socket_ != nullptr) ShutSocket(socket_, false);
-  // ReadBus() reports errors.
+  // Errors are not checked here, because ReadBus() reports them.
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
 }
 
@@ -72,7 +73,7 @@ void Session::End() {
   recording_ = false;
 }
 
-/// Writes and sends received data, for up to kFinish, and ends the session.
+/// Waits up to kFinish until the received data are written and sent, and then ends the session.
 void Session::Finish(Time now) {
   if (state_ != State::kResting && BytesReceived() > 0)
     Drain(pipeline_.get(), kFinish, [&](GstMessage* message) { NoteError(now, message); });
@@ -87,7 +88,8 @@ void Session::Rest(Time now, Duration pause, const std::string& why) {
   Say(why);
 }
 
-/// Replaces a failed recorder after a pause, while the stream continues.
+/// Adds the recorder if the session has none yet, or if the pause after a failure of the recorder
+/// is over. The stream continues meanwhile.
 void Session::Record(Time now) {
   if (robot_.record.empty() || recording_ || now < record_at_) return;
   recording_ = true;
@@ -111,11 +113,11 @@ void Session::NoteRecordFailure(Time now, const std::string& why) {
   Say(why);
 }
 
-/// Returns false if the session is over.
+/// Handles an error message. Returns false if the error ends the session.
 bool Session::NoteError(Time now, GstMessage* message) {
   const std::string text = tools::MessageText(message);
   if (IsFromRecorder(message)) {
-    if (recording_) NoteRecordFailure(now, text);  // the recorder's first error
+    if (recording_) NoteRecordFailure(now, text);  // later errors of this recorder are ignored
     return true;
   }
   if (now - began_at_ > kHealthySession) failures_.Reset();
@@ -127,7 +129,7 @@ bool Session::NoteError(Time now, GstMessage* message) {
   return false;
 }
 
-/// Returns false if the session is over.
+/// Handles the messages on the bus. Returns false if a message ends the session.
 bool Session::ReadBus(Time now) {
   GstBus* bus = GST_ELEMENT_BUS(pipeline_.get());
   while (const MessagePtr message{gst_bus_pop(bus)}) {
@@ -158,7 +160,7 @@ guint64 Session::BytesReceived() const {
   return bytes;
 }
 
-/// Checks once a second that the robot is there and keeps to its limit.
+/// Checks once per second whether the robot sends, and whether it exceeds its limit.
 void Session::Watch(Time now) {
   if (watch_at_ && now < *watch_at_) return;
   watch_at_ = now + seconds(1);

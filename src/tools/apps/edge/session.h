@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sessions of a robot, one after another: each ends with the robot's goodbye, silence, excess
-// or an error, and the next one begins after a pause.
+// The sessions of one robot, one after another. A session ends when the robot says goodbye, is
+// silent, or exceeds its limit, and after an error. After an excess or an error, there is a pause
+// before the next session.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -27,20 +28,20 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Begins or ends a session if that is due. One thread calls this and Finish().
+  /// Begins or ends a session if that is due. Must be called by the same thread as Finish().
   void Poll(Time now);
-  /// Ends the session once its files are complete.
+  /// Completes the files, and then ends the session.
   void Finish(Time now);
 
   const RobotConfig& robot() const { return robot_; }
   GstElement* pipeline() const { return pipeline_.get(); }
-  /// Adds the robot's figures to `exposition`, and returns them as a report. May be called from any
-  /// thread. Waits for no server and no disk.
+  /// Adds the robot's figures to `exposition`, and returns them as JSON. May be called from any
+  /// thread. Does not wait for a server or a disk.
   nlohmann::json Tell(fleet::Exposition* exposition) const;
 
  private:
   enum class State { kWaiting, kReceiving, kResting };
-  /// The figures of the robot.
+  /// The state of the robot's session, and counts of events in all its sessions.
   struct Account {
     State state = State::kWaiting;
     std::uint64_t sessions = 0;
@@ -52,7 +53,7 @@ class Session {
 
   void Begin(Time now);
   void End();
-  /// Shuts the robot out for `pause`.
+  /// Ends the session, and begins the next one after `pause`. Prints `why`.
   void Rest(Time now, Duration pause, const std::string& why);
   void Record(Time now);
   bool ReadBus(Time now);
@@ -71,16 +72,16 @@ class Session {
 
   // Used by Poll() and Finish() only.
   State state_ = State::kResting;
-  Time begin_at_{};  // end of a rest
+  Time begin_at_{};  // end of the pause between two sessions
   Time began_at_{};
   std::optional<Time> watch_at_;  // time of the next Watch()
   RobotWatch robot_watch_;
   bool recording_ = false;
-  Time record_at_{};  // when recording began or will begin
+  Time record_at_{};  // time at which a recorder was added or will be added
   Backoff failures_;
   Backoff record_failures_;
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards account_
   Account account_;
 };
 

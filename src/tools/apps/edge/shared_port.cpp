@@ -25,10 +25,11 @@ sock_filter Step(unsigned code, std::uint32_t k, std::uint8_t yes = 0, std::uint
   return {static_cast<std::uint16_t>(code), yes, no, k};
 }
 
-/// Makes a program that returns the number of a datagram's socket: 0 for an SSRC outside of the
-/// ranges and for a short datagram.
+/// Makes a BPF program that returns the number of the socket for a datagram. The program returns 0
+/// if the SSRC is in none of the ranges, and also if the datagram is too short to have an SSRC.
 Program ChooseBySsrc(const std::vector<SsrcRange>& ranges) {
-  // RTCP has the packet types 192 to 223 (RFC 5761), and its SSRC is 4 bytes earlier.
+  // RTCP packets have the types 192 to 223 (RFC 5761). Their SSRC is at byte 4, while the SSRC of
+  // RTP packets is at byte 8.
   Program p = {Step(BPF_LD | BPF_B | BPF_ABS, 1),
                Step(BPF_JMP | BPF_JGE | BPF_K, 192, 0, 3),
                Step(BPF_JMP | BPF_JGE | BPF_K, 224, 2, 0),
@@ -55,7 +56,8 @@ struct Address {
   socklen_t length = 0;
 };
 
-/// An empty name means all addresses, of both families if the machine has them.
+/// Resolves a local address. An empty name means all addresses. These are the IPv6 and IPv4
+/// addresses if the machine has IPv6, and otherwise only the IPv4 addresses.
 Address Resolve(const std::string& name, std::uint16_t port) {
   addrinfo hints{};
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
@@ -74,8 +76,8 @@ Address Resolve(const std::string& name, std::uint16_t port) {
   return address;
 }
 
-/// Opens a socket bound to `address`; `shared` allows other sockets of this user. An IPv6 socket
-/// receives IPv4 as well.
+/// Opens a socket and binds it to `address`. If `shared` is true, other sockets of this user may
+/// bind to the address, too. An IPv6 socket also receives IPv4.
 tools::FileDescriptor OpenSocket(const Address& address, bool shared) {
   tools::FileDescriptor fd(
       socket(address.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -98,7 +100,8 @@ const Program kNothing = {Step(BPF_RET | BPF_K, 0)};
 SharedPort::SharedPort(const std::string& address, std::uint16_t port,
                        const std::vector<SsrcRange>& ranges) {
   const Address local = Resolve(address, port);
-  // The port must be free: the kernel would mix our sockets with another process's.
+  // Checks that the port is free. If another process used the port, the kernel would deliver some
+  // of the robots' datagrams to that process.
   OpenSocket(local, false).Reset();
   for (std::size_t i = 0; i <= ranges.size(); ++i) {
     tools::FileDescriptor owner = OpenSocket(local, true);

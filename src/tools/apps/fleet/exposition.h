@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes statistics of elements as JSON and in the text format of Prometheus.
+// Writes the statistics of elements as JSON and in the text format of Prometheus.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,16 +10,18 @@
 
 namespace lidar::fleet {
 
-/// Labels as Prometheus writes them. The names have no characters that need an escape.
+/// Returns labels in the syntax of Prometheus. The names must not have characters that need an
+/// escape.
 std::string RobotLabels(const std::string& robot, const std::string& sensor);
 
-/// Converts numbers, flags, text and structures; other types are left out.
+/// Converts the numbers, flags, texts and structures in `structure`. Leaves fields of other types
+/// out.
 nlohmann::json ToJson(const GstStructure* structure);
 
-/// Collects values and writes them sorted by name, as the text format requires.
+/// Collects values, and writes them sorted by name, as the text format requires.
 class Exposition {
  public:
-  /// `labels` include their braces, or are empty.
+  /// `labels` includes the braces, or is empty.
   void Add(const std::string& name, const std::string& labels, double value);
   /// Adds each number and flag of `structure` as lidar_`element`_`field`.
   void Add(const std::string& element, const std::string& labels, const GstStructure* structure);
@@ -34,8 +36,8 @@ class Exposition {
 void AddStats(GstElement* bin, const std::vector<std::string>& elements, const std::string& labels,
               Exposition* exposition, nlohmann::json* report);
 
-/// Returns a report as one line. Error texts from the network may hold any bytes: invalid UTF-8 is
-/// replaced.
+/// Returns a report as one line. Replaces invalid UTF-8, because error texts from the network may
+/// contain any bytes.
 std::string ToText(const nlohmann::json& report);
 
 }  // namespace lidar::fleet

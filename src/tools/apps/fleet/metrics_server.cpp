@@ -17,7 +17,7 @@ namespace {
 constexpr std::chrono::seconds kClientTimeout{2};
 constexpr std::size_t kMaxRequest = 8 << 10;
 constexpr int kBacklog = 16;
-/// Interval at which silent connections are cut off and failed accepts repeated.
+/// Interval at which silent connections are closed, and at which a failed accept is repeated.
 constexpr std::chrono::milliseconds kPatrol{200};
 
 struct FreeAddress {
@@ -101,13 +101,14 @@ void MetricsServer::Run() {
   }
 }
 
-/// A connection beyond kMaxConnections replaces the oldest, which has had the most time.
+/// Accepts a connection. If there are kMaxConnections already, closes the oldest of them, because
+/// it had the most time.
 void MetricsServer::Accept() {
   tools::FileDescriptor socket(
       accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (!socket && !MustWait()) {
-    // No descriptor is left, so all connections are closed. The listener stays readable: without a
-    // pause, Run() would spin.
+    // No file descriptor is left, so all connections are closed. The listener stays readable, so
+    // Run() would spin if there were no pause.
     cut_ += connections_.size();
     connections_.clear();
     pollfd wake{wake_.get(), POLLIN, 0};
@@ -121,7 +122,8 @@ void MetricsServer::Accept() {
   connections_.push_back({std::move(socket), Clock::now() + kClientTimeout, "", "", 0});
 }
 
-/// Receives or sends what is possible now. Returns false once the connection is over.
+/// Receives or sends as much as is possible without waiting. Returns false once the connection is
+/// over.
 bool MetricsServer::GoesOn(Connection* connection) {
   if (connection->answer.empty() && !Receive(connection)) return false;
   if (connection->answer.empty()) return true;

@@ -15,20 +15,20 @@
 
 namespace lidar::fleet {
 
-/// A thread serves all connections without waiting for any. A silent or slow client is closed
-/// after two seconds, or when too many others come.
+/// Serves all connections by a single thread, which does not wait for any client. A silent or slow
+/// client is disconnected after two seconds, or earlier if too many other clients connect.
 class MetricsServer {
  public:
   static constexpr std::size_t kMaxConnections = 32;
 
-  /// Port 0: any. Throws std::runtime_error if the port is taken.
+  /// `port` may be 0 for any free port. Throws std::runtime_error if the port is not free.
   MetricsServer(const std::string& address, int port);
   ~MetricsServer();
   MetricsServer(const MetricsServer&) = delete;
   MetricsServer& operator=(const MetricsServer&) = delete;
 
   int port() const { return port_; }
-  /// Number of connections closed before their answer.
+  /// Returns the number of connections that were closed before the whole answer was sent.
   std::uint64_t cut() const { return cut_; }
   void Publish(std::string text);
 
@@ -36,9 +36,9 @@ class MetricsServer {
   using Clock = std::chrono::steady_clock;
   struct Connection {
     tools::FileDescriptor socket;
-    Clock::time_point until;  // closed at this time
+    Clock::time_point until;  // the connection is closed at this time at the latest
     std::string request;
-    std::string answer;  // empty: the request is not complete
+    std::string answer;  // empty until the request is complete
     std::size_t sent = 0;
   };
 

@@ -8,7 +8,7 @@
 namespace lidar::fleet {
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{100};  // interval of checks of the connection
+constexpr std::chrono::milliseconds kPoll{100};  // interval between checks of the connection
 
 }  // namespace
 
@@ -40,14 +40,14 @@ void Reporter::Open(Clock::time_point now) {
   if (!connection_) Tell(why);
 }
 
-/// Prints a reason unless it repeats the last one.
+/// Prints `why` unless it is the same as the last time.
 void Reporter::Tell(const std::string& why) {
   if (std::exchange(told_, why) == why) return;
   std::fprintf(stderr, "Statistics are not sent to NATS: %s\n", tools::Printable(why).c_str());
 }
 
-/// Returns true if connected. libnats closes a refused connection, so this function opens another
-/// after a pause.
+/// Returns true if there is a connection. libnats closes a connection that the server refuses, so
+/// this function opens a new one after a pause.
 bool Reporter::Connected(Clock::time_point now) {
   const auto current = [this] {
     return connection_ ? connection_->state() : nats::ConnectionState();

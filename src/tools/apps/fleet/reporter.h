@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Publishes reports of robots on NATS, with a thread and a connection of its own.
+// Publishes reports about robots on NATS. Has a thread and a connection of its own.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -17,16 +17,17 @@ namespace lidar::fleet {
 
 class Reporter {
  public:
-  /// Pairs of subject and text.
+  /// Pairs of a subject and a text.
   using Reports = std::vector<std::pair<std::string, std::string>>;
 
   explicit Reporter(const nats::ConnectionSettings& settings);
-  /// May wait for a connect that is under way.
+  /// Waits if an attempt to connect is under way.
   ~Reporter();
   Reporter(const Reporter&) = delete;
   Reporter& operator=(const Reporter&) = delete;
 
-  /// Queues reports for the connection, in place of older ones still in the queue. Never waits.
+  /// Queues reports for publication. They replace older reports that are still in the queue. Never
+  /// waits.
   void Publish(Reports reports);
 
  private:
@@ -39,18 +40,18 @@ class Reporter {
 
   const nats::ConnectionSettings settings_;
 
-  // Used by the thread only.
+  // Only the thread uses the following members.
   std::unique_ptr<nats::Connection> connection_;
   Backoff refusals_;
   Clock::time_point open_at_{};
   std::string told_;
 
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards waiting_ and ending_
   std::condition_variable wake_;
   Reports waiting_;
   bool ending_ = false;
 
-  std::thread thread_;  // declared last, as it uses the other members
+  std::thread thread_;  // declared last, because it uses the other members
 };
 
 }  // namespace lidar::fleet

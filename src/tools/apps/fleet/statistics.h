@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reports a program and its robots at intervals: as JSON on NATS, and to Prometheus.
+// Reports the figures of a program and its robots at intervals, to NATS as JSON and to Prometheus.
 #pragma once
 #include <functional>
 #include <optional>
@@ -22,13 +22,14 @@ struct StatisticsSettings {
 /// Only one thread may use it.
 class Statistics {
  public:
-  /// NATS gets nothing if `connection` is missing. Prints the address for Prometheus. Throws
-  /// std::runtime_error if the port is taken.
+  /// If `connection` is missing, nothing is published to NATS. Prints the address for Prometheus.
+  /// Throws std::runtime_error if the port is not free.
   Statistics(const StatisticsSettings& settings,
              const std::optional<nats::ConnectionSettings>& connection);
 
   using Collect = std::function<void(Exposition*, Reporter::Reports*)>;
-  /// Calls `collect` once an interval. Waits for no server and no client.
+  /// Calls `collect` once per interval, and publishes the result. Does not wait for a server or a
+  /// client.
   void Poll(const Collect& collect);
 
  private:

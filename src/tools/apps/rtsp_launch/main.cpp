@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An RTSP server of one stream, which all viewers share.
+// An RTSP server with a single stream, which all viewers share.
 #include <glib-unix.h>
 #include <gst/gst.h>
 #include <gst/rtsp-server/rtsp-server.h>
@@ -35,7 +35,8 @@ struct UnrefLoop {
 template <class Type>
 using ObjectPtr = std::unique_ptr<Type, Unref>;
 
-/// Joins the words of a command line. Escapes blanks within a word, which then stays one word.
+/// Joins the words of a command line. Escapes the blanks within a word, so that the parser does not
+/// split the word.
 std::string Join(const std::vector<std::string>& words) {
   std::string text = "(";
   for (const std::string& word : words) {
@@ -50,7 +51,8 @@ std::string Join(const std::vector<std::string>& words) {
   return text + " )";
 }
 
-/// Makes a wrong pipeline fail now instead of with the first viewer.
+/// Makes the pipeline once, so that an error in it appears now and not when the first viewer
+/// connects.
 void Check(const std::string& pipeline) {
   GError* error = nullptr;
   GstElement* bin = gst_parse_launch(pipeline.c_str(), &error);
@@ -65,8 +67,8 @@ void Check(const std::string& pipeline) {
     throw std::runtime_error(why.empty() ? "the pipeline has no element with name=pay0" : why);
 }
 
-/// Returns a factory whose viewers share one medium. By default a query in a viewer's URL starts
-/// another pipeline.
+/// Returns a factory that makes a single medium, which all viewers share. Without this gen_key(), a
+/// viewer whose URL has a query would start another pipeline.
 GstRTSPMediaFactory* MakeFactory(const std::string& pipeline) {
   GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
   GST_RTSP_MEDIA_FACTORY_GET_CLASS(factory)->gen_key =
@@ -95,7 +97,7 @@ void Serve(const Options& options) {
   if (gst_rtsp_server_attach(server.get(), nullptr) == 0)
     throw std::runtime_error("cannot listen on " + options.address + ":" +
                              std::to_string(options.port));
-  // Removes viewers that left without TEARDOWN.
+  // Removes the sessions of viewers that left without TEARDOWN.
   g_timeout_add_seconds(
       kCleanupSeconds,
       [](gpointer data) -> gboolean {
@@ -149,7 +151,7 @@ int main(int argc, char** argv) {
     const Options options = ReadOptions(argc, argv);
     gst_init(nullptr, nullptr);
     Serve(options);
-    gst_deinit();  // tracers report leaks
+    gst_deinit();  // the leaks tracer reports here
     return 0;
   });
 }

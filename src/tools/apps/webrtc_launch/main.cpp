@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// gst-launch for pipelines with two webrtcbins that call each other: does their signalling.
+// gst-launch for a pipeline with two webrtcbins that call each other. Does the signalling between
+// them.
 #include <gst/gst.h>
 
 #include <CLI/CLI.hpp>
@@ -23,11 +24,11 @@ enum ExitCode { kGood = 0, kFailed = 1, kUsage = 2 };
 constexpr double kMostToConnect_s = 60;
 
 struct Options {
-  std::string aux;  // auxiliary element of both ends, in gst-launch syntax
+  std::string aux;  // auxiliary element for both ends, in gst-launch syntax
   std::string stats;
   std::string address = "127.0.0.1";
-  guint port = 0;   // of the callee; 0: any
-  guint relay = 0;  // port that the caller gets instead; 0: no relay
+  guint port = 0;   // UDP port of the callee; 0: any
+  guint relay = 0;  // port of a relay, to which the caller sends instead of `port`; 0: no relay
   double duration_s = 0;
   double interval_s = 1;
   std::vector<std::string> pipeline;
@@ -40,7 +41,8 @@ struct Call {
   ElementPtr callee;
 };
 
-/// A step of the signalling, run after a webrtcbin's answer.
+/// A step of the signalling. It runs when a webrtcbin has replied to the request of the step
+/// before.
 using Step = void (*)(Call*, const GstStructure* reply);
 
 struct Pending {
@@ -48,7 +50,7 @@ struct Pending {
   Step step;
 };
 
-/// Returns a promise whose reply runs `step`.
+/// Returns a promise that calls `step` with the reply.
 GstPromise* Then(Call* call, Step step) {
   return gst_promise_new_with_change_func(
       [](GstPromise* promise, gpointer data) {
@@ -66,13 +68,14 @@ void Fail(Call* call, const char* what) {
   GST_ELEMENT_ERROR(call->pipeline.get(), RESOURCE, FAILED, ("%s", what), (nullptr));
 }
 
-/// Returns the description called `name` in a reply; null if there is none.
+/// Returns the session description called `name` in a reply, or null if there is none.
 gpointer DescriptionIn(const GstStructure* reply, const char* name) {
   const GValue* value = reply != nullptr ? gst_structure_get_value(reply, name) : nullptr;
   return value != nullptr && G_VALUE_HOLDS_BOXED(value) ? g_value_get_boxed(value) : nullptr;
 }
 
-/// Gives a description of `from` to both ends. The webrtcbins run their tasks in order.
+/// Sets the description that `from` made as the local one of `from` and the remote one of `to`.
+/// Does not wait between tasks, because a webrtcbin runs its tasks in order.
 void Exchange(GstElement* from, GstElement* to, gpointer description) {
   g_signal_emit_by_name(from, "set-local-description", description, nullptr);
   g_signal_emit_by_name(to, "set-remote-description", description, nullptr);
@@ -95,7 +98,8 @@ void OnNegotiationNeeded(GstElement* caller, Call* call) {
   g_signal_emit_by_name(caller, "create-offer", nullptr, Then(call, OnOffer));
 }
 
-/// Gives the caller the callee's address, or that of the relay.
+/// Gives the callee's address to the caller. If there is a relay, gives the relay's port in place
+/// of the callee's port.
 void OnCandidateOfCallee(GstElement*, guint line, gchar* text, Call* call) {
   std::string candidate = text;
   if (call->options.relay != 0) {
@@ -108,14 +112,14 @@ void OnCandidateOfCallee(GstElement*, guint line, gchar* text, Call* call) {
   g_signal_emit_by_name(call->caller.get(), "add-ice-candidate", line, candidate.c_str());
 }
 
-/// Gives the callee the caller's address. Behind a relay the callee uses the address of the packets
-/// that arrive.
+/// Gives the caller's address to the callee. Does nothing if there is a relay, because the callee
+/// then uses the address from which packets arrive.
 void OnCandidateOfCaller(GstElement*, guint line, gchar* text, Call* call) {
   if (call->options.relay == 0)
     g_signal_emit_by_name(call->callee.get(), "add-ice-candidate", line, text);
 }
 
-/// Handler of the signal that requests the sender's auxiliary element.
+/// Makes the auxiliary element of a sender. This function handles the signal request-aux-sender.
 GstElement* OnAuxSender(GstElement* webrtc, GObject*, Call* call) {
   GError* error = nullptr;
   GstElement* aux = gst_parse_launch(call->options.aux.c_str(), &error);
@@ -127,8 +131,8 @@ GstElement* OnAuxSender(GstElement* webrtc, GObject*, Call* call) {
   return aux;
 }
 
-/// Restricts ICE to this address, and the callee to this port: other candidates would bypass the
-/// relay.
+/// Restricts ICE to `address`, and to `port` unless it is 0, because other candidates would bypass
+/// the relay.
 void BindIce(GstElement* webrtc, const std::string& address, guint port) {
   GObject* ice = nullptr;
   g_object_get(webrtc, "ice-agent", &ice, nullptr);
@@ -166,7 +170,7 @@ void Connect(Call* call) {
     g_signal_connect(end, "request-aux-sender", G_CALLBACK(OnAuxSender), call);
 }
 
-/// Prints a line of statistics for each element that the options name.
+/// Prints one line of statistics for each element that the options name.
 void PrintStats(const Call& call, gint64 start) {
   std::array<char, 32> time{};
   const double elapsed_s = static_cast<double>(g_get_monotonic_time() - start) / 1e6;
@@ -174,7 +178,7 @@ void PrintStats(const Call& call, gint64 start) {
   lidar::tools::PrintStats(call.pipeline.get(), call.options.stats, time.data());
 }
 
-/// Returns true if the pipeline continues.
+/// Handles a message of the pipeline. Returns true if the pipeline continues.
 bool Handle(GstMessage* message, int* result) {
   if (message == nullptr) return true;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) return false;
@@ -183,8 +187,8 @@ bool Handle(GstMessage* message, int* result) {
   return false;
 }
 
-/// Reads the state as text: its enumeration is in a header of gst-plugins-bad, which the build does
-/// not need.
+/// Reads the connection state as text, because its enumeration is in a header of gst-plugins-bad,
+/// which the build does not need.
 bool IsConnected(GstElement* webrtc) {
   GValue state = G_VALUE_INIT;
   g_object_get_property(G_OBJECT(webrtc), "connection-state", &state);
@@ -193,7 +197,8 @@ bool IsConnected(GstElement* webrtc) {
   return g_strcmp0(name.get(), "connected") == 0;
 }
 
-/// Runs until EOS, an error, a signal, or the duration is over; prints statistics meanwhile.
+/// Runs the pipeline until EOS, an error or a signal, or until the duration is over. Prints
+/// statistics at intervals.
 int Play(const Call& call) {
   bool run = true;
   lidar::tools::StopOnSignals(&run);

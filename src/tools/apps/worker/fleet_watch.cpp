@@ -21,7 +21,8 @@ using std::chrono::steady_clock;
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kRenewInterval{200};
 constexpr milliseconds kListInterval{1'000};
-constexpr int kListPause = 5;  // least pause between lists, in units of a list's duration
+// The least pause after a list, as a multiple of the time that the list took.
+constexpr int kListPause = 5;
 constexpr std::int64_t kHeartbeatNs = 500'000'000;
 constexpr int kMaxValueSize = 4'096;
 constexpr const char* kSeparator = ".lidar.";
@@ -44,7 +45,7 @@ bool IsWanted(const FleetSettings& settings, const std::string& name) {
 }
 
 std::set<std::string> WithinBounds(const std::set<std::string>& all) {
-  std::map<std::string, std::size_t> sensors;  // of each robot
+  std::map<std::string, std::size_t> sensors;  // number of sensors of each robot
   std::set<std::string> kept;
   for (const std::string& name : all) {
     const std::string robot = name.substr(0, name.find('.'));
@@ -107,8 +108,8 @@ natsStatus FleetWatch::MakeBucket() {
   return s;
 }
 
-/// Subscribes to the bucket's entries. A consumer ends with its server, so a reconnect needs
-/// another.
+/// Subscribes to the entries of the bucket. A consumer ends with its server, so each reconnect
+/// needs a new subscription.
 natsStatus FleetWatch::Subscribe() {
   entries_.reset();
   last_number_ = 0;
@@ -151,7 +152,8 @@ void FleetWatch::Step() {
   }
   if (now >= list_at_) {
     ListRobots();
-    // The destructor waits for a list that is under way, so the pause grows with a list's duration.
+    // The destructor has to wait if a list is under way. This is rare, because the pause between
+    // lists grows with the time that a list takes.
     const auto took = steady_clock::now() - now;
     list_at_ = now + std::max<steady_clock::duration>(kListInterval, kListPause * took);
   }

@@ -43,13 +43,13 @@ bool IsPose(const std::array<double, 7>& p) {
          norm > 0.9 && norm < 1.1;
 }
 
-/// NaN is out of bounds.
+/// Returns true if the velocity is plausible. NaN is not plausible.
 bool IsVelocity(const std::array<double, 6>& v) {
   return std::all_of(v.begin(), v.begin() + 3, [](double s) { return std::abs(s) <= kMaxSpeed; }) &&
          std::all_of(v.begin() + 3, v.end(), [](double s) { return std::abs(s) <= kMaxTurnRate; });
 }
 
-/// An implausible velocity counts as unknown.
+/// Reads the velocity. Returns nothing if it is missing or implausible.
 std::optional<std::array<double, 6>> ReadVelocity(const json& object) {
   std::array<double, 6> velocity{};
   const bool good = ReadNumbers(object, "velocity", &velocity) && IsVelocity(velocity);
@@ -93,7 +93,7 @@ std::optional<std::array<double, 6>> VelocityBetween(const Progress& before,
   const Quaternion begin = RotationOf(before);
   const Quaternion turn = Product(Inverse(begin), RotationOf(after));
   const double sine = std::hypot(turn[0], turn[1], turn[2]);
-  // Takes the shorter turn, because each rotation has two quaternions.
+  // Each rotation has two quaternions. Takes the one with the smaller angle.
   const double angle = 2 * std::atan2(std::copysign(sine, turn[3]), std::abs(turn[3]));
   // Expresses the velocity in the orientation halfway between the scans, so that a bend does not
   // look like a drift.

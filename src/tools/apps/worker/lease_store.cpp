@@ -24,7 +24,7 @@ LeaseStore::LeaseStore(natsConnection* connection, const std::string& bucket)
   natsStatus s = NATS_NO_MEMORY;
   if (subjects_) s = natsConnection_SubscribeSync(&raw, connection_, subjects_->All().c_str());
   answers_ = nats::SubscriptionPtr(raw, {connection_});
-  // The state of the connection says why it is closed.
+  // If the connection is closed, the state of the connection says why.
   if (s != NATS_OK && s != NATS_CONNECTION_CLOSED)
     throw std::runtime_error("NATS cannot be used: " + nats::ErrorText(s));
 }
@@ -53,7 +53,7 @@ std::optional<LeaseStore::Answer> LeaseStore::NextAnswer(std::chrono::millisecon
   const auto ticket = nats::ToNumber(subjects_->WordOf(raw));
   auto answer =
       ParseAnswer({natsMsg_GetData(raw), static_cast<std::size_t>(natsMsg_GetDataLength(raw))});
-  // Other answers are refusals, too: the server has no JetStream or no bucket.
+  // Any other answer is a refusal, too. The server then has no JetStream, or the bucket is missing.
   if (!answer) answer.emplace();
   answer->ticket = ticket.value_or(0);
   return answer;

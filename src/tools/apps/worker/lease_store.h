@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes to a bucket of NATS's key-value store without waiting: answers come later, and a silent
+// Writes to a bucket of NATS's key-value store. Does not wait for the answers, so that a silent
 // server delays no thread.
 #pragma once
 #include <chrono>
@@ -12,24 +12,27 @@
 
 namespace lidar::worker {
 
-/// For one thread.
+/// Writes entries, and receives the answers later. Only one thread may use it.
 class LeaseStore {
  public:
   struct Answer {
     std::uint64_t ticket = 0;
-    std::optional<std::uint64_t> revision;  // of the stored entry; empty: refused
-    std::optional<std::uint64_t> newest;    // revision that caused a refusal, if known
+    // The revision of the stored entry. Empty if the write was refused.
+    std::optional<std::uint64_t> revision;
+    // The newest revision of the entry, which caused the refusal, if known.
+    std::optional<std::uint64_t> newest;
   };
 
-  /// The bucket may be created later. Throws std::runtime_error.
+  /// The bucket need not exist yet. Throws std::runtime_error if NATS cannot be used.
   LeaseStore(natsConnection* connection, const std::string& bucket);
 
-  /// Replaces the entry of `key` whose revision is `replaces`; 0: there must be no entry.
+  /// Replaces the entry of `key` if the newest revision of this entry is `replaces`. If `replaces`
+  /// is 0, writes the entry only if there is none yet.
   void Write(std::uint64_t ticket, const std::string& key, std::uint64_t replaces,
              const std::string& text);
   std::optional<Answer> NextAnswer(std::chrono::milliseconds timeout);
 
-  /// The subject of a key, or of all keys: ">".
+  /// Returns the subject of `key`. The key ">" stands for all keys.
   static std::string Subject(const std::string& bucket, const std::string& key);
 
  private:
@@ -39,7 +42,7 @@ class LeaseStore {
   lidar::nats::SubscriptionPtr answers_;
 };
 
-/// Returns the content of JetStream's answer, without the ticket; nothing for other messages.
+/// Parses an answer of JetStream, except for the ticket. Returns nothing for other messages.
 std::optional<LeaseStore::Answer> ParseAnswer(const std::string& text);
 
 }  // namespace lidar::worker

@@ -9,16 +9,18 @@
 namespace lidar::worker {
 namespace {
 
-constexpr int kRenewals = 4;  // writes in the time of a lease
-/// Other workers wait longer than the lease by 1 / kMargin of it. Steady clocks differ by far less.
+constexpr int kRenewals = 4;  // number of writes during one lease
+/// Other workers wait longer than the lease, by 1 / kMargin of it. Steady clocks differ by far less
+/// than this.
 constexpr int kMargin = 20;
-/// A full worker waits for this share of a lease before it takes a free robot. Workers with fewer
-/// robots wait less, so that they take the robot first.
+/// A worker whose places are all in use waits for this share of a lease before it takes a free
+/// robot. A worker with fewer robots waits less, so that it takes the robot first.
 constexpr double kHesitation = 0.3;
-/// A sensor without progress for this time gives its place to a waiting one.
+/// A sensor that makes no progress for this time gives up its place if another sensor waits for
+/// one.
 constexpr Duration kIdleSensor = std::chrono::seconds(30);
 
-/// The robot of an entry, which is a robot or one of its sensors.
+/// Returns the robot of an entry. The name of an entry is "robot" or "robot.sensor".
 std::string NameOf(const std::string& entry) { return entry.substr(0, entry.find('.')); }
 
 }  // namespace
@@ -33,19 +35,22 @@ void LeaseTable::SetRobots(const std::set<std::string>& robots, Time now) {
   for (auto at = robots_.begin(); at != robots_.end();) {
     Robot& robot = at->second;
     robot.wanted = robots.count(at->first) > 0;
-    // A robot with an entry is kept, because the bucket sends each entry only once.
+    // A robot with an entry is kept even if it is not wanted, because the bucket sends each entry
+    // only once.
     const bool is_known = robot.revision > 0 || robot.doubted_since || robot.held || robot.pending;
     at = robot.wanted || is_known ? std::next(at) : robots_.erase(at);
   }
   for (const std::string& name : robots) {
     const auto [at, is_new] = robots_.try_emplace(name);
     at->second.wanted = true;
-    // The bucket first gets time to send the robot's entry, which may be another worker's lease.
+    // Waits before the first try, because the bucket may still send the robot's entry, which may be
+    // another worker's lease.
     if (is_new) at->second.not_before = now + settings_.lease / kRenewals;
   }
 }
 
-/// Sets when a worker other than the owner may take a robot whose entry was just seen.
+/// Sets the time from which workers other than the owner may take the robot. The robot's entry was
+/// seen just now.
 void LeaseTable::NoteFree(Robot* robot, bool damaged, Time now) const {
   const LeaseRecord& record = robot->record;
   const bool nobody = !damaged && (record.worker.empty() || record.worker == settings_.worker);
@@ -62,7 +67,8 @@ void LeaseTable::OnEntry(const std::string& name, std::uint64_t revision,
   robot.revision = revision;
   const auto progress = robot.record.progress;
   robot.record = record.value_or(LeaseRecord());
-  // The entry may be a write of this worker whose answer is missing. Then our progress is newer.
+  // The entry may be this worker's own write whose answer has not arrived. Then the progress in
+  // `robot` is newer than the progress in the entry.
   const bool ours = record && record->worker == settings_.worker;
   if (ours && robot.held) robot.record.progress = progress;
   if (!ours) robot.held = false;
@@ -74,7 +80,7 @@ void LeaseTable::OnStored(std::uint64_t ticket, std::uint64_t revision, Time now
   if (robot == nullptr) return;
   const Time sent_at = robot->pending->sent_at;
   robot->pending.reset();
-  if (revision < robot->revision && !robot->doubted_since) return;  // it was replaced already
+  if (revision < robot->revision && !robot->doubted_since) return;  // a newer write has replaced it
   robot->revision = revision;
   robot->doubted_since.reset();
   if (ending_) return;
@@ -90,12 +96,13 @@ void LeaseTable::OnRefused(std::uint64_t ticket, std::optional<std::uint64_t> ne
   Robot* robot = FindPending(ticket);
   if (robot == nullptr) return;
   robot->pending.reset();
-  // Waits for the store's entry of the robot, which may be from an earlier write of this worker.
+  // Waits until the store sends the robot's entry, which may be an earlier write of this worker.
   robot->not_before = robot->renew_at = now + settings_.lease / kRenewals;
   if (!robot->doubted_since) robot->doubted_since = now;
   if (newest != 0U) return;
   robot->revision = 0;
-  // If the bucket is new, the owner's last write was to the old one, and its lease may still hold.
+  // If the bucket is new, the owner wrote its lease to the old bucket, and this lease may still be
+  // valid.
   const Duration lease = std::max(robot->record.lease, settings_.lease);
   robot->free_at = IsHeld(*robot, now) ? now : now + lease + lease / kMargin;
 }
@@ -112,12 +119,13 @@ void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
   const auto found = robots_.find(name);
   if (found == robots_.end()) return;
   found->second.held = false;
-  found->second.pending.reset();  // its answer must not return the robot to us
+  found->second.pending.reset();  // an answer must not renew the lease any more
   found->second.not_before = now + pause;
 }
 
 void LeaseTable::LeaveToOthers(const std::string& name, Duration least, Time now) {
-  // Other workers wait one lease after our last write, so this worker waits two.
+  // Other workers wait for one lease after the last write of this worker. This worker waits for
+  // two, so that they come first.
   Drop(name, std::max(least, 2 * settings_.lease), now);
 }
 
@@ -142,8 +150,9 @@ LeaseTable::Robots::iterator LeaseTable::Choose(const std::map<std::string, std:
       FromSeconds(kHesitation * Seconds(settings_.lease) * static_cast<double>(held) /
                   static_cast<double>(settings_.most));
   auto best = robots_.end();
-  // Prefers robots with the fewest places, then with the fewest tries. Workers order equal robots
-  // differently, so that two workers seldom choose the same one.
+  // Prefers the robots with the fewest places, and among these the robots with the fewest tries.
+  // Each worker orders the remaining robots differently, so that two workers seldom choose the same
+  // one.
   std::tuple<std::size_t, std::uint64_t, std::size_t> best_rank;
   for (auto at = robots_.begin(); at != robots_.end(); ++at) {
     const Robot& robot = at->second;
@@ -175,8 +184,8 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
       worst = at;
   }
   if (worst == robots_.end()) return false;
-  // A robot gives up a place only if it keeps at least as many as `waiting` then has. Otherwise the
-  // two would exchange the place for ever.
+  // A robot gives up a place only if it then still has at least as many places as the robot
+  // `waiting`. Otherwise the two robots would exchange the place for ever.
   const bool unfair = places_of(worst->first) >= places_of(waiting) + 2;
   const auto idle = std::find_if(robots_.begin(), robots_.end(), [&](const auto& item) {
     return item.second.held && now - item.second.moved_at > kIdleSensor;
@@ -189,7 +198,7 @@ bool LeaseTable::MakeRoom(const std::map<std::string, std::size_t>& places,
 LeaseTable::Robots::iterator LeaseTable::Next(Time now) {
   std::size_t held = 0;
   for (auto& [name, robot] : robots_) {
-    if (!robot.held && robot.pending) return robots_.end();  // one at a time
+    if (!robot.held && robot.pending) return robots_.end();  // one new robot at a time
     if (robot.held) ++held;
     if (std::exchange(robot.moved, false)) robot.moved_at = now;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-worker: follows robots by odometry. Other workers take over when it ends.
+// lidar-worker: computes the poses of robots by odometry. When it ends, other workers continue.
 #include <gst/gst.h>
 #include <unistd.h>
 
@@ -21,8 +21,9 @@
 namespace lidar::worker {
 namespace {
 
-constexpr std::chrono::milliseconds kEnd{900};  // longest end, even if servers hang
-// Pauses between attempts to connect while servers do not answer.
+// The longest time that the end may take, even if servers hang.
+constexpr std::chrono::milliseconds kEnd{900};
+// Pauses between attempts to connect while no server answers.
 constexpr std::chrono::seconds kFirstPause{1};
 constexpr std::chrono::seconds kLongestPause{16};
 constexpr std::chrono::milliseconds kPoll{50};
@@ -36,7 +37,7 @@ std::string NameOfThisProcess() {
   return std::string(host) + "-" + std::to_string(getpid()) + "-" + std::to_string(g_random_int());
 }
 
-/// What the user typed.
+/// The options of the command line.
 struct Options {
   WorkerSettings worker;
   fleet::StatisticsSettings statistics;

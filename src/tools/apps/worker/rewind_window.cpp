@@ -5,18 +5,18 @@ namespace lidar::worker {
 namespace {
 
 constexpr std::size_t kMostMessages = 65'536;
-/// Longest pause of a server. If stored times differ by more while capture times hardly differ, the
-/// robot's clock has stopped.
+/// The longest pause of a server. If the stored times of two messages differ by more than this
+/// although their capture times hardly differ, the robot's clock has stopped.
 constexpr std::uint64_t kLongestPauseNs = 60'000'000'000;
 
-/// `to` - `from`; 0 if a clock went back.
+/// Returns `to` - `from`, or 0 if the clock was set back between them.
 std::uint64_t Between(std::uint64_t from, std::uint64_t to) { return to < from ? 0 : to - from; }
 
 }  // namespace
 
-/// Returns true if the message is more than `rewind` older than the newest by both of its times,
-/// because stored times jump after a pause of the server, and capture times if the robot's clock is
-/// set.
+/// Returns true if the message is more than `rewind` older than the newest message. Both the stored
+/// time and the capture time must say so, if both are known: the stored time jumps after a pause of
+/// the server, and the capture time jumps if the robot's clock is set.
 bool RewindWindow::IsOld(const Message& message) const {
   const Message& now = messages_.back();
   const std::uint64_t age_ns = Between(message.stored_ns, now.stored_ns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the message of a stream from which a decoder must start.
+// Finds the message of a stream at which a decoder must start.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -9,20 +9,21 @@
 
 namespace lidar::worker {
 
-/// Recent messages. Deterministic; for one thread.
+/// The recent messages of a stream. Deterministic. Only one thread may use it.
 class RewindWindow {
  public:
   struct Message {
     std::uint64_t number = 0;
-    std::uint64_t stored_ns = 0;  // by JetStream
+    std::uint64_t stored_ns = 0;  // time at which JetStream stored the message
     std::optional<std::uint64_t> captured_ns;
   };
 
   explicit RewindWindow(Duration rewind) : rewind_ns_(static_cast<std::uint64_t>(rewind.count())) {}
 
-  /// Adds a message. A lower number restarts the window.
+  /// Adds a message. If its number is not higher than that of the last message, removes all earlier
+  /// messages first.
   void Add(const Message& message);
-  /// Number of the oldest message; the window must not be empty.
+  /// Returns the number of the oldest message. The window must not be empty.
   std::uint64_t first() const { return messages_.front().number; }
 
  private:

@@ -53,7 +53,8 @@ void SetOdometry(GstElement* odometry, const PipelineSettings& settings,
     g_object_set(odometry, "initial-velocity", NumbersText(*begin->velocity).c_str(), nullptr);
 }
 
-/// Drops the velocity, which belongs to a scan of the record's stream, if `stream` is another.
+/// Returns `begin` for a pipeline that reads `stream`. If `begin` belongs to another stream,
+/// removes its velocity, which is valid only at a scan of that stream.
 std::optional<Progress> BeginIn(std::uint64_t stream, std::optional<Progress> begin) {
   if (begin && begin->stream != stream) begin->velocity.reset();
   return begin;
@@ -86,7 +87,7 @@ RobotPipeline::RobotPipeline(const PipelineSettings& settings, const std::string
   if (begin_scan_ > 0) g_object_set(source, "start-sequence", begin->from, nullptr);
   g_object_set(poses, "subject", (begin_of_subject + ".odometry." + sensor).c_str(), nullptr);
   SetOdometry(odometry, settings, begin_);
-  // A single thread does all the work, so one message is under way at a time.
+  // A single thread does all the work, so there is only one message in the pipeline at a time.
   for (GstElement* sink : {clouds, poses})
     g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
   if (!gst_element_link_many(source, decoder, odometry, clouds, nullptr) ||
@@ -134,12 +135,13 @@ GstPadProbeReturn RobotPipeline::OnMessage(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Passes on the clouds that odometry needs, and separates scans as odometry does.
+/// Passes on the clouds that odometry needs. Divides the clouds into scans in the same way as
+/// lidarodometry.
 GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
-  if (number_ < begin_scan_) return GST_PAD_PROBE_DROP;  // only the decoder needs it
+  if (number_ < begin_scan_) return GST_PAD_PROBE_DROP;  // only the decoder needs this message
   GstLidarSlice slice{};
   if (!gst_lidar_buffer_get_slice(buffer, &slice) || slice.slice_count == 0) slice = {0, 0, 1, 0};
-  // A map that begins with half a scan would fit the next scan badly.
+  // A map that begins with part of a scan would fit the next scan badly.
   if (!begun_ && number_ != begin_scan_ && slice.slice_index > 0) return GST_PAD_PROBE_DROP;
   if (!std::exchange(begun_, true) && begin_scan_ > 0 && number_ > begin_scan_)
     NoteLateBegin(gst_lidar_buffer_get_capture_time(buffer));
@@ -152,15 +154,15 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Called if the scan of the record's pose is missing. Odometry then lacks the motion from that
-/// scan to the first one that it gets.
+/// Notes that the scan of the record's pose is missing. Odometry then lacks the motion from that
+/// scan to the first scan that it gets.
 void RobotPipeline::NoteLateBegin(GstClockTime captured) {
   begun_late_ = true;
   const GstClockTime since = begin_->time;
   late_ns_ = GST_CLOCK_TIME_IS_VALID(captured) ? captured - std::min(since, captured) : 0;
 }
 
-/// Drops poses after the end of the lease, and does not record them as progress.
+/// Records the pose as progress. If the lease has ended, drops the pose instead.
 GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   std::optional<Scan>& scan = closed_ ? closed_ : open_;
   const gst::BufferMap map(buffer, GST_MAP_READ);
@@ -178,12 +180,13 @@ GstPadProbeReturn RobotPipeline::OnPose(GstBuffer* buffer) {
   progress.scan = scan->first;
   progress.from = scan->from;
   scan.reset();
-  if (!ReadsBack(progress)) return GST_PAD_PROBE_OK;  // no other worker could continue from it
+  // No other worker could continue from this pose.
+  if (!ReadsBack(progress)) return GST_PAD_PROBE_OK;
   const std::lock_guard lock(mutex_);
   if (progress_)
     progress.velocity = VelocityBetween(*progress_, progress);
   else if (begin_ && !begun_late_)
-    progress.velocity = begin_->velocity;  // this is the record's pose
+    progress.velocity = begin_->velocity;  // this scan is the one of the record
   progress_ = progress;
   return GST_PAD_PROBE_OK;
 }

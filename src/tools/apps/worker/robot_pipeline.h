@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The work for one robot: decodes its slices from JetStream, follows them with odometry, and sends
-// poses to NATS.
+// The pipeline that follows one robot. It decodes the robot's slices from JetStream, computes the
+// poses by odometry, and sends the poses to NATS.
 #pragma once
 #include <gst/gst.h>
 
@@ -28,52 +28,55 @@ struct PipelineSettings {
   std::string prefix = "fleet";
   std::string stream = "fleet";
   std::string decoder = "lidardec";
-  /// Properties of lidarodometry: name and value.
+  /// Properties of lidarodometry, as pairs of name and value.
   std::vector<std::pair<std::string, std::string>> odometry;
-  /// Part of the stream that a decoder must read before a slice: the robot's key-interval.
+  /// The duration of the part of the stream that a decoder must read before a slice. This is the
+  /// robot's key-interval.
   Duration rewind = std::chrono::milliseconds(1'200);
 };
 
 class RobotPipeline {
  public:
-  /// `robot` is "robot.sensor", `stream` the creation time of its JetStream stream. A `begin` of
-  /// another stream gives only its pose. Throws std::runtime_error if an element is missing or
-  /// refuses a setting.
+  /// `robot` is "robot.sensor", and `stream` is the creation time of its JetStream stream. If
+  /// `begin` belongs to another stream, only its pose is used. Throws std::runtime_error if an
+  /// element is missing or refuses a setting.
   RobotPipeline(const PipelineSettings& settings, const std::string& robot, std::uint64_t stream,
                 const std::optional<Progress>& begin);
-  /// Waits for a start that is under way, which may take seconds if the network is gone.
+  /// Waits until Play() has completed, which may take seconds if the network is gone.
   ~RobotPipeline();
   RobotPipeline(const RobotPipeline&) = delete;
   RobotPipeline& operator=(const RobotPipeline&) = delete;
 
-  /// Starts in a thread of its own, as elements wait for servers.
+  /// Starts the pipeline in a thread of its own, because elements wait for servers.
   void Play();
-  /// Poses go out only before this time, even if the thread that ends the pipeline hangs.
+  /// Sets the end of the lease. No pose is sent after `end`, even if the thread that ends the
+  /// pipeline hangs.
   void SetEnd(Time end) { end_ = end.time_since_epoch().count(); }
   std::uint64_t stream() const { return stream_; }
-  /// Returns the progress from which it began.
+  /// Returns the progress from which the pipeline began.
   const std::optional<Progress>& begin() const { return begin_; }
-  /// Returns true if the pipeline begins after `last`, the stream's newest message at `asked_at`.
-  /// Then the record is wrong.
+  /// Returns true if the pipeline waits for a message after `last`, which was the newest message of
+  /// the stream at the time `asked_at`. Then the record is wrong.
   bool IsAheadOf(std::uint64_t last, Time asked_at) const {
     return begin_scan_ > last && asked_at > made_at_;
   }
-  /// Returns true once it has dropped a pose, because the time of SetEnd() had passed.
+  /// Returns true if the pipeline has dropped a pose because the lease had ended (see SetEnd()).
   bool has_dropped() const { return dropped_; }
-  /// Returns nothing before the first pose.
+  /// Returns the progress up to the newest pose, or nothing before the first pose.
   std::optional<Progress> progress() const;
-  /// Adds the statistics of its elements, as fleet::AddStats() does. Does not wait.
+  /// Adds the statistics of the elements, as fleet::AddStats() does. Does not wait.
   void AddStats(const std::string& labels, fleet::Exposition* exposition,
                 nlohmann::json* report) const;
-  /// Returns the error that has ended the pipeline, or an empty text. Prints warnings.
+  /// Prints the pipeline's warnings. Returns the error that has ended the pipeline, or an empty
+  /// text.
   std::string Poll();
 
  private:
-  /// A scan that lidarodometry has not aligned yet.
+  /// A scan whose pose lidarodometry has not sent yet.
   struct Scan {
     guint id = 0;
     guint next_index = 0;
-    std::uint64_t first = 0;  // numbers in the stream, as in Progress
+    std::uint64_t first = 0;  // message numbers in the stream, as in Progress
     std::uint64_t from = 0;
   };
 
@@ -87,21 +90,22 @@ class RobotPipeline {
   const Time made_at_;
   const std::uint64_t stream_;
   const std::optional<Progress> begin_;
-  const std::uint64_t begin_scan_;  // 0: begin with new messages
+  // The number of the first message of the scan of `begin_`. If it is 0, begins with new messages.
+  const std::uint64_t begin_scan_;
   const std::string decoder_;
   gst::ElementPtr pipeline_;
   std::future<void> start_;
   std::atomic<std::int64_t> end_{0};
   std::atomic<bool> dropped_{false};
-  std::atomic<std::uint64_t> late_ns_{0};  // from the record's pose to the first scan [ns]
+  std::atomic<std::uint64_t> late_ns_{0};  // time from the record's pose to the first scan [ns]
 
-  // Only the streaming thread uses what follows.
-  std::uint64_t number_ = 0;  // of the message in the pipeline
-  RewindWindow window_;       // its last message is number_
+  // Only the streaming thread uses the following members.
+  std::uint64_t number_ = 0;  // number of the message in the pipeline
+  RewindWindow window_;       // its newest message is number_
   bool begun_ = false;
-  bool begun_late_ = false;  // began after the scan of the record's pose
+  bool begun_late_ = false;  // the first scan came after the scan of the record's pose
   std::optional<Scan> open_;
-  std::optional<Scan> closed_;  // waits for its pose
+  std::optional<Scan> closed_;  // complete, but its pose has not arrived yet
 
   mutable std::mutex mutex_;  // guards progress_
   std::optional<Progress> progress_;

@@ -19,10 +19,10 @@ using tools::Now;
 
 constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
-// The sum of both stays below a second.
+// The sum of these two must stay below a second, the longest time of HandOver().
 constexpr milliseconds kStopTimeout{400};
 constexpr milliseconds kAnswerTimeout{300};
-constexpr std::size_t kShownLetters = 300;  // of a damaged record
+constexpr std::size_t kShownLetters = 300;  // most letters of a damaged record in a message
 
 std::unique_ptr<nats::Connection> Connect(const WorkerSettings& settings) {
   nats::ConnectionSettings connection = settings.pipeline.connection;
@@ -50,7 +50,7 @@ Worker::Worker(const WorkerSettings& settings)
       store_(connection_->get(), settings.fleet.bucket),
       table_(settings.lease),
       watch_(connection_.get(), settings.fleet) {
-  // Loads the plugins, and fails at once if one is missing.
+  // Makes a pipeline only to load the plugins, and to fail at once if a plugin is missing.
   const RobotPipeline try_it(settings_.pipeline, "robot.sensor", 0, std::nullopt);
 }
 
@@ -63,7 +63,7 @@ void Worker::Step() {
   if (table_.MissesEntries(Now())) watch_.Renew();
   PollPipelines();
   FollowLeases();
-  // Sends only while connected: data that waited would be outdated.
+  // Writes nothing while disconnected, because such writes would be outdated when they are sent.
   if (connection_->state().connected()) Send(table_.Poll(Now()));
 }
 
@@ -87,14 +87,15 @@ void Worker::TakeNews() {
   }
 }
 
-/// Message numbers are void in another stream, even one of the same name.
+/// Drops all robots if the stream was replaced, even by a stream of the same name. Message numbers
+/// are valid only in the stream that assigned them.
 void Worker::NoteStream(std::uint64_t stream) {
   if (std::exchange(stream_, stream) == stream) return;
   for (const auto& [robot, pipeline] : pipelines_) table_.Drop(robot, Duration{0}, Now());
 }
 
-/// A record may name a scan that the stream does not have. Waiting for it would leave the robot
-/// without poses; the next renewal corrects the record.
+/// Gives up pipelines whose record names a scan that the stream does not have. A pipeline that
+/// waited for this scan would send no poses. The next renewal corrects the record.
 void Worker::CheckPlaces(const FleetWatch::News& news) {
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const RobotPipeline& pipeline = *at->second;
@@ -106,7 +107,7 @@ void Worker::CheckPlaces(const FleetWatch::News& news) {
          "its lease record names a message that the stream does not have; only the record's pose "
          "is used");
     Progress pose = pipeline.progress().value_or(*pipeline.begin());
-    pose.stream = 0;  // of no stream
+    pose.stream = 0;  // the numbers are not valid in any stream
     table_.SetProgress(at->first, pose);
     at = GiveUp(at);
   }
@@ -147,7 +148,8 @@ void Worker::FollowLeases() {
   const auto held = table_.HeldAt(Now());
   for (auto at = pipelines_.begin(); at != pipelines_.end();) {
     const auto lease = held.find(at->first);
-    // The pipeline begins again after a late renewal, at the scan whose pose was dropped.
+    // A pipeline that dropped a pose, because its lease was renewed late, ends here. Another one
+    // then begins at the scan of this pose.
     if (lease != held.end() && !at->second->has_dropped()) {
       at->second->SetEnd(lease->second.until);
       ++at;
@@ -160,7 +162,7 @@ void Worker::FollowLeases() {
     const auto last = ending_.find(robot);
     if (last == ending_.end())
       Begin(robot, lease);
-    else if (Now() - last->second.since > settings_.lease.lease)  // others can begin at once
+    else if (Now() - last->second.since > settings_.lease.lease)  // other workers need not wait
       table_.LeaveToOthers(robot, Duration{}, Now());
   }
 }
@@ -177,7 +179,8 @@ void Worker::Begin(const std::string& robot, const LeaseTable::Held& held) {
                  (held.last_worker.empty() ? "" : ", after " + tools::Printable(held.last_worker)));
   ++counters_.taken;
   auto begin = held.progress;
-  if (begin && begin->scan < first_) begin->velocity.reset();  // the stream may have dropped it
+  // The stream may have dropped the scan to which the velocity belongs.
+  if (begin && begin->scan < first_) begin->velocity.reset();
   try {
     auto pipeline = std::make_unique<RobotPipeline>(settings_.pipeline, robot, stream_, begin);
     pipeline->SetEnd(held.until);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs a pipeline for each robot whose lease is ours.
+// Runs a pipeline for each robot that this worker leases.
 #pragma once
 #include <future>
 #include <map>
@@ -23,25 +23,25 @@ struct WorkerSettings {
   PipelineSettings pipeline;
 };
 
-/// For one thread.
+/// Leases robots and computes their poses. Only one thread may use it.
 class Worker {
  public:
-  /// Throws std::runtime_error if settings are wrong or elements missing.
+  /// Throws std::runtime_error if a setting is wrong or an element is missing.
   explicit Worker(const WorkerSettings& settings);
   ~Worker() { connection_->Close(); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Whether the connection was given up, so that only a new Worker can connect: see
-  /// ConnectionState.
+  /// Returns true if the connection was given up (see ConnectionState). Then only a new Worker can
+  /// connect.
   bool unanswered() const { return connection_->state().unanswered; }
-  /// Works for some milliseconds.
+  /// Does the work that is due. This takes some milliseconds.
   void Step();
-  /// Stops all pipelines, and leaves the robots to other workers, in less than a second. A
-  /// pipeline that runs longer publishes nothing; the destructor waits for it.
+  /// Stops all pipelines and frees the robots for other workers, in less than a second. A pipeline
+  /// that takes longer to stop publishes nothing more, and the destructor waits for it.
   void HandOver();
 
-  /// Adds the figures of the worker and of each robot that it has. Does not wait.
+  /// Adds the figures of the worker and those of each robot that it follows. Does not wait.
   void Tell(fleet::Exposition* exposition, fleet::Reporter::Reports* reports) const;
 
  private:
@@ -61,7 +61,7 @@ class Worker {
   void Begin(const std::string& robot, const LeaseTable::Held& held);
   void WaitForEnds();
   void NoteGivenUp(const std::string& robot);
-  /// Ends a pipeline in the background, and prints that the robot is given up.
+  /// Ends a pipeline in the background, and prints that the worker has given up the robot.
   Pipelines::iterator GiveUp(Pipelines::iterator at);
   Pipelines::iterator End(Pipelines::iterator at);
   void Send(const std::vector<LeaseTable::Write>& writes);
@@ -70,16 +70,16 @@ class Worker {
   std::unique_ptr<nats::Connection> connection_;
   LeaseStore store_;
   LeaseTable table_;
-  std::uint64_t stream_ = 0;  // as in Progress
-  std::uint64_t first_ = 0;   // number of its oldest message
+  std::uint64_t stream_ = 0;  // creation time of the JetStream stream, as in Progress
+  std::uint64_t first_ = 0;   // number of the oldest message in the stream
   struct Counters {
     std::uint64_t taken = 0;
     std::uint64_t given_up = 0;
-    std::uint64_t failures = 0;  // of pipelines
+    std::uint64_t failures = 0;  // number of pipelines that failed
   } counters_;
-  std::size_t left_out_ = 0;  // sensors beyond the bounds of FleetWatch
+  std::size_t left_out_ = 0;  // number of sensors beyond the bounds of FleetWatch
   Pipelines pipelines_;
-  /// Pipelines that are stopping, which may take a while; others do not wait for them.
+  /// Pipelines that are stopping. Each has a thread for this, because stopping may take a while.
   std::map<std::string, Ending> ending_;
   FleetWatch watch_;  // declared last, so that its thread ends first
 };
