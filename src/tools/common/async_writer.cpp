@@ -48,7 +48,7 @@ void AsyncWriter::Run() {
     const std::string bytes = std::move(backlog_.front());
     backlog_.pop_front();
     lock.unlock();
-    // The remainder is dropped if the reader has gone.
+    // Drops the remaining bytes if the reader has gone.
     open = open && WriteAll(bytes);
     lock.lock();
     backlog_bytes_ -= bytes.size();

@@ -11,12 +11,13 @@
 
 namespace lidar::tools {
 
-/// Thread-safe. A write that would exceed `capacity` bytes of backlog is dropped whole and counted.
+/// Queues writes for its own thread. A write that would let the queue exceed `capacity` bytes is
+/// dropped as a whole and counted. Thread-safe.
 class AsyncWriter {
  public:
-  /// Does not own `fd`.
+  /// Does not take ownership of `fd`.
   AsyncWriter(int fd, std::size_t capacity);
-  /// Writes the remainder.
+  /// Writes the bytes that are still queued.
   ~AsyncWriter();
   AsyncWriter(const AsyncWriter&) = delete;
   AsyncWriter& operator=(const AsyncWriter&) = delete;

@@ -12,9 +12,10 @@
 
 namespace lidar::tools {
 
-/// Make one when the program begins to end: after `most`, the process exits with a message and code
-/// 0. Time in which the machine does not run the process does not count. The exit itself is not
-/// bounded, because a sanitizer's leak check takes long on a busy machine.
+/// Make an instance when the program begins to end. After `most`, it exits the process with a
+/// message and code 0. Time in which the machine does not run the process does not count. The time
+/// after the destructor is not bounded, because the leak check of a sanitizer takes long on a busy
+/// machine.
 class BoundedEnd {
  public:
   explicit BoundedEnd(std::chrono::milliseconds most) {
@@ -34,7 +35,8 @@ class BoundedEnd {
   BoundedEnd& operator=(const BoundedEnd&) = delete;
 
  private:
-  // The kernel merges all ticks that a process missed into one signal.
+  // The number of timer signals. The kernel merges the signals that a process missed into a single
+  // one, so that time in which the process did not run hardly counts.
   static constexpr int kTicks = 20;
 
   static void SetTimer(std::chrono::microseconds tick) {

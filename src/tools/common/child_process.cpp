@@ -32,13 +32,14 @@ Pipe MakePipe() {
   return {FileDescriptor(fds[0]), FileDescriptor(fds[1])};
 }
 
-/// Runs in the child: only async-signal-safe calls until exec.
+/// Runs in the child process. Until exec, it may only call async-signal-safe functions.
 [[noreturn]] void Exec(char* const* argv, int output, int clouds, int error_log) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  // A Ctrl-C in the terminal is for the parent, which then ends its children in order.
+  // Makes a process group, so that Ctrl-C in the terminal reaches only the parent. The parent then
+  // ends its children in order.
   setpgid(0, 0);
   dup2(output, STDOUT_FILENO);
   if (error_log >= 0) dup2(error_log, STDERR_FILENO);

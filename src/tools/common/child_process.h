@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Starts a program of ours, reads its lines, stops it.
+// Starts another program of this project, reads the lines that it prints, and stops it.
 #pragma once
 #include <sys/types.h>
 
@@ -15,11 +15,12 @@ class ChildProcess {
  public:
   struct Config {
     std::vector<std::string> command;
-    std::string error_log;     // where its standard error goes; empty: to ours
-    bool clouds_pipe = false;  // gives it a second pipe, as descriptor 3
+    std::string error_log;     // file for standard error; empty: that of this process
+    bool clouds_pipe = false;  // the child gets a second pipe, as descriptor 3
   };
 
-  /// Throws std::runtime_error. The child dies with this process.
+  /// Starts the program. Throws std::runtime_error if that fails. If this process ends, the kernel
+  /// terminates the child.
   explicit ChildProcess(const Config& config);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
@@ -28,13 +29,14 @@ class ChildProcess {
   pid_t pid() const { return pid_; }
   int output_fd() const { return output_.get(); }
   int clouds_fd() const { return clouds_.get(); }
-  /// Passes complete lines to `handler`. Returns false at the end of the output.
+  /// Passes the complete lines that are available to `handler`. Returns false at the end of the
+  /// output.
   bool ReadLines(const std::function<void(const std::string&)>& handler);
 
   void Signal(int signal) const;
-  /// Returns true once the child has ended; does not wait.
+  /// Returns true if the child has ended. Does not wait.
   bool Ended();
-  /// Waits. Returns the exit code, or 128 + the signal that ended the child.
+  /// Waits until the child has ended. Returns its exit code, or 128 + the signal that ended it.
   int Wait();
 
  private:
@@ -45,7 +47,7 @@ class ChildProcess {
   int status_ = -1;
 };
 
-/// The folder of the running program.
+/// Returns the folder of the running program.
 std::string OwnFolder();
 
 }  // namespace lidar::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Percentiles of what a program measured.
+// Computes percentiles of measured values.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,15 @@
 
 namespace lidar::tools {
 
-/// Keeps every value: four bytes each.
+/// A set of measured values. Keeps every value, in four bytes each.
 class Distribution {
  public:
   void Add(double value) { values_.push_back(static_cast<float>(value)); }
   void Clear() { values_.clear(); }
   std::size_t count() const { return values_.size(); }
 
-  /// The nearest-rank percentile, `p` in 0..100; 0 if there is no value.
+  /// Returns the percentile `p`, from 0 to 100, by the nearest-rank method. Returns 0 if there are
+  /// no values.
   double Percentile(double p) const {
     if (values_.empty()) return 0;
     std::vector<float> copy = values_;

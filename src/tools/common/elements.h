@@ -17,8 +17,8 @@
 
 namespace lidar::tools {
 
-/// Makes an element of `factory` in `bin`; without `name` its name is unique. Throws
-/// std::runtime_error if it is not installed.
+/// Makes an element by `factory` and adds it to `bin`. Without `name`, the element gets a unique
+/// name. Throws std::runtime_error if the element is not installed.
 inline GstElement* AddElement(GstElement* bin, const std::string& factory,
                               const char* name = nullptr) {
   GstElement* element = gst_element_factory_make(factory.c_str(), name);
@@ -43,7 +43,8 @@ inline gst::ElementPtr ParsePipeline(const std::vector<std::string>& words) {
   return nullptr;
 }
 
-/// Makes SIGINT and SIGTERM set `*run` to false while the main context is iterated.
+/// Makes SIGINT and SIGTERM set `*run` to false. This takes effect when the main context is
+/// iterated.
 inline void StopOnSignals(bool* run) {
   const auto interrupt = [](gpointer data) -> gboolean {
     *static_cast<bool*>(data) = false;
@@ -53,12 +54,13 @@ inline void StopOnSignals(bool* run) {
   g_unix_signal_add(SIGTERM, interrupt, run);
 }
 
-/// An empty text leaves the default.
+/// Sets a property to a text. If `value` is empty, the property keeps its default.
 inline void SetText(GstElement* element, const char* property, const std::string& value) {
   if (!value.empty()) g_object_set(element, property, value.c_str(), nullptr);
 }
 
-/// The `stats` of an element in `bin`; null if it has none, or is not there.
+/// Returns the `stats` of an element in `bin`. Returns null if there is no such element, or if it
+/// has no `stats`.
 inline gst::StructurePtr StatsOf(GstElement* bin, const std::string& element) {
   const gst::ElementPtr found(gst_bin_get_by_name(GST_BIN(bin), element.c_str()));
   GstStructure* raw = nullptr;
@@ -67,7 +69,8 @@ inline gst::StructurePtr StatsOf(GstElement* bin, const std::string& element) {
   return gst::StructurePtr(raw);
 }
 
-/// Prints a line of statistics for each element in `names`, a list with commas.
+/// Prints a line of statistics for each element in `names`, which is a comma-separated list. Each
+/// line begins with `before`.
 inline void PrintStats(GstElement* bin, const std::string& names, const std::string& before = "") {
   std::istringstream words(names);
   for (std::string name; std::getline(words, name, ',');) {
@@ -79,7 +82,8 @@ inline void PrintStats(GstElement* bin, const std::string& names, const std::str
   std::fflush(stdout);
 }
 
-/// Returns the name of the source and the text of an error or a warning.
+/// Returns the text of an error or a warning. It begins with the name of the object that posted the
+/// message.
 inline std::string MessageText(GstMessage* message) {
   GError* raw = nullptr;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Waits for sockets, a precise timer and the signals that end a program.
+// Waits for sockets, for a precise timer, and for the signals that end a program.
 #pragma once
 #include <functional>
 #include <map>
@@ -9,22 +9,24 @@
 
 namespace lidar::tools {
 
-/// CLOCK_MONOTONIC as a Time.
+/// Returns the time of CLOCK_MONOTONIC.
 Time Now();
-/// Returns the difference of Unix time from Now(), as of this call.
+/// Returns the time that must be added to Now() to get Unix time, as measured during this call.
 Duration UnixOffset();
 
 class EventLoop {
  public:
-  /// Blocks SIGINT and SIGTERM in this thread: Run returns on either. Throws std::runtime_error.
+  /// Blocks SIGINT and SIGTERM in this thread. Run() returns when one of these signals arrives.
+  /// Throws std::runtime_error.
   EventLoop();
 
   void Watch(int fd, std::function<void()> readable);
   void Unwatch(int fd);
-  /// Sets the latest time of the next call of `before_wait` by Run(); Time::max() for never.
+  /// Sets the time at which Run() calls `before_wait` at the latest. Time::max() means that there
+  /// is no such time.
   void SetWakeUp(Time when);
-  /// Runs until a signal or Stop(): calls the handlers of readable descriptors, then `before_wait`,
-  /// which may set the next wake-up.
+  /// Runs until a signal arrives or Stop() is called. After each wait, calls the handlers of the
+  /// readable descriptors and then `before_wait`, which may set the next wake-up.
   void Run(const std::function<void()>& before_wait);
   void Stop() { running_ = false; }
 

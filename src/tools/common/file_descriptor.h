@@ -24,7 +24,7 @@ class FileDescriptor {
     if (fd_ >= 0) close(fd_);
     fd_ = -1;
   }
-  /// The caller must close it.
+  /// Returns the descriptor, which the caller must close.
   int Release() { return std::exchange(fd_, -1); }
   int get() const { return fd_; }
   explicit operator bool() const { return fd_ >= 0; }

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Files that programs read and write, and their remains on a full disk.
+// Files that programs read and write. On a full disk, an incomplete file is removed.
 #pragma once
 #include <fstream>
 #include <string>
 
 namespace lidar::tools {
 
-/// Throws std::runtime_error, with the path and the reason, if the file cannot be written.
+/// A file to which a program writes. If the file cannot be written, throws std::runtime_error with
+/// the path and the reason.
 class OutputFile {
  public:
-  /// What becomes of a file that was not written or closed completely: it is removed, or keeps its
-  /// rows if it has any. Files that are not regular are never removed.
+  /// What happens to a file that was not written and closed completely. kRemove removes the file.
+  /// kKeepRows removes the file only if it is empty. A file that is not a regular file is never
+  /// removed.
   enum class Rest { kRemove, kKeepRows };
 
-  /// An empty path writes nothing.
+  /// If `path` is empty, nothing is written.
   explicit OutputFile(std::string path, Rest rest = Rest::kRemove);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -21,7 +23,7 @@ class OutputFile {
 
   bool is_open() const { return file_.is_open(); }
   std::ostream& stream() { return file_; }
-  /// Call this at the end: a full disk shows up here.
+  /// Closes the file. Must be called at the end, because a full disk may be noticed only here.
   void Close();
 
  private:
@@ -35,14 +37,14 @@ class OutputFile {
 /// Returns the whole file. Throws std::runtime_error if it cannot be opened.
 std::string ReadFile(const std::string& path);
 
-/// Writes the whole file, or leaves no file.
+/// Writes the whole file. If that fails, throws std::runtime_error and leaves no file.
 void WriteFile(const std::string& path, const std::string& text);
 
-/// Throws if printed output could not be written. The stream keeps such errors, so one call at the
-/// end suffices.
+/// Throws std::runtime_error if the output on stdout or std::cout could not be written completely.
+/// These streams keep an error, so one call at the end of the program suffices.
 void FinishStandardOutput();
 
-/// Removes an incomplete file, if it is a regular one.
+/// Removes an incomplete file. Does nothing if it is not a regular file.
 void RemoveFile(const std::string& path);
 
 }  // namespace lidar::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Untrusted text for a terminal or a log.
+// Makes untrusted text safe for a terminal or a log.
 #pragma once
 #include <glib.h>
 
@@ -8,8 +8,8 @@
 
 namespace lidar::tools {
 
-/// Bytes outside of printable UTF-8 become \xNN: a line stays one line, and a terminal gets no
-/// control sequences.
+/// Replaces bytes that are not printable UTF-8 by \xNN. The text then stays on a single line, and
+/// has no control sequences for a terminal.
 inline std::string Printable(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
@@ -31,7 +31,7 @@ inline std::string Printable(const std::string& text) {
   return out;
 }
 
-/// Returns an address as URLs have it: IPv6 in brackets.
+/// Returns an address as it is written in a URL, with brackets around an IPv6 address.
 inline std::string HostInUrl(const std::string& address) {
   return address.find(':') == address.npos ? address : "[" + address + "]";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The common part of programs: --version, 2 as the exit code of wrong options, and 1 as that of an
-// exception.
+// What all programs have in common: the option --version, exit code 2 for wrong options, and exit
+// code 1 after an exception.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -15,13 +15,13 @@ inline void AddVersionFlag(CLI::App* app, const std::string& program) {
   app->set_version_flag("--version", program + " (gst-lidar) " LIDAR_VERSION);
 }
 
-/// Adds an option that shows the options of all commands, for the man page.
+/// Adds an option that prints the options of all commands. The man page is made from this output.
 inline void AddHelpAllFlag(CLI::App* app) {
   app->set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
 }
 
-/// Throws if a number is NaN, because CLI::Range accepts NaN, or if an unsigned number is negative,
-/// because CLI11 before 2.3 takes it modulo 2^64.
+/// Throws if a number is NaN, because CLI::Range accepts NaN. Also throws if an unsigned number is
+/// negative, because CLI11 before 2.3 takes it modulo 2^64.
 inline void RefuseWrongNumbers(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const std::string type = option->get_type_name();
@@ -38,8 +38,8 @@ inline void RefuseWrongNumbers(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) RefuseWrongNumbers(*command);
 }
 
-/// Parses the command line and calls `check`, which throws CLI::ParseError for options that
-/// contradict each other. Ends the program for --help and wrong options.
+/// Parses the command line, and then calls `check`, which throws CLI::ParseError for options that
+/// contradict each other. Ends the program after --help, and if options are wrong.
 template <class Check>
 void Parse(CLI::App* app, int argc, char** argv, Check check) {
   try {
@@ -54,7 +54,8 @@ inline void Parse(CLI::App* app, int argc, char** argv) {
   Parse(app, argc, argv, [] {});
 }
 
-/// Returns the exit code of `run`; an exception becomes a message.
+/// Calls `run` and returns its exit code. If `run` throws, prints the exception's text and returns
+/// 1.
 template <class Run>
 int Guard(const char* program, Run run) {
   try {

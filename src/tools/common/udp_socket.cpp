@@ -14,7 +14,7 @@ namespace lidar::tools {
 namespace {
 
 constexpr std::size_t kMaxDatagram = 65536;
-constexpr int kSocketBuffer = 4 << 20;  // has room for a burst of scans
+constexpr int kSocketBuffer = 4 << 20;  // large enough for a burst of several scans
 constexpr std::size_t kControlSize = 256;
 
 [[noreturn]] void Fail(const std::string& what) {
@@ -61,7 +61,7 @@ UdpSocket::UdpSocket(int family)
     : fd_(socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   if (!fd_) Fail("cannot open a UDP socket");
   net::AskForInfo(fd());
-  // The kernel may grant a smaller buffer, which loses packets only in bursts.
+  // The kernel may grant a smaller buffer. Packets are then lost, but only in bursts.
   net::SetReceiveBuffer(fd(), kSocketBuffer);
   setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &kSocketBuffer, sizeof kSocketBuffer);
 }
@@ -106,7 +106,8 @@ void UdpSocket::ReceiveAll(const std::function<void(const Datagram&)>& handler) 
     message.msg_control = control;
     message.msg_controllen = sizeof control;
     const ssize_t size = recvmsg(fd(), &message, 0);
-    // A connected socket may return the peer's "port unreachable" here instead of a datagram.
+    // recvmsg() on a connected socket may return the error "port unreachable" for an earlier
+    // packet.
     if (size < 0 && (errno == ECONNREFUSED || errno == EINTR)) continue;
     if (size < 0) return;
     from.length = message.msg_namelen;
@@ -132,7 +133,8 @@ bool UdpSocket::Send(ByteView payload, std::uint8_t tos, const Address* to) {
   ssize_t sent = 0;
   do {
     sent = sendmsg(fd(), &message, MSG_NOSIGNAL);
-    // ECONNREFUSED belongs to an earlier packet; the call sent nothing and may be repeated once.
+    // ECONNREFUSED is the answer to an earlier packet. As nothing was sent, the call is repeated
+    // once.
   } while (sent < 0 && errno == EINTR);
   if (sent < 0 && errno == ECONNREFUSED) sent = sendmsg(fd(), &message, MSG_NOSIGNAL);
   return sent >= 0;
