@@ -35,7 +35,8 @@ Comparison ComparePlaces(const Cloud& sent, const Cloud& received) {
   return c;
 }
 
-/// Points in cubes of a given edge, so that a search visits 27 cubes.
+/// The points of a cloud, sorted into cubes with an edge of `edge_m`. A search for the nearest
+/// point then visits only 27 cubes.
 class Grid {
  public:
   Grid(const Cloud& cloud, double edge_m) : edge_m_(edge_m) {
@@ -43,7 +44,8 @@ class Grid {
       if (!IsMissing(&cloud.xyz[i])) cells_[Key(CellOf(&cloud.xyz[i]))].push_back(&cloud.xyz[i]);
   }
 
-  /// Returns infinity if no point is within the length of an edge.
+  /// Returns the distance from `p` to the nearest point, or infinity if no point is within
+  /// `edge_m`.
   double DistanceToNearest(const float* p) const {
     const Cell centre = CellOf(p);
     double best = std::numeric_limits<double>::infinity();

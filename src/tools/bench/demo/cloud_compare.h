@@ -8,18 +8,18 @@
 namespace lidar::demo {
 
 struct Comparison {
-  std::uint64_t points = 0;   // returns compared
-  std::uint64_t missing = 0;  // returns that did not arrive
-  std::uint64_t added = 0;    // points where the sent cloud has no return
+  std::uint64_t points = 0;   // number of returns that were compared
+  std::uint64_t missing = 0;  // number of sent returns that did not arrive
+  std::uint64_t added = 0;    // number of received points where the sent cloud has no return
   double max_error_m = 0;
   double sum_error_m = 0;
 
   Comparison& operator+=(const Comparison& o);
 };
 
-/// Compares organised clouds of equal shape pixel by pixel. Otherwise compares each point with the
-/// nearest one of the other cloud within `reach_m`, in both directions. All-zero points are missing
-/// returns.
+/// Compares two clouds. If both are organised and have the same shape, compares them pixel by
+/// pixel. Otherwise compares each point with the nearest point of the other cloud, if this is
+/// within `reach_m`, in both directions. A point whose coordinates are all 0 is a missing return.
 Comparison Compare(const Cloud& sent, const Cloud& received, double reach_m);
 
 }  // namespace lidar::demo

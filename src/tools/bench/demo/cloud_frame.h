@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds on the pipes from the sender and the receiver to the program that compares them.
+// Writes and reads clouds on pipes. By these, the sender and the receiver pass clouds to the
+// program that compares them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -20,13 +21,15 @@ struct Cloud {
   SliceKey key;
   std::uint32_t height = 1;
   std::uint32_t width = 0;
-  std::vector<float> xyz;  // three a point, row-major
+  std::vector<float> xyz;  // x, y and z of each point, row by row
 };
 
-/// Both ends are on one machine: native byte order.
+/// Converts a cloud to bytes. Uses native byte order, because both ends of the pipe are on one
+/// machine.
 std::string WriteFrame(const Cloud& cloud);
 
-/// Blocks on `fd`. Returns nothing at its end or for an invalid frame.
+/// Reads a cloud from `fd`, and blocks until it is complete. Returns nothing at the end of the
+/// file, or if the frame is invalid.
 std::optional<Cloud> ReadFrame(int fd);
 
 }  // namespace lidar::demo

@@ -31,9 +31,10 @@ using namespace std::chrono_literals;
 using tools::ChildProcess;
 using tools::Now;
 
-constexpr auto kPhaseLimit = 60s;  // at the end comparisons of clouds may slow down the receiver
+// Long, because comparisons of clouds may slow down the receiver at the end.
+constexpr auto kPhaseLimit = 60s;
 constexpr auto kTick = 100ms;
-constexpr int kPoorStream = 3;  // exit code
+constexpr int kPoorStream = 3;  // exit code for a poor stream
 constexpr auto kArrivalLimit = 3s;
 constexpr int kLinesBetweenHeaders = 20;
 
@@ -49,7 +50,7 @@ class Coordinator {
     kSender,
     kStreaming,
     kDraining,
-    kArriving,  // the sender has ended, but data may be under way
+    kArriving,  // the sender has ended, but data may still be on their way
     kReceiverStops,
     kLinkStops
   };
@@ -79,7 +80,8 @@ class Coordinator {
     bool listens = false;
   };
   std::vector<Link> links_;
-  std::vector<nlohmann::json> latest_;  // of each link, null before its first line
+  // The latest line of each link, or null before its first line.
+  std::vector<nlohmann::json> latest_;
   std::unique_ptr<ChildProcess> sender_;
   std::unique_ptr<StreamComparer> comparer_;
   Phase phase_ = Phase::kReceiver;
@@ -93,7 +95,7 @@ class Coordinator {
   std::string failure_;
 };
 
-/// Returns a port that is free now, below those that the kernel assigns.
+/// Returns a port that is free at present. It is below the ports that the kernel assigns by itself.
 int FreePort() {
   std::random_device random;
   std::uniform_int_distribution<int> ports(10000, 32767);
@@ -225,7 +227,8 @@ void Coordinator::PrintLive(const nlohmann::json& link) {
 void Coordinator::TakeComparisons() {
   if (!comparer_) return;
   for (const auto& [key, comparison] : comparer_->Take()) {
-    // Comparisons slow down a receiver that stops, so each result restarts its time limit.
+    // Comparisons slow down a receiver that is stopping, so each result restarts the receiver's
+    // time limit.
     if (phase_ == Phase::kReceiverStops) phase_since_ = Now();
     last_error_m_ = std::max(last_error_m_, comparison.max_error_m);
     m_.ledger.Add(key, comparison);
@@ -249,8 +252,8 @@ void Coordinator::Enter(Phase phase) {
     case Phase::kSender:
       sender_ = Start({folder + "/lidar-demo", "send", SenderPipeline(o, ports_)}, "sender", true);
       Watch(sender_.get(), [this](const nlohmann::json& r) { OnSender(r); });
-      // The reach exceeds the error bound, so that a larger error is measured, and its point does
-      // not count as missing.
+      // The reach exceeds the error bound. So the comparer can measure an error above the bound,
+      // and does not count the point as missing.
       comparer_ = std::make_unique<StreamComparer>(sender_->clouds_fd(), receiver_->clouds_fd(),
                                                    2 * ErrorBoundOf(o) + 0.01);
       break;
@@ -282,7 +285,8 @@ void Coordinator::CheckLimit() {
   failure_ = std::string("gave up waiting for ") + kWaitingFor[static_cast<int>(phase_)];
 }
 
-/// Returns true if all data arrived, or after kArrivalLimit, because the link may be in a gap.
+/// Returns true if all data have arrived. Also returns true after kArrivalLimit, because the link
+/// may be in a gap in which no data arrive.
 bool Coordinator::AllArrived() const {
   const Duration waited = Now() - phase_since_;
   return waited >= kArrivalLimit || (waited >= kTick && m_.ledger.Count().slices_lost == 0);
@@ -336,13 +340,13 @@ int Coordinator::Run() {
   };
   loop_.Run(before_wait);
   if (failure_.empty() && phase_ == Phase::kStreaming) {
-    // Ctrl-C: the streamed part still gets a report.
+    // Ctrl-C has ended the loop. The part that was streamed still gets a report.
     Enter(Phase::kDraining);
     loop_.Run(before_wait);
   }
   if (failure_.empty() && phase_ != Phase::kLinkStops) failure_ = "interrupted";
   if (!failure_.empty()) {
-    // Both pipes must end before the comparer can.
+    // The comparer ends only after both pipes have ended.
     for (ChildProcess* child : {sender_.get(), receiver_.get()}) {
       if (child == nullptr) continue;
       child->Signal(SIGKILL);

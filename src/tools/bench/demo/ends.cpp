@@ -32,7 +32,7 @@ nlohmann::json Record(const char* type, GstBuffer* buffer) {
           {"unix_ns", UnixNow()}};
 }
 
-/// The time at which a buffer entered an element. The element's next output comes in the same
+/// The time at which a buffer entered an element. The element sends its next output in the same
 /// thread, so no lock is needed.
 struct Stopwatch {
   std::int64_t entered = 0;

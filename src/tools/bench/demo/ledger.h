@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The life of every slice, put together from the records of both ends.
+// Collects what happened to each slice, from the records of the sender and of the receiver.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -15,9 +15,10 @@ namespace lidar::demo {
 
 inline double Ms(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
 
-/// Times are nanoseconds since the Unix epoch; 0: has not happened.
+/// The events of a slice. Each time is in nanoseconds since the Unix epoch, or 0 if the event has
+/// not happened.
 struct SliceLife {
-  std::int64_t due = 0;  // sampling time of the last column
+  std::int64_t due = 0;  // sampling time of the slice's last column
   std::int64_t captured = 0;
   std::int64_t encoded = 0;
   std::int64_t received = 0;
@@ -29,32 +30,36 @@ struct SliceLife {
   std::optional<Comparison> comparison;
 };
 
-/// Older data are late, as in the sender's queue (max-queue-delay of screamsink).
+/// Data that are older than this are late. The sender's queue has the same limit (max-queue-delay
+/// of screamsink).
 constexpr Duration kMaxAge = std::chrono::milliseconds(200);
 
 using ScanLife = std::vector<SliceLife>;
 
 struct ScanCounts {
-  std::uint64_t captured = 0;  // all slices left the source
-  std::uint64_t skipped = 0;   // with a slice that was not encoded
+  std::uint64_t captured = 0;  // scans whose slices have all left the source
+  std::uint64_t skipped = 0;   // scans with a slice that was not encoded
   std::uint64_t sent = 0;
-  std::uint64_t complete = 0;  // every slice decoded
-  std::uint64_t in_time = 0;   // complete, with each slice within kMaxAge of its last column
+  std::uint64_t complete = 0;  // scans whose slices were all decoded
+  // Complete scans of which each slice was decoded within kMaxAge of its last column.
+  std::uint64_t in_time = 0;
   std::uint64_t slices_sent = 0;
-  std::uint64_t slices_lost = 0;  // encoded but not decoded
+  std::uint64_t slices_lost = 0;  // slices that were encoded but not decoded
 };
 
 class Ledger {
  public:
-  /// Takes the records captured, encoded, decoded and posed; ignores others and malformed ones.
+  /// Adds a record if its type is "captured", "encoded", "decoded" or "posed". Ignores other
+  /// records, and records with an impossible slice number.
   void Add(const nlohmann::json& record);
   void Add(SliceKey key, const Comparison& comparison);
 
-  /// Slices encoded after `settled` may still be under way and do not count as lost. Scans captured
-  /// after it do not count as skipped.
+  /// Counts the scans and slices. A slice that was encoded after `settled` does not count as lost,
+  /// because it may still be on its way. A scan that was captured after `settled` does not count as
+  /// skipped.
   ScanCounts Count(std::int64_t settled = INT64_MAX) const;
   const std::map<std::uint32_t, ScanLife>& scans() const { return scans_; }
-  /// Times at which the edge had the pose of each scan.
+  /// Returns the time at which the receiver had the pose of each scan.
   const std::map<std::uint32_t, std::int64_t>& posed() const { return posed_; }
   const Comparison& total() const { return total_; }
   std::uint64_t compared_slices() const { return compared_slices_; }

@@ -12,7 +12,8 @@
 
 namespace {
 
-/// Makes a key in the environment, so that the list of processes does not show it.
+/// Makes a random key and puts it into the environment, where the list of processes does not show
+/// it.
 void MakeKey() {
   constexpr int kBytes = 16 + 14;  // key and salt
   constexpr const char* kDigits = "0123456789abcdef";

@@ -15,7 +15,7 @@ namespace {
 constexpr double kStart_s = 3;
 constexpr double kAfterChange_s = 1;
 
-/// Returns the first number in `object` under one of `names`; 0 without any.
+/// Returns the first number that `object` has under one of `names`, or 0 if it has none.
 double Pick(const nlohmann::json& object, std::initializer_list<const char*> names) {
   if (!object.is_object()) return 0;
   for (const char* name : names) {

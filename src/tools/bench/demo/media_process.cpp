@@ -159,13 +159,14 @@ int MediaProcess::Run() {
   GstBus* bus = gst_element_get_bus(pipeline_.get());
   const guint watch = gst_bus_add_watch(bus, OnMessage, this);
   gst_object_unref(bus);
-  // The handlers stay until exit: a late signal must not interrupt the last records.
+  // The signal handlers stay until the process exits, because a late signal must not interrupt the
+  // writing of the last records.
   g_unix_signal_add(SIGINT, OnSignal, this);
   g_unix_signal_add(SIGTERM, OnSignal, this);
   std::vector<guint> sources = {watch};
   for (Periodic& periodic : periodic_)
     sources.push_back(g_timeout_add(periodic.interval_ms, CallHandler, &periodic.handler));
-  // A closed pipe must not kill this process before EOS.
+  // Otherwise a closed pipe would kill this process before EOS.
   std::signal(SIGPIPE, SIG_IGN);
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
   Write(nlohmann::json{{"type", "playing"}, {"unix_ns", UnixNow()}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An end of the demo: a pipeline that measures itself and writes JSON lines.
+// One end of the demo. Runs a pipeline, measures it, and writes the results as lines of JSON.
 #pragma once
 #include <gst/gst.h>
 
@@ -15,35 +15,37 @@
 
 namespace lidar::demo {
 
-/// CLOCK_REALTIME [ns], the time of every record.
+/// Returns CLOCK_REALTIME [ns]. Every record contains a time of this clock.
 std::int64_t UnixNow();
 
 class MediaProcess {
  public:
-  /// Parses the description; throws std::runtime_error with GStreamer's error text.
+  /// Makes the pipeline. If `description` is wrong, throws std::runtime_error with GStreamer's
+  /// error text.
   explicit MediaProcess(const std::string& description);
   ~MediaProcess();
   MediaProcess(const MediaProcess&) = delete;
   MediaProcess& operator=(const MediaProcess&) = delete;
 
-  /// Null if the pipeline has no element of that name.
+  /// Returns the element called `name`, or null if the pipeline has no such element.
   gst::ElementPtr Find(const char* name) const;
-  /// Calls `handler` for each buffer (or downstream event) that passes the pad, in the streaming
-  /// thread.
+  /// OnBuffer() and OnEvent() call `handler` for each buffer, or for each downstream event, that
+  /// passes the pad. They call it in the streaming thread.
   using BufferHandler = std::function<void(GstPad*, GstBuffer*)>;
   using EventHandler = std::function<void(GstEvent*)>;
   void OnBuffer(const char* element, const char* pad, BufferHandler handler);
   void OnEvent(const char* element, const char* pad, EventHandler handler);
-  /// Calls `handler` at this interval in the main loop, and once more before the pipeline stops.
+  /// Calls `handler` in the main loop once per interval, and once more before the pipeline stops.
   void Every(guint interval_ms, std::function<void()> handler);
 
   /// Writes a record to standard output.
   void Write(const nlohmann::json& record);
   void Write(const Cloud& cloud);
-  /// Converts `pts` to UnixNow's time, by the pipeline's clock.
+  /// Converts `pts`, which refers to the pipeline's clock, to the time of UnixNow().
   std::int64_t UnixTimeOf(GstPad* pad, GstClockTime pts) const;
 
-  /// Plays until EOS, an error, or a signal that asks for EOS. Returns the program's exit code.
+  /// Plays until EOS or an error. A signal makes the pipeline send EOS. Returns the exit code of
+  /// the program.
   int Run();
 
  private:
@@ -64,7 +66,7 @@ class MediaProcess {
   bool asked_to_stop_ = false;
 };
 
-/// Returns the organised cloud of a buffer; nothing if the caps of `pad` are not a cloud's.
+/// Returns the cloud in a buffer, or nothing if the caps of `pad` do not describe a cloud.
 std::optional<Cloud> ReadCloud(GstPad* pad, GstBuffer* buffer);
 
 }  // namespace lidar::demo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The files of a run: tables, CSV files, plots.
+// Writes the files of a run: tables in CSV format, and plots. Prints the summary as a table.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,11 +8,13 @@
 
 namespace lidar::demo {
 
-/// slices.csv: the life of every slice. timeline.csv: tenths of a second.
+/// Writes slices.csv, with a row for each slice, and timeline.csv, with a row for each tenth of a
+/// second.
 void WriteTables(const Measurements& m, const std::string& folder);
-/// Removes files of an earlier run, so that they are not taken for this run's.
+/// Removes the files of an earlier run, so that they cannot be mistaken for files of this run.
 void RemoveReport(const std::string& folder);
-/// Runs gnuplot over the tables. Returns false after a message on standard error if that fails.
+/// Runs gnuplot to draw the tables. If that fails, prints a message to standard error and returns
+/// false.
 bool DrawPlots(const Measurements& m, const std::string& folder);
 void PrintTable(const nlohmann::ordered_json& summary);
 

@@ -14,13 +14,15 @@
 namespace lidar::demo {
 namespace {
 
-/// Side of the cube that --fixed-bits divides: the view of a sensor with a range of 100 m.
+/// The edge of the cube that --fixed-bits divides into steps. A sensor with a range of 100 m sees
+/// this far in both directions.
 constexpr double kFixedBitsExtentM = 200;
 
-/// Mean capacity of --drive, between the least and the greatest bitrate of a source.
+/// The mean capacity of --drive, for a synthetic source and for a capture. It is between the least
+/// and the greatest bitrate of the source.
 constexpr double kDriveMbps = 4;
 constexpr double kDriveOfCaptureMbps = 8;
-constexpr double kDriveTail_s = 60;  // for a stream that starts late
+constexpr double kDriveTail_s = 60;  // added to the trace, for a stream that starts late
 
 constexpr int kReceiverPage = 8765;
 constexpr int kSenderPage = 8766;
@@ -65,7 +67,7 @@ std::string SourceOf(const RunOptions& o) {
          (o.slam ? " trajectory-location=" + Quoted(o.output + "/truth.tum") : "") + common;
 }
 
-/// Only clouds of Ouster sensors have ranges.
+/// Returns true if the clouds have ranges. Only clouds of Ouster sensors have them.
 bool HasRanges(const RunOptions& o) {
   if (o.geometry == "xyz" || !o.scans.empty()) return false;
   return !o.pcap.empty() || o.model.rfind("os", 0) == 0;
@@ -179,7 +181,8 @@ link::Capacity CapacityOf(const RunOptions& o, std::size_t index) {
   return link::Capacity::Steps(rates, FromSeconds(StepTime(o)));
 }
 
-/// Returns the properties of the sender's destination: a host and port, or several links.
+/// Returns the sender's properties for the destination: a host and a port, or the addresses of
+/// several links.
 std::string TargetOf(const Ports& ports) {
   if (ports.links.size() == 1) return "host=127.0.0.1 port=" + std::to_string(ports.links.front());
   std::string links;
@@ -234,7 +237,8 @@ double FixedStepOf(const RunOptions& o) {
 
 double ErrorBoundOf(const RunOptions& o) {
   const double step = FixedStepOf(o);
-  // Half a step along the beam for ranges, otherwise half the diagonal of a cube of one step.
+  // The bound for ranges is half a step along the beam. Otherwise it is half the diagonal of a cube
+  // whose edge is one step.
   if (step > 0) return HasRanges(o) ? step / 2 : step * std::sqrt(3) / 2;
   return o.max_error_m;
 }
@@ -280,12 +284,13 @@ std::string SenderPipeline(const RunOptions& o, const Ports& ports) {
           " max-bitrate=" + Bps(o.max_bitrate_mbps) +
           " start-bitrate=" + Bps(o.start_bitrate_mbps) +
           " ecn-mode=" + (o.no_l4s ? "off" : "ect1") + KeyOf(o);
-  // A sink without a pad only serves the statistics.
+  // A foxglovesink whose pad is not linked serves only the statistics.
   if (o.view) text += " foxglovesink port=" + std::to_string(kSenderPage);
   return text;
 }
 
-/// The odometry, and a map every ten seconds, in a thread of its own.
+/// Returns a branch that computes odometry, and that draws a map every ten seconds, in threads of
+/// its own.
 std::string SlamOf(const RunOptions& o) {
   if (!o.slam) return "";
   const std::string odometry =
@@ -300,7 +305,8 @@ std::string SlamOf(const RunOptions& o) {
          Quoted(o.output + "/map.png") + " posed. ! queue ! ";
 }
 
-/// A branch for the page, which decodes by itself. It may lose slices and delays no other branch.
+/// Returns a branch that serves the page, which decodes the slices by itself. This branch may drop
+/// slices, but does not delay other branches.
 std::string ViewOf(const RunOptions& o) {
   if (!o.view) return "";
   return "tee name=viewed ! queue leaky=downstream max-size-buffers=64 ! foxglovesink name=page "

@@ -25,13 +25,13 @@ struct RunOptions {
   double speed_mps = 12;
   std::uint32_t seed = 1;
   std::uint32_t slices = 0;
-  bool slam = false;  // the edge finds the sensor's poses
+  bool slam = false;  // the receiver computes the poses of the sensor
   bool view = false;  // both ends serve a page to browsers
   std::string pcap;
-  std::string scans;  // a folder
+  std::string scans;  // folder of scans
   std::string metadata;
   // Encoder
-  std::string encoder;  // empty: the one for the geometry
+  std::string encoder;  // empty: chosen according to `geometry`
   double max_error_m = 0.05;
   std::string geometry = "auto";
   double fixed_step_m = 0;
@@ -42,43 +42,45 @@ struct RunOptions {
   std::size_t links = 1;
   std::vector<double> steps_mbps{4, 2.2, 3, 1.8, 4.4, 2.6};
   double rate_mbps = 0;
-  std::vector<std::string> traces;  // none, or one a link
+  std::vector<std::string> traces;  // none, or one for each link
   bool drive = false;
   double rtt_ms = 40;
   double loss_percent = 0;
   bool no_l4s = false;
-  bool secure = false;  // SRTP, by a key of this run in the environment
+  bool secure = false;  // SRTP with a key that is made for this run
 };
 
-/// Environment variable with the key of --secure in hexadecimal digits.
+/// The environment variable that contains the key of --secure, in hexadecimal digits.
 inline constexpr const char* kKeyVariable = "LIDAR_DEMO_SRTP_KEY";
 
 void AddRunOptions(CLI::App* app, RunOptions* options);
-/// Throws std::runtime_error with a text for the user if options contradict each other.
+/// Checks that the options do not contradict each other. If they do, throws CLI::ValidationError
+/// with a text for the user.
 void CheckRunOptions(const RunOptions& options);
 
-/// lidarenc, or dracoenc.
+/// Returns "lidarenc" or "dracoenc".
 std::string EncoderOf(const RunOptions& options);
-/// Zero if the encoder adapts.
+/// Returns the fixed quantisation step [m], or 0 if the encoder adapts its step.
 double FixedStepOf(const RunOptions& options);
-/// The largest distance allowed between a sent point and the received one.
+/// Returns the largest distance that is allowed between a sent point and the received point [m].
 double ErrorBoundOf(const RunOptions& options);
-/// The capacity of each link.
+/// Returns the capacity of each link.
 std::vector<link::Capacity> CapacitiesOf(const RunOptions& options);
-/// Times at which the capacity of a single link steps during the run; empty for a trace.
+/// Returns the times at which the capacity changes from one of --steps to the next. Returns none if
+/// there are several links, or if the capacity does not come from --steps.
 std::vector<Duration> ChangesOf(const RunOptions& options);
 
-/// The text of the capacity trace of --drive.
+/// Returns the capacity trace that --drive generates for a link.
 std::string DriveTraceOf(const RunOptions& options, std::size_t index);
-/// Path of a link's file `name` in the report's folder. For the second link, the name gets a 2
-/// before the extension.
+/// Returns the path of a link's file in the folder of the report. The path of the first link ends
+/// in `name`. For the second link, a 2 is inserted before the extension, and so on.
 std::string LinkFile(const RunOptions& options, const std::string& name, std::size_t index);
 
 struct Ports {
   std::vector<int> links;
   int receiver = 0;
 };
-/// Address of the page of --view; empty without it.
+/// Returns the address of the page of --view, or an empty text without --view.
 std::string PageOf(const RunOptions& options);
 std::string SenderPipeline(const RunOptions& options, const Ports& ports);
 std::string ReceiverPipeline(const RunOptions& options, const Ports& ports);

@@ -33,7 +33,7 @@ std::vector<fs::path> ScansIn(const std::string& folder) {
   return scans;
 }
 
-/// Removes the links of an earlier run; other files stay.
+/// Removes the symbolic links of an earlier run, but no other files.
 void RemoveLinks(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.is_symlink()) fs::remove(entry.path());

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A folder of scans under any names, numbered for multifilesrc.
+// Numbers the files of a folder, whatever their names are, because multifilesrc needs numbers.
 #pragma once
 #include <string>
 
 namespace lidar::demo {
 
-/// The pattern of LinkScans()'s links for multifilesrc.
+/// Returns the pattern by which multifilesrc finds the links that LinkScans() makes.
 std::string ScansPattern(const std::string& output);
-/// Creates numbered links to the files of `folder`, in the order of their names, in `output`.
-/// Takes only files with the extension (pcd, ply, las or bin) of the first. Throws
-/// std::runtime_error with a text for the user if there is no file.
+/// Makes numbered links in `output` to the scans in `folder`, in the order of their names. Uses
+/// only scans that have the same extension (pcd, ply, las or bin) as the first scan. If there is no
+/// scan, throws std::runtime_error with a text for the user.
 void LinkScans(const std::string& folder, const std::string& output);
 
 }  // namespace lidar::demo

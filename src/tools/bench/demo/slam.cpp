@@ -24,7 +24,7 @@ nlohmann::ordered_json Errors(const std::string& folder) {
   const odometry::Trajectory truth = read("/truth.tum");
   const odometry::Trajectory edge = read("/edge.tum");
   nlohmann::ordered_json json = {{"poses", edge.size()}};
-  // A capture has no true trajectory.
+  // There is no true trajectory if the source is a capture.
   const auto error = truth.empty() ? std::nullopt : Compare(truth, edge);
   if (!error) return json;
   json["length_m"] = error->length_m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Errors and delays of the poses that the edge found.
+// Computes the errors and the delays of the poses that the receiver found.
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -7,9 +7,9 @@
 
 namespace lidar::demo {
 
-/// Returns false if the programs were built without the odometry.
+/// Returns true if the programs were built with the odometry.
 bool CanFollow();
-/// Reads the trajectories of the run and adds "slam" to the summary; writes poses.csv.
+/// Reads the trajectories of the run, adds "slam" to `summary`, and writes poses.csv.
 void AddSlam(const Measurements& m, const std::string& folder, nlohmann::ordered_json* summary);
 void PrintSlam(const nlohmann::ordered_json& summary);
 

@@ -6,7 +6,8 @@
 namespace lidar::demo {
 namespace {
 
-/// A decoded slice may overtake its original, which another process may still be writing.
+/// The longest time that a received slice waits for the sent one. The received slice may come
+/// first, because the sender's process may still be writing the sent one.
 constexpr auto kOriginalTimeout = std::chrono::seconds{2};
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Compares the clouds of both ends while they stream.
+// Compares the sent clouds with the received clouds during a run.
 #pragma once
 #include <condition_variable>
 #include <map>
@@ -14,19 +14,19 @@
 namespace lidar::demo {
 
 /// Reads both pipes in threads of its own. At most kMaxPending sent slices wait for the received
-/// ones, because older slices were skipped or lost.
+/// ones. Slices that are older than these were skipped or lost.
 class StreamComparer {
  public:
   StreamComparer(int sent_fd, int received_fd, double reach_m);
-  /// Waits for the ends of both pipes.
+  /// Waits until both pipes have ended.
   ~StreamComparer();
   StreamComparer(const StreamComparer&) = delete;
   StreamComparer& operator=(const StreamComparer&) = delete;
 
   using Result = std::pair<SliceKey, Comparison>;
-  /// Results since the last call.
+  /// Returns the results since the last call of Take().
   std::vector<Result> Take();
-  /// Waits until both pipes have ended and everything is compared.
+  /// Waits until both pipes have ended and all slices are compared.
   void Finish();
 
   static constexpr std::size_t kMaxPending = 512;

@@ -15,9 +15,10 @@ namespace {
 using tools::Distribution;
 
 constexpr double kShortQueue_ms = 10;
-/// A queue has settled once it was short for this time.
+/// A queue has settled once it was shorter than kShortQueue_ms for this time.
 constexpr double kSettled_s = 0.5;
-/// The rounding of float coordinates adds 1.3e-5 m to an error at 200 m. The rest is a margin.
+/// The rounding of float coordinates adds up to 1.3e-5 m to the error of a point at 200 m. The rest
+/// of this value is a margin.
 constexpr double kRounding_m = 5e-5;
 
 nlohmann::ordered_json Percentiles(const Distribution& d) {
@@ -39,8 +40,9 @@ struct Delays {
 
 struct SliceFigures {
   Delays capture_to_cloud;
-  Distribution capture;  // last column to buffer
-  Distribution encode;   // buffer to encoded slice, waiting for the encoder's thread included
+  Distribution capture;  // from the last column to the buffer
+  // From the buffer to the encoded slice, including the wait for the encoder's thread.
+  Distribution encode;
   Distribution network;
   Distribution decode;
   Distribution encode_scan;
@@ -84,10 +86,10 @@ Delays QueueDelays(const Measurements& m) {
   return d;
 }
 
-/// Returns the delivered bits divided by the bits that the link can carry and the source can use.
-/// Only steady times count.
+/// Returns the number of delivered bits, divided by the number of bits that the link can carry and
+/// the source can use. Only steady times count.
 nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps) {
-  if (m.options.links > 1) return nullptr;  // copies fill the remaining capacity
+  if (m.options.links > 1) return nullptr;  // copies of packets fill the remaining capacity
   constexpr double kSpan_s = 0.1;
   const auto bins = static_cast<std::size_t>(m.ran_s / kSpan_s);
   std::vector<double> sent(bins);
@@ -109,7 +111,7 @@ nlohmann::ordered_json Utilisation(const Measurements& m, double source_max_bps)
   return used / offered;
 }
 
-/// Returns the source's greatest bitrate on the wire; infinity if it is unknown.
+/// Returns the greatest bitrate of the source on the wire, or infinity if it is unknown.
 double SourceMax(const Measurements& m) {
   return m.encoder_max_bps > 0 ? m.encoder_max_bps * WireShare(m)
                                : std::numeric_limits<double>::infinity();
@@ -160,8 +162,8 @@ void AddGaps(const Measurements& m, nlohmann::ordered_json* s) {
   (*s)["gaps"] = {{"count", back.count()}, {"back_after_s", Percentiles(back)}};
 }
 
-/// Adds the results of a sender with full knowledge of the link: complete scans at
-/// `encoder_min_bps`, and delays at the bitrate of this run.
+/// Adds the results of a sender with full knowledge of the link. These are the number of complete
+/// scans at `encoder_min_bps`, and the delays at the mean bitrate of this run.
 void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
   double bits = 0;
   for (const auto& [id, scan] : m.ledger.scans())
@@ -175,7 +177,7 @@ void AddOracle(const Measurements& m, nlohmann::ordered_json* s) {
        {{"p50", mean.Latency(50)}, {"p95", mean.Latency(95)}, {"p99", mean.Latency(99)}}}};
 }
 
-/// Adds the figures of each of several links.
+/// Adds the figures of each link if there are several.
 void AddLinks(const Measurements& m, nlohmann::ordered_json* s) {
   const nlohmann::json links = LinkStats(m);
   if (links.empty()) return;
@@ -220,7 +222,8 @@ std::vector<Transient> FindTransients(const Measurements& m) {
     t.to_bps = capacity.RateAt(changes[i]).bits_per_second();
     const double end = i + 1 < changes.size() ? Seconds(changes[i + 1]) : m.ran_s;
     for (const LinkPacket& p : m.packets) {
-      // A packet counts when it leaves the queue, so that a long wait counts in full.
+      // A packet is counted at the time when it leaves the queue, so that a long wait counts in
+      // full.
       const double left = p.time_s + p.sojourn_ms / 1e3;
       if (!p.delivered || left < t.at_s || left >= end) continue;
       const bool settled = left - t.at_s - t.settled_after_s > kSettled_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The figures of a run, and whether its guarantees held.
+// Computes the figures of a run, and checks its guarantees.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,13 +9,14 @@
 
 namespace lidar::demo {
 
-/// The queue after a step of the capacity.
+/// How the queue behaves after a step of the capacity.
 struct Transient {
   double at_s = 0;
   double from_bps = 0;
   double to_bps = 0;
   double peak_ms = 0;
-  double settled_after_s = 0;  // until the queue is below 10 ms for half a second
+  // Time after the step until the queue stays below 10 ms for half a second.
+  double settled_after_s = 0;
 };
 std::vector<Transient> FindTransients(const Measurements& m);
 
@@ -23,7 +24,7 @@ struct Guarantee {
   std::string text;
   bool holds = false;
 };
-/// Checks the guarantees that must hold on any network path. They decide the exit code.
+/// Checks the guarantees that must hold on any network path. The exit code depends on them.
 std::vector<Guarantee> CheckGuarantees(const Measurements& m);
 
 nlohmann::ordered_json Summarise(const Measurements& m);

@@ -8,9 +8,9 @@
 namespace lidar::demo {
 namespace {
 
-constexpr double kUseful = 0.9;  // share of the oracle's scans
+constexpr double kUseful = 0.9;  // share of the scans that the oracle completes
 constexpr double kOfSomeUse = 0.5;
-constexpr double kMostly = 0.5;  // share of the time
+constexpr double kMostly = 0.5;  // share of the run's time
 
 template <class... Args>
 std::string Text(const char* format, Args... args) {
@@ -19,7 +19,8 @@ std::string Text(const char* format, Args... args) {
   return text;
 }
 
-/// Returns the share of the run in which a link carried more than the source can use.
+/// Returns the share of the run's time in which at least one link carried more than the source can
+/// use.
 double ShareAbove(const Measurements& m, double source_max_bps) {
   constexpr Duration kStep = std::chrono::milliseconds(100);
   const auto links = CapacitiesOf(m.options);
@@ -94,7 +95,8 @@ Verdict Judge(const Measurements& m) {
   Verdict v;
   if (n.captured == 0) return {Verdict::Level::kPoor, "no scan was captured", {}};
   const auto captured = static_cast<double>(n.captured);
-  // The oracle counts scans at the start and the end slightly differently.
+  // The oracle counts the scans at the start and at the end of the run slightly differently, so its
+  // number may exceed `captured`.
   double possible = captured;
   if (m.encoder_min_bps > 0)
     possible = std::min(captured, static_cast<double>(AskOracle(m, m.encoder_min_bps).complete));

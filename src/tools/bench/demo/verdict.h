@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Judges whether a run was useful, relative to its link's capacity.
+// Judges how useful a run was, relative to the capacity of its links.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,10 +9,11 @@
 
 namespace lidar::demo {
 
-/// Bits on the wire for each bit that the encoder put out; 1 without output.
+/// Returns the number of bits on the wire for each bit of the encoder's output, not counting copies
+/// of packets. Returns 1 if there was no output.
 double WireShare(const Measurements& m);
-/// Returns the scans that a sender with full knowledge of the link could deliver at this bitrate of
-/// media.
+/// Returns the scans that a sender with full knowledge of the links could deliver, if its media had
+/// the bitrate `media_bps`.
 link::OracleResult AskOracle(const Measurements& m, double media_bps);
 
 struct Verdict {

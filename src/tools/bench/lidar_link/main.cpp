@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-link: a UDP relay that is a 5G-like bottleneck.
+// lidar-link: a UDP relay that behaves like a bottleneck link in a 5G network.
 #include <cstdio>
 #include <iostream>
 

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = link::AqmConfig::Kind;
 
-/// What the user typed, in the units of the command line.
+/// The options of the command line, in the units of the command line.
 struct Text {
   double rate_mbps = 12;
   std::vector<double> steps_mbps;

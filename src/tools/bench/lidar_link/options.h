@@ -12,7 +12,7 @@ namespace lidar::tools {
 struct LinkOptions {
   std::vector<std::string> listen{"127.0.0.1:5004"};
   std::vector<std::string> forward{"127.0.0.1:5006"};
-  link::BottleneckConfig there;  // starts with the first packet
+  link::BottleneckConfig there;  // towards the receiver; its time starts with the first packet
   link::BottleneckConfig back;
   bool origin_at_start = false;
   bool bleach = false;
@@ -25,7 +25,8 @@ struct LinkOptions {
   bool quiet = false;
 };
 
-/// Exits the program itself for --help and for wrong usage (code 2).
+/// Parses the command line. Exits the program after --help, and with code 2 if the options are
+/// wrong.
 LinkOptions ParseLinkOptions(int argc, char** argv);
 
 }  // namespace lidar::tools

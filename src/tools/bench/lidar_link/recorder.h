@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The output of lidar-link: a log of packets, live lines, the summary.
+// Writes the output of lidar-link: a log of the packets, the live lines, and the summary.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace lidar::tools {
 
-/// A packet that left or was dropped.
+/// A packet that the link has delivered or dropped.
 struct PacketRecord {
   link::Outcome outcome;
   Ecn ecn_in = Ecn::kNotEct;
@@ -25,19 +25,20 @@ struct PacketRecord {
 
 class Recorder {
  public:
-  /// `log`: file name or empty. Throws std::runtime_error if it cannot be written.
+  /// `log` is the name of a file, or empty for no log. Throws std::runtime_error if the file cannot
+  /// be written.
   explicit Recorder(const std::string& log);
-  /// Ends the log; throws std::runtime_error if a part of it could not be written.
+  /// Closes the log. Throws std::runtime_error if a part of the log could not be written.
   void Close() { log_.Close(); }
 
   void Start(Time origin, Duration unix_offset);
   void OnPacket(const PacketRecord& record);
   void OnFeedback(bool delivered, std::size_t bytes);
-  /// `late` is the time from a packet's computed departure to the real one.
+  /// Notes that a packet was sent `late` after the time that the model computed for it.
   void OnLateness(Duration late) { lateness_.Add(Milliseconds(late)); }
   void OnRefusedSend() { ++refused_sends_; }
 
-  /// Returns the figures since the last call, which must be earlier than `now`.
+  /// Returns the figures since the last call of Live(), which must have been earlier than `now`.
   nlohmann::ordered_json Live(Time now, const link::Bottleneck& there,
                               const link::Capacity& capacity);
   nlohmann::ordered_json Summary(Time now, const link::Bottleneck* there,

@@ -47,7 +47,7 @@ void Relay::Start(Time origin) {
 
 Time Relay::ArrivalOf(const Datagram& datagram) {
   const Time now = Now();
-  // The kernel's time of reception is better, because this process may run later.
+  // The kernel's time of reception is more exact, because this process may run later.
   const Time kernel{datagram.kernel_time - unix_offset_};
   constexpr auto kPlausible = std::chrono::seconds{1};
   const bool use_kernel = kernel <= now && kernel > now - kPlausible;
@@ -126,7 +126,8 @@ void Relay::Return(const link::Outcome& outcome) {
 }
 
 void Relay::Release(const link::Outcome& outcome) {
-  // A duplicate directly follows the first copy, before any slot is reused.
+  // A duplicate uses the slot of the packet before it. This is possible because the duplicate
+  // directly follows that packet, before the slot is used for another packet.
   if (!outcome.duplicate) free_slots_.push_back(outcome.packet.id);
 }
 

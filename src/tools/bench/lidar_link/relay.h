@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Moves datagrams between sockets through the link model.
+// Passes datagrams from one socket to another through the model of the link.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -19,11 +19,11 @@ class Relay {
   /// opened.
   Relay(const LinkOptions& options, EventLoop* loop, Recorder* recorder);
 
-  /// Sends due packets. Returns the latest time of the next call.
+  /// Sends the packets that are due. Returns the latest time at which Pump() must be called again.
   Time Pump();
 
   std::vector<int> ListeningPorts() const;
-  /// Null before the first packet.
+  /// Returns the link towards the receiver, or null before the first packet.
   const link::Bottleneck* there() const { return there_ ? &*there_ : nullptr; }
   Time origin() const { return options_.there.origin; }
 
@@ -32,7 +32,8 @@ class Relay {
     UdpSocket socket;
     Address forward;
   };
-  /// A sender, with a socket of its own towards the receiver, as behind a NAT.
+  /// A sender. Its packets are forwarded to the receiver from a socket of their own, as behind a
+  /// NAT.
   struct Flow {
     std::size_t listener;
     Address client;
@@ -65,7 +66,7 @@ class Relay {
   std::optional<link::Bottleneck> there_;
   link::Bottleneck back_;
   Duration unix_offset_;
-  Time newest_;  // the model's time does not go back
+  Time newest_;  // newest time so far; the model's time must not go back
 };
 
 }  // namespace lidar::tools

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-trace: prints capacity traces for lidar-link and the demo, and what they can carry.
+// lidar-trace: prints capacity traces for lidar-link and the demo, or what a sender could deliver
+// over links with given traces.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -39,7 +40,7 @@ std::string Make(const Options& o) {
                                     FromSeconds(o.every_s), FromSeconds(o.duration_s)});
 }
 
-/// Loads a trace. The number after the last @ is the second at which it starts.
+/// Loads a trace from "FILE" or "FILE@SECONDS". SECONDS is the time in the file at which to start.
 lidar::link::Capacity Load(const std::string& text) {
   const auto at = text.rfind('@');
   double start = 0;

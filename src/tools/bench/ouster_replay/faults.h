@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Faults between sensor and receiver, on request and counted.
+// Injects faults between the sensor and the receiver on request, and counts them.
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -13,21 +13,22 @@
 namespace lidar::tools {
 
 struct Faults {
-  double loss = 0;  // shares of the lidar packets, 0 to 1
+  double loss = 0;  // this and the next three are shares of the lidar packets, from 0 to 1
   double reorder = 0;
   double duplicate = 0;
   double corrupt = 0;
   bool silent = false;      // no packets are sent
-  bool wrong_size = false;  // packets are cut
-  int http_status = 0;      // status of each answer; 0: the proper one
+  bool wrong_size = false;  // packets are cut to half their size
+  int http_status = 0;      // status of each answer; 0: no fault
   int http_delay_ms = 0;
 
-  /// Sets the fields that the object names. Returns the error, or "".
+  /// Sets the fields that `change` names, and returns an empty text. If a name or a value is wrong,
+  /// sets no field and returns the error.
   std::string Merge(const nlohmann::json& change);
 };
 
 struct FaultCounts {
-  std::uint64_t sent = 0;  // lidar packets, duplicates included
+  std::uint64_t sent = 0;  // number of lidar packets, including duplicates
   std::uint64_t lost = 0;
   std::uint64_t reordered = 0;
   std::uint64_t duplicated = 0;
@@ -43,8 +44,8 @@ class FaultInjector {
   explicit FaultInjector(std::uint64_t seed) : random_(seed) {}
   /// Returns the packets to send in place of `packet`.
   std::vector<OutPacket> Apply(const Faults& faults, OutPacket packet);
-  /// Returns the packet that is held back to be reordered, if there is one. Call it at a stream's
-  /// end.
+  /// Returns the packet that was held back for reordering, if there is one. Must be called at the
+  /// end of a stream.
   std::vector<OutPacket> Finish();
   const FaultCounts& counts() const { return counts_; }
 
@@ -52,7 +53,7 @@ class FaultInjector {
   bool Chance(double probability);
 
   std::mt19937_64 random_;
-  std::optional<OutPacket> held_;  // sent after the next packet
+  std::optional<OutPacket> held_;  // held back, and sent after the next packet
   FaultCounts counts_;
 };
 

@@ -28,10 +28,11 @@ bool Flag(const HttpRequest& request, const char* name) {
   return value == "true" || value == "True" || value == "1";
 }
 
-/// Returns false for the paths under /replay/, which the sensor's faults do not affect.
+/// Returns true for a path of the sensor. Other paths begin with /replay/, and the sensor's faults
+/// do not affect them.
 bool IsSensorPath(const HttpRequest& request) { return request.path.rfind("/replay/", 0) != 0; }
 
-/// Parses "key value"; the value is JSON or a bare word.
+/// Parses "key value" to an object with this key. The value is JSON or a bare word.
 json ParseArguments(const std::string& text) {
   const std::size_t space = text.find(' ');
   if (space == std::string::npos) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sensor's HTTP API, as far as drivers use it, and a few paths of our own for faults.
+// The part of the sensor's HTTP API that drivers use, and some paths for faults.
 #pragma once
 #include <functional>
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace lidar::tools {
 
-/// Serves from threads of its own.
+/// Serves the following paths, from threads of its own.
 ///   GET  /api/v1/sensor/metadata              GET  /replay/stats
-///   GET  /api/v1/sensor/config?staging=       POST /replay/faults  (faults.h; merged)
+///   GET  /api/v1/sensor/config?staging=       POST /replay/faults  (sets fields of Faults)
 ///   POST /api/v1/sensor/config?staging=&reinit=&persist=
 ///   POST /replay/restart
 /// With `old_firmware`, the paths of firmware before 2.4 replace .../config.
@@ -22,7 +22,7 @@ class HttpApi {
     int port = 0;  // 0: any free one
     bool old_firmware = false;
   };
-  /// Throws std::runtime_error. The server's threads call `stats`.
+  /// The threads of the server call `stats`. Throws std::runtime_error if the server cannot listen.
   HttpApi(const Options& options, Sensor* sensor, std::function<std::string()> stats);
   ~HttpApi();
   HttpApi(const HttpApi&) = delete;

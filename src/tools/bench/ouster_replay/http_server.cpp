@@ -49,7 +49,7 @@ class HttpServer::Impl {
         delay_(std::move(delay)),
         context_(g_main_context_new()),
         loop_(g_main_loop_new(context_, FALSE)) {
-    // The server uses the thread's default context.
+    // The server uses the default context of the thread that makes the server.
     g_main_context_push_thread_default(context_);
     server_ = soup_server_new(nullptr, nullptr);
     soup_server_add_handler(server_, nullptr, OnRequest, this, nullptr);
@@ -74,7 +74,7 @@ class HttpServer::Impl {
     });
   }
   ~Impl() {
-    // Quits from within the loop: before it runs, a quit has no effect.
+    // Quits the loop by a callback of the loop, because a quit has no effect before the loop runs.
     g_main_context_invoke_full(
         context_, G_PRIORITY_DEFAULT,
         [](gpointer loop) -> gboolean {

@@ -13,23 +13,23 @@ struct HttpRequest {
   std::string path;
   std::string body;
   std::string peer;                          // address of the client
-  std::map<std::string, std::string> query;  // values are UTF-8, as in JSON
+  std::map<std::string, std::string> query;  // values are valid UTF-8, as JSON requires
 };
 
 struct HttpReply {
   int status = 200;
   std::string json;
-  std::string location;  // of a redirect
+  std::string location;  // address to which the client is redirected
 };
 
-/// Listens during its lifetime. Calls both functions in its thread.
+/// Listens from its construction to its destruction. Calls `handler` and `delay` in its own thread.
 class HttpServer {
  public:
   using Handler = std::function<HttpReply(const HttpRequest&)>;
-  /// Delay of a request's handling [ms]; other requests continue meanwhile.
+  /// Returns the time before a request is handled [ms]. Other requests are handled meanwhile.
   using Delay = std::function<unsigned(const HttpRequest&)>;
 
-  /// Port 0: any free one. Throws std::runtime_error if the port is taken.
+  /// `port` may be 0 for any free port. Throws std::runtime_error if the server cannot listen.
   HttpServer(const std::string& address, int port, Handler handler, Delay delay = nullptr);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

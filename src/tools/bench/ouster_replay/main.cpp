@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster-replay: an Ouster sensor in software.
+// ouster-replay: simulates an Ouster sensor.
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -33,7 +33,7 @@ ouster::Metadata LoadMetadata(const std::string& path) {
   return *std::move(metadata);
 }
 
-/// 0 leaves the serial number unchanged.
+/// Sets the serial number, unless `serial` is 0.
 void SetSerial(std::uint64_t serial, ouster::Metadata* metadata) {
   if (serial == 0) return;
   metadata->serial = serial;
@@ -53,7 +53,8 @@ ouster::Metadata FirstMetadata(const ReplayOptions& o) {
   return m;
 }
 
-/// Returns the columns within an azimuth window [millidegrees]; columns run against azimuth.
+/// Converts an azimuth window [millidegrees] to the columns within it. The azimuth decreases from
+/// one column to the next.
 ColumnWindow ToColumns(const json& window, std::uint32_t columns) {
   const auto start = window[0].get<double>() / 360e3;
   const auto end = window[1].get<double>() / 360e3;
@@ -63,8 +64,8 @@ ColumnWindow ToColumns(const json& window, std::uint32_t columns) {
   return {first % columns, (last + columns - first) % columns + 1};
 }
 
-/// Returns the metadata for a new `config`. Throws std::runtime_error if a recorded sensor would
-/// get another lidar_mode or udp_profile_lidar.
+/// Returns the metadata for a new `config`. Throws std::runtime_error if `config` would change the
+/// lidar_mode or the udp_profile_lidar of a capture.
 ouster::Metadata Rebuild(const ReplayOptions& options, const ouster::Metadata& first,
                          const json& config) {
   ouster::Metadata m = first;

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kLongest_s = 1e9;  // 64 bits of nanoseconds reach 9 times as far
+constexpr double kLongest_s = 1e9;  // times in 64-bit nanoseconds can be 9 times as long
 
 struct Text {
   std::string profile = "RNG19_RFL8_SIG16_NIR16";

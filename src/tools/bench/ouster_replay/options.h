@@ -10,7 +10,7 @@
 namespace lidar::tools {
 
 struct ReplayOptions {
-  std::string pcap;  // empty: synthesise
+  std::string pcap;  // empty: synthesise the packets
   std::string metadata;
   bool once = false;
   double speed = 1;
@@ -37,12 +37,12 @@ struct ReplayOptions {
     bool restart = false;
   };
   std::vector<Event> events;  // in order of time
-  std::string write_pcap;     // write a file instead of sending
+  std::string write_pcap;     // file to write instead of sending packets
   std::string write_metadata;
-  int scans = 10;  // in that file
+  int scans = 10;  // number of scans in that file
 };
 
-/// Exits the program with a message if the command line is wrong.
+/// Parses the command line. If it is wrong, exits the program with a message.
 ReplayOptions ParseReplayOptions(int argc, char** argv);
 
 }  // namespace lidar::tools

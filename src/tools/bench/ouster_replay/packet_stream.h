@@ -11,7 +11,7 @@
 namespace lidar::tools {
 
 struct OutPacket {
-  Duration due{};  // since the stream started
+  Duration due{};  // time to send the packet, since the stream started
   bool imu = false;
   std::vector<std::uint8_t> bytes;
 };
@@ -22,11 +22,11 @@ class PacketStream {
 
   struct Start {
     std::uint32_t init_id = 0;
-    std::uint64_t sensor_time_ns = 0;  // of the first column
+    std::uint64_t sensor_time_ns = 0;  // sensor time of the first column
   };
-  /// Starts from the first packet again, as after a boot.
+  /// Starts with the first packet again, as a sensor does after a boot.
   virtual void Restart(const Start& start) = 0;
-  /// Packets in order of `due`; nothing at the end.
+  /// Returns the next packet in the order of `due`, or nothing at the end of the stream.
   virtual std::optional<OutPacket> Next() = 0;
 };
 

@@ -14,18 +14,18 @@
 namespace lidar::tools {
 namespace {
 
-/// The changes to a recorded packet's sensor and time.
+/// The changes to make to a recorded packet.
 struct PacketPatch {
-  std::uint32_t init_id = 0;  // 0: as it is
-  std::uint64_t serial = 0;   // 0: as it is
+  std::uint32_t init_id = 0;  // 0: unchanged
+  std::uint64_t serial = 0;   // 0: unchanged
   std::uint32_t add_frames = 0;
-  std::uint64_t first_time_ns = 0;  // time of the recording's first valid column
-  std::uint64_t new_time_ns = 0;    // its new time
-  double speed = 1;                 // divides the time from the first column
+  std::uint64_t first_time_ns = 0;  // recorded time of the first valid column
+  std::uint64_t new_time_ns = 0;    // new time of this column
+  double speed = 1;                 // divides the time since this column
 };
 
 constexpr std::size_t kCrcSize = 8;
-constexpr std::size_t kLegacyFrameId = 10;  // in each column header
+constexpr std::size_t kLegacyFrameId = 10;  // offset in each column header
 
 std::uint64_t Get(const std::uint8_t* at, std::size_t n) {
   std::uint64_t v = 0;
@@ -37,14 +37,15 @@ void Put(std::uint8_t* at, std::uint64_t v, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<std::uint8_t>(v >> (8 * i));
 }
 
-/// Returns the time of the first valid column. Times of invalid columns mean nothing.
+/// Returns the time of the first valid column, because the time of an invalid column has no
+/// meaning.
 std::optional<std::uint64_t> TimeOf(const ouster::LidarPacket& packet) {
   for (std::uint32_t i = 0; i < packet.columns(); ++i)
     if (packet.Column(i).valid()) return packet.Column(i).timestamp;
   return std::nullopt;
 }
 
-/// Writes the new time in place of a recorded one.
+/// Replaces the recorded time at `at` by the new time.
 void PutTime(const PacketPatch& patch, std::uint8_t* at) {
   const double since_first =
       static_cast<double>(static_cast<std::int64_t>(Get(at, 8) - patch.first_time_ns));
@@ -54,7 +55,8 @@ void PutTime(const PacketPatch& patch, std::uint8_t* at) {
       8);
 }
 
-/// Lidar packets, and IMU packets of ACCEL32_GYRO32_NMEA, have the same header.
+/// Changes the header of a packet. Lidar packets and IMU packets of the profile ACCEL32_GYRO32_NMEA
+/// have the same header.
 void ApplyToHeader(const PacketPatch& patch, const ouster::PacketFormat& format,
                    std::uint8_t* bytes) {
   const auto& at = format.is_fusa() ? ouster::kFusaHeader : ouster::kStandardHeader;
@@ -64,7 +66,7 @@ void ApplyToHeader(const PacketPatch& patch, const ouster::PacketFormat& format,
   Put(bytes + at.frame_id, frame, at.frame_id_bytes);
 }
 
-/// `bytes` must have `format`.
+/// Changes a lidar packet. `bytes` must have the format `format`.
 void ApplyToLidar(const PacketPatch& patch, const ouster::PacketFormat& format,
                   std::uint8_t* bytes) {
   if (!format.is_legacy()) ApplyToHeader(patch, format, bytes);
@@ -76,7 +78,8 @@ void ApplyToLidar(const PacketPatch& patch, const ouster::PacketFormat& format,
   }
 }
 
-/// Calls `change`, and corrects a CRC that was right before. Without `has_crc` packets have no CRC.
+/// Calls `change` with the packet's bytes. If the CRC was right before, corrects it afterwards. If
+/// `has_crc` is false, the packet has no CRC.
 template <class Change>
 void KeepCrc(bool has_crc, std::vector<std::uint8_t>* packet, const Change& change) {
   std::uint8_t* bytes = packet->data();
@@ -121,8 +124,8 @@ PcapStream::PcapStream(const std::string& path, const ouster::Metadata& metadata
   first_time_ns_ = first_time.value_or(0);
   const std::uint64_t ids = format_.frame_id_modulus();
   scans_ = static_cast<std::uint32_t>((ids + last_frame - *first_frame) % ids) + 1;
-  // A round lasts a whole number of scans, so that its first scan follows the last scan of the
-  // round before.
+  // A round is one pass through the capture. It lasts a whole number of scans, so that its first
+  // scan follows the last scan of the round before.
   round_ = metadata.scan_period() * scans_;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A capture as a stream of packets, endless or not.
+// Reads a capture as a stream of packets, once or in an endless loop.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,9 +13,10 @@ class PcapStream : public PacketStream {
   struct Options {
     bool loop = true;
     double speed = 1;
-    std::uint64_t serial = 0;  // 0: as it is in the packets
+    std::uint64_t serial = 0;  // 0: as in the capture
   };
-  /// Holds the whole capture in memory, so that no disk delays it. Throws std::runtime_error.
+  /// Reads the whole capture into memory, so that no disk delays a packet. Throws
+  /// std::runtime_error if the capture cannot be read or has no packets of the sensor.
   PcapStream(const std::string& path, const ouster::Metadata& metadata, const Options& options);
 
   void Restart(const Start& start) override;
@@ -24,10 +25,10 @@ class PcapStream : public PacketStream {
  private:
   std::vector<OutPacket> packets_;
   ouster::PacketFormat format_;
-  std::vector<std::size_t> imu_times_;  // offsets in an IMU packet
+  std::vector<std::size_t> imu_times_;  // offsets of the times in an IMU packet
   bool imu_has_header_;
   Options options_;
-  Duration round_{};  // duration of the capture's scans
+  Duration round_{};  // duration of all scans of the capture
   std::uint32_t scans_ = 0;
   std::uint64_t first_time_ns_ = 0;
   Start start_;

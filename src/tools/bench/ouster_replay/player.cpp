@@ -10,7 +10,8 @@ namespace lidar::tools {
 namespace {
 
 constexpr Duration kTaiMinusUtc = std::chrono::seconds(37);
-constexpr Duration kRequestPoll = std::chrono::milliseconds(5);  // between checks
+// Interval between checks for requests.
+constexpr Duration kRequestPoll = std::chrono::milliseconds(5);
 
 }  // namespace
 
@@ -49,7 +50,7 @@ void Player::RunEvents(Time now) {
   }
 }
 
-/// Opens a socket with an address of the destination's family.
+/// Resolves the destination, and opens a socket with an address of the same family.
 void Player::SetDestination(const Sensor::Destination& to) {
   lidar_address_ = ResolveAddress(to.host + ":" + std::to_string(to.lidar_port), to.host);
   imu_address_ = ResolveAddress(to.host + ":" + std::to_string(to.imu_port), to.host);
@@ -81,7 +82,7 @@ void Player::CopyCounts() {
 std::optional<Time> Player::Pump(Time now) {
   RunEvents(now);
   if (auto metadata = sensor_.TakeRestart()) {
-    SendHeld(destination_);  // the held packet left before the restart
+    SendHeld(destination_);  // a held packet is sent before the restart
     boots_until_ = now + FromSeconds(options_.boot_s);
     Start(*metadata, boots_until_);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sends a sensor's packets when they are due.
+// Sends the packets of a simulated sensor when they are due.
 #pragma once
 #include <functional>
 #include <memory>
@@ -15,22 +15,23 @@
 
 namespace lidar::tools {
 
-/// Returns the reading of the sensor's clock at the time when it starts to scan.
+/// Returns the time on the sensor's clock when the sensor starts to scan.
 std::uint64_t ClockAtStart(const std::string& timestamp_mode, Time now);
 
 class Player {
  public:
   using MakeStream = std::function<std::unique_ptr<PacketStream>(const ouster::Metadata&)>;
 
-  /// Throws std::runtime_error.
+  /// Makes the first stream by `make_stream`. Throws std::runtime_error if that fails.
   Player(const ReplayOptions& options, const ouster::Metadata& metadata, Sensor* sensor,
          MakeStream make_stream);
 
-  /// Sends what is due; returns the time of the next call, or nothing at the end.
+  /// Sends the packets that are due. Returns the time of the next call, or nothing at the end of
+  /// the stream.
   std::optional<Time> Pump(Time now);
-  /// Sends the packet that is held back to be reordered, if there is one.
+  /// Sends the packet that was held back for reordering, if there is one.
   void Finish() { SendHeld(sensor_.destination()); }
-  /// Any thread may call this.
+  /// May be called from any thread.
   FaultCounts counts() const;
 
  private:
@@ -45,12 +46,12 @@ class Player {
   Sensor& sensor_;
   MakeStream make_stream_;
   std::unique_ptr<PacketStream> stream_;
-  std::optional<UdpSocket> socket_;  // once there is a destination
+  std::optional<UdpSocket> socket_;  // set once there is a destination
   Sensor::Destination destination_;
   Address lidar_address_;
   Address imu_address_;
-  Time began_{};   // of the program
-  Time origin_{};  // of the stream
+  Time began_{};   // time at which the player was made
+  Time origin_{};  // time 0 of the stream
   Time boots_until_{};
   std::optional<OutPacket> next_;
   std::size_t next_event_ = 0;

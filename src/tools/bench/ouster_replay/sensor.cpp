@@ -42,7 +42,8 @@ bool IsValid(const std::string& key, const json& value) {
   return value.is_string();
 }
 
-/// An empty text means no destination. May ask a name server.
+/// Returns true if packets can be sent to the address `value`. An empty text is allowed, and means
+/// that no packets are sent. May wait for a name server.
 bool IsDestination(const json& value) {
   if (!value.is_string()) return false;
   const auto host = value.get<std::string>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sensor's configuration, metadata and state. All threads may call it.
+// The configuration, the metadata and the state of a simulated sensor. May be used by any thread.
 #pragma once
 #include <array>
 #include <functional>
@@ -18,8 +18,8 @@ inline constexpr std::array<const char*, 3> kTimestampModes = {
 
 class Sensor {
  public:
-  /// The sensor's metadata after a change of its configuration; throws std::runtime_error for a
-  /// refused configuration.
+  /// Returns the sensor's metadata for a new `config`. Throws std::runtime_error if the sensor
+  /// refuses `config`.
   using Rebuild = std::function<ouster::Metadata(const nlohmann::json& config)>;
 
   Sensor(const ouster::Metadata& metadata, const std::string& destination, Rebuild rebuild);
@@ -27,10 +27,11 @@ class Sensor {
   std::string MetadataJson() const;
   std::string ConfigJson(bool staged) const;
   struct Change {
-    bool staging = false;  // takes effect at the next restart
+    bool staging = false;  // the change takes effect at the next restart
     bool restart = false;
   };
-  /// Returns the error, or "". `@auto` becomes `peer`.
+  /// Changes the configuration. Returns the error, or an empty text. The udp_dest "@auto" is
+  /// replaced by `peer`.
   std::string SetConfig(const nlohmann::json& config, const Change& change,
                         const std::string& peer);
   void Restart();
@@ -48,12 +49,13 @@ class Sensor {
   };
   Destination destination() const;
 
-  /// For the thread that sends: after a requested restart, returns the new metadata once.
+  /// Returns the new metadata, once, after a restart was requested. Only the thread that sends may
+  /// call this.
   std::optional<ouster::Metadata> TakeRestart();
   void SetRunning(bool running);
 
  private:
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards all members below
   ouster::Metadata metadata_;
   nlohmann::json active_;
   nlohmann::json staged_;

@@ -48,7 +48,7 @@ synth::ScannerConfig MakeScanner(const SynthOptions& options, const ouster::Meta
   return config;
 }
 
-/// "os1-128" -> "OS-1-128"
+/// Converts a model to a product line, such as "os1-128" to "OS-1-128".
 std::string ProductLine(const std::string& model) { return "OS-" + model.substr(2); }
 
 }  // namespace
@@ -90,13 +90,13 @@ void SynthStream::Restart(const Start& start) {
   start_ = start;
   writer_ = std::make_unique<ouster::PacketWriter>(
       metadata_.format, ouster::PacketIdentity{start.init_id, metadata_.serial});
-  // The car drives on: only the sensor's counters restart.
+  // The car continues its drive. Only the counters of the sensor restart.
   scan_ = 0;
   column_ = 0;
   imu_ = 0;
 }
 
-/// A packet leaves when its last column is done.
+/// Returns the time at which the next lidar packet is sent. Its last column is then complete.
 Duration SynthStream::LidarDue() const {
   return scanner_.ColumnTime(scan_, 0) + metadata_.scan_period() *
                                              (column_ + metadata_.format.columns_per_packet) /

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The packets of a sensor that drives through a synthetic world.
+// Makes the packets of a sensor that drives through a synthetic world.
 #pragma once
 #include <memory>
 #include <string>
@@ -17,7 +17,7 @@ struct SynthOptions {
   std::uint64_t seed = 1;
 };
 
-/// A format that a synthetic sensor can have.
+/// The packet format of a synthetic sensor.
 struct SynthFormat {
   std::string mode = "1024x10";
   ouster::Profile profile = ouster::Profile::kRng19Rfl8Sig16Nir16;

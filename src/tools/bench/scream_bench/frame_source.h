@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A media source that obeys its target exactly: frames of RTP packets.
+// A media source whose bitrate follows the target exactly. It makes frames of RTP packets.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,13 +12,13 @@
 
 namespace lidar::tools {
 
-/// Sizes of frames whose sum follows the bitrate, despite rounding and jitter.
+/// Computes the sizes of frames. Their sum follows the bitrate despite rounding and jitter.
 class FrameSizes {
  public:
   FrameSizes(double fps, double jitter_percent)
       : period_(FromSeconds(1 / fps)), jitter_(jitter_percent / 100) {}
 
-  /// Payload of the next frame.
+  /// Returns the size of the next frame's payload.
   DataSize Next(DataRate rate);
   Duration period() const { return period_; }
 
@@ -26,10 +26,11 @@ class FrameSizes {
   Duration period_;
   double jitter_;
   double carry_bytes_ = 0;
-  std::minstd_rand random_;  // the same frames in every run
+  std::minstd_rand random_;  // without a seed, so that every run has the same frames
 };
 
-/// Cuts frames into RTP packets of one stream: SSRC 100, payload type 96, sequence from 0.
+/// Divides frames into the RTP packets of one stream, which has SSRC 100, payload type 96 and
+/// sequence numbers from 0.
 class FramePacketizer {
  public:
   static constexpr std::uint32_t kSsrc = 100;
@@ -38,8 +39,8 @@ class FramePacketizer {
 
   explicit FramePacketizer(std::uint32_t mtu) : mtu_(mtu) {}
 
-  /// Returns packets with `payload` bytes in all; none for an empty frame. The last has the marker.
-  /// `created`: Unix time, from which the RTP timestamp comes.
+  /// Returns packets with `payload` bytes in all, or none for an empty frame. The last packet has
+  /// the marker. The RTP timestamp is computed from `created`, which is a Unix time.
   gst::BufferListPtr Packetize(DataSize payload, Duration created, GstClockTime pts);
 
  private:
@@ -47,7 +48,7 @@ class FramePacketizer {
   std::uint16_t next_sequence_ = 0;
 };
 
-/// RTP timestamp (90 kHz) of a Unix time.
+/// Converts a Unix time to an RTP timestamp (90 kHz).
 inline std::uint32_t RtpTimestamp(Duration unix_time) {
   constexpr std::int64_t kBillion = 1'000'000'000;
   const std::int64_t s = unix_time.count() / kBillion;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMaxBps = 4e9;
 
-/// A bitrate in bit/s; "10k" and "20M" are powers of 1000.
+/// Adds an option for a bitrate in bit/s. The suffixes k, M and G are powers of 1000.
 CLI::Option* AddBitrate(CLI::App* app, const char* name, DataRate* rate, const char* help) {
   const auto set = [rate](const double& bps) { *rate = DataRate::BitsPerSecond(bps); };
   return app->add_option_function<double>(name, set, help)

@@ -20,14 +20,14 @@ struct BenchTxOptions {
   DataRate max_bitrate = DataRate::BitsPerSecond(200e6);
   std::string ecn = "ect1";
   double frame_jitter_percent = 0;
-  std::uint32_t mtu = 1200;  // bytes of RTP packet
+  std::uint32_t mtu = 1200;  // largest RTP packet [bytes]
   std::string log;
 };
 
 struct BenchRxOptions {
   std::uint16_t port = 0;
   std::string address;
-  std::string feedback;  // HOST:PORT; empty: where the media comes from
+  std::string feedback;  // HOST:PORT; empty: the source of the media
   std::string num_reports = "count";
   std::string log;
 };
@@ -40,7 +40,8 @@ struct BenchOptions {
   std::string summary;  // JSON file
 };
 
-/// Exits the program itself for --help and for wrong usage (code 2).
+/// Parses the command line. Exits the program after --help, and with code 2 if the options are
+/// wrong.
 BenchOptions ParseBenchOptions(int argc, char** argv);
 
 }  // namespace lidar::tools

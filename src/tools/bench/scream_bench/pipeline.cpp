@@ -23,7 +23,7 @@ struct Runner {
   int result = 0;
 };
 
-/// The first call lets queues drain, and the second stops at once.
+/// Ends the run. The first call lets the queues drain, and a second call stops at once.
 void End(Runner* runner) {
   if (runner->ending) {
     g_main_loop_quit(runner->loop.get());

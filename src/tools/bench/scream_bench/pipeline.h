@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs a pipeline until its end, an error, SIGINT or a duration; calls back once a second.
+// Runs a pipeline until EOS, an error, a signal or the end of a duration. Calls a function every
+// 100 ms meanwhile.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,15 +13,14 @@
 
 namespace lidar::tools {
 
-/// Throws std::runtime_error if the pads don't fit.
+/// Links two pads. Throws std::runtime_error if they cannot be linked.
 void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char* to_pad);
 
-/// Returns 0, or 1 after an error. Prints the error with the prefix `program`. `end` makes the
-/// source send EOS. The pipeline still plays on return.
+/// Runs a pipeline. Returns 0, or 1 after an error, which is printed after the prefix `program`.
+/// `end` must make the source send EOS. The pipeline is still playing when this function returns.
 int RunPipeline(GstElement* pipeline, const std::string& program, Duration duration,
                 const std::function<void()>& every_100_ms, const std::function<void()>& end);
 
-/// The Unix time now.
 Duration UnixNow();
 
 }  // namespace lidar::tools

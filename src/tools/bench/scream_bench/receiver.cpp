@@ -26,7 +26,7 @@
 namespace lidar::tools {
 namespace {
 
-/// A greater age means that the sender's RTP timestamps are not Unix time.
+/// If the first frame is older than this, the sender's RTP timestamps are not Unix time.
 constexpr Duration kPlausibleAge = std::chrono::seconds{60};
 
 Duration FromTicks(std::int32_t ticks) {
@@ -39,23 +39,25 @@ struct ReceivedPacket {
   std::uint32_t timestamp = 0;  // 90 kHz
   bool marker = false;
   bool is_ce = false;
-  DataSize size;          // on the wire
-  Duration unix_time{0};  // of its arrival
+  DataSize size;          // size on the wire
+  Duration unix_time{0};  // time of arrival
 };
 
-/// Age of frames: from their creation to the arrival of their last packet.
+/// Measures the ages of frames. The age is the time from a frame's creation to the arrival of its
+/// last packet.
 class FrameMeter {
  public:
-  /// Returns the age of the frame that this packet ends, if it ends one.
+  /// Returns the age of the frame if this is its last packet, and otherwise nothing.
   std::optional<Duration> OnPacket(const ReceivedPacket& packet);
 
   std::uint64_t packets() const { return packets_; }
   std::uint64_t ce_packets() const { return ce_packets_; }
   DataSize received() const { return received_; }
-  /// Number of missing packets between the oldest and the newest.
+  /// Returns the number of missing packets between the oldest and the newest received packet.
   std::uint64_t lost() const;
   std::uint64_t frames() const { return ages_ms_.count(); }
-  /// Returns true if the sender's clock differs. Ages are then relative to the smallest one.
+  /// Returns true if the sender's clock differs from the receiver's clock. Ages are then relative
+  /// to the smallest age.
   bool is_relative() const { return offset_ != Duration{0}; }
   const Distribution& ages_ms() const { return ages_ms_; }
 
@@ -99,7 +101,7 @@ constexpr DataSize kIpUdp = DataSize::Bytes(28);
 constexpr const char* kCaps =
     "application/x-rtp,media=application,encoding-name=X-SCREAM-BENCH,clock-rate=90000";
 
-/// Throws std::runtime_error.
+/// Parses HOST:PORT. Throws std::runtime_error if the text is wrong.
 std::pair<std::string, gint> ParseFeedback(const std::string& text) {
   const HostPort to = Split(text, "");
   guint64 port = 0;
@@ -124,9 +126,9 @@ class Receiver {
   const BenchOptions& options_;
   gst::ElementPtr pipeline_;
   OutputFile log_;
-  std::mutex mutex_;  // guards the rest, which the streaming thread writes
+  std::mutex mutex_;  // guards the members below, which the streaming thread writes
   FrameMeter meter_;
-  Distribution second_;  // ages [ms] since the last line
+  Distribution second_;  // ages of the frames since the last line [ms]
   DataSize line_bytes_;
   Duration first_{0};
   Duration last_{0};
@@ -139,7 +141,8 @@ Receiver::Receiver(const BenchOptions& options)
   Build();
 }
 
-/// Uses screamsrc, or its parts if feedback goes to another address.
+/// Makes the pipeline. Uses screamsrc, or the elements that it consists of if feedback goes to
+/// another address.
 void Receiver::Build() {
   pipeline_.reset(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new("scream-bench-rx"))));
   const BenchRxOptions& o = options_.rx;
@@ -160,7 +163,8 @@ void Receiver::Build() {
     gst_util_set_object_arg(G_OBJECT(rx), "num-reports", o.num_reports.c_str());
     GstElement* back = AddElement(bin, "ecnudpsink", "feedback");
     g_object_set(back, "host", host.c_str(), "port", port, "sync", FALSE, "async", FALSE, nullptr);
-    GST_OBJECT_FLAGS(back) &= ~guint32{GST_ELEMENT_FLAG_SINK};  // EOS of the media ends the run
+    // Only EOS of the media ends the run.
+    GST_OBJECT_FLAGS(back) &= ~guint32{GST_ELEMENT_FLAG_SINK};
     LinkPads(source, "src", rx, "sink");
     LinkPads(rx, "src", sink, "sink");
     LinkPads(rx, "rtcp_src", back, "sink");
@@ -221,7 +225,8 @@ void Receiver::Tick() {
   line_since_ = now;
 }
 
-/// Prints a line about the time since the last one: a second or, until the next check, a bit more.
+/// Prints a line about the time since the last line. This is a second, or slightly more because the
+/// time is checked at intervals.
 void Receiver::PrintLine(Duration now) {
   std::printf(
       "%7.1f s  received %8.3f Mbit/s  frame age p50 %6.1f p95 %6.1f ms%s  CE %llu  lost %llu\n",

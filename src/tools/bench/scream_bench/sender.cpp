@@ -18,7 +18,7 @@
 namespace lidar::tools {
 namespace {
 
-/// A number of `stats`, whatever its type; 0 if it is missing.
+/// Returns a number of `stats` as a double, whatever its type is, or 0 if it is missing.
 double Number(const GstStructure* stats, const char* name) {
   const GValue* value = gst_structure_get_value(stats, name);
   if (value == nullptr || !g_value_type_transformable(G_VALUE_TYPE(value), G_TYPE_DOUBLE)) return 0;
@@ -75,8 +75,8 @@ Sender::~Sender() {
   gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
 }
 
-/// Lets the thread end the stream. An EOS event to the pipeline would race with its lists of
-/// buffers, because basesrc of GStreamer 1.22 takes a list for a single buffer.
+/// Makes the thread end the stream, and waits for the thread. An EOS event to the pipeline would
+/// race with the buffer lists, because basesrc of GStreamer 1.22 takes a list for a single buffer.
 void Sender::StopSending() {
   stop_ = true;
   if (thread_.joinable()) thread_.join();

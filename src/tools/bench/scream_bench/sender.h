@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// scream-bench tx.
+// The command "scream-bench tx", which sends frames.
 #pragma once
 #include "src/tools/bench/scream_bench/options.h"
 
 namespace lidar::tools {
 
-/// Returns the program's exit code. Throws std::runtime_error with a text for the user.
+/// Runs the sender and returns the exit code of the program. Throws std::runtime_error with a text
+/// for the user.
 int RunSender(const BenchOptions& options);
 
 }  // namespace lidar::tools
