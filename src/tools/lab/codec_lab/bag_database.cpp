@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The messages of a database of rosbag2 (rosbag2_storage_sqlite3): the tables `topics` and
-// `messages`. The file may hold any bytes and any schema.
+// Reads the messages of a rosbag2 database (rosbag2_storage_sqlite3) from its tables `topics` and
+// `messages`. The file is untrusted: it may contain any bytes and have any schema.
 #include <sqlite3.h>
 
 #include <array>
@@ -13,12 +13,12 @@
 namespace lidar::tools {
 namespace {
 
-constexpr int kMostBytes = 128 << 20;    // of a message
-constexpr int kMostBytesOfAName = 4096;  // or of a statement of the schema
+constexpr int kMostBytes = 128 << 20;    // most bytes of a message
+constexpr int kMostBytesOfAName = 4096;  // most bytes of a name or of a statement of the schema
 constexpr std::size_t kMostTopics = 10'000;
 constexpr std::size_t kLongestName = 1024;
-/// Most instructions of SQLite to read the schema or the topics. A damaged schema may repeat its
-/// pages on each of 20 levels, so that reading takes almost for ever.
+/// The most instructions that SQLite may run to read the schema or the topics. A damaged schema may
+/// use the same pages on each of 20 levels, so that reading it takes almost for ever.
 constexpr int kMostInstructions = 500'000;
 
 struct Closer {
@@ -30,12 +30,12 @@ using Statement = std::unique_ptr<sqlite3_stmt, Closer>;
 class BagDatabase final : public MessageReader {
  public:
   explicit BagDatabase(const std::string& path) : path_(path) {
-    // Opening a pipe would wait for its writer.
+    // Refuses pipes, because opening a pipe would wait for its writer.
     if (!std::filesystem::is_regular_file(path)) Fail("is not a regular file");
     const std::uint64_t unfinished = SizeOf(path + "-wal") + SizeOf(path + "-journal");
     size_ = std::filesystem::file_size(path) + unfinished;
-    // An immutable database is read without other files. Rows in -wal need an index, which is
-    // another file unless the locking mode is exclusive (below).
+    // An immutable database is read without any other file. Rows in the -wal file need an index,
+    // which is another file unless the locking mode is exclusive. This mode is set below.
     const std::string uri = UriOf(path) + (unfinished > 0 ? "?vfs=unix-none" : "?immutable=1");
     sqlite3* database = nullptr;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI;
@@ -43,7 +43,7 @@ class BagDatabase final : public MessageReader {
     database_.reset(database);
     if (result != SQLITE_OK) FailWithItsReason();
     sqlite3_db_config(database, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
-    // Views and virtual tables may compute rows without end.
+    // Disables views and virtual tables, because they may compute rows without end.
     sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -59,15 +59,15 @@ class BagDatabase final : public MessageReader {
 
   std::vector<RecordedTopic> Topics() const override { return topics_; }
 
-  /// Next() loads only the messages that it returns.
+  /// Selects the topic of the messages that Next() returns. Data of other messages are not loaded.
   void Select(const std::string& topic) override {
     std::string ids;
     for (std::size_t i = 0; i < topics_.size(); ++i)
       if (topics_[i].name == topic) ids += (ids.empty() ? "" : ",") + std::to_string(ids_[i]);
     sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, kMostBytes);
     sqlite3_progress_handler(database_.get(), 0, nullptr, nullptr);
-    // Skips rows with text in place of a number: SQLite would read the text to reach the data, and
-    // a crafted file may use the same pages as the text of many rows.
+    // Skips rows that have a text in place of a number. SQLite would have to read the text to reach
+    // the data, and a crafted file may use the same pages for the texts of many rows.
     const std::string numbers =
         "typeof(id) IN ('integer', 'null') AND typeof(topic_id) = 'integer' AND "
         "typeof(timestamp) = 'integer'";
@@ -110,8 +110,9 @@ class BagDatabase final : public MessageReader {
     return uri;
   }
 
-  /// Requires `names` as the first columns, because SQLite must pass any column that lies before
-  /// the columns to read. Refuses generated columns, which are computed when they are read.
+  /// Requires that `names` are the first columns of the table, because SQLite must read past any
+  /// column that lies before the columns to read. Refuses generated columns, because they are
+  /// computed when they are read.
   void RequireColumns(const std::string& table, const std::array<const char*, 4>& names) {
     const Statement columns = Prepare("PRAGMA table_xinfo(" + table + ")");
     int result = SQLITE_ROW;
@@ -126,9 +127,9 @@ class BagDatabase final : public MessageReader {
     if (result != SQLITE_DONE) FailWithItsReason();
   }
 
-  /// Rows in the order of the file, which is the order of recording. NOT INDEXED avoids a sort,
-  /// which would hold all rows in memory. Column 0 is the number of the row, column 1 the size of
-  /// its data in bytes.
+  /// The rows of a table in the order of the file, which is the order of recording. The statement
+  /// says NOT INDEXED to avoid a sort, which would hold all rows in memory. Its column 0 is the
+  /// number of the row, and its column 1 is the size of the row's data in bytes.
   struct Rows {
     Statement statement;
     std::int64_t last_row = INT64_MIN;
@@ -161,8 +162,8 @@ class BagDatabase final : public MessageReader {
     return Statement(statement);
   }
 
-  /// Returns false at the end. Refuses a damaged file whose pages form a loop: its rows have no
-  /// end.
+  /// Steps to the next row. Returns false at the end. Refuses a damaged file whose pages form a
+  /// loop, because its rows have no end.
   bool Step(Rows* rows) {
     sqlite3_stmt* row = rows->statement.get();
     const int result = sqlite3_step(row);
@@ -195,10 +196,10 @@ class BagDatabase final : public MessageReader {
   }
 
   std::string path_;
-  std::uint64_t size_ = 0;  // with the files of an unfinished write
+  std::uint64_t size_ = 0;  // size of the file, including the files of an unfinished write
   std::unique_ptr<sqlite3, Closer> database_;
   std::vector<RecordedTopic> topics_;
-  std::vector<std::int64_t> ids_;  // of each topic
+  std::vector<std::int64_t> ids_;  // id of each topic
   Rows messages_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds in files: KITTI's .bin, PCD and PLY.
+// Reads clouds from files: KITTI's .bin, PCD and PLY.
 #pragma once
 #include <string>
 
@@ -7,9 +7,10 @@
 
 namespace lidar::tools {
 
-/// Decides by the end of the name.
+/// Returns true if the extension of the name is that of a cloud.
 bool IsCloudFile(const std::string& path);
-/// Points that are all zero or not finite are left out. Throws std::runtime_error.
+/// Reads a cloud. Leaves out points that are not finite, and points whose coordinates are all 0.
+/// Throws std::runtime_error if the file cannot be read.
 Scan ReadCloud(const std::string& path);
 
 }  // namespace lidar::tools

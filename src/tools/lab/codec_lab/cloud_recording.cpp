@@ -15,13 +15,13 @@
 namespace lidar::tools {
 namespace {
 
-/// Duration of a scan without usable stamps.
+/// The duration of a scan if the stamps of the scans do not give it.
 constexpr Duration kUsualPeriod = std::chrono::milliseconds(100);
 constexpr Duration kLongestPeriod = std::chrono::seconds(1);
 constexpr std::uint32_t kMostRings = 1024;
 constexpr std::uint64_t kLatest_ns = INT64_MAX;
 
-/// The topics with messages of one type.
+/// Returns the names of the topics that have messages of this type.
 std::set<std::string> TopicsOf(const MessageReader& reader, std::string_view type) {
   std::set<std::string> topics;
   for (const RecordedTopic& topic : reader.Topics())
@@ -88,7 +88,8 @@ class Recording final : public ScanStream {
   }
 
  private:
-  /// A scan lasts until the next one, unless scans are missing.
+  /// Sets the period to the time from `next_` to `after_`. Keeps the old period if this time is so
+  /// long that scans must be missing.
   void UpdatePeriod() {
     if (!next_ || !after_ || after_->start <= next_->start) return;
     const Duration period = after_->start - next_->start;
@@ -121,7 +122,7 @@ class Recording final : public ScanStream {
   }
 
   bool TakePoints(const cdr::PointCloud2& cloud, Scan* scan) {
-    // The claimed size is checked before anything is allocated.
+    // Checks the claimed size before any memory is allocated for it.
     if (!cdr::RowStride(cloud)) {
       why_ = "the length of a cloud's data does not match its width and height";
       return false;
@@ -140,7 +141,8 @@ class Recording final : public ScanStream {
     return true;
   }
 
-  /// Rows of an organised cloud are beams, and its columns are sampled one after the other.
+  /// Adds the points of the converted cloud. In an organised cloud, each row belongs to one beam,
+  /// and the columns were sampled one after the other.
   void AddPoints(std::uint32_t width, std::uint32_t height, Scan* scan) const {
     const PointFields& fields = converter_->points().fields;
     const NumberAt x{fields.Find("x")}, y{fields.Find("y")}, z{fields.Find("z")};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds in recordings: PointCloud2 messages of MCAP files and of bags.
+// Reads clouds from recordings. They are PointCloud2 messages in MCAP files and in bags.
 #pragma once
 #include <memory>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace lidar::tools {
 
-/// The clouds of `topic`; empty: of the only topic with clouds. A message that is damaged is left
-/// out. Throws std::runtime_error with a message for the user.
+/// Opens the clouds of `topic`. If `topic` is empty, opens those of the only topic that has clouds.
+/// Leaves out damaged messages. Throws std::runtime_error with a message for the user.
 std::unique_ptr<ScanStream> OpenRecording(const std::string& path, const std::string& topic);
 
 }  // namespace lidar::tools

@@ -39,7 +39,8 @@ bool IsReturn(const float* p) {
   return p[0] != 0 || p[1] != 0 || p[2] != 0;
 }
 
-/// Phases ascend within a beam, so a new beam begins where they fall.
+/// Returns the beam of each point. Phases ascend within a beam, so a new beam begins where the
+/// phase falls. Returns an empty list if there would be too many beams.
 std::vector<std::uint16_t> RingsOfPhases(const std::vector<float>& phases) {
   std::vector<std::uint16_t> rings;
   std::uint16_t ring = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The messages of an MCAP file. A damaged part of it is left out.
+// Reads the messages of an MCAP file. Leaves out the damaged parts of the file.
 #include <stdexcept>
 #include <utility>
 

@@ -13,7 +13,8 @@ std::string ExtensionOf(const std::string& path) {
   return std::filesystem::path(path).extension().string();
 }
 
-/// Parts in the order of their numbers: `drive_10` follows `drive_9`.
+/// Returns the parts of a recording in the order of their numbers, so that `drive_10` follows
+/// `drive_9`.
 std::vector<std::string> PartsOf(const std::string& folder) {
   std::vector<std::string> parts;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -28,7 +29,7 @@ std::vector<std::string> PartsOf(const std::string& folder) {
   return parts;
 }
 
-/// Reads one part at a time.
+/// Reads the parts of a recording one after another.
 class BagFolder final : public MessageReader {
  public:
   explicit BagFolder(const std::string& folder) : parts_(PartsOf(folder)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages of recordings, in CDR as ROS 2 writes them.
+// Reads messages from recordings. The messages are in CDR, as ROS 2 writes them.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,25 +21,26 @@ struct RecordedMessage {
   ByteView data;  // valid until the reader's next call
 };
 
-/// All functions throw std::runtime_error with a message for the user.
+/// Reads the messages of a recording. All functions throw std::runtime_error with a message for the
+/// user.
 class MessageReader {
  public:
   virtual ~MessageReader() = default;
-  /// Topics with CDR messages. A topic may be listed more than once.
+  /// Returns the topics that have CDR messages. A topic may be listed more than once.
   virtual std::vector<RecordedTopic> Topics() const = 0;
-  /// Makes Next() return the messages of this topic, from the first on.
+  /// Makes Next() return the messages of this topic, beginning with the first one.
   virtual void Select(const std::string& topic) = 0;
-  /// Returns nothing at the end, or without a selected topic.
+  /// Returns the next message. Returns nothing at the end, or if no topic is selected.
   virtual std::optional<RecordedMessage> Next() = 0;
 };
 
 std::unique_ptr<MessageReader> OpenMcap(const std::string& path);
-/// The storage "sqlite3" of ROS 2.
+/// Opens a database of the storage "sqlite3" of ROS 2.
 std::unique_ptr<MessageReader> OpenBagDatabase(const std::string& path);
 
 bool IsRecordingFile(const std::string& path);
-/// Opens an MCAP file, a database, or a folder with parts of either kind, as `ros2 bag record`
-/// numbers them.
+/// Opens an MCAP file, a database, or a folder. The folder contains the parts of a recording, which
+/// are all of one of these kinds and have the numbers that `ros2 bag record` gives them.
 std::unique_ptr<MessageReader> OpenMessages(const std::string& path);
 
 }  // namespace lidar::tools

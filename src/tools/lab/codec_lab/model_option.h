@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The model file that a command line names.
+// Loads the model file that a command line names.
 #pragma once
 #include <string>
 
@@ -7,9 +7,10 @@
 
 namespace lidar::tools {
 
-/// The built-in file if `path` is empty. Throws std::runtime_error.
+/// Loads the model file, or the built-in one if `path` is empty. Throws std::runtime_error if the
+/// file cannot be read or is wrong.
 rate::ModelFile LoadModelFile(const std::string& path);
-/// Throws if the file has no such model.
+/// Makes a model of the given kind. Throws std::runtime_error if the file has no such model.
 std::unique_ptr<rate::SizeModel> MakeModelOrThrow(const rate::ModelFile& file,
                                                   rate::RateModel kind);
 

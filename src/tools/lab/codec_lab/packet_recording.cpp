@@ -18,7 +18,7 @@ constexpr std::uint32_t kColumnsPerPacket = 16;
 constexpr std::uint32_t kMaxRangeMm = (1U << 19) - 1;
 constexpr std::uint16_t kLidarPort = 7502;
 
-/// Two blocks of 32 beams, each evenly spaced.
+/// Returns the beams of a Velodyne HDL-64E. They are two blocks of 32 beams, each evenly spaced.
 std::vector<Beam> Hdl64Beams() {
   std::vector<Beam> beams;
   for (int i = 0; i < 32; ++i) beams.push_back({0, 2.0 - i * 10.33 / 31, 0});
@@ -26,8 +26,8 @@ std::vector<Beam> Hdl64Beams() {
   return beams;
 }
 
-/// Returns the beam whose altitude is nearest, or -1 for a point outside by more than a beam's
-/// spacing.
+/// Returns the beam whose altitude is nearest. Returns -1 if it is further away than the spacing
+/// between beams.
 int NearestBeam(const std::vector<Beam>& beams, double altitude_deg) {
   const auto below = std::lower_bound(beams.begin(), beams.end(), altitude_deg,
                                       [](const Beam& b, double a) { return b.altitude_deg > a; });
@@ -85,7 +85,7 @@ Scan ToRangeImage(const Scan& scan, const std::shared_ptr<const ScanGeometry>& g
     const double range_mm = std::round(1e3 * std::sqrt(x * x + y * y + z * z));
     const int beam = NearestBeam(model.beams, std::atan2(z, std::hypot(x, y)) * kDegreesPerRadian);
     if (beam < 0 || range_mm < 1 || range_mm > kMaxRangeMm) continue;
-    // Columns run against azimuth and start at -x.
+    // The azimuth decreases from one column to the next. Column 0 is at -x.
     const double turn = 0.5 - std::atan2(y, x) / (2 * kPi);
     const auto column = static_cast<std::uint32_t>(std::lround(turn * columns)) % columns;
     const std::size_t at = static_cast<std::size_t>(beam) * columns + column;
@@ -128,7 +128,7 @@ void WriteCapture(const ScanSet& set, const ouster::Metadata& m, const std::stri
   };
   for (std::size_t s = 0; s < set.scans.size(); ++s) {
     const Scan& scan = set.scans[s];
-    // KITTI's intensities end at 1, Ouster's at 255.
+    // The greatest intensity is 1 in KITTI's files, and 255 in Ouster's packets.
     const float brightest = scan.intensity.empty()
                                 ? 0
                                 : *std::max_element(scan.intensity.begin(), scan.intensity.end());

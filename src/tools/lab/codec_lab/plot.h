@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// CSV files and the plots of them, drawn by gnuplot.
+// Writes CSV files, and draws plots with gnuplot.
 #pragma once
 #include <string>
 
@@ -7,24 +7,25 @@
 
 namespace lidar::tools {
 
-/// Throws std::runtime_error if the file cannot be written.
+/// A CSV file to which a program writes. Throws std::runtime_error if the file cannot be written.
 class CsvFile {
  public:
-  /// An empty path writes nothing.
+  /// If `path` is empty, nothing is written.
   CsvFile(const std::string& path, const std::string& header);
   void Row(const std::string& row);
-  /// Call it at the end: a full disk shows up here.
+  /// Closes the file. Must be called at the end, because a full disk may be noticed only here.
   void Close();
 
  private:
-  std::string header_;  // empty once it was written with the first row
+  std::string header_;  // empty after it was written with the first row
   OutputFile file_;
 };
 
-/// Runs `commands` after the settings for a PNG at `png`. Throws if gnuplot is missing or fails.
+/// Runs gnuplot with `commands`, after settings for the PNG file `png`. Throws std::runtime_error
+/// if gnuplot is missing or fails.
 void Plot(const std::string& png, const std::string& commands);
 
-/// printf into a string.
+/// Formats text as printf does, and returns it.
 std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 }  // namespace lidar::tools

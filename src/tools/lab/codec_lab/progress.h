@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A line on standard error with the progress of long work.
+// Shows the progress of long work on standard error.
 #pragma once
 #include <unistd.h>
 
@@ -9,7 +9,8 @@
 
 namespace lidar::tools {
 
-/// Draws only if standard error is a terminal.
+/// Returns a function that shows which share of the work is done, from 0 to 1. It shows nothing
+/// unless standard error is a terminal.
 inline std::function<void(double)> ProgressBar(const std::string& what) {
   if (isatty(STDERR_FILENO) == 0) return [](double) {};
   return [what, shown = -1](double done) mutable {

@@ -11,7 +11,7 @@
 
 namespace lidar::tools {
 
-/// Beams of a sensor, with what is needed to turn ranges into points.
+/// The beams of a sensor, and the projection that converts ranges to points.
 struct ScanGeometry {
   explicit ScanGeometry(SensorModel m) : model(std::move(m)), projection(model) {}
   SensorModel model;
@@ -19,16 +19,16 @@ struct ScanGeometry {
 };
 
 struct Scan {
-  std::shared_ptr<const ScanGeometry> geometry;  // null: a cloud without order
-  std::vector<std::uint32_t> ranges;             // mm, beam by beam; only with geometry
-  std::vector<float> xyz;                        // m; only without geometry
-  std::vector<float> intensity;                  // of every range or point; may be empty
-  std::vector<std::uint16_t> rings;              // beam of every point; only without geometry
+  std::shared_ptr<const ScanGeometry> geometry;  // null: the cloud is not organised
+  std::vector<std::uint32_t> ranges;             // [mm], beam by beam; only with `geometry`
+  std::vector<float> xyz;                        // [m]; only without `geometry`
+  std::vector<float> intensity;                  // of each range or point; may be empty
+  std::vector<std::uint16_t> rings;              // beam of each point; only without `geometry`
   std::vector<float> phases;  // time of each point in the scan, 0 to 1; may be empty
   bool organised() const { return geometry != nullptr; }
 };
 
-/// Consecutive scans of one capture, folder of files or synthetic drive.
+/// Consecutive scans of a capture, of a folder of files, or of a synthetic drive.
 struct ScanSet {
   std::string name;
   double scans_per_second = 10;
@@ -41,7 +41,7 @@ struct SliceOf {
   std::uint32_t count = 1;
 };
 
-/// Columns of a slice; `count` must divide the columns of a scan.
+/// Returns the columns of a slice. `count` must divide the number of columns in a scan.
 ColumnWindow WindowOf(const Scan& scan, SliceOf slice);
 
 }  // namespace lidar::tools

@@ -7,7 +7,7 @@
 namespace lidar::tools {
 namespace {
 
-constexpr int kBurst = 3;  // scans
+constexpr int kBurst = 3;  // number of consecutive scans that are lost together
 constexpr Duration kBeforeTheGap = std::chrono::seconds(10);
 
 void KeepBeams(unsigned every, Scan* scan) {
@@ -50,7 +50,8 @@ class FaultyScans final : public ScanStream {
     const Duration after = since_first - kBeforeTheGap;
     if (after >= Duration{0} && after < FromSeconds(faults_.gap_s)) return true;
     if (left_of_burst_ > 0) return left_of_burst_-- > 0;
-    // Chance that a burst begins, so that bursts lose `lost_share` of all scans.
+    // The chance that a burst begins at this scan. It makes the bursts lose `lost_share` of all
+    // scans.
     const double begins =
         faults_.lost_share / (kBurst * (1 - faults_.lost_share) + faults_.lost_share);
     const double drawn = static_cast<double>(random_()) / static_cast<double>(random_.max());

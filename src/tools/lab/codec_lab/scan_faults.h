@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Faults of a network or a poorer sensor in the scans of a source.
+// Removes scans and beams from a source, as a faulty network or a poorer sensor would.
 #pragma once
 #include <memory>
 
@@ -8,14 +8,14 @@
 namespace lidar::tools {
 
 struct ScanFaults {
-  double lost_share = 0;    // of the scans, three at a time
-  double gap_s = 0;         // once, ten seconds after the first scan
-  unsigned every_beam = 1;  // 2: half of the beams
-  unsigned every_scan = 1;  // 5: every fifth scan, 2 of 10 a second
+  double lost_share = 0;    // share of the scans that are lost, three at a time
+  double gap_s = 0;         // duration of a single gap, ten seconds after the first scan
+  unsigned every_beam = 1;  // 2: keeps every second beam
+  unsigned every_scan = 1;  // 5: keeps every fifth scan
   bool any() const { return lost_share > 0 || gap_s > 0 || every_beam > 1 || every_scan > 1; }
 };
 
-/// The remaining scans of `scans`. Deterministic.
+/// Returns the scans that remain of `scans` with the faults. Deterministic.
 std::unique_ptr<ScanStream> WithFaults(std::unique_ptr<ScanStream> scans, const ScanFaults& faults);
 
 }  // namespace lidar::tools

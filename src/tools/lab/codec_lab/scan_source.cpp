@@ -43,7 +43,7 @@ ouster::Metadata ReadMetadata(const std::string& path) {
   return *metadata;
 }
 
-/// Converts a slice of one whole scan, as written by PointWriter, to ranges and intensities.
+/// Converts a slice to ranges and intensities. The slice must be a whole scan that `writer` wrote.
 Scan FromPoints(const ouster::Slice& slice, const ouster::PointWriter& writer,
                 const std::shared_ptr<const ScanGeometry>& geometry) {
   Scan scan;
@@ -117,7 +117,7 @@ std::unique_ptr<ScanStream> OpenCapture(const std::string& pcap, const std::stri
                                    std::move(reader));
 }
 
-/// A sensor with a firing table: gives clouds in the order of firing.
+/// The scans of a synthetic sensor with a firing table. They are clouds in the order of firing.
 class SyntheticFirings final : public ScanStream {
  public:
   explicit SyntheticFirings(const synth::ScannerConfig& config)
@@ -226,7 +226,7 @@ bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Clouds in files, at the usual ten a second.
+/// Clouds in files. Their times are as if there were ten scans per second, which is usual.
 class CloudFiles final : public ScanStream {
  public:
   explicit CloudFiles(std::vector<std::string> files) : ScanStream(10), files_(std::move(files)) {}

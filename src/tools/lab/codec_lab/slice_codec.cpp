@@ -13,8 +13,8 @@
 namespace lidar::tools {
 namespace {
 
-// The error bound exceeds the step by this [m], because distant floats are rounded. So the step,
-// not the bound, decides.
+// The error bound exceeds the step by this margin [m], because the rounding of distant floats adds
+// to the error. So the codec is limited by the step, and not by the bound.
 constexpr double kRoomForRounding = 1e-3;
 
 double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }
@@ -133,7 +133,7 @@ rate::ErrorBound SliceCodec::Bound(const CodingMode& mode) {
   return rate::ErrorBound::Range(EncoderFor(mode).range_unit_mm());
 }
 
-/// Uses the coder that the mode names; dracoenc would choose the one with the smaller output.
+/// Uses the coder that `mode` names. In contrast, dracoenc uses the coder with the smaller output.
 bool SliceCodec::EncodeXyz(const CodingMode& mode, const rate::Settings& settings,
                            double keep_fraction) {
   codec::XyzCloud all;
@@ -191,12 +191,12 @@ std::optional<rate::EncodedSize> SliceCodec::Encode(const CodingMode& mode,
 std::optional<Distortion> SliceCodec::Errors(const CodingMode& mode,
                                              const rate::Settings& settings) {
   const bool xyz = mode.geometry == Geometry::kXyz;
-  // The kd-tree reorders points. So errors are measured by the sequential coder, which has the same
-  // grid and keeps the order.
+  // The kd-tree reorders the points. So errors are measured by the sequential coder, which uses the
+  // same grid but keeps the order.
   if (!EncodeBytes(xyz ? ModeNamed("xyz-sequential") : mode, {settings.step_m, 0, 0}, 1))
     return std::nullopt;
   constexpr std::uint32_t kMaxPoints = 1U << 26;
-  // Draco uses the kd-tree anyway above a certain number of bits.
+  // Draco always uses the kd-tree if there are more than a certain number of bits.
   const ByteView bytes{encoded_.bytes.data(), encoded_.bytes.size()};
   if (xyz && draco::CheckDraco(bytes, {kMaxPoints}).value().is_kd_tree) return std::nullopt;
   draco::SliceDecoder decoder(format_, mode.geometry, kMaxPoints);

@@ -56,7 +56,7 @@ struct Player {
   }
 
   rate::EncodedSize Encode(const rate::Settings& settings, double keep) {
-    // The paper's model chooses the level, and with it Draco's coder.
+    // The paper's model chooses Draco's level. The level decides which of Draco's coders is used.
     const CodingMode& mode =
         options.mode->geometry == Geometry::kXyz ? XyzModeOfLevel(settings.level) : *options.mode;
     const auto encoded = codec.Encode(mode, settings, keep);

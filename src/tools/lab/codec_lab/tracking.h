@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A rate controller on real slices and a moving target.
+// Runs a rate controller on real slices with a moving target.
 #pragma once
 #include <memory>
 #include <string>
@@ -19,11 +19,13 @@ struct ProfileOptions {
   std::uint64_t seed = 1;
 };
 
-/// Targets for each scan [bit/s]: a constant rate; a random walk of 8 % a scan; jumps every 10
-/// scans to anywhere in the range, uniformly in the logarithm.
+/// Returns the target for each scan [bit/s]. kSteady is a constant rate, and kWalk is a random walk
+/// of 8 % per scan. kJump changes every 10 scans to a random rate between the limits, which is
+/// uniform in the logarithm.
 std::vector<double> MakeTargets(TargetProfile profile, std::size_t scans,
                                 const ProfileOptions& options);
-/// Reads lines of `time_s rate_mbps`; a scan takes the rate that holds at its start. Throws.
+/// Reads lines of `time_s rate_mbps`. Each scan gets the rate that holds at the start of the scan.
+/// Throws std::runtime_error if the file is wrong.
 std::vector<double> ReadTargets(const std::string& path, double scans_per_second);
 
 struct TrackOptions {
@@ -35,12 +37,12 @@ struct TrackOptions {
   bool open_loop = false;
 };
 
-/// The result of a scan.
+/// What the rate controller has done with a scan.
 struct TrackedScan {
   double target_bps = 0;
   double sent_bps = 0;
   double coarsest_step_m = 0;
-  double largest_bound_m = 0;  // error bound of its worst slice
+  double largest_bound_m = 0;  // error bound of the worst slice in the scan
   double min_bps = 0;          // the controller's r_min after this scan
   unsigned intensity_bits = 0;
   double keep_fraction = 1;
@@ -49,29 +51,31 @@ struct TrackedScan {
   double Error() const { return sent_bps / target_bps - 1; }
 };
 
-/// 0 1 2 1 0 1 2 ... for a count of 3.
+/// Returns the i-th number of the sequence 0 1 2 1 0 1 2 ..., which is for a count of 3.
 std::size_t ThereAndBack(std::size_t i, std::size_t count);
 
-/// Plays `set` forwards and backwards in turn, so that consecutive scans are neighbours.
+/// Encodes a scan for each target. Plays the scans of `set` forwards and backwards in turn, so that
+/// consecutive scans are always neighbours.
 std::vector<TrackedScan> Track(const ScanSet& set, const std::vector<double>& targets,
                                const TrackOptions& options, std::unique_ptr<rate::SizeModel> model);
 
-/// Bitrates that the error bound and the sensor's resolution allow for a scan of the source.
+/// Returns the bitrates that the error bound and the sensor's resolution allow for a scan of `set`.
 rate::RateBounds MeasureBounds(const ScanSet& set, const TrackOptions& options,
                                std::size_t scan = 0);
-/// Mean of |min_bps / real r_min - 1| over the scans that were sent, without the first `settle`.
+/// Returns the mean of |min_bps / real r_min - 1| over the scans that were sent. The first `settle`
+/// scans do not count.
 double MinimumError(const ScanSet& set, const TrackOptions& options,
                     const std::vector<TrackedScan>& scans, std::size_t settle);
 
 struct TrackSummary {
-  double mean = 0;           // of |error|
-  double percentile_95 = 0;  // of |error|
-  double largest_over = 0;   // error of the scan furthest above its target
-  double reencoded = 0;      // share of the slices
+  double mean = 0;           // mean of |error|
+  double percentile_95 = 0;  // 95th percentile of |error|
+  double largest_over = 0;   // error of the scan that exceeds its target by most
+  double reencoded = 0;      // share of the slices that were encoded twice
   std::size_t skipped = 0;
   double largest_bound_m = 0;
 };
-/// Leaves out the first `settle` scans.
+/// Summarises the results of `scans`. The first `settle` scans do not count.
 TrackSummary Summarise(const std::vector<TrackedScan>& scans, std::size_t settle,
                        std::uint32_t slices);
 

@@ -17,7 +17,7 @@ const T& OneOf(const std::vector<T>& all, Random* random) {
   return all[(*random)() % all.size()];
 }
 
-/// Loads random slices until one has at least 100 returns; returns false after 20 tries.
+/// Loads random slices until a slice has at least 100 returns. Returns false after 20 slices.
 bool LoadRandomSlice(const ScanSet& set, std::uint32_t slices, Random* random, SliceCodec* codec) {
   constexpr int kTries = 20;
   for (int i = 0; i < kTries; ++i) {
@@ -29,7 +29,7 @@ bool LoadRandomSlice(const ScanSet& set, std::uint32_t slices, Random* random, S
   return false;
 }
 
-/// Adds a sample of the loaded slice, unless the mode cannot code it.
+/// Adds a sample of the loaded slice, unless the mode cannot encode the slice.
 void AddSample(const CodingMode& mode, const rate::Settings& settings, std::size_t source,
                SliceCodec* codec, std::vector<rate::Sample>* samples) {
   rate::Settings bare = settings;
@@ -68,7 +68,7 @@ rate::Settings PaperSettings(const CodingMode& mode, SliceCodec* codec, Random* 
   return settings;
 }
 
-/// Loads random slices into `codec`, and calls take(source) for each.
+/// Loads random slices into `codec`, and calls take(source) for each of them.
 template <class Take>
 void ForRandomSlices(const std::vector<ScanSet>& sets, const SamplingOptions& options,
                      const Progress& progress, Random* random, SliceCodec* codec, Take take) {
@@ -91,7 +91,7 @@ std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
   std::vector<rate::Sample> samples;
   SliceCodec codec;
   ForRandomSlices(sets, options, progress, &random, &codec, [&](std::size_t source) {
-    // All modes get the same settings, so the samples of a mode do not depend on the others.
+    // All modes get the same settings, so the samples of a mode do not depend on the other modes.
     rate::Settings settings;
     settings.step_m = std::exp2(log_step(random));
     settings.intensity_bits = static_cast<unsigned>(random() % (options.intensity_bits + 1));

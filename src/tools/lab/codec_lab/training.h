@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Samples of real encodings at random settings, and how well models fitted to them predict.
+// Takes samples of encodings at random settings. Measures how well models that are fitted to the
+// samples predict sizes.
 #pragma once
 #include <functional>
 #include <string>
@@ -11,26 +12,30 @@
 namespace lidar::tools {
 
 struct SamplingOptions {
-  // Random slices of each source. Each slice gives the adaptive model a sample in each mode.
+  // The number of random slices of each source. The adaptive model gets one sample for each of
+  // these slices and each mode.
   std::size_t samples = 200;
   std::vector<std::string> modes;
   double min_step_m = 0.001;
   double max_step_m = 0.5;
   std::vector<std::uint32_t> slices = {1, 8};
-  unsigned intensity_bits = 5;  // at most for the adaptive model, always for the paper's
+  // The adaptive model gets up to this number, the paper's model always this number.
+  unsigned intensity_bits = 5;
   std::uint64_t seed = 1;
 };
 
-/// Gets the share of the work that is done, 0 to 1.
+/// A function that is called with the share of the work that is done, from 0 to 1.
 using Progress = std::function<void(double)>;
 
-/// Random slices at random steps (uniform in the logarithm), slice counts and intensity bits. Range
-/// modes skip clouds without order.
+/// Encodes random slices with random steps, intensity bits and numbers of slices per scan. The
+/// steps are uniform in the logarithm. Modes with range geometry skip clouds that are not
+/// organised.
 std::vector<rate::Sample> TakeSamples(const std::vector<ScanSet>& sets,
                                       const SamplingOptions& options, const Progress& progress);
-/// Samples as in the paper: random quantisation bits 8..24 and compression levels 0..9 for xyz
-/// geometry; for range geometry, if `modes` has it, 8..24 bits of the longest range. Slices differ
-/// in the number of points, because the model has terms for it.
+/// Takes samples as in the paper. For xyz geometry, the quantisation bits are random from 8 to 24,
+/// and the compression levels from 0 to 9. For range geometry, if `modes` contains it, the bits
+/// divide the longest range, and are random from 8 up to those of the finest step. The slices have
+/// different numbers of points, because the model has terms for this number.
 std::vector<rate::Sample> TakePaperSamples(const std::vector<ScanSet>& sets,
                                            const SamplingOptions& options,
                                            const Progress& progress);
@@ -42,7 +47,8 @@ struct FitReport {
   rate::FitError cross_validation;
 };
 
-/// Cross-validates: leaves out each source in turn, or each fifth of the samples of one source.
+/// Fits a model to the samples, and cross-validates the fit. For this, leaves out each source in
+/// turn. If there is only one source, leaves out each fifth of its samples in turn.
 FitReport Report(
     const std::string& name, const std::vector<rate::Sample>& samples,
     const std::function<std::unique_ptr<rate::SizeModel>(const std::vector<rate::Sample>&)>& fit);

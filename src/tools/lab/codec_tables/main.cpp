@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// codec-tables: counts symbols in captures and prints what the coder's models start from.
+// codec-tables: counts symbols in captures, and prints the tables from which the coder's models
+// start.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -16,8 +17,8 @@ namespace {
 
 using codec::SymbolCounts;
 
-// All of the captures in tests/data/ouster that show a whole turn. Synthetic worlds would need
-// floating point, and so might give other tables on another machine.
+// All captures in tests/data/ouster that contain a whole turn. Synthetic worlds are not used. They
+// would need floating point, and so might give different tables on another machine.
 constexpr const char* kCaptures[] = {
     "OS-0-32-U1_v2.2.0_1024x10.pcap", "OS-1-32-G_v2.1.1_1024x10.pcap",
     "OS-0-128-U1_v2.3.0_1024x10.pcap",
@@ -25,14 +26,14 @@ constexpr const char* kCaptures[] = {
 constexpr std::uint32_t kSlices = 8;
 constexpr double kErrors[] = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
 constexpr unsigned kIntensityBits[] = {5, 8};
-constexpr std::uint64_t kFewestSymbols = 100;  // fewest symbols that characterise a context
+constexpr std::uint64_t kFewestSymbols = 100;  // a context with fewer symbols is left out
 
 struct Counts {
   SymbolCounts values;
   SymbolCounts levels;
 };
 
-/// Counts symbols of a slice's returns, as bins and levels.
+/// Counts the symbols of the bins and of the levels in a slice.
 void CountSlice(const Scan& scan, SliceOf slice, const RangeGrid& grid, unsigned bits,
                 Counts* counts) {
   const ColumnWindow window = WindowOf(scan, slice);
@@ -55,7 +56,7 @@ void CountSlice(const Scan& scan, SliceOf slice, const RangeGrid& grid, unsigned
                                &counts->levels);
 }
 
-/// Adds `counts` with equal weight for each context, however often it occurred.
+/// Adds `counts` to `sum`. Every context has the same weight, however often it occurred.
 void AddEvenly(const SymbolCounts& counts, SymbolCounts* sum) {
   const auto add = [](const auto& from, auto* to) {
     constexpr std::uint64_t kShare = 1'000'000'000;
@@ -82,7 +83,7 @@ void CountCapture(const ScanSet& set, Counts* sum) {
   }
 }
 
-/// Returns shares in a thousand, none of them zero.
+/// Returns the frequencies in a thousand. A frequency is never 0.
 std::string Frequencies(const std::array<std::uint64_t, codec::kNibbles>& counts) {
   const auto all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   std::string text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval bounds: error bounds, and the bitrates that they need.
+// lidar-eval bounds: measures the bitrates that error bounds need.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -48,8 +48,9 @@ std::optional<Measurement> AtError(const ScanSet& set, const CodingMode& mode, d
   return Measure(set, mode, {codec.Bound(mode).CoarsestStep(error), 0, o.intensity_bits, o.slices});
 }
 
-/// Prints the paper's minimum: the fewest bits of a coordinate in the bounding cube that keep the
-/// error bound in every scan, and the bitrate at the level that needs the fewest bytes.
+/// Prints the minimum according to the paper. It uses the fewest bits of a coordinate in the
+/// bounding cube with which every scan keeps the error bound. The bitrate is that of the level that
+/// needs the fewest bytes.
 void PrintPaperMinimum(const ScanSet& set, double error, const BoundsOptions& o) {
   double extent = 0;
   SliceCodec codec;

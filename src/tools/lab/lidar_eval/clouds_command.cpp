@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval clouds: clouds without a sensor model, by our coder and by Draco.
+// lidar-eval clouds: encodes clouds without a sensor model, by our coder and by Draco.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -26,7 +26,7 @@ struct CloudsOptions {
   bool shuffle = false;
 };
 
-/// Sums over all scans of a source at one setting.
+/// Sums over all scans of a source at one setting of the coder.
 struct CloudCost {
   std::size_t points = 0;
   std::size_t bytes = 0;
@@ -37,7 +37,8 @@ struct CloudCost {
 
 double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// The largest distance from a point of one cloud to the nearest of the other, both ways.
+/// Returns the largest distance from a point of one cloud to the nearest point of the other cloud,
+/// in both directions.
 double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
   double largest = 0;
   for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
@@ -48,7 +49,8 @@ double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
   return largest;
 }
 
-/// Returns points as a driver publishes them: column by column, no ranges, only returns.
+/// Returns the points of a scan as a driver publishes them: column by column, only returns, and
+/// without ranges.
 std::vector<float> PointsOf(const Scan& scan) {
   const RangeProjection& projection = scan.geometry->projection;
   std::vector<float> xyz;
@@ -62,7 +64,7 @@ std::vector<float> PointsOf(const Scan& scan) {
   return xyz;
 }
 
-/// Replaces organised scans by their points, without ranges and models.
+/// Replaces organised scans by their points. These have no ranges and no sensor model.
 void Flatten(ScanSet* set) {
   for (Scan& scan : set->scans) {
     if (!scan.organised()) continue;
@@ -82,7 +84,8 @@ void Shuffle(Scan* scan) {
   }
 }
 
-/// Points as a driver publishes them, with laser and time if the scan has both.
+/// The points of a scan as a driver publishes them. If the scan has lasers and times, each point
+/// has both.
 struct RawCloud {
   explicit RawCloud(const Scan& scan) {
     const bool has_times = !scan.phases.empty() && !scan.rings.empty();
@@ -103,7 +106,7 @@ struct RawCloud {
   std::vector<std::uint8_t> bytes;
 };
 
-/// The coders of a stream.
+/// The encoder and the decoder of a stream.
 struct CloudCoders {
   CloudCoders(const codec::CloudLayout& layout, unsigned effort)
       : encoder(*codec::cloud::CloudEncoder::Create(layout)), decoder(UINT32_MAX) {
@@ -113,7 +116,8 @@ struct CloudCoders {
   codec::cloud::CloudDecoder decoder;
 };
 
-/// Adds the size of the first of `repeats` runs, and the shortest encoding and decoding times.
+/// Encodes and decodes a scan `repeats` times. Adds the size of the first run, and the shortest
+/// times for encoding and for decoding.
 void AddCost(const Scan& scan, double error_m, unsigned repeats, CloudCoders* coders,
              CloudCost* cost) {
   const RawCloud raw(scan);
@@ -142,7 +146,7 @@ void AddCost(const Scan& scan, double error_m, unsigned repeats, CloudCoders* co
   cost->decode_s += decode_s;
 }
 
-/// Prints the size by the best of Draco's coders.
+/// Prints the size of the best of Draco's coders.
 void PrintDraco(const ScanSet& set, double error_m) {
   double best = 0;
   for (const char* mode : {"xyz-sequential", "xyz-kd0", "xyz-kd6"}) {

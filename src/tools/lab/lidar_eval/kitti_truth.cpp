@@ -24,7 +24,7 @@ Trajectory ReadPoses(const std::string& text, const std::string& path) {
   return poses;
 }
 
-/// The row "Tr: ...": a pose of the sensor in the frame of the camera.
+/// Reads the row "Tr: ...", which is the pose of the sensor in the frame of the camera.
 Pose ReadSensorPose(const std::string& path) {
   std::istringstream in(ReadFile(path));
   for (std::string line; std::getline(in, line);)

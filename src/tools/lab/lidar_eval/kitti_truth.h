@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The true trajectory of the sensor in a KITTI sequence.
+// Reads the true trajectory of the sensor in a KITTI sequence.
 #pragma once
 #include <string>
 
@@ -7,9 +7,9 @@
 
 namespace lidar::tools {
 
-/// Reads poses.txt. Its poses are those of a camera if there is a calib.txt, and are converted to
-/// the sensor's by its `Tr`. Returns an empty trajectory without poses.txt. Throws
-/// std::runtime_error.
+/// Reads poses.txt. If there is a calib.txt, the poses are those of a camera, and its `Tr` converts
+/// them to poses of the sensor. Returns an empty trajectory if there is no poses.txt. Throws
+/// std::runtime_error if a file is wrong.
 odometry::Trajectory ReadKittiTruth(const std::string& folder);
 
 }  // namespace lidar::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval: what an error bound costs, and how well a bitrate is hit.
+// lidar-eval: measures how much bitrate an error bound needs, and how closely a bitrate is met.
 
 #include "src/tools/common/output_file.h"
 #include "src/tools/common/program.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval predict: errors of the predictors before and after they have seen a slice.
+// lidar-eval predict: measures the errors of predicted sizes, before and after an encoded slice has
+// corrected the model.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +32,7 @@ std::string Cell(const rate::FitError& e) {
                     : Format("%19s", "-");
 }
 
-/// Predicts each scan at a random step of its own, after the model has seen the scan before.
+/// Predicts the size of each scan at a random step. The scan before it has corrected the model.
 rate::FitError Corrected(const ScanSet& set, const CodingMode& mode, const PredictOptions& o,
                          rate::SizeModel* model) {
   std::mt19937_64 random(o.sampling.seed);

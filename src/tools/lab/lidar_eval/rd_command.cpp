@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval rd: rate against distortion, ours and the paper's setting.
+// lidar-eval rd: measures rate and distortion of our coder, and of the paper's setting.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -31,10 +31,10 @@ struct Curve {
   std::vector<Measurement> points;
 };
 
-/// Measures the paper's setting: Draco quantises the bounding cube.
+/// Measures the paper's setting, in which Draco quantises the bounding cube.
 Curve PaperCurve(const ScanSet& set, const std::string& mode, const char* name) {
   constexpr unsigned kFewestBits = 8;
-  constexpr unsigned kMostBits = 17;  // beyond, Draco codes the sensor's noise
+  constexpr unsigned kMostBits = 17;  // with more bits, Draco codes the sensor's noise
   Curve curve{name, {}};
   for (unsigned q = kFewestBits; q <= kMostBits; ++q)
     if (const auto m = Measure(set, ModeNamed(mode), {0, q, 0, 1})) curve.points.push_back(*m);
@@ -83,7 +83,7 @@ std::vector<Curve> Evaluate(const ScanSet& set, const RdOptions& o, CsvFile* csv
   return curves;
 }
 
-/// Commands that draw the curves of one source.
+/// Returns gnuplot commands that draw the curves of one source.
 std::string Draw(const std::string& title, const std::vector<Curve>& curves) {
   std::string data;
   std::string lines;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Arguments of slam and to-kitti: a source, and changes to its scans.
+// The arguments of the subcommands slam and to-kitti: a source, and changes to its scans.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <memory>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval slam and ate: the sensor's trajectory from its scans, and its error.
+// lidar-eval slam and ate: slam computes the sensor's trajectory from its scans, and both compute
+// the error of a trajectory.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -100,7 +101,7 @@ void PrintRun(const SlamResult& r) {
               at(0.95), r.map_voxels);
 }
 
-/// Returns the truth that the user names, otherwise the source's.
+/// Returns the true trajectory that the user names. If there is none, returns that of the source.
 Trajectory FindTruth(const SlamArguments& a, const SlamResult& r, double scans_per_second) {
   if (!a.truth.empty()) return Load(a.truth, scans_per_second);
   return KittiFolderOf(a.scans.source) ? Load(a.scans.source, scans_per_second) : r.truth;
@@ -119,13 +120,13 @@ void Print(const Calibration& c, const char* unit) {
       c.mean, unit, 100 * c.within_1_sigma, 100 * c.within_3_sigma);
 }
 
-/// Calibrations of the deviations of positions and of turns.
+/// The calibrations of the deviations of positions and of orientations.
 struct Calibrations {
   std::optional<Calibration> position;
   std::optional<Calibration> orientation;
 };
 
-/// Writes a row for each scan.
+/// Writes one row for each scan.
 void SaveErrors(const std::string& path, const SlamResult& r,
                 const std::vector<odometry::Twist>& errors) {
   tools::OutputFile output(path);

@@ -14,10 +14,10 @@
 namespace lidar::tools {
 namespace {
 
-constexpr std::size_t kStart = 20;  // scans
+constexpr std::size_t kStart = 20;  // number of scans at the start
 constexpr std::uint64_t kImuSeed = 7;
 
-/// Applies the grid that Draco lays over the cube of the cloud.
+/// Rounds points to the grid that Draco lays over the bounding cube of a cloud.
 void QuantizeCube(unsigned bits, odometry::Points* points) {
   if (points->empty()) return;
   Eigen::Vector3d low = points->front();
@@ -55,7 +55,7 @@ odometry::TimedPoints OrganisedPoints(const Scan& scan, double range_step_m) {
   return timed;
 }
 
-/// Sum and largest of the distances between points and their decoded positions.
+/// The sum and the largest of the distances between points and their decoded positions.
 struct PointErrors {
   double sum_m = 0;
   double max_m = 0;
@@ -77,7 +77,7 @@ odometry::Pose ToPose(const synth::Pose& pose) {
   return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
 }
 
-/// Makes an IMU that moves along the drive. Returns null without options.gyroscope.
+/// Makes an IMU that moves along the synthetic drive. Returns null if options.gyroscope is false.
 std::unique_ptr<synth::Imu> MakeImu(const ScanStream& scans, const SlamOptions& options) {
   if (!options.gyroscope) return nullptr;
   if (scans.trajectory() == nullptr)

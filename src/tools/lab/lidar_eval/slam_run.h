@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs an odometry over all scans of a source. A codec's loss is applied to the points first.
+// Runs the odometry over all scans of a source. Before that, the loss of a codec is applied to the
+// points.
 #pragma once
 #include <functional>
 
@@ -9,19 +10,19 @@
 
 namespace lidar::tools {
 
-/// Changes of the points before they are aligned; by default none.
+/// The changes that a codec makes to points before they are aligned. By default, there are none.
 struct CodingLoss {
-  double range_step_m = 0;  // lidarenc: ranges on a grid of this step
-  unsigned xyz_bits = 0;    // Draco as in the paper: bits over the cube of the scan
+  double range_step_m = 0;  // lidarenc: step of the grid on which ranges lie
+  unsigned xyz_bits = 0;    // Draco as in the paper: bits of a coordinate in the cube of the scan
 };
 
 struct SlamOptions {
   odometry::OdometrySettings odometry;
   CodingLoss loss;
   std::size_t max_scans = 0;  // 0: all
-  bool gyroscope = false;     // only for sources whose true pose is known at any time
+  bool gyroscope = false;     // only for sources that have the motion of the sensor
   bool close_loops = false;
-  std::size_t most_local_maps = 1000;  // with close_loops
+  std::size_t most_local_maps = 1000;  // only with `close_loops`
 };
 
 struct SlamResult {
@@ -30,43 +31,44 @@ struct SlamResult {
   std::vector<odometry::Matrix6> covariance;  // covariance of each estimate
   std::vector<odometry::Tracking> states;
   std::size_t with_gyroscope = 0;
-  std::size_t lost_at_start = 0;  // of the first twenty scans
-  std::vector<double> cpu_ms;     // of each scan, ascending
-  std::size_t map_voxels = 0;     // at the end
+  std::size_t lost_at_start = 0;  // number of lost scans among the first twenty
+  std::vector<double> cpu_ms;     // CPU time of each scan, in ascending order
+  std::size_t map_voxels = 0;     // number of voxels in the map at the end
   std::size_t maps = 0;
-  // Mean and largest distance by which the loss moved points.
+  // The mean and the largest distance by which the loss has moved points.
   double mean_point_error_m = 0;
   double max_point_error_m = 0;
-  // Set with close_loops
+  // The following members are set with `close_loops`.
   odometry::Trajectory closed;  // the estimate without the drift between loops
   std::size_t closures = 0;
   std::size_t local_maps = 0;
 };
 
-/// Calls progress() with the number of scans done.
+/// Runs the odometry. Calls `progress` with the number of scans that are done.
 SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
                    const std::function<void(std::size_t)>& progress);
 
-/// Errors of the motion since the first pose, along the axes of that pose: x, y, z [m], and turns
-/// [rad]. Empty if `truth` does not cover the estimate.
+/// Returns the errors of the motion since the first pose, along the axes of that pose: x, y and z
+/// [m], and turns [rad]. Returns an empty list if `truth` does not cover the time of the estimate.
 std::vector<odometry::Twist> ErrorsOf(const SlamResult& result, const odometry::Trajectory& truth);
 
-/// Errors relative to the odometry's deviations.
+/// Compares the errors of an odometry with its deviations.
 struct Calibration {
-  double mean = 0;  // of the deviations [m or rad]
+  double mean = 0;  // mean of the deviations [m or rad]
   double within_1_sigma = 0;
   double within_3_sigma = 0;
-  double width = 0;  // deviations divided by errors, both root mean squares
+  double width = 0;  // root mean square of the deviations, divided by that of the errors
 };
-/// `first`: 0 for positions, 3 for turns. Returns nothing for fewer than two errors.
+/// Calibrates positions if `first` is 0, and turns if it is 3. Returns nothing if there are fewer
+/// than two errors.
 std::optional<Calibration> Calibrate(const std::vector<odometry::Twist>& errors,
                                      const std::vector<odometry::Matrix6>& covariance,
                                      Eigen::Index first);
 
-/// The pose of the sensor in the middle of a scan, for scans with a known truth.
+/// Returns the true pose of the sensor in the middle of a scan. The scan must have a `truth`.
 odometry::Pose TrueMiddle(const TimedScan& scan);
 
-/// Returns the returns of a scan after `loss`, with their phases in the sweep if known.
+/// Returns the points of a scan after `loss`, and their phases in the sweep if these are known.
 odometry::TimedPoints PointsOf(const Scan& scan, const CodingLoss& loss);
 
 }  // namespace lidar::tools

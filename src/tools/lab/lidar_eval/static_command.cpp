@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval static: savings of slices that refer to scans at the receiver.
+// lidar-eval static: measures how much slices save if they refer to scans that the receiver has.
 #include <cstdio>
 #include <deque>
 #include <memory>
@@ -26,7 +26,7 @@ struct StaticOptions {
 };
 
 struct Sizes {
-  std::size_t alone = 0;  // bytes without any reference
+  std::size_t alone = 0;  // bytes if slices refer to no scan
   std::size_t referring = 0;
   std::size_t returns = 0;
   std::size_t slices = 0;
@@ -38,14 +38,15 @@ struct Sizes {
   }
 };
 
-/// An encoder whose receiver acknowledges late, without loss.
+/// An encoder with a receiver. The receiver gets all slices, and acknowledges them some scans
+/// later.
 class Link {
  public:
   Link(const StaticOptions& options, unsigned effort, double error, double scans_per_second)
       : o_(options), effort_(effort), period_(FromSeconds(1 / scans_per_second)) {
     settings_.max_error_m = error;
     keeper_.set_key_interval(FromSeconds(options.key_interval_s));
-    // An acknowledgement shows the keeper that there is a receiver.
+    // The first acknowledgement shows the keeper that there is a receiver.
     keeper_.OnAcknowledged(Now(), 0, 0, 0);
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval to-kitti: writes the points of slam for other odometries.
+// lidar-eval to-kitti: writes the points that slam would use to files, for other odometry programs.
 #include <cstdio>
 #include <filesystem>
 #include <memory>

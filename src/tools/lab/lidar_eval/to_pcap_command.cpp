@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval to-pcap: clouds of any sensor as an Ouster capture.
+// lidar-eval to-pcap: writes clouds of any sensor as an Ouster capture.
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -17,7 +17,7 @@ struct PcapOptions {
   std::string source;
   SourceOptions scans;
   std::string output;
-  std::string metadata;  // empty: next to the output
+  std::string metadata;  // empty: beside the output
   std::string beams = "hdl64";
   std::uint32_t columns = 1024;
   double rate = 10;
@@ -51,7 +51,7 @@ void RunPcap(const PcapOptions& o) {
   try {
     WriteFile(MetadataPath(o), ouster::WriteMetadata(metadata));
   } catch (const std::runtime_error&) {
-    RemoveFile(o.output);  // the file would be unreadable
+    RemoveFile(o.output);  // the capture cannot be read without its metadata
     throw;
   }
   std::printf("%s: %zu scans of %zu beams x %u columns, %zu returns", o.output.c_str(),

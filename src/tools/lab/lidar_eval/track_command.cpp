@@ -53,7 +53,8 @@ std::vector<double> Targets(const std::string& name, const TrackArguments& o,
   return MakeTargets(profiles.at(name), o.length, o.profile);
 }
 
-/// Returns "x-walk.png" for "x.png" and "walk" if `several`, else `path`.
+/// Returns `path` with `name` before its extension if `several` is true: "x-walk.png" for "x.png"
+/// and "walk". Otherwise returns `path`.
 std::string PathFor(const std::string& path, const std::string& name, bool several) {
   if (path.empty() || !several) return path;
   const std::size_t dot = path.find_last_of("./");
@@ -65,7 +66,8 @@ void RunTrack(TrackArguments o) {
   const ScanSet set = LoadScans(o.source, o.read);
   o.track.mode = o.mode.empty() ? &DefaultMode(set) : &ModeNamed(o.mode);
   const rate::RateBounds bounds = MeasureBounds(set, o.track);
-  // Margin on both sides, as the bounds move with the scene.
+  // The factor by which the limits are narrower than the bounds, because the bounds move with the
+  // scene.
   constexpr double kBoundsMargin = 1.15;
   if (o.profile.min_bps <= 0) o.profile.min_bps = kBoundsMargin * bounds.nominal.bits_per_second();
   if (o.profile.max_bps <= 0) o.profile.max_bps = bounds.max.bits_per_second() / kBoundsMargin;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # usage: default_model.sh LIDAR_TRAIN CAPTURES [MODES] >src/rate/default_model.json
-# Fits the model that is compiled in; CAPTURES is tests/data/ouster. MODES, separated by commas, limit
-# the fit to the adaptive model of these modes.
+# Fits the model that is compiled into the plugin. CAPTURES is the folder tests/data/ouster. MODES
+# is a comma-separated list. If it is given, only the adaptive model of these modes is fitted.
 set -euo pipefail
 train=$1 captures=$2 modes=${3:-}
 folder=$(mktemp -d)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// mixing-train: makes the table of start states of the mixing coder, and measures its worth.
+// mixing-train: makes the table of the mixing coder's start states, and measures what they save.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
@@ -43,7 +43,7 @@ Options ParseOptions(int argc, char** argv) {
   return o;
 }
 
-/// The table in base 64, in lines.
+/// Returns the table in base 64, divided into lines.
 std::string ToText(const std::vector<std::uint8_t>& table) {
   constexpr std::size_t kLine = 92;
   const std::string digits = Base64(table);
@@ -52,7 +52,8 @@ std::string ToText(const std::vector<std::uint8_t>& table) {
   return text;
 }
 
-// Effort, error bound [m], bits of levels and slices of a scan.
+// Each case is an effort, an error bound [m], the bits of a level and the number of slices per
+// scan.
 constexpr MixingCase kCases[] = {{1, 0.02, 0, 8}, {2, 0.02, 0, 8}, {3, 0.02, 0, 8}, {1, 0.05, 0, 8},
                                  {2, 0.05, 0, 8}, {3, 0.05, 0, 8}, {3, 0.02, 5, 8}, {3, 0.02, 8, 8},
                                  {3, 0.01, 0, 8}, {3, 0.1, 0, 8},  {3, 0.02, 0, 1}};

@@ -16,18 +16,18 @@ namespace mixing = codec::mixing;
 using mixing::SliceBins;
 
 constexpr std::uint32_t kSlices = 8;
-// Largest errors [m] to train with. Each class of steps has at least one of them, whether ranges
-// have units of 1 mm or of 8 mm.
+// The largest errors [m] to train with. Each class of steps has at least one of these errors, both
+// if ranges have units of 1 mm and if they have units of 8 mm.
 constexpr std::array<double, 6> kErrors = {0.001, 0.004, 0.01, 0.02, 0.05, 0.1};
 constexpr std::array<unsigned, mixing::kLevelClasses> kLevelBits = {5, 8};
 constexpr double kLevelError = 0.02;
-// Trained counters adapt at least this fast, so that a slice can still change them.
+// The least rates of trained counters. With a lower rate, a counter would hardly change in a slice.
 constexpr std::uint16_t kLeastRate = mixing::RateAfter(24);
 constexpr std::uint16_t kLeastJumpRate = mixing::RateAfter(48);
-// Version, flags, lengths and the first byte of the payload.
+// The size of the version, the flags, the lengths and the first byte of the payload.
 constexpr std::size_t kHeaderBytes = 13;
 
-/// Fills `bins`; returns how many returns they have.
+/// Fills `bins` with a slice, and returns the number of its returns.
 std::size_t ToBins(const Scan& scan, SliceOf slice, const MixingCase& setting, SliceBins* bins) {
   const SensorModel& model = scan.geometry->model;
   const ColumnWindow window = WindowOf(scan, slice);
@@ -61,7 +61,8 @@ void Hasten(std::uint16_t least_rate, std::array<mixing::Counter, kSize>* counte
   for (mixing::Counter& counter : *counters) counter.rate = std::max(counter.rate, least_rate);
 }
 
-/// Mean of each number over the slices that visited or changed it. All slices weigh the same.
+/// The mean of each number over the slices that visited or changed the number. All slices have the
+/// same weight.
 class Means {
  public:
   void Add(std::size_t place, std::int64_t number) {
@@ -83,7 +84,7 @@ class Means {
   std::vector<std::int64_t> counts_;
 };
 
-/// Visits the numbers of two objects of one type in pairs, in order.
+/// Visits the numbers of two objects of the same type in pairs. The order is always the same.
 class Walk {
  public:
   template <std::size_t kSize, class Do>
@@ -131,7 +132,7 @@ void ForEach(States& a, const States& b, Do&& act) {
   std::apply([&](auto... part) { (walk.Of(a.*part, b.*part, act), ...); }, kParts<States>);
 }
 
-/// Adds to `means` the numbers that a slice visited or changed, and sets `states` to `learnt`.
+/// Adds the numbers that a slice has visited or changed to `means`, and sets `states` to `learnt`.
 template <class States>
 void Keep(States& learnt, States* states, Means* means) {
   ForEach(learnt, *states, [&](std::size_t place, auto& now, auto before, bool visited) {
@@ -145,7 +146,7 @@ void TakeMeans(const Means& means, States* states) {
           [&](std::size_t place, auto& now, auto, bool) { means.Take(place, &now); });
 }
 
-/// Carries states from slice to slice.
+/// Trains the start states. Each slice starts with the states that the slice before it has left.
 class Trainer {
  public:
   Trainer() {
@@ -219,7 +220,7 @@ class Trainer {
     Keep(model_->level_weights, &states.level_weights[effort - 1][level_class],
          &level_weight_means_[effort - 1][level_class]);
   }
-  /// The last effort has all counters of the other efforts.
+  /// Returns the states of the last effort, which has the counters of all efforts.
   mixing::StartStates& all() { return *states_.back(); }
 
   using States = std::unique_ptr<mixing::StartStates>;
@@ -232,14 +233,14 @@ class Trainer {
   std::array<std::array<Means, mixing::kLevelClasses>, mixing::kEfforts> level_weight_means_;
   std::unique_ptr<mixing::Model> model_ = std::make_unique<mixing::Model>();
   SliceBins bins_;
-  std::vector<std::uint8_t> written_;  // never read: only the learnt states matter
+  std::vector<std::uint8_t> written_;  // not read, because only the learnt states matter
 };
 
 }  // namespace
 
 std::unique_ptr<mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets) {
   Trainer trainer;
-  // Alternates between the sets, because consecutive slices should differ.
+  // Alternates between the sets, because consecutive slices should differ from each other.
   for (std::uint32_t index = 0; index < kSlices; ++index)
     for (const ScanSet* set : sets)
       for (const Scan& scan : set->scans) trainer.Learn(scan, {index, kSlices});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Trains the start states of the mixing coder, and measures their benefit.
+// Trains the start states of the mixing coder, and measures how much they save.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,19 +11,19 @@
 
 namespace lidar::tools {
 
-/// A setting of the coder.
+/// A setting of the mixing coder.
 struct MixingCase {
   unsigned effort = 2;
   double error_m = 0.02;
   unsigned level_bits = 0;
-  std::uint32_t slices = 8;  // a scan
+  std::uint32_t slices = 8;  // number of slices per scan
 };
 
-/// States trained on all scans of `sets`, rounded as the table has them.
+/// Returns states that are trained on all scans of `sets`. They are rounded as in the table.
 std::unique_ptr<codec::mixing::StartStates> TrainMixing(const std::vector<const ScanSet*>& sets);
 
-/// Returns the bits per return of encoded blocks, headers included. Decodes each block, and throws
-/// std::runtime_error if the result differs.
+/// Returns the bits per return of the encoded blocks, including their headers. Decodes each block,
+/// and throws std::runtime_error if the result differs from the input.
 double BitsPerReturn(const ScanSet& set, const MixingCase& setting,
                      const codec::mixing::StartStates& states);
 
