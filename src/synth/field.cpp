@@ -8,7 +8,9 @@
 namespace lidar::synth {
 namespace {
 
-/// The ground's height by |y|, constant along x: road, verge, ditch, meadow, hillside.
+/// A point of the ground's profile across the road: at the distance |y| from the middle, the height
+/// is z. The profile is constant along x. From the middle outward, it has road, verge, ditch,
+/// meadow and hillside.
 struct Knot {
   float y, z;
 };
@@ -153,22 +155,22 @@ void Field::AddMoving(const View& view, const Instant& now, std::vector<Shape>* 
 }
 
 bool Field::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit) const {
-  // The profile is mirrored at y = 0: the ray crosses the side that it comes from, then the one
-  // that it heads for.
+  // The profile is mirrored at y = 0. The ray first crosses the side from which it comes, and then
+  // the side toward which it goes.
   const float toward = ray.direction.y >= 0 ? 1.0F : -1.0F;
   const float rate = std::max(std::abs(ray.direction.y), 1e-6F);
   for (int half = 0; half < 2; ++half) {
-    const float sign = half == 0 ? -toward : toward;  // first the side that it comes from
+    const float sign = half == 0 ? -toward : toward;  // the side from which the ray comes is first
     for (std::size_t k = 1; k < kProfile.size(); ++k) {
       const std::size_t i = half == 0 ? kProfile.size() - k : k;
       const Knot& a = kProfile[i - 1];
       const Knot& b = kProfile[i];
-      const float first = half == 0 ? -b.y : a.y;  // along the ray's side, growing
+      const float first = half == 0 ? -b.y : a.y;  // grows in the direction of the ray
       const float last = half == 0 ? -a.y : b.y;
       const float from = toward * ray.origin.y;
       if (last < from) continue;
       const float slope = (b.z - a.z) / (b.y - a.y);
-      // Height above the ground is linear within a segment.
+      // The height of the ray above the ground is linear within a segment.
       const float ground = a.z + slope * (sign * ray.origin.y - a.y);
       const float fall = slope * sign * ray.direction.y - ray.direction.z;
       if (fall <= 1e-6F) continue;
@@ -176,7 +178,7 @@ bool Field::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit
       const float y = from + t * rate;
       if (t <= 0 || y < first - 1e-3F || y > last + 1e-3F) continue;
       float reflectivity = 0.15F;
-      if (a.y >= kHalfRoad) {  // blades of grass catch the light above the soil
+      if (a.y >= kHalfRoad) {  // blades of grass reflect the light above the soil
         const float blade = 0.12F * noise->Uniform();
         t -= std::min(blade / fall, 1.0F);
         reflectivity = 0.4F;

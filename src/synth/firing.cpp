@@ -11,10 +11,10 @@ constexpr DriverLayout kHesai = {
 constexpr DriverLayout kLivox = {
     "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,tag:U8:16,line:U8:17,timestamp:F64:18", 1e-9};
 
-// These follow the user manuals of the VLP-16 (63-9243), Pandar XT32, AT128 and Mid-360. The makers
-// do not publish how the AT128's mirrors bend its beams, nor the path of a Mid-360. The bend is a
-// guess. The path has the turns, swings and fan of a recorded one (mid180.csv of
-// github.com/sara-sliprobotics/Mid360_simulation_plugin).
+// The values follow the user manuals of the VLP-16 (63-9243), the Pandar XT32, the AT128 and the
+// Mid-360. The makers publish neither how the AT128's mirrors bend its beams, nor the path of the
+// Mid-360's beams. So the bend is a guess. The path has the turns, swings and fan of a recorded
+// path (mid180.csv of github.com/sara-sliprobotics/Mid360_simulation_plugin).
 constexpr Firing kFirings[] = {
     {"vlp-16", 16, 2, -15, 2, 0, 2304, 1808, 0, 360, 1, 0, 0, 0, 0.01, 2, 0.5, 100, 50, kVelodyne},
     {"xt32", 32, 1, 15, -1, 0, 1512, 2000, 0, 360, 1, 0, 0, 0, 0.01, 4, 0.05, 120, 80, kHesai},

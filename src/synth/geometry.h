@@ -16,7 +16,7 @@ constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b
 constexpr Vec3 operator*(float f, Vec3 a) { return {f * a.x, f * a.y, f * a.z}; }
 constexpr float Dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Row-major rotation.
+/// A rotation matrix, row by row.
 struct Rotation {
   std::array<float, 9> m{};
   Vec3 operator*(Vec3 v) const {
@@ -25,17 +25,17 @@ struct Rotation {
   }
 };
 
-/// A unit direction, and values that each intersection test needs.
+/// A ray with a unit direction, and values that each intersection test needs.
 struct Ray {
   Vec3 origin;
   Vec3 direction;
-  Vec3 inverse;          // of the direction, per axis
-  float horizontal = 0;  // length of the direction on the ground
-  float slope = 0;       // rise over that length
+  Vec3 inverse;          // inverse of the direction, for each axis
+  float horizontal = 0;  // length of the direction's projection onto the ground
+  float slope = 0;       // rise of the direction divided by this length
 };
 
 inline Ray MakeRay(Vec3 origin, Vec3 direction) {
-  // A direction that is exactly parallel to a face has no inverse: keep it finite.
+  // A direction that is exactly parallel to a face has no inverse, so a large number is used.
   const auto inverse = [](float v) { return 1.0F / (std::abs(v) > 1e-9F ? v : 1e-9F); };
   const float horizontal = std::sqrt(direction.x * direction.x + direction.y * direction.y) + 1e-9F;
   return {origin,
@@ -45,8 +45,8 @@ inline Ray MakeRay(Vec3 origin, Vec3 direction) {
           direction.z / horizontal};
 }
 
-/// Position [m] and orientation [rad] of the sensor in the world; yaw, then pitch (nose down is
-/// positive), then roll.
+/// The position [m] and the orientation [rad] of the sensor in the world. The sensor is rotated by
+/// yaw first, then by pitch, and then by roll. If pitch is positive, the nose is down.
 struct Pose {
   double x = 0;
   double y = 0;
@@ -56,7 +56,7 @@ struct Pose {
   double roll = 0;
 
   Rotation ToRotation() const;
-  /// x, y, z, w
+  /// Returns x, y, z and w.
   std::array<double, 4> ToQuaternion() const;
 };
 

@@ -9,18 +9,21 @@ namespace {
 using Vector = std::array<double, 3>;
 
 constexpr double kGravity = 9.80665;
-/// Half a sample period. Differences over a whole period average the motion, as a real unit does.
+/// Half of a sample period. Differences over a whole period average the motion, as a real unit
+/// does.
 constexpr Duration kStep = std::chrono::milliseconds(5);
 /// Correlation time of the bias [s].
 constexpr double kWanderTime = 100;
-/// The peak of a Gauss-Markov process's Allan deviation, relative to its standard deviation.
+/// The peak of the Allan deviation of a Gauss-Markov process, divided by the standard deviation of
+/// the process.
 constexpr double kAllanPeak = 0.618;
 
 Vector Cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Returns the vector part of conj(a) b: half the small turn from a to b, in the frame of a.
+/// Returns the vector part of conj(a) b. For a small rotation from a to b, this is half of the
+/// rotation, in the frame of a.
 Vector HalfTurn(const std::array<double, 4>& a, const std::array<double, 4>& b) {
   const Vector va = {a[0], a[1], a[2]};
   const Vector vb = {b[0], b[1], b[2]};
@@ -33,7 +36,7 @@ Vector HalfTurn(const std::array<double, 4>& a, const std::array<double, 4>& b) 
   return half;
 }
 
-/// Turns `v` from the world's frame to that of the pose `q`.
+/// Converts `v` from the frame of the world to the frame of the pose `q`.
 Vector TurnBack(const std::array<double, 4>& q, const Vector& v) {
   const Vector axis = {-q[0], -q[1], -q[2]};
   const Vector once = Cross(axis, v);
@@ -57,7 +60,8 @@ ImuSample TrueMotion(const Trajectory& trajectory, Duration t) {
   sample.time += t;
   sample.acceleration = TurnBack(now.ToQuaternion(), felt);
   sample.angular_velocity = HalfTurn(before.ToQuaternion(), after.ToQuaternion());
-  for (double& v : sample.angular_velocity) v /= h;  // half the turn over half its time
+  // Half of the rotation, divided by half of its time.
+  for (double& v : sample.angular_velocity) v /= h;
   return sample;
 }
 

@@ -10,11 +10,11 @@
 
 namespace lidar::synth {
 
-/// Errors of each axis of a gyroscope or an accelerometer, in its unit of measurement.
+/// The errors of each axis of a gyroscope or an accelerometer, in the unit of its measurements.
 struct InertialErrors {
   double noise_density = 0;     // per square root of a hertz
-  double offset = 0;            // standard deviation from unit to unit
-  double bias_instability = 0;  // lowest point of the Allan deviation
+  double offset = 0;            // standard deviation between units
+  double bias_instability = 0;  // minimum of the Allan deviation
 };
 struct ImuSpec {
   Duration period = std::chrono::milliseconds(10);
@@ -22,23 +22,25 @@ struct ImuSpec {
   InertialErrors accelerometer;  // [m/s^2]
 };
 
-/// A MEMS unit of robots and vehicles, such as Bosch's BMI088: 0.014 degrees/s and 175 micro-g a
-/// root hertz, offsets of 1 degree/s and 20 milli-g, instabilities of 2 degrees/h and 40 micro-g.
+/// A MEMS unit for robots and vehicles, such as Bosch's BMI088. It has a noise of 0.014 degrees/s
+/// and 175 micro-g per root hertz, offsets of 1 degree/s and 20 milli-g, and bias instabilities of
+/// 2 degrees/h and 40 micro-g.
 inline constexpr ImuSpec kMemsImu = {
     std::chrono::milliseconds(10), {2.44e-4, 0.0175, 9.7e-6}, {1.72e-3, 0.196, 3.9e-4}};
 
-/// Measures in the sensor's frame. Samples depend on trajectory, spec and seed only.
+/// Measures the motion in the sensor's frame. The samples depend only on the trajectory, the spec
+/// and the seed.
 class Imu {
  public:
   Imu(const Trajectory& trajectory, const ImuSpec& spec, std::uint64_t seed);
 
-  /// Leaves out the samples before `begin`.
+  /// Skips the samples before `begin`.
   void SkipTo(Duration begin);
   /// Returns the next samples before `end`. Their times count from the start of the drive.
   std::vector<ImuSample> Until(Duration end);
 
  private:
-  /// An offset, and a bias that wanders about it (Gauss-Markov).
+  /// A constant offset, and a bias that wanders around the offset (a Gauss-Markov process).
   struct Axis {
     double offset = 0;
     double wander = 0;
@@ -57,7 +59,7 @@ class Imu {
   std::int64_t next_ = 0;  // number of the next sample
 };
 
-/// The sample of a unit without errors.
+/// Returns the sample that a unit without errors measures at the time `t`.
 ImuSample TrueMotion(const Trajectory& trajectory, Duration t);
 
 }  // namespace lidar::synth

@@ -6,7 +6,8 @@
 namespace lidar::synth {
 namespace {
 
-/// Adds a part, given in the thing's own frame, at the place of the thing.
+/// Adds a part of a thing. `part` is given in the frame of the thing, which is placed `at` a
+/// position.
 void AddPart(const Placement& at, Shape part, std::vector<Shape>* out) {
   const float c = std::cos(at.yaw);
   const float s = std::sin(at.yaw);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Things that several scenes place: cars, people, trees, poles.
+// Makes things that several scenes contain: cars, people, trees, poles.
 #pragma once
 #include <vector>
 
@@ -10,18 +10,19 @@ namespace lidar::synth {
 struct Placement {
   float x = 0;
   float y = 0;
-  float z = 0;        // of the ground
+  float z = 0;        // height of the ground
   float yaw = 0;      // [rad]
-  float speed_x = 0;  // [m/s] along the world's x
+  float speed_x = 0;  // speed along the world's x [m/s]
 };
 
-/// A car, a van now and then; its make comes from `random`.
+/// Adds a car, or in some cases a van. `random` decides which of them, and what it looks like.
 void AddCar(const Placement& at, Random random, std::vector<Shape>* out);
 void AddPedestrian(const Placement& at, Random random, std::vector<Shape>* out);
 void AddTree(const Placement& at, Random random, std::vector<Shape>* out);
-/// A lamp whose arm, `arm` metres long, reaches along y (its sign is the side).
+/// Adds a lamp on a pole. Its arm extends along y by `arm` metres, and the sign of `arm` is its
+/// direction.
 void AddLamp(const Placement& at, float arm, std::vector<Shape>* out);
-/// A retroreflecting plate on a post. It faces traffic along x.
+/// Adds a retroreflecting plate on a post. The plate faces traffic that drives along x.
 void AddSign(const Placement& at, std::vector<Shape>* out);
 
 Shape MakeBox(Vec3 center, Vec3 half, float reflectivity);

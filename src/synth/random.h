@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Random numbers by place, not by order: world and noise are the same however a scan is cut.
+// Random numbers that depend on a place in the world, and not on the order of calls. So the world
+// and the noise are the same however a scan is divided.
 #pragma once
 #include <cstdint>
 
 namespace lidar::synth {
 
-/// SplitMix64's finaliser: every bit of `v` affects every bit of the result.
+/// Mixes bits by SplitMix64's finaliser. Every bit of `v` affects every bit of the result.
 constexpr std::uint64_t Mix(std::uint64_t v) {
   v += 0x9E3779B97F4A7C15ULL;
   v = (v ^ (v >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -17,12 +18,12 @@ constexpr std::uint64_t Mix(std::uint64_t v) {
 class Random {
  public:
   explicit constexpr Random(std::uint64_t key) : state_(Mix(key)) {}
-  /// Numbers of the thing `index` of kind `kind`.
+  /// Makes the random numbers of the thing `index` of kind `kind`.
   constexpr Random(std::uint64_t seed, std::uint64_t kind, std::int64_t index)
       : state_(Mix(Mix(seed ^ (kind << 56)) + static_cast<std::uint64_t>(index))) {}
 
   constexpr std::uint64_t Bits() { return state_ = Mix(state_); }
-  /// [0, 1)
+  /// Returns a number in [0, 1).
   constexpr float Uniform() { return static_cast<float>(Bits() >> 40) * 0x1p-24F; }
   constexpr float Uniform(float low, float high) { return low + (high - low) * Uniform(); }
   constexpr bool Chance(float p) { return Uniform() < p; }

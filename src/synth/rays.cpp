@@ -23,7 +23,7 @@ Vec3 Rays::Direction(std::uint64_t scan, std::uint32_t beam, std::uint32_t colum
                             : ToVec3(projection_.Direction(beam, column));
 }
 
-/// Steps back along the beam from the point of range 1 m.
+/// Computes the origin by a step back along the beam, from the beam's point at a range of 1 m.
 Vec3 Rays::Origin(std::uint32_t column) const {
   if (firing_ != nullptr) return {};
   const Vec3 at_1m = ToVec3(projection_.Point(0, column, 1000));

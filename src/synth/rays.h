@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Origins and directions of a sensor's beams, column by column.
+// Computes the origins and the directions of a sensor's beams, column by column.
 #pragma once
 #include <cstdint>
 
@@ -15,11 +15,12 @@ class Rays {
 
   std::uint32_t beams() const { return projection_.beams(); }
   std::uint32_t columns() const { return projection_.columns(); }
-  /// Unit vector in the sensor frame, in scan number `scan`.
+  /// Returns the direction of a beam in scan number `scan`, as a unit vector in the sensor frame.
   Vec3 Direction(std::uint64_t scan, std::uint32_t beam, std::uint32_t column) const;
-  /// Origin of a column's beams, in the sensor frame.
+  /// Returns the origin of a column's beams in the sensor frame.
   Vec3 Origin(std::uint32_t column) const;
-  /// Ranges are counted from this distance behind a beam's origin.
+  /// Returns the range at the origin of a beam. Ranges are counted from a point this far behind the
+  /// origin.
   float origin_m() const { return origin_m_; }
 
  private:

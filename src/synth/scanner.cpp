@@ -10,9 +10,9 @@ namespace {
 constexpr Duration kChunk = std::chrono::milliseconds(2);
 constexpr float kFastest = 25;  // greatest speed of things in a scene [m/s]
 constexpr std::size_t kGaussBits = 12;
-constexpr float kHalfDivergence = 0.0015F;  // half divergence of a beam [rad]
+constexpr float kHalfDivergence = 0.0015F;  // half of a beam's divergence [rad]
 
-/// Returns normal deviates of at most four standard deviations, from which random bits choose.
+/// Returns normal deviates of at most four standard deviations. Random bits choose one of them.
 std::vector<float> MakeGaussTable() {
   constexpr double kTurn = 6.28318530717958647692;
   std::vector<float> table(std::size_t{1} << kGaussBits);
@@ -26,7 +26,8 @@ std::vector<float> MakeGaussTable() {
   return table;
 }
 
-/// Returns a direction on the rim of the beam around `axis`, at the angle `turn` [rad].
+/// Returns a direction on the rim of a beam. `axis` is the axis of the beam, and `turn` is the
+/// angle around the axis [rad].
 Vec3 OnTheRim(Vec3 axis, float turn) {
   const float horizontal = std::sqrt(axis.x * axis.x + axis.y * axis.y) + 1e-9F;
   const Vec3 left{-axis.y / horizontal, axis.x / horizontal, 0};
@@ -66,7 +67,7 @@ Duration Scanner::ColumnTime(std::uint64_t scan, std::uint32_t column) const {
 
 void Scanner::MoveAnchor(double x, double y) {
   const double anchor_x = std::floor(x / kAnchorStep) * kAnchorStep;
-  // It is 0 in worlds along x, because sensors stay within half a step of the middle.
+  // The anchor's y is 0 in worlds along x, because sensors stay within half a step of the middle.
   const double anchor_y = std::round(y / kAnchorStep) * kAnchorStep;
   if (anchor_x == view_.anchor_x && anchor_y == view_.anchor_y && !shapes_.empty()) return;
   view_.anchor_x = anchor_x;
@@ -108,7 +109,8 @@ SectorIndex::Arc Scanner::ArcOf(std::uint64_t scan, std::uint32_t first, std::ui
       high = std::max(high, offset);
     }
   }
-  // The pose also changes slightly between the first and the last column.
+  // The arc is widened, because the pose also changes slightly between the first and the last
+  // column.
   constexpr float kSlack = 0.02F;
   const float from = start + low - kSlack;
   return {from < 0 ? from + 4 : from, high - low + 2 * kSlack};
@@ -150,15 +152,16 @@ Hit Scanner::Trace(const Ray& ray, float age_s, Random* noise) const {
 
 Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
   constexpr float kDropout = 0.998F;
-  constexpr float kPhotons = 40;  // photons of an echo at the limit of detection
+  constexpr float kPhotons = 40;  // number of photons of an echo whose `signal` is 1
   const float range = hit.distance + rays_.origin_m();
-  // The signal is 1 for a target of 10 % at the range where nine of ten pulses return.
+  // The signal is 1 for a target of 10 % reflectivity at the range at which nine of ten pulses
+  // return.
   const float signal = hit.reflectivity * hit.cosine * signal_scale_ / (range * range);
   const std::uint64_t bits = noise->Bits();
   const float chance = kDropout * signal * signal / (signal * signal + 0.11F);
   const float drawn = static_cast<float>(bits >> 40) * 0x1p-24F;
   if (hit.distance >= reach_m_ || !(drawn < chance)) return {};
-  // Weak echoes are timed worse: at the limit of detection the noise is three times as large.
+  // Weak echoes are timed less exactly. The weakest ones have three times the noise.
   const float sigma = static_cast<float>(config_.noise_m) * (1 + 2 / (1 + signal * signal));
   const float deviate = gauss_[bits & ((1U << kGaussBits) - 1)];
   const float measured = range + sigma * deviate;
@@ -171,8 +174,9 @@ Scanner::Pixel Scanner::Measure(const Hit& hit, Random* noise) const {
           static_cast<std::uint16_t>(std::min(65535.0F, kPhotons * signal * speckle + 0.5F))};
 }
 
-/// A beam has a width: at an edge, or in leaves, part of it continues to a farther surface. A
-/// sensor separates two surfaces only if their echoes do not overlap.
+/// Measures the two echoes of a beam. A beam has a width, so a part of it continues to a farther
+/// surface at an edge or in leaves. A sensor separates two surfaces only if their echoes do not
+/// overlap.
 Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const Hit& center,
                                      Random* noise) const {
   constexpr float kSeparation = 0.5F;  // [m]
@@ -193,7 +197,7 @@ Scanner::Echoes Scanner::MeasureBoth(const Column& column, Vec3 direction, const
   return a_leads ? Echoes{a, b} : Echoes{b, a};
 }
 
-/// Returns the hits of a column's beams. Draws the same noise as the cast of that column.
+/// Returns the hits of a column's beams. Draws the same noise as Cast() does for this column.
 std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   BeginChunk(scan, index / chunk_columns_);
   const Column column = MakeColumn(scan, index);
@@ -206,9 +210,10 @@ std::vector<Hit> Scanner::TraceColumn(std::uint64_t scan, std::uint32_t index) {
   return hits;
 }
 
-/// Mixes the two echoes at an edge within the beam: the range lies between theirs.
+/// Mixes the echoes of two surfaces if the beam meets an edge. The range then lies between those of
+/// the surfaces.
 Hit Scanner::MixWith(const Hit& beside, Hit hit, Random* noise) const {
-  constexpr float kPulse = 1.0F;  // least distance of separate echoes [m]
+  constexpr float kPulse = 1.0F;  // least distance at which echoes are separate [m]
   constexpr float kSurface = 0.15F;
   const float apart = std::abs(beside.distance - hit.distance);
   if (!(apart > kSurface && apart < kPulse)) return hit;
@@ -230,7 +235,8 @@ void Scanner::Cast(std::uint64_t scan, ColumnWindow window, Returns* returns) {
   returns->range2_mm.resize(seconds);
   returns->reflectivity2.resize(seconds);
   returns->signal2.resize(seconds);
-  // The ranges must not depend on where a window begins.
+  // Traces the column before the window, because the ranges must not depend on where a window
+  // begins.
   std::vector<Hit> beside;
   if (config_.mixed_pixels && window.first > 0) beside = TraceColumn(scan, window.first - 1);
   std::uint32_t chunk = UINT32_MAX;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The makers of the scenes, one a file.
+// The functions that make the scenes. Each is defined in a file of its own.
 #pragma once
 #include "src/synth/scene.h"
 

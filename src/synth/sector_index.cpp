@@ -7,19 +7,19 @@
 namespace lidar::synth {
 namespace {
 
-/// The rectangle below a shape, relative to the sensor.
+/// The rectangle that a shape covers on the ground, relative to the sensor.
 struct Footprint {
   float nearest = 0;
   float farthest = 0;
-  float angle = 0;  // pseudo-angle where it begins
-  float width = 4;  // angle that it spans; 4 if the sensor stands on it
+  float angle = 0;  // pseudo-angle at which it begins
+  float width = 4;  // pseudo-angle that it spans; 4 if the sensor is within the rectangle
 
   Footprint(const Shape& s, Vec3 origin, float margin) {
     const float hx = s.half.x + margin;
     const float hy = s.half.y + margin;
     const float cx = s.center.x - origin.x;
     const float cy = s.center.y - origin.y;
-    // Distance to the rectangle, from the sensor's place in the shape's frame.
+    // Computes the distance from the sensor to the rectangle, in the frame of the shape.
     const float lx = std::abs(s.cos_yaw * cx + s.sin_yaw * cy);
     const float ly = std::abs(s.cos_yaw * cy - s.sin_yaw * cx);
     const float dx = std::max(0.0F, lx - hx);

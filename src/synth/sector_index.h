@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The shapes that a ray can meet: those in its sector of azimuth, nearest first.
+// Finds the shapes that a ray can meet. These are the shapes in the ray's sector of azimuth, sorted
+// by distance.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,18 +9,20 @@
 
 namespace lidar::synth {
 
-/// Grows with the angle of (x, y) as atan2 does, without its cost: [0, 4) instead of a turn.
+/// Returns a number that grows with the angle of (x, y), as that of atan2 does, but at less cost.
+/// It grows from 0 to 4 in a whole turn.
 inline float PseudoAngle(float x, float y) {
   const float p = y / (std::abs(x) + std::abs(y) + 1e-30F);
   return x < 0 ? 2 - p : (p < 0 ? 4 + p : p);
 }
 
-/// Valid while the sensor stays within `margin` of one place, so for a short part of a sweep.
+/// An index of shapes by sectors of azimuth. It is valid while the sensor stays within `margin` of
+/// `origin` (see Build()), which is only the case for a short part of a sweep.
 class SectorIndex {
  public:
   struct Entry {
-    float nearest;    // horizontal distance of its nearest corner [m]
-    float min_slope;  // least slope of rays that can meet it
+    float nearest;    // horizontal distance to the shape's nearest point [m]
+    float min_slope;  // least slope of the rays that can meet the shape
     float max_slope;
     std::uint32_t shape;
   };
@@ -29,13 +32,13 @@ class SectorIndex {
     const Entry* begin() const { return first; }
     const Entry* end() const { return last; }
   };
-  /// An arc in pseudo-angles; it may pass 4, and goes around when `width` is 4 or more.
+  /// An arc of pseudo-angles. It may extend beyond 4. If `width` is 4 or more, it is a full circle.
   struct Arc {
     float start = 0;
     float width = 0;
   };
 
-  /// Sorts the shapes seen from `origin` into the sectors of `arc`.
+  /// Sorts the shapes that are seen from `origin` into the sectors of `arc`.
   void Build(const std::vector<Shape>& shapes, Vec3 origin, float margin, Arc arc);
   Range Find(float pseudo_angle) const {
     const auto sector = static_cast<std::size_t>(pseudo_angle * kSectorsPerUnit) % kSectors;

@@ -12,10 +12,10 @@ namespace {
 
 struct Family {
   std::string_view name;
-  double half_view_deg;  // of the outermost beams
-  double bulge;          // how much farther apart beams are at the edge than in the middle
-  double stagger_deg;    // azimuth of the outer of the four emitter columns
-  double origin_m;       // lidar_origin_to_beam_origin
+  double half_view_deg;  // altitude of the outermost beams
+  double bulge;  // how much farther apart beams are at the edge of the view than in its middle
+  double stagger_deg;  // azimuth of the outermost of the four emitter columns
+  double origin_m;     // lidar_origin_to_beam_origin
   double min_range_m;
   double max_range_m;
   double range_of_10_percent_m;
@@ -25,8 +25,8 @@ constexpr std::array<Family, 3> kFamilies = {{{"os0", 45.6, 0.06, 10.9, 0.027116
                                               {"os1", 21.4, 0.03, 4.22, 0.015806, 0.3, 170, 90},
                                               {"os2", 10.6, 0.02, 2.11, 0.013762, 0.8, 350, 200}}};
 
-/// The four emitter columns of an Ouster stand at 1, 1/3, -1/3, -1 of the stagger; a sensor of 32
-/// beams uses every fourth beam, hence one column.
+/// Returns the azimuth of a beam. The four emitter columns of an Ouster are at 1, 1/3, -1/3 and -1
+/// times the stagger. A sensor of 32 beams uses every fourth beam, so it has only one column.
 double AzimuthOf(const Family& family, std::uint32_t beam, std::uint32_t beams) {
   const std::uint32_t column = beams == 32 ? 2 : beam % 4;
   return family.stagger_deg * (1.0 - column * 2.0 / 3.0);
@@ -73,7 +73,8 @@ std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns) {
     if (parsed.ptr == digits.data() + digits.size() &&
         (beams == 32 || beams == 64 || beams == 128)) {
       Sensor sensor = Build(family, beams, columns);
-      // Rounds the model as caps do, so that both ends convert ranges to the same points.
+      // Rounds the model as caps do, so that the sender and the receiver convert ranges to the same
+      // points.
       const auto bytes = sensor.model.Serialise();
       sensor.model = *SensorModel::Parse({bytes.data(), bytes.size()});
       return sensor;

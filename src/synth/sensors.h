@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors modelled on data sheets, manuals and captures.
+// Makes sensors according to data sheets, manuals and captures.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,18 +10,18 @@
 
 namespace lidar::synth {
 
-/// A sensor unit: its beams, and its reach.
+/// The beams and the ranges of a sensor.
 struct Sensor {
-  SensorModel model;               // with a firing table, only the size of its scans is set
-  const Firing* firing = nullptr;  // null: an Ouster, which the model describes
+  SensorModel model;               // if `firing` is set, it has only the size of a scan
+  const Firing* firing = nullptr;  // null: an Ouster, which `model` describes
   double min_range_m = 0;
   double max_range_m = 0;
-  double range_of_10_percent_m =
-      0;  // distance at which a target of 10 % reflectivity returns nine times in ten
+  // The distance at which nine of ten pulses return from a target of 10 % reflectivity.
+  double range_of_10_percent_m = 0;
 };
 
-/// "os0-32" ... "os2-128", with 512, 1024, 2048 or 4096 columns; nothing for other names. Every
-/// unit of a model has the same small errors of its beams.
+/// Makes the sensor "os0-32" ... "os2-128" with 512, 1024, 2048 or 4096 columns. Returns nothing
+/// for other values. All sensors of the same name have the same small errors in their beams.
 std::optional<Sensor> MakeSensor(std::string_view name, std::uint32_t columns);
 Sensor MakeSensor(const Firing& firing);
 

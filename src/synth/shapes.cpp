@@ -8,14 +8,15 @@ namespace {
 
 constexpr float kNearest = 0.05F;  // nearer points are inside the housing
 
-/// The part of a ray inside a convex body, and the face of entry.
+/// The part of a ray that is inside of a convex body, and the normal of the face by which it
+/// enters.
 struct Span {
   float in = kNearest;
   float out = 1e9F;
   Vec3 normal;
 
-  /// Keeps the part of the ray where `face` . p is below `offset`. Returns false if nothing is
-  /// left.
+  /// Keeps the part of the ray whose points p have a product `face` . p below `offset`. Returns
+  /// false if no part is left.
   bool Clip(Vec3 face, float offset, const Ray& ray) {
     const float height = offset - Dot(face, ray.origin);
     const float rate = Dot(face, ray.direction);
@@ -45,7 +46,7 @@ Ray ToLocal(const Shape& s, const Ray& ray) {
   return MakeRay(ToLocal(s, origin), ToLocal(s, ray.direction));
 }
 
-/// Slab test: finds where the ray enters a box centred on the origin.
+/// Finds by a slab test where the ray enters a box. The box is centred on the origin.
 bool EnterBox(Vec3 half, const Ray& r, Span* span) {
   const float tx = (r.inverse.x > 0 ? -half.x - r.origin.x : half.x - r.origin.x) * r.inverse.x;
   const float ty = (r.inverse.y > 0 ? -half.y - r.origin.y : half.y - r.origin.y) * r.inverse.y;
@@ -68,7 +69,7 @@ bool EnterBox(Vec3 half, const Ray& r, Span* span) {
 }
 
 bool EnterCabin(Vec3 half, const Ray& r, Span* span) {
-  constexpr float kLean = 0.70710678F;  // the screens stand at 45 degrees
+  constexpr float kLean = 0.70710678F;  // the front and rear windows lean by 45 degrees
   const float screen = kLean * (half.x - half.z);
   return span->Clip({0, 1, 0}, half.y, r) && span->Clip({0, -1, 0}, half.y, r) &&
          span->Clip({0, 0, 1}, half.z, r) && span->Clip({0, 0, -1}, half.z, r) &&
@@ -76,13 +77,13 @@ bool EnterCabin(Vec3 half, const Ray& r, Span* span) {
          span->in > kNearest;
 }
 
-/// Origin and direction of a ray in a cylinder's coordinates: w runs along its axis.
+/// The origin and the direction of a ray in the coordinates of a cylinder, whose axis is w.
 struct Axes {
   float ou, ov, ow;
   float du, dv, dw;
 };
-/// Finds where the ray enters the infinite cylinder u^2 + v^2 = radius^2, then its caps at |w| =
-/// half.
+/// Finds where the ray enters a cylinder. Tests the infinite cylinder u^2 + v^2 = radius^2 first,
+/// and then the caps at |w| = half.
 bool EnterCylinder(const Axes& a, float radius, float half, Span* span, float* cosine) {
   const float aa = a.du * a.du + a.dv * a.dv + 1e-12F;
   const float b = a.ou * a.du + a.ov * a.dv;
@@ -120,8 +121,9 @@ bool EnterEllipsoid(Vec3 half, const Ray& r, Span* span, float* cosine) {
   return span->in > kNearest;
 }
 
-/// Adds windows in rows, one in each storey, deep in the wall. Some have curtains; others absorb
-/// the light, except for the pane's own echo near its normal.
+/// Adds windows to a façade. There is one row of windows in each storey, and they lie deep in the
+/// wall. Some windows have curtains. The others absorb the light, except for an echo of the pane if
+/// the ray is nearly perpendicular to it.
 void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& span, Hit* hit) {
   constexpr float kStorey = 3.2F;
   constexpr float kBay = 2.8F;
@@ -136,7 +138,7 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
   if (u < 0.25F || u > 0.75F || v < 0.28F || v > 0.78F) return;
   hit->distance +=
       std::min(kRecess * std::abs(long_side ? local.inverse.y : local.inverse.x), 2.0F);
-  // The reflectivity identifies the house, because it does not depend on the anchor.
+  // The reflectivity serves as the number of the house, because it does not depend on the anchor.
   const auto house = static_cast<std::uint64_t>(s.reflectivity * 1e6F);
   const auto window = static_cast<std::uint64_t>(storey) * 64 + static_cast<std::uint64_t>(bay);
   const bool curtain = Random(house * 4096 + window).Chance(0.55F);
@@ -145,7 +147,8 @@ void TextureFacade(const Shape& s, const Ray& local, Random* noise, const Span& 
 }
 
 bool EnterFoliage(const Shape& s, Random* noise, Span* span) {
-  // The path of a ray through leaves has an exponential distribution; half.x sets the mean.
+  // The length of a ray's path in leaves has an exponential distribution. Its mean is proportional
+  // to half.x.
   const float mean = 0.55F * s.half.x;
   const float depth = -mean * std::log(1.0F - noise->Uniform());
   span->in += depth;
@@ -190,7 +193,7 @@ bool Intersect(const Shape& shape, const Ray& ray, Random* noise, Hit* hit) {
   }
   *hit = {span.in, shape.reflectivity, cosine};
   if (shape.surface == Surface::kFacade) TextureFacade(shape, local, noise, span, hit);
-  // A screen reflects the light away except near its normal.
+  // Glass reflects the light away, unless the ray is nearly perpendicular to it.
   if (shape.surface == Surface::kGlass && cosine < 0.9F) hit->reflectivity *= 0.08F;
   return true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The objects of the synthetic world, and intersections of rays with them.
+// The shapes of the synthetic world, and the intersections of rays with them.
 #pragma once
 #include <cstdint>
 
@@ -9,8 +9,8 @@
 namespace lidar::synth {
 
 enum class ShapeKind : std::uint8_t {
-  kBox,        // turned about z
-  kCabin,      // a box with leaning front and back: the windows of a car
+  kBox,        // rotated about z
+  kCabin,      // a box whose front and back lean: the windows of a car
   kColumn,     // vertical cylinder
   kBar,        // cylinder along the x axis of the shape
   kEllipsoid,  // solid
@@ -19,7 +19,8 @@ enum class ShapeKind : std::uint8_t {
 
 enum class Surface : std::uint8_t { kPlain, kFacade, kGlass, kRetroreflector };
 
-/// A primitive. Coordinates are relative to the anchor of the view it was made for.
+/// A shape whose coordinates are relative to an anchor: that of the view for which the shape was
+/// made.
 struct Shape {
   ShapeKind kind = ShapeKind::kBox;
   Surface surface = Surface::kPlain;
@@ -33,12 +34,12 @@ struct Shape {
 
 struct Hit {
   float distance = 0;      // along the ray [m]
-  float reflectivity = 0;  // at the point, texture included
-  float cosine = 1;        // of the angle of incidence
+  float reflectivity = 0;  // at the point of the hit, including the texture
+  float cosine = 1;        // cosine of the angle of incidence
 };
 
-/// Returns true if the ray meets the shape nearer than hit->distance, which it then updates.
-/// `noise` belongs to this ray: it decides whether the ray meets a leaf.
+/// Returns true if the ray meets the shape nearer than hit->distance, and then updates `hit`.
+/// `noise` belongs to this ray, and decides where the ray meets a leaf.
 bool Intersect(const Shape& shape, const Ray& ray, Random* noise, Hit* hit);
 
 }  // namespace lidar::synth

@@ -96,7 +96,7 @@ void Street::AddFurniture(const View& view, float side, std::vector<Shape>* shap
     AddTree({x + 3, side * 6.9F, kKerb, 0, 0}, random, shapes);
   });
   ForEachCell(view, 27, kLamp + offset, [&](Random random, std::int64_t, float x) {
-    // Lamps alternate from side to side.
+    // Lamps alternate between both sides of the street.
     const float shifted = side > 0 ? x : x + 13.5F;
     AddLamp({shifted, side * 6.3F, kKerb, 0, 0}, -side * 2.2F, shapes);
     if (random.Chance(0.35F)) AddSign({shifted - 6, side * 6.2F, kKerb, 0, 0}, shapes);
@@ -107,7 +107,7 @@ void Street::AddFurniture(const View& view, float side, std::vector<Shape>* shap
 }
 
 void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // Two cars ahead and one behind, at varying distances.
+  // Two cars drive ahead of the sensor's car and one behind it, at varying distances.
   struct Follower {
     double gap, breath, period_s;
   };
@@ -126,7 +126,8 @@ void Street::AddOwnLane(const View& view, const Instant& now, std::vector<Shape>
 }
 
 void Street::AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const {
-  // Oncoming cars drive as one column. In a view that moves with it, its cells stand still.
+  // The oncoming cars drive as one column. The view moves with the column, so that the cells of the
+  // view stay with the cars.
   View column = view;
   const double shift = kOncomingSpeed * now.time_s;
   column.anchor_x = view.anchor_x + shift;
@@ -145,7 +146,7 @@ void Street::AddWalkers(const View& view, const Instant& now, std::vector<Shape>
   for (const double pace : {1.3, -1.1}) {
     View pavement = view;
     pavement.anchor_x = view.anchor_x - pace * now.time_s;
-    pavement.radius = std::min(view.radius, 60.0F);  // no people beyond
+    pavement.radius = std::min(view.radius, 60.0F);  // there are no people further away
     ForEachCell(pavement, 9, kWalker + (pace > 0 ? 64 : 0),
                 [&](Random random, std::int64_t, float x) {
                   if (random.Chance(0.55F)) return;
@@ -164,7 +165,7 @@ float Street::RoadReflectivity(double along, float y) {
   const double lane_phase = along - 9.0 * std::floor(along / 9.0);
   if (std::abs(y) < 0.07F && lane_phase < 3) return 0.6F;
   if (std::abs(std::abs(y) - 3.55F) < 0.05F) return 0.5F;
-  // Zebra stripes on the last metres before a crossing.
+  // There are zebra stripes on the last metres before a crossing.
   const bool zebra = !IsCrossing(along) && (IsCrossing(along + 3.5) || IsCrossing(along - 3.5));
   if (zebra && y - std::floor(y) < 0.5F) return 0.6F;
   return 0.13F;
@@ -172,7 +173,7 @@ float Street::RoadReflectivity(double along, float y) {
 
 bool Street::IntersectGround(const View& view, const Ray& ray, Random* noise, Hit* hit) const {
   if (ray.slope > -1e-4F) return false;
-  // The ray meets the pavement's level here.
+  // The distance at which the ray meets the level of the pavement.
   const float top = (kKerb - ray.origin.z) * ray.inverse.z;
   const Vec3 at_top = ray.origin + top * ray.direction;
   const float grain = 0.9F + 0.2F * noise->Uniform();
@@ -185,7 +186,8 @@ bool Street::IntersectGround(const View& view, const Ray& ray, Random* noise, Hi
   }
   const float road = -ray.origin.z * ray.inverse.z;
   const Vec3 p = ray.origin + road * ray.direction;
-  if (std::abs(p.y) > kHalfRoad && !beside) {  // the kerb stands between the two levels
+  // The ray meets the kerb, which is between the two levels.
+  if (std::abs(p.y) > kHalfRoad && !beside) {
     const float kerb = ((p.y > 0 ? kHalfRoad : -kHalfRoad) - ray.origin.y) * ray.inverse.y;
     const float x = ray.origin.x + kerb * ray.direction.x;
     if (!IsCrossing(view.anchor_x + static_cast<double>(x))) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A straight street along x, piece by piece; towns bend it.
+// A straight street along x, which is made piece by piece. Towns bend these pieces.
 #pragma once
 #include "src/synth/scene.h"
 
 namespace lidar::synth {
 
-/// Length of a block [m]: a house with its plot. Every seventh block is a crossing.
+/// The length of a block [m], which is a house with its plot. Every seventh block is a crossing.
 constexpr double kBlock = kAnchorStep;
 constexpr std::int64_t kBlocksToCrossing = 7;
 constexpr double kCrossingSpacing = kBlock * kBlocksToCrossing;
-constexpr double kFirstCrossing = 3.5 * kBlock;  // its middle [m]
+constexpr double kFirstCrossing = 3.5 * kBlock;  // middle of the first crossing [m]
 constexpr float kStreetHalfRoad = 5.8F;          // two lanes and two rows of parked cars
 constexpr float kStreetKerb = 0.14F;
 constexpr float kStreetLane = 1.75F;  // middle of a lane
@@ -26,13 +26,14 @@ class Street final : public Scene {
 
   void AddHouses(const View& view, float side, std::vector<Shape>* shapes) const;
   void AddParked(const View& view, float side, std::vector<Shape>* shapes) const;
-  /// Trees, lamps, signs and bins.
+  /// Adds trees, lamps, signs and bins.
   void AddFurniture(const View& view, float side, std::vector<Shape>* shapes) const;
-  /// Cars on the left lane, which drive toward -x.
+  /// Adds the cars on the left lane, which drive toward -x.
   void AddOncoming(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
   void AddWalkers(const View& view, const Instant& now, std::vector<Shape>* shapes) const;
 
-  /// Reflectivity of asphalt and road paint, `along` the street and `lateral` from its middle.
+  /// Returns the reflectivity of asphalt or road paint. `along` is the position along the street,
+  /// and `lateral` is the distance from its middle.
   static float RoadReflectivity(double along, float lateral);
 
  private:

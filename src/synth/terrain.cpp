@@ -8,7 +8,7 @@ Terrain::Point Terrain::ToPlan(Point world) {
 }
 
 Terrain::Point Terrain::FromPlan(Point plan) {
-  // Each round leaves less than a tenth of the error: 20 um in the end.
+  // Each round leaves less than a tenth of the error, so that an error of 20 um is left in the end.
   constexpr int kRounds = 6;
   Point world = plan;
   for (int i = 0; i < kRounds; ++i) {

@@ -5,15 +5,15 @@
 
 namespace lidar::synth {
 
-/// Returns the remainder of a phase after whole periods; faster than floor().
+/// Returns the remainder of a phase after whole periods. This is faster than with floor().
 template <class T>
 T Fraction(T phase) {
   const T rest = phase - static_cast<T>(static_cast<std::int32_t>(phase));
   return rest < 0 ? rest + 1 : rest;
 }
 
-/// A wave of parabolas with period 1 and amplitude 1, as smooth as roads are. Its curvature is
-/// known.
+/// Returns a wave of parabolas with period 1 and amplitude 1. It is as smooth as roads are, and its
+/// curvature is known.
 template <class T>
 T Arch(T phase) {
   const T t = Fraction(phase);
@@ -35,14 +35,15 @@ struct Bend {
   }
 };
 
-// The lengths have no common divisor with the distance of crossings, so blocks differ. Grades are
-// at most 10 % along each axis, and curves have radii of at least 350 m.
+// The lengths have no common divisor with the distance between crossings, so that blocks differ.
+// Grades are at most 10 % along each axis, and curves have radii of at least 350 m.
 constexpr Bend kHillX{5, 421};
 constexpr Bend kHillY{4, 347};
 constexpr Bend kBendU{20, 521};  // shift of u along y
 constexpr Bend kBendV{17, 463};  // shift of v along x
 
-/// Converts between x, y of the world and u, v of the plan, in which streets are straight.
+/// Converts between the coordinates x, y of the world and u, v of the plan. In the plan, streets
+/// are straight.
 class Terrain {
  public:
   struct Point {
@@ -51,7 +52,8 @@ class Terrain {
   };
   static Point ToPlan(Point world);
   static Point FromPlan(Point plan);
-  /// Returns the direction at `world` of a street along u or along v. Its length is not 1.
+  /// Returns the direction that a street has at `world`. The street runs along u or along v. The
+  /// length of the direction is not 1.
   static Point DirectionAt(Point world, bool along_u);
 
   struct Ground {
@@ -61,7 +63,8 @@ class Terrain {
   };
   static Ground At(Point world);
 
-  /// The terrain around an anchor, relative to it, where floats are precise enough.
+  /// The terrain around an anchor. Coordinates are relative to the anchor, so that floats are
+  /// precise enough.
   class Local {
    public:
     Local(double anchor_x, double anchor_y)
@@ -75,7 +78,8 @@ class Terrain {
     Height HeightAt(float x, float y) const {
       return {hill_x_.At(x) + hill_y_.At(y), hill_x_.SlopeAt(x), hill_y_.SlopeAt(y)};
     }
-    /// Plan coordinates of a point, minus the anchor's coordinates in the world.
+    /// PlanU() and PlanV() return the plan coordinates of a point, minus the coordinates that the
+    /// anchor has in the world.
     float PlanU(float x, float y) const { return x - bend_y_.At(y); }
     float PlanV(float x, float y) const { return y - bend_x_.At(x); }
     static constexpr float curvature() {  // greatest curvature of the ground [1/m]

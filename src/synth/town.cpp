@@ -10,16 +10,19 @@
 namespace lidar::synth {
 namespace {
 
-/// Streets whose middle is farther from the sensor than this have only houses, which hide the rest.
+/// Streets whose middle is farther from the sensor than this have only houses, because the houses
+/// hide everything else.
 constexpr double kInSight = 75;
-constexpr float kCornerFree = 10.5F;  // no shape stands nearer to the middle of a crossing [m]
-constexpr float kCornerHouse = 27;    // reach of the other street's houses [m]
-constexpr float kCellar = 1;          // depth of houses below the ground at a hillside [m]
-constexpr float kTrafficReach = 90;   // no people and cars beyond [m]
-constexpr float kSteep = -0.15F;      // slope of rays that soon meet the road
-constexpr float kTooNear = 9;         // least distance of traffic to the sensor [m]
+constexpr float kCornerFree = 10.5F;  // no shape is nearer to the middle of a crossing [m]
+// Houses of the other street are within this distance of the middle of a crossing [m].
+constexpr float kCornerHouse = 27;
+// Depth of houses below the ground, so that they have no gap at a hillside [m].
+constexpr float kCellar = 1;
+constexpr float kTrafficReach = 90;  // there are no people and cars further away [m]
+constexpr float kSteep = -0.15F;     // rays with a lower slope soon meet the road
+constexpr float kTooNear = 9;        // least distance between traffic and the sensor [m]
 
-/// A street of the plan: along u at one v, or along v at one u.
+/// A street of the plan. It runs along u at a constant v, or along v at a constant u.
 struct Line {
   bool along_u;
   std::int64_t number;
@@ -29,13 +32,13 @@ struct Line {
   }
 };
 
-/// Place of a point on the plan, from the nearest crossing.
+/// The position of a point on the plan, relative to the nearest crossing.
 struct OnPlan {
   float u, v;
   bool road() const { return std::abs(u) < kStreetHalfRoad || std::abs(v) < kStreetHalfRoad; }
 };
 
-/// The ground around an anchor.
+/// The ground around an anchor, and the streets on it.
 struct Surroundings {
   explicit Surroundings(const View& view)
       : land(view.anchor_x, view.anchor_y), u(Phase(view.anchor_x)), v(Phase(view.anchor_y)) {}
@@ -53,7 +56,7 @@ struct Surroundings {
   }
 
   Terrain::Local land;
-  float u, v;  // place between two crossings, in units of kCrossingSpacing; 0.5 at a crossing
+  float u, v;  // position between two crossings, in units of kCrossingSpacing; 0.5 at a crossing
 };
 
 class Town final : public Scene {
@@ -83,7 +86,7 @@ class Town final : public Scene {
   Surroundings around_{View{}};
 };
 
-/// Moves shapes beside a straight street along x to their places in the town.
+/// Moves shapes from a straight street along x to their positions in the town.
 void BendInto(const View& view, const Line& line, double straight_anchor, std::size_t first,
               std::vector<Shape>* shapes) {
   for (std::size_t i = first; i < shapes->size(); ++i) {
@@ -109,12 +112,12 @@ void BendInto(const View& view, const Line& line, double straight_anchor, std::s
   }
 }
 
-/// Returns the distance of `along` from the middle of the nearest crossing.
+/// Returns the distance from `along` to the middle of the nearest crossing.
 float FromCrossing(double along) {
   return static_cast<float>(std::abs(std::remainder(along - kFirstCrossing, kCrossingSpacing)));
 }
 
-/// Removes shapes that stand in the other street or its houses.
+/// Removes the shapes that are in the other street of a crossing, or in that street's houses.
 void ClearCrossings(const Line& line, double straight_anchor, std::size_t first,
                     std::vector<Shape>* shapes) {
   const auto in_the_way = [&](const Shape& s) {
@@ -127,8 +130,8 @@ void ClearCrossings(const Line& line, double straight_anchor, std::size_t first,
                 shapes->end());
 }
 
-/// Calls add(line, view, distance) for each street in view. The view is one in which the street
-/// runs along x; the distance is that of the street from the anchor.
+/// Calls add(line, straight, distance) for each street in view. In the view `straight`, the street
+/// runs along x. `distance` is the distance from the anchor to the street.
 template <class Add>
 void Town::ForEachLine(const View& view, const Add& add) const {
   const Terrain::Point here = Terrain::ToPlan({view.anchor_x, view.anchor_y});
@@ -178,7 +181,7 @@ void Town::AddMoving(const View& view, const Instant& now, std::vector<Shape>* s
     street.AddWalkers(straight, now, shapes);
     ClearCrossings(line, straight.anchor_x, first, shapes);
     street.AddOncoming(straight, now, shapes);
-    // The other lane is the same column, turned around.
+    // The cars on the other lane are made in the same way, and then rotated by half a turn.
     const std::size_t back = shapes->size();
     View turned = straight;
     turned.anchor_x = -straight.anchor_x;
@@ -203,8 +206,8 @@ void Town::AddMoving(const View& view, const Instant& now, std::vector<Shape>* s
       shapes->end());
 }
 
-/// Returns the distance at which the ray meets the hills, raised by `above`, or `reach` if it does
-/// not.
+/// Returns the distance at which the ray meets the hills, which are raised by `above`. Returns
+/// `reach` if the ray does not meet them within this distance.
 float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float reach) {
   constexpr int kMostSteps = 20;
   constexpr float kClose = 0.001F;
@@ -218,8 +221,8 @@ float MeetHills(const Terrain::Local& land, const Ray& ray, float above, float r
     if (clearance < kClose) return std::max(t, 0.0F);
     const float fall =
         ground.slope_x * ray.direction.x + ground.slope_y * ray.direction.y - ray.direction.z;
-    // The ray would meet ground of the greatest curvature at the new t. Real ground is lower, so
-    // the step jumps over no point of it.
+    // The new t is where the ray would meet ground that has the greatest curvature. Real ground is
+    // lower, so the step skips no point of it.
     t += 2 * clearance / (fall + std::sqrt(fall * fall + 2 * curvature * clearance));
   }
   return reach;
@@ -252,7 +255,7 @@ bool Town::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit)
   }
   float road = top + kStreetKerb / fall;
   place = at(road);
-  if (!place.road()) {  // the kerb stands between the two levels
+  if (!place.road()) {  // the ray meets the kerb, which is between the two levels
     float before = top;
     for (int i = 0; i < 6; ++i) {
       const float middle = (before + road) / 2;

@@ -11,23 +11,23 @@
 namespace lidar::synth {
 namespace {
 
-/// The crossings at which the route turns, by their numbers. The route crosses itself at (1, 0).
+/// A crossing at which the route turns, given by its numbers. The route crosses itself at (1, 0).
 struct Corner {
   int u, v;
 };
 constexpr std::array<Corner, 8> kCorners = {
     {{0, 0}, {3, 0}, {3, 2}, {1, 2}, {1, -2}, {-1, -2}, {-1, 0}, {0, 0}}};
-constexpr double kCornerRadius = 10;  // of the middle of the street [m]
-constexpr double kStep = 0.5;         // between points [m]
+constexpr double kCornerRadius = 10;  // for the middle of the street [m]
+constexpr double kStep = 0.5;         // distance between points [m]
 constexpr double kSideways = 2.5;     // greatest sideways acceleration [m/s^2]
 constexpr double kForward = 2;
 constexpr double kQuarter = 1.57079632679489661923;
 
 double Plan(int block) { return kFirstCrossing + kCrossingSpacing * block; }
 
-/// A straight way, then a quarter of a turn around the corner, if any.
+/// A straight part of the route, and a quarter turn around a corner after it, if `turn` is not 0.
 struct Leg {
-  double u0, v0, du, dv;  // where it begins, and its direction
+  double u0, v0, du, dv;  // position at which it begins, and its direction
   double straight;
   double turn;  // +1: left, -1: right, 0: straight on
 };
@@ -44,7 +44,8 @@ std::vector<Leg> MakeLegs() {
     const int du = Sign(to.u - from.u);
     const int dv = Sign(to.v - from.v);
     const int turn = du * Sign(next.v - to.v) - dv * Sign(next.u - to.u);
-    // A turn at `from` ends this far past it; the first leg begins without a turn.
+    // If the route turns at `from`, this leg begins kCornerRadius past `from`. There is no turn
+    // before the first leg.
     const Corner& before = kCorners[i > 0 ? i - 1 : kLegs - 1];
     const bool turned = Sign(from.u - before.u) != du || Sign(from.v - before.v) != dv;
     const double skip = turned ? kCornerRadius : 0;
@@ -94,7 +95,8 @@ double TownRoute::LengthOf(std::size_t i) const {
   return std::hypot(PointAt(i + 1).x - PointAt(i).x, PointAt(i + 1).y - PointAt(i).y);
 }
 
-/// Sets the speed at each point, limited by the curve and by braking for later curves.
+/// Sets the speed at each point. The speed is limited by the curve, and by braking for later
+/// curves.
 void TownRoute::MakeTimes(double speed_mps) {
   const std::size_t n = points_.size();
   distances_.assign(1, 0);
@@ -110,7 +112,7 @@ void TownRoute::MakeTimes(double speed_mps) {
     speeds_[i] = std::min(speed_mps, std::sqrt(kSideways / std::max(curvature, 1e-6)));
   }
   length_m_ = distances_.back();
-  // Goes around twice, so that the speeds at the end of the lap fit those at its beginning.
+  // Goes around twice, so that the speeds at the end of the lap match those at its beginning.
   const auto limit = [&](std::size_t at, std::size_t from) {
     const double reach = 2 * kForward * LengthOf(std::min(at, from) % n);
     speeds_[at % n] =
@@ -136,7 +138,7 @@ Route::Place TownRoute::At(double seconds) const {
   const double gain = whole > 0 ? (speeds_[i + 1] - speeds_[i]) / whole : 0;
   const double driven = lap_s() > 0 ? speeds_[i] * elapsed + gain * elapsed * elapsed / 2 : 0;
   const double f = driven / LengthOf(i);
-  // Catmull-Rom curve through the points.
+  // Interpolates by a Catmull-Rom curve through the points.
   const std::size_t n = points_.size();
   const auto curve = [&](double Point::*c) {
     const double a = PointAt(i + n - 1).*c, b = PointAt(i).*c, d = PointAt(i + 1).*c,

@@ -13,7 +13,7 @@ class TownRoute final : public Route {
 
   Place At(double seconds) const override;
   double lap_m() const { return length_m_; }
-  double lap_s() const { return times_.back(); }  // 0: the car stands
+  double lap_s() const { return times_.back(); }  // 0: the car does not move
 
  private:
   struct Point {
@@ -23,11 +23,11 @@ class TownRoute final : public Route {
   void MakePoints();
   void MakeTimes(double speed_mps);
   const Point& PointAt(std::size_t i) const { return points_[i % points_.size()]; }
-  double LengthOf(std::size_t i) const;  // Length from point i to the next.
+  double LengthOf(std::size_t i) const;  // distance from point i to the next one
 
-  std::vector<Point> points_;  // closed: the first follows the last
+  std::vector<Point> points_;  // the route is closed: the first point follows the last one
   double length_m_ = 0;
-  std::vector<double> distances_;  // at each point, and at the end of the lap
+  std::vector<double> distances_;  // driven distance at each point, and at the end of the lap
   std::vector<double> speeds_;
   std::vector<double> times_;
 };

@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kTurn = 6.28318530717958647692;
 
-/// A sine over the distance driven, and its slope.
+/// A sine wave over the driven distance.
 struct Wave {
   double amplitude;
   double length_m;
@@ -16,7 +16,7 @@ struct Wave {
   }
 };
 
-// The lengths have no short common multiple, so the drive does not repeat.
+// The lengths have no short common multiple, so that the motion does not repeat.
 constexpr Wave kSwayLong{1.0, 149};
 constexpr Wave kSwayShort{0.35, 43};
 constexpr Wave kHeave{0.012, 9.7};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A road tunnel: the same walls for kilometres, in which odometry fails.
+// A road tunnel. Its walls are the same for kilometres, so that odometry fails in it.
 #include "src/synth/props.h"
 #include "src/synth/scene_makers.h"
 
@@ -7,11 +7,11 @@ namespace lidar::synth {
 namespace {
 
 constexpr float kRadius = 6.0F;
-constexpr float kAxisHeight = 1.4F;  // of the circle of the shell
+constexpr float kAxisHeight = 1.4F;  // height of the centre of the circular shell
 constexpr float kLane = 1.85F;
 constexpr float kHalfRoad = 4.2F;
 constexpr float kKerb = 0.25F;
-constexpr double kSection = 9;  // of lining, joint to joint
+constexpr double kSection = 9;  // length of a section of the lining, from joint to joint
 constexpr double kOncomingSpeed = 20;
 
 enum Kind : std::uint64_t { kRig = 16, kFan, kPost, kTraffic };
@@ -37,7 +37,7 @@ void Tunnel::AddStatic(const View& view, std::vector<Shape>* shapes) const {
   ForEachCell(view, 12, kRig, [&](Random, std::int64_t, float x) {
     for (const float side : {-1.0F, 1.0F}) {
       shapes->push_back(MakeBox({x, side * 2.3F, 6.55F}, {0.6F, 0.15F, 0.1F}, 0.6F));  // lamp
-      Shape tray;  // for cables, along the wall
+      Shape tray;  // for cables along the wall
       tray.kind = ShapeKind::kBar;
       tray.reflectivity = 0.4F;
       tray.center = {x, side * 5.35F, 3.4F};
@@ -89,7 +89,7 @@ void Tunnel::AddMoving(const View& view, const Instant& now, std::vector<Shape>*
 bool Tunnel::IntersectGround(const View&, const Ray& ray, Random* noise, Hit* hit) const {
   const Vec3 o{ray.origin.x, ray.origin.y, ray.origin.z - kAxisHeight};
   const Vec3 d = ray.direction;
-  // The shell is met from inside.
+  // The ray starts inside the shell, so the far intersection counts.
   const float a = d.y * d.y + d.z * d.z + 1e-12F;
   const float b = o.y * d.y + o.z * d.z;
   const float root = std::sqrt(b * b - a * (o.y * o.y + o.z * o.z - kRadius * kRadius));
