@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds the Debian packages in a clean root of a release, then installs and tries them in another.
+# Builds the Debian packages in a clean root of a release. Then installs and tests them in another
+# clean root.
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 
@@ -53,7 +54,7 @@ trap remove_roots EXIT
 
 say() { echo "== $* ($SECONDS s)"; }
 
-# Fails if lintian reports an error or a warning.
+# Builds the packages. Fails if lintian reports an error or a warning.
 build_packages() {
   local root=$work/build
   say "a root of $release to build in"
@@ -81,7 +82,8 @@ list_packages() {
   done
 }
 
-# The tests run without the network of the host, so that all ports are free.
+# Installs the packages in a clean root, and tests them. The tests run without the host's network,
+# so that all ports are free.
 try_packages() {
   local root=$work/try began name
   say "a clean root of $release to install in"

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # shellcheck shell=bash disable=SC2154
-# Sourced by the scripts that work in clean roots of Debian's releases, from $mirror and for $architectures.
+# Sourced by the scripts that work in clean roots of Debian's releases. The roots are made from
+# $mirror, for $architectures.
 
-# make_root DIR RELEASE PACKAGE...: a minimal root of the release with these packages and an empty /src. The
-# mirror may be some weeks old: its signatures are checked, its dates are not.
+# make_root DIR RELEASE PACKAGE...: makes a minimal root of the release with these packages and an
+# empty /src. The signatures of the mirror are checked, but not its dates, because the mirror may be
+# some weeks old.
 make_root() {
   local dir=$1 release=$2
   shift 2
@@ -25,13 +27,15 @@ leave_root() {
   umount "$1/dev/shm" "$1/proc" 2>/dev/null || true
 }
 
-# inside DIR COMMANDS: runs the commands by a shell in the root, until one fails.
+# inside DIR COMMANDS: runs the commands in the root. The shell ends at the first command that
+# fails.
 inside() {
   chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     DEB_BUILD_OPTIONS="${DEB_BUILD_OPTIONS:-}" sh -euc "$2"
 }
 
-# inside_alone DIR COMMANDS: the same, in a network namespace that has only loopback.
+# inside_alone DIR COMMANDS: does the same as inside, in a network namespace that has only the
+# loopback interface.
 inside_alone() {
   local dir=$1 commands=$2
   export -f inside

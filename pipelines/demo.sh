@@ -5,7 +5,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${BUILD_DIR:-$root/build}
 
-# say TEXT: progress, apart from the results on standard output.
+# say TEXT: prints the progress to standard error, because the results go to standard output.
 say() { echo "demo: $*" >&2; }
 
 build_all() {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Sourced by the scripts here: the plugins of the build tree first, with a registry of their own.
+# Sourced by the scripts in this folder. Makes GStreamer load the plugins of the build tree in
+# preference to installed ones, and use a separate registry for them.
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${BUILD_DIR:-$root/build}
 if [ ! -f "$build/build.ninja" ]; then
@@ -10,7 +11,8 @@ plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sor
 export GST_PLUGIN_PATH_1_0=$plugins${GST_PLUGIN_PATH_1_0:+:$GST_PLUGIN_PATH_1_0}
 export GST_REGISTRY=$build/pipelines-registry.bin
 
-# need PACKAGES ELEMENT...: ends the script if an element is missing.
+# need PACKAGES ELEMENT...: ends the script if an element is missing. The message names the packages
+# to install.
 need() {
   local packages=$1 element
   shift
@@ -21,14 +23,16 @@ need() {
   done
 }
 
-# listening PORT PID: waits until a process has the UDP port. Fails if PID ends before that.
+# listening PORT PID: waits until a process has opened the UDP port. Fails if the process PID ends
+# before that.
 listening() {
   until grep -qsE "^ *[0-9]+: [0-9A-F]+:$(printf %04X "$1") " /proc/net/udp /proc/net/udp6; do
     kill -0 "$2" 2>/dev/null || return 1
     sleep 0.1
   done
 }
-# until_ended PID...: waits until these processes of this shell have ended; ends them after half a minute.
+# until_ended PID...: waits until these child processes of the shell have ended. Terminates them after
+# half a minute.
 until_ended() {
   local i
   for ((i = 0; i < 300; ++i)); do
@@ -38,7 +42,8 @@ until_ended() {
   kill "$@" 2>/dev/null || true
   wait "$@" 2>/dev/null || true
 }
-# playing LOG PID: waits at most a minute until the statistics in LOG report feedback, or PID has ended.
+# playing LOG PID: waits until the statistics in LOG report feedback, or the process PID has ended,
+# but not longer than a minute.
 playing() {
   local i
   for ((i = 0; i < 600; ++i)); do
@@ -47,5 +52,6 @@ playing() {
   done
 }
 
-# launch PIPELINE...: replaces this process by gst-launch-1.0. Shows its warnings, which -q would hide, but not its progress.
+# launch PIPELINE...: replaces this process by gst-launch-1.0. Shows its warnings, which -q would
+# hide, but not its progress.
 launch() { exec gst-launch-1.0 "$@" > >(grep --line-buffered '^WARNING' >&2); }

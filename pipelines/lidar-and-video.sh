@@ -59,7 +59,8 @@ receiver=$!
 listening "$port" "$link" && listening $((port + 1)) "$receiver" ||
   { echo "The link or the receiver did not start." >&2; exit 1; }
 
-# One line for each of the sender's statistics; quotes within the array of streams are escaped.
+# Prints one line for each of the sender's statistics. The quotes within the array of streams are
+# escaped, so the backslashes are removed first.
 show() {
   sed -nu 's/\\//g; s/^.*x-screamtx-stats, \(.*\)$/\1/p' | awk '
     function value(line, name) {
@@ -92,7 +93,8 @@ until_ended $sender
 wait $shown || true
 [ ! -s "$work/sender.err" ] || grep -E 'ERROR|WARN' "$work/sender.err" >&2 || true
 
-# The sender's goodbye ends the receiver; a sender that could not start sends none.
+# The sender's goodbye ends the receiver. If the sender could not start, there is no goodbye, so the
+# receiver is killed.
 [ -s "$work/sender" ] || kill "$receiver" 2>/dev/null || true
 until_ended "$receiver"
 scans=$(grep -c 'chain.*scans' "$work/receiver.log" || true)

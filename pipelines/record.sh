@@ -68,7 +68,7 @@ if [ $into_files = yes ]; then
   (launch -e "${words[@]}" ! scanassembler ! identity eos-after="$((scans + 1))" \
     ! "${stage[@]}" ! multifilesink location="$output/scan%06d.${format%-text}")
 else
-  # The synthetic sensor runs in real time, as real sensors do.
+  # The synthetic sensor must run in real time, as real sensors do.
   case $source in lidartestsrc*) words+=(is-live=true) ;; esac
   pieces() { find "$output" -name 'rec-*.mcap' | wc -l; }
   before=$(pieces)
@@ -76,7 +76,7 @@ else
     ! mcapsink location="$output/rec-%05d.mcap" max-file-duration="${piece}000000000" &
   recorder=$!
   trap 'kill -INT $recorder 2>/dev/null || true' INT TERM
-  # The time counts from the first scan on; starting takes a slow machine seconds.
+  # The time counts from the first scan, because a slow machine needs seconds to start.
   SECONDS=0 told=no
   until [ "$(pieces)" -gt "$before" ] || ! kill -0 $recorder 2>/dev/null; do
     sleep 0.05

@@ -33,7 +33,7 @@ need "" openh264enc openh264dec screamtx
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT
 
-# one_end NAME RTP_IN RTCP_IN RTP_OUT RTCP_OUT: one end of the call.
+# one_end NAME RTP_IN RTCP_IN RTP_OUT RTCP_OUT: runs one end of the call.
 one_end() {
   local name=$1 rtp_in=$2 rtcp_in=$3 rtp_out=$4 rtcp_out=$5
   exec gst-launch-1.0 -m \

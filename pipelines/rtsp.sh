@@ -33,7 +33,7 @@ until address=$(head -1 "$folder/address") && [ -n "$address" ]; do
   sleep 0.1
 done
 
-# view PROTOCOL: prints how many clouds came.
+# view PROTOCOL: prints how many clouds arrived.
 view() {
   timeout 60 gst-launch-1.0 -v rtspsrc location="$address" protocols="$1" latency=100 ! rtplidardepay ! lidardec ! \
     fakesink num-buffers="$clouds" sync=false silent=false >"$folder/$1" 2>&1 || true

@@ -28,7 +28,8 @@ need gstreamer1.0-plugins-bad dtlssrtpenc srtpenc
 folder=$(mktemp -d)
 trap 'kill "${receiver:-}" 2>/dev/null || true; rm -rf "$folder"' EXIT
 
-# certificate NAME: a key and a certificate that signs itself. Each end gets only the certificate of the other.
+# certificate NAME: makes a key and a self-signed certificate. Each end gets only the certificate of
+# the other end, and not its key.
 certificate() {
   openssl req -x509 -newkey rsa:2048 -nodes -days 365 -subj "/CN=$1" -keyout "$folder/key" -out "$folder/$1.crt" 2>/dev/null
   (umask 077; cat "$folder/$1.crt" "$folder/key" >"$folder/$1.pem")
@@ -38,7 +39,8 @@ for name in robot edge stranger; do certificate $name; done
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 media=media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96
-# The first capssetter gives dtlssrtpdec buffers of its own, because srtpdec works in place; the second sets the caps of the RTP.
+# The first capssetter gives dtlssrtpdec buffers of its own, because srtpdec changes buffers in
+# place. The second capssetter sets the caps of the RTP stream.
 receive() {
   exec "$launch" --certificate "$folder/edge.pem" --peer-certificate "$folder/robot.crt" --stats rx,depay \
     ecnudpsrc port="$port" caps=application/x-srtp ! capssetter caps=application/x-srtp ! dtlssrtpdec name=dec connection-id=edge \
@@ -47,7 +49,8 @@ receive() {
     rx.rtcp_src ! enc.rtcp_sink_0 dtlssrtpenc name=enc connection-id=edge ! ecnudpsink host=127.0.0.1 port="$back" sync=false async=false
 }
 await_receiver() { listening "$port" "$receiver" || fail "the receiver did not start"; }
-# send CERTIFICATE. packet-overhead: 28 bytes of UDP and IP, 10 of SRTP.
+# send CERTIFICATE: sends a stream with this certificate. The packet-overhead is 28 bytes of UDP and
+# IP, and 10 bytes of SRTP.
 send() {
   exec timeout --foreground --signal=INT $((seconds + 600)) "$launch" --certificate "$folder/$1.pem" --peer-certificate "$folder/edge.crt" --stats tx \
     --duration "$seconds" \
@@ -57,7 +60,8 @@ send() {
     ecnudpsrc port="$back" caps=application/x-srtcp ! capssetter caps=application/x-srtcp ! \
     dtlssrtpdec name=dec connection-id=robot dec.rtcp_src ! tx.rtcp_sink
 }
-# send_stranger: sends until the receiver has refused the stranger, for a minute at most.
+# send_stranger: sends with the stranger's certificate until the receiver has refused it, or until
+# the sender has ended.
 send_stranger() {
   send stranger >/dev/null 2>&1 & local stranger=$!
   until grep -q REFUSED "$folder/refused" || ! kill -0 $stranger 2>/dev/null; do sleep 0.1; done
@@ -81,7 +85,7 @@ echo "over DTLS-SRTP: $slices slices, $lost lost, $reports reports of feedback; 
 [ "$reports" -gt 0 ] || fail "no report came back"
 grep -q 'ecn-state=(string)capable' "$folder/sent" || fail "ECN marks do not come through"
 
-# The stranger is refused, and the receiver waits for the robot.
+# The receiver refuses the stranger, and then waits for the robot.
 receive >"$folder/received" 2>"$folder/refused" & receiver=$!
 await_receiver
 send_stranger

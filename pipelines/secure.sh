@@ -23,7 +23,8 @@ port=${PORT:-5044}
 
 need gstreamer1.0-plugins-bad srtpenc
 
-# 16 bytes of key and 14 of salt; in the environment, so that the list of processes does not show them.
+# The key has 16 bytes and the salt has 14. They are in the environment, so that the list of
+# processes does not show them.
 LIDAR_SRTP_KEY=$(od -An -tx1 -N30 /dev/urandom | tr -d ' \n')
 export LIDAR_SRTP_KEY
 
@@ -35,7 +36,7 @@ receiver=$!
 listening "$port" $receiver || { cat "$log" >&2; echo "FAILED: the receiver did not start" >&2; exit 1; }
 (launch lidartestsrc is-live=true num-buffers=$((seconds * 80)) ! lidarenc max-error=0.05 ! rtplidarpay ! \
   screamsink host=127.0.0.1 port="$port" srtp-key=env:LIDAR_SRTP_KEY)
-until_ended $receiver  # by the sender's goodbye
+until_ended $receiver  # ended by the sender's goodbye
 clouds=$(grep -c 'chain.*identity' "$log" || true)
 echo "sent $((seconds * 80)) slices over SRTP, $clouds came out"
 [ "$clouds" -gt 0 ] || { echo "FAILED: no cloud came out" >&2; exit 1; }

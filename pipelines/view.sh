@@ -36,7 +36,7 @@ while [ $# -gt 0 ]; do
 done
 . "$(dirname "$0")/environment.sh"
 
-# SOURCE is a list of words on purpose.
+# SOURCE is not quoted below, because it is a list of words.
 if [ -n "$window" ]; then
   case $source in lidartestsrc* | ouster_src*) source="$source is-live=true" ;; esac
   # shellcheck disable=SC2086

@@ -44,7 +44,8 @@ trap 'kill "${link:-}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$w
   --steps "$high,$low,$high" --step-time "$part" --once --rtt "$rtt" --queue 200 --aqm none --quiet &
 link=$!
 
-# By this extension webrtcbin numbers its packets, and the other end's reports use the numbers.
+# This header extension makes webrtcbin number its packets. The reports of the other end use these
+# numbers.
 twcc=http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01
 caps="application/x-rtp,media=video,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96"
 caps+=",extmap-1=(string)$twcc,rtcp-fb-transport-cc=(boolean)true"
@@ -58,8 +59,8 @@ caps+=",extmap-1=(string)$twcc,rtcp-fb-transport-cc=(boolean)true"
   caller. ! rtplidardepay name=back ! lidardec ! fakesink sync=false async=false >"$work/stats" ||
   { echo "FAILED: the call ended early." >&2; exit 1; }
 
-# The steps of the link start with its first packet, about when the screamaux appears. The second part is judged by its
-# second half, and the third by its highest target.
+# The steps of the link start with its first packet, at about the time when screamaux appears. The
+# second part is judged by the mean of its second half, and the third part by its highest target.
 awk -v high="$high" -v low="$low" -v part="$part" '
   function value(field) {
     if (!match($0, "[ ,]" field "=\\([a-z0-9]*\\)[0-9]+")) return 0
