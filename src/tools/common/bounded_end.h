@@ -35,8 +35,8 @@ class BoundedEnd {
   BoundedEnd& operator=(const BoundedEnd&) = delete;
 
  private:
-  // The number of timer signals. The kernel merges the signals that a process missed into a single
-  // one, so that time in which the process did not run hardly counts.
+  // The number of timer signals until the process exits. The kernel merges the signals that a
+  // process missed into a single one, so that time in which the process did not run hardly counts.
   static constexpr int kTicks = 20;
 
   static void SetTimer(std::chrono::microseconds tick) {

@@ -61,7 +61,7 @@ UdpSocket::UdpSocket(int family)
     : fd_(socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   if (!fd_) Fail("cannot open a UDP socket");
   net::AskForInfo(fd());
-  // The kernel may grant a smaller buffer. Packets are then lost, but only in bursts.
+  // The kernel may grant a smaller buffer. A smaller buffer loses packets only in bursts.
   net::SetReceiveBuffer(fd(), kSocketBuffer);
   setsockopt(fd(), SOL_SOCKET, SO_SNDBUF, &kSocketBuffer, sizeof kSocketBuffer);
 }

@@ -21,7 +21,7 @@ struct HostPort {
 };
 /// Splits "HOST:PORT", "[IPV6]:PORT" or "PORT". In the last case, the host is `default_host`.
 HostPort Split(const std::string& text, const std::string& default_host);
-/// Resolves an address that is written as Split() accepts it. If that fails, throws
+/// Resolves an address in one of the forms that Split() accepts. If that fails, throws
 /// std::runtime_error with a text for the user.
 Address ResolveAddress(const std::string& text, const std::string& default_host);
 

@@ -146,7 +146,7 @@ enum class End { kOver, kFailed, kNoHandshake };
 
 /// Plays until EOS or an error, until a certificate is refused, or until `*run` is false. If
 /// `duration_s` is not 0, it limits the time after the keys were received. EOS does not pass
-/// through dtlssrtpenc, because its part for the handshake never ends.
+/// through dtlssrtpenc, because the part of it that makes the handshake never sends EOS.
 End Play(Session* session, double duration_s, const bool* run, std::string* why) {
   GstBus* bus = GST_ELEMENT_BUS(session->pipeline.get());
   gst_element_set_state(session->pipeline.get(), GST_STATE_PLAYING);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decides from the number of bytes received from a robot whether the robot is present, and how far
-// it exceeds its limit.
+// Counts the bytes that are received from a robot. Decides whether the robot is present, and how
+// far it exceeds its limit.
 #pragma once
 #include <algorithm>
 #include <cstdint>

@@ -21,7 +21,7 @@ nlohmann::json ToJson(const GstStructure* structure);
 /// Collects values, and writes them sorted by name, as the text format requires.
 class Exposition {
  public:
-  /// `labels` includes the braces, or is empty.
+  /// Adds a value. `labels` includes the braces, or is empty.
   void Add(const std::string& name, const std::string& labels, double value);
   /// Adds each number and flag of `structure` as lidar_`element`_`field`.
   void Add(const std::string& element, const std::string& labels, const GstStructure* structure);

@@ -19,7 +19,7 @@ struct StatisticsSettings {
   double interval_s = 5;
 };
 
-/// Only one thread may use it.
+/// Publishes statistics at intervals. Only one thread may use it.
 class Statistics {
  public:
   /// If `connection` is missing, nothing is published to NATS. Prints the address for Prometheus.

@@ -74,8 +74,8 @@ gpointer DescriptionIn(const GstStructure* reply, const char* name) {
   return value != nullptr && G_VALUE_HOLDS_BOXED(value) ? g_value_get_boxed(value) : nullptr;
 }
 
-/// Sets the description that `from` made as the local one of `from` and the remote one of `to`.
-/// Does not wait between tasks, because a webrtcbin runs its tasks in order.
+/// Sets `description`, which `from` has made, as the local description of `from` and as the remote
+/// description of `to`. Need not wait in between, because a webrtcbin runs its tasks in order.
 void Exchange(GstElement* from, GstElement* to, gpointer description) {
   g_signal_emit_by_name(from, "set-local-description", description, nullptr);
   g_signal_emit_by_name(to, "set-remote-description", description, nullptr);

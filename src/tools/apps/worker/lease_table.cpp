@@ -124,8 +124,8 @@ void LeaseTable::Drop(const std::string& name, Duration pause, Time now) {
 }
 
 void LeaseTable::LeaveToOthers(const std::string& name, Duration least, Time now) {
-  // Other workers wait for one lease after the last write of this worker. This worker waits for
-  // two, so that they come first.
+  // Other workers wait for one lease after the last write of this worker. This worker waits for two
+  // leases, so that another worker takes the robot first.
   Drop(name, std::max(least, 2 * settings_.lease), now);
 }
 

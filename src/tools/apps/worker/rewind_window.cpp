@@ -14,9 +14,10 @@ std::uint64_t Between(std::uint64_t from, std::uint64_t to) { return to < from ?
 
 }  // namespace
 
-/// Returns true if the message is more than `rewind` older than the newest message. Both the stored
-/// time and the capture time must say so, if both are known: the stored time jumps after a pause of
-/// the server, and the capture time jumps if the robot's clock is set.
+/// Returns true if the message is more than `rewind` older than the newest message. If capture
+/// times are known, both the stored time and the capture time must be older. One of them does not
+/// suffice, because the stored time jumps after a pause of the server, and the capture time jumps
+/// if the robot's clock is set.
 bool RewindWindow::IsOld(const Message& message) const {
   const Message& now = messages_.back();
   const std::uint64_t age_ns = Between(message.stored_ns, now.stored_ns);

@@ -160,9 +160,9 @@ void Worker::FollowLeases() {
   for (const auto& [robot, lease] : held) {
     if (pipelines_.count(robot) > 0) continue;
     const auto last = ending_.find(robot);
-    if (last == ending_.end())
-      Begin(robot, lease);
-    else if (Now() - last->second.since > settings_.lease.lease)  // other workers need not wait
+    if (last == ending_.end()) Begin(robot, lease);
+    // Another worker can begin at once.
+    else if (Now() - last->second.since > settings_.lease.lease)
       table_.LeaveToOthers(robot, Duration{}, Now());
   }
 }

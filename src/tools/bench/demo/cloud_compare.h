@@ -18,8 +18,8 @@ struct Comparison {
 };
 
 /// Compares two clouds. If both are organised and have the same shape, compares them pixel by
-/// pixel. Otherwise compares each point with the nearest point of the other cloud, if this is
-/// within `reach_m`, in both directions. A point whose coordinates are all 0 is a missing return.
+/// pixel. Otherwise compares each point of both clouds with the nearest point of the other cloud,
+/// up to a distance of `reach_m`. A point whose coordinates are all 0 is a missing return.
 Comparison Compare(const Cloud& sent, const Cloud& received, double reach_m);
 
 }  // namespace lidar::demo

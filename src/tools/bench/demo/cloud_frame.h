@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes and reads clouds on pipes. By these, the sender and the receiver pass clouds to the
-// program that compares them.
+// The format in which the sender and the receiver pass clouds through pipes to the program that
+// compares them.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -31,7 +31,7 @@ using namespace std::chrono_literals;
 using tools::ChildProcess;
 using tools::Now;
 
-// Long, because comparisons of clouds may slow down the receiver at the end.
+// The limit is long, because comparisons of clouds may slow down the receiver at the end.
 constexpr auto kPhaseLimit = 60s;
 constexpr auto kTick = 100ms;
 constexpr int kPoorStream = 3;  // exit code for a poor stream

@@ -37,7 +37,8 @@ void Ledger::Add(const nlohmann::json& record) {
   const SliceKey key{record.value("scan", 0U), record.value("slice", 0U)};
   const auto count = record.value("count", 0U);
   if (count > kMaxSlices || key.slice >= count) return;
-  // Records of the sender and of the receiver may overtake each other.
+  // Records of the sender and of the receiver may overtake each other, so a record of either may be
+  // the first of its scan.
   ScanLife& scan = scans_[key.scan];
   if (scan.size() < count) scan.resize(count);
   Apply(record, type, &scan[key.slice]);

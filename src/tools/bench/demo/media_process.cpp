@@ -166,7 +166,7 @@ int MediaProcess::Run() {
   std::vector<guint> sources = {watch};
   for (Periodic& periodic : periodic_)
     sources.push_back(g_timeout_add(periodic.interval_ms, CallHandler, &periodic.handler));
-  // Otherwise a closed pipe would kill this process before EOS.
+  // Ignores SIGPIPE, because a closed pipe must not kill this process before EOS.
   std::signal(SIGPIPE, SIG_IGN);
   gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
   Write(nlohmann::json{{"type", "playing"}, {"unix_ns", UnixNow()}});

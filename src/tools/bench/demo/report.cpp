@@ -17,7 +17,7 @@ namespace {
 constexpr double kBin_s = 0.1;
 
 struct Bin {
-  std::vector<double> sent_bits;  // of each link
+  std::vector<double> sent_bits;  // bits that were sent over each link
   double encoded_bits = 0;
   double queue_ms = 0;  // the longest sojourn
   double max_error_m = 0;

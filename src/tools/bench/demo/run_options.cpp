@@ -14,12 +14,12 @@
 namespace lidar::demo {
 namespace {
 
-/// The edge of the cube that --fixed-bits divides into steps. A sensor with a range of 100 m sees
-/// this far in both directions.
+/// The edge of the cube that --fixed-bits divides into steps. It is the diameter of the view of a
+/// sensor with a range of 100 m.
 constexpr double kFixedBitsExtentM = 200;
 
-/// The mean capacity of --drive, for a synthetic source and for a capture. It is between the least
-/// and the greatest bitrate of the source.
+/// The mean capacities of --drive, for a synthetic source and for a capture. They are between the
+/// least and the greatest bitrate of the source.
 constexpr double kDriveMbps = 4;
 constexpr double kDriveOfCaptureMbps = 8;
 constexpr double kDriveTail_s = 60;  // added to the trace, for a stream that starts late

@@ -41,7 +41,7 @@ struct Delays {
 struct SliceFigures {
   Delays capture_to_cloud;
   Distribution capture;  // from the last column to the buffer
-  // From the buffer to the encoded slice, including the wait for the encoder's thread.
+  // The time from the buffer to the encoded slice, including the wait for the encoder's thread.
   Distribution encode;
   Distribution network;
   Distribution decode;

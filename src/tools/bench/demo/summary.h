@@ -9,7 +9,7 @@
 
 namespace lidar::demo {
 
-/// How the queue behaves after a step of the capacity.
+/// The behaviour of the queue after a step of the capacity.
 struct Transient {
   double at_s = 0;
   double from_bps = 0;

@@ -19,8 +19,8 @@ std::string Text(const char* format, Args... args) {
   return text;
 }
 
-/// Returns the share of the run's time in which at least one link carried more than the source can
-/// use.
+/// Returns the share of the run's time in which at least one link could carry more than the source
+/// can use.
 double ShareAbove(const Measurements& m, double source_max_bps) {
   constexpr Duration kStep = std::chrono::milliseconds(100);
   const auto links = CapacitiesOf(m.options);

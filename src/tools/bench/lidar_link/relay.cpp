@@ -126,8 +126,8 @@ void Relay::Return(const link::Outcome& outcome) {
 }
 
 void Relay::Release(const link::Outcome& outcome) {
-  // A duplicate uses the slot of the packet before it. This is possible because the duplicate
-  // directly follows that packet, before the slot is used for another packet.
+  // The slot is freed after the first copy. A duplicate directly follows the first copy, before the
+  // slot is used for another packet.
   if (!outcome.duplicate) free_slots_.push_back(outcome.packet.id);
 }
 

@@ -37,8 +37,7 @@ void Put(std::uint8_t* at, std::uint64_t v, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<std::uint8_t>(v >> (8 * i));
 }
 
-/// Returns the time of the first valid column, because the time of an invalid column has no
-/// meaning.
+/// Returns the time of the first valid column. The time of an invalid column has no meaning.
 std::optional<std::uint64_t> TimeOf(const ouster::LidarPacket& packet) {
   for (std::uint32_t i = 0; i < packet.columns(); ++i)
     if (packet.Column(i).valid()) return packet.Column(i).timestamp;

@@ -141,8 +141,8 @@ Receiver::Receiver(const BenchOptions& options)
   Build();
 }
 
-/// Makes the pipeline. Uses screamsrc, or the elements that it consists of if feedback goes to
-/// another address.
+/// Makes the pipeline. It contains screamsrc. If feedback goes to another address, it contains the
+/// elements of which screamsrc consists.
 void Receiver::Build() {
   pipeline_.reset(GST_ELEMENT(gst_object_ref_sink(gst_pipeline_new("scream-bench-rx"))));
   const BenchRxOptions& o = options_.rx;
@@ -225,8 +225,8 @@ void Receiver::Tick() {
   line_since_ = now;
 }
 
-/// Prints a line about the time since the last line. This is a second, or slightly more because the
-/// time is checked at intervals.
+/// Prints a line about the time since the last line. This time is one second, or slightly more
+/// because it is checked at intervals.
 void Receiver::PrintLine(Duration now) {
   std::printf(
       "%7.1f s  received %8.3f Mbit/s  frame age p50 %6.1f p95 %6.1f ms%s  CE %llu  lost %llu\n",
