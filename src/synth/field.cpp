@@ -8,9 +8,9 @@
 namespace lidar::synth {
 namespace {
 
-/// A point of the ground's profile across the road: at the distance |y| from the middle, the height
-/// is z. The profile is constant along x. From the middle outward, it has road, verge, ditch,
-/// meadow and hillside.
+/// A point of the ground's profile across the road. At the distance |y| from the middle of the
+/// road, the ground has the height z. The profile is the same for all x. From the middle outward,
+/// it consists of road, verge, ditch, meadow and hillside.
 struct Knot {
   float y, z;
 };

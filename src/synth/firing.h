@@ -20,8 +20,8 @@ struct Firing {
   std::uint32_t lasers;
   std::uint32_t banks;     // laser i, in the order of firing, is ring i / banks of bank i % banks
   double first_elevation;  // elevation of ring 0
-  double elevation_step;   // elevation from one ring to the next
-  double bank_azimuth;     // azimuth from one bank to the next
+  double elevation_step;   // difference in elevation from one ring to the next
+  double bank_azimuth;     // difference in azimuth from one bank to the next
   double laser_delay_ns;   // time from one laser to the next
   std::uint32_t columns;   // columns per scan
   double first_azimuth, view;  // azimuth at which a sweep begins, and span of a sweep

@@ -60,7 +60,7 @@ ImuSample TrueMotion(const Trajectory& trajectory, Duration t) {
   sample.time += t;
   sample.acceleration = TurnBack(now.ToQuaternion(), felt);
   sample.angular_velocity = HalfTurn(before.ToQuaternion(), after.ToQuaternion());
-  // Half of the rotation, divided by half of its time.
+  // This divides half of the rotation by half of its time.
   for (double& v : sample.angular_velocity) v /= h;
   return sample;
 }

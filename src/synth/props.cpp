@@ -6,8 +6,8 @@
 namespace lidar::synth {
 namespace {
 
-/// Adds a part of a thing. `part` is given in the frame of the thing, which is placed `at` a
-/// position.
+/// Adds a part of a thing to `out`. `part` is given in the frame of the thing, and `at` is the
+/// position of the thing.
 void AddPart(const Placement& at, Shape part, std::vector<Shape>* out) {
   const float c = std::cos(at.yaw);
   const float s = std::sin(at.yaw);

@@ -19,8 +19,8 @@ struct Placement {
 void AddCar(const Placement& at, Random random, std::vector<Shape>* out);
 void AddPedestrian(const Placement& at, Random random, std::vector<Shape>* out);
 void AddTree(const Placement& at, Random random, std::vector<Shape>* out);
-/// Adds a lamp on a pole. Its arm extends along y by `arm` metres, and the sign of `arm` is its
-/// direction.
+/// Adds a lamp on a pole. `arm` is the length of its arm along y [m], and the sign of `arm` gives
+/// the side.
 void AddLamp(const Placement& at, float arm, std::vector<Shape>* out);
 /// Adds a retroreflecting plate on a post. The plate faces traffic that drives along x.
 void AddSign(const Placement& at, std::vector<Shape>* out);

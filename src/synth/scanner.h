@@ -31,7 +31,7 @@ struct Returns {
   std::vector<std::uint32_t> range_mm;
   // The reflectivity on Ouster's scale: percent, and above 100 for retroreflectors.
   std::vector<std::uint8_t> reflectivity;
-  std::vector<std::uint16_t> signal;  // photons, in a unit of the sensor's own
+  std::vector<std::uint16_t> signal;  // strength of the echo (photons), in an arbitrary unit
   // The weaker echo of each pixel. These lists are empty without `second_returns`.
   std::vector<std::uint32_t> range2_mm;
   std::vector<std::uint8_t> reflectivity2;

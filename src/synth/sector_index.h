@@ -9,8 +9,8 @@
 
 namespace lidar::synth {
 
-/// Returns a number that grows with the angle of (x, y), as that of atan2 does, but at less cost.
-/// It grows from 0 to 4 in a whole turn.
+/// Returns a number that grows with the angle of (x, y), from 0 to 4 in a whole turn. This costs
+/// less than atan2().
 inline float PseudoAngle(float x, float y) {
   const float p = y / (std::abs(x) + std::abs(y) + 1e-30F);
   return x < 0 ? 2 - p : (p < 0 ? 4 + p : p);

@@ -15,8 +15,8 @@ struct Span {
   float out = 1e9F;
   Vec3 normal;
 
-  /// Keeps the part of the ray whose points p have a product `face` . p below `offset`. Returns
-  /// false if no part is left.
+  /// Keeps the part of the ray at whose points p the dot product of `face` and p is below `offset`.
+  /// Returns false if no part is left.
   bool Clip(Vec3 face, float offset, const Ray& ray) {
     const float height = offset - Dot(face, ray.origin);
     const float rate = Dot(face, ray.direction);
@@ -46,7 +46,7 @@ Ray ToLocal(const Shape& s, const Ray& ray) {
   return MakeRay(ToLocal(s, origin), ToLocal(s, ray.direction));
 }
 
-/// Finds by a slab test where the ray enters a box. The box is centred on the origin.
+/// Finds where the ray enters a box that is centred on the origin. Uses a slab test.
 bool EnterBox(Vec3 half, const Ray& r, Span* span) {
   const float tx = (r.inverse.x > 0 ? -half.x - r.origin.x : half.x - r.origin.x) * r.inverse.x;
   const float ty = (r.inverse.y > 0 ? -half.y - r.origin.y : half.y - r.origin.y) * r.inverse.y;

@@ -19,7 +19,7 @@ enum class ShapeKind : std::uint8_t {
 
 enum class Surface : std::uint8_t { kPlain, kFacade, kGlass, kRetroreflector };
 
-/// A shape whose coordinates are relative to an anchor: that of the view for which the shape was
+/// A body in the world. Its coordinates are relative to the anchor of the view for which it was
 /// made.
 struct Shape {
   ShapeKind kind = ShapeKind::kBox;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A straight street along x, which is made piece by piece. Towns bend these pieces.
+// A straight street along x. Towns make their streets from its parts, and bend them.
 #pragma once
 #include "src/synth/scene.h"
 

@@ -14,9 +14,9 @@ namespace {
 /// hide everything else.
 constexpr double kInSight = 75;
 constexpr float kCornerFree = 10.5F;  // no shape is nearer to the middle of a crossing [m]
-// Houses of the other street are within this distance of the middle of a crossing [m].
+// The houses of the other street are within this distance of the middle of a crossing [m].
 constexpr float kCornerHouse = 27;
-// Depth of houses below the ground, so that they have no gap at a hillside [m].
+// The depth of houses below the ground, so that they have no gap at a hillside [m].
 constexpr float kCellar = 1;
 constexpr float kTrafficReach = 90;  // there are no people and cars further away [m]
 constexpr float kSteep = -0.15F;     // rays with a lower slope soon meet the road

@@ -30,9 +30,9 @@ struct TrajectorySettings {
   double speed_mps = 0;
   double lane_y_m = 0;           // centre of the lane
   double sensor_height_m = 1.9;  // height above the road
-  double sway_m = 0.25;          // amplitude of the car's motion to the sides of the centre
+  double sway_m = 0.25;          // amplitude of the motion to both sides of the centre
   double bounce = 1;             // factor of the body's motion; 1 on asphalt
-  // Route of the lane's centre; empty: along x at constant speed.
+  // The route of the lane's centre. If it is empty, the lane leads along x at constant speed.
   std::shared_ptr<const Route> route;
 };
 

@@ -15,7 +15,7 @@ struct Transient {
   double from_bps = 0;
   double to_bps = 0;
   double peak_ms = 0;
-  // Time after the step until the queue stays below 10 ms for half a second.
+  // The time after the step until the queue stays below 10 ms for half a second.
   double settled_after_s = 0;
 };
 std::vector<Transient> FindTransients(const Measurements& m);

@@ -10,7 +10,7 @@ namespace lidar::tools {
 namespace {
 
 constexpr Duration kTaiMinusUtc = std::chrono::seconds(37);
-// Interval between checks for requests.
+// The interval between checks for requests.
 constexpr Duration kRequestPoll = std::chrono::milliseconds(5);
 
 }  // namespace

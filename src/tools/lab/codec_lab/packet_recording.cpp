@@ -26,8 +26,8 @@ std::vector<Beam> Hdl64Beams() {
   return beams;
 }
 
-/// Returns the beam whose altitude is nearest. Returns -1 if it is further away than the spacing
-/// between beams.
+/// Returns the beam whose altitude is nearest. Returns -1 if even this beam is further away than
+/// the spacing between beams.
 int NearestBeam(const std::vector<Beam>& beams, double altitude_deg) {
   const auto below = std::lower_bound(beams.begin(), beams.end(), altitude_deg,
                                       [](const Beam& b, double a) { return b.altitude_deg > a; });

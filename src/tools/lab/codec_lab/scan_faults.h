@@ -15,7 +15,7 @@ struct ScanFaults {
   bool any() const { return lost_share > 0 || gap_s > 0 || every_beam > 1 || every_scan > 1; }
 };
 
-/// Returns the scans that remain of `scans` with the faults. Deterministic.
+/// Returns `scans` without the scans and beams that `faults` removes. Deterministic.
 std::unique_ptr<ScanStream> WithFaults(std::unique_ptr<ScanStream> scans, const ScanFaults& faults);
 
 }  // namespace lidar::tools

@@ -26,7 +26,7 @@ struct TimedScan {
   Scan scan;
   Time start{};  // time of the first column
   Duration duration{};
-  // Pose of the sensor in the middle of the scan, if the source has it.
+  // The pose of the sensor in the middle of the scan, if the source has it.
   std::optional<synth::Pose> truth;
 };
 

@@ -20,8 +20,8 @@ struct ProfileOptions {
 };
 
 /// Returns the target for each scan [bit/s]. kSteady is a constant rate, and kWalk is a random walk
-/// of 8 % per scan. kJump changes every 10 scans to a random rate between the limits, which is
-/// uniform in the logarithm.
+/// of 8 % per scan. kJump changes every 10 scans to a random rate between the limits, whose
+/// logarithm is uniform.
 std::vector<double> MakeTargets(TargetProfile profile, std::size_t scans,
                                 const ProfileOptions& options);
 /// Reads lines of `time_s rate_mbps`. Each scan gets the rate that holds at the start of the scan.
@@ -51,7 +51,8 @@ struct TrackedScan {
   double Error() const { return sent_bps / target_bps - 1; }
 };
 
-/// Returns the i-th number of the sequence 0 1 2 1 0 1 2 ..., which is for a count of 3.
+/// Returns the i-th number of a sequence that goes forwards and backwards in turn, such as 0 1 2 1
+/// 0 1 2 ... for a count of 3.
 std::size_t ThereAndBack(std::size_t i, std::size_t count);
 
 /// Encodes a scan for each target. Plays the scans of `set` forwards and backwards in turn, so that

@@ -19,7 +19,8 @@ struct SamplingOptions {
   double min_step_m = 0.001;
   double max_step_m = 0.5;
   std::vector<std::uint32_t> slices = {1, 8};
-  // The adaptive model gets up to this number, the paper's model always this number.
+  // The adaptive model gets samples with 0 bits up to this number. The paper's model always gets
+  // samples with this number.
   unsigned intensity_bits = 5;
   std::uint64_t seed = 1;
 };

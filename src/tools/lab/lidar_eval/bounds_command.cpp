@@ -48,9 +48,9 @@ std::optional<Measurement> AtError(const ScanSet& set, const CodingMode& mode, d
   return Measure(set, mode, {codec.Bound(mode).CoarsestStep(error), 0, o.intensity_bits, o.slices});
 }
 
-/// Prints the minimum according to the paper. It uses the fewest bits of a coordinate in the
-/// bounding cube with which every scan keeps the error bound. The bitrate is that of the level that
-/// needs the fewest bytes.
+/// Prints the number of bits and the bitrate that the paper needs for an error bound. The bits are
+/// the fewest bits of a coordinate in the bounding cube with which every scan keeps the bound. The
+/// bitrate is that of the level that needs the fewest bytes.
 void PrintPaperMinimum(const ScanSet& set, double error, const BoundsOptions& o) {
   double extent = 0;
   SliceCodec codec;

@@ -101,7 +101,8 @@ void PrintRun(const SlamResult& r) {
               at(0.95), r.map_voxels);
 }
 
-/// Returns the true trajectory that the user names. If there is none, returns that of the source.
+/// Returns the true trajectory that the user names. If the user names none, returns that of the
+/// source.
 Trajectory FindTruth(const SlamArguments& a, const SlamResult& r, double scans_per_second) {
   if (!a.truth.empty()) return Load(a.truth, scans_per_second);
   return KittiFolderOf(a.scans.source) ? Load(a.scans.source, scans_per_second) : r.truth;

@@ -14,7 +14,7 @@
 namespace lidar::tools {
 namespace {
 
-constexpr std::size_t kStart = 20;  // number of scans at the start
+constexpr std::size_t kStart = 20;  // number of scans that count as the start
 constexpr std::uint64_t kImuSeed = 7;
 
 /// Rounds points to the grid that Draco lays over the bounding cube of a cloud.

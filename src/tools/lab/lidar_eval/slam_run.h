@@ -52,7 +52,7 @@ SlamResult RunSlam(ScanStream* scans, const SlamOptions& options,
 /// [m], and turns [rad]. Returns an empty list if `truth` does not cover the time of the estimate.
 std::vector<odometry::Twist> ErrorsOf(const SlamResult& result, const odometry::Trajectory& truth);
 
-/// Compares the errors of an odometry with its deviations.
+/// The relation between the errors of an odometry and its deviations.
 struct Calibration {
   double mean = 0;  // mean of the deviations [m or rad]
   double within_1_sigma = 0;

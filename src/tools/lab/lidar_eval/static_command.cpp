@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval static: measures how much slices save if they refer to scans that the receiver has.
+// lidar-eval static: measures how many bits slices save if they refer to scans that the receiver
+// has.
 #include <cstdio>
 #include <deque>
 #include <memory>

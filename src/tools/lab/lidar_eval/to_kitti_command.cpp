@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-eval to-kitti: writes the points that slam would use to files, for other odometry programs.
+// lidar-eval to-kitti: writes files for other odometry programs. They contain the points that slam
+// would use.
 #include <cstdio>
 #include <filesystem>
 #include <memory>

@@ -66,8 +66,7 @@ void RunTrack(TrackArguments o) {
   const ScanSet set = LoadScans(o.source, o.read);
   o.track.mode = o.mode.empty() ? &DefaultMode(set) : &ModeNamed(o.mode);
   const rate::RateBounds bounds = MeasureBounds(set, o.track);
-  // The factor by which the limits are narrower than the bounds, because the bounds move with the
-  // scene.
+  // The limits are narrower than the bounds by this factor, because the bounds move with the scene.
   constexpr double kBoundsMargin = 1.15;
   if (o.profile.min_bps <= 0) o.profile.min_bps = kBoundsMargin * bounds.nominal.bits_per_second();
   if (o.profile.max_bps <= 0) o.profile.max_bps = bounds.max.bits_per_second() / kBoundsMargin;

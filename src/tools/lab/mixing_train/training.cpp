@@ -132,7 +132,7 @@ void ForEach(States& a, const States& b, Do&& act) {
   std::apply([&](auto... part) { (walk.Of(a.*part, b.*part, act), ...); }, kParts<States>);
 }
 
-/// Adds the numbers that a slice has visited or changed to `means`, and sets `states` to `learnt`.
+/// Adds to `means` the numbers that a slice has visited or changed. Sets `states` to `learnt`.
 template <class States>
 void Keep(States& learnt, States* states, Means* means) {
   ForEach(learnt, *states, [&](std::size_t place, auto& now, auto before, bool visited) {
