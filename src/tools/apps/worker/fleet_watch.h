@@ -36,10 +36,10 @@ class FleetWatch {
     std::vector<Entry> entries;
     std::optional<std::set<std::string>> robots;  // all "robot.sensor" within the bounds
     std::size_t left_out = 0;                     // number of sensors beyond the bounds
-    std::uint64_t stream = 0;  // creation time of the robots' stream, as in Progress
-    std::uint64_t first = 0;   // number of the oldest message in the stream
-    std::uint64_t last = 0;    // number of the newest message in the stream
-    Time asked_at{};           // time of the request for this list, which is earlier than the list
+    std::uint64_t stream = 0;           // creation time of the robots' stream, as in Progress
+    std::uint64_t first = 0;            // number of the oldest message in the stream
+    std::uint64_t last = 0;             // number of the newest message in the stream
+    Time asked_at{};                    // time at which the list was requested
     std::vector<std::string> troubles;  // errors that were not reported yet
   };
 

@@ -19,7 +19,7 @@ using tools::Now;
 
 constexpr milliseconds kStep{10};
 constexpr std::chrono::seconds kAfterFailure{5};
-// The sum of these two must stay below a second, the longest time of HandOver().
+// The sum of these two must stay below a second, because HandOver() may not take longer.
 constexpr milliseconds kStopTimeout{400};
 constexpr milliseconds kAnswerTimeout{300};
 constexpr std::size_t kShownLetters = 300;  // most letters of a damaged record in a message

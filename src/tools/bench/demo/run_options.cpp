@@ -289,8 +289,8 @@ std::string SenderPipeline(const RunOptions& o, const Ports& ports) {
   return text;
 }
 
-/// Returns a branch that computes odometry, and that draws a map every ten seconds, in threads of
-/// its own.
+/// Returns the elements that compute odometry, and those that draw a map every ten seconds. Queues
+/// give them threads of their own.
 std::string SlamOf(const RunOptions& o) {
   if (!o.slam) return "";
   const std::string odometry =
