@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Subjects on which answers to our messages arrive, and the meaning of JetStream's answers.
+// The subjects on which answers to published messages arrive, and the meaning of JetStream's
+// answers.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,7 +12,8 @@
 
 namespace lidar::nats {
 
-/// A message names one of these subjects for its answer. The sender chooses the last word.
+/// The reply subjects of published messages. They share a unique prefix. The sender chooses the
+/// last word for each message.
 class AnswerSubjects {
  public:
   /// Returns nothing if memory is short.
@@ -20,8 +22,8 @@ class AnswerSubjects {
   std::string Of(const std::string& word) const { return prefix_ + word; }
   std::string Of(std::uint64_t number) const { return Of(std::to_string(number)); }
   std::string All() const { return prefix_ + "*"; }
-  /// Returns the word of the message that `answer` belongs to; empty if `answer` has another
-  /// subject.
+  /// Returns the last word of the subject of `answer`, or an empty text if the subject has another
+  /// prefix.
   std::string_view WordOf(natsMsg* answer) const;
 
  private:
@@ -29,12 +31,14 @@ class AnswerSubjects {
   std::string prefix_;
 };
 
-/// Returns `text` as a number, or nothing if other characters are in it.
+/// Converts `text` to a number. Returns nothing if `text` is not a number or if the number is too
+/// large.
 std::optional<std::uint64_t> ToNumber(std::string_view text);
 
-/// The reason why JetStream did not store a message; empty if it did.
+/// Returns the reason why JetStream did not store a message. The reason is empty if JetStream
+/// stored the message.
 std::string ErrorOfAck(natsMsg* answer);
-/// Returns true if the message exceeds the stream's max_msg_size.
+/// Returns true if JetStream refused the message because it exceeds the stream's max_msg_size.
 bool IsTooLarge(natsMsg* answer);
 
 }  // namespace lidar::nats

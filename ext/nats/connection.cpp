@@ -15,7 +15,7 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::int64_t kReconnectWaitMs = 250;
-constexpr std::int64_t kReconnectJitterMs = 250;  // spreads the reconnects of a fleet
+constexpr std::int64_t kReconnectJitterMs = 250;  // spreads the reconnects of a fleet over time
 constexpr std::int64_t kPingIntervalMs = 2'000;
 constexpr int kMaxPingsOut = 2;
 constexpr std::chrono::seconds kCloseTimeout{5};
@@ -28,7 +28,8 @@ std::vector<std::string> SplitUrls(const std::string& list) {
   return urls;
 }
 
-/// Returns what is wrong with the files of the settings, or an empty text.
+/// Checks the files and the secrets of the settings. Returns an error text, which is empty if there
+/// is no error.
 std::string CheckFiles(const ConnectionSettings& s) {
   for (const std::string* path :
        {&s.credentials_file, &s.tls_ca_file, &s.tls_cert_file, &s.tls_key_file})
@@ -49,8 +50,8 @@ natsStatus SetSecurity(natsOptions* o, const ConnectionSettings& s) {
     status = natsOptions_LoadCATrustedCertificates(o, s.tls_ca_file.c_str());
   if (status == NATS_OK && !s.tls_cert_file.empty())
     status = natsOptions_LoadCertificatesChain(o, s.tls_cert_file.c_str(), s.tls_key_file.c_str());
-  // Certificates make TLS mandatory: nothing is sent to a server without TLS. libnats ignores the
-  // scheme of a URL, so this function reads the scheme.
+  // TLS is mandatory if certificates are set, so that nothing is sent to a server without TLS. TLS
+  // is also mandatory if a URL begins with tls://, which libnats itself ignores.
   const bool tls = s.url.find("tls://") != std::string::npos || !s.tls_ca_file.empty() ||
                    !s.tls_cert_file.empty();
   if (status == NATS_OK && tls) status = natsOptions_SetSecure(o, true);
@@ -66,10 +67,12 @@ natsStatus SetPace(natsOptions* o) {
   if (s == NATS_OK) s = natsOptions_SetPingInterval(o, kPingIntervalMs);
   if (s == NATS_OK) s = natsOptions_SetMaxPingsOut(o, kMaxPingsOut);
   if (s == NATS_OK) s = natsOptions_SetWriteDeadline(o, Connection::kWriteTimeoutMs);
-  // The flusher of libnats would wait a millisecond for more to send.
+  // Sends each message at once. By default the flusher thread of libnats waits a millisecond for
+  // more messages.
   if (s == NATS_OK) s = natsOptions_SetSendAsap(o, true);
-  // Disables the reconnect buffer of libnats, because its messages would be stored before older
-  // messages, which were lost with the connection and are sent again.
+  // Disables the buffer in which libnats keeps messages during a reconnect. JetStream would store
+  // these messages before older messages that were lost with the connection and are sent again
+  // later.
   if (s == NATS_OK) s = natsOptions_SetReconnectBufSize(o, 0);
   return s;
 }
@@ -77,11 +80,11 @@ natsStatus SetPace(natsOptions* o) {
 }  // namespace
 
 struct Connection::Shared {
-  std::mutex mutex;  // guards all but `changed`; never held while `changed` runs
+  std::mutex mutex;  // guards all members but `changed`; not locked while `changed` runs
   std::condition_variable ended;
   ConnectionState state;
   bool refused = false;  // a server refused the first connect
-  bool over = false;     // the last callback has come
+  bool over = false;     // OnClosed(), the last callback, has run
   Changed changed;
 
   void NoteFirst(natsStatus failure) {
@@ -110,7 +113,7 @@ std::string LastError(natsConnection* nc, natsStatus otherwise) {
   return known ? words : natsStatus_GetText(otherwise);
 }
 
-/// Callbacks of libnats get a pointer to a SharedPtr of their own.
+/// The callbacks of libnats. `closure` points to a SharedPtr that belongs to the callbacks.
 template <class SharedPtr>
 struct Callbacks {
   static auto& Of(void* closure) { return **static_cast<SharedPtr*>(closure); }
@@ -122,7 +125,7 @@ struct Callbacks {
     Of(closure).Update([](ConnectionState* s) { ++s->disconnections; });
   }
   static void OnError(natsConnection* nc, natsSubscription*, natsStatus error, void* closure) {
-    // Subscribers count these losses themselves.
+    // Subscriber handles these errors. Both mean that it missed messages.
     if (error == NATS_SLOW_CONSUMER || error == NATS_MISMATCH) return;
     if (error == NATS_MISSED_HEARTBEAT)
       return Of(closure).Update([](ConnectionState* s) { ++s->missed_heartbeats; });
@@ -132,7 +135,7 @@ struct Callbacks {
       s->last_error = text;
     });
   }
-  /// The last callback of a connection.
+  /// Runs as the last callback of a connection, and deletes `closure`.
   static void OnClosed(natsConnection* nc, void* closure) {
     const std::unique_ptr<SharedPtr> mine(static_cast<SharedPtr*>(closure));
     auto& shared = **mine;
@@ -182,8 +185,8 @@ natsStatus Connection::Connect(natsOptions* o) {
   const natsStatus first = natsConnection_Connect(&nc_, o);
   if (first != NATS_OK) {
     shared_->NoteFirst(first);
-    // Asks for retries only now: if the first connect had them, libnats would not report the reason
-    // of a refusal.
+    // Enables retries only for this second try, because with retries libnats does not report why a
+    // server refused the connection.
     s = natsOptions_SetRetryOnFailedConnect(o, true, Call::OnConnected, closure.get());
     if (s == NATS_OK) s = natsConnection_Connect(&nc_, o);
   }
@@ -197,7 +200,7 @@ std::unique_ptr<Connection> Connection::Open(const ConnectionSettings& settings,
                                              std::string* why) {
   *why = CheckFiles(settings);
   std::vector<std::string> urls = SplitUrls(settings.url);
-  // libnats would connect to the local machine if there is no URL.
+  // If there is no URL, libnats would connect to the local machine.
   if (why->empty() && urls.empty()) *why = "url names no server";
   if (!why->empty()) return nullptr;
   std::vector<const char*> servers;
@@ -228,7 +231,8 @@ Connection::~Connection() {
   std::unique_lock lock(shared_->mutex);
   if (!shared_->ended.wait_for(lock, kCloseTimeout, [this] { return shared_->over; })) return;
   lock.unlock();
-  shared_->changed = nullptr;  // the thread of the last callback may hold `shared_` a moment longer
+  // Frees `changed` here, because the thread that ran OnClosed() may own `shared_` a moment longer.
+  shared_->changed = nullptr;
 }
 
 ConnectionState Connection::state() const {

@@ -13,9 +13,11 @@ namespace lidar::nats {
 
 class FormatBook {
  public:
-  /// Adds a format; `subject` ends with its id. Counts damaged formats.
+  /// Adds the format in `text`. The last word of `subject` is the format's id. If the format is
+  /// damaged, counts it instead.
   void Note(std::string_view subject, std::string_view text);
-  /// Adds and returns the format that JetStream keeps at `subject`. Returns null if there is none.
+  /// Loads the format that JetStream keeps at `subject`, adds it, and returns it. Returns null if
+  /// JetStream has no format there.
   StreamFormat::Ptr Fetch(jsCtx* js, const std::string& stream, const std::string& subject);
   /// Returns null if the format is not known.
   StreamFormat::Ptr Find(const std::string& id) const;

@@ -60,13 +60,13 @@ const std::array<Stat<PublisherCounters>, 12> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
+  std::mutex mutex;  // guards `settings` to `refused`; not locked while the sink waits or posts
   NatsSinkSettings settings;
   std::shared_ptr<Publisher> publisher;  // exists from start to stop
   PublisherCounters last;                // counters of the last publisher
   guint64 refused = 0;
 
-  // Only start, stop and the streaming thread use what follows.
+  // Only Start(), Stop() and the streaming thread use the members below.
   std::shared_ptr<ConnectionWatch> watch;
   StreamFormat::Ptr format;
   RefusedCaps refused_caps;
@@ -153,7 +153,8 @@ static lidar::nats::PublisherSettings ToPublisher(const NatsSinkSettings& settin
   return p;
 }
 
-/// Returns false after an error message.
+/// Checks that `replicas` is set only together with `jetstream`. If not, posts an error message and
+/// returns false.
 static bool CheckReplicas(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
   if (settings.replicas == 1 || !settings.nats.stream.empty()) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
@@ -161,14 +162,16 @@ static bool CheckReplicas(GstLidarNatsSink* self, const NatsSinkSettings& settin
   return false;
 }
 
-/// Returns false after an error message.
+/// Checks that `jetstream-subjects` covers the subjects of this sink and does not begin with a
+/// wildcard. If the check fails, posts an error message and returns false.
 static bool CheckStreamSubjects(GstLidarNatsSink* self, const NatsSinkSettings& settings) {
   const std::string& pattern = settings.stream_subjects;
   const std::string& subject = settings.nats.subject;
   const bool covers =
       pattern.empty() || (lidar::nats::Covers(pattern, subject) &&
                           lidar::nats::Covers(pattern, lidar::nats::ConfigSubject(subject, "*")));
-  // A stream of all subjects would keep, and answer, the server's own messages.
+  // A stream of all subjects would also store the server's own requests, and answer them with
+  // acknowledgements.
   const bool all = !pattern.empty() && (pattern.front() == '*' || pattern.front() == '>');
   if (covers && !all) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
@@ -226,7 +229,8 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   auto* self = GST_LIDAR_NATS_SINK(base);
   State& state = StateOf(self);
   std::string why;
-  // Refused caps do not change the format, because GstBaseSink does not set the earlier caps again.
+  // Refused caps leave the format as it is, because GstBaseSink does not call SetCaps() again when
+  // the earlier caps return.
   if (auto format = StreamFormat::FromCaps(caps, &why)) {
     state.refused_caps.Reset();
     state.format = std::move(format);
@@ -257,8 +261,8 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Warns of messages that the server lacks at the end. Posts an error if it lacks all of them: the
-/// whole stream was lost.
+/// Posts a warning with the number of messages that had not reached the server at the end of the
+/// stream. If no message has reached it, posts an error instead, unless `keeps_trying` is set.
 static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool keeps_trying) {
   const PublisherCounters counters = publisher.counters();
   const auto lost = guint64{counters.waiting + counters.dropped};
@@ -276,7 +280,7 @@ static void TellOfUnsent(GstBaseSink* base, const Publisher& publisher, bool kee
                         (nullptr));
 }
 
-/// Posts an error if no message reached the server although none waits.
+/// Posts an error if no message reached the server because all of them were dropped or too large.
 static void TellOfDropped(GstBaseSink* base, const Publisher& publisher,
                           const NatsSinkSettings& settings) {
   const PublisherCounters counters = publisher.counters();

@@ -39,8 +39,8 @@ using lidar::nats::StreamFormat;
 using lidar::nats::Subscriber;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPoll{100};          // longest delay of a change of state
-constexpr milliseconds kFormatWait{1'000};  // longest wait for unknown caps
+constexpr milliseconds kPoll{100};          // limits the delay of a change of state
+constexpr milliseconds kFormatWait{1'000};  // longest wait for the caps of a message
 constexpr gint64 kFormatPauseUs = 5'000'000;
 
 struct NatsSrcSettings {
@@ -67,28 +67,28 @@ const std::array<Stat<SourceCounters>, 12> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards settings and history; never held while waiting or posting
+  std::mutex mutex;  // guards `settings` and `history`; not locked while waiting or posting
   NatsSrcSettings settings;
-  std::shared_ptr<History> history;  // from start to stop
+  std::shared_ptr<History> history;  // exists from start to stop
   lidar::nats::SourceAccount account;
 
   std::atomic<bool> flushing{false};
 
-  // Only start, stop and the streaming thread use what follows.
+  // Only Start(), Stop() and the streaming thread use the members below.
   NatsSrcSettings now;  // the settings of this run
   std::unique_ptr<Subscriber> subscriber;
   std::shared_ptr<ConnectionWatch> watch;
   StreamFormat::Ptr format;
-  std::string trouble;           // last trouble that was reported
-  Delivery delivery;             // of the last pushed buffer, until it is acknowledged
+  std::string trouble;           // text of the last warning about JetStream
+  Delivery delivery;             // the last pushed buffer's message, until it is acknowledged
   std::optional<guint64> first;  // time at which JetStream stored the first message
-  gint64 no_wait_until_us = 0;   // until then no message waits for its caps
-  gint64 here_at_us = 0;         // last time with a server, initially the start
+  gint64 no_wait_until_us = 0;   // before this time, no message waits for its caps
+  gint64 here_at_us = 0;         // last time with a connection; initially the start
   bool warned_damaged = false;
   bool warned_of_caps = false;
   bool warned_absent = false;
   bool at_end = false;
-  bool left_out = false;  // a message before the next buffer was dropped
+  bool left_out = false;  // a message after the last buffer was dropped
 };
 
 }  // namespace
@@ -143,7 +143,8 @@ static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
      Stats},
 }};
 
-/// A source of kept messages is not live, because they come as fast as downstream takes them.
+/// Makes the source live unless it reads from JetStream. JetStream sends stored messages as fast as
+/// downstream accepts them.
 static void FollowSettings(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::unique_lock lock(state.mutex);
@@ -167,7 +168,7 @@ static lidar::nats::SubscriberSettings ToSubscriber(const NatsSrcSettings& setti
   return s;
 }
 
-/// Returns false after an error message.
+/// Checks the settings. If they are wrong, posts an error message and returns false.
 static bool CheckSettings(GstLidarNatsSrc* self, NatsSrcSettings* settings) {
   if (!CheckNatsSettings(GST_ELEMENT(self), &settings->nats)) return false;
   const NatsSettings& nats = settings->nats;
@@ -233,7 +234,8 @@ static gboolean Stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-/// Warns once until a message is good again, because a broken publisher sends many bad ones.
+/// Counts a damaged message. Warns only once until the next good message, because a broken
+/// publisher may send many damaged messages.
 static void NoteDamaged(GstLidarNatsSrc* self) {
   State& state = StateOf(self);
   state.account.Count(&SourceCounters::damaged);
@@ -244,7 +246,8 @@ static void NoteDamaged(GstLidarNatsSrc* self) {
         (nullptr));
 }
 
-/// Returns true while no server is there, and warns once if that lasts.
+/// Returns true if no server is connected, but libnats may still connect. Warns once if this lasts
+/// longer than kAbsence.
 static bool IsAway(State& state) {
   const lidar::nats::ConnectionState connection = state.subscriber->connection();
   const gint64 now = g_get_monotonic_time();
@@ -261,8 +264,9 @@ static bool IsAway(State& state) {
   return !connection.connected() && !connection.closed;
 }
 
-/// Returns the format with that id, and waits while no server is there. If the format is missing,
-/// counts the message and returns null. Also returns null if the source is flushing.
+/// Returns the format with the id `id`. Waits for the format as long as no server is connected. If
+/// the server is connected and the format does not arrive, counts a message without caps and
+/// returns null. Also returns null if the source is flushing.
 static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) {
   State& state = StateOf(self);
   if (state.format && state.format->id() == id) return state.format;
@@ -272,7 +276,8 @@ static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) 
     StreamFormat::Ptr format = state.subscriber->Format(id, wait ? kFormatWait : milliseconds{});
     if (format) return format;
     if (away || IsAway(state)) continue;
-    // The next messages do not wait, because they may have known formats.
+    // Messages do not wait for an unknown format during kFormatPauseUs, because the messages behind
+    // them may have known formats.
     if (wait) state.no_wait_until_us = g_get_monotonic_time() + kFormatPauseUs;
     state.account.Count(&SourceCounters::without_caps);
     return nullptr;
@@ -281,15 +286,15 @@ static StreamFormat::Ptr FormatOf(GstLidarNatsSrc* self, const std::string& id) 
 }
 
 static void SetStored(State& state, const Delivery& delivery, GstBuffer* buffer) {
-  if (!delivery.stored) return;  // the base class takes the time of arrival
+  if (!delivery.stored) return;  // the base class sets the PTS to the time of arrival
   GST_BUFFER_OFFSET(buffer) = delivery.sequence;
   if (!state.first) state.first = *delivery.stored;
   GST_BUFFER_PTS(buffer) = *delivery.stored - std::min(*state.first, *delivery.stored);
 }
 
-/// Sets the caps of `format`. If the next element refuses them, counts the message, warns the first
-/// time and returns CUSTOM_SUCCESS, not an error, because others may publish another coder's
-/// stream.
+/// Sets the caps of `format`. If downstream refuses the caps, counts the message, warns the first
+/// time, and returns CUSTOM_SUCCESS. This is not an error, because another sender may publish the
+/// stream of another coder on the same subject.
 static GstFlowReturn SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& format) {
   State& state = StateOf(self);
   GstPad* pad = GST_BASE_SRC_PAD(self);
@@ -309,13 +314,15 @@ static GstFlowReturn SetFormat(GstLidarNatsSrc* self, const StreamFormat::Ptr& f
   return GST_FLOW_CUSTOM_SUCCESS;
 }
 
-/// Notes a message that arrived but is dropped: it is not lost, but leaves a gap.
+/// Notes a message that arrived but is dropped. The message does not count as lost, but the next
+/// buffer is marked DISCONT.
 static void NoteLeftOut(State& state, const ReadMessage& read) {
   state.account.NotePlace(read.place, !state.now.nats.queue_group.empty());
   state.left_out = true;
 }
 
-/// Returns CUSTOM_SUCCESS if the message gives no buffer.
+/// Converts the message of `delivery` to a buffer. Returns CUSTOM_SUCCESS if there is no buffer to
+/// push.
 static GstFlowReturn Take(GstLidarNatsSrc* self, const Delivery& delivery, GstBuffer** out) {
   State& state = StateOf(self);
   std::optional<ReadMessage> read = lidar::nats::Read(delivery.message.get());
@@ -370,7 +377,8 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   const bool eos_at_end = state.now.eos_at_end;
   switch (event) {
     case Subscriber::Event::kClosed:
-      // The watch may post its error later; the base class would post a less clear one first.
+      // Posts the error here. The watch may post it too late, after the less clear error of the
+      // base class.
       state.watch->PostRefused(state.subscriber->connection());
       return GST_FLOW_ERROR;
     case Subscriber::Event::kEmpty:
@@ -386,7 +394,8 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
   state.trouble.clear();
   const GstFlowReturn flow = Take(self, delivery, out);
   if (flow == GST_FLOW_FLUSHING) return flow;  // a durable consumer sends the message again
-  // Never at the end with a durable consumer, which may get earlier messages again.
+  // A durable consumer is never at the end here, because the server may send it earlier messages
+  // again.
   state.at_end =
       eos_at_end && delivery.stored && delivery.to_come == 0 && !state.subscriber->acknowledges();
   state.delivery = std::move(delivery);
@@ -398,7 +407,7 @@ static GstFlowReturn Handle(GstLidarNatsSrc* self, Subscriber::Event event, Deli
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_NATS_SRC(push);
   State& state = StateOf(self);
-  Acknowledge(state);  // the last buffer: its push has returned
+  Acknowledge(state);  // the last buffer, whose push has returned
   if (state.at_end) return GST_FLOW_EOS;
   while (!state.flushing) {
     Delivery delivery;
@@ -411,8 +420,8 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   return GST_FLOW_FLUSHING;
 }
 
-/// Answers queries for the history of the stream, in the thread of the element downstream that
-/// asks.
+/// Answers queries for earlier buffers of the stream. Runs in the thread of the downstream element
+/// that sends the query.
 static gboolean Query(GstBaseSrc* base, GstQuery* query) {
   const auto question = ParseHistoryQuestion(query);
   if (!question) return GST_BASE_SRC_CLASS(gst_lidar_nats_src_parent_class)->query(base, query);

@@ -11,7 +11,7 @@
 namespace lidar::nats {
 namespace {
 
-constexpr int kMostMessages = 4'096;  // in a piece
+constexpr int kMostMessages = 4'096;  // per answer
 
 struct StreamNames {
   jsStreamNamesList* list = nullptr;
@@ -46,7 +46,8 @@ jsConsumerConfig FromPosition(guint64 position) {
   return config;
 }
 
-/// libnats 3.4 writes .012 s as .12 s, so the time becomes the whole second before it.
+/// Returns a consumer that starts at the time `stored`, rounded down to a whole second. libnats 3.4
+/// writes a fraction below 0.1 s wrongly: .012 s becomes .12 s.
 jsConsumerConfig FromTime(guint64 stored) {
   jsConsumerConfig config = FromStart();
   const guint64 seconds = stored / GST_SECOND;
@@ -72,8 +73,8 @@ std::optional<gst::HistoryAnswer> History::Answer(const gst::HistoryQuestion& qu
   answer.to = std::max(last->captured, first->captured);
   if (question.most_bytes == 0) return answer;
   const bool has_time = GST_CLOCK_TIME_IS_VALID(question.time);
-  // JetStream finds messages by the time of storage, and the robot's clock may be ahead of the
-  // server's.
+  // JetStream finds messages by the time at which the server stored them. A capture time may be
+  // later than that time, because the robot's clock may be ahead of the server's clock.
   const guint64 ahead = last->captured - std::min(last->captured, last->stored);
   answer.position = has_time ? 0 : question.position;
   Take(Fetch(has_time ? FromTime(question.time - std::min(question.time, ahead))
@@ -83,7 +84,8 @@ std::optional<gst::HistoryAnswer> History::Answer(const gst::HistoryQuestion& qu
   return answer;
 }
 
-/// Returns true once the server is there and has the stream.
+/// Connects to the server and finds the stream that keeps the subject, unless the stream's name is
+/// set. Returns false if there is no connection or no such stream.
 bool History::Find() {
   std::string why;
   if (!connection_ || connection_->state().unanswered) {
@@ -127,7 +129,8 @@ std::optional<History::Stored> History::First() {
   return Stored{stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
 }
 
-/// Returns up to `most` messages, of about `most_bytes` together; at least one if there is any.
+/// Returns at most `most` messages with about `most_bytes` in total, but at least one message if
+/// there is any.
 std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64 most_bytes) {
   jsSubOptions options;
   jsSubOptions_Init(&options);
@@ -142,7 +145,7 @@ std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64
       NATS_OK)
     return {};
   const SubscriptionPtr subscription(raw, {connection_->get()});
-  // The server sends nothing if the first message alone exceeds MaxBytes.
+  // The server would send nothing if the first message were larger than MaxBytes.
   const std::int64_t largest = 2 * natsConnection_GetMaxPayload(connection_->get());
   jsFetchRequest request;
   jsFetchRequest_Init(&request);

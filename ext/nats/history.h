@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads what JetStream keeps of a subject, piece by piece, for elements downstream of the source.
+// Reads the messages of a subject that JetStream keeps, in several pieces, for elements downstream
+// of natssrc.
 #pragma once
 #include <memory>
 #include <mutex>
@@ -13,19 +14,23 @@
 
 namespace lidar::nats {
 
-/// All threads may call Answer(), one at a time. An answer takes a few requests to the server.
+/// The messages of a subject that JetStream keeps. Any thread may call Answer(), because a mutex
+/// lets only one call run at a time. Each call sends a few requests to the server and waits for the
+/// answers.
 class History {
  public:
-  /// `stream` names a stream of JetStream; empty: the stream that keeps the subject.
+  /// `stream` is the name of JetStream's stream. If it is empty, the stream that keeps the subject
+  /// is used.
   History(ConnectionSettings connection, std::string subject, std::string stream);
 
-  /// Returns nothing if no stream of the server keeps the subject, or the server is away.
+  /// Returns nothing if no stream of the server keeps the subject, or if there is no connection to
+  /// the server.
   std::optional<gst::HistoryAnswer> Answer(const gst::HistoryQuestion& question);
 
  private:
   struct Stored {
-    guint64 stored = 0;    // time [ns since 1970]
-    guint64 captured = 0;  // the same as `stored` if it is not known
+    guint64 stored = 0;    // time of storage [ns since 1970]
+    guint64 captured = 0;  // capture time, or `stored` if it is unknown
   };
   bool Find();
   std::optional<Stored> Last();
@@ -36,7 +41,7 @@ class History {
 
   const ConnectionSettings settings_;
   const std::string subject_;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::string stream_;
   std::unique_ptr<Connection> connection_;
   JetStreamPtr js_;

@@ -32,7 +32,7 @@ std::string Explain(natsStatus status, jsErrCode code) {
 void SetLimits(const StreamSettings& settings, jsStreamConfig* config) {
   config->MaxAge = AgeNs(settings);
   config->MaxBytes = SizeLimit(settings);
-  // The server refuses a window for duplicates that is longer than max_age.
+  // The server refuses a stream whose window for duplicates is longer than max_age.
   config->Duplicates = config->MaxAge > 0 ? std::min(config->MaxAge, kDuplicatesNs) : kDuplicatesNs;
 }
 
@@ -52,7 +52,8 @@ natsStatus Add(jsCtx* js, const StreamSettings& settings, const std::vector<std:
   return js_AddStream(nullptr, js, &config, nullptr, code);
 }
 
-/// Adds `subjects` to the stream, which may have subjects of other sinks.
+/// Adds `subjects` to the existing stream and updates the stream's limits. Keeps subjects that
+/// other sinks added.
 natsStatus Update(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, const jsStreamConfig& now,
                   jsErrCode* code) {
@@ -62,7 +63,7 @@ natsStatus Update(jsCtx* js, const StreamSettings& settings,
     if (std::any_of(names.begin(), names.end(),
                     [&](const char* name) { return Covers(name, subject); }))
       continue;
-    // The subjects of a stream must not overlap.
+    // The subjects of a stream must not overlap, so the names that `subject` covers are removed.
     names.erase(std::remove_if(names.begin(), names.end(),
                                [&](const char* name) { return Covers(subject, name); }),
                 names.end());
@@ -84,8 +85,8 @@ natsStatus AddOrUpdate(jsCtx* js, const StreamSettings& settings,
   jsStreamInfo* raw = nullptr;
   const natsStatus status = js_GetStreamInfo(&raw, js, settings.name.c_str(), nullptr, code);
   const StreamInfoPtr info(raw);
-  // A stream of all subjects stores this request, too, and answers with an acknowledgement instead
-  // of a configuration.
+  // A stream that keeps all subjects also stores this request. The stream answers with an
+  // acknowledgement, which has no configuration.
   if (status == NATS_OK && info->Config == nullptr) return NATS_PROTOCOL_ERROR;
   if (status == NATS_OK) return Update(js, settings, subjects, *info->Config, code);
   return status == NATS_NOT_FOUND ? Add(js, settings, subjects, code) : status;
@@ -106,7 +107,7 @@ bool EnsureStream(jsCtx* js, const StreamSettings& settings,
                   const std::vector<std::string>& subjects, std::string* why) {
   jsErrCode code{};
   natsStatus status = AddOrUpdate(js, settings, subjects, &code);
-  // Another sink has made the stream meanwhile.
+  // Another sink has made the stream since this sink looked for it.
   if (code == JSStreamNameExistErr) status = AddOrUpdate(js, settings, subjects, &code);
   if (status != NATS_OK) *why = Explain(status, code);
   return status == NATS_OK;

@@ -21,7 +21,7 @@ constexpr const char* kDuration = "Lidar-Duration";
 constexpr const char* kSlice = "Lidar-Slice";
 constexpr const char* kPose = "Lidar-Pose";
 constexpr const char* kDiscont = "Lidar-Discont";
-constexpr const char* kMessageId = "Nats-Msg-Id";  // JetStream stores each id once
+constexpr const char* kMessageId = "Nats-Msg-Id";  // JetStream stores one message per id
 
 constexpr guint kMaxSlices = 4'096;
 constexpr int kPoseNumbers = 29;         // 7 doubles, an integer and 21 floats
@@ -68,7 +68,7 @@ class NumberReader {
   bool first_ = true;
 };
 
-/// Sets headers until one fails.
+/// A writer of the headers of a message. It writes no further headers after an error.
 class HeaderWriter {
  public:
   explicit HeaderWriter(natsMsg* message) : message_(message) {}
@@ -82,7 +82,8 @@ class HeaderWriter {
   natsStatus status_ = NATS_OK;
 };
 
-/// Returns the nearest finite number. NaN becomes the largest, as an unknown variance.
+/// Returns the finite float that is nearest to `v`. Returns the largest float for NaN, because a
+/// variance that is NaN is unknown.
 float ToFloat(double v) {
   constexpr double kMost = std::numeric_limits<float>::max();
   return static_cast<float>(std::fmax(-kMost, std::fmin(v, kMost)));
@@ -116,7 +117,8 @@ void WriteMetas(GstBuffer* buffer, HeaderWriter* headers) {
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT)) headers->Set(kDiscont, "1");
 }
 
-/// Returns nothing if the header is missing, and empty text if it is too long.
+/// Returns the value of a header. Returns nothing if the header is missing, and an empty text if
+/// the value is too long.
 std::optional<std::string_view> Header(natsMsg* message, const char* name) {
   const char* value = nullptr;
   if (natsMsgHeader_Get(message, name, &value) != NATS_OK || value == nullptr) return std::nullopt;
@@ -124,7 +126,8 @@ std::optional<std::string_view> Header(natsMsg* message, const char* name) {
   return text.size() <= kMaxHeader ? text : std::string_view();
 }
 
-/// Returns false if the header exists and is not a time.
+/// Reads the time in the header `name`, if the header exists. Returns false if the value is not a
+/// time.
 bool ReadTime(natsMsg* message, const char* name, GstClockTime* time) {
   const auto text = Header(message, name);
   if (!text) return true;
@@ -147,7 +150,8 @@ bool ReadSlice(natsMsg* message, GstBuffer* buffer) {
 
 bool ReadPose(natsMsg* message, GstBuffer* buffer) {
   const auto text = Header(message, kPose);
-  // A stream may hold clouds of an older sender, whose poses have another number of values.
+  // Skips the pose of an older sender, which has another number of values. JetStream may still keep
+  // its messages.
   if (!text || std::count(text->begin(), text->end(), ' ') != kPoseNumbers - 1) return true;
   GstLidarPose pose{};
   guint tracking = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts buffers to NATS messages: bytes, and metas as headers.
+// Converts buffers to NATS messages and back. Metas become headers.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,9 +12,9 @@
 
 namespace lidar::nats {
 
-/// Position of a message in the output of one sink, from start to stop.
+/// The position of a message among all messages that a sink sends between start and stop.
 struct Place {
-  std::uint64_t run = 0;  // random, differs from start to start
+  std::uint64_t run = 0;  // a random number that the sink chooses at start
   std::uint64_t number = 0;
 };
 
@@ -24,19 +24,20 @@ struct ReadMessage {
   gst::BufferPtr buffer;  // without PTS
 };
 
-/// Return the subjects of a stream's formats, and of requests for formats.
+/// Return the subject of a format, and the subject of requests for formats.
 std::string ConfigSubject(const std::string& subject, const std::string& format_id);
 std::string AskSubject(const std::string& subject);
-/// The fault of `subject`; empty if there is none.
+/// Returns what is wrong with `subject`, or an empty text if nothing is wrong.
 std::string CheckSubject(const std::string& subject);
 
-/// The text of the headers Nats-Msg-Id and Lidar-Place.
+/// Returns the value of the headers Nats-Msg-Id and Lidar-Place.
 std::string PlaceText(const Place& place);
 
-/// A message to `subject`; `reply` may be NULL. Returns null if memory is short.
+/// Makes a message to `subject`. `reply` is the subject for the answer, or NULL. Returns null if
+/// memory is short.
 MessagePtr WriteMessage(const std::string& subject, const char* reply, const std::string& format_id,
                         const Place& place, GstBuffer* buffer);
-/// Reads any message; returns nothing if it is damaged.
+/// Reads a message from any sender. Returns nothing if the message is damaged.
 std::optional<ReadMessage> Read(natsMsg* message);
 
 }  // namespace lidar::nats

@@ -19,9 +19,10 @@ struct Destroy {
   void operator()(natsInbox* p) const { natsInbox_Destroy(p); }
 };
 
-/// libnats 3.4 frees a subscription even while the thread that reads has a message for it. So a
-/// flush waits for the server's answer, which that thread reads after such messages. On a closed
-/// connection the flush does not wait.
+/// Unsubscribes, waits for the server, and frees the subscription. libnats 3.4 may free a
+/// subscription while its reading thread still delivers a message to the subscription. The flush
+/// prevents this: it waits for an answer of the server, which the reading thread reads only after
+/// all such messages. If the connection is closed, the flush returns at once.
 struct EndSubscription {
   static constexpr std::int64_t kTimeoutMs = 1'000;
   natsConnection* connection = nullptr;

@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-constexpr std::size_t kMaxComplaints = 8;  // of a connection
+constexpr std::size_t kMaxComplaints = 8;  // per connection
 
 }  // namespace
 
@@ -86,11 +86,11 @@ void ConnectionWatch::Note(const nats::ConnectionState& state) {
   const bool closed = state.refused() && !std::exchange(closed_, true);
   const bool error = state.errors > std::exchange(errors_, state.errors);
   if (changed) complaints_.clear();
-  // A complaint may come with each message, so each text gives only one warning.
+  // The server may complain about every message, so each text is posted only once per connection.
   const bool is_new =
       error && complaints_.size() < kMaxComplaints && complaints_.insert(state.last_error).second;
   lock.unlock();
-  // The server's text may be invalid UTF-8, which messages on the bus must not have.
+  // The server's text may be invalid UTF-8, which must not be posted on the bus.
   const StringPtr words(g_utf8_make_valid(state.last_error.c_str(), -1));
   if (changed)
     gst_element_post_message(

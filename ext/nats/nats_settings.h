@@ -23,32 +23,33 @@ struct NatsSettings {
 
 const std::array<Property<NatsSettings>, 8>& NatsRows();
 
-/// Fills in the element's name. Returns false after an error message that names the wrong setting.
+/// Checks the settings, and names the connection after the element. If a setting is wrong, posts an
+/// error message that names the setting and returns false.
 bool CheckNatsSettings(GstElement* element, NatsSettings* settings);
 
-/// Posts the state of a connection: nats-connection-changed, warnings if the server complains, an
-/// error if it refuses the client.
+/// Posts changes of a connection on the bus of an element: the message nats-connection-changed, a
+/// warning if the server complains, and an error if the server refuses the client.
 class ConnectionWatch {
  public:
-  /// `keeps_trying`: a refusal by the server is a warning instead of an error.
+  /// If `keeps_trying` is set, a refusal by the server gives a warning instead of an error.
   ConnectionWatch(GstElement* element, bool keeps_trying)
       : element_(GST_ELEMENT(gst_object_ref(element))), keeps_trying_(keeps_trying) {}
-  /// Any thread may call these.
+  /// These three functions may be called by any thread.
   void Note(const nats::ConnectionState& state);
   void Warn(const std::string& text);
   void PostRefused(const nats::ConnectionState& state);
-  /// Ends all posting, because the element stops.
+  /// Posts nothing from now on, because the element stops.
   void Silence();
 
  private:
-  const ElementPtr element_;  // owned, because threads of libnats may outlive the element's stop
+  const ElementPtr element_;  // owned, because libnats may call Note() after the stop
   const bool keeps_trying_;
   std::mutex mutex_;
   bool silent_ = false;
   bool connected_ = false;
   bool closed_ = false;
   std::uint64_t errors_ = 0;
-  std::set<std::string> complaints_;  // of this connection; each gave a warning
+  std::set<std::string> complaints_;  // texts that were posted for this connection
 };
 
 }  // namespace lidar::gst

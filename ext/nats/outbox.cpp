@@ -6,14 +6,14 @@
 
 namespace lidar::nats {
 
-/// Size of a message, headers and metas included.
+/// Returns the memory of a message, with an estimate for the headers and metas.
 std::size_t Outbox::SizeOf(const Outgoing& item) {
   constexpr std::size_t kOverhead = 512;
   return gst_buffer_get_size(item.buffer.get()) + kOverhead;
 }
 
-/// Counts the message. Counts a format with the first message that has it, because a format may be
-/// larger than all its messages.
+/// Counts the memory of a message and of its format. A format can be larger than its messages,
+/// which share it. It is therefore counted once, with the first message that has it.
 void Outbox::Count(const Outgoing& item) {
   bytes_ += SizeOf(item);
   if (item.format && ++formats_[item.format] == 1) bytes_ += item.format->memory();

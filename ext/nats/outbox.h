@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages that wait to be sent or for their acknowledgement, in bounded memory.
+// Messages that wait to be sent or to be acknowledged, in bounded memory.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -17,29 +17,32 @@ struct Outgoing {
   StreamFormat::Ptr format;
 };
 
-/// The owner's lock guards it.
+/// A queue of messages in bounded memory. It is not thread-safe, so its owner needs a lock.
 class Outbox {
  public:
   using Clock = std::chrono::steady_clock;
 
   explicit Outbox(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// Adds a message. If there is no room, drops the oldest waiting messages; returns how many.
+  /// Adds a message. If the memory is exceeded, drops the oldest waiting messages. Returns the
+  /// number of dropped messages.
   std::size_t Push(Outgoing item);
 
-  /// Takes the oldest waiting message, which is in flight until Remove() or Retry().
+  /// Returns the oldest waiting message. The message is in flight until Remove() or Retry() gets
+  /// its number.
   std::optional<Outgoing> Take(Clock::time_point now);
-  /// Returns false if `number` is not in flight.
+  /// Removes the message `number`. Returns false if it is not in flight.
   bool Remove(std::uint64_t number);
-  /// Makes messages in flight wait again, before all others. Returns how many.
+  /// Make the message `number`, or all messages in flight, wait again, before all newer messages.
+  /// Return the number of messages.
   std::size_t Retry(std::uint64_t number);
   std::size_t RetryAll();
-  /// Forgets all messages; returns how many.
+  /// Removes all messages. Returns their number.
   std::size_t Clear();
 
-  /// The format of the oldest message that waits, or null.
+  /// Returns the format of the oldest waiting message, or null if no message waits.
   StreamFormat::Ptr NextFormat() const;
-  /// Returns the time of the oldest Take() of a message in flight.
+  /// Returns the time at which Take() returned the message that is in flight the longest.
   std::optional<Clock::time_point> OldestInFlight() const;
 
   std::size_t waiting() const { return waiting_.size(); }
@@ -59,7 +62,7 @@ class Outbox {
   const std::size_t max_bytes_;
   std::map<std::uint64_t, Outgoing> waiting_;
   std::map<std::uint64_t, Sent> in_flight_;
-  std::map<StreamFormat::Ptr, std::size_t> formats_;  // number of messages by format
+  std::map<StreamFormat::Ptr, std::size_t> formats_;  // number of messages of each format
   std::size_t bytes_ = 0;                             // of messages and formats
 };
 

@@ -8,8 +8,9 @@ namespace lidar::nats {
 namespace {
 
 constexpr std::size_t kMaxRuns = 8;
-constexpr std::size_t kMaxSpans = 256;  // of a run
-/// A larger jump counts as damage: this many messages take a stream days.
+constexpr std::size_t kMaxSpans = 256;  // per run
+/// The largest jump in the numbers that counts as missing messages. A stream needs days to send so
+/// many messages, so a larger jump means a damaged number.
 constexpr std::uint64_t kMaxMissing = 100'000'000;
 
 }  // namespace
@@ -34,7 +35,7 @@ PlaceBook::Verdict PlaceBook::Note(const Place& place) {
   verdict.fills_gap = verdict.late && span != spans.end();
   if (!verdict.late && span != spans.end()) verdict.missing = n - span->second - 1;
   if (verdict.missing > kMaxMissing) verdict.missing = 0;
-  // The number extends a neighbour, or is a span of its own.
+  // The number extends a neighbouring span, or becomes a span of its own.
   if (span != spans.end() && span->second + 1 == n)
     span->second = n;
   else

@@ -12,12 +12,12 @@ namespace lidar::nats {
 class PlaceBook {
  public:
   struct Verdict {
-    bool again = false;         // the same message has come before
-    bool late = false;          // a later message has come before
-    bool fills_gap = false;     // an earlier `missing` counted it
-    std::uint64_t missing = 0;  // numbers between it and the newest earlier one
+    bool again = false;         // this message has arrived before
+    bool late = false;          // a later message has arrived before
+    bool fills_gap = false;     // an earlier call counted this message as missing
+    std::uint64_t missing = 0;  // messages between the newest earlier message and this one
   };
-  /// Notes a message. Memory is bounded, so a very old one may seem new.
+  /// Notes a message. Memory is bounded, so a repeated message may seem new if it is very old.
   Verdict Note(const Place& place);
 
  private:

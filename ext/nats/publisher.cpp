@@ -14,11 +14,11 @@ constexpr std::chrono::milliseconds kAskedInterval{20};  // interval between ans
 constexpr std::chrono::milliseconds kStreamRetry{500};   // longest pause before a new try
 constexpr gint kMinStreamRetryMs = 50;
 constexpr std::chrono::milliseconds kAckTimeout{5'000};
-constexpr std::chrono::milliseconds kPatrol{500};  // between checks for unanswered messages
+constexpr std::chrono::milliseconds kPatrol{500};  // interval of checks for unanswered messages
 constexpr const char* kConfigReply = "config";     // in place of a message's number
 constexpr std::size_t kMaxInFlight = 256;          // messages
 
-/// The pause is random, so that sinks do not change one stream at the same time.
+/// Returns a random pause, so that several sinks do not change a stream at the same time.
 std::chrono::milliseconds StreamPause() {
   return std::chrono::milliseconds(
       g_random_int_range(kMinStreamRetryMs, static_cast<gint>(kStreamRetry.count())));
@@ -102,8 +102,9 @@ bool Publisher::Subscribe(const std::string& subject, void (Publisher::*call)(na
     *why = ErrorText(s);
     return false;
   }
-  // The callback may still run after the end of the subscription, so the target lives until the
-  // completion callback, which never comes if the server has closed the connection.
+  // The callback may still run after the subscription has ended. The target is therefore deleted by
+  // the completion callback. libnats does not accept a completion callback if the server has closed
+  // the connection. In this case the publisher keeps the target.
   const natsStatus told = natsSubscription_SetOnCompleteCB(
       raw, [](void* closure) { delete static_cast<Target*>(closure); }, target.get());
   if (told != NATS_OK) untold_.push_back(std::move(target));
@@ -146,7 +147,7 @@ Publisher::Drained Publisher::Drain(Duration timeout) {
 void Publisher::Interrupt(bool on) {
   const std::lock_guard lock(mutex_);
   interrupted_ = on;
-  if (on) ++interrupts_;  // counted, because GstBaseSink may reset the flag too soon
+  if (on) ++interrupts_;  // counted, because the flag may be reset before Drain() sees it
   drained_.notify_all();
 }
 
@@ -181,7 +182,7 @@ void Publisher::OnAck(natsMsg* message) {
       told_.clear();
     }
   } else {
-    // All messages in flight are sent again, so that their order stays.
+    // Sends all messages in flight again, so that JetStream stores them in order.
     SendAllAgain();
     retry_at_ = Clock::now() + StreamPause();
   }
@@ -189,8 +190,8 @@ void Publisher::OnAck(natsMsg* message) {
   if (!error.empty()) Tell(&lock, error);
 }
 
-/// Gives up a message, or the caps if `number` is missing, because the stream would always refuse
-/// them.
+/// Gives up the message `number`, or the caps if there is no number. Sending them again would not
+/// help, because they exceed the stream's max_msg_size.
 void Publisher::NoteTooLarge(Lock* lock, std::optional<std::uint64_t> number) {
   if (!number)
     config_unanswered_ = false;
@@ -255,8 +256,8 @@ void Publisher::NoteConnection(const ConnectionState& state) {
   open_at_ = Clock::now() + refusals_.Next();
 }
 
-/// Sends messages in flight again after a reconnect, before waiting ones, so that all are stored in
-/// order.
+/// If libnats has reconnected, sends the messages in flight again, before the waiting messages, so
+/// that JetStream stores all of them in order.
 void Publisher::RetryAfterReconnect(Lock* lock) {
   lock->unlock();
   const bool again = connection_->TakeReconnect();  // may wait for a write
@@ -264,7 +265,8 @@ void Publisher::RetryAfterReconnect(Lock* lock) {
   if (again) SendAllAgain();
 }
 
-/// Opens another connection. libnats gives one up after two refusals, or if the server is silent.
+/// Opens a new connection, because libnats gives up a connection after two refusals, or if the
+/// server does not answer.
 void Publisher::OpenAgain(Lock* lock) {
   if (Clock::now() < open_at_) {
     wake_.wait_until(*lock, open_at_);
@@ -322,7 +324,7 @@ void Publisher::PrepareStream(Lock* lock) {
     Tell(lock, "The stream " + settings_.stream.name + " cannot be created or updated: " + why);
 }
 
-/// Returns the format of the next message, or of the last one.
+/// Returns the format of the oldest waiting message, or of the newest buffer if no message waits.
 StreamFormat::Ptr Publisher::NextFormat() const {
   const StreamFormat::Ptr waiting = outbox_.NextFormat();
   return waiting ? waiting : format_;
@@ -332,9 +334,11 @@ bool Publisher::ConfigDue(Clock::time_point now) const {
   const StreamFormat::Ptr format = NextFormat();
   if (!format) return false;
   if (format != sent_format_) return true;
-  // Answers to requests are rare if JetStream keeps messages, so that they do not fill its storage.
+  // Answers requests for the caps. Answers less often if JetStream keeps messages, because
+  // JetStream also stores each answer.
   if (asked_ && now - config_at_ >= (keeps() ? kConfigInterval / 2 : kAskedInterval)) return true;
-  // If JetStream keeps little, caps must not be dropped before the messages that need them.
+  // If the stream is small, JetStream could drop the caps before the messages that need them. The
+  // caps are therefore sent again after a quarter of the stream's size.
   const std::uint64_t max_bytes = settings_.stream.max_bytes;
   const bool box_turns = keeps() && max_bytes > 0 && bytes_since_config_ > max_bytes / 4;
   return outbox_.waiting() > 0 && (box_turns || now - config_at_ >= kConfigInterval);
@@ -375,7 +379,7 @@ void Publisher::SendNext(Lock* lock) {
   if (status == NATS_MAX_PAYLOAD)
     Tell(lock, "A buffer is larger than the server allows (max_payload)");
   else if (status != NATS_OK)
-    wake_.wait_for(*lock, kStreamRetry);  // the connection is about to be given up
+    wake_.wait_for(*lock, kStreamRetry);  // libnats is about to give up the connection
 }
 
 void Publisher::NoteSent(natsStatus status, std::uint64_t number, std::size_t bytes) {

@@ -26,45 +26,46 @@ struct PublisherSettings {
   std::string subject;
   StreamSettings stream;
   std::size_t max_buffered = 8U << 20;  // bytes
-  // Tries again after refusals and wrong settings, which may be mended later.
+  // If true, the publisher tries again after a refusal by the server or with wrong settings,
+  // because both may be corrected later.
   bool keep_trying = false;
 };
 
 struct PublisherCounters {
-  std::uint64_t messages = 0;      // handed to the server
-  std::uint64_t bytes = 0;         // of buffers in them
+  std::uint64_t messages = 0;      // sent to the server
+  std::uint64_t bytes = 0;         // size of the buffers in `messages`
   std::uint64_t acknowledged = 0;  // stored by JetStream
   std::uint64_t resent = 0;
-  std::uint64_t dropped = 0;    // dropped for lack of room or at stop
-  std::uint64_t too_large = 0;  // for the server or its stream
+  std::uint64_t dropped = 0;    // for lack of memory, or not sent before stop
+  std::uint64_t too_large = 0;  // larger than the server or its stream accepts
   std::uint64_t waiting = 0;    // to be sent or acknowledged
   std::uint64_t buffered = 0;   // bytes in the waiting messages
   std::uint64_t server_errors = 0;
-  std::uint64_t refusals = 0;  // by the server, with keep_trying
+  std::uint64_t refusals = 0;  // refused connections, if keep_trying is set
   unsigned reconnects = 0;
   bool connected = false;
 };
 
-/// Called without a lock, by threads of libnats and of the publisher.
+/// Functions that threads of libnats and of the publisher call. The caller holds no lock.
 struct PublisherEvents {
   Connection::Changed connection;
-  /// Called once per reason while messages cannot be sent or stored.
+  /// Called when messages cannot be sent or stored, once for each reason.
   std::function<void(const std::string& why)> trouble;
 };
 
 class Publisher : public std::enable_shared_from_this<Publisher> {
  public:
-  /// Returns null and sets `why` if the settings are wrong. With `keep_trying` it does not wait for
-  /// the network.
+  /// Starts a publisher. Returns null and sets `why` if the settings are wrong. If `keep_trying` is
+  /// set, does not wait for the network.
   static std::shared_ptr<Publisher> Start(const PublisherSettings& settings, PublisherEvents events,
                                           std::string* why);
-  /// Ends all threads; counts what was not sent as dropped.
+  /// Ends all threads. Messages that were not sent, or not acknowledged, count as dropped.
   void Stop();
 
-  /// Never waits.
+  /// Adds a buffer to be sent, without waiting.
   void Add(gst::BufferPtr buffer, const StreamFormat::Ptr& format);
   enum class Drained { kAll, kTimeout, kInterrupted };
-  /// Waits until all is sent and, with JetStream, acknowledged.
+  /// Waits until all messages are sent and, with JetStream, acknowledged.
   Drained Drain(Duration timeout);
   void Interrupt(bool on);
 
@@ -78,7 +79,7 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   bool Open(std::string* why);
   bool StartThread(std::string* why);
   void Close();
-  /// The target of a subscription's callbacks.
+  /// The function that the callbacks of a subscription call.
   struct Target {
     std::weak_ptr<Publisher> publisher;
     void (Publisher::*call)(natsMsg*);
@@ -113,16 +114,16 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   const PublisherSettings settings_;
   const PublisherEvents events_;
   const std::uint64_t run_;
-  const std::optional<AnswerSubjects> answers_;  // missing if memory is short; then nothing starts
-  // The publisher's thread owns these while it runs.
+  const std::optional<AnswerSubjects> answers_;  // missing if memory is short; Start() then fails
+  // While the publisher's thread runs, only this thread uses the members from here to `untold_`.
   std::unique_ptr<Connection> connection_;  // null before the first connection, and after a refusal
   JetStreamPtr js_;
   SubscriptionPtr asks_;
   SubscriptionPtr acks_;
-  std::vector<std::unique_ptr<Target>> untold_;  // of subscriptions without a completion callback
+  std::vector<std::unique_ptr<Target>> untold_;  // targets without a completion callback
   std::thread thread_;
 
-  mutable std::mutex mutex_;  // guards what follows; never held while sending or calling events_
+  mutable std::mutex mutex_;  // guards the members below; unlocked while sending or calling events_
   std::condition_variable wake_;
   std::condition_variable drained_;
   Outbox outbox_;
@@ -130,16 +131,16 @@ class Publisher : public std::enable_shared_from_this<Publisher> {
   std::uint64_t next_number_ = 0;
   StreamFormat::Ptr format_;       // of the newest buffer
   StreamFormat::Ptr sent_format_;  // last published format
-  Clock::time_point config_at_{};  // time of its publication
+  Clock::time_point config_at_{};  // time when it was published
   std::uint64_t bytes_since_config_ = 0;
   Clock::time_point retry_at_{};              // earliest next try to make the stream
   Clock::time_point open_at_{};               // earliest next connect after a refusal
-  Clock::time_point here_at_ = Clock::now();  // last time with a server, initially the start
+  Clock::time_point here_at_ = Clock::now();  // last time with a connection; initially the start
   Backoff refusals_{std::chrono::seconds(1), std::chrono::seconds(16)};
-  unsigned connections_before_ = 0;  // of earlier Connection objects
+  unsigned connections_before_ = 0;  // connects of earlier Connection objects
   std::uint64_t errors_before_ = 0;
   unsigned connections_ = 0;  // number of connects at the last NoteConnection()
-  std::string told_;          // last trouble that was reported
+  std::string told_;          // last text that was given to events_.trouble
   bool asked_ = false;
   bool config_unanswered_ = false;
   bool stream_ready_ = false;

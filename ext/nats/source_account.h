@@ -25,7 +25,7 @@ struct SourceCounters {
   bool connected = false;
 };
 
-/// A single thread writes; any thread reads.
+/// Counters of a source. Only one thread may change them. Any thread may call counters().
 class SourceAccount {
  public:
   SourceCounters counters() const;
@@ -37,10 +37,11 @@ class SourceAccount {
   void NoteStop();
 
   struct Verdict {
-    bool again = false;  // repeated, because JetStream saw no acknowledgement
+    bool again = false;  // sent again, because JetStream got no acknowledgement
     bool gap = false;    // messages before it are missing
   };
-  /// `shared`: a queue group shares the stream, so what is missing here is not lost.
+  /// Notes the position of a message. If `shared` is set, a queue group shares the stream. Messages
+  /// that are missing here went to other members of the group and are not lost.
   Verdict NotePlace(const Place& place, bool shared);
 
  private:

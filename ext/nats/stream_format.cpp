@@ -63,8 +63,8 @@ StreamFormat::Ptr StreamFormat::FromText(const std::string& text) {
   std::string why;
   const Ptr read = FromCaps(caps.get(), &why);
   if (!read) return nullptr;
-  // The id is that of the sender's text, because another version of GStreamer may write the same
-  // caps differently.
+  // Uses the id of the sender's text. The id of `read` may differ, because another version of
+  // GStreamer may write the same caps differently.
   auto format = std::make_shared<StreamFormat>();
   format->caps_.reset(gst_caps_ref(caps.get()));
   format->text_ = text;

@@ -22,10 +22,11 @@ constexpr int kMaxPendingConfigs = 64;
 constexpr int kMaxPendingConfigBytes = 1 << 20;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kAckWaitNs = 2 * kSecondNs;
-constexpr std::int64_t kMaxUnacknowledged = 32;  // messages; more would wait here past kAckWaitNs
-constexpr int kMaxPendingUnacknowledged = 256;   // messages of consumers that others made
+constexpr std::int64_t kMaxUnacknowledged = 32;  // messages; more might wait longer than kAckWaitNs
+constexpr int kMaxPendingUnacknowledged = 256;   // messages, if another client made the consumer
 
-/// libnats 3.4 writes .012 s as .12 s, so such times become the whole second before them.
+/// Rounds `time` down to a whole second if its fraction is below 0.1 s. libnats 3.4 writes such a
+/// fraction wrongly: .012 s becomes .12 s.
 std::int64_t SafeTime(std::uint64_t time) {
   const auto ns = static_cast<std::int64_t>(time);
   const std::int64_t fraction = ns % kSecondNs;
@@ -50,24 +51,26 @@ bool Subscriber::Connect(std::string* why) {
     if (!js_) status = NATS_NO_MEMORY;
   } else {
     status = SubscribeLive();
-    // This waits until the server has the subscription, so that callers can publish after it.
+    // Waits until the server has the subscriptions, so that they get all messages that are
+    // published after Connect() returns.
     if (connection_->state().connected())
       natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
   }
-  // Next() sees why a connection is closed.
+  // A closed connection is not an error here, because Next() reports it.
   if (status == NATS_OK || status == NATS_CONNECTION_CLOSED) return true;
   *why = ErrorText(status);
   return false;
 }
 
 Subscriber::~Subscriber() {
-  // Closing a socket with unread messages would lose the acknowledgements that it sent.
+  // Waits until the server has all acknowledgements. They could be lost if the socket were closed
+  // while it has unread messages.
   if (connection_ && acknowledges() && connection_->state().connected())
     natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
   if (connection_) connection_->Close();
 }
 
-/// libnats subscribes again by itself after a reconnect.
+/// Subscribes to live messages and formats. libnats renews these subscriptions after a reconnect.
 natsStatus Subscriber::SubscribeLive() {
   natsSubscription* raw = nullptr;
   const std::string configs = ConfigSubject(settings_.subject, "*");
@@ -101,7 +104,8 @@ void Subscriber::SetStart(jsConsumerConfig* config) const {
   }
 }
 
-/// Makes a consumer that begins where the last one ended, and ends with this subscriber.
+/// Makes a temporary consumer, which begins after the last message that was received. The consumer
+/// ends together with this subscriber.
 natsStatus Subscriber::SubscribeOwn(jsErrCode* code) {
   jsSubOptions options;
   jsSubOptions_Init(&options);
@@ -138,7 +142,8 @@ natsStatus Subscriber::AddDurable(jsErrCode* code) {
   return js_AddConsumer(nullptr, js_.get(), settings_.stream.c_str(), &config, nullptr, code);
 }
 
-/// Binds to a consumer that stays on the server; deletes nothing.
+/// Subscribes to the durable consumer, and makes the consumer if it does not exist. The consumer
+/// stays on the server when the subscription ends.
 natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   jsConsumerInfo* raw_info = nullptr;
   natsStatus s = js_GetConsumerInfo(&raw_info, js_.get(), settings_.stream.c_str(),
@@ -156,8 +161,8 @@ natsStatus Subscriber::SubscribeDurable(jsErrCode* code) {
   s = js_SubscribeSync(&raw, js_.get(), settings_.subject.c_str(), nullptr, &options, code);
   messages_ = Own(raw);
   if (s != NATS_OK) return s;
-  // Messages beyond the limit are dropped here, and come again because they are not acknowledged. A
-  // single message must fit.
+  // Messages beyond these limits are dropped here. The server sends them again, because they are
+  // not acknowledged. The limits have room for the largest message.
   const std::int64_t largest = natsConnection_GetMaxPayload(connection_->get());
   const auto bytes = std::max<std::int64_t>(settings_.max_pending, 2 * largest);
   return natsSubscription_SetPendingLimits(
@@ -181,8 +186,8 @@ natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
   return settings_.durable.empty() ? SubscribeOwn(code) : SubscribeDurable(code);
 }
 
-/// Begins with the first message of another stream, even one of the same name: message numbers of
-/// the earlier stream are void.
+/// Checks if the stream was deleted and made again since the last call. If it was, the next message
+/// is the first message of the new stream, because the numbers of the old stream are invalid.
 void Subscriber::NoteStream() {
   jsStreamInfo* raw = nullptr;
   js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), nullptr, nullptr);
@@ -192,13 +197,14 @@ void Subscriber::NoteStream() {
   if (before != 0 && before != created_) next_ = 1;
 }
 
-/// Returns true if the server answers. Without this check the end of each subscription, and each
-/// request, would wait in turn.
+/// Returns true if the server answers. If it does not answer, Renew() would otherwise wait for the
+/// timeout of each request and of each subscription that it ends.
 bool Subscriber::Answers() const {
   return natsConnection_FlushTimeout(connection_->get(), kRequestTimeoutMs) == NATS_OK;
 }
 
-/// Makes the consumer of JetStream anew after each connect, because the server may have lost it.
+/// Makes a new consumer of JetStream, because the server may have lost the last consumer. Runs
+/// after each connect, and after a missed message or heartbeat.
 Subscriber::Event Subscriber::Renew() {
   const auto now = steady_clock::now();
   if (now < renew_at_) {
@@ -229,7 +235,8 @@ Subscriber::Event Subscriber::Renew() {
   natsSubscription_GetConsumerInfo(&raw, messages_.get(), nullptr, nullptr);
   const ConsumerInfoPtr info(raw);
   if (!info || info->Delivered.Consumer != 0) return Event::kNothing;
-  // If the server loses the consumer before its first message, the next consumer begins here.
+  // The next consumer begins at this number if the server loses this consumer before its first
+  // message.
   next_ = info->Delivered.Stream + 1;
   return Event::kNothing;
 }
@@ -242,7 +249,8 @@ void Subscriber::CountOverruns() {
   dropped_ = dropped;
 }
 
-/// A message out of order makes the consumer begin anew after the last good message.
+/// Fills in `delivery`. If a message before this one is missing, marks the consumer as stale, so
+/// that a new consumer begins after the last good message.
 Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   jsMsgMetaData* raw = nullptr;
   if (natsMsg_GetMetaData(&raw, delivery->message.get()) != NATS_OK) return Event::kNothing;
@@ -264,8 +272,9 @@ Subscriber::Event Subscriber::NoteStored(Delivery* delivery) {
   return Event::kMessage;
 }
 
-/// Returns true if no message is to come. Asks the server, which alone counts messages that come
-/// again, messages that others of the group have not acknowledged, and removed messages.
+/// Returns true if the stream has no further messages. Asks the server, because only the server
+/// knows of removed messages, of messages that it will send again, and of messages that other
+/// members of the queue group have not acknowledged.
 bool Subscriber::IsDone() {
   const auto now = steady_clock::now();
   if (!settings_.seeks_end || now < is_done_at_) return false;
@@ -307,7 +316,7 @@ Subscriber::Event Subscriber::Next(milliseconds timeout, Delivery* delivery) {
   delivery->message.reset(raw);
   if (s == NATS_SLOW_CONSUMER) CountOverruns();
   if (s == NATS_MISMATCH) stale_ = true;
-  // Waits, because the connection's state, which has the reason, may change a moment later.
+  // Waits a moment. The reason is in the state of the connection, which may be updated only later.
   if (!messages_ || s == NATS_CONNECTION_CLOSED) std::this_thread::sleep_for(timeout);
   if (s == NATS_TIMEOUT && stored() && state.connected() && IsDone()) return Event::kEmpty;
   if (s != NATS_OK || raw == nullptr) return Event::kNothing;
@@ -318,7 +327,7 @@ void Subscriber::Acknowledge(natsMsg* message) { natsMsg_Ack(message, nullptr); 
 
 void Subscriber::TakeFormats(milliseconds wait) {
   natsMsg* raw = nullptr;
-  // A flood of formats must not keep the thread here.
+  // Limits the number of formats per call, because a flood of formats would delay the messages.
   for (int left = kMaxPendingConfigs;
        left > 0 && configs_ &&
        natsSubscription_NextMsg(&raw, configs_.get(), wait.count()) == NATS_OK;
@@ -339,7 +348,7 @@ StreamFormat::Ptr Subscriber::Format(const std::string& id, milliseconds timeout
   TakeFormats({});
   StreamFormat::Ptr format = book_.Find(id);
   const auto deadline = steady_clock::now() + timeout;
-  // A stream may keep more formats than the book.
+  // JetStream may keep more formats than `book_`.
   if (!format && stored() && timeout > milliseconds{})
     format = book_.Fetch(js_.get(), settings_.stream, ConfigSubject(settings_.subject, id));
   auto ask_at = steady_clock::now();

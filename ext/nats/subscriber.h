@@ -20,25 +20,25 @@ struct SubscriberSettings {
   std::string stream;                       // JetStream's stream; empty: live
   std::string durable;                      // consumer; empty: a temporary one
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
-  std::uint64_t start_sequence = 0;         // replaces start_time, unless it is 0
-  int max_pending = 8 << 20;                // bytes that may wait, if live
-  // Next() returns kEmpty once the stream has no more messages and, with a durable consumer, all
-  // are acknowledged.
+  std::uint64_t start_sequence = 0;         // if not 0, used instead of start_time
+  int max_pending = 8 << 20;                // most bytes that may wait, if live
+  // If true, Next() returns kEmpty when the stream has no more messages. All messages must also be
+  // acknowledged if the consumer is durable.
   bool seeks_end = false;
 };
 
-/// A message and its place in JetStream.
+/// A message and its position in JetStream's stream.
 struct Delivery {
   MessagePtr message;
   std::optional<std::uint64_t> stored;  // time of storage [ns since 1970]
   std::uint64_t sequence = 0;           // number in the stream; 0: not stored
-  std::uint64_t to_come = 0;            // number of later messages in store
+  std::uint64_t to_come = 0;            // number of later messages in the stream
 };
 
-/// Used by one thread.
+/// A subscription to one stream. Only one thread may use it.
 class Subscriber {
  public:
-  /// Returns null, and `why`, if the settings are wrong.
+  /// Opens a subscription. Returns null and sets `why` if the settings are wrong.
   static std::unique_ptr<Subscriber> Open(const SubscriberSettings& settings,
                                           Connection::Changed changed, std::string* why);
   /// Waits until the server has the acknowledgements, for kConnectTimeoutMs at most.
@@ -46,7 +46,7 @@ class Subscriber {
 
   enum class Event {
     kMessage,
-    kNothing,  // no message in this time
+    kNothing,  // no message arrived before the timeout
     kEmpty,    // see seeks_end
     kTrouble,  // trouble() describes it; the subscriber continues
     kClosed,   // the connection is gone for good
@@ -54,16 +54,18 @@ class Subscriber {
   Event Next(std::chrono::milliseconds timeout, Delivery* delivery);
   const std::string& trouble() const { return trouble_; }
   ConnectionState connection() const { return connection_->state(); }
-  /// Acknowledges a message of a durable consumer, so that the message does not come again.
+  /// Acknowledges a message of a durable consumer, so that the server does not send the message
+  /// again.
   void Acknowledge(natsMsg* message);
   bool acknowledges() const { return !settings_.durable.empty(); }
 
-  /// Returns the format with that id. Requests an unknown one from the sender; returns null at a
-  /// timeout.
+  /// Returns the format `id`. If the format is unknown, requests it from the sender. Returns null
+  /// if it has not arrived after `timeout`.
   StreamFormat::Ptr Format(const std::string& id, std::chrono::milliseconds timeout);
-  /// Number of messages dropped because they came faster than Next() took them.
+  /// Returns the number of messages that were dropped because they arrived faster than Next()
+  /// returned them.
   std::uint64_t overruns() const { return overruns_; }
-  /// Number of formats that are damaged or not from a natssink.
+  /// Returns the number of formats that are damaged or not from a natssink.
   std::uint64_t damaged_formats() const { return book_.damaged(); }
 
  private:
@@ -95,7 +97,7 @@ class Subscriber {
   const Connection::Changed changed_;
   std::unique_ptr<Connection> connection_;
   JetStreamPtr js_;
-  SubscriptionPtr messages_;  // declared after the connection that it needs
+  SubscriptionPtr messages_;  // declared after the connection, because it is destroyed first
   SubscriptionPtr configs_;
   FormatBook book_;
   std::string trouble_;
@@ -103,10 +105,10 @@ class Subscriber {
   std::chrono::steady_clock::time_point is_done_at_{};  // earliest next request of IsDone()
   unsigned connections_ = 0;                            // number of connections at the last renewal
   unsigned missed_heartbeats_ = 0;
-  bool stale_ = false;             // the consumer missed a message
-  std::int64_t created_ = 0;       // time when the stream was made; 0: unknown
-  std::uint64_t next_ = 0;         // least number of the next message in the stream; 0: unknown
-  std::uint64_t last_number_ = 0;  // number of the last message at the consumer
+  bool stale_ = false;        // the consumer missed a message
+  std::int64_t created_ = 0;  // time when the stream was made; 0: unknown
+  std::uint64_t next_ = 0;    // least possible number of the next message in the stream; 0: unknown
+  std::uint64_t last_number_ = 0;  // the consumer's number for the last message
   bool began_ = false;
   std::uint64_t overruns_ = 0;
   std::int64_t dropped_ = 0;  // messages that the present subscription dropped
