@@ -54,14 +54,15 @@ bool Lists(std::string_view list, std::string_view item) {
   return false;
 }
 
-/// Any site can make its own name point here, so names are refused.
+/// Returns true if `host` is an address or localhost. Names are refused, because any site can make
+/// a name of its own point to this server.
 bool IsNoName(std::string_view host) {
   if (host.size() > 2 && host.front() == '[') host = host.substr(1, host.size() - 2);
   return host.empty() || host == "localhost" || g_hostname_is_ip_address(std::string(host).c_str());
 }
 
-/// True if the asking page is this server's own, or one of `allowed`. Clients other than
-/// browsers send no origin.
+/// Returns true if the page that sends the request is the server's own page, or if its origin is in
+/// `allowed`. Clients other than browsers send no origin.
 bool IsOwnPage(SoupServerMessage* request, const std::string& allowed) {
   const std::string_view origin = HeaderOf(request, "Origin");
   if (!origin.empty() && Lists(allowed, origin)) return true;
@@ -84,7 +85,7 @@ std::string AddressOf(GInetAddress* peer, std::string_view forwarded) {
   return copy;
 }
 
-/// A valid token admits pages of any origin, because a browser never adds it by itself.
+/// A valid token admits pages of any origin, because a browser never adds the token by itself.
 std::optional<Grant> Admission::Check(SoupServerMessage* request, GHashTable* query,
                                       Refusal* refusal) {
   if (!HasToken()) {

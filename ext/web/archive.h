@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads what a recording holds of a stream: its slices, and poses of their sensor.
+// Reads a stream from a recording: its slices, and the poses of its sensor.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace lidar::web {
 
-/// For one thread at a time. Times are close to capture times [ns].
+/// A recording of a stream. Only one thread at a time may use it. Times are close to capture times
+/// [ns].
 class Archive {
  public:
   struct Times {
@@ -20,28 +21,29 @@ class Archive {
   };
   struct Item {
     std::uint64_t time_ns = 0;
-    std::uint64_t position = 0;           // where reading continues after it
-    std::size_t read = 0;                 // bytes that were read for it
-    std::shared_ptr<SliceMessage> slice;  // null: of another stream, or damaged
+    std::uint64_t position = 0;           // where reading continues after this item
+    std::size_t read = 0;                 // number of bytes that were read to get this item
+    std::shared_ptr<SliceMessage> slice;  // null if the item is damaged or of another stream
     bool is_damaged = false;
-    bool may_end_piece = true;  // false: the position would leave out later items
+    bool may_end_piece = true;  // false: continuing at `position` would skip later items
   };
 
   virtual ~Archive() = default;
-  /// Returns the first and last time that can be read now. Returns nothing if nothing can be read,
-  /// and sets `why` for a user.
+  /// Returns the first and the last time that can be read now. If nothing can be read, returns
+  /// nothing and sets `why` to a text for users.
   virtual std::optional<Times> Look(std::string* why) = 0;
-  /// Continues at a time, or after the item that had the `position`.
+  /// Set where Next() continues: at a time, or after the item that has `position`.
   virtual void Seek(std::uint64_t time_ns) = 0;
   virtual void GoOn(std::uint64_t position) = 0;
-  /// Returns nothing if there is no next item yet, or soon after Cancel().
+  /// Returns the next item, or nothing if there is none yet. Also returns nothing soon after
+  /// Cancel().
   virtual std::optional<Item> Next() = 0;
-  /// Closes files and frees buffers until the next Seek() or GoOn().
+  /// Closes files and frees buffers. Seek() or GoOn() opens them again.
   virtual void Rest() = 0;
-  /// Number of parts that were left out, damaged items not counted.
+  /// Returns the number of parts that were skipped. Damaged items are not counted.
   virtual std::uint64_t damaged() const = 0;
 
-  /// Any thread may call it.
+  /// Makes a running Next() return soon. Any thread may call this function.
   void Cancel() { cancelled_ = true; }
 
  protected:

@@ -10,10 +10,10 @@ namespace {
 using foxglove::CloseCode;
 using foxglove::Opcode;
 
-/// A subscription has about a hundred bytes.
+/// A request to subscribe has about a hundred bytes.
 constexpr std::size_t kMaxClientMessage = 64 * 1024;
 constexpr std::size_t kMaxControls = 64;
-/// Two scans have at most 1024 slices each.
+/// This is enough for two scans, which have at most 1024 slices each.
 constexpr std::size_t kMaxSlices = 2048;
 constexpr gint64 kSecond_us = G_USEC_PER_SEC;
 constexpr gint64 kAskAfter_us = 10 * kSecond_us;
@@ -40,7 +40,8 @@ Client::Client(ObjectPtr<GIOStream> stream, Handlers handlers, gint64 (*clock_us
 Client::~Client() {
   readable_.reset();
   writable_.reset();
-  // A TLS connection would wait on close for a peer that does not read the close notification.
+  // Shuts the socket down first. Otherwise closing a TLS connection would wait for a peer that does
+  // not read the close notification.
   if (G_IS_TLS_CONNECTION(stream_.get())) {
     GIOStream* base = nullptr;
     g_object_get(stream_.get(), "base-io-stream", &base, nullptr);
@@ -63,7 +64,8 @@ gboolean Client::OnWritable(GObject*, gpointer self) {
   return G_SOURCE_REMOVE;
 }
 
-/// Reads a bounded amount each turn: a client that sends without end must not occupy the thread.
+/// Reads a limited amount per call, because a client that sends without end must not occupy the
+/// thread.
 void Client::Read() {
   std::array<std::uint8_t, 16 * 1024> buffer;
   auto* input = G_POLLABLE_INPUT_STREAM(g_io_stream_get_input_stream(stream_.get()));
@@ -137,7 +139,7 @@ void Client::Forget(std::uint32_t channel) {
 
 void Client::Close(CloseCode code) {
   if (closed_) return;
-  // A close frame may be sent between two frames, not within one.
+  // A close frame may be sent between two frames, but not within a frame.
   if (!current_ || current_->sent == 0) WriteSome({foxglove::CloseFrame(code), nullptr, 0});
   End();
 }
@@ -154,7 +156,8 @@ void Client::Tick() {
   if (closed_) return;
   const gint64 now_us = clock_us_();
   const bool stalled = current_ && now_us - progress_us_ > kStalled_us;
-  // While a client takes a long frame, it can neither receive a ping nor answer: progress counts.
+  // While the client receives a long frame, it can neither receive a ping nor answer it. Therefore
+  // progress counts as a sign of life.
   if (current_ && progress_us_ > heard_us_) heard_us_ = progress_us_;
   if (stalled || now_us - heard_us_ > kSilent_us) return Close(CloseCode::kGoingAway);
   if (asked_us_ != 0 || now_us - heard_us_ < kAskAfter_us) return;
@@ -162,7 +165,7 @@ void Client::Tick() {
   SendFrame(foxglove::Frame(Opcode::kPing, {}));
 }
 
-/// Makes the next frame the current one. Control frames come before data.
+/// Makes the next frame the current frame. Control frames are sent before data.
 bool Client::TakeNext() { return TakeControl() || TakeSlice() || TakeMessage(); }
 
 bool Client::TakeControl() {
@@ -234,7 +237,7 @@ std::size_t Client::WriteSome(const Outgoing& out) {
 }
 
 void Client::Write() {
-  if (writable_) return;  // the peer has no room
+  if (writable_) return;  // the socket's buffer is full
   while (!closed_ && (current_ || TakeNext())) {
     const std::size_t written = WriteSome(*current_);
     if (closed_) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A WebSocket connection: reads requests, and writes its outbox as fast as the peer takes it.
+// A WebSocket connection: reads requests, and writes messages as fast as the peer receives them.
 #pragma once
 #include <deque>
 #include <functional>
@@ -13,17 +13,18 @@
 
 namespace lidar::web {
 
-/// Lives in the server's thread, whose default context it uses.
+/// A client of the server. It may be used only in the server's thread, and its sources run in that
+/// thread's default context.
 class Client {
  public:
   struct Handlers {
     std::function<void(Client*, const std::vector<std::uint8_t>& text)> on_text;
     std::function<void(Client*)> on_garbage;  // bytes that are not a message of the protocol
-    std::function<void(Client*)> on_closed;   // the last call; the owner deletes the client later
+    std::function<void(Client*)> on_closed;   // called last; the owner deletes the client later
   };
   struct Counters {
     std::uint64_t messages = 0;
-    std::uint64_t bytes = 0;  // handed to the system
+    std::uint64_t bytes = 0;  // written to the socket
   };
 
   Client(ObjectPtr<GIOStream> stream, Handlers handlers,
@@ -32,31 +33,34 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// Queues a control text, in order. A client that lets too many wait is closed.
+  /// Queues a control text. Texts are sent in order. The connection is closed if too many texts are
+  /// waiting.
   void SendText(const std::string& text);
-  /// Queues a message; at most `depth` of its channel wait. Returns how many of them were dropped,
-  /// which may include the new one.
+  /// Queues a message. At most `depth` messages of its channel may wait. Returns the number of
+  /// dropped messages, which may include the new one.
   std::size_t Send(Outbox::Item item, std::size_t depth);
-  /// Notes that a message of the channel is not sent to this client.
+  /// Notes that a message of the channel is not sent to this client. Messages that continue it are
+  /// then dropped.
   void Skip(std::uint32_t channel) { outbox_.Skip(channel); }
-  /// Queues a slice, in order. The caller paces slices by the client's acknowledgements, so a
-  /// client that lets too many wait broke the protocol and is closed. `replay` is the number of the
-  /// replay to which the slice belongs, or 0 if it is live.
+  /// Queues a slice. Slices are sent in order. The caller sends slices only as the client
+  /// acknowledges them. A client with too many waiting slices has therefore broken the protocol,
+  /// and its connection is closed. `replay` is the number of the replay to which the slice belongs,
+  /// or 0 for a live slice.
   void SendSlice(std::uint32_t channel, std::uint32_t subscription, SharedSliceMessage slice,
                  std::uint16_t replay = 0);
-  /// Drops the messages and slices of the channel that wait.
+  /// Drops the waiting messages and slices of the channel.
   void Forget(std::uint32_t channel);
-  /// Sends the close frame, if the peer takes it, and ends the connection.
+  /// Sends a close frame if the socket accepts it now, and ends the connection.
   void Close(foxglove::CloseCode code);
   bool closed() const { return closed_; }
 
-  /// Call it once a second: sends a ping, and closes the connection after too long without an
-  /// answer or progress.
+  /// Must be called once a second. Sends a ping to a silent client. Closes the connection if there
+  /// is no answer or no progress for too long.
   void Tick();
 
-  /// The grant of its token; kept by the owner.
+  /// The rights of the client's token. The owner of the client sets them.
   Grant grant;
-  /// Subscription ids by channel; kept by the owner.
+  /// The subscription ids by channel. The owner of the client keeps them up to date.
   std::map<std::uint32_t, std::uint32_t> subscriptions;
   const Counters& counters() const { return counters_; }
 
@@ -85,8 +89,8 @@ class Client {
   bool TakeMessage();
   void Begin(const foxglove::MessageHead& head, ByteView more,
              std::shared_ptr<const std::vector<std::uint8_t>> body);
-  /// Returns the bytes written; 0 if the peer takes no more, or after an error, which closes the
-  /// connection.
+  /// Returns the number of bytes that were written. Returns 0 if the socket's buffer is full. Also
+  /// returns 0 after an error, which closes the connection.
   std::size_t WriteSome(const Outgoing& out);
   void WaitForRoom();
   void End();

@@ -14,7 +14,7 @@ using foxglove::Request;
 constexpr std::uint32_t kStatisticsId = 0;
 constexpr guint kTick_ms = 1000;
 constexpr guint kStatistics_ms = 250;
-/// Key under which a request stores its client's grant.
+/// The key under which OnRequest() stores the client's grant in a request.
 constexpr const char* kGrant = "grant";
 
 void Answer(SoupServerMessage* request, guint status, const char* text) {
@@ -91,11 +91,11 @@ SourcePtr ClientService::Every(guint interval_ms, GSourceFunc function) {
 
 // --- HTTP ---
 
-/// Discards bodies of requests, because the server reads none.
+/// Discards the bodies of requests, because the server does not use them.
 void ClientService::OnHeaders(SoupServer*, SoupServerMessage* request, const char*, GHashTable*,
                               gpointer self) {
   soup_message_body_set_accumulate(soup_server_message_get_request_body(request), FALSE);
-  // Partial requests are only used in attacks.
+  // Ignores requests for a part of a file, because only attacks use them.
   soup_message_headers_remove(soup_server_message_get_request_headers(request), "Range");
   const char* method = soup_server_message_get_method(request);
   if (method == SOUP_METHOD_GET || method == SOUP_METHOD_HEAD) return;
@@ -118,7 +118,7 @@ void ClientService::OnRequest(SoupServer*, SoupServerMessage* request, const cha
                            [](gpointer g) { delete static_cast<Grant*>(g); });
     self->Upgrade(request);
   } else if (strcmp(path, "/session") == 0) {
-    // A page cannot read why its WebSocket was refused: it requests the reason here.
+    // A page cannot read why its WebSocket was refused. It requests the reason from this path.
     if (self->Admit(request, query)) Answer(request, SOUP_STATUS_OK, "welcome\n");
   } else if (!ServePageFile(request, path)) {
     Answer(request, SOUP_STATUS_NOT_FOUND, "There is no such file.\n");
@@ -148,7 +148,7 @@ void ClientService::Upgrade(SoupServerMessage* request) {
   std::array<char*, foxglove::kSubprotocols.size() + 1> protocols{};
   std::transform(foxglove::kSubprotocols.begin(), foxglove::kSubprotocols.end(), protocols.begin(),
                  [](const char* p) { return const_cast<char*>(p); });
-  // No extensions: compressing clouds costs seconds of delay.
+  // No extension is used, because compressing clouds would delay them by seconds.
   if (!soup_websocket_server_process_handshake(request, nullptr, protocols.data(), nullptr,
                                                nullptr)) {
     ++counters_.malformed;
@@ -183,7 +183,7 @@ void ClientService::AddClient(SoupServerMessage* request) {
   Advertise(client, channels);
 }
 
-/// Announces the channels that the client may have.
+/// Announces those of the `channels` that the client's grant allows.
 void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> channels) {
   const auto barred = std::remove_if(
       channels.begin(), channels.end(),
@@ -192,7 +192,7 @@ void ClientService::Advertise(Client* client, std::vector<foxglove::Channel> cha
   if (!channels.empty()) client->SendText(foxglove::Advertise(channels));
 }
 
-/// The client itself may be calling, so Reap() deletes it later.
+/// Leaves the deletion of the client to Reap(), because the caller may be a function of the client.
 void ClientService::ForgetClient(Client* client) {
   for (const auto& [channel, subscription] : client->subscriptions) {
     const auto topic = topics_.find(channel);
@@ -247,11 +247,11 @@ void ClientService::OnText(Client* client, const std::vector<std::uint8_t>& text
   }
 }
 
-/// The newest subscription to a channel replaces an earlier one. An id names one channel only,
-/// because an unsubscribe has nothing but the id.
+/// Replaces an earlier subscription of the client to the same channel. An id may name only one
+/// channel, because a request to unsubscribe contains only the id.
 void ClientService::Subscribe(Client* client, const foxglove::Subscription& subscription) {
   const auto topic = topics_.find(subscription.channel_id);
-  if (topic == topics_.end() || client->closed()) return;  // the topic or client has just gone
+  if (topic == topics_.end() || client->closed()) return;  // it was removed just before
   if (!client->grant.Allows(topic->second->channel().topic)) return;
   const bool in_use = std::any_of(
       client->subscriptions.begin(), client->subscriptions.end(), [&subscription](const auto& s) {
@@ -309,12 +309,12 @@ void ClientService::SetTopics(const std::vector<SharedTopic>& topics) {
 
 void ClientService::Deliver(std::uint32_t channel, const SharedMessage& message) {
   const auto topic = topics_.find(channel);
-  if (topic == topics_.end()) return;  // the topic has just gone
+  if (topic == topics_.end()) return;  // the topic was removed just before
   const bool is_video = topic->second->channel().schema == foxglove::Schema::kCompressedVideo;
   for (const auto& client : clients_) {
     const auto found = client->subscriptions.find(channel);
     if (found == client->subscriptions.end()) continue;
-    // Video would use the room that the slices lack on a slow link.
+    // Video would use up the capacity of a slow link, which the slices need.
     if (is_video && slices_.IsLate(client.get())) {
       client->Skip(channel);
       ++counters_.messages_dropped;
@@ -352,7 +352,8 @@ void ClientService::SendStatistics() {
   Deliver(kStatisticsId, std::make_shared<const Message>(std::move(message)));
 }
 
-/// Reads the certificate again if its files have changed. Later connections use the new one.
+/// Reads the certificate again if its files have changed. Later connections use the new
+/// certificate.
 void ClientService::RenewCertificate() {
   std::string why;
   if (!certificate_.is_wanted()) return;

@@ -21,7 +21,8 @@
 
 namespace lidar::web {
 
-/// All calls come from one thread, whose default context serves it.
+/// Serves clients by HTTP and WebSocket. Only one thread may call it, and its sources run in that
+/// thread's default context.
 class ClientService {
  public:
   ClientService(const ServerConfig& config, ServerCounters* counters);
@@ -29,9 +30,9 @@ class ClientService {
   ClientService(const ClientService&) = delete;
   ClientService& operator=(const ClientService&) = delete;
 
-  /// Returns the port, or 0 and the error.
+  /// Starts to listen. Returns the port. If listening fails, returns 0 and sets `error`.
   std::uint16_t Listen(std::string* error);
-  /// Announces new and removed topics to clients.
+  /// Replaces the topics. Announces new and removed topics to the clients.
   void SetTopics(const std::vector<SharedTopic>& topics);
   void Deliver(std::uint32_t channel, const SharedMessage& message);
   void DeliverSlice(std::uint32_t channel, const SharedSliceMessage& slice);
@@ -41,7 +42,7 @@ class ClientService {
   static void OnRequest(SoupServer*, SoupServerMessage*, const char* path, GHashTable* query,
                         gpointer self);
   static void OnUpgraded(SoupServerMessage*, gpointer self);
-  /// Returns the grant of the request, or answers with a refusal and returns nothing.
+  /// Returns the grant of the request. If the request is refused, answers it and returns nothing.
   std::optional<Grant> Admit(SoupServerMessage* request, GHashTable* query);
   void Upgrade(SoupServerMessage* request);
   void AddClient(SoupServerMessage* request);
@@ -68,7 +69,7 @@ class ClientService {
   ObjectPtr<SoupServer> soup_;
   FrontDoor door_;
   std::list<std::unique_ptr<Client>> clients_;
-  Client::Counters gone_;  // of the clients that have left
+  Client::Counters gone_;  // sums over the clients that have been removed
   std::map<std::uint32_t, SharedTopic> topics_;
   SharedTopic statistics_;  // always present
   SliceService slices_;

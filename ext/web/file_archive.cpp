@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostKnownCaps = 64;
 
-/// Returns null if the message is damaged.
+/// Reads a pose. Returns null if the message is damaged.
 std::shared_ptr<SliceMessage> ReadPose(const mcap::Message& message) {
   const auto odometry = cdr::ReadOdometry(message.data);
   if (!odometry) return nullptr;
@@ -44,7 +44,8 @@ void FileArchive::Seek(std::uint64_t time_ns) {
   damaged_ = playback_->damaged_chunks();
 }
 
-/// A position is a time, so a piece must not end between two items of one time.
+/// The position is a time, so a piece must not end between two items with the same time. Reads one
+/// item ahead to compare the times.
 std::optional<Archive::Item> FileArchive::Next() {
   auto item = ahead_ ? std::exchange(ahead_, std::nullopt) : Read();
   damaged_ = playback_->damaged_chunks();
@@ -88,7 +89,7 @@ bool FileArchive::IsOurs(const mcap::Schema& schema, const mcap::Channel& channe
   return known->second;
 }
 
-/// Returns null if the message is damaged.
+/// Reads a slice. Returns null if the message is damaged.
 std::shared_ptr<SliceMessage> FileArchive::ReadSlice(const mcap::Message& message) const {
   const auto coded = cdr::ReadCodedSlice(message.data);
   if (!coded || coded->data.size == 0) return nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The files that mcapsink has written, or still writes.
+// Reads the files of mcapsink, which may still be writing them.
 #pragma once
 #include <map>
 #include <memory>
@@ -12,10 +12,11 @@
 
 namespace lidar::web {
 
-/// Only the element's user names the files, no viewer can.
+/// An archive in files of mcapsink. The user of the element sets their location, and viewers cannot
+/// change it.
 class FileArchive final : public Archive {
  public:
-  /// `location` is that of mcapsink; `caps` those of the stream.
+  /// `location` has the value of mcapsink's property. `caps` are the caps of the stream.
   FileArchive(std::string location, SliceCaps caps)
       : location_(std::move(location)), caps_(std::move(caps)) {}
 
@@ -34,10 +35,10 @@ class FileArchive final : public Archive {
   const std::string location_;
   const SliceCaps caps_;
   std::unique_ptr<mcap::Playback> playback_;
-  std::optional<Item> ahead_;               // the item after the one that Next() returned last
-  std::uint64_t damaged_ = 0;               // chunks left out before `ahead_` was read
-  std::map<std::string, bool> known_caps_;  // as text; true: of our stream
-  std::string topic_;                       // the first one of our stream
+  std::optional<Item> ahead_;               // the item after the last item that Next() returned
+  std::uint64_t damaged_ = 0;               // number of skipped chunks before `ahead_` was read
+  std::map<std::string, bool> known_caps_;  // caps as text; true if they are of the stream
+  std::string topic_;                       // the first topic of the stream
 };
 
 }  // namespace lidar::web

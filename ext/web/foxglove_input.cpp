@@ -31,9 +31,9 @@ using lidar::web::SharedTopic;
 constexpr const char* kTransforms = "/tf";
 constexpr const char* kPoses = "/pose";
 constexpr const char* kCamera = "/camera";
-/// Frames that may wait: a quarter of a second of most cameras.
+/// The number of frames that may wait, which is a quarter of a second for most cameras.
 constexpr std::size_t kVideoDepth = 8;
-/// Scans of our streams have at most this many slices, each with a transform.
+/// The largest number of slices in a scan of our streams. Each slice has a transform.
 constexpr guint kMaxDepth = 64;
 
 enum class Kind { kNone, kCloud, kDraco, kOdometry, kSlices, kH264, kVp8 };
@@ -42,18 +42,18 @@ struct State {
   std::mutex mutex;  // guards the settings and `hub`
   InputSettings settings;
   std::shared_ptr<Hub> hub;
-  // Only the streaming thread uses what follows.
-  std::shared_ptr<Hub> used;  // the hub since start
+  // Only the streaming thread uses the members below.
+  std::shared_ptr<Hub> used;  // the hub, from start to stop
   Kind kind = Kind::kNone;
   CloudInfo info;
   RefusedCaps refused;
-  std::unique_ptr<lidar::web::SliceStream> slices;  // of kSlices, which has no other topic
+  std::unique_ptr<lidar::web::SliceStream> slices;  // only for kSlices, which has no other topic
   SharedTopic data;
   SharedTopic transforms;
   SharedTopic poses;
-  std::string parent_frame;  // of kOdometry
+  std::string parent_frame;  // only for kOdometry
   std::string child_frame;
-  bool no_poses = false;  // another stream has their topics
+  bool no_poses = false;  // another stream uses their topics
 };
 
 }  // namespace
@@ -102,7 +102,8 @@ std::string TopicName(const InputSettings& settings, const char* usual) {
   return settings.number == 0 ? usual : usual + ("_" + std::to_string(settings.number));
 }
 
-/// Returns false, with an element error, if another pad publishes other data under `name`.
+/// Opens the topic `name`. If another pad publishes other data on it, posts an error message and
+/// returns false.
 bool OpenTopic(GstBaseSink* sink, const std::string& name, Schema schema, SharedTopic* topic) {
   State& state = StateOf(sink);
   *topic = state.used->server->Open(name, schema);
@@ -122,7 +123,7 @@ bool OpenPoses(GstBaseSink* sink, const std::string& name) {
   return true;
 }
 
-/// Returns the kind of the caps, or kNone and the reason.
+/// Returns the kind of stream that has these caps. Returns kNone and sets `why` if no kind fits.
 Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   if (gst_structure_has_name(s, GST_LIDAR_DRACO_MEDIA_TYPE)) return Kind::kDraco;
@@ -139,7 +140,8 @@ Kind KindOf(GstCaps* caps, std::optional<CloudInfo>* info, std::string* why) {
 
 bool IsVideo(Kind kind) { return kind == Kind::kH264 || kind == Kind::kVp8; }
 
-/// Returns 0 if the caps, coded ones included, have no framerate.
+/// Returns the duration of a scan from the framerate of the caps. Returns 0 if they have no
+/// framerate. The caps may be those of coded slices.
 guint64 ScanDurationOf(GstCaps* caps) {
   gint n = 0;
   gint d = 1;
@@ -155,7 +157,7 @@ bool OpenVideo(GstBaseSink* sink, const std::string& name) {
   return true;
 }
 
-/// Returns the function that queries upstream, and waits for the answer.
+/// Returns a function that sends a query upstream and waits for the answer.
 lidar::web::UpstreamArchive::Ask AskUpstream(GstBaseSink* sink) {
   const std::shared_ptr<GstPad> pad(GST_PAD(gst_object_ref(GST_BASE_SINK_PAD(sink))),
                                     gst_object_unref);
@@ -218,7 +220,8 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   state.parent_frame = FrameIn(s, GST_LIDAR_FRAME_ID, lidar::web::kFixedFrame);
   state.child_frame = FrameIn(s, GST_LIDAR_CHILD_FRAME_ID, kCloudFrame);
   if (kind != Kind::kOdometry && !IsVideo(kind)) state.used->scan_duration = ScanDurationOf(caps);
-  // Clouds of another width stay in the channel; coded slices with other caps are another stream.
+  // A cloud of another width stays in the same channel. Coded slices with other caps are a new
+  // stream.
   if (kind == state.kind && kind != Kind::kSlices) return TRUE;
   CloseTopics(&state);
   const bool good = OpenTopics(sink, kind, caps);
@@ -227,7 +230,7 @@ gboolean SetCaps(GstBaseSink* sink, GstCaps* caps) {
   return good;
 }
 
-/// Time since the buffer's timestamp on the pipeline's clock; 0: unknown.
+/// Returns the time since the buffer's timestamp on the pipeline's clock, or 0 if it is unknown.
 guint64 AgeOf(GstBaseSink* sink, GstBuffer* buffer) {
   const guint64 running_time =
       gst_segment_to_running_time(&sink->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
@@ -238,7 +241,7 @@ guint64 AgeOf(GstBaseSink* sink, GstBuffer* buffer) {
   return now > then ? now - then : 0;
 }
 
-/// The capture time, or the time at which the buffer was due.
+/// Returns the capture time. If the buffer has none, returns the time at which the buffer was due.
 guint64 TimeOf(GstBaseSink* sink, GstBuffer* buffer) {
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   if (GST_CLOCK_TIME_IS_VALID(captured)) return captured;
@@ -255,7 +258,7 @@ void PublishPose(State* state, const Header& header, const std::string& child, c
     server.Publish(state->poses, {unix_ns, lidar::foxglove::EncodePose(header, pose)});
 }
 
-/// Publishes the pose on a cloud before the cloud.
+/// Publishes the pose of a cloud. The caller publishes the cloud afterwards.
 void PublishPoseOfCloud(GstBaseSink* sink, GstBuffer* buffer, const Header& header) {
   State& state = StateOf(sink);
   GstLidarPose meta;
@@ -315,7 +318,8 @@ bool RenderSlice(State* state, const Header& header, GstBuffer* buffer, const Bu
   return state->slices->Push(std::move(message));
 }
 
-/// A client without room for a frame continues with the next key frame.
+/// Publishes a video frame. If a frame is dropped for a client, the client continues with the next
+/// key frame.
 bool RenderVideo(State* state, const Header& header, GstBuffer* buffer, const BufferMap& map) {
   const char* format = state->kind == Kind::kVp8 ? "vp8" : "h264";
   const bool is_delta = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DELTA_UNIT);
@@ -326,22 +330,22 @@ bool RenderVideo(State* state, const Header& header, GstBuffer* buffer, const Bu
   return true;
 }
 
-/// Publishes position and orientation, which are the first seven doubles.
+/// Publishes the position and the orientation, which are the first seven doubles of the buffer.
 bool RenderOdometry(State* state, const Header& header, const BufferMap& map) {
   lidar::ByteReader in(map.view());
   Pose pose;
   for (double& value : pose.position) value = in.LeF64();
   for (double& value : pose.orientation) value = in.LeF64();
   if (!in.ok()) return false;
-  // The pad's frame-id, if set, has priority over the caps.
+  // If the pad's property frame-id is set, it has priority over the caps.
   const bool from_caps = header.frame_id == InputSettings{}.frame_id;
   PublishPose(state, {header.unix_ns, state->parent_frame},
               from_caps ? state->child_frame : header.frame_id, pose);
   return true;
 }
 
-/// Sets the depth of the channel to the number of slices in a scan, so that a slow client misses
-/// whole scans, and a fast one no slice.
+/// Sets the depth of the channel to the number of slices in a scan. A slow client then misses whole
+/// scans, and a fast client misses no slice.
 void LearnDepth(State* state, GstBuffer* buffer) {
   GstLidarSlice slice;
   gst_lidar_buffer_get_slice(buffer, &slice);

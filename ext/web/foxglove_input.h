@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sink behind each pad of foxglovesink: turns buffers into messages, without waiting.
+// The sink behind each pad of foxglovesink. It converts buffers to messages, without waiting for
+// clients.
 #pragma once
 #include <gst/base/gstbasesink.h>
 
@@ -16,21 +17,22 @@ G_END_DECLS
 
 namespace lidar::web {
 
-/// The shared state of an element's inputs while it is above NULL.
+/// The state that all inputs of an element share. It exists while the element is in a state above
+/// NULL.
 struct Hub {
   std::unique_ptr<Server> server;
   guint max_points = 0;
   std::atomic<guint64> clouds{0};
   std::atomic<guint64> points{0};  // points sent to clients
   std::atomic<guint64> malformed{0};
-  std::atomic<guint64> scan_duration{0};  // of the newest caps; 0: unknown
+  std::atomic<guint64> scan_duration{0};  // from the newest caps; 0: unknown
 };
 
 struct InputSettings {
-  std::string topic;  // empty: chosen by the data's kind
+  std::string topic;  // empty: chosen by the kind of data
   std::string frame_id = "lidar";
-  std::string recording;  // location of mcapsink; empty: there is none
-  guint number = 0;       // of the pad; makes topics differ
+  std::string recording;  // location of mcapsink's files; empty: no recording
+  guint number = 0;       // number of the pad; makes topics differ
 };
 
 void SetHub(GstLidarFoxgloveInput* input, std::shared_ptr<Hub> hub);

@@ -9,10 +9,11 @@
 namespace lidar::web {
 namespace {
 
-/// Longest time for a request. The page's requests take less, even over a poor link.
+/// The longest time for a request. Requests of the page take less time, even over a slow link.
 constexpr gint64 kLongest_us = 60 * gint64{G_USEC_PER_SEC};
 constexpr int kBacklog = 128;
-/// Limit of unsent data in the kernel, which become old there and cannot be dropped.
+/// The limit of unsent data in the kernel. Such data cannot be dropped, so they would become too
+/// old.
 constexpr gint kUnsentBytes = 128 * 1024;
 
 std::string AddressOf(GSocketAddress* peer) {
@@ -76,7 +77,7 @@ void FrontDoor::OnGone(gpointer data, GObject*) {
 void FrontDoor::Accept(GSocketConnection* connection) {
   GSocketAddress* remote = g_socket_connection_get_remote_address(connection, nullptr);
   ObjectPtr<GSocketAddress> peer(remote);
-  if (remote == nullptr) return;  // it has left already
+  if (remote == nullptr) return;  // the peer has closed the connection already
   GSocket* socket = g_socket_connection_get_socket(connection);
   g_socket_set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1, nullptr);
   g_socket_set_option(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, kUnsentBytes, nullptr);
@@ -91,8 +92,8 @@ void FrontDoor::Accept(GSocketConnection* connection) {
     Enter(connection, G_IO_STREAM(connection));
 }
 
-/// Closes the oldest connection of `address` if it has too many, or the oldest of all if there are
-/// too many.
+/// Closes the oldest connection of `address` if it has too many connections. Otherwise closes the
+/// oldest of all connections if there are too many in total.
 void FrontDoor::MakeRoom(const std::string& address) {
   const auto is_his = [&address](const Visitor& v) { return v.address == address; };
   const auto his =
@@ -103,20 +104,21 @@ void FrontDoor::MakeRoom(const std::string& address) {
     Evict(&waiting_.front());
 }
 
-/// Makes the server read requests from `stream`.
+/// Makes the SoupServer read requests from `stream`.
 void FrontDoor::Enter(GSocketConnection* connection, GIOStream* stream) {
   const auto visitor =
       std::find_if(waiting_.begin(), waiting_.end(),
                    [connection](const Visitor& v) { return v.connection == connection; });
   if (visitor == waiting_.end()) return;
   const ObjectPtr<GSocketAddress> local(g_socket_connection_get_local_address(connection, nullptr));
-  if (!local) return;  // it has left already
+  if (!local) return;  // the peer has closed the connection already
   GError* error = nullptr;
   soup_server_accept_iostream(server_, stream, local.get(), visitor->peer.get(), &error);
   const GErrorPtr owner(error);
 }
 
-/// Shuts the connection down. The server then notices its end and drops it.
+/// Shuts the connection down. The SoupServer then sees the end of the stream and drops the
+/// connection.
 void FrontDoor::Evict(Visitor* visitor) {
   GSocketConnection* connection = visitor->connection;
   g_object_weak_unref(G_OBJECT(connection), OnGone, visitor);

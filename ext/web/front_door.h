@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Accepts connections for a SoupServer, with TLS if there is a certificate, and bounds the number
-// of those without a WebSocket.
+// Accepts connections for a SoupServer, with TLS if there is a certificate. Limits the number of
+// connections that are not WebSockets.
 #pragma once
 #include <libsoup/soup.h>
 
@@ -13,33 +13,34 @@
 
 namespace lidar::web {
 
-/// Lives in the server's thread.
+/// Accepts connections. It may be used only in the server's thread.
 class FrontDoor {
  public:
-  /// Limits of the number of connections that are not WebSockets. Beyond a limit the oldest is
-  /// closed.
+  /// The largest numbers of connections that are not WebSockets. If there are more, the oldest
+  /// connection is closed.
   struct Limits {
     std::size_t all = 1000;
-    std::size_t of_an_address = 32;  // a browser has six at a time
+    std::size_t of_an_address = 32;  // a browser opens at most six
   };
-  /// `certificate` may be null, and must outlive the door.
+  /// `certificate` may be null. If not, it must outlive this object.
   FrontDoor(SoupServer* server, Certificate* certificate, Limits limits);
   ~FrontDoor();
   FrontDoor(const FrontDoor&) = delete;
   FrontDoor& operator=(const FrontDoor&) = delete;
 
-  /// Returns the port, or 0 and the error.
+  /// Starts to listen. Returns the port. If listening fails, returns 0 and sets `error`.
   guint16 Listen(GInetAddress* address, guint16 port, std::string* error);
-  /// Notes that the connection of this request is a WebSocket from now on.
+  /// Notes that the connection of this request is a WebSocket from now on, so the limits no longer
+  /// apply to it.
   void Promote(SoupServerMessage* request);
-  /// Call it once a second: closes connections that take too long.
+  /// Must be called once a second. Closes connections that take too long.
   void Tick(gint64 now_us);
   guint64 evicted() const { return evicted_; }
 
  private:
   struct Visitor {
     FrontDoor* door = nullptr;
-    GSocketConnection* connection = nullptr;  // not owned: a weak reference
+    GSocketConnection* connection = nullptr;  // a weak reference
     ObjectPtr<GSocketAddress> peer;
     std::string address;
     gint64 since_us = 0;

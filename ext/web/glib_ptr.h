@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Owning pointers for what the server uses of GLib and libsoup.
+// Owning pointers for the types of GLib and libsoup that the server uses.
 #pragma once
 #include <gio/gio.h>
 
@@ -19,7 +19,7 @@ struct GlibFree {
   void operator()(gpointer p) const { g_object_unref(p); }
 };
 
-/// A source stops when its owner is deleted.
+/// A pointer that destroys its source, so that the source does not run any more.
 using SourcePtr = std::unique_ptr<GSource, GlibFree>;
 using ContextPtr = std::unique_ptr<GMainContext, GlibFree>;
 using LoopPtr = std::unique_ptr<GMainLoop, GlibFree>;
@@ -28,7 +28,7 @@ using BytesPtr = std::unique_ptr<GBytes, GlibFree>;
 template <class T>
 using ObjectPtr = std::unique_ptr<T, GlibFree>;
 
-/// Another reference to `object`.
+/// Returns another reference to `object`.
 template <class T>
 ObjectPtr<T> Ref(T* object) {
   return ObjectPtr<T>(static_cast<T*>(g_object_ref(object)));

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t kLongestToken = 4096;
 
-/// Decodes the URL-safe Base64 of RFC 4648, section 5.
+/// Decodes URL-safe Base64 (RFC 4648, section 5).
 std::string FromBase64Url(std::string_view text) {
   std::string usual(text);
   std::replace(usual.begin(), usual.end(), '-', '+');
@@ -37,7 +37,8 @@ std::string HmacSha256(std::string_view secret, std::string_view text) {
   return {digest.begin(), digest.begin() + size};
 }
 
-/// A header with critical extensions (RFC 7515) is refused, because none is implemented.
+/// Returns true if the token is signed by HS256. Refuses a header with critical extensions (RFC
+/// 7515), because none of them is implemented.
 bool IsHs256(const json& header) {
   const auto alg = header.is_object() ? header.find("alg") : header.end();
   return header.is_object() && alg != header.end() && *alg == "HS256" && !header.contains("crit");
@@ -49,7 +50,7 @@ std::optional<double> NumberOf(const json& claims, const char* name) {
   return found->get<double>();
 }
 
-/// Returns nothing if the claim is not a list of texts.
+/// Returns the texts in `list`. Returns nothing if `list` is not an array of texts.
 std::optional<std::vector<std::string>> TextsOf(const json& list) {
   std::vector<std::string> texts;
   if (!list.is_array()) return std::nullopt;

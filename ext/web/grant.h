@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The rights of a token, and tokens that carry them.
+// The rights that a token gives, and tokens that contain their rights.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,20 +9,21 @@
 
 namespace lidar::web {
 
-/// Takes a time that depends on the lengths only, so that it does not leak a matching prefix.
+/// Compares two secrets. The time depends only on their lengths, so it does not reveal how long the
+/// common prefix is.
 bool SameSecret(std::string_view a, std::string_view b);
 
 struct Grant {
-  std::optional<std::int64_t> expires_s;           // of Unix time
-  std::optional<std::vector<std::string>> topics;  // missing: all; "/r7/*" is all below /r7
+  std::optional<std::int64_t> expires_s;           // Unix time
+  std::optional<std::vector<std::string>> topics;  // missing: all; "/r7/*": all below /r7
 
   bool IsOver(std::int64_t now_s) const { return expires_s && now_s >= *expires_s; }
   bool Allows(std::string_view topic) const;
 };
 
-/// Reads a JSON Web Token (RFC 7519) signed by HS256 with `secret`. It needs the claim `exp`, and
-/// may have `nbf` and `topics`, an array of texts. Returns nothing for a token that is damaged,
-/// signed otherwise, expired, or not yet valid.
+/// Reads a JSON Web Token (RFC 7519) that is signed by HS256 with `secret`. The token needs the
+/// claim `exp`. It may have the claims `nbf` and `topics`, an array of texts. Returns nothing if
+/// the token is damaged, has a wrong signature, has expired, or is not yet valid.
 std::optional<Grant> ReadSignedToken(std::string_view token, std::string_view secret,
                                      std::int64_t now_s);
 

@@ -47,7 +47,7 @@ struct Settings {
 struct State {
   std::mutex mutex;  // guards the settings and `hub`
   Settings settings;
-  std::shared_ptr<Hub> hub;  // above NULL
+  std::shared_ptr<Hub> hub;  // exists in all states above NULL
   std::atomic<guint> next_pad{0};
 };
 
@@ -118,7 +118,8 @@ const std::array<Property<InputSettings>, 3> kPadProperties = {{
 
 }  // namespace
 
-/// A sink pad: the ghost of an input, with its topic and frame.
+/// A sink pad of foxglovesink. It is a ghost pad of the input's pad, and has the properties of the
+/// input.
 G_DECLARE_FINAL_TYPE(GstLidarFoxglovePad, gst_lidar_foxglove_pad, GST, LIDAR_FOXGLOVE_PAD,
                      GstGhostPad)
 struct _GstLidarFoxglovePad {
@@ -127,7 +128,7 @@ struct _GstLidarFoxglovePad {
 
 G_DEFINE_TYPE(GstLidarFoxglovePad, gst_lidar_foxglove_pad, GST_TYPE_GHOST_PAD)
 
-/// The element behind the pad, or NULL while there is none; transfer full.
+/// Returns the input behind the pad, or NULL if there is none. The caller owns the reference.
 static GstElement* InputOf(GstPad* pad) {
   const PadPtr target(gst_ghost_pad_get_target(GST_GHOST_PAD(pad)));
   return target ? gst_pad_get_parent_element(target.get()) : nullptr;
@@ -179,7 +180,8 @@ static StructurePtr ReadStats(GObject* object) {
   State& state = *GST_LIDAR_FOXGLOVE_SINK(object)->state;
   Counters counters;
   {
-    // The server's thread calls this, too, and must not hold the last reference to the hub.
+    // Reads the counters under the lock instead of copying the pointer. The server's thread also
+    // calls this function, and must not own the last reference to the hub.
     const std::lock_guard lock(state.mutex);
     if (state.hub) counters = CountersOf(*state.hub);
   }
@@ -220,8 +222,8 @@ static const std::array<Property<Settings>, 12> kProperties = {{
      ReadStats},
 }};
 
-/// Returns false, with an element error, if bind-address is not an address, or admits other
-/// machines without a token.
+/// Checks `bind-address`. If it is not an address, or if other machines can reach it without a
+/// token, posts an error message and returns false.
 static bool CheckAddress(GstElement* element, const Settings& s) {
   const lidar::web::ObjectPtr<GInetAddress> address(
       g_inet_address_new_from_string(s.bind_address.c_str()));
@@ -240,7 +242,8 @@ static bool CheckAddress(GstElement* element, const Settings& s) {
   return false;
 }
 
-/// Returns false, with an element error, if the secrets are too weak.
+/// Checks the token secret and the TLS files. If a setting is wrong, posts an error message and
+/// returns false.
 static bool CheckSecrets(GstElement* element, const Settings& s) {
   constexpr std::size_t kShortest = 32;  // RFC 7518, section 3.2
   const char* wrong = nullptr;
@@ -265,7 +268,7 @@ static lidar::web::ServerConfig ConfigOf(GstElement* element, const Settings& s)
   config.max_clients = s.max_clients;
   config.max_bitrate = lidar::DataRate::BitsPerSecond(s.max_bitrate);
   config.name = "gst-lidar";
-  // The server ends before the element does.
+  // The server is deleted before the element, so `element` is valid in both functions.
   config.statistics = [element] { return lidar::web::StatisticsOf(element); };
   config.warn = [element](const std::string& text) {
     GST_ELEMENT_WARNING(element, RESOURCE, SETTINGS, ("%s", text.c_str()), (nullptr));
@@ -294,7 +297,7 @@ static bool Open(GstElement* element) {
   return true;
 }
 
-/// Sets the element's hub, which may be null, in each input.
+/// Sets the hub of each input to the hub of the element, which may be null.
 static void GiveHub(GstElement* element) {
   const auto hub = HubOf(G_OBJECT(element));
   GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(element));
@@ -346,8 +349,9 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* templ, const gcha
   lidar::web::SetHub(GST_LIDAR_FOXGLOVE_INPUT(input), HubOf(G_OBJECT(element)));
   {
     const std::lock_guard lock(self->state->mutex);
-    // async=FALSE lets the pipeline play while some pads have no data yet. A viewer shows late data
-    // at once: waiting for a deadline would block a source without buffers.
+    // The pipeline can play while some pads have no data yet, because "async" is FALSE. The
+    // deadline is 0, because a viewer shows late data at once, and waiting for a deadline would
+    // block a source without buffers.
     g_object_set(input, "sync", self->state->settings.sync, "async", FALSE, "processing-deadline",
                  guint64{0}, nullptr);
   }
@@ -362,7 +366,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   const ElementPtr input(InputOf(pad));
   const StringPtr name(gst_pad_get_name(pad));
   if (input) {
-    // The input stops first: this wakes a thread that waits in it and holds the pad's lock.
+    // Stops the input first. This wakes a thread that waits in the input and holds the lock of the
+    // pad.
     gst_element_set_locked_state(input.get(), TRUE);
     gst_element_set_state(input.get(), GST_STATE_NULL);
   }
@@ -373,7 +378,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_element_remove_pad(element, pad);
 }
 
-/// Makes inputs render by the clock, or at once.
+/// Copies the property `sync` to all inputs.
 static void PropertyChanged(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "sync") != 0) return;
   gboolean sync = FALSE;

@@ -6,11 +6,13 @@
 namespace lidar::web {
 namespace {
 
-/// GIO has ten threads, and each handshake occupies one.
+/// The number of handshakes at the same time. Each of them occupies a thread, and GIO has ten
+/// threads.
 constexpr int kAtOnce = 8;
 constexpr int kOfAnAddress = 3;
 constexpr gint64 kLongestHandshake_us = 10 * gint64{G_USEC_PER_SEC};
-/// Longest handshake while others wait: a round trip over a slow link.
+/// The longest time for a handshake while other handshakes wait. It allows for a round trip over a
+/// slow link.
 constexpr gint64 kLongestWhileOthersWait_us = gint64{G_USEC_PER_SEC};
 
 std::string AddressOf(GSocketConnection* connection) {
@@ -23,8 +25,9 @@ std::string AddressOf(GSocketConnection* connection) {
   return copy;
 }
 
-/// As g_tls_server_connection_new(), but without a database: no client shows a certificate, and
-/// reading the system's authorities takes milliseconds a connection.
+/// Makes a connection as g_tls_server_connection_new() does, but without a database. No client
+/// presents a certificate, and reading the system's certificate authorities would take milliseconds
+/// per connection.
 ObjectPtr<GIOStream> NewServerConnection(GSocketConnection* connection,
                                          GTlsCertificate* certificate) {
   const GType type = g_tls_backend_get_server_connection_type(g_tls_backend_get_default());
@@ -35,7 +38,7 @@ ObjectPtr<GIOStream> NewServerConnection(GSocketConnection* connection,
 
 }  // namespace
 
-/// A running handshake ends later, without its owner.
+/// Cancels the running handshakes. They end later, without their owner.
 Handshakes::~Handshakes() {
   for (const EntryPtr& entry : entries_) {
     entry->owner = nullptr;
@@ -96,7 +99,7 @@ void Handshakes::Start(const EntryPtr& entry) {
   entry->secure = NewServerConnection(entry->connection.get(), entry->certificate.get());
   if (!entry->secure) return Finish(entry, false);
   ++entry->address->second.running;
-  // A browser closes the connection without a close notification.
+  // Does not require a close notification, because browsers close connections without it.
   g_tls_connection_set_require_close_notify(G_TLS_CONNECTION(entry->secure.get()), FALSE);
   g_tls_connection_handshake_async(G_TLS_CONNECTION(entry->secure.get()), G_PRIORITY_DEFAULT,
                                    entry->cancel.get(), OnShaken, new EntryPtr(entry));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The queue of a client: holds the newest messages of each channel.
+// The queue of messages to a client. It keeps the newest messages of each channel.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -10,7 +10,7 @@
 
 namespace lidar::web {
 
-/// For one thread at a time.
+/// A queue of messages. Only one thread at a time may use it.
 class Outbox {
  public:
   struct Item {
@@ -19,9 +19,9 @@ class Outbox {
     SharedMessage message;
   };
 
-  /// Queues a message, and drops the oldest ones of its channel if more than `depth` wait. Messages
-  /// that continue a dropped one are dropped, too. Returns how many were dropped, which may include
-  /// the new one.
+  /// Queues a message. If more than `depth` messages of its channel wait, drops the oldest of them,
+  /// and also the messages that continue a dropped message. Returns the number of dropped messages,
+  /// which may include the new one.
   std::size_t Push(Item item, std::size_t depth) {
     const std::uint32_t channel = item.channel_id;
     if (!item.message->continues)
@@ -37,7 +37,7 @@ class Outbox {
     items_.pop_front();
     return item;
   }
-  /// Notes that a message of the channel is not sent: messages that continue it are dropped.
+  /// Notes that a message of the channel is not sent. Messages that continue it are then dropped.
   void Skip(std::uint32_t channel) { whole_.erase(channel); }
   void Forget(std::uint32_t channel) {
     Skip(channel);

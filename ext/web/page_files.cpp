@@ -30,8 +30,8 @@ const char* TypeOf(std::string_view path) {
   return "application/octet-stream";
 }
 
-/// The page loads nothing from elsewhere, and no other page may embed it. The user may connect it
-/// to any WebSocket.
+/// The page may load files only from this server, and no other page may embed it. It may connect to
+/// any WebSocket, because the user may add other servers.
 constexpr const char* kPolicy =
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
     "img-src 'self' data: blob:; worker-src 'self'; connect-src 'self' ws: wss:; "
@@ -50,7 +50,7 @@ bool ServePageFile(SoupServerMessage* request, const char* path) {
   soup_message_headers_replace(headers, "Content-Security-Policy", kPolicy);
   soup_message_headers_replace(headers, "X-Content-Type-Options", "nosniff");
   soup_message_headers_replace(headers, "Referrer-Policy", "no-referrer");
-  // Another version of the plugin has another page, so browsers must ask for it again.
+  // Browsers must revalidate the page, because another version of the plugin has another page.
   soup_message_headers_replace(headers, "Cache-Control", "no-cache");
   soup_message_body_append_bytes(soup_server_message_get_response_body(request), data.get());
   soup_server_message_set_status(request, SOUP_STATUS_OK, nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Poses as Foxglove has them.
+// Converts poses to Foxglove's types.
 #pragma once
 #include <algorithm>
 #include <memory>
@@ -20,7 +20,7 @@ inline foxglove::Pose PoseOf(const GstLidarPose& meta) {
   return pose;
 }
 
-/// A pose between the slices of a replay, at the time of the header.
+/// Returns a pose as a message between the slices of a replay. Its time is the time of the header.
 inline std::shared_ptr<SliceMessage> PoseMessage(const foxglove::Header& header,
                                                  const std::string& child,
                                                  const foxglove::Pose& pose) {

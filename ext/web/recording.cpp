@@ -9,13 +9,14 @@ namespace lidar::web {
 namespace {
 
 constexpr std::uint64_t kSecond_ns = 1'000'000'000;
-/// lidarenc codes each sector anew within 10 s, its key-interval.
+/// lidarenc encodes each sector without references at least every 10 s (its key-interval).
 constexpr std::uint64_t kRewind_ns = 11 * kSecond_ns;
-/// Two and a half scans of a sensor at 10 Hz.
+/// The time of two and a half scans of a sensor at 10 Hz.
 constexpr std::uint64_t kPicture_ns = 250'000'000;
-/// Most bytes to read: 11 s of a recording that also has clouds.
+/// The largest number of bytes to read. This is enough for 11 s of a recording that also has
+/// clouds.
 constexpr std::size_t kMostRead = std::size_t{512} << 20;
-/// Most bytes to keep: 11 s at 12 Mbit/s.
+/// The largest number of bytes to keep. This is enough for 11 s at 12 Mbit/s.
 constexpr std::size_t kMostKept = std::size_t{16} << 20;
 
 }  // namespace
@@ -51,13 +52,14 @@ bool Recording::Open(Piece* piece) {
   return times.has_value();
 }
 
-/// Keeps slices before `from_ns` only if later ones refer to them. Leaves the archive closed.
+/// Reads a piece. Keeps the slices before `from_ns` only if later slices refer to them. Closes the
+/// archive at the end.
 void Recording::Read(std::uint64_t from_ns, Piece* piece) {
   std::vector<viewer::SharedSlice> slices;
   viewer::SliceId last;
-  std::size_t before = 0;  // slices before from_ns
+  std::size_t before = 0;  // number of slices before from_ns
   std::size_t kept = 0;    // bytes of all slices
-  std::size_t wanted = 0;  // bytes of slices from from_ns on
+  std::size_t wanted = 0;  // bytes of the slices that are not before from_ns
   std::size_t read = 0;    // bytes of all messages
   bool may_end = true;
   const std::uint64_t damaged = archive_->damaged();
@@ -77,7 +79,7 @@ void Recording::Read(std::uint64_t from_ns, Piece* piece) {
       last = item->slice->id;
       piece->last_ns = item->slice->unix_ns;
     }
-    // Slices of one byte each would take memory, too.
+    // Adds the size of a SliceMessage, because even very small slices use that much memory.
     const std::size_t size = sizeof(SliceMessage) + item->slice->payload.size();
     kept += size;
     if (!is_early) wanted += size;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads a recording in pieces, at the times that viewers request.
+// Reads a recording in pieces, from the times that viewers request.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,32 +11,34 @@
 
 namespace lidar::web {
 
-/// For one thread at a time.
+/// A recording that is read in pieces. Only one thread at a time may use it.
 class Recording {
  public:
   explicit Recording(std::unique_ptr<Archive> archive) : archive_(std::move(archive)) {}
 
-  /// Times [ns] are close to capture times.
+  /// A part of a recording. Times [ns] are close to capture times.
   struct Piece {
-    std::uint64_t from_ns = 0;  // of the whole recording; 0, as is to_ns, if nothing can be read
+    // The times of the whole recording. Both are 0 if nothing can be read.
+    std::uint64_t from_ns = 0;
     std::uint64_t to_ns = 0;
-    std::vector<SharedSliceMessage> slices;  // and poses
-    std::uint64_t last_ns = 0;               // of the last slice
+    std::vector<SharedSliceMessage> slices;  // slices and poses
+    std::uint64_t last_ns = 0;               // time of the last slice
     std::uint64_t next = 0;                  // position of the next piece
-    bool ended = false;                      // no more slices follow yet
-    std::uint64_t damaged = 0;               // parts that were left out
-    std::string why;                         // for a user, if nothing can be read
+    bool ended = false;                      // there are no more slices yet
+    std::uint64_t damaged = 0;               // number of parts that were skipped
+    std::string why;                         // text for users, if nothing can be read
   };
   /// Returns the times of the recording, without slices.
   Piece Look();
-  /// Returns the two scans before `time_ns`, the slices that they refer to, and those that follow.
+  /// Returns the two scans before `time_ns`, the slices to which they refer, and the slices that
+  /// follow.
   Piece Jump(std::uint64_t time_ns);
-  /// Returns the slices from a position on.
+  /// Returns the slices from `position` on.
   Piece GoOn(std::uint64_t position);
-  /// Ends reading soon. Any thread may call it.
+  /// Ends a running read soon. Any thread may call this function.
   void Cancel() { archive_->Cancel(); }
 
-  /// Size of a piece [bytes], without the earlier slices that it refers to.
+  /// The size of a piece [bytes], not counting the earlier slices to which the piece refers.
   static constexpr std::size_t kPiece = std::size_t{512} << 10;
 
  private:

@@ -46,7 +46,7 @@ void RecordingReader::Ask(Job job) {
   try {
     thread_ = std::thread([this] { Run(); });
   } catch (const std::system_error&) {
-    jobs_.clear();  // a viewer may ask again
+    jobs_.clear();  // the viewer may send its request again
   }
 }
 
@@ -57,8 +57,8 @@ void RecordingReader::Forget(std::uint64_t asker) {
   jobs_.erase(gone, jobs_.end());
 }
 
-/// The thread pauses after each job as long as the job took: viewers that jump without end use half
-/// a core at most.
+/// Runs the jobs. The thread pauses after each job for as long as the job took. Viewers that jump
+/// all the time therefore use at most half a core.
 void RecordingReader::Run() {
   using Clock = std::chrono::steady_clock;
   pthread_setname_np(pthread_self(), "foxglove-replay");

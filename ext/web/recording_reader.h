@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads recordings in its own thread, so that a slow disk delays no live stream.
+// Reads recordings in a thread of its own, so that a slow disk does not delay live streams.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -12,15 +12,16 @@
 
 namespace lidar::web {
 
-/// Used by the server's thread, with that thread's default context.
+/// Runs jobs for the server's thread. It may be used only in that thread, whose default context
+/// must run.
 class RecordingReader {
  public:
   enum class Kind { kLook, kJump, kGoOn };
   struct Job {
-    std::uint64_t asker = 0;  // id chosen by the caller
+    std::uint64_t asker = 0;  // an id that the caller chooses
     std::shared_ptr<Recording> recording;
     Kind kind = Kind::kLook;
-    std::uint64_t at = 0;  // time [ns] of kJump, position of kGoOn
+    std::uint64_t at = 0;  // time [ns] for kJump, position for kGoOn
   };
   using OnPiece = std::function<void(const Job& job, const Recording::Piece& piece)>;
 
@@ -30,9 +31,9 @@ class RecordingReader {
   RecordingReader(const RecordingReader&) = delete;
   RecordingReader& operator=(const RecordingReader&) = delete;
 
-  /// Replaces a job of the same asker and recording that has not begun.
+  /// Queues a job. Replaces a queued job of the same asker and recording.
   void Ask(Job job);
-  /// Drops the asker's jobs that have not begun.
+  /// Drops the queued jobs of the asker.
   void Forget(std::uint64_t asker);
 
  private:
@@ -43,13 +44,13 @@ class RecordingReader {
 
   const OnPiece on_piece_;
   SourcePtr done_source_;
-  std::mutex mutex_;  // guards the following
+  std::mutex mutex_;  // guards the members below
   std::condition_variable change_;
   std::deque<Job> jobs_;
   std::deque<std::pair<Job, Recording::Piece>> done_;
   std::shared_ptr<Recording> current_;
   bool stopping_ = false;
-  std::thread thread_;  // started by the first job
+  std::thread thread_;  // started with the first job
 };
 
 }  // namespace lidar::web

@@ -11,7 +11,8 @@
 namespace lidar::web {
 namespace {
 
-/// Some scans of several streams, for times when the thread is delayed.
+/// The limit of waiting slices. It is enough for some scans of several streams while the thread is
+/// delayed.
 constexpr std::size_t kMostSlices = 1024;
 
 }  // namespace
@@ -39,7 +40,7 @@ std::unique_ptr<Server> Server::Start(ServerConfig config, std::string* error) {
 
 Server::~Server() {
   if (!thread_.joinable()) return;
-  // Quits from within the loop: before the loop runs, a quit has no effect.
+  // Quits by a source in the loop, because a quit before the loop runs would have no effect.
   GSource* quit = g_idle_source_new();
   g_source_set_priority(quit, G_PRIORITY_HIGH);
   g_source_set_callback(
@@ -61,10 +62,10 @@ void Server::Run(std::function<void(std::string)> listens) {
   std::string error;
   port_ = service_->Listen(&error);
   const bool good = port_ != 0;
-  listens(error);  // the other thread may read port_ from here on
+  listens(error);  // from here on, the other thread may read port_
   if (good) g_main_loop_run(loop_.get());
   service_.reset();
-  // Lets cancelled operations end.
+  // Runs the context until cancelled operations have ended.
   while (g_main_context_iteration(context_.get(), FALSE)) continue;
   g_main_context_pop_thread_default(context_.get());
 }
@@ -143,7 +144,7 @@ void Server::Collect() {
     while (auto item = inbox_.Pop()) messages.push_back(std::move(*item));
     slices.swap(slices_);
   }
-  if (!service_) return;  // the service has ended
+  if (!service_) return;  // the service was deleted
   service_->SetTopics(topics);
   for (const Outbox::Item& item : messages) service_->Deliver(item.channel_id, item.message);
   for (const auto& [channel, slice] : slices) service_->DeliverSlice(channel, slice);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A server of Foxglove's WebSocket protocol and of its own page, in a thread of its own.
+// A server for Foxglove's WebSocket protocol and for its own page. It runs in a thread of its own.
 #pragma once
 #include <deque>
 #include <functional>
@@ -18,10 +18,10 @@ namespace lidar::web {
 
 class ClientService;
 
-/// All threads may call the public functions, which wait for no client.
+/// A server for viewers. Any thread may call its public functions, which never wait for a client.
 class Server {
  public:
-  /// Returns nothing if the server cannot listen; `error` then has the reason in words for a user.
+  /// Starts a server. If it cannot listen, returns nothing and sets `error` to a text for users.
   static std::unique_ptr<Server> Start(ServerConfig config, std::string* error);
   /// Ends all connections.
   ~Server();
@@ -31,14 +31,14 @@ class Server {
   std::uint16_t port() const { return port_; }
   const ServerCounters& counters() const { return counters_; }
 
-  /// Opens the channel `topic`. Inputs may share a channel unless it has slices. `stream` describes
-  /// the slices, and viewers may request earlier ones from `recording`. Returns nothing if the
-  /// topic has another schema.
+  /// Opens the channel `topic`. Several inputs may share a channel unless it has slices. `stream`
+  /// describes the slices. Viewers may request earlier slices from `recording`. Returns nothing if
+  /// the topic is open with another schema.
   SharedTopic Open(const std::string& topic, foxglove::Schema schema, std::string stream = {},
                    std::shared_ptr<Recording> recording = {});
-  /// Closes the channel once all inputs that opened it have called this.
+  /// Closes the channel after all inputs that opened it have called this function.
   void Close(const SharedTopic& topic);
-  /// Queues the message for the server's thread. If too many wait, the oldest are dropped.
+  /// Queue data for the server's thread. If too many messages wait, the oldest are dropped.
   void Publish(const SharedTopic& topic, Message message);
   void PublishSlice(const SharedTopic& topic, SharedSliceMessage slice);
 
@@ -49,7 +49,7 @@ class Server {
   };
   explicit Server(ServerConfig config);
   void Run(std::function<void(std::string)> listens);
-  /// Makes the thread check topics and inboxes.
+  /// Makes the server's thread call Collect().
   void WakeLocked();
   static gboolean OnWake(gpointer self);
   void Collect();
@@ -60,12 +60,12 @@ class Server {
   ContextPtr context_;
   LoopPtr loop_;
   std::thread thread_;
-  std::unique_ptr<ClientService> service_;  // used by the thread only
+  std::unique_ptr<ClientService> service_;  // used only by the thread
 
-  std::mutex mutex_;  // guards what follows; never held while anything is called
-  std::map<std::string, Entry> entries_;                             // by topic
-  Outbox inbox_;                                                     // for the thread
-  std::deque<std::pair<std::uint32_t, SharedSliceMessage>> slices_;  // the same, by channel
+  std::mutex mutex_;                      // guards the members below; not locked during calls
+  std::map<std::string, Entry> entries_;  // by topic
+  Outbox inbox_;                          // messages for the thread
+  std::deque<std::pair<std::uint32_t, SharedSliceMessage>> slices_;  // also, by channel
   std::uint32_t next_id_ = 1;
   bool wake_pending_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The caps of coded slices, and the facts that viewers get from them.
+// The caps of coded slices, and the information in them that viewers need.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,11 +13,12 @@ namespace lidar::web {
 
 struct SliceCaps {
   gst::CloudInfo info;              // of the decoded clouds
-  foxglove::SliceStreamInfo about;  // without frame and topic
+  foxglove::SliceStreamInfo about;  // without the frame and the topic
 
-  /// Returns nothing and sets `why` if the caps are not those of slices to decode.
+  /// Reads the caps. Returns nothing and sets `why` if they are not the caps of slices that can be
+  /// decoded.
   static std::optional<SliceCaps> Parse(const GstCaps* caps, std::string* why);
-  /// Returns true if one decoder takes the slices of both.
+  /// Returns true if the same decoder can decode the slices of both caps.
   bool HasSameDecoder(const SliceCaps& other) const {
     return about.has_ranges == other.about.has_ranges && about.fields == other.about.fields &&
            about.sensor_model == other.about.sensor_model;

@@ -8,7 +8,7 @@ namespace {
 
 Time Now() { return Time{std::chrono::microseconds(g_get_monotonic_time())}; }
 
-/// Interval of checks of a growing recording, while it has viewers.
+/// The interval at which a growing recording is checked while it has viewers.
 constexpr Duration kLook = std::chrono::seconds(2);
 
 std::size_t BytesOf(const std::deque<viewer::SharedSlice>& slices) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Gives viewers the slices that their pace allows: live ones, or those of a recording. Lives in the
-// server's thread.
+// Sends slices to viewers, live or from a recording, as fast as each viewer acknowledges them.
+// Lives in the server's thread.
 #pragma once
 #include <deque>
 #include <functional>
@@ -16,52 +16,54 @@ namespace lidar::web {
 
 class SliceService {
  public:
-  /// `max_bitrate` 0: no limit. `warn` gets a text for a user if a recording cannot be read.
+  /// `max_bitrate` 0 means no limit. `warn` is called with a text for users if a recording cannot
+  /// be read.
   explicit SliceService(DataRate max_bitrate, std::function<void(std::string)> warn = {});
 
   void Subscribe(Client* client, const SharedTopic& topic, std::uint32_t subscription);
   void Unsubscribe(Client* client, std::uint32_t channel);
-  /// Forgets a client that has left, or a channel that was removed.
+  /// Remove a client that has disconnected, or a channel that was closed.
   void Forget(const Client* client);
   void ForgetChannel(std::uint32_t channel) { streams_.erase(channel); }
 
   void Deliver(std::uint32_t channel, const SharedSliceMessage& slice);
   /// Handles a request about slices.
   void OnRequest(Client* client, const foxglove::Request& request);
-  /// Call it regularly: sends what had to wait.
+  /// Must be called regularly. Sends the slices that had to wait.
   void Tick();
 
-  /// Returns true if the client acknowledges too late that it drew slices: its link has no room.
+  /// Returns true if the client acknowledges drawn slices too late, which means that its link is
+  /// full.
   bool IsLate(Client* client) const;
 
-  /// Scans that slow viewers missed.
+  /// Returns the number of scans that slow viewers missed.
   std::uint64_t scans_skipped() const { return scans_skipped_; }
 
  private:
-  /// What a viewer gets of a recording in place of live slices.
+  /// A replay that a viewer gets instead of live slices.
   struct Replay {
     std::uint16_t number = 0;                 // number of the replay, chosen by the viewer
-    std::deque<viewer::SharedSlice> waiting;  // read but not sent yet
+    std::deque<viewer::SharedSlice> waiting;  // slices that were read but not yet sent
     std::uint64_t next = 0;                   // position of the next piece
     std::uint64_t last_ns = 0;                // time of the last slice that was read
-    std::uint64_t damaged = 0;                // parts that were left out
+    std::uint64_t damaged = 0;                // number of parts that were skipped
     bool is_reading = true;
-    bool ended = false;  // no more slices follow
+    bool ended = false;  // there are no more slices yet
   };
   struct Viewer {
     std::uint32_t subscription = 0;
     viewer::Feed feed;
     std::optional<Replay> replay = {};
-    std::uint64_t asker = 0;  // id under which `replay` asks the reader
+    std::uint64_t asker = 0;  // the id with which `replay` sends jobs to the reader
   };
   struct Stream {
     SharedTopic topic;
     viewer::RecentScans recent;
     std::map<Client*, Viewer> viewers;
-    Time looked_at{};           // last look at the recording
-    std::uint64_t from_ns = 0;  // times of the recording at looked_at
+    Time looked_at{};           // last check of the recording
+    std::uint64_t from_ns = 0;  // times of the recording at the last check
     std::uint64_t to_ns = 0;
-    std::string why;  // of the last warning
+    std::string why;  // reason in the last warning
   };
   void Serve(Stream* stream, Client* client, Viewer* viewer);
   void ServeAll(Stream* stream);
@@ -77,8 +79,8 @@ class SliceService {
   const DataRate max_bitrate_;
   const std::function<void(std::string)> warn_;
   RecordingReader reader_;
-  std::uint64_t next_asker_ = 1;             // asker 0 looks for all viewers of a stream
-  std::map<std::uint32_t, Stream> streams_;  // by channel, with viewers
+  std::uint64_t next_asker_ = 1;             // asker 0 reads the times for all viewers of a stream
+  std::map<std::uint32_t, Stream> streams_;  // streams that have viewers, by channel
   std::uint64_t scans_skipped_ = 0;
 };
 

@@ -16,9 +16,10 @@
 namespace lidar::web {
 namespace {
 
-/// 30 s of 4 Mbit/s.
+/// This is enough for 30 s at 4 Mbit/s.
 constexpr std::size_t kMostWaiting = 16U << 20;
-/// Decoding continues for this time after a viewer needed it, because it is often needed again.
+/// Decoding continues for this time after a viewer last needed it, because a viewer often needs it
+/// again.
 constexpr gint64 kLinger_us = 15 * gint64{G_USEC_PER_SEC};
 constexpr std::uint32_t kMostPoints = 1U << 20;
 
@@ -28,7 +29,7 @@ codec::CloudFormat FormatOf(const gst::CloudInfo& info) {
 
 }  // namespace
 
-/// Decoder and coder of the stream.
+/// The decoder and the encoder of the stream.
 class SliceStream::Decoding {
  public:
   Decoding(const gst::CloudInfo& info, bool has_ranges) : format_(FormatOf(info)) {
@@ -40,7 +41,7 @@ class SliceStream::Decoding {
     recoder_ = viewer::Recoder::Create(format_);
   }
 
-  /// Returns false for a slice that cannot be decoded.
+  /// Decodes a slice. Returns false if that is impossible.
   bool Decode(const SliceMessage& slice) {
     const ByteView bytes{slice.payload.data(), slice.payload.size()};
     if (cloud_) {
@@ -61,7 +62,7 @@ class SliceStream::Decoding {
   }
   bool lacks_reference() const { return slices_ && slices_->lacks_reference(); }
 
-  /// Encodes the slice decoded last.
+  /// Encodes the last decoded slice.
   foxglove::EncodedCloud Cloud(const foxglove::Header& header, guint max_points) const {
     return foxglove::EncodePointCloud(header,
                                       {format_.layout.fields,
@@ -130,7 +131,7 @@ bool SliceStream::OpenTopics(SliceCaps caps, std::string* why) {
   return false;
 }
 
-/// Returns null if the stream has neither a recording nor a history.
+/// Returns the archive for replays, or null if the stream has neither a recording nor a history.
 std::unique_ptr<Archive> SliceStream::MakeArchive(SliceCaps caps) const {
   if (!settings_.recording.empty())
     return std::make_unique<FileArchive>(settings_.recording, std::move(caps));
@@ -166,7 +167,8 @@ bool SliceStream::Push(SliceMessage slice) {
 }
 
 void SliceStream::Wake() {
-  // The lock prevents a wake-up between the thread's check and its sleep.
+  // The lock ensures that the thread is not between its check and its sleep, where it would miss
+  // the wake-up.
   const std::lock_guard lock(mutex_);
   change_.notify_one();
 }
@@ -201,7 +203,7 @@ void SliceStream::Run() {
   }
 }
 
-/// Publishes the decoded slice in the forms that clients subscribed to.
+/// Publishes the decoded slice in all forms to which clients have subscribed.
 void SliceStream::Publish(const SliceMessage& slice, bool recodes) {
   if (clouds_->wanted()) {
     auto cloud = decoding_->Cloud({slice.unix_ns, settings_.frame_id}, settings_.max_points);

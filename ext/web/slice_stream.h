@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Offers a stream of coded slices as it is, and decoded in a thread of its own if a client needs
-// that.
+// Offers a stream of coded slices to clients. If a client needs decoded slices, a thread of the
+// stream decodes them.
 #pragma once
 #include <condition_variable>
 #include <memory>
@@ -18,18 +18,18 @@ namespace lidar::web {
 class SliceStream {
  public:
   struct Settings {
-    std::string topic;           // of the decoded clouds; the slices' topic adds kSlicesEnding
-    std::string frame_id;        // of both channels
+    std::string topic;     // of the decoded clouds; the topic of the slices adds kSlicesEnding
+    std::string frame_id;  // frame of both channels
     std::string recording = {};  // location of mcapsink's files of the stream; empty: none
-    UpstreamArchive::Ask ask_upstream = {};  // used without a recording; null: no history
-    guint max_points = 0;                    // of a decoded message; 0: no limit
+    UpstreamArchive::Ask ask_upstream = {};  // used if there is no recording; null: no history
+    guint max_points = 0;                    // per decoded message; 0: no limit
   };
   struct Counters {
     std::atomic<guint64>& points;     // decoded points sent to clients
     std::atomic<guint64>& malformed;  // slices that cannot be decoded
   };
-  /// Opens both channels. Returns nothing and sets `why` if the caps are not those of slices to
-  /// decode, or another stream uses a topic. `server` and the `counters` outlive the stream.
+  /// Opens both channels. Returns nothing and sets `why` if the slices cannot be decoded, or if
+  /// another stream uses a topic. `server` and the `counters` must outlive the stream.
   static std::unique_ptr<SliceStream> Open(Server* server, const GstCaps* caps, Settings settings,
                                            Counters counters, std::string* why);
   /// Closes the channels.
@@ -37,7 +37,8 @@ class SliceStream {
   SliceStream(const SliceStream&) = delete;
   SliceStream& operator=(const SliceStream&) = delete;
 
-  /// Called in the streaming thread. Returns false for a slice that no decoder takes.
+  /// Publishes a slice. Called in the streaming thread. Returns false if no decoder accepts the
+  /// slice.
   bool Push(SliceMessage slice);
 
   static constexpr const char* kSlicesEnding = "/slices";
@@ -51,8 +52,8 @@ class SliceStream {
   void Wake();
   void Run();
   void Publish(const SliceMessage& slice, bool recodes);
-  /// Returns true if the thread must decode: a client wants decoded slices, or the backlog is full.
-  /// The lock is held.
+  /// Returns true if the thread must decode, because a client needs decoded slices or the backlog
+  /// is full. The caller holds the lock.
   bool IsWanted();
 
   Server* const server_;
@@ -61,12 +62,12 @@ class SliceStream {
   SharedTopic slices_;
   SharedTopic clouds_;
   bool has_ranges_ = false;
-  std::unique_ptr<Decoding> decoding_;  // used by the thread
+  std::unique_ptr<Decoding> decoding_;  // used only by the thread
 
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable change_;
   viewer::Backlog backlog_;
-  gint64 recoded_wanted_us_ = 0;  // last time that recoded slices were wanted
+  gint64 recoded_wanted_us_ = 0;  // last time at which recoded slices were wanted
   bool recodes_ = false;          // recoded slices were wanted recently
   bool stopping_ = false;
   std::thread thread_;

@@ -32,7 +32,7 @@ void Collect(GstElement* element, json* all);
 
 void CollectChildren(GstBin* bin, json* all) {
   GstIterator* children = gst_bin_iterate_elements(bin);
-  // If children are added or removed meanwhile, some are missing until the next message.
+  // If children are added or removed during the iteration, some are missing in this message.
   gst_iterator_foreach(
       children,
       [](const GValue* child, gpointer out) {
@@ -54,18 +54,18 @@ void Collect(GstElement* element, json* all) {
   }
 }
 
-/// A member of the message: the statistic `from` of an element that also has the statistic
-/// `beside`.
+/// A member of the message. Its value is the statistic `from` of an element that also has the
+/// statistic `beside`.
 struct Summary {
   const char* name;
   const char* from;
   const char* beside;
-  double scale = 1;      // of a number
-  std::size_t size = 0;  // of an array; 0: a number
+  double scale = 1;      // factor for a number
+  std::size_t size = 0;  // length of an array; 0: a number
 };
-constexpr double kMs = 1e-6;  // of ns
-// The first rows take values from the reports of a sender in another pipeline. Later rows replace
-// them by values of a sender in this pipeline.
+constexpr double kMs = 1e-6;  // from ns
+// The first rows use the reports of a sender in another pipeline. The rows after them replace these
+// values by values of a sender in this pipeline.
 constexpr std::array<Summary, 23> kSummaries = {{
     {"target_bitrate", "sender_target_bitrate", "sender_reports"},
     {"sent_bitrate", "sender_sent_bitrate", "sender_reports"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Statistics of the elements of a pipeline, as JSON.
+// Writes statistics of the elements of a pipeline as JSON.
 #pragma once
 #include <gst/gst.h>
 
@@ -7,9 +7,9 @@
 
 namespace lidar::web {
 
-/// A message of the schema lidar.Statistics: a timestamp, summaries, and the property `stats` of
-/// each element of the pipeline that `element` is in. The `stats` of a bin replace those of its
-/// children. Takes the locks of those elements for a moment.
+/// Returns a message of the schema lidar.Statistics. It contains a timestamp, summaries, and the
+/// property `stats` of each element in the pipeline of `element`. The `stats` of a bin replace the
+/// `stats` of its children. Locks those elements for a moment.
 std::string StatisticsOf(GstElement* element);
 
 }  // namespace lidar::web

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A channel of the server, as its publisher and the server's thread share it.
+// A channel of the server, which its publisher and the server's thread share.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -16,22 +16,25 @@
 
 namespace lidar::web {
 
-/// A message as all clients get it.
+/// A message that is the same for all clients.
 struct Message {
   std::uint64_t unix_ns = 0;
   std::vector<std::uint8_t> payload;
-  bool continues = false;  // useless without the message before, as a frame between key frames
+  // If true, the message is useless without the message before it, as a video frame that is not a
+  // key frame.
+  bool continues = false;
 };
 using SharedMessage = std::shared_ptr<const Message>;
 
-/// A coded slice for viewers; in a replay also a pose between two slices.
+/// A coded slice for viewers. In a replay it may also be a pose between two slices.
 struct SliceMessage final : viewer::Slice {
   std::uint64_t unix_ns = 0;
   std::uint32_t first_column = 0;
-  bool is_pose = false;  // the payload is a foxglove.FrameTransform, `id` that of the slice before
+  // If true, the payload is a foxglove.FrameTransform, and `id` is the id of the slice before it.
+  bool is_pose = false;
   std::vector<std::uint8_t> payload;
 
-  /// Sets the size and the links to other slices from the payload. Returns false if no decoder
+  /// Sets `size`, and the links to other slices, from the payload. Returns false if no decoder
   /// accepts the payload.
   bool ReadLinks(bool has_ranges) {
     size = DataSize::Bytes(static_cast<std::int64_t>(payload.size()));
@@ -48,12 +51,13 @@ class Recording;
 
 class Topic {
  public:
-  /// `recording` has the slices; null: no recording.
+  /// Viewers may request earlier slices from `recording`. If it is null, there is no recording.
   explicit Topic(foxglove::Channel channel, std::shared_ptr<Recording> recording = {})
       : channel_(std::move(channel)), recording_(std::move(recording)) {}
   const foxglove::Channel& channel() const { return channel_; }
   const std::shared_ptr<Recording>& recording() const { return recording_; }
-  /// Number of messages that may wait for a slow client; older ones are dropped.
+  /// Returns the number of messages that may wait for a slow client. If there are more, the oldest
+  /// are dropped.
   std::size_t depth() const { return depth_; }
   void set_depth(std::size_t depth) { depth_ = depth > 0 ? depth : 1; }
   /// Returns true if the topic has subscribers.
@@ -62,13 +66,13 @@ class Topic {
     subscribers_ += n;
     if (n > 0) TellOfWish();
   }
-  /// Returns true if a viewer needs slices that stand alone.
+  /// Returns true if a viewer needs slices that can be decoded without other slices.
   bool wants_recoded() const { return wants_recoded_; }
   void set_wants_recoded(bool wanted) {
     if (wants_recoded_.exchange(wanted) != wanted && wanted) TellOfWish();
   }
-  /// The server's thread calls `tell` when a subscriber comes, or when a viewer starts to need
-  /// recoded slices. Null removes it.
+  /// Sets a function that the server's thread calls when a subscriber is added, or when a viewer
+  /// begins to need recoded slices. Null removes the function.
   void set_on_wish(std::function<void()> tell) {
     const std::lock_guard lock(mutex_);
     on_wish_ = std::move(tell);
@@ -90,7 +94,7 @@ class Topic {
 };
 using SharedTopic = std::shared_ptr<Topic>;
 
-/// Says in words for a user why the topic cannot be opened.
+/// Returns a text for users that says why the topic cannot be opened.
 inline std::string TopicInUse(const std::string& name) {
   return "the topic \"" + name +
          "\" is already used for other data; set the property topic of one of its pads";

@@ -11,7 +11,7 @@ namespace {
 
 constexpr guint64 kAnswer = 512U << 10;  // bytes
 
-/// Returns null if the buffer has no pose.
+/// Returns the pose of the buffer as a message, or null if the buffer has no pose.
 std::shared_ptr<SliceMessage> ReadPose(GstBuffer* buffer, std::uint64_t unix_ns,
                                        const std::string& child) {
   GstLidarPose meta;
@@ -19,7 +19,7 @@ std::shared_ptr<SliceMessage> ReadPose(GstBuffer* buffer, std::uint64_t unix_ns,
   return PoseMessage({unix_ns, kFixedFrame}, child, PoseOf(meta));
 }
 
-/// Returns null if the slice is damaged.
+/// Returns the slice in the buffer, or null if the slice is damaged.
 std::shared_ptr<SliceMessage> ReadSlice(GstBuffer* buffer, std::uint64_t unix_ns, bool has_ranges) {
   const gst::BufferMap map(buffer, GST_MAP_READ);
   if (!map || map.size() == 0) return nullptr;
@@ -96,7 +96,8 @@ void UpstreamArchive::Take(GstSample* sample) {
     items_.push_back(std::move(item));
     return;
   }
-  // If a piece ends with the pose, the next piece begins with the same buffer.
+  // The position of the pose is the buffer itself. If a piece ends with the pose, the next piece
+  // therefore begins with the slice of the same buffer.
   Item pose = item;
   pose.position = GST_BUFFER_OFFSET(buffer);
   pose.slice = ReadPose(buffer, item.time_ns, frame_id_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads the past of the stream from a source upstream that can get it, as natssrc can from
+// Reads earlier slices of the stream from a source upstream that keeps them, such as natssrc with
 // JetStream.
 #pragma once
 #include <deque>
@@ -15,13 +15,13 @@ namespace lidar::web {
 
 class UpstreamArchive final : public Archive {
  public:
-  /// Asks upstream; returns false if no element answers.
+  /// Sends a query upstream. Returns false if no element answers.
   using Ask = std::function<bool(GstQuery*)>;
-  /// `frame_id` is the sensor's.
+  /// `frame_id` is the frame of the sensor.
   UpstreamArchive(Ask ask, SliceCaps caps, std::string frame_id)
       : ask_(std::move(ask)), caps_(std::move(caps)), frame_id_(std::move(frame_id)) {}
 
-  /// Returns true if a source upstream has a history.
+  /// Returns true if a source upstream can return earlier buffers.
   static bool IsThere(const Ask& ask);
 
   std::optional<Times> Look(std::string* why) override;
@@ -40,12 +40,12 @@ class UpstreamArchive final : public Archive {
   const SliceCaps caps_;
   const std::string frame_id_;
   gst::HistoryQuestion question_;
-  std::uint64_t from_ns_ = 0;  // time of Seek(); 0 after GoOn()
+  std::uint64_t from_ns_ = 0;  // time of the last Seek(); 0 after GoOn()
   bool ended_ = true;
   std::deque<Item> items_;
   std::uint64_t damaged_ = 0;
   gst::CapsPtr known_caps_;
-  bool are_ours_ = false;  // the stream's decoder takes slices of known_caps_
+  bool are_ours_ = false;  // the decoder of the stream accepts slices of known_caps_
 };
 
 }  // namespace lidar::web

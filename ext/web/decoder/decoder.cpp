@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The decoder as WebAssembly: converts the slices of a stream to points for the page. Any input
-// gives points or a negative number. Memory is bounded by kMostSliceBytes, the caller's number of
-// points, and the codec's memory for references.
+// The decoder of the page as WebAssembly. It converts the slices of a stream to points. Any input
+// results in points or in a negative number. Memory is limited by kMostSliceBytes, by the number of
+// points that the caller sets, and by the codec's limit for references.
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -22,29 +22,29 @@ constexpr std::uint32_t kMostSliceBytes = 16U << 20;
 constexpr std::uint32_t kMostPoints = 1U << 20;
 constexpr float kMetresPerMm = 1e-3F;
 
-/// A decoded slice; decoder.js reads it word by word.
+/// A decoded slice. decoder.js reads its members as 32-bit words.
 struct Slice {
-  std::uint32_t count = 0;       // of points
-  const void* points = nullptr;  // Point
+  std::uint32_t count = 0;       // number of points
+  const void* points = nullptr;  // an array of Point
   float step_m = 0;
   float error_m = 0;
   std::uint32_t has_intensity = 0;
   std::uint32_t has_beam = 0;
 };
 
-/// A block of a slice that others may refer to.
+/// A block of a slice. Other blocks may refer to it.
 struct Link {
   std::uint32_t name = 0;
-  std::uint32_t needs = 0;  // the name of the block that it refers to
+  std::uint32_t needs = 0;  // the name of the block to which this block refers
   std::uint32_t has_needs = 0;
 };
 
-/// As in fields.js.
+/// The layout of a point in fields.js.
 struct Point {
   float x, y, z, intensity, beam, range_m;
 };
 
-/// As WriteRangeImage() and WriteXyz() write it.
+/// The layout of a point that WriteRangeImage() and WriteXyz() write.
 struct RawPoint {
   float x, y, z, intensity;
   std::uint32_t range_mm;
@@ -60,7 +60,7 @@ enum Result : std::int32_t { kGood = 0, kDamaged = -1, kLacksReference = -2 };
 
 class Decoder {
  public:
-  /// Slices are ranges of the sensor of `model`, or points without a model.
+  /// If there is a `model`, slices contain the ranges of its sensor. Otherwise they contain points.
   Decoder(std::optional<SensorModel> model, std::uint32_t max_points) : max_points_(max_points) {
     layout_ = {RawFields(), sizeof(RawPoint)};
     if (!model) {
@@ -83,7 +83,8 @@ class Decoder {
     return ranges_ ? DecodeRanges() : DecodeCloud();
   }
   const Slice& slice() const { return slice_; }
-  /// Reads the links of the input to other slices. Returns their number.
+  /// Finds the links between the blocks of the input and blocks of other slices. Returns their
+  /// number.
   std::uint32_t FindLinks() {
     links_.clear();
     const auto blocks = ranges_ ? codec::LinksOf({input_.data(), input_.size()}) : std::nullopt;
@@ -159,7 +160,8 @@ EXPORT(allocate) void* Allocate(std::uint32_t size) {
   return size <= kMostSliceBytes ? ::operator new(size) : nullptr;
 }
 EXPORT(release) void Release(void* memory) { ::operator delete(memory); }
-/// Returns null for a sensor model that does not parse. `size` 0: no model, for points.
+/// Opens a decoder. Returns null if the sensor model is damaged. If `size` is 0, there is no model,
+/// and slices contain points.
 EXPORT(open)
 Decoder* Open(const std::uint8_t* model, std::uint32_t size, std::uint32_t max_points) {
   std::optional<SensorModel> sensor;
@@ -167,15 +169,15 @@ Decoder* Open(const std::uint8_t* model, std::uint32_t size, std::uint32_t max_p
   return new Decoder(std::move(sensor), max_points < kMostPoints ? max_points : kMostPoints);
 }
 EXPORT(close) void Close(Decoder* decoder) { delete decoder; }
-/// Returns memory for the next slice; null for a slice that is too large.
+/// Returns memory for the next slice, or null if the slice is too large.
 EXPORT(input) std::uint8_t* Input(Decoder* decoder, std::uint32_t size) {
   return decoder->Input(size);
 }
 EXPORT(decode) std::int32_t Decode(Decoder* decoder) { return decoder->Decode(); }
-/// Returns how many links the input has; links() returns them.
+/// Finds the links of the input and returns their number. links() returns the links.
 EXPORT(find_links) std::uint32_t FindLinks(Decoder* decoder) { return decoder->FindLinks(); }
 EXPORT(links) const void* Links(const Decoder* decoder) { return decoder->links(); }
 EXPORT(slice) const Slice* SliceOf(const Decoder* decoder) { return &decoder->slice(); }
-/// All pixels of the last slice, for tests.
+/// Returns all pixels of the last slice. Only tests use this function.
 EXPORT(raw) const void* Raw(const Decoder* decoder) { return decoder->raw(); }
 EXPORT(raw_count) std::uint32_t RawCount(const Decoder* decoder) { return decoder->raw_count(); }

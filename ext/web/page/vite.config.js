@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Builds the page into dist/, whose files are committed: names without hashes, no maps.
+// Builds the page into dist/, whose files are committed. Their names have no hashes, and there are
+// no source maps.
 import { readFileSync } from 'node:fs';
 import { defineConfig } from 'vite';
 
@@ -7,7 +8,7 @@ const text = (path) => readFileSync(new URL(path, import.meta.url), 'utf8');
 const draco = './node_modules/three/examples/jsm/libs/draco/';
 const licensed = ['three', 'uplot', '@foxglove/ws-protocol', 'eventemitter3', 'debug', 'ms'];
 
-/** Adds files that are copied unchanged: the Draco worker, its decoder, and licences. */
+/** Adds files that are copied without changes: the Draco worker, its decoder, and licences. */
 function plainFiles() {
   const licenses = () =>
     licensed

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Chooses channels of a server: those of the chosen robot, and slices rather than decoded clouds.
+// Chooses channels of the server: those of the chosen robot, and slices instead of decoded clouds.
 import { canDecode } from './slices.js';
 
 const CLOUDS = ['foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
 const SLICES = 'lidar.Slice';
 const VIDEO = 'foxglove.CompressedVideo';
 
-/** The topic of a channel's clouds; for slices that of the decoded clouds; null without clouds. */
+/**
+ * Returns the topic of the channel's clouds. For a channel of slices, returns the topic of the
+ * decoded clouds. Returns null if the channel has no clouds.
+ */
 function cloudTopic({ schemaName, schema, topic }) {
   if (CLOUDS.includes(schemaName)) return topic;
   if (schemaName !== SLICES) return null;
@@ -19,21 +22,28 @@ function cloudTopic({ schemaName, schema, topic }) {
 
 const robotOf = (topic) => topic.split('/').filter(Boolean)[0];
 
-/** Returns the robots' names if all topics of clouds begin with one: r7 of /r7/points. */
+/**
+ * Returns the names of the robots. Returns none unless each topic of clouds begins with a name, as
+ * r7 in /r7/points.
+ */
 export function robotsOf(list) {
   const topics = list.map(cloudTopic).filter((topic) => topic !== null);
   if (!topics.every((topic) => topic.split('/').filter(Boolean).length > 1)) return [];
   return [...new Set(topics.map(robotOf))].sort();
 }
 
-/** `known` has the schemas that the page reads; `idle`: take nothing; `paused`: take no clouds. */
+/**
+ * Returns the channels to subscribe to. `known` has the schemas that the page reads. If `idle`,
+ * returns no channels. If `paused`, returns no channels of clouds.
+ */
 export function chooseChannels(list, { known, robot, idle, paused }) {
   if (idle) return [];
   const robots = robotsOf(list);
   const chosen = robots.includes(robot) ? robot : robots[0];
   const isOthers = ({ topic }) => robotOf(topic) !== chosen && robots.includes(robotOf(topic));
   const decodes = canDecode();
-  // The page has one decoder of pictures: frames of two cameras would refer to each other.
+  // Only one camera is chosen, because the page has only one video decoder, whose frames refer to
+  // earlier frames.
   const cameras = list.filter((channel) => channel.schemaName === VIDEO && !isOthers(channel)).map(({ topic }) => topic);
   const [camera] = cameras.sort();
   const coded = new Set(decodes ? list.filter((c) => c.schemaName === SLICES).map(cloudTopic) : []);

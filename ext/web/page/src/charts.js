@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Charts of the last minute; a chart appears once one of its numbers comes.
+// Charts of the last minute. A chart is shown as soon as one of its numbers has arrived.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { MOST_LINKS } from './links.js';
@@ -8,7 +8,8 @@ import { number, t } from './text.js';
 const KEPT_S = 60;
 const MBIT = 1e-6;
 const KB = 1e-3;
-const QUIET_SHARE = 2.5; // a quiet line stretches the axis to at most this multiple of the others' maximum
+// Quiet lines extend the axis to at most this multiple of the maximum of the other lines.
+const QUIET_SHARE = 2.5;
 const LINKS = Array.from({ length: MOST_LINKS }, (_, i) => i);
 
 const ofLinks = (title, unit, what, scale = 1) => ({
@@ -17,7 +18,9 @@ const ofLinks = (title, unit, what, scale = 1) => ({
   series: LINKS.map((i) => ({ key: `link_${i}_${what}`, link: `link_${i}`, label: 'link', scale })),
 });
 
-/** Keys are members of lidar.Statistics, or are added by the page (`received`, `age`, `link_0`). */
+/**
+ * The keys are members of lidar.Statistics, or the page adds them (`received`, `age`, `link_0`).
+ */
 const CHARTS = [
   {
     title: 'Age of the cloud',
@@ -118,7 +121,7 @@ class Chart {
     parent.append(this.element);
   }
 
-  /** Adds a number to each series, null if `message` lacks it. */
+  /** Adds a number to each series, or null if `message` does not have it. */
   add(time, message) {
     const numbers = this.config.series.map(({ key, scale = 1 }) =>
       typeof message[key] === 'number' ? message[key] * scale : null,
@@ -150,7 +153,10 @@ class Chart {
     this.plot.setData(this.data);
   }
 
-  /** The upper end of the axis: quiet lines count up to QUIET_SHARE of the others' maximum. */
+  /**
+   * Returns the upper end of the axis. Quiet lines extend it to at most QUIET_SHARE times the
+   * maximum of the other lines.
+   */
   top() {
     const most = (quiet) =>
       this.config.series.reduce((all, series, i) => {
@@ -214,7 +220,7 @@ export class Charts {
     this.samples = 0;
   }
 
-  /** `message` is a lidar.Statistics. */
+  /** Adds the numbers of `message`, a lidar.Statistics. */
   add(message) {
     const time = performance.now() / 1000;
     ++this.samples;

@@ -5,11 +5,14 @@ import { FoxgloveClient } from '@foxglove/ws-protocol';
 const RETRY_FIRST_MS = 500;
 const RETRY_MOST_MS = 5000;
 const PROTOCOLS = ['foxglove.sdk.v1', 'foxglove.websocket.v1'];
-const EXPIRED = 4401; // the server's code when it closes the socket of an expired token
+const EXPIRED = 4401; // the code with which the server closes the socket when a token expires
 const REFUSALS = { 401: 'refused', 403: 'foreign', 429: 'limited', 503: 'full' };
-const FINAL = ['refused', 'expired']; // no new try before the user enters another token
+const FINAL = ['refused', 'expired']; // no retry before the user enters another token
 
-/** The socket's path is the page's folder, because a proxy may add a prefix. */
+/**
+ * Returns the address of the WebSocket. Its path is the folder of the page, because a proxy may add
+ * a prefix.
+ */
 function socketAddress(host, token) {
   const url = new URL('.', location.href);
   if (host !== location.host) {
@@ -24,10 +27,10 @@ function socketAddress(host, token) {
 
 export class Connection {
   /**
-   * `on.state(state)`: connecting, open, lost, or why the server refuses; `on.message(channel, bytes,
-   * nanoseconds)`; `on.channels(list)`: all that the server offers; `on.subscribed(channel)`;
-   * `on.dropped(channel)`: the end of a subscription; `on.recording(channel, status)`; `wanted(list)`
-   * picks the channels to subscribe to.
+   * Calls `on.state(state)` with connecting, open, lost, or the reason why the server refuses;
+   * `on.message(channel, bytes, nanoseconds)`; `on.channels(list)` with all channels that the
+   * server offers; `on.subscribed(channel)`; `on.dropped(channel)` when a subscription ends; and
+   * `on.recording(channel, status)`. `wanted(list)` returns the channels to subscribe to.
    */
   constructor(host, token, on, wanted) {
     Object.assign(this, { host, token, on, wanted });
@@ -64,7 +67,7 @@ export class Connection {
     this.client = client;
   }
 
-  /** Subscribes to the channels wanted now, and ends all other subscriptions. */
+  /** Subscribes to the channels that are wanted now, and ends all other subscriptions. */
   choose() {
     const list = [...this.offered.values()];
     this.on.channels?.(list);
@@ -81,7 +84,7 @@ export class Connection {
     }
   }
 
-  /** Reads operations that only our server has; FoxgloveClient reads the others. */
+  /** Reads the operations that only our server sends. FoxgloveClient reads all others. */
   read(data) {
     if (typeof data !== 'string' || !data.includes('"recording"')) return;
     const { op, subscriptionId, ...status } = JSON.parse(data);
@@ -89,7 +92,7 @@ export class Connection {
     if (channel) this.on.recording?.(channel, status);
   }
 
-  /** Sends an operation that only our server has, about the subscription to `channel`. */
+  /** Sends an operation about the subscription to `channel`. Only our server knows it. */
   tell(op, channel, rest = {}) {
     if (this.socket.readyState !== WebSocket.OPEN) return;
     for (const [subscriptionId, known] of this.subscriptions)
@@ -107,7 +110,10 @@ export class Connection {
     this.retry = Math.min(this.retry * 1.6, RETRY_MOST_MS);
   }
 
-  /** A browser hides why a socket was refused; the same request by HTTP returns the status. */
+  /**
+   * Returns the HTTP status of the refusal. A browser hides why a socket was refused, so the page
+   * sends the same request by HTTP.
+   */
   async why() {
     if (this.host !== location.host) return 0;
     try {

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes the slices of a stream into points, by ext/web/decoder as WebAssembly. Each decoder is an
-// instance of its own: if a slice makes it trap, only the slice's stream loses its references.
+// Decodes the slices of a stream into points by ext/web/decoder, which runs as WebAssembly. Each
+// decoder is a separate instance. If a slice makes an instance trap, only the stream of that slice
+// loses its references.
 
 export const POINT_FLOATS = 6; // x, y, z, intensity, beam, range, as in fields.js
 const DAMAGED = -1;
 const LACKS_REFERENCE = -2;
 
 export class Decoder {
-  /** `module`: the compiled lidar_decoder.wasm; `model`: the sensor model, empty for points. */
+  /**
+   * `module` is the compiled lidar_decoder.wasm. `model` is the sensor model, which is empty for
+   * points.
+   */
   constructor(module, model, maxPoints = 1 << 20) {
     Object.assign(this, { module, model, maxPoints });
     this.start();
@@ -29,8 +33,8 @@ export class Decoder {
   }
 
   /**
-   * Returns {points, step, error, has}; `points` is a view, valid until the next call. A slice that
-   * cannot be decoded gives {points: null, lacksReference}.
+   * Decodes a slice and returns {points, step, error, has}. `points` is a view that is valid until
+   * the next call. If the slice cannot be decoded, returns {points: null, lacksReference}.
    */
   decode(slice) {
     const result = this.run(slice);
@@ -46,7 +50,10 @@ export class Decoder {
     };
   }
 
-  /** The slice's blocks, to which later ones may refer, as [{name, needs}]; `needs` null: no reference. */
+  /**
+   * Returns the blocks of the slice as [{name, needs}]. Later blocks may refer to `name`. `needs`
+   * is null for a block without a reference.
+   */
   links(slice) {
     const count = this.put(slice) ? this.wasm.find_links(this.decoder) : 0;
     const words = new Uint32Array(this.wasm.memory.buffer, this.wasm.links(this.decoder), 3 * count);
@@ -66,12 +73,12 @@ export class Decoder {
     try {
       return this.put(slice) ? this.wasm.decode(this.decoder) : DAMAGED;
     } catch {
-      this.start(); // the trap may have left its memory inconsistent
+      this.start(); // the memory may be inconsistent after the trap
       return DAMAGED;
     }
   }
 
-  /** All pixels of the last slice, 20 bytes each: for tests. */
+  /** Returns all pixels of the last slice, 20 bytes each. Only tests use this function. */
   raw() {
     return this.bytes(this.wasm.raw(this.decoder), this.wasm.raw_count(this.decoder) * 20);
   }

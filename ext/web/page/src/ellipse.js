@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The ellipse of three standard deviations of the sensor's horizontal position.
+// An ellipse that shows the horizontal uncertainty of the sensor's position, as three standard
+// deviations.
 import * as THREE from 'three';
 
 const SIGMAS = 3;
 const CORNERS = 64;
 
-/** Points of the ellipse around 0, as x, y, 0; `covariance` is that of lidar.Statistics. */
+/**
+ * Returns the points of the ellipse around 0 as x, y, 0. `covariance` is the covariance in
+ * lidar.Statistics.
+ */
 export function ellipseOf(covariance) {
   const [xx, xy, yy] = [0, 1, 7].map((i) => covariance[i]);
   // The Cholesky factor turns a circle into the ellipse.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts points of any layout to the one that is drawn: x, y, z, intensity, beam, range as floats.
+// Converts points of any layout to the drawn layout: x, y, z, intensity, beam and range as floats.
 
-export const FLOATS = 6; // a point
+export const FLOATS = 6; // per point
 
-/** Readers by foxglove.PackedElementField.NumericType. */
+/** The functions that read a number, indexed by foxglove.PackedElementField.NumericType. */
 const readers = [
   null,
   (v, at) => v.getUint8(at),
@@ -24,7 +24,7 @@ function find(fields, names) {
   return null;
 }
 
-/** The points of a decoded foxglove.PointCloud. */
+/** Returns the points of a decoded foxglove.PointCloud. */
 export function unpack(cloud) {
   const { fields, stride, data } = cloud;
   const count = stride > 0 ? Math.floor(data.length / stride) : 0;
@@ -45,7 +45,7 @@ export function unpack(cloud) {
   return { points, has: { intensity: !!intensity, beam: !!beam } };
 }
 
-/** Points of Draco's decoder; `intensities` may be null. */
+/** Returns the points in the arrays of Draco's decoder. `intensities` may be null. */
 export function fromDraco(positions, intensities) {
   const count = positions.length / 3;
   const points = new Float32Array(count * FLOATS);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The coded slices of the last minutes, by capture time, and a player that shows them again.
+// Keeps the coded slices of the last minutes, ordered by capture time, and shows them again.
 
-const MOST_AHEAD_S = 1; // a time further ahead is a jump
-const PATIENCE_MS = 20; // of decoding, after which the worker reads its messages
+const MOST_AHEAD_S = 1; // a time that is further ahead is a jump
+const PATIENCE_MS = 20; // time of decoding after which the worker reads its messages
 
-/** Slices are {captured, header, bytes, links, source}; a decoder is opened for each `source`. */
+/** Slices are {captured, header, bytes, links, source}. There is a decoder for each `source`. */
 export class History {
   constructor(mostBytes) {
     this.mostBytes = mostBytes;
@@ -18,7 +18,10 @@ export class History {
     this.named = new Map();
   }
 
-  /** Inserts by time. Drops the oldest slices if there is no room, and those that referred to them. */
+  /**
+   * Inserts a slice by its time. If there is no room, drops the oldest slices, and also the slices
+   * that refer to dropped slices.
+   */
   add(slice) {
     this.slices.splice(this.after(slice.captured) - this.first, 0, slice);
     this.bytes += slice.bytes.length;
@@ -39,7 +42,10 @@ export class History {
     return links.every(({ needs }) => needs === null || this.named.has(needs));
   }
 
-  /** Capture times [s] of the oldest and the newest slice; null if there is none. */
+  /**
+   * Returns the capture times [s] of the oldest and the newest slice, or null if there are no
+   * slices.
+   */
   get span() {
     return this.slices.length > 0 ? [this.slices[0].captured, this.slices.at(-1).captured] : null;
   }
@@ -51,7 +57,7 @@ export class History {
     return this.slices[number - this.first];
   }
 
-  /** The number of the first slice later than `time`. */
+  /** Returns the number of the first slice that is later than `time`. */
   after(time) {
     let [low, high] = [0, this.slices.length];
     while (low < high) {
@@ -62,7 +68,10 @@ export class History {
     return this.first + low;
   }
 
-  /** The number of the first slice of the last two scans before slice `number`: a whole picture. */
+  /**
+   * Returns the number at which the last two scans before slice `number` begin. Two scans contain a
+   * whole picture.
+   */
   scanBefore(number) {
     const scans = new Set();
     const source = this.at(number - 1)?.source;
@@ -74,7 +83,10 @@ export class History {
     return number;
   }
 
-  /** The slices to decode before `slice`, oldest first, if the decoder has the blocks `known`. */
+  /**
+   * Returns the slices that must be decoded before `slice`, the oldest first. `known` are the
+   * blocks that the decoders have.
+   */
   needs(slice, known) {
     const found = new Set();
     const open = [slice];
@@ -90,20 +102,25 @@ export class History {
   }
 }
 
-/** Decodes the slices of a history; its decoders are not those of the live stream. */
+/**
+ * Decodes the slices of a history. Its decoders are separate from the decoders of the live streams.
+ */
 export class Player {
-  /** `open(source)` returns a Decoder; `pause()` lets the worker read its messages. */
+  /** `open(source)` returns a Decoder. `pause()` lets the worker read its messages. */
   constructor(history, open, pause) {
     Object.assign(this, { history, open, pause });
     this.decoders = new Map();
     this.stop();
   }
 
-  /** Forgets the picture, and the decoders of closed streams of which no slice is kept. */
+  /**
+   * Forgets the picture. Also deletes the decoders of closed streams of which the history has no
+   * slices.
+   */
   stop() {
     const kept = new Set(this.history.slices.map(({ source }) => source));
     for (const source of this.decoders.keys()) if (source.isClosed && !kept.has(source)) this.decoders.delete(source);
-    this.shown = null; // time of the picture shown last
+    this.shown = null; // time of the last picture
     this.next = 0; // number of the slice to be shown next
     this.known = new Set(); // blocks that the decoders have
   }
@@ -115,16 +132,16 @@ export class Player {
     return this.decoders.get(source).decode(bytes);
   }
 
-  /** Returns true if the slices up to `time` do not continue the picture shown last. */
+  /** Returns true if the slices up to `time` do not continue the last picture. */
   isJump(time) {
     const { shown, next, history } = this;
     return shown === null || time < shown || time > shown + MOST_AHEAD_S || next < history.first;
   }
 
   /**
-   * Returns {jumped, slices: [{slice, decoded}], next}: the new slices of the picture at `time`, or
-   * all its slices after a jump; `next` is the time of the slice after them. Null if `isWanted()`
-   * turns false.
+   * Decodes the picture at `time` and returns {jumped, slices: [{slice, decoded}], next}. `slices`
+   * are the slices that are new in this picture, or all its slices after a jump. `next` is the time
+   * of the slice after them. Returns null as soon as `isWanted()` returns false.
    */
   async show(time, isWanted = () => true) {
     const { history } = this;

@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Statistics of several links: from the sender if it reports, otherwise from the receiver.
+// Statistics of several links. They come from the sender if it reports, and otherwise from the
+// receiver.
 
 export const MOST_LINKS = 4;
 const NS_TO_MS = 1e-6;
-const SENDER_S = 3; // after the sender's last report; a receiver's reports are ignored meanwhile
+const SENDER_S = 3; // for this time after the sender's report, the receiver's reports are ignored
 
 const inMs = (ns) => (typeof ns === 'number' ? ns * NS_TO_MS : undefined);
 
-/** A user knows a link `host:port@interface` by its interface. */
+/**
+ * Returns the interface of a link `host:port@interface`, because users know the link by its
+ * interface.
+ */
 const nameOf = ({ link, address }, i) => String(link ?? address ?? i + 1).replace(/^.*@/, '');
 
 const stateOf = ({ usable, in_gap: inGap }) => (usable === false ? 'unusable' : inGap ? 'in_gap' : null);
 
 export class Links {
   constructor() {
-    this.sender = -Infinity; // time of its last report [s]
-    this.before = []; // each link's bytes in the receiver's last report, and its time
+    this.sender = -Infinity; // time of the sender's last report [s]
+    this.before = []; // bytes and time of each link in the receiver's last report
   }
 
-  /** Members for the charts, `link_0` to `link_3`, from a lidar.Statistics that came at `now` [s]. */
+  /**
+   * Returns the members for the charts, such as `link_0`, from a lidar.Statistics that arrived at
+   * `now` [s].
+   */
   of({ elements = {} }, now) {
     const all = Object.values(elements).filter(({ links }) => links?.length > 1);
     const sender = all.find(({ links }) => 'sent_bitrate' in links[0]);

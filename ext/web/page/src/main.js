@@ -20,26 +20,26 @@ import { compressedCloud, compressedVideo, frameTransform, pointCloud } from './
 const STALLED_MS = 2000;
 const SLOW_DRAW_MS = 250;
 const BUSY_MS = 100;
-const MOST_AGE_S = 60; // an older cloud's clock is wrong: its age is not shown
+const MOST_AGE_S = 60; // the clock of an older cloud is wrong, so its age is not shown
 
 translate(document);
 const page = {
   state: 'connecting',
   paused: false,
-  quietMs: 0, // since the last cloud
-  clouds: 0, // since the last count
+  quietMs: 0, // time since the last cloud
+  clouds: 0, // since the last countSecond()
   points: 0,
   bytes: 0,
-  age: null, // [s] of the cloud drawn last
-  received: {}, // by schema, since the start
+  age: null, // age of the last drawn cloud [s]
+  received: {}, // counts by schema since the start
   spanS: 0.1,
-  kept: null, // [oldest, newest] of the slices that the page has kept [s]
+  kept: null, // times [oldest, newest] of the slices that the page has kept [s]
   isLoading: false,
   robot: '',
   charts: new Charts(document.getElementById('charts')),
   scene: new Scene(document.getElementById('scene')),
   poses: new Poses(),
-  recordedPoses: new Poses(), // of the replay
+  recordedPoses: new Poses(), // poses of the replay
   links: new Links(),
   video: new Video(document.getElementById('video')),
 };
@@ -89,7 +89,7 @@ page.timeline = new Timeline(document.getElementById('timeline'), {
 // --- clouds ---
 
 let draco = null;
-const waiting = new Map(); // clouds in the worker's queue
+const waiting = new Map(); // clouds in the queue of the worker
 
 function decodeDraco(cloud) {
   if (!draco) {
@@ -100,14 +100,17 @@ function decodeDraco(cloud) {
       if (sent && positions) addCloud(sent, fromDraco(positions, intensities));
     };
   }
-  if (waiting.size > 64) waiting.clear(); // the worker is too slow: skip what it still has
+  if (waiting.size > 64) waiting.clear(); // the worker is too slow: skip its queue
   page.dracoId = (page.dracoId ?? 0) + 1;
   waiting.set(page.dracoId, { time: cloud.time, frame: cloud.frame });
   const data = cloud.data.slice().buffer;
   draco.postMessage({ id: page.dracoId, data }, [data]);
 }
 
-/** `cloud.ageOf` exists for slices, whose server reports when it sent them. */
+/**
+ * Shows a cloud. `cloud.ageOf` exists only for slices, because the server reports when it sent
+ * them.
+ */
 function addCloud(cloud, decoded) {
   page.quietMs = 0;
   ++page.clouds;
@@ -144,7 +147,7 @@ function showPicture(picture) {
   page.scene.dirty = true;
 }
 
-/** Sets the range of the timeline: the recording, or what this page has kept of the stream. */
+/** Sets the range of the timeline to the recording, or to the slices that this page has kept. */
 function setSpan() {
   const { replay, timeline } = page;
   const span = replay.span ?? (replay.isOn ? null : page.kept);
@@ -158,11 +161,11 @@ function jump(time) {
   if (page.replay.span === null) return page.slices.show(time);
   const wasOn = page.replay.isOn;
   page.replay.begin(time);
-  // A paused page subscribes to slices only while it replays.
+  // A paused page is subscribed to slices only during a replay.
   if (!wasOn) page.choose();
 }
 
-/** Clears what belongs to the picture shown before. */
+/** Clears everything that belongs to the picture before. */
 function showTime() {
   const { isPast } = page.timeline;
   if (isPast) page.scene.setCovariance(null);
@@ -227,7 +230,7 @@ function checkFlow() {
   if (quiet !== (page.state === 'stalled')) setState(quiet ? 'stalled' : 'live');
 }
 
-/** Shows "loading" while the slices of the time to be shown have not come. */
+/** Shows "loading" while slices up to the time to be shown are missing. */
 function checkReplay() {
   const { replay, timeline } = page;
   const isLoading = replay.isOn && (replay.wanted !== null || timeline.at >= replay.reach);
@@ -257,7 +260,7 @@ function tokenOf() {
   const url = new URL(location.href);
   const given = url.searchParams.get('token');
   if (given === null) return sessionStorage.getItem('token') ?? '';
-  // Remove the token from the address, where others could read it.
+  // Removes the token from the address, where others could read it.
   sessionStorage.setItem('token', given);
   url.searchParams.delete('token');
   history.replaceState(null, '', url);
@@ -284,7 +287,8 @@ function connect() {
     state: (state) => {
       if (state === 'open') page.quietMs = 0;
       if (state === 'lost') page.poses.end();
-      if (state === 'connecting' && page.state !== 'connecting') return; // still lost
+      // The connection is still lost, so the state stays as it is.
+      if (state === 'connecting' && page.state !== 'connecting') return;
       setState(state === 'open' ? 'live' : state);
       if (state === 'refused' || state === 'expired') askForToken(state);
     },
@@ -313,14 +317,14 @@ function connect() {
   page.connection = new Connection(location.host, tokenOf(), on, wanted);
 }
 
-// A hidden or paused page ends its subscriptions to clouds.
+// If the page is hidden or paused, its subscriptions to clouds end.
 page.choose = () => page.connection?.choose();
 document.addEventListener('visibilitychange', () => {
   page.quietMs = 0;
   page.choose();
 });
 
-/** Reads the statistics of further pipelines, such as the sender's: ?also=robot:8765. */
+/** Reads the statistics of other pipelines, such as the sender's pipeline: ?also=robot:8765. */
 function connectOthers() {
   for (const host of new URL(location.href).searchParams.getAll('also')) {
     const on = {
@@ -333,7 +337,10 @@ function connectOthers() {
 
 // --- the loop ---
 
-/** Acknowledges slices, by which the server paces, and notes the age of the drawn cloud. */
+/**
+ * Acknowledges the drawn slices, which lets the server send more, and notes the age of the drawn
+ * cloud.
+ */
 function afterDrawing() {
   page.slices.drawn();
   page.replay.acknowledge();
@@ -352,7 +359,8 @@ function frame(now) {
   if (!page.timeline.isPast) page.video.draw(time);
   else if (time !== null) page.video.replay(time);
   afterDrawing();
-  // A busy browser may have received clouds that it has not delivered yet.
+  // A busy browser may have received clouds that it has not yet passed to the page, so a long frame
+  // counts as BUSY_MS at most.
   page.quietMs += Math.min(now - drawn, BUSY_MS);
   drawn = now;
   if (now - drawnCharts > SLOW_DRAW_MS) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The map that the poses of odometry give: one point a cube of CUBE_M, and the path of the sensor.
+// The map that the poses of odometry give, with one point per cube of CUBE_M, and the path of the
+// sensor.
 import * as THREE from 'three';
 import { FLOATS } from './fields.js';
 
 const CAPACITY = 600_000;
 const CUBE_M = 0.4;
-const EVERY = 3; // only every third point: the map fills within a few scans anyway
+const EVERY = 3; // every third point is enough, because a few scans fill the map anyway
 const MOST_STEPS = 20_000;
 const STEP_M = 0.2;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Colours of numbers on dark and light grounds, for the scene and its legend.
+// The colours of numbers on dark and light backgrounds, for the scene and its legend.
 
 /**
- * Lightness rises with the number, from blue to yellow, so that the order also shows to
- * colour-blind people and in black and white.
+ * The lightness increases with the number, from blue to yellow. Colour-blind people, and prints in
+ * black and white, therefore show the order, too.
  */
 const dark = {
   spectrum: ['#3d4fa8', '#3a73b4', '#3697b0', '#45b79b', '#86d079', '#cfe25f', '#fff4a8'],
@@ -30,7 +30,7 @@ function channels(color) {
   return [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16));
 }
 
-/** 256 RGBA pixels of a ramp. */
+/** Returns a ramp as 256 RGBA pixels. */
 export function texels(colors) {
   const out = new Uint8Array(256 * 4);
   for (let i = 0; i < 256; ++i) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The points of the last scans, in a ring buffer on the graphics card, coloured by its shader.
+// The points of the last scans in a ring buffer on the graphics card, where a shader colours them.
 import * as THREE from 'three';
 import { FLOATS } from './fields.js';
 import { MODES, rampOf, texels } from './palette.js';
 
-const CAPACITY = 1 << 19; // two scans of the largest sensors
-export const STRIDE = FLOATS + 1; // the last is the time
+const CAPACITY = 1 << 19; // room for two scans of the largest sensors
+export const STRIDE = FLOATS + 1; // the last float is the time
 const FOR_EVER_S = 1e6;
 export const NO_CLIP = 1e6;
 
@@ -52,8 +52,8 @@ export class FreshPoints {
     ramp.magFilter = ramp.minFilter = THREE.LinearFilter;
     this.uniforms = {
       now: { value: 0 },
-      span: { value: 0.1 }, // age at which a point has lost its glow [s]
-      hidden: { value: 0.1 }, // age from which a point is not drawn [s]
+      span: { value: 0.1 }, // age at which a point no longer glows [s]
+      hidden: { value: 0.1 }, // age at which a point disappears [s]
       floor: { value: -NO_CLIP },
       ceiling: { value: NO_CLIP },
       mode: { value: 0 },
@@ -68,7 +68,7 @@ export class FreshPoints {
       vertexShader,
       fragmentShader,
     });
-    // Two objects draw the ring, because the batches may wrap around its end.
+    // Two objects draw the ring, because the points may wrap around its end.
     this.parts = [geometry, geometry.clone()].map((part) => {
       for (const name of ['position', 'rest']) part.setAttribute(name, geometry.getAttribute(name));
       const points = new THREE.Points(part, material);
@@ -83,25 +83,26 @@ export class FreshPoints {
   clear() {
     this.next = 0;
     this.batches = []; // {start, count, stamp, place}, the oldest first
-    this.scan = this.scanBefore = undefined; // the last two scans, if points come as slices
-    this.epoch = null; // zero of the times [s], which are floats
+    this.scan = this.scanBefore = undefined; // numbers of the last two scans, for slices
+    this.epoch = null; // the time that is 0 in the floats [s]
     this.latest = 0;
     for (const part of this.parts) part.geometry.setDrawRange(0, 0);
   }
 
-  /** The number of points to be drawn. */
+  /** The number of points that are drawn. */
   get count() {
     return this.parts.reduce((sum, part) => sum + part.geometry.drawRange.count, 0);
   }
 
-  /** Capture time of the newest point [s]; null if there is none. */
+  /** The capture time of the newest point [s], or null if there are no points. */
   get time() {
     return this.epoch === null ? null : this.epoch + this.latest;
   }
 
   /**
-   * Adds `points`, in the layout of fields.js, of capture time `time` [s], moved by `matrix` if there
-   * is one. A slice has a `place`, {scan, slice, slices}, and stays until the next scan covers it.
+   * Adds `points`, in the layout of fields.js, that were captured at `time` [s]. Applies `matrix`
+   * to them unless it is null. A slice has a `place`, {scan, slice, slices}, and is shown until the
+   * next scan covers the place.
    */
   add(points, time, matrix, place = null) {
     const count = Math.min(points.length / FLOATS, CAPACITY);
@@ -144,7 +145,7 @@ export class FreshPoints {
     return (place.slice + 1) * newest.slices <= (newest.slice + 1) * place.slices;
   }
 
-  /** Drops batches that are over, or that the ring has overwritten. */
+  /** Drops batches that are too old or covered, or that new points in the ring have overwritten. */
   forget() {
     const { batches } = this;
     let held = batches.reduce((sum, batch) => sum + batch.count, 0);
@@ -156,7 +157,7 @@ export class FreshPoints {
     this.parts[1].geometry.setDrawRange(0, held - first);
   }
 
-  /** Marks the new points, so that only these go to the graphics card. */
+  /** Marks the new points, so that only they are copied to the graphics card. */
   markDirty(start, count) {
     const end = Math.min(start + count, CAPACITY);
     this.buffer.addUpdateRange(start * STRIDE, (end - start) * STRIDE);
@@ -164,13 +165,16 @@ export class FreshPoints {
     this.buffer.needsUpdate = true;
   }
 
-  /** The stretches [[from, count]] of the ring that `count` points from `start` take: two at its end. */
+  /**
+   * Returns the parts [[from, count]] of the ring that contain `count` points from `start` on.
+   * There are two parts if the points wrap around the end.
+   */
   spans(start, count) {
     const first = Math.min(count, CAPACITY - start);
     return first < count ? [[start, first], [0, count - first]] : [[start, count]];
   }
 
-  /** Calls `visit(offset in data)` for each point that is drawn. */
+  /** Calls `visit(offset in data)` for each drawn point. */
   each(visit) {
     const { floor, ceiling } = this.uniforms;
     for (const { start, count } of this.batches) {
@@ -182,7 +186,10 @@ export class FreshPoints {
     }
   }
 
-  /** The drawn point nearest to pixel `[x, y]` of a `width` by `height` picture, within `reach`. */
+  /**
+   * Returns the drawn point that is nearest to the pixel `[x, y]` of a picture of `width` by
+   * `height` pixels. Returns null if no point is within `reach` pixels.
+   */
   nearest(camera, { width, height }, [x, y], reach) {
     const e = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     const { data } = this;
@@ -200,7 +207,7 @@ export class FreshPoints {
     return found;
   }
 
-  /** Call this after each frame. */
+  /** Must be called after each frame. */
   drawn() {
     this.buffer.clearUpdateRanges();
   }
@@ -218,7 +225,7 @@ export class FreshPoints {
     this.uniforms.high.value = high;
   }
 
-  /** Sets how long [s] points without a place stay; in a trail, all points. */
+  /** Sets how long [s] points without a place are shown. In a trail, this applies to all points. */
   setSpan(span, isTrail) {
     this.uniforms.span.value = span;
     this.isTrail = isTrail;
@@ -229,7 +236,7 @@ export class FreshPoints {
     this.uniforms.hidden.value = hasPlaces && !this.isTrail ? FOR_EVER_S : this.uniforms.span.value;
   }
 
-  /** Limits the drawn points to these heights [m]. */
+  /** Draws only points between the heights `floor` and `ceiling` [m]. */
   setClip(floor, ceiling) {
     this.uniforms.floor.value = floor;
     this.uniforms.ceiling.value = ceiling;

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The transforms of each frame, interpolated, and extrapolated past the newest one because slices
-// come before the pose of their scan. Nothing is interpolated across a loss of the connection.
+// The transforms of each frame. Transforms between two poses are interpolated. Transforms after the
+// newest pose are extrapolated, because slices arrive before the pose of their scan. Nothing is
+// interpolated between poses before and after a loss of the connection.
 import { Matrix4, Quaternion, Vector3 } from 'three';
 
-const KEPT = 1 << 14; // half an hour at 10 Hz, longer than slices are kept
+const KEPT = 1 << 14; // half an hour at 10 Hz, which is longer than slices are kept
 const MOST_AHEAD_S = 0.5;
 const ONE = new Vector3(1, 1, 1);
 
 export class Poses {
   constructor() {
-    this.frames = new Map(); // lists of transforms by child frame, the oldest first
+    this.frames = new Map(); // lists of transforms by child frame, each with the oldest first
     this.begun = 0; // number of losses of the connection
   }
 
-  /** Ends the series of transforms: later ones do not continue it. */
+  /** Ends the series of transforms. Later transforms do not continue it. */
   end() {
     ++this.begun;
   }
@@ -33,7 +34,7 @@ export class Poses {
     if (list.length > KEPT) list.shift();
   }
 
-  /** The transform of `frame` at `time` [s], or null if it has none. */
+  /** Returns the transform of `frame` at `time` [s], or null if there is none. */
   at(frame, time) {
     const list = this.frames.get(frame) ?? [];
     if (list.length === 0) return null;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Draws points on the CPU, for browsers without a graphics card: their WebGL takes half a
-// microsecond a point, and this code a tenth of that. The picture lies behind what WebGL draws.
+// Draws points on the CPU, for browsers without a graphics card. Their WebGL needs half a
+// microsecond per point, and this code a tenth of that. The picture is behind everything that WebGL
+// draws.
 import * as THREE from 'three';
 import { rampOf, texels } from './palette.js';
 import { STRIDE } from './points.js';
 
-const VALUES = { height: 2, intensity: 3, range: 5, beam: 4 }; // index of the float in a point
+const VALUES = { height: 2, intensity: 3, range: 5, beam: 4 }; // indices of floats in a point
 const MOST_PX = 6;
 const LEAST_PX = 1.6;
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
-/** Returns true if the CPU renders what `gl` draws. */
+/** Returns true if `gl` draws on the CPU. */
 export function isSoftware(gl) {
   const about = gl.getParameter(gl.RENDERER) === 'WebKit WebGL' && gl.getExtension('WEBGL_debug_renderer_info');
   return SOFTWARE.test(gl.getParameter(about ? about.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
@@ -54,7 +55,10 @@ export class Raster {
     this.ground = packedColor(ground);
   }
 
-  /** Draws `fresh` and `map` as seen by `camera`; near points are `scale / distance` pixels wide. */
+  /**
+   * Draws the points of `fresh` and `map` as `camera` sees them. A point is about `scale /
+   * distance` pixels wide.
+   */
   draw(fresh, map, camera) {
     this.pixels.fill(this.ground);
     this.depths.fill(Infinity);
@@ -79,7 +83,7 @@ export class Raster {
     this.texture.needsUpdate = true;
   }
 
-  /** Fills the table of colours for points of age `age` [s]. */
+  /** Fills the table of colours for points whose age is `age` [s]. */
   tint({ span, glow, low, high }, age) {
     const fresh = Math.min(Math.max(1 - age / span.value, 0), 1);
     const bright = glow.value > 0.5 ? 0.62 + 0.38 * fresh * fresh : 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Replays a recording of the server: requests its slices from a time on, and acknowledges the
-// slices that are shown. The server paces by the acknowledgements.
+// Replays a recording of the server. Requests the slices after a time, and acknowledges the slices
+// that are shown. The acknowledgements control how fast the server sends.
 
 const AHEAD_S = 1; // slices are acknowledged this long before they are shown
 
@@ -14,30 +14,30 @@ const hasRecording = ({ schemaName, schema }) => {
 
 export class Replay {
   /**
-   * Calls `on.begin(number)` before the slices of a replay, `on.end()`, `on.show(time)` once all slices
-   * up to the time asked for are there, and `on.known()` after each status of a recording;
-   * `connection()` returns the Connection of the streams.
+   * Calls `on.begin(number)` before the slices of a replay, and `on.end()` after it. Calls
+   * `on.show(time)` as soon as all slices up to the requested time have arrived, and `on.known()`
+   * after each status of a recording. `connection()` returns the Connection of the streams.
    */
   constructor(on, connection) {
     Object.assign(this, { on, connection });
-    this.number = 0; // of the last replay; each slice of it has this number
+    this.number = 0; // number of the last replay, which all its slices contain
     this.isOn = false;
     this.streams = new Map(); // by channel: {newest, end, unshown}
     this.recordings = new Map(); // by channel: {from, to, damaged}
-    this.wanted = null; // time [s] to be shown once its slices have come
+    this.wanted = null; // time [s] that is shown as soon as its slices have arrived
   }
 
   get channels() {
     return [...(this.connection()?.subscriptions.values() ?? [])].filter(hasRecording);
   }
 
-  /** The first and the last time [s] of all recordings; null if there is none. */
+  /** The first and the last time [s] of all recordings, or null if there are no recordings. */
   get span() {
     const known = [...this.recordings.values()].filter(({ to }) => to > 0);
     return known.length ? [Math.min(...known.map((r) => r.from)), Math.max(...known.map((r) => r.to))] : null;
   }
 
-  /** Returns true if the server can read none of its recordings. */
+  /** True if the server cannot read any of its recordings. */
   get isBroken() {
     return this.recordings.size > 0 && this.span === null;
   }
@@ -68,7 +68,9 @@ export class Replay {
     this.on.end();
   }
 
-  /** Acknowledges slices that will not be shown, because the server paces by acknowledgements. */
+  /**
+   * Acknowledges the slices that will not be shown, because the server waits for acknowledgements.
+   */
   drop() {
     for (const [channel, { unshown }] of this.streams) if (unshown.length > 0) this.tell(channel, unshown.at(-1));
     this.streams.clear();
@@ -78,7 +80,10 @@ export class Replay {
     this.connection().tell('drawn', channel, { scan, slice });
   }
 
-  /** Restarts a replay after a subscription, which the server begins live. */
+  /**
+   * Restarts a running replay after a subscription, because the server begins each subscription
+   * with live slices.
+   */
   subscribed(channel) {
     const offered = [...this.connection().offered.values()];
     for (const known of this.recordings.keys()) if (!offered.includes(known)) this.recordings.delete(known);
@@ -95,7 +100,7 @@ export class Replay {
     this.on.known();
   }
 
-  /** Takes the server's status of the recording of `channel`. */
+  /** Handles the server's status of the recording of `channel`. */
   status(channel, { number, from, to, damaged, end }) {
     this.recordings.set(channel, { from, to, damaged });
     const stream = number === this.number ? this.streams.get(channel) : undefined;
@@ -104,11 +109,12 @@ export class Replay {
     this.release();
   }
 
-  /** Notes a slice that the worker has kept, or a pose. */
+  /** Notes a pose, or a slice that the worker has kept. */
   arrived(channel, header) {
     const stream = this.streams.get(channel);
     if (!stream || header.replay !== this.number) return this.tell(channel, header);
-    // A pose bypasses the worker, and so overtakes slices sent before it.
+    // Poses do not pass through the worker, so a pose may arrive here before slices that were sent
+    // earlier.
     if (!header.isPose) stream.newest = Math.max(stream.newest ?? 0, header.captured);
     stream.unshown.push(header);
     this.release();
@@ -118,13 +124,13 @@ export class Replay {
     return end !== null && (newest ?? 0) >= end;
   }
 
-  /** The time [s] up to which all slices have come. */
+  /** The time [s] up to which all slices have arrived. */
   get reach() {
     if (this.streams.size === 0) return -Infinity;
     return Math.min(...[...this.streams.values()].map((s) => (this.isWhole(s) ? Infinity : s.newest ?? -Infinity)));
   }
 
-  /** The time [s] of the last slice of all; Infinity if it is not known yet. */
+  /** The time [s] of the last slice of all streams, or Infinity if it is not yet known. */
   get last() {
     const streams = [...this.streams.values()];
     if (streams.length === 0 || !streams.every((s) => this.isWhole(s))) return Infinity;
@@ -143,7 +149,7 @@ export class Replay {
     this.on.show(time);
   }
 
-  /** Acknowledges the slices that are shown or will be within AHEAD_S. */
+  /** Acknowledges the slices that are shown now or within the next AHEAD_S. */
   acknowledge() {
     for (const [channel, { unshown }] of this.streams) {
       let last = null;

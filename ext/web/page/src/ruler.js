@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures between two points that the user chooses in the picture.
+// Measures the distance between two points that the user chooses in the picture.
 import * as THREE from 'three';
 
-const REACH_PX = 24; // distance at which a finger picks a point
-const MOST_MOVED_PX = 6; // a longer drag turns the camera
+const REACH_PX = 24; // largest distance from a click to the chosen point
+const MOST_MOVED_PX = 6; // a longer drag turns the camera instead
 
 export class Ruler {
-  /** `onChange({points, distance, rise})` after each choice. */
+  /** Calls `onChange({points, distance, rise})` after each choice. */
   constructor(fresh, camera, canvas) {
     Object.assign(this, { fresh, camera, canvas });
     this.ends = new THREE.BufferAttribute(new Float32Array(6), 3);

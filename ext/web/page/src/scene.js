@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The scene: fresh points, map, ground rings, the ellipse of the position, and a camera that orbits
-// or follows.
+// The scene: fresh points, the map, rings on the ground, the ellipse of the position, and a camera
+// that orbits or follows the sensor.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { Ellipse } from './ellipse.js';
@@ -12,8 +12,8 @@ import { Ruler } from './ruler.js';
 const RINGS_M = [10, 20, 30, 40, 50];
 const HOME = new THREE.Vector3(-27, -9, 24);
 const LOOK = new THREE.Vector3(6, 0, -1);
-const TURN = 0.08; // a key press [rad]
-const DAMPING_MS = 330; // in which the camera's motion falls to a third
+const TURN = 0.08; // angle per key press [rad]
+const DAMPING_MS = 330; // time in which the camera's motion decreases to about a third
 const ZOOM = 0.88;
 
 function rings() {
@@ -45,7 +45,8 @@ function rings() {
 export class Scene {
   constructor(canvas) {
     this.canvas = canvas;
-    // A context of three.js would have alpha, and the browser would blend it with the page.
+    // Creates the context here. A context that three.js creates has an alpha channel, so the
+    // browser would blend it with the page.
     const context = canvas.getContext('webgl2', { alpha: false, antialias: false, powerPreference: 'high-performance' });
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.scene = new THREE.Scene();
@@ -91,7 +92,8 @@ export class Scene {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(w, h, false);
     this.camera.aspect = w / h;
-    // A tall window gets a taller view, so that it is not too narrow.
+    // A tall window gets a larger vertical angle, because its horizontal angle would otherwise be
+    // too small.
     this.camera.fov = w < h ? 80 : 55;
     this.camera.updateProjectionMatrix();
     this.raster?.resize(this.canvas.width, this.canvas.height);
@@ -117,7 +119,7 @@ export class Scene {
     this.raster?.setColors(mode, isDark, this.scene.background);
   }
 
-  /** Moves the sensor, and the camera if it follows. */
+  /** Moves the sensor, and also the camera if it follows the sensor. */
   moveSensor(matrix) {
     const at = new THREE.Vector3().setFromMatrixPosition(matrix);
     if (this.follow) {
@@ -145,7 +147,7 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Draws points, and adds them to the map if they are `isNew`. */
+  /** Draws points. Adds them to the map if `isNew` is true. */
   add(points, time, matrix, place, isNew) {
     this.fresh.add(points, time, matrix, place);
     if (matrix) {
@@ -155,7 +157,7 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Draws the ellipse of `covariance`, or none if it is null. */
+  /** Draws the ellipse of `covariance`, or no ellipse if it is null. */
   setCovariance(covariance) {
     this.ellipse.object.visible = covariance !== null;
     if (covariance) this.ellipse.set(covariance);
@@ -182,7 +184,7 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Looks from above. */
+  /** Makes the camera look down from above. */
   lookDown() {
     const { target } = this.controls;
     const height = this.camera.position.distanceTo(target);
@@ -191,7 +193,7 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** The positions of camera and target relative to the sensor, as six numbers. */
+  /** The positions of the camera and its target relative to the sensor, as six numbers. */
   get pose() {
     const { position } = this.camera;
     return [position, this.controls.target].flatMap((v) => v.clone().sub(this.sensor).toArray());
@@ -204,9 +206,10 @@ export class Scene {
     this.dirty = true;
   }
 
-  /** Draws if something has changed; returns whether it has. */
+  /** Draws the scene if something has changed. Returns true if it was drawn. */
   draw() {
-    // Damping by time, not by frame: at a frame a second the camera would turn on for minutes.
+    // The damping depends on time instead of frames. At one frame per second, the camera would
+    // otherwise keep turning for minutes.
     const now = performance.now();
     this.controls.dampingFactor = 1 - Math.exp((this.drawnAt - now) / DAMPING_MS);
     this.drawnAt = now;
@@ -228,7 +231,7 @@ export class Scene {
     return true;
   }
 
-  /** The picture as a PNG. */
+  /** Returns the picture as a PNG. */
   picture() {
     this.dirty = true;
     this.draw();

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decodes slices in a worker. Its messages: {open, model} and {close} of a stream, {stream, header,
-// data, offset} of a slice, {show} of a time (null: none), {replay} of a number, {forget}. It answers
-// a slice by {stream, header, span} with points, step, error and has, or with lacksReference, and
-// {show} by {picture}. Slices of the current replay are only kept, and answered by {stream, header}.
+// Decodes slices in a worker. It receives {open, model} and {close} for a stream, {stream, header,
+// data, offset} for a slice, {show} with a time or null, {replay} with a number, and {forget}. The
+// answer to a live slice is {stream, header, span}, with points, step, error and has, or with
+// lacksReference. The answer to {show} is {picture}. Slices of the current replay are only kept;
+// their answer is {stream, header}.
 import { Decoder } from './decoder.js';
 import { History, Player } from './history.js';
 
-const MOST_BYTES = 64 << 20; // of coded slices: four minutes of 2 Mbit/s
+const MOST_BYTES = 64 << 20; // of coded slices: four minutes at 2 Mbit/s
 
 const compiled = WebAssembly.compileStreaming(fetch(new URL('lidar_decoder.wasm', self.location.href)));
 let module = null;
 const sources = new Map(); // {id, model, decoder, isClosed}
 const history = new History(MOST_BYTES);
 const pause = () => new Promise((done) => setTimeout(done));
-const recorded = new History(MOST_BYTES); // of the replay
+const recorded = new History(MOST_BYTES); // slices of the replay
 const [player, replayer] = [history, recorded].map(
   (kept) => new Player(kept, ({ model }) => new Decoder(module, model), pause),
 );
@@ -26,11 +27,11 @@ async function open(id, model) {
     module ??= await compiled;
     source.decoder = new Decoder(module, model);
   } catch {
-    // The sensor model is damaged: the stream has no decoder.
+    // The sensor model is damaged, so the stream has no decoder.
   }
 }
 
-/** Frees the decoder at once, because kept slices refer to their source for minutes. */
+/** Frees the decoder of a stream at once, because kept slices refer to their source for minutes. */
 function close(id) {
   Object.assign(sources.get(id) ?? {}, { decoder: null, isClosed: true });
   sources.delete(id);
@@ -47,7 +48,7 @@ function decode({ stream, header, data, offset }) {
     return postMessage(answer);
   }
   const slice = source.decoder.decode(bytes);
-  // The answer gets a copy: the decoder writes the next slice to the same place.
+  // Copies the points into the answer, because the decoder will overwrite them with the next slice.
   const points = slice.points?.slice() ?? null;
   if (points)
     history.add({ captured: header.captured, header, bytes, source, links: source.decoder.links(bytes) });
@@ -84,7 +85,7 @@ async function show(time, isReplay) {
   isShowing = false;
 }
 
-// Messages wait for the one before, because opening a decoder takes time.
+// Each message waits until the message before it is done, because opening a decoder takes time.
 let last = Promise.resolve();
 onmessage = ({ data: message }) => {
   if (message.show !== undefined) return void show(message.show, message.isReplay);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams of slices as the robot coded them: passes them to the worker, its points to the page, and
-// acknowledgements to the server.
+// Streams of slices as the robot encoded them. Passes slices to the worker, decoded points to the
+// page, and acknowledgements to the server.
 import { Clock } from './clock.js';
 
 const HEADER = 24;
 const VERSION = 1;
-const NO_REFERENCE_MS = 1000; // between two 'lacksReference'
+const NO_REFERENCE_MS = 1000; // time between two 'lacksReference'
 
-/** A WebAssembly module that is valid only if the browser has SIMD. */
+/** A WebAssembly module that is valid only in browsers that have SIMD. */
 const SIMD = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
 
 export const canDecode = () => typeof Worker === 'function' && WebAssembly.validate(new Uint8Array(SIMD));
 
 const fromBase64 = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 
-/** The header of a message, or null if its version is another one. */
+/** Returns the header of a message, or null if the header has another version. */
 export function readHeader(bytes) {
   if (bytes.length < HEADER) return null;
   const view = new DataView(bytes.buffer, bytes.byteOffset, HEADER);
@@ -34,23 +34,23 @@ class Stream {
   constructor(id, channel, about) {
     Object.assign(this, { id, channel, about });
     this.clock = new Clock();
-    this.newest = null; // header of the last live slice that the worker answered
-    this.told = null; // the header acknowledged last
+    this.newest = null; // header of the last live slice that the worker has answered
+    this.told = null; // header that was acknowledged last
     this.complained = 0;
   }
 }
 
 export class Slices {
   /**
-   * Calls `on.points(about, header, decoded, clock)` for live slices, `on.arrived(channel, header)` for
-   * slices and poses of a replay, `on.pose(header, bytes)` for its poses, `on.picture(picture)` as the
-   * answer to show(), and `on.span([from, to])` with the times that show() can take; `connection()`
-   * returns the Connection of the streams.
+   * Calls `on.points(about, header, decoded, clock)` for live slices, `on.arrived(channel, header)`
+   * for slices and poses of a replay, `on.pose(header, bytes)` for poses of a replay,
+   * `on.picture(picture)` as the answer to show(), and `on.span([from, to])` with the times that
+   * show() accepts. `connection()` returns the Connection of the streams.
    */
   constructor(on, connection) {
     Object.assign(this, { on, connection });
     this.streams = new Map(); // by channel
-    this.abouts = []; // by the id of the stream, which may have ended
+    this.abouts = []; // by id of the stream, also of streams that have ended
     this.damaged = 0;
   }
 
@@ -63,7 +63,7 @@ export class Slices {
     return stream;
   }
 
-  /** Returns the worker, and starts it when first called. */
+  /** Returns the worker. The first call starts it. */
   start() {
     if (this.worker) return this.worker;
     this.worker = new Worker(new URL('./slice_worker.js', import.meta.url), { type: 'module' });
@@ -78,7 +78,7 @@ export class Slices {
     this.worker.postMessage({ close: stream.id });
   }
 
-  /** Takes a message of `channel`; `captured` is in nanoseconds. */
+  /** Handles a message of `channel`. `captured` is in nanoseconds. */
   add(channel, bytes, captured) {
     const header = readHeader(bytes);
     if (!header) return;
@@ -108,17 +108,20 @@ export class Slices {
     this.connection().tell('lacksReference', stream.channel);
   }
 
-  /** Asks for the picture at a capture time [s], of the replay or the live stream; null: stop. */
+  /**
+   * Requests the picture at a capture time [s] of the replay or the live streams. null stops the
+   * pictures.
+   */
   show(time, isReplay = false) {
     this.worker?.postMessage({ show: time, isReplay });
   }
 
-  /** Makes the worker keep only the slices of this replay; 0: none. */
+  /** Makes the worker keep the slices of this replay, and no others. 0 means no replay. */
   replay(number) {
     this.start().postMessage({ replay: number });
   }
 
-  /** Drops the kept slices of live streams. */
+  /** Drops the slices of live streams that the worker keeps. */
   forget() {
     this.worker?.postMessage({ forget: true });
   }

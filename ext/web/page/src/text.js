@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The texts of the page in English and German. An element's data-text names its text, data-title its
-// tooltip, data-label the label for screen readers.
+// The texts of the page in English and German. In the page, the attribute data-text names the text
+// of an element, data-title its tooltip, and data-label its label for screen readers.
 
 const TEXTS = {
   scene: [
@@ -125,7 +125,7 @@ export const language = asked.startsWith('de') ? 'de' : 'en';
 
 export const t = (name) => TEXTS[name]?.[language === 'de' ? 1 : 0] ?? name;
 
-/** Formats a number by the language's rules. */
+/** Formats a number by the rules of the language. */
 export const number = (value, digits = 0) =>
   value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits });
 

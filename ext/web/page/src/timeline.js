@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The time that is shown: live, or in the past, playing or paused.
+// The time that is shown. It is live or in the past, and plays or is paused.
 import { number, t } from './text.js';
 
 const LEAST_S = 1; // a shorter span has no slider
-const HOLE_S = 1; // playback skips a longer gap between slices
+const HOLE_S = 1; // playback skips longer gaps between slices
 const STEP_S = 10; // of the buttons 'back' and 'forth'
 const KEYS_S = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -60, PageUp: 60 };
 
-/** 7.0 s, 42 s, 3:20 min or 5:03:20 h. */
+/** Formats a duration, as 7.0 s, 42 s, 3:20 min or 5:03:20 h. */
 export function duration(seconds) {
   if (seconds < 60) return `${number(seconds, seconds < 10 ? 1 : 0)} s`;
   const whole = Math.round(seconds);
@@ -19,8 +19,9 @@ export function duration(seconds) {
 
 export class Timeline {
   /**
-   * Asks for pictures by `on.jump(time)`, then `on.ask(time)`; calls `on.past()` and `on.live()` at
-   * changes. `on.reach()` is the time up to which slices have come, `on.last()` that of the last one.
+   * Requests pictures by `on.jump(time)`, and then by `on.ask(time)`. Calls `on.past()` and
+   * `on.live()` when the time changes between live and past. `on.reach()` is the time up to which
+   * slices have arrived, and `on.last()` the time of the last slice.
    */
   constructor(element, on) {
     Object.assign(this, { element, on });
@@ -28,7 +29,7 @@ export class Timeline {
     this.output = element.querySelector('output');
     this.words = element.querySelector('#recording');
     this.at = null; // the time that is shown [s]; null: live
-    this.asked = null; // the time [s] of a request without an answer
+    this.asked = null; // the time [s] of a request that has no answer yet
     this.span = [0, 0];
     this.slider.oninput = () => this.seek(this.span[1] + Number(this.slider.value));
     this.slider.onkeydown = (event) => {
@@ -54,7 +55,7 @@ export class Timeline {
     this.update();
   }
 
-  /** Jumps by `seconds`; from live only back. */
+  /** Jumps by `seconds`. If the time is live, jumps only back. */
   step(seconds) {
     if (this.isPast || seconds < 0) this.seek((this.at ?? this.span[1]) + seconds);
   }
@@ -66,14 +67,14 @@ export class Timeline {
     this.update();
   }
 
-  /** Goes live, and empties the range. */
+  /** Returns to live, and empties the range. */
   forget() {
     this.live();
     this.span = [0, 0];
     this.update();
   }
 
-  /** Takes the answer to a request; returns true if it is still wanted. */
+  /** Handles the answer to a request. Returns true if the answer is still wanted. */
   answered({ time, next }, isHeld) {
     if (time !== this.asked) return false;
     this.asked = null;
@@ -92,7 +93,7 @@ export class Timeline {
     this.on.ask(this.at);
   }
 
-  /** Shows words about the recording's state. */
+  /** Shows a text about the state of the recording. */
   tell(words) {
     if (words !== this.words.textContent) this.words.textContent = words;
   }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The controls: colours, camera, ruler, clip, pause, charts, theme; and the address that keeps them.
+// The controls: colours, camera, ruler, clip, pause, charts, theme. The address of the page stores
+// them.
 import { FLOATS } from './fields.js';
 import { MODES, rampOf, texels } from './palette.js';
 import { NO_CLIP } from './points.js';
 import { number, t } from './text.js';
 
 const TRAIL_S = 1;
-const SHARE_MS = 400; // from the last change to the update of the address
+const SHARE_MS = 400; // delay between the last change and the update of the address
 const NARROW = '(max-width: 760px)';
 
 const byId = (id) => document.getElementById(id);
@@ -18,7 +19,7 @@ const stored = (key) => {
   }
 };
 
-/** The 2nd and the 98th percentile of the values. */
+/** Returns the 2nd and the 98th percentile of the values. */
 function middle(values) {
   if (values.length === 0) return [0, 1];
   values.sort();
@@ -98,7 +99,10 @@ class Tools {
     context.putImageData(new ImageData(new Uint8ClampedArray(pixels), 256, 1), 0, 0);
   }
 
-  /** Adapts the scales of colours to the points, slowly, so that colours keep their meaning. */
+  /**
+   * Adapts the scales of the colours to the points. Adapts them slowly, so that colours keep their
+   * meaning.
+   */
   learn(points, has) {
     if (has.intensity !== this.known.intensity || has.beam !== this.known.beam) {
       this.known = has;
@@ -119,7 +123,7 @@ class Tools {
       this.scales[mode] = kept.map((v, i) => (first ? found[i] : v + 0.2 * (found[i] - v)));
     }
     this.scales.range[0] = this.scales.intensity[0] = 0;
-    // Each slice has all beams, so the largest number is the last beam.
+    // Each slice has points of all beams, so the largest number is the number of the last beam.
     let beam = this.seen ? this.scales.beam[1] : 1;
     for (let i = 4; i < points.length; i += FLOATS * 7) beam = Math.max(beam, points[i]);
     this.scales.beam[1] = beam;
@@ -131,7 +135,7 @@ class Tools {
 
   // --- time ---
 
-  /** Points stay for the time of a scan, or of a trail. */
+  /** Sets how long points are shown: for the time of a scan, or of a trail. */
   setSpan() {
     const trail = byId('trail').getAttribute('aria-pressed') === 'true';
     const span = trail ? TRAIL_S : this.page.spanS * 0.995;
@@ -212,7 +216,7 @@ class Tools {
     this.applyClip();
   }
 
-  /** A slider at its end does not clip. */
+  /** Applies the sliders of the clip. A slider at its end does not clip. */
   applyClip() {
     const [low, high] = this.clip.map((input) => Number(input.value));
     const isEnd = [low <= Number(this.clip[0].min), high >= Number(this.clip[1].max)];
@@ -242,7 +246,9 @@ class Tools {
 
   // --- the address ---
 
-  /** Puts the settings and the camera into the address, so that a copied link shows the same view. */
+  /**
+   * Stores the settings and the camera in the address, so that a copied link shows the same view.
+   */
   share() {
     clearTimeout(this.sharing);
     this.sharing = setTimeout(() => {
@@ -354,7 +360,7 @@ class Tools {
     this.setMode(this.mode);
   }
 
-  /** The colours of the charts: a new object after each change. */
+  /** Returns the colours of the charts. It is a new object after each change. */
   style() {
     return this.colors;
   }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The camera's picture: decodes frames of foxglove.CompressedVideo by WebCodecs, and shows each with
-// the cloud of its time, live or in the past.
+// The camera's picture. Decodes the frames of foxglove.CompressedVideo by WebCodecs, and shows each
+// picture together with the cloud of the same time, live or in the past.
 
 const CODECS = { h264: 'avc1.42E01F', vp8: 'vp8' };
 const MOST_WAITING = 8;
-const MOST_HELD = 4; // pictures: a decoder has few buffers
-const FAR_S = 1; // a larger difference of times is another clock, or a jump
+const MOST_HELD = 4; // decoded pictures that are kept; a decoder has few buffers
+const FAR_S = 1; // a larger difference of times means another clock, or a jump
 const MOST_BYTES = 32 << 20; // of coded frames
 
-/** Returns true for an H.264 access unit (Annex B) with an IDR slice, or a VP8 key frame. */
+/**
+ * Returns true if `data` is an H.264 access unit (Annex B) with an IDR slice, or a VP8 key frame.
+ */
 export function isKey(format, data) {
   if (format === 'vp8') return (data[0] & 1) === 0;
   for (let i = 0; i + 3 < data.length; ++i)
@@ -24,7 +26,7 @@ export class Video {
     this.clear();
   }
 
-  /** Drops the frames of the robot shown before. */
+  /** Drops the frames of the robot that was shown before. */
   clear() {
     this.kept = []; // coded frames, the oldest first
     this.bytes = 0;
@@ -32,9 +34,9 @@ export class Video {
     this.live();
   }
 
-  /** Shows new frames as they come. */
+  /** Shows new frames as soon as they arrive. */
   live() {
-    this.next = null; // number of the kept frame to be decoded next
+    this.next = null; // number of the kept frame that is decoded next
     this.at = null; // the time that is shown [s]; null: live
     this.reset();
   }
@@ -74,7 +76,7 @@ export class Video {
       if (!key) return;
       this.start(format);
     }
-    // A decoder that falls behind skips to the next key frame.
+    // If the decoder is too slow, frames are skipped until the next key frame.
     if (this.decoder.decodeQueueSize > MOST_WAITING) this.needsKey = true;
     if (this.needsKey && !key) return;
     this.needsKey = false;
@@ -82,7 +84,7 @@ export class Video {
     this.decoder.decode(new EncodedVideoChunk({ type: key ? 'key' : 'delta', timestamp, data }));
   }
 
-  /** Shows the kept picture of the past time `time` [s], if there is one. */
+  /** Shows the kept picture of the time `time` [s] in the past, if there is one. */
   replay(time) {
     const isJump = this.next === null || time < this.at || time > this.at + FAR_S || this.next < this.first;
     this.at = time;
@@ -101,7 +103,10 @@ export class Video {
     this.next = key < 0 ? null : this.first + key;
   }
 
-  /** Shows the newest picture up to `time` [s], the cloud's time; null: the newest of all. */
+  /**
+   * Shows the newest picture that is not later than `time` [s], the time of the cloud. If `time` is
+   * null, shows the newest of all pictures.
+   */
   draw(time) {
     const ahead = (picture) => picture.timestamp * 1e-6 - time;
     const isDue = (picture) => time === null || ahead(picture) <= 0 || ahead(picture) > FAR_S;

@@ -19,7 +19,9 @@ class Reader {
     }
   }
 
-  /** Calls `visit(field, value)` for each field; length-delimited values are views. */
+  /**
+   * Calls `visit(field, value)` for each field. The values of length-delimited fields are views.
+   */
   fields(visit) {
     while (this.at < this.bytes.length) {
       const tag = this.varint();
@@ -72,7 +74,7 @@ const numbers = (bytes, n) => {
   return Array.from({ length: n }, (_, i) => v[i] ?? (i === 3 && !bytes ? 1 : 0));
 };
 
-/** foxglove.PointCloud: `data` is a view of `bytes`. */
+/** Reads a foxglove.PointCloud. `data` of the result is a view of `bytes`. */
 export function pointCloud(bytes) {
   const m = collect(bytes, { 1: 'time', 2: 'frame', 4: 'stride', 5: 'fields[]', 6: 'data' });
   return {
@@ -87,7 +89,7 @@ export function pointCloud(bytes) {
   };
 }
 
-/** foxglove.CompressedPointCloud. */
+/** Reads a foxglove.CompressedPointCloud. */
 export function compressedCloud(bytes) {
   const m = collect(bytes, { 1: 'time', 2: 'frame', 4: 'data' });
   return {
@@ -97,7 +99,7 @@ export function compressedCloud(bytes) {
   };
 }
 
-/** foxglove.CompressedVideo: one access unit. */
+/** Reads a foxglove.CompressedVideo, which contains one access unit. */
 export function compressedVideo(bytes) {
   const m = collect(bytes, { 1: 'time', 3: 'data', 4: 'format' });
   return {
@@ -107,7 +109,7 @@ export function compressedVideo(bytes) {
   };
 }
 
-/** foxglove.FrameTransform. */
+/** Reads a foxglove.FrameTransform. */
 export function frameTransform(bytes) {
   const m = collect(bytes, { 1: 'time', 2: 'parent', 3: 'child', 4: 'translation', 5: 'rotation' });
   return {
