@@ -16,7 +16,7 @@ void WriteTime(ProtoWriter& out, std::uint64_t unix_ns) {
   });
 }
 
-/// Vector3 or Quaternion, whose members are numbered from 1.
+/// Writes a Vector3 or a Quaternion. The fields of both are numbered from 1.
 template <std::size_t n>
 void WriteNumbers(ProtoWriter& out, std::uint32_t field, const std::array<double, n>& values) {
   out.Message(field, [&](ProtoWriter& w) {
@@ -31,7 +31,7 @@ void WritePose(ProtoWriter& out, const Pose& pose) {
   });
 }
 
-/// PackedElementField.NumericType.
+/// Returns the value of PackedElementField.NumericType for `type`.
 std::uint64_t NumericType(FieldType type) {
   switch (type) {
     case FieldType::kU8:

@@ -34,12 +34,12 @@ class ProtoWriter {
     BeginBytes(field, bytes.size);
     bytes_.Bytes(bytes);
   }
-  /// The caller appends `size` bytes next.
+  /// Begins a field of bytes. The caller must append `size` bytes next.
   void BeginBytes(std::uint32_t field, std::size_t size) {
     Tag(field, kLength);
     RawVarint(size);
   }
-  /// A message within this one, which `write` fills.
+  /// Appends a field that is a message. `write` writes the fields of this message.
   template <class Write>
   void Message(std::uint32_t field, const Write& write) {
     std::vector<std::uint8_t> inner;

@@ -24,7 +24,7 @@ std::optional<std::uint32_t> Id(const json& object, const char* name) {
   return found != object.end() ? Id(*found) : std::nullopt;
 }
 
-/// The array `name` of a request; NULL if there is none.
+/// Returns the array `name` of a request, or NULL if there is no such array.
 const json* ArrayOf(const json& request, const char* name) {
   const auto found = request.find(name);
   return found != request.end() && found->is_array() ? &*found : nullptr;
@@ -67,7 +67,8 @@ void PutLe(std::uint64_t value, unsigned bytes, std::uint8_t* out) {
   for (unsigned i = 0; i < bytes; ++i) out[i] = static_cast<std::uint8_t>(value >> 8 * i);
 }
 
-/// `{"op":"drawn","subscriptionId":7,"scan":1234,"slice":5}`; other requests have no slice.
+/// Parses `{"op":"drawn","subscriptionId":7,"scan":1234,"slice":5}`, or a request of another
+/// `kind`, which has no scan and no slice.
 Request ParseOfSlices(const json& message, Request::Kind kind) {
   const auto subscription = Id(message, "subscriptionId");
   const auto scan = Id(message, "scan");
@@ -82,7 +83,7 @@ Request ParseOfSlices(const json& message, Request::Kind kind) {
   return request;
 }
 
-/// `{"op":"replay","subscriptionId":7,"number":3,"time":1764085200.5}`
+/// Parses `{"op":"replay","subscriptionId":7,"number":3,"time":1764085200.5}`.
 Request ParseReplay(const json& message) {
   constexpr double kLatest_s = 1e10;  // year 2286
   Request request = ParseOfSlices(message, Request::Kind::kReplay);

@@ -10,7 +10,7 @@
 namespace lidar::foxglove {
 namespace {
 
-/// Numbers of FieldDescriptorProto.Type.
+/// The values of FieldDescriptorProto.Type.
 enum class Type : std::uint8_t {
   kDouble = 1,
   kInt64 = 3,
@@ -26,7 +26,7 @@ struct Field {
   const char* name;
   std::uint32_t number;
   Type type;
-  const char* type_name = nullptr;  // of messages and enumerations
+  const char* type_name = nullptr;  // for messages and enumerations
   bool repeated = false;
 };
 
@@ -95,7 +95,7 @@ const std::vector<Message> kMessages = {
       {"rotation", 5, Type::kMessage, kQuaternion}}},
 };
 
-// The numbers of fields are those of google/protobuf/descriptor.proto.
+// The functions below use the field numbers of google/protobuf/descriptor.proto.
 
 void WriteField(ProtoWriter& out, const Field& field) {
   constexpr std::uint64_t kOptional = 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The schemas of what we send, as channels carry them: https://github.com/foxglove/foxglove-sdk.
+// The schemas of the messages that we send, as channels announce them:
+// https://github.com/foxglove/foxglove-sdk.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,7 +16,7 @@ enum class Schema {
   kPose,
   kFrameTransform,
   kStatistics,
-  kSlice,  // as the robot coded it, for our own page
+  kSlice,  // slices as the robot encoded them, for our own page
 };
 
 struct SchemaText {
@@ -26,10 +27,10 @@ struct SchemaText {
 };
 SchemaText TextOf(Schema schema);
 
-/// A serialised google.protobuf.FileDescriptorSet with all messages of protobuf that we send.
+/// Returns a serialised google.protobuf.FileDescriptorSet of all protobuf messages that we send.
 std::vector<std::uint8_t> FileDescriptorSet();
 
-/// The members of a statistics message, with descriptions.
+/// A member of a statistics message, and its description.
 struct StatisticsField {
   const char* name;
   const char* description;  // with its unit

@@ -60,7 +60,8 @@ void MessageReader::Append(ByteView bytes) {
   pending_.insert(pending_.end(), bytes.begin(), bytes.end());
 }
 
-/// The checked header of the next frame; nothing if bytes are missing or after an error.
+/// Reads and checks the header of the next frame. Returns nothing if bytes are missing, and after
+/// an error.
 std::optional<MessageReader::FrameHead> MessageReader::ReadHead() {
   ByteReader in(pending_.data() + read_, pending_.size() - read_);
   const std::uint8_t first = in.U8();
@@ -70,7 +71,8 @@ std::optional<MessageReader::FrameHead> MessageReader::ReadHead() {
   frame.final = (first & kFinal) != 0;
   frame.opcode = static_cast<Opcode>(first & 0x0F);
   std::uint64_t size = second & 0x7F;
-  // A client masks all it sends (section 5.1); reserved bits need a negotiated extension.
+  // A client must mask all frames (RFC 6455, section 5.1). Reserved bits need an extension, and
+  // none is negotiated.
   const bool control = IsControl(frame.opcode);
   if ((first & kReserved) != 0 || (second & kMasked) == 0 || !IsKnown(frame.opcode) ||
       (control && (!frame.final || size > kMostOfControl))) {
@@ -93,7 +95,8 @@ std::optional<MessageReader::FrameHead> MessageReader::ReadHead() {
   return frame;
 }
 
-/// A message begins with a text or binary frame and goes on with continuation frames only.
+/// Checks the order of frames: a message begins with a text or binary frame, and only continuation
+/// frames follow. If the order is wrong, sets the error and returns false.
 bool MessageReader::IsAllowed(const FrameHead& frame) {
   if (IsControl(frame.opcode)) return true;
   const bool continues = frame.opcode == Opcode::kContinuation;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Frames of the WebSocket protocol (RFC 6455), on the server's side.
+// Frames of the WebSocket protocol (RFC 6455), as a server writes and reads them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -19,39 +19,40 @@ enum class Opcode : std::uint8_t {
   kPong = 10,
 };
 
-/// Why a connection is closed (section 7.4.1).
+/// The reason why a connection is closed (RFC 6455, section 7.4.1).
 enum class CloseCode : std::uint16_t {
   kNormal = 1000,
   kGoingAway = 1001,
   kProtocolError = 1002,
   kTooLarge = 1009,
-  kTokenOver = 4401,  // ours: the client needs a new token
+  kTokenOver = 4401,  // not in the RFC: the client needs a new token
 };
 
-/// Appends the header of a final frame of the server with a payload of `size` bytes.
+/// Appends the header of an unfragmented frame whose payload has `size` bytes. The server does not
+/// mask its frames.
 void AppendFrameHeader(Opcode opcode, std::uint64_t size, std::vector<std::uint8_t>* out);
-/// A whole frame. The payload of a control frame has at most 125 bytes.
+/// Returns a whole frame. The payload of a control frame may have at most 125 bytes.
 std::vector<std::uint8_t> Frame(Opcode opcode, ByteView payload);
 std::vector<std::uint8_t> TextFrame(std::string_view text);
 std::vector<std::uint8_t> CloseFrame(CloseCode code);
 
-/// A message of the client, put together from its fragments, or a control frame.
+/// A control frame, or a message of the client whose fragments have been joined.
 struct ClientMessage {
   Opcode opcode = Opcode::kText;
   std::vector<std::uint8_t> payload;
 };
 
-/// Finds the messages in the bytes that a client sends, which may be anything.
+/// Finds the messages in the bytes that a client sends. The client may send any bytes.
 class MessageReader {
  public:
   /// Messages of more than `max_size` bytes are an error.
   explicit MessageReader(std::size_t max_size) : max_size_(max_size) {}
 
-  /// Keeps the remainder behind the last message. Take all messages before you append more.
+  /// Adds received bytes. Next() must have returned all complete messages before.
   void Append(ByteView bytes);
-  /// Returns nothing if more bytes are needed, and always after an error.
+  /// Returns the next message. Returns nothing if more bytes are needed, and always after an error.
   std::optional<ClientMessage> Next();
-  /// The reason for which the connection must be closed.
+  /// Returns the code with which the connection must be closed, or nothing if there is no error.
   std::optional<CloseCode> error() const { return error_; }
 
  private:
@@ -69,8 +70,8 @@ class MessageReader {
 
   const std::size_t max_size_;
   std::vector<std::uint8_t> pending_;
-  std::size_t read_ = 0;                    // bytes of pending_ already used
-  std::optional<ClientMessage> fragments_;  // of an incomplete message
+  std::size_t read_ = 0;                    // number of bytes of pending_ that were used
+  std::optional<ClientMessage> fragments_;  // joined fragments of an incomplete message
   std::optional<CloseCode> error_;
 };
 
