@@ -16,7 +16,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A header of ROS; the stamp 0 stands for an unknown time.
+/// Returns a ROS header. Its stamp is 0 if the time is unknown.
 cdr::Header HeaderOf(GstClockTime time, const std::string& frame_id) {
   const GstClockTime known = GST_CLOCK_TIME_IS_VALID(time) ? time : 0;
   return {Time(Duration(static_cast<gint64>(std::min<GstClockTime>(known, G_MAXINT64)))), frame_id};
@@ -27,7 +27,8 @@ GstClockTime CaptureTime(GstBuffer* buffer, GstClockTime otherwise) {
   return GST_CLOCK_TIME_IS_VALID(time) ? time : otherwise;
 }
 
-/// Returns `wanted`, else the frame in `field` of the caps, else `usual`.
+/// Returns `wanted` unless it is empty. Otherwise returns the frame in `field` of the caps, or
+/// `usual` if the caps have no frame.
 std::string FrameOf(const GstCaps* caps, const std::string& wanted, const char* field,
                     const char* usual) {
   if (!wanted.empty()) return wanted;
@@ -82,10 +83,10 @@ class CloudWriter : public BufferWriter {
   const CloudInfo info_;
 };
 
-/// Writes a message for each sample of a packet.
+/// Writes one message for each sample of a packet.
 class ImuWriter : public BufferWriter {
-  /// The sensor's clock was set if a sample is earlier than the first, or later by more than this.
-  /// Such a sample gets the log time of the sample before.
+  /// If a sample is earlier than the first sample of its packet, or later by more than this, the
+  /// sensor's clock was set. Such a sample gets the log time of the sample before it.
   static constexpr std::uint64_t kLongestPacket = GST_SECOND;
 
  public:

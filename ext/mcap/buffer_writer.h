@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts buffers of a stream to messages.
+// Converts the buffers of a stream to messages of a recording.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,24 +12,24 @@
 
 namespace lidar::gst {
 
-/// A message, and its times.
+/// A message of a recording, and its times.
 struct NewMessage {
-  GstClockTime after{};         // since the buffer's own time [ns]
+  GstClockTime after{};         // log time relative to the log time of the buffer [ns]
   GstClockTime publish_time{};  // capture time, if known [ns since 1970]
   mcap::Bytes data;
 };
 
 class BufferWriter {
  public:
-  /// Returns a writer for buffers of `caps`. An empty `sensor_frame` leaves the frames to the caps.
-  /// Returns NULL if the caps cannot be recorded; `why` then has the reason for a user.
+  /// Returns a writer for buffers with `caps`. If `sensor_frame` is empty, the caps determine the
+  /// frames. Returns NULL and sets `why`, a text for users, if such buffers cannot be recorded.
   static std::unique_ptr<BufferWriter> Make(const GstCaps* caps, const std::string& sensor_frame,
                                             std::string* why);
   virtual ~BufferWriter() = default;
 
   MessageType type() const { return type_; }
-  /// Appends the messages of `buffer`, logged at `log_time`. Returns false if the buffer
-  /// contradicts its caps.
+  /// Appends the messages of `buffer`, whose log time is `log_time`. Returns false if the buffer
+  /// does not match its caps.
   virtual bool Write(GstBuffer* buffer, GstClockTime log_time, std::vector<NewMessage>* out) = 0;
 
  protected:

@@ -68,11 +68,14 @@ const std::array<Stat<Counters>, 4> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards settings and counters; not held while writing, as a disk may hang
+  // Guards the settings and the counters. It is not locked while writing, because a disk may hang.
+  std::mutex mutex;
   Settings settings;
   Counters counters;
 
-  std::mutex recording;  // guards what follows; taken before `mutex`; never held while posting
+  // Guards the next seven members. It is locked before `mutex`, and never while messages are
+  // posted.
+  std::mutex recording;
   std::unique_ptr<Recorder> recorder;
   Timeline timeline;
   std::set<std::string> topics;
@@ -81,7 +84,7 @@ struct State {
   bool failed = false;
   Counters counted;  // copied to `counters`
 
-  guint next_pad = 0;  // under the object's lock
+  guint next_pad = 0;  // guarded by the lock of the element
 };
 
 }  // namespace
@@ -160,15 +163,15 @@ static void PostFinished(GstLidarMcapSink* self, const std::vector<RecordedFile>
   }
 }
 
-/// Copies the counters for `stats`. The caller holds `recording`.
+/// Copies the counters, so that `stats` shows them. The caller has locked `recording`.
 static void TellCounters(State* state) {
   if (state->recorder) state->counted.chunks = state->recorder->chunks();
   std::lock_guard lock(state->mutex);
   state->counters = state->counted;
 }
 
-/// Runs `work` on the recorder under its lock. Posts its messages after the lock is released.
-/// Returns false if the recording is over.
+/// Locks the recorder and calls `work`. Posts the resulting messages after the lock is released.
+/// Returns false if the recording has already ended, or if `work` fails.
 template <class Work>
 static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   State& state = *self->state;
@@ -188,7 +191,7 @@ static bool WithRecorder(GstLidarMcapSink* self, Work work) {
   return !fault;
 }
 
-/// Creates a recorder for the settings. If that fails, posts a message and returns false.
+/// Creates a recorder from the settings. If that fails, posts an error message and returns false.
 static bool Start(GstLidarMcapSink* self) {
   State& state = *self->state;
   std::string why = "it is not set";
@@ -251,7 +254,8 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
     name = wanted != nullptr ? wanted : "sink_" + std::to_string(number);
     if (const PadPtr taken(gst_element_get_static_pad(element, name.c_str())); !taken) break;
   } while (wanted == nullptr);
-  // The stream has its pad's name, so that sink_0::topic reaches it.
+  // The stream has the name of its pad, so that applications can set the stream's property as
+  // sink_0::topic.
   GstElement* stream = gst_lidar_mcap_stream_new(self, name.c_str());
   if (!gst_bin_add(GST_BIN(self), stream)) return nullptr;
   const PadPtr target(gst_element_get_static_pad(stream, "sink"));
@@ -269,8 +273,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   const StringPtr name(gst_pad_get_name(pad));
   const ElementPtr stream(gst_bin_get_by_name(GST_BIN(element), name.get()));
   if (stream) {
-    // The stream stops first, which wakes a thread that waits in the stream and holds the pad's
-    // lock.
+    // Stops the stream first. This wakes a thread that waits in the stream and holds the lock of
+    // the pad.
     gst_element_set_locked_state(stream.get(), TRUE);
     gst_element_set_state(stream.get(), GST_STATE_NULL);
   }
@@ -279,8 +283,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   if (stream) gst_bin_remove(GST_BIN(element), stream.get());
 }
 
-/// Returns the caps without fields that may change within a channel, such as a cloud's width, which
-/// each message has.
+/// Returns the caps as text, without the fields that may change within a channel. The width of a
+/// cloud may change, because each message contains it.
 static std::string KindOf(lidar::ScalarCaps caps, MessageType type) {
   auto& fields = caps.fields;
   if (type == MessageType::kCloud)
@@ -317,7 +321,7 @@ bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
   if (!state.recorder) return false;
   state.topics.insert(topic);
   state.has_slices = state.has_slices || writer.type() == MessageType::kSlice;
-  // If earlier caps of the stream come again, the stream continues in their channel.
+  // If the stream returns to earlier caps, it continues in the channel of these caps.
   const auto [known, is_new] = stream->channels.try_emplace(KindOf(caps, writer.type()));
   stream->channel_id = known->second;
   if (!is_new) return true;

@@ -17,24 +17,25 @@ G_END_DECLS
 
 namespace lidar::gst {
 
-/// The channel of a stream's next messages, and all its channels.
+/// The channels of a stream: the channel for the next messages, and all channels by their caps.
 struct RecordedStream {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
   std::map<std::string, std::uint16_t> channels;  // by the caps of each channel
 };
 
-/// Called by the streams of the sink, in their threads. Errors are posted on the sink.
+/// The functions below are called by the streams of the sink, in the streams' threads. Errors are
+/// posted on the sink.
 bool McapSinkAddChannel(GstLidarMcapSink* sink, const BufferWriter& writer,
                         const std::string& topic, const ScalarCaps& caps, RecordedStream* stream);
 /// `running_time` may be GST_CLOCK_TIME_NONE.
 GstFlowReturn McapSinkTake(GstLidarMcapSink* sink, BufferWriter* writer, RecordedStream* stream,
                            GstBuffer* buffer, GstClockTime running_time);
-/// Ends a stream. The end of the last stream completes the recording.
+/// Notes the end of a stream. If all streams have ended, completes the recording.
 void McapSinkStreamEnded(GstLidarMcapSink* sink);
-/// Call it when running times restart.
+/// Must be called when running times restart.
 void McapSinkFlushed(GstLidarMcapSink* sink);
-/// Returns a topic that no other stream has.
+/// Returns a topic that no other stream has: `wanted`, or `wanted` and a number.
 std::string McapSinkFreeTopic(GstLidarMcapSink* sink, const std::string& wanted);
 
 }  // namespace lidar::gst

@@ -56,7 +56,8 @@ const std::array<Stat<Counters>, 5> kStats = {{
     {"files-unreadable", &Counters::files_unreadable},
 }};
 
-/// Used by the streaming thread. While the task is stopped, the holder of its lock may use it.
+/// The recording that is played, and its pads. Only the streaming thread may use them. While the
+/// task is stopped or paused, a thread that holds the task's lock may use them, too.
 struct Run {
   std::unique_ptr<lidar::mcap::Playback> playback;
   std::unique_ptr<StreamGroup> streams;
@@ -65,15 +66,15 @@ struct Run {
 struct State {
   explicit State(GstLidarMcapSrc* self);
 
-  std::mutex mutex;  // guards what follows; never held while pushing or posting
+  std::mutex mutex;  // guards the members up to `last_seek`; not locked while pushing or posting
   Settings settings;
   Counters counters;
-  GstSegment segment{};  // as the task plays it, its position included
+  GstSegment segment{};  // the segment that the task plays, and its position
   bool is_open = false;
   guint32 last_seek = GST_SEQNUM_INVALID;
 
   std::atomic<bool> end_wanted{false};
-  std::atomic<bool> stopping{false};  // no chunk is read after the present one
+  std::atomic<bool> stopping{false};  // if true, no further chunk is read
   PlayTask task;
   Run run;
 };
@@ -131,7 +132,7 @@ static GstPad* NewPad(const std::string& name) {
   return pad;
 }
 
-/// Returns true if there is something to play, before any message is read.
+/// Returns true if the recording has a topic that can be played. Does not read any message.
 static bool HasTopic(const lidar::mcap::Playback& playback, const Settings& settings) {
   return std::any_of(playback.topics().begin(), playback.topics().end(), [&](const auto& topic) {
     return IsWanted(settings, topic.channel.topic) &&
@@ -177,7 +178,7 @@ static bool Open(GstLidarMcapSrc* self) {
   return true;
 }
 
-/// Posts SEGMENT_DONE and keeps its position, from which a seek without a flush continues.
+/// Posts SEGMENT_DONE. Stores the position, because a seek without a flush continues there.
 static void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   const guint32 seqnum = self->state->run.streams->seqnum();
   {
@@ -189,13 +190,13 @@ static void PostSegmentDone(GstLidarMcapSrc* self, gint64 position) {
   gst_element_post_message(GST_ELEMENT(self), message);
 }
 
-/// Posts what part of the recording is missing.
+/// Posts an error or a warning if a part of the recording is missing.
 static void TellOfDamage(GstLidarMcapSrc* self) {
   State& state = *self->state;
   Counters counters;
   {
     std::lock_guard lock(state.mutex);
-    // No message follows a damaged last chunk, so it is counted here.
+    // A damaged last chunk is counted only here, because no message follows it.
     state.counters.chunks_damaged = state.run.playback->damaged_chunks();
     counters = state.counters;
   }
@@ -216,10 +217,11 @@ static void Finish(GstLidarMcapSrc* self) {
   streams.End(gst_event_new_segment_done(GST_FORMAT_TIME, position));
 }
 
-/// Pauses the task, and posts `flow` if it is an error.
+/// Pauses the task. Ends the streams after EOS and after an error, which it posts.
 static void Stop(GstLidarMcapSrc* self, GstFlowReturn flow) {
   GST_DEBUG_OBJECT(self, "stops: %s", gst_flow_get_name(flow));
-  // The task pauses before EOS is posted, because a seek may follow EOS and start the task again.
+  // Pauses the task before EOS is posted. An application may answer EOS by a seek, which starts the
+  // task again.
   self->state->task.Pause();
   if (flow == GST_FLOW_EOS) return Finish(self);
   if (flow != GST_FLOW_NOT_LINKED && flow > GST_FLOW_EOS) return;
@@ -249,14 +251,15 @@ static GstFlowReturn PlayItem(GstLidarMcapSrc* self, const lidar::mcap::Playback
   return GST_FLOW_OK;
 }
 
-/// Counts files that could not be read any more when playback reached them, and warns of them.
+/// Counts the files that could not be read when playback reached them. Posts a warning if there are
+/// new ones.
 static void NoteUnreadable(GstLidarMcapSrc* self) {
   State& state = *self->state;
   const lidar::mcap::Playback& playback = *state.run.playback;
   const guint64 files = playback.unreadable_files();
   {
     std::lock_guard lock(state.mutex);
-    // A file that stays unread because the task stops is not missing.
+    // If the task stops, a file may remain unread although it could be read.
     if (state.stopping || state.counters.files_unreadable == files) return;
     state.counters.files_unreadable = files;
   }
@@ -280,7 +283,8 @@ static void Loop(gpointer user_data) {
   if (flow != GST_FLOW_OK) Stop(self, flow);
 }
 
-/// Pushes `event` on all pads. Lists the element's pads, because the streams belong to the task.
+/// Pushes `event` on all pads. Gets the pads from the element, because the streams belong to the
+/// task.
 static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   GST_OBJECT_LOCK(self);
   GList* pads = g_list_copy_deep(
@@ -293,7 +297,7 @@ static void PushToAll(GstLidarMcapSrc* self, GstEvent* event) {
   gst_event_unref(event);
 }
 
-/// Call it with the lock of the task, which is paused.
+/// Continues the playback in another segment. The task is paused, and the caller holds its lock.
 static void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment) {
   State& state = *self->state;
   Run& run = state.run;
@@ -301,7 +305,7 @@ static void Restart(GstLidarMcapSrc* self, const Seek& seek, GstSegment segment)
     std::lock_guard lock(state.mutex);
     segment = state.segment = seek.Begun(segment, state.segment);
   }
-  if (seek.flushes()) state.end_wanted = false;  // the flush also drops a wanted end
+  if (seek.flushes()) state.end_wanted = false;  // the flush also cancels a requested end
   const std::uint64_t start = run.playback->start_time();
   const bool ends = GST_CLOCK_TIME_IS_VALID(segment.stop) && segment.stop < UINT64_MAX - start;
   run.playback->Seek(start + segment.position, ends ? start + segment.stop : UINT64_MAX);
@@ -321,13 +325,13 @@ static bool DoSeek(GstLidarMcapSrc* self, GstEvent* event) {
     std::lock_guard lock(state.mutex);
     if (state.is_open) segment = seek.AppliedTo(state.segment);
     if (!segment) return false;
-    // A seek comes once from each sink.
+    // Each sink sends the same seek. Only the first of these events is handled.
     if (std::exchange(state.last_seek, seek.seqnum()) == seek.seqnum()) return true;
   }
   if (seek.flushes()) PushFlush(self, seek, gst_event_new_flush_start());
   state.task.Pause();
   g_rec_mutex_lock(state.task.lock());
-  bool open = false;  // the recording may have been closed meanwhile
+  bool open = false;  // the recording may have been closed since the check above
   {
     std::lock_guard lock(state.mutex);
     open = state.is_open;
@@ -354,7 +358,7 @@ static gboolean SendEvent(GstElement* element, GstEvent* event) {
   return TRUE;
 }
 
-/// Call it when the task has ended and the pads are inactive.
+/// Closes the recording. The task must have ended, and the pads must be inactive.
 static void Close(GstLidarMcapSrc* self) {
   State& state = *self->state;
   {
@@ -362,11 +366,11 @@ static void Close(GstLidarMcapSrc* self) {
     state.is_open = false;
     state.last_seek = GST_SEQNUM_INVALID;
   }
-  // A seek in another thread may still use the run.
+  // Takes the lock, because a seek in another thread may still use `run`.
   g_rec_mutex_lock(state.task.lock());
   Run run = std::exchange(state.run, Run());
   g_rec_mutex_unlock(state.task.lock());
-  run = {};  // pads are removed without the lock
+  run = {};  // removes the pads, without the lock
   state.end_wanted = false;
 }
 

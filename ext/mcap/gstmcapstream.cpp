@@ -33,7 +33,7 @@ struct State {
   std::atomic<bool> ended{false};
   std::mutex mutex;  // guards the settings
   StreamSettings settings;
-  // Only the streaming thread uses these.
+  // Only the streaming thread uses the members below.
   std::unique_ptr<BufferWriter> writer;
   RecordedStream stream;
   std::string topic;
@@ -65,7 +65,8 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
     return FALSE;
   }
   state.refused.Reset();
-  // Refused caps do not change the writer, because GstBaseSink does not set the earlier caps again.
+  // Refused caps leave the writer as it is, because GstBaseSink does not call SetCaps() again when
+  // the earlier caps return.
   state.writer = std::move(writer);
   if (state.topic.empty()) {
     const std::string usual(TopicOf(state.writer->type()));
@@ -90,15 +91,15 @@ static gboolean Event(GstBaseSink* base, GstEvent* event) {
     state.ended = false;
     McapSinkFlushed(state.sink);
   } else if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) {
-    // This runs before the base class posts EOS.
+    // The stream ends before the base class posts EOS.
     state.ended = true;
     McapSinkStreamEnded(state.sink);
   }
   return GST_BASE_SINK_CLASS(gst_lidar_mcap_stream_parent_class)->event(base, event);
 }
 
-/// Each recording has its own channels, even if the element went no lower than READY between two
-/// recordings.
+/// Resets the stream before a recording. Each recording has channels of its own, even if the
+/// element only returned to READY between two recordings.
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
   if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
     State& state = StateOf(element);
@@ -127,8 +128,8 @@ static void gst_lidar_mcap_stream_class_init(GstLidarMcapStreamClass* klass) {
 }
 
 GstElement* gst_lidar_mcap_stream_new(GstLidarMcapSink* sink, const gchar* name) {
-  // The stream does not preroll, because a sparse stream would delay the others. It does not wait
-  // for the clock, because disks do not need that.
+  // The stream does not preroll (async), because a sparse stream would delay all other streams. It
+  // does not wait for the clock (sync), because a disk does not need that.
   auto* stream = static_cast<GstElement*>(g_object_new(GST_TYPE_LIDAR_MCAP_STREAM, "name", name,
                                                        "async", FALSE, "sync", FALSE, nullptr));
   StateOf(stream).sink = sink;

@@ -19,8 +19,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kMaxSlices = 4'096;
-/// A point of one byte becomes a point of twelve bytes or more, so the size of a message does not
-/// bound that of its cloud.
+/// The largest cloud. The size of a message does not limit the size of its cloud, because a point
+/// of one byte becomes a point of at least twelve bytes.
 constexpr gsize kMaxCloud = gsize{256} << 20;  // bytes
 
 void SetCaptureTime(const cdr::Header& header, GstBuffer* buffer) {
@@ -53,7 +53,7 @@ class SliceReader : public MessageReader {
 
 class CloudReader : public MessageReader {
  public:
-  /// `caps` may be NULL, because ROS messages have nearly all of the caps' content.
+  /// `caps` may be NULL, because ROS messages contain nearly all of the information in the caps.
   explicit CloudReader(CapsPtr caps) {
     if (caps) info_ = CloudInfo::FromFrameCaps(caps.get());
     if (!info_) return;
@@ -63,7 +63,7 @@ class CloudReader : public MessageReader {
 
   BufferPtr Read(ByteView message) override {
     const auto cloud = cdr::ReadPointCloud2(message);
-    // Checks the claimed size before anything is allocated or stored.
+    // Checks the sizes in the message before memory is allocated.
     if (!cloud || cloud->layout.width == 0 || cloud->layout.height == 0 ||
         !cdr::RowStride(*cloud) || !Follow(*cloud))
       return nullptr;
@@ -71,7 +71,7 @@ class CloudReader : public MessageReader {
     BufferPtr buffer(gst_buffer_new_allocate(nullptr, converter_->size(), nullptr));
     BufferMap map(buffer.get(), GST_MAP_WRITE);
     if (!map) return nullptr;
-    if (!converter_->copies()) std::memset(map.data(), 0, map.size());  // gaps between fields
+    if (!converter_->copies()) std::memset(map.data(), 0, map.size());  // for gaps of fields
     if (!converter_->Convert(*cloud, map.data())) return nullptr;
     SetCaptureTime(cloud->header, buffer.get());
     GST_BUFFER_DURATION(buffer.get()) = info_->ScanDuration();
@@ -79,7 +79,8 @@ class CloudReader : public MessageReader {
   }
 
  private:
-  /// Makes converter and caps if the message has another layout than the last one.
+  /// Updates the converter and the caps if the layout of the message differs from the last layout.
+  /// Returns false if the layout cannot be converted.
   bool Follow(const cdr::PointCloud2& cloud) {
     if (converter_ && converter_->layout() == cloud.layout && info_->is_dense == cloud.is_dense)
       return true;
@@ -113,7 +114,8 @@ class CloudReader : public MessageReader {
   }
 
   std::optional<CloudInfo> info_;
-  /// Set in our own recordings, whose points come back as they were, gaps between fields included.
+  /// The layout of the points in our own recordings. It lets Read() restore the points exactly,
+  /// with the gaps between their fields. Recordings of others have no such layout.
   std::optional<cdr::PointLayout> recorded_;
   std::optional<cdr::PointConverter> converter_;
 };

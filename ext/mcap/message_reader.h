@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages of one channel as buffers.
+// Converts the messages of a channel to buffers.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,14 +12,16 @@ namespace lidar::gst {
 
 class MessageReader {
  public:
-  /// Returns NULL if the messages of that channel are of an unknown type.
+  /// Returns a reader for the messages of `channel`, or NULL if they cannot be read.
   static std::unique_ptr<MessageReader> Make(const mcap::Schema& schema,
                                              const mcap::Channel& channel);
   virtual ~MessageReader() = default;
 
-  /// Caps of the last Read()'s buffer. NULL before the first Read() if they depend on the message.
+  /// Returns the caps of the buffer that Read() returned last. Returns NULL before the first Read()
+  /// if the caps depend on the message.
   GstCaps* caps() const { return caps_.get(); }
-  /// Returns null if `message`, which may be any bytes, is damaged. The buffer has no PTS.
+  /// Converts `message`, which may be any bytes, to a buffer without PTS. Returns null if `message`
+  /// is damaged.
   virtual BufferPtr Read(ByteView message) = 0;
 
  protected:

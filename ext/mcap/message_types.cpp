@@ -107,7 +107,7 @@ bool discontinuity                     # what came before it is missing
 uint8[] data
 )";
 
-/// Joins a definition and the definitions that it needs.
+/// Joins a definition and the definitions to which it refers.
 template <class... Parts>
 std::string Definition(const char* first, Parts... needed) {
   std::string text = first;
@@ -134,7 +134,7 @@ struct TypeInfo {
   MessageType type;
   std::string_view schema;
   std::string_view topic;
-  const char* media_type;  // NULL: of any coder
+  const char* media_type;  // NULL: any type of coded slices
 };
 constexpr std::array<TypeInfo, 4> kTypes = {{
     {MessageType::kCloud, cdr::InfoOf(cdr::RosType::kPointCloud2).name, "/points",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The messages in our recordings, and their definitions in ROS 2's language.
+// The types of messages in our recordings, and their definitions in the language of ROS 2.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,22 +14,23 @@ namespace lidar::gst {
 
 enum class MessageType { kCloud, kImu, kOdometry, kSlice };
 
-/// Schema of the messages of that type, without an id.
+/// Returns the schema of messages of this type, without an id.
 mcap::Schema SchemaOf(MessageType type);
-/// Returns nothing for a schema that is not ours, or in another encoding than CDR.
+/// Returns the type of the messages of `channel`. Returns nothing if the schema is unknown or the
+/// encoding is not CDR.
 std::optional<MessageType> TypeOf(const mcap::Schema& schema, const mcap::Channel& channel);
-/// The message for buffers of `caps`; nothing if they cannot be recorded.
+/// Returns the type of message for buffers with `caps`, or nothing if they cannot be recorded.
 std::optional<MessageType> TypeOf(const GstCaps* caps);
-/// Returns true if samples of an IMU have the layout that can be recorded.
+/// Returns true if IMU samples with `caps` have the layout that can be recorded.
 bool IsOurImu(const GstCaps* caps);
-/// Topic of messages of that type unless another is given.
+/// Returns the default topic for messages of this type.
 std::string_view TopicOf(MessageType type);
 
-/// Caps from the metadata of a channel, which are untrusted. Returns null if `text` is not the caps
-/// of `type`.
+/// Parses the caps in a channel's metadata, which is untrusted. Returns null if `text` is not caps
+/// for messages of `type`.
 CapsPtr CapsOfType(const std::string& text, MessageType type);
 
-/// An entry of a channel's metadata.
-constexpr const char* kQosKey = "offered_qos_profiles";  // of rosbag2; empty: its default
+/// A key in a channel's metadata.
+constexpr const char* kQosKey = "offered_qos_profiles";  // of rosbag2; empty: default
 
 }  // namespace lidar::gst

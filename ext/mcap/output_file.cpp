@@ -31,7 +31,8 @@ bool OutputFile::WriteAll(ByteView bytes) {
   return !sync_ || fdatasync(fd_) == 0;
 }
 
-/// Undoes a failed write to a regular file: cuts the file, or removes an empty one.
+/// Undoes a failed write to a regular file. Cuts the file to its size before the write, or removes
+/// it if that size is 0.
 void OutputFile::TakeBack() {
   struct stat status {};
   if (fstat(fd_, &status) != 0 || !S_ISREG(status.st_mode)) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file that is written in whole pieces, and created with the first one.
+// A file that is written in whole pieces. It is created when the first piece is written.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,19 +11,20 @@ namespace lidar::gst {
 
 class OutputFile {
  public:
-  /// A file that the user has named is replaced; a numbered one stays.
+  /// Says what to do if the file exists. A file that the user has named is replaced. A numbered
+  /// file is kept, and opening it fails.
   enum class Existing { kReplace, kKeep };
-  /// Does not touch the disk yet. `sync`: each piece is on the disk before Append() returns.
+  /// Does not access the disk. If `sync` is true, Append() returns after the piece is on the disk.
   OutputFile(std::string path, bool sync, Existing existing)
       : path_(std::move(path)), sync_(sync), existing_(existing) {}
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Appends all of `bytes`. After a failure the file is as before, or removed if it was empty, and
-  /// error() has the reason.
+  /// Appends all of `bytes`. If that fails, sets error() and returns false. The file is then as it
+  /// was before, or removed if it was empty.
   bool Append(ByteView bytes);
-  /// Returns false if what was written did not reach the disk.
+  /// Closes the file. Returns false if written data did not reach the disk.
   bool Close();
 
   const std::string& path() const { return path_; }

@@ -15,7 +15,7 @@ std::string TopicNames(const mcap::Playback& playback) {
   return names.empty() ? "none" : names;
 }
 
-/// The media types of the pads, each once.
+/// Returns the media types of the pads, without duplicates.
 std::string MediaTypes(GstElement* element) {
   std::set<std::string> types;
   gst_element_foreach_src_pad(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages of mcapsrc about recordings that it cannot play, or only in part.
+// Posts messages of mcapsrc about recordings that it cannot play, or can play only in part.
 #pragma once
 #include <gst/gst.h>
 
@@ -16,16 +16,19 @@ struct PlayedCounts {
   bool has_pads;
 };
 
-/// Posts an error: no topic of the recording can be played, or the wanted one cannot.
+/// Posts an error, because no topic of the recording can be played, or because the wanted topic
+/// cannot be played.
 void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
                        const std::string& location, const std::string& topic);
-/// Warns of files that break off.
+/// Posts a warning about files that break off.
 void WarnOfUnclosed(GstElement* element, guint64 files);
-/// Warns of files that cannot be read; `why` is the reason for the last one.
+/// Posts a warning about files that cannot be read. `why` is the reason for the last of these
+/// files.
 void WarnOfUnreadable(GstElement* element, guint64 files, const std::string& why);
-/// Posts an error if nothing could be read, and a warning if parts are left out.
+/// Posts an error if no message could be read. Posts a warning if parts of the recording were
+/// skipped.
 void PostDamage(GstElement* element, const PlayedCounts& counts);
-/// Posts an error: the caps of no pad are accepted downstream.
+/// Posts an error, because downstream does not accept the caps of any pad.
 void PostNotTaken(GstElement* element);
 
 }  // namespace lidar::gst

@@ -7,9 +7,9 @@
 
 namespace lidar::gst {
 
-/// A change of state starts and stops the thread; in between the thread may pause and resume. While
-/// it is paused, it cannot resume as long as another thread holds lock(). All functions may be
-/// called from any thread.
+/// The thread of a source. Changes of state start and stop the thread. Between them, the thread may
+/// pause and resume. A paused thread cannot resume while another thread holds lock(). Any thread
+/// may call the functions.
 class PlayTask {
  public:
   PlayTask(GstTaskFunction loop, gpointer data) : task_(gst_task_new(loop, data, nullptr)) {
@@ -27,7 +27,7 @@ class PlayTask {
   bool Start() { return Set(true, GST_TASK_STARTED); }
   void Stop() { Set(false, GST_TASK_STOPPED); }
   void Join() { gst_task_join(task_); }
-  /// These do nothing once the thread is stopped.
+  /// These two functions do nothing if the thread was stopped.
   void Pause() { SetIfRunning(GST_TASK_PAUSED); }
   void GoOn() { SetIfRunning(GST_TASK_STARTED); }
 

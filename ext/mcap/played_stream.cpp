@@ -4,7 +4,8 @@
 namespace lidar::gst {
 namespace {
 
-/// A stream that is silent for longer gets a gap event, so that sinks do not wait for it.
+/// A stream that is silent for longer than this gets a gap event, so that sinks do not wait for its
+/// data.
 constexpr GstClockTime kLongestSilence = 500 * GST_MSECOND;
 
 GstEvent* WithSeqnum(const PlaybackGroup& group, GstEvent* event) {
@@ -15,7 +16,8 @@ GstEvent* WithSeqnum(const PlaybackGroup& group, GstEvent* event) {
 }  // namespace
 
 bool PlayedStream::Follow(const mcap::Schema& schema, const mcap::Channel& channel) {
-  // Each file has channels of its own, usually with the same content as in other files.
+  // Keeps the reader if possible. Each file has channels of its own, but usually with the same
+  // content as in other files.
   if (reader_ && schema_ == schema.name && metadata_ == channel.metadata) return true;
   auto reader = MessageReader::Make(schema, channel);
   if (!reader) return false;
@@ -33,7 +35,7 @@ void PlayedStream::PushStreamStart(const PlaybackGroup& group) {
   gst_pad_push_event(pad_, WithSeqnum(group, event));
 }
 
-/// Pushes the events before the pad is added, so that a handler of pad-added finds them on it.
+/// Pushes the events before the pad is added, so that a handler of pad-added finds them on the pad.
 bool PlayedStream::Prepare(const PlaybackGroup& group) {
   GstCaps* caps = reader_->caps();
   if (caps == nullptr) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A pad of mcapsrc: the messages of a topic.
+// A pad of mcapsrc, which plays the messages of a topic.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,17 +11,17 @@
 
 namespace lidar::gst {
 
-/// The common state of a source's pads.
+/// The state that all pads of a source share.
 struct PlaybackGroup {
   guint group_id = 0;
   GstSegment segment{};
   guint32 seqnum = GST_SEQNUM_INVALID;
 };
 
-/// Used by the streaming thread, or while that thread is paused.
+/// A pad and its stream. Another thread may use it only while the streaming thread is paused.
 class PlayedStream {
  public:
-  /// `pad` is inactive; Prepare() adds it to `element` once its caps are known.
+  /// `pad` is inactive. Prepare() adds it to `element` when the caps are known.
   PlayedStream(GstElement* element, GstPad* pad, std::string topic)
       : element_(element), pad_(pad), topic_(std::move(topic)) {}
 
@@ -29,17 +29,17 @@ class PlayedStream {
   const std::string& topic() const { return topic_; }
   bool is_added() const { return added_; }
 
-  /// Reads messages of that channel from now on. Returns false if their type is unknown.
+  /// Makes Read() read messages of `channel` from now on. Returns false if their type is unknown.
   bool Follow(const mcap::Schema& schema, const mcap::Channel& channel);
-  /// Pushes caps and segment if they are due, and adds the pad. Returns false if caps are not
-  /// known.
+  /// Adds the pad if it is not yet added. Pushes the caps and the segment if they are new. Returns
+  /// false if the caps are unknown.
   bool Prepare(const PlaybackGroup& group);
-  /// Null if the message is damaged.
+  /// Converts a message to a buffer. Returns null if the message is damaged.
   BufferPtr Read(ByteView message, GstClockTime pts);
   GstFlowReturn Push(BufferPtr buffer);
-  /// Pushes a gap up to `time` if the stream is far behind it.
+  /// Pushes a gap event up to `time` if the stream has been silent for too long.
   void FillUpTo(GstClockTime time, const PlaybackGroup& group);
-  /// Begins a new segment at `position`, after a seek.
+  /// Begins a new segment at `position` after a seek.
   void Restart(GstClockTime position) {
     needs_segment_ = true;
     discont_ = true;
@@ -51,16 +51,16 @@ class PlayedStream {
   void PushStreamStart(const PlaybackGroup& group);
 
   GstElement* const element_;
-  GstPad* const pad_;  // of the element, once it is added
+  GstPad* const pad_;  // a pad of `element_` after it is added
   const std::string topic_;
   std::unique_ptr<MessageReader> reader_;
-  std::string schema_;       // of the channel that is read
-  mcap::Metadata metadata_;  // of the same channel
+  std::string schema_;       // schema of the channel that is read
+  mcap::Metadata metadata_;  // metadata of the channel that is read
   CapsPtr pushed_caps_;
   bool added_ = false;
   bool needs_segment_ = true;
   bool discont_ = true;
-  GstClockTime last_ = 0;  // end of what was pushed
+  GstClockTime last_ = 0;  // end of the last buffer or gap
 };
 
 }  // namespace lidar::gst

@@ -10,7 +10,8 @@ namespace lidar::gst {
 
 Recorder::Recorder(const RecorderSettings& settings, mcap::FileNames names)
     : settings_(settings), names_(std::move(names)) {
-  // Files of an earlier recording stay, so the numbers continue after those files.
+  // Keeps the files of an earlier recording. The numbers of new files continue after the existing
+  // numbers.
   const auto existing = names_.Existing(&listing_failed_);
   if (!names_.is_numbered() || existing.empty()) return;
   next_number_ = existing.back().first + 1;
@@ -32,7 +33,8 @@ std::optional<RecorderFault> Recorder::Fault() const {
   return RecorderFault{file_->path(), file_->error(), file_->opening_failed()};
 }
 
-/// The file ends at its limit if a scan begins here, otherwise at 9/8 of it.
+/// Returns true if the file must end before the next message. It ends at its limit if a scan begins
+/// with the message, and otherwise at 9/8 of the limit.
 bool Recorder::IsOver(std::uint64_t log_time, bool begins_scan) const {
   const auto over = [&](std::uint64_t value, std::uint64_t limit) {
     return limit > 0 && value >= (begins_scan ? limit : limit + limit / 8);

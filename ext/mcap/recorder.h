@@ -19,16 +19,16 @@ struct RecorderSettings {
   mcap::WriterSettings writer;
   std::uint64_t max_file_size = 0;  // bytes; 0: no limit
   Duration max_file_duration{};     // 0: no limit
-  unsigned max_files = 0;           // the oldest is removed; 0: no limit
+  unsigned max_files = 0;           // beyond it the oldest file is removed; 0: no limit
   bool sync = false;
 };
 
-/// The reason that ends a recording.
+/// The error that ends a recording.
 struct RecorderFault {
   std::string path;
   int error = 0;  // errno
   bool opening = false;
-  bool complete = false;  // the only file is complete already
+  bool complete = false;  // the only file is already complete
 };
 
 struct RecordedFile {
@@ -41,18 +41,19 @@ class Recorder {
  public:
   Recorder(const RecorderSettings& settings, mcap::FileNames names);
 
-  /// Returns the fault that would prevent the first file, without creating it.
+  /// Returns the error that would occur when the first file is created, or nothing. Does not create
+  /// the file.
   std::optional<RecorderFault> Check() const;
 
   mcap::Catalogue& catalogue() { return catalogue_; }
-  /// `begins_scan`: a file may begin here. After a fault the recording ends; the messages before it
-  /// are intact.
+  /// Writes a message. If `begins_scan` is true, a new file may begin with the message. After a
+  /// fault the recording ends. The messages before the fault are intact.
   std::optional<RecorderFault> Add(const mcap::MessageHeader& header, ByteView data,
                                    bool begins_scan);
-  /// Completes the file. The next message begins another one.
+  /// Completes the file. The next message begins another file.
   std::optional<RecorderFault> Finish();
 
-  /// Files that were completed since the last call.
+  /// Returns the files that were completed since the last call.
   std::vector<RecordedFile> TakeFinished() { return std::exchange(finished_, {}); }
   std::uint64_t chunks() const { return chunks_ + (writer_ ? writer_->chunks() : 0); }
 
@@ -69,7 +70,7 @@ class Recorder {
   std::uint32_t next_number_ = 0;
   std::unique_ptr<OutputFile> file_;
   std::unique_ptr<mcap::Writer> writer_;
-  std::uint64_t file_start_ = 0;  // log time of its first message
+  std::uint64_t file_start_ = 0;  // log time of the first message in the file
   std::vector<std::string> files_;
   std::vector<RecordedFile> finished_;
   std::uint64_t chunks_ = 0;

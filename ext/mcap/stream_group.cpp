@@ -23,7 +23,8 @@ bool StreamGroup::has_pads() const {
                      [](const auto& stream) { return stream->is_added(); });
 }
 
-/// Returns the stream of `topic`, creating it if necessary. Returns null if there are too many.
+/// Returns the stream of `topic`, and creates it if necessary. Returns null if there are too many
+/// streams.
 PlayedStream* StreamGroup::StreamOf(const std::string& topic) {
   for (const auto& stream : streams_)
     if (stream->topic() == topic) return stream.get();

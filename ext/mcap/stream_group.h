@@ -14,10 +14,11 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread, or while that thread is paused. The destructor removes the pads.
+/// The pads of an mcapsrc. Other threads may use them only while the streaming thread is paused.
+/// The destructor removes the pads from the element.
 class StreamGroup {
  public:
-  /// Returns a new, inactive pad without a parent.
+  /// A function that returns a new, inactive pad without a parent.
   using NewPad = std::function<GstPad*(const std::string& name)>;
   StreamGroup(GstElement* element, NewPad new_pad, const GstSegment& segment);
   ~StreamGroup();
@@ -29,28 +30,28 @@ class StreamGroup {
   bool empty() const { return streams_.empty(); }
   bool has_pads() const;
 
-  /// Adds the pads whose caps are known before the first buffer: the pad of `topic`, or all if
-  /// `topic` is empty.
+  /// Adds the pads whose caps are known before the first buffer. If `topic` is not empty, adds only
+  /// the pad of `topic`.
   void ShowKnown(const mcap::Playback& playback, const std::string& topic);
-  /// Announces once that no more pads come.
+  /// Announces, once, that no more pads will be added.
   void EndPads();
-  /// A message and the stream of its pad. There is no buffer if the message is damaged, if its caps
-  /// are not known, or if there are more topics than pads.
+  /// The buffer of a message, and the stream of its pad. There is no buffer if the message is
+  /// damaged, if its caps are unknown, or if there are more topics than pads.
   struct Played {
     PlayedStream* stream = nullptr;
     BufferPtr buffer;
   };
   Played Read(const mcap::Playback::Item& item, GstClockTime pts);
-  /// Returns the combined flow of all pads.
+  /// Pushes the buffer. Returns the combined flow return of all pads.
   GstFlowReturn Push(Played played);
-  /// Begins a new segment after a seek of the source.
+  /// Begins a new segment in all streams after a seek.
   void Restart(const GstSegment& segment, guint32 seqnum);
   /// Sends `event` on all pads.
   void End(GstEvent* event);
 
  private:
   PlayedStream* StreamOf(const std::string& topic);
-  /// Each topic costs a pad, and perhaps a thread downstream.
+  /// The largest number of pads. Each topic needs a pad, and perhaps a thread downstream.
   static constexpr std::size_t kMaxStreams = 256;
 
   struct FreeCombiner {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Log times of messages: times of the Unix epoch that advance with the running time.
+// Log times of messages, which count from 1970 and advance with the running time.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace lidar::gst {
 
-/// All times are nanoseconds; log times count from 1970.
+/// Computes log times. All times are in nanoseconds, and log times count from 1970.
 class Timeline {
  public:
   struct Moment {
@@ -16,8 +16,8 @@ class Timeline {
     std::uint64_t now = 0;
   };
 
-  /// The first buffer relates running times to 1970, by its capture time or the present. Log times
-  /// of later buffers have the same distances as their running times.
+  /// Returns the log time of a buffer. The log time of the first buffer is its capture time, or
+  /// `now` if it has none. Log times of later buffers differ by as much as their running times.
   std::uint64_t LogTime(const Moment& at) {
     if (!at.running_time) return last_ > 0 ? last_ : at.capture_time.value_or(at.now);
     if (!origin_) {
@@ -28,7 +28,8 @@ class Timeline {
     last_ = std::max(last_, time);
     return time;
   }
-  /// Call it when running times restart in a recording: the next buffer relates them to 1970 anew.
+  /// Must be called when running times restart within a recording. The next buffer then counts as
+  /// the first, but its log time is at least the last log time.
   void Restart() { origin_.reset(); }
 
  private:
