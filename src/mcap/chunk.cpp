@@ -7,7 +7,7 @@
 namespace lidar::mcap {
 namespace {
 
-constexpr std::uint64_t kMaxChunkHeader = 64;  // includes a short name of the compression
+constexpr std::uint64_t kMaxChunkHeader = 64;  // has room for a short name of the compression
 
 struct PlacedHeader {
   ChunkHeader chunk;
@@ -44,8 +44,7 @@ std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& reco
 bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records) {
   if (chunk.is_run) return ReadRun(input, chunk, records);
   const auto record = RecordAt(input, chunk.offset);
-  // Chunks of the index do not overlap, so the record must not exceed the size that the index
-  // gives.
+  // The record must not be larger than the index says, because chunks would then overlap.
   const bool fits = record && record->end() - chunk.offset <= chunk.size;
   const auto header = fits ? ReadHeader(input, *record) : std::nullopt;
   if (!header || header->chunk.records_size > 2 * kMaxChunk) return false;

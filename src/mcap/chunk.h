@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The records of one chunk, uncompressed.
+// Reads the records of a chunk and uncompresses them.
 #pragma once
 #include <optional>
 
@@ -7,11 +7,12 @@
 
 namespace lidar::mcap {
 
-/// Returns the header of the chunk at `record`; nothing if it is damaged or claims more than
-/// kMaxChunk.
+/// Returns the header of the chunk at `record`. Returns nothing if the header is damaged, or if it
+/// claims more than kMaxChunk bytes.
 std::optional<ChunkHeader> ReadChunkHeader(Input* input, const RecordPlace& record);
 
-/// Replaces `records` by those of the chunk. Returns false if the chunk is damaged.
+/// Replaces the contents of `records` by the records of the chunk. Returns false if the chunk is
+/// damaged.
 bool ReadChunk(Input* input, const ChunkPlace& chunk, Bytes* records);
 
 }  // namespace lidar::mcap

@@ -15,11 +15,12 @@ constexpr std::uint64_t kFileEnd = kFooterRecord + kMagic.size();
 
 struct SummaryPlace {
   std::uint64_t start = 0;
-  std::uint64_t end = 0;  // where the footer begins
+  std::uint64_t end = 0;  // begin of the footer
   std::uint32_t crc = 0;
 };
 
-/// Returns nothing for a file that was not closed. A closed file's summary may be empty.
+/// Finds the summary. Returns nothing if the file was not closed. The summary of a closed file may
+/// be empty.
 std::optional<SummaryPlace> FindSummary(Input* input) {
   const std::uint64_t size = input->size();
   if (size < kMagic.size() + kFileEnd || !HasMagic(input, size - kMagic.size()))
@@ -37,7 +38,7 @@ std::optional<SummaryPlace> FindSummary(Input* input) {
   return SummaryPlace{footer->summary_start, footer_at, footer->summary_crc};
 }
 
-/// The summary's records; nothing if its checksum does not fit.
+/// Returns the records of the summary, or nothing if the summary's checksum is wrong.
 std::optional<Bytes> ReadSummary(Input* input, const SummaryPlace& place) {
   // The checksum also covers the footer, up to the checksum itself.
   constexpr std::uint64_t kCovered = kFooterRecord - 4;
@@ -54,7 +55,8 @@ void AddChunk(const Input& input, const Record& record, FileIndex* index) {
   index->chunks.push_back({chunk->start_time, chunk->end_time, chunk->offset, chunk->size, false});
 }
 
-/// Overlapping chunks would let a small file cause any amount of work.
+/// Removes chunks that overlap an earlier chunk. Reading a small file with many overlapping chunks
+/// would otherwise take any amount of time.
 void DropOverlaps(std::vector<ChunkPlace>* chunks) {
   std::stable_sort(chunks->begin(), chunks->end(),
                    [](const ChunkPlace& a, const ChunkPlace& b) { return a.offset < b.offset; });
@@ -76,7 +78,7 @@ bool LacksASchema(const FileIndex& index) {
 }  // namespace
 
 std::uint64_t FileIndex::start_time() const {
-  // A chunk without messages has no times: both are 0.
+  // Skips chunks without messages. They have no times, so both times are 0.
   for (const ChunkPlace& chunk : chunks)
     if (chunk.end_time > 0) return chunk.start_time;
   return 0;
@@ -119,7 +121,7 @@ FileIndex ReadFileIndex(Input* input, FileIndex known) {
     else
       index.Learn(*record);
   }
-  // Other writers may leave the indexes out, or the schemas.
+  // Files of other writers may lack the indexes or the schemas.
   if (index.chunks.empty() || index.channels.empty() || LacksASchema(index))
     index = ScanFile(input);
   index.complete = true;

@@ -10,12 +10,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A conversion like %d or %05d.
+/// A number in a file name, as %d or %05d.
 struct Conversion {
   std::size_t digits = 0;
   std::size_t length = 0;
 };
-/// Parses the conversion at the beginning of `text`. Returns nothing for another conversion.
+/// Parses the conversion at the beginning of `text`. Returns nothing if it is not of the form %d or
+/// %05d.
 std::optional<Conversion> ParseConversion(std::string_view text) {
   std::size_t at = 1;  // after the %
   const bool zeros = at < text.size() && text[at] == '0';
@@ -87,7 +88,7 @@ std::vector<std::pair<std::uint32_t, std::string>> FileNames::Existing(
     const char* first = name.data() + prefix.size();
     const char* last = name.data() + name.size() - after_.size();
     const auto parsed = std::from_chars(first, last, number);
-    // The whole name must have our form.
+    // Accepts a file only if its whole name is the name that Name() returns for the number.
     if (parsed.ec == std::errc() && parsed.ptr == last &&
         fs::path(Name(number)).filename().string() == name)
       files.emplace_back(number, Name(number));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans a file without a summary: the file broke off, or its writer writes no summary.
+// Scans a file that has no summary, because the file is incomplete or its writer does not write
+// one.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -11,7 +12,7 @@ namespace lidar::mcap {
 namespace {
 
 constexpr std::uint64_t kMaxRun = std::uint64_t{1} << 20;  // bytes
-constexpr int kChunksToLearn = 4;  // channels of later chunks are read together with their messages
+constexpr int kChunksToLearn = 4;  // reading a later chunk's messages also finds its channels
 
 class Scanner {
  public:
@@ -32,7 +33,8 @@ class Scanner {
   }
 
  private:
-  /// Returns the end of the known records. Forgets them if the file was replaced by another.
+  /// Returns the end of the known records. Forgets the known records if another file has replaced
+  /// the file.
   std::uint64_t Begin() {
     const auto last = std::max_element(
         index_.chunks.begin(), index_.chunks.end(),
@@ -47,7 +49,7 @@ class Scanner {
     return kMagic.size();
   }
 
-  /// Returns false if the data section ends.
+  /// Adds a record to the index. Returns false at the end of the data section.
   bool Take(const RecordPlace& record, std::uint64_t offset) {
     switch (record.op) {
       case Op::kChunk:
@@ -73,7 +75,7 @@ class Scanner {
 
   bool TakeChunk(const RecordPlace& record, std::uint64_t offset) {
     const auto header = ReadChunkHeader(&input_, record);
-    if (!header) return true;  // later records may be intact
+    if (!header) return true;  // the records after it may be intact
     index_.chunks.push_back(
         {header->start_time, header->end_time, offset, record.end() - offset, false});
     if (learned_ == kChunksToLearn) return true;

@@ -12,7 +12,7 @@ namespace lidar::mcap {
 
 std::unique_ptr<InputFile> InputFile::Open(const std::string& path, std::string* why,
                                            const std::atomic<bool>* cancelled) {
-  // O_NONBLOCK: otherwise a pipe would wait for its writer.
+  // O_NONBLOCK is set because opening a pipe would otherwise wait for a writer.
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) {
     *why = std::generic_category().message(errno);

@@ -11,15 +11,15 @@ namespace lidar::mcap {
 
 class InputFile : public Input {
  public:
-  /// Returns null if `path` cannot be opened or is not a regular file; `why` then has the reason.
-  /// Reads fail once `cancelled`, which outlives the file, is true.
+  /// Opens a file. Returns null and sets `why` if `path` cannot be opened or is not a regular file.
+  /// Reads fail as soon as `cancelled` is true. `cancelled` must outlive the file.
   static std::unique_ptr<InputFile> Open(const std::string& path, std::string* why,
                                          const std::atomic<bool>* cancelled = nullptr);
   ~InputFile() override;
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  /// Size when the file was opened.
+  /// Returns the size that the file had when it was opened.
   std::uint64_t size() const override { return size_; }
   bool Read(std::uint64_t offset, std::size_t n, std::uint8_t* to) override;
 

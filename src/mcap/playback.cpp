@@ -53,7 +53,7 @@ bool Playback::Refresh(std::string* why) {
   return !files_.empty();
 }
 
-/// Reads the index of the file, if its size or time has changed.
+/// Reads the index of the file if the file's size or modification time has changed.
 bool Playback::Read(File* file, std::string* why) {
   std::error_code failed;
   const auto size = fs::file_size(file->path, failed);

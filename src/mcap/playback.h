@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The files of a recording, read as one.
+// Plays all files of a recording as if they were a single file.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -22,39 +22,41 @@ class Playback {
     Schema schema;
     Channel channel;
   };
-  /// `message` is valid until the next call of Next() or Seek().
+  /// A message with its channel. `message` is valid until the next call of Next() or Seek().
   struct Item {
     const Schema* schema = nullptr;
     const Channel* channel = nullptr;
     Message message;
   };
 
-  /// Opens the files that `location` names, which may have a number. Returns nothing if no file can
-  /// be read; `why` then has the reason for a user. Reading ends once `cancelled`, which outlives
-  /// the playback, is true.
+  /// Opens the files that `location` names. `location` may contain a number. Returns nothing and
+  /// sets `why`, a text for users, if no file can be read. Reading ends as soon as `cancelled` is
+  /// true. `cancelled` must outlive the playback.
   static std::unique_ptr<Playback> Open(const std::string& location,
                                         const std::atomic<bool>* cancelled, std::string* why);
 
-  /// Lists the files again, because a recording that is still written grows and loses its oldest
-  /// files. Returns false if there is no file to read; `why` then has the reason. Call Seek() next.
+  /// Lists the files again, because a recording that is still being written grows and loses its
+  /// oldest files. Returns false and sets `why` if there is no file to read. Call Seek() before the
+  /// next Next().
   bool Refresh(std::string* why);
 
-  /// Log times [ns].
+  /// Return the range of log times [ns].
   std::uint64_t start_time() const { return start_time_; }
   std::uint64_t end_time() const { return end_time_; }
-  /// The first channel of each topic, known before any message is read.
+  /// Returns the first channel of each topic. The channels are known before any message is read.
   const std::vector<Topic>& topics() const { return topics_; }
-  /// Numbers of files without an index, and of unreadable files. A file that becomes unreadable
-  /// before its turn counts, too.
+  /// Return the numbers of files without an index, and of unreadable files. A file also counts as
+  /// unreadable if it can no longer be read when playback reaches it.
   std::uint64_t unclosed_files() const { return unclosed_files_; }
   std::uint64_t unreadable_files() const { return unreadable_files_; }
-  /// The reason why the last such file could not be read at its turn.
+  /// Returns the reason why playback could not read the last file that was unreadable when playback
+  /// reached it.
   const std::string& why_unreadable() const { return why_unreadable_; }
-  /// Chunks that were left out so far.
+  /// Returns the number of chunks that were skipped so far.
   std::uint64_t damaged_chunks() const;
 
-  /// Makes Next() return the messages with log times from `begin` to before `end`. Files may
-  /// overlap.
+  /// Makes Next() return the messages whose log times are at least `begin` and less than `end`. The
+  /// times of the files may overlap.
   void Seek(std::uint64_t begin, std::uint64_t end = UINT64_MAX);
   std::optional<Item> Next();
 
@@ -68,7 +70,7 @@ class Playback {
     std::uint64_t start_time = 0;
     std::uint64_t end_time = 0;
     bool complete = false;
-    FileIndex known = {};  // of a file that is not complete
+    FileIndex known = {};  // index of an incomplete file
   };
 
   bool Read(File* file, std::string* why);
@@ -85,12 +87,12 @@ class Playback {
   std::uint64_t unclosed_files_ = 0;
   std::uint64_t unreadable_files_ = 0;
   std::string why_unreadable_;
-  // The range of log times to play, and the file to continue with.
+  // The range of log times to play, and the next file to open.
   std::uint64_t begin_ = 0;
   std::uint64_t end_ = UINT64_MAX;
   std::size_t next_file_ = 0;
   std::unique_ptr<Reader> reader_;
-  std::uint64_t damaged_before_ = 0;  // in files before the one that is open
+  std::uint64_t damaged_before_ = 0;  // in the files before the open file
 };
 
 }  // namespace lidar::mcap

@@ -9,7 +9,8 @@
 namespace lidar::mcap {
 namespace {
 
-/// Memory for overlapping chunks [bytes]. Beyond it messages come chunk by chunk.
+/// The limit of memory for overlapping chunks [bytes]. If it is exceeded, messages of different
+/// chunks are no longer merged by their times.
 constexpr std::size_t kMaxOpen = std::size_t{128} << 20;
 constexpr std::size_t kMaxOpenChunks = 64;
 
@@ -35,7 +36,8 @@ void Reader::Seek(std::uint64_t log_time) {
   open_.clear();
 }
 
-/// Returns true if the next chunk may hold an earlier message than the open ones.
+/// Returns true if the next chunk may have a message that is earlier than all messages of the open
+/// chunks.
 bool Reader::WantsNextChunk() const {
   if (next_chunk_ == index_.chunks.size()) return false;
   if (open_.empty()) return true;
@@ -49,8 +51,8 @@ bool Reader::WantsNextChunk() const {
          size < kMaxOpen;
 }
 
-/// Returns true for a known channel. Some writers write a channel only once, so the function also
-/// reads the chunks that a seek skipped.
+/// Returns true if the channel is known. Some writers write a channel only once, so this function
+/// also reads the chunks that a seek skipped, until it finds the channel.
 bool Reader::Knows(std::uint16_t channel) {
   Bytes records;
   for (; index_.channels.count(channel) == 0; ++learnt_chunks_) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads the messages of an MCAP file by their log times. The file may hold any bytes.
+// Reads the messages of an MCAP file in the order of their log times. The file may have any
+// contents.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -12,7 +13,7 @@
 
 namespace lidar::mcap {
 
-/// A message; `data` belong to the reader and are valid until its next call.
+/// A message. Its `data` belong to the reader, and are valid until the next call of the reader.
 struct Message {
   MessageHeader header;
   ByteView data;
@@ -20,29 +21,30 @@ struct Message {
 
 class Reader {
  public:
-  /// Returns nothing if `input` is not an MCAP file; `why` then has the reason for a user. `known`
-  /// is the index of the same file when it was shorter.
+  /// Opens a file. Returns nothing and sets `why`, a text for users, if `input` is not an MCAP
+  /// file. `known` is the index of the same file at a time when the file was shorter.
   static std::unique_ptr<Reader> Open(std::unique_ptr<Input> input, std::string* why,
                                       FileIndex known = {});
 
-  /// Schemas and channels of a file that broke off may grow with each message.
+  /// Returns the index. If the file is incomplete, each message may add schemas and channels.
   const FileIndex& index() const { return index_; }
-  /// Chunks that were left out.
+  /// Returns the number of chunks that were skipped.
   std::uint64_t damaged_chunks() const { return damaged_chunks_; }
 
-  /// Continues with the first message of `log_time` or later.
+  /// Continues with the first message whose log time is `log_time` or later.
   void Seek(std::uint64_t log_time);
-  /// The next message of a known channel; nothing at the end. Chunks that overlap are merged.
+  /// Returns the next message of a known channel, or nothing at the end. Messages of overlapping
+  /// chunks are merged by their times.
   std::optional<Message> Next();
 
  private:
   struct Entry {
     std::uint64_t log_time = 0;
-    std::size_t offset = 0;  // in the records
+    std::size_t offset = 0;  // offset in `records`
   };
   struct OpenChunk {
     Bytes records;
-    std::vector<Entry> entries;  // by log time
+    std::vector<Entry> entries;  // ordered by log time
     std::size_t next = 0;
 
     bool ended() const { return next == entries.size(); }
@@ -60,7 +62,7 @@ class Reader {
   FileIndex index_;
   std::uint64_t from_ = 0;
   std::size_t next_chunk_ = 0;
-  std::size_t learnt_chunks_ = 0;  // number of the first chunks whose channels the index has
+  std::size_t learnt_chunks_ = 0;  // number of first chunks whose channels are known
   std::deque<OpenChunk> open_;
   std::uint64_t damaged_chunks_ = 0;
 };

@@ -15,7 +15,7 @@ std::optional<RecordPlace> RecordAt(Input* input, std::uint64_t offset) {
   place.op = static_cast<Op>(r.U8());
   place.size = r.Le64();
   place.content = offset + bytes.size();
-  // No record has opcode 0. Without this check, a hole of a sparse file would be an endless row of
+  // Opcode 0 is invalid. Accepting it would make a hole in a sparse file a very long sequence of
   // empty records.
   constexpr Op kNone{0};
   if (place.op == kNone || place.size > input->size() - place.content) return std::nullopt;

@@ -9,7 +9,8 @@
 namespace lidar::mcap {
 namespace {
 
-// The fields of each record in the file's order; their types define the format.
+// The fields of each record in the order of the file. The types of the fields determine their
+// format.
 constexpr auto Fields(const Header*) { return std::tuple(&Header::profile, &Header::library); }
 constexpr auto Fields(const Footer*) {
   return std::tuple(&Footer::summary_start, &Footer::summary_offset_start, &Footer::summary_crc);
@@ -48,7 +49,8 @@ constexpr auto Fields(const SummaryOffset*) {
   return std::tuple(&SummaryOffset::group, &SummaryOffset::start, &SummaryOffset::size);
 }
 
-/// Writes opcode and length, and sets the length at the end.
+/// Writes a record. The constructor writes the opcode and reserves the length, and the destructor
+/// sets the length.
 class RecordWriter : public ByteWriter {
  public:
   RecordWriter(Op op, mcap::Bytes* out) : ByteWriter(out), out_(*out) {
@@ -75,7 +77,7 @@ class RecordWriter : public ByteWriter {
     Le32(static_cast<std::uint32_t>(text.size()));
     Bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   }
-  /// A map or an array of pairs.
+  /// Writes a map or an array of pairs.
   template <class Pairs, class = typename Pairs::iterator>
   void Field(const Pairs& pairs) {
     Le32(0);
@@ -86,7 +88,7 @@ class RecordWriter : public ByteWriter {
     }
     SetLength(4, start);
   }
-  /// Sets the little-endian length of `n` bytes that stands before `start`.
+  /// Sets the little-endian length of `n` bytes that is before `start`.
   void SetLength(unsigned n, std::size_t start) {
     const std::uint64_t length = size() - start;
     for (unsigned i = 0; i < n; ++i)
@@ -113,7 +115,7 @@ void Read(ByteReader* r, std::map<Key, Value>* map) {
     Read(&entries, &value);
     if (entries.ok()) (*map)[std::move(key)] = std::move(value);
   }
-  if (!entries.ok()) r->Skip(SIZE_MAX);  // makes the reader fail
+  if (!entries.ok()) r->Skip(SIZE_MAX);  // makes the outer reader fail, too
 }
 
 template <class Fielded>
@@ -129,7 +131,8 @@ std::optional<Fielded> Parse(ByteView content) {
   return Parse<Fielded>(&r);
 }
 
-/// A file may claim that a chunk ends before its start; the chunk then ends at its start.
+/// Parses a chunk's record. If the chunk claims to end before it starts, its end is set to its
+/// start.
 template <class Chunk, class Source>
 std::optional<Chunk> ParseChunk(Source source) {
   auto chunk = Parse<Chunk>(source);

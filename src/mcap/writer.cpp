@@ -10,7 +10,7 @@
 namespace lidar::mcap {
 namespace {
 
-/// Leaves room for the schemas.
+/// The limit for channels. It leaves room for the schemas.
 constexpr std::size_t kMaxChannels = kMaxCatalogue / 4 * 3;
 
 ByteView View(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
@@ -21,7 +21,7 @@ const T* FindId(const std::vector<T>& all, std::uint16_t id) {
   return found == all.end() ? nullptr : &*found;
 }
 
-/// Appends the records of one kind to the summary and notes where they are.
+/// Appends all records of one kind to the summary. Adds their position to `offsets`.
 template <class Record>
 void AppendGroup(Op group, const std::vector<Record>& records, std::uint64_t start, Bytes* out,
                  std::vector<SummaryOffset>* offsets) {
@@ -56,7 +56,7 @@ std::uint16_t Catalogue::AddChannel(Channel channel) {
 Writer::Writer(const WriterSettings& settings, const Catalogue* catalogue, Write write)
     : settings_(settings), catalogue_(*catalogue), write_(std::move(write)) {}
 
-/// Returns true if a message of `size` bytes begins another chunk.
+/// Returns true if a message of `size` bytes must begin another chunk.
 bool Writer::IsFull(std::uint64_t log_time, std::size_t size) const {
   if (chunk_.empty()) return false;
   const auto longest = static_cast<std::uint64_t>(settings_.chunk_duration.count());
@@ -170,7 +170,7 @@ Bytes Writer::Summary(std::uint64_t start) const {
   Footer footer{start, start + out.size(), 0};
   for (const SummaryOffset& offset : offsets) Append(offset, &out);
   Append(footer, &out);
-  // The checksum covers all bytes before itself.
+  // The checksum covers all bytes that are before it.
   const std::size_t crc_at = out.size() - sizeof footer.summary_crc;
   const std::uint32_t crc = Crc32({out.data(), crc_at});
   for (unsigned i = 0; i < 4; ++i) out[crc_at + i] = static_cast<std::uint8_t>(crc >> (8 * i));

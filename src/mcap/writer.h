@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes an MCAP file: chunks with indexes, then the summary.
+// Writes an MCAP file: chunks with their indexes, followed by the summary.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,12 +13,13 @@
 
 namespace lidar::mcap {
 
-/// The largest message. Readers accept chunks of kMaxChunk, and a chunk also holds its channels.
+/// The largest size of a message. It is smaller than kMaxChunk, because a chunk also contains its
+/// channels.
 constexpr std::size_t kMaxMessage = kMaxChunk - (std::size_t{1} << 20);  // bytes
 
 struct WriterSettings {
   Compression compression = Compression::kZstd;
-  std::size_t chunk_size = std::size_t{1} << 20;  // a chunk ends once it is larger [bytes]
+  std::size_t chunk_size = std::size_t{1} << 20;  // a chunk ends when it is larger [bytes]
   Duration chunk_duration = std::chrono::seconds(1);
 };
 
@@ -28,38 +29,39 @@ class Catalogue {
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
 
-  /// Returns the id of the schema with that name, and adds the schema if it is missing.
+  /// Returns the id of the schema with the same name. Adds the schema if there is none.
   std::uint16_t AddSchema(const Schema& schema);
-  /// Adds a channel and returns its id; 0 if there are 65,535 channels, or more than a reader
-  /// accepts.
+  /// Adds a channel and returns its id. Returns 0 if there are 65,535 channels, or if the channels
+  /// need more memory than a reader accepts.
   std::uint16_t AddChannel(Channel channel);
 
  private:
   std::size_t channel_bytes_ = 0;
 };
 
-/// Writes a file. Each chunk holds the schemas and channels that it uses, so it can be read alone.
+/// Writes a file. Each chunk contains the schemas and channels that it uses, so a reader needs no
+/// other chunk.
 class Writer {
  public:
-  /// Appends to the file, all or nothing. Returns false if that failed.
+  /// A function that appends all bytes to the file, or none of them. Returns false if that failed.
   using Write = std::function<bool(ByteView)>;
 
-  /// `catalogue` outlives this object, and may grow.
+  /// `catalogue` must outlive this object. Channels may be added to it later.
   Writer(const WriterSettings& settings, const Catalogue* catalogue, Write write);
 
-  /// Takes a message of at most kMaxMessage bytes, and writes a chunk if one is full. Finish() may
-  /// still work after Add() has returned false.
+  /// Adds a message of at most kMaxMessage bytes. Writes the open chunk before, if it is full. If
+  /// Add() returns false, Finish() may still succeed.
   bool Add(const MessageHeader& header, ByteView data);
-  /// Writes the open chunk.
+  /// Writes the open chunk. Returns false if that failed.
   bool Flush();
-  /// Writes the open chunk, the index and the footer; an empty recording writes no byte.
+  /// Writes the open chunk, the summary and the footer. Writes nothing if there are no messages.
   bool Finish();
 
-  /// Bytes of the file so far, with the open chunk.
+  /// Returns the size of the file, including the open chunk [bytes].
   std::uint64_t size() const { return offset_ + chunk_.size(); }
-  /// Chunks that have been written.
+  /// Returns the number of chunks that were written.
   std::size_t chunks() const { return chunk_indexes_.size(); }
-  /// Returns true once the file's end is written.
+  /// Returns true if the end of the file was written.
   bool ended() const { return ended_; }
   const Statistics& statistics() const { return statistics_; }
 
@@ -77,15 +79,15 @@ class Writer {
   const Catalogue& catalogue_;
   const Write write_;
 
-  std::uint64_t offset_ = 0;    // of the end of the file
-  std::uint32_t data_crc_ = 0;  // of the file up to offset_
+  std::uint64_t offset_ = 0;    // size of the file so far
+  std::uint32_t data_crc_ = 0;  // checksum of the file up to offset_
   bool ended_ = false;
-  // The open chunk.
+  // The members of the open chunk.
   Bytes chunk_;
   std::uint64_t chunk_start_ = 0;
   std::uint64_t chunk_end_ = 0;
   std::map<std::uint16_t, MessageIndex> message_indexes_;
-  std::vector<ChunkIndex> chunk_indexes_;  // one for each chunk written
+  std::vector<ChunkIndex> chunk_indexes_;  // one for each written chunk
   Statistics statistics_;
 };
 
