@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A token bucket: some events at once, and more as time passes.
+// A token bucket. It allows a number of events at once, and more events as time passes.
 #pragma once
 #include "src/base/time.h"
 
@@ -7,11 +7,12 @@ namespace lidar {
 
 class Allowance {
  public:
-  /// Holds `most` tokens; taken tokens are restored, one in each `period`.
+  /// The bucket begins with `most` tokens. Afterwards one used token is restored after each
+  /// `period`.
   Allowance(int most, Duration period) : most_(most), period_(period) {}
 
-  /// Takes a token, and returns true, if more than `reserve` are left at `now`. If times go back,
-  /// no token is restored.
+  /// Takes a token and returns true if more than `reserve` tokens are left at `now`. If `now` is
+  /// before an earlier time, no token is restored.
   bool Take(Time now, int reserve = 0) {
     if (taken_ == 0) since_ = now;
     if (now > since_) {

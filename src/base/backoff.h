@@ -11,13 +11,13 @@ class Backoff {
  public:
   Backoff(Duration first, Duration most) : first_(first), most_(most), next_(first) {}
 
-  /// Pause before the next attempt.
+  /// Returns the pause before the next attempt.
   Duration Next() {
     const Duration pause = next_;
     next_ = std::min(2 * next_, most_);
     return pause;
   }
-  /// Begins anew after a success.
+  /// Makes the next pause as short as the first one. Call it after a success.
   void Reset() { next_ = first_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Bytes as text (RFC 4648, section 4).
+// Encodes bytes as Base64 text (RFC 4648, section 4), and decodes such text.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -25,7 +25,7 @@ inline std::string Base64(const std::vector<std::uint8_t>& bytes) {
   return text;
 }
 
-/// Returns the bytes of `text`; skips line breaks and padding.
+/// Decodes `text`. Skips line breaks, padding and all other characters that are not Base64 digits.
 inline std::vector<std::uint8_t> FromBase64(std::string_view text) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(text.size() / 4 * 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads integers out of unchecked bytes.
+// Reads integers from bytes that may be too short.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace lidar {
 
-/// A view of bytes that it does not own (std::span is C++20).
+/// A view of bytes that other objects own (std::span is C++20).
 struct ByteView {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
@@ -15,7 +15,7 @@ struct ByteView {
   const std::uint8_t* begin() const { return data; }
   const std::uint8_t* end() const { return data + size; }
   bool empty() const { return size == 0; }
-  /// Returns the bytes from `offset`, at most `n`: fewer if the view ends earlier.
+  /// Returns `n` bytes from `offset` on, or fewer if the view ends before.
   ByteView Sub(std::size_t offset, std::size_t n = SIZE_MAX) const {
     if (offset > size) offset = size;
     const std::size_t left = size - offset;
@@ -23,8 +23,8 @@ struct ByteView {
   }
 };
 
-/// Reads in order. A read past the end gives zero and makes ok() false from then on, so a parser
-/// may read a whole header and check ok() at its end.
+/// Reads bytes in order. After a read past the end, ok() stays false, and reads return zero. A
+/// parser may therefore read a whole header and check ok() once at the end.
 class ByteReader {
  public:
   explicit ByteReader(ByteView bytes) : bytes_(bytes) {}
@@ -56,7 +56,7 @@ class ByteReader {
     std::memcpy(&d, &bits, sizeof d);
     return d;
   }
-  /// Returns `n` bytes, or no bytes with ok() false.
+  /// Returns the next `n` bytes. If there are fewer bytes, returns none and makes ok() false.
   ByteView Bytes(std::size_t n) {
     if (!Has(n)) return {};
     const ByteView v{bytes_.data + position_, n};

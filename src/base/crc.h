@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Checksums: CRC-32 (IEEE 802.3) of slices, CRC-64/XZ of Ouster packets.
+// Checksums: CRC-32 (IEEE 802.3) for slices, and CRC-64/XZ for Ouster packets.
 #pragma once
 #include <cstdint>
 
@@ -7,9 +7,11 @@
 
 namespace lidar {
 
-/// `seed` is the CRC of the preceding bytes, so that a CRC can be computed in parts.
+/// Returns the CRC-32 of `bytes`. A CRC can be computed in parts: `seed` is the CRC of the bytes
+/// before `bytes`.
 std::uint32_t Crc32(ByteView bytes, std::uint32_t seed = 0);
-/// Reflected 0xC96C5795D7870F42, initial value and final XOR all ones.
+/// Returns the CRC-64 of `bytes`. The polynomial is reflected 0xC96C5795D7870F42, and the initial
+/// value and the final XOR are all ones.
 std::uint64_t Crc64(ByteView bytes, std::uint64_t seed = 0);
 
 }  // namespace lidar

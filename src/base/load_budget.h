@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Bounds the processor time of a piece of work in the long run.
+// Limits the processor time that a task uses in the long run.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -10,11 +10,11 @@ namespace lidar {
 
 class LoadBudget {
  public:
-  /// Unused time is saved, but not more than is allowed in this period.
+  /// Unused processor time is saved up to the amount that is allowed in this period.
   static constexpr Duration kUnusedTimeKept = std::chrono::seconds(1);
 
-  /// `load` is the allowed processor time divided by elapsed time. Returns false while more
-  /// processor time than allowed was spent up to `now`. Times must not go back.
+  /// Returns true unless the task has used more processor time up to `now` than allowed. `load` is
+  /// the allowed processor time divided by the elapsed time. `now` must not decrease.
   bool Allows(double load, Time now) {
     if (last_) saved_ += FromSeconds(load * Seconds(now - *last_));
     last_ = now;
@@ -24,7 +24,7 @@ class LoadBudget {
   void Spend(Duration processor_time) { saved_ -= processor_time; }
 
  private:
-  Duration saved_{};  // negative: overspent
+  Duration saved_{};  // negative if too much time was used
   std::optional<Time> last_;
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Size of a pose in buffers of application/x-odometry, little-endian.
+// The size of a pose in buffers of application/x-odometry (little-endian).
 #pragma once
 #include <cstddef>
 
 namespace lidar {
 
-/// Seven doubles with position and orientation, and an integer with the tracking; then, if known,
-/// the covariance in 36 doubles.
+/// A pose consists of seven doubles (position and orientation) and a 64-bit integer (the state of
+/// tracking). If the covariance is known, 36 doubles follow.
 inline constexpr std::size_t kPoseSize = 64;
 inline constexpr std::size_t kPoseSizeWithCovariance = kPoseSize + 36 * sizeof(double);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Rate of events over a sliding window.
+// Measures the rate of data over a sliding window.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -19,7 +19,8 @@ class RateMeter {
     sum_ += size;
     Expire(now);
   }
-  /// Averages over the time since the first event, at most a window.
+  /// Returns the average rate over the window, or over the time since the first event if that is
+  /// shorter.
   DataRate Rate(Time now) {
     Expire(now);
     if (first_ == Time::max()) return DataRate();

@@ -22,7 +22,8 @@ RowFile& RowFile::operator=(RowFile&& other) noexcept {
   return *this;
 }
 
-/// Removes an empty file if it is a regular one: a device such as /dev/full is never removed.
+/// Removes the file if it is empty. It must be a regular file, because a device such as /dev/full
+/// must not be removed.
 void RowFile::Close() {
   if (!file_.is_open()) return;
   file_.close();

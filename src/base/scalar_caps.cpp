@@ -18,15 +18,15 @@ using Bytes = ScalarCaps::Bytes;
 using Doubles = ScalarCaps::Doubles;
 
 constexpr std::string_view kPrefix = "application/x-";
-// Names of types, in the order of Value.
+// The names of the types, in the order of the types in Value.
 constexpr std::array<std::string_view, std::variant_size_v<Value>> kTypeNames = {
     "string", "boolean", "int",      "uint",   "gint64", "guint64",
     "float",  "double",  "fraction", "buffer", "double"};
-constexpr std::size_t kDoubles = kTypeNames.size() - 1;  // of Doubles, named like its elements
+constexpr std::size_t kDoubles = kTypeNames.size() - 1;  // index of Doubles in Value
 
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
-/// True for characters that need no quotes.
+/// Returns true if `c` needs no quotes in a string.
 bool IsBare(char c) {
   return IsLetter(c) || IsDigit(c) || std::string_view("_-+/:.").find(c) != std::string_view::npos;
 }
@@ -44,7 +44,8 @@ bool IsMediaType(std::string_view text) {
          IsName(text.substr(kPrefix.size()));
 }
 
-/// Length of the UTF-8 character at the beginning of `text`; 0 if it is invalid.
+/// Returns the size of the UTF-8 character at the beginning of `text`, or 0 if the character is
+/// invalid.
 std::size_t SizeOfCharacter(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   if (byte(0) < 0x80) return 1;
@@ -60,7 +61,7 @@ std::size_t SizeOfCharacter(std::string_view text) {
   return code >= kLeast[size] && code <= 0x10FFFF && !surrogate ? size : 0;
 }
 
-/// True for valid UTF-8 without control characters, which would spoil logs.
+/// Returns true if `text` is valid UTF-8 without control characters, which would spoil logs.
 bool IsPrintable(std::string_view text) {
   while (!text.empty()) {
     const std::size_t size = SizeOfCharacter(text);
@@ -87,7 +88,7 @@ std::optional<bool> ParseBool(std::string_view text) {
   return std::nullopt;
 }
 
-/// True for a fraction that GStreamer can hold.
+/// Returns true if GStreamer accepts `value` as a fraction.
 bool IsFraction(const Fraction& value) {
   return value.denominator > 0 && value.numerator > std::numeric_limits<std::int32_t>::min();
 }
@@ -138,7 +139,7 @@ std::optional<Value> ParseValue(std::size_t type, std::string_view text,
   return kParsers[type](text);
 }
 
-/// Parses the text from the front.
+/// Parses a text from its beginning to its end.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
@@ -161,7 +162,7 @@ class Reader {
     text_.remove_prefix(size);
     return taken;
   }
-  /// Takes the text after the opening quote, up to the closing one.
+  /// Parses a quoted string. The opening quote was already read. Reads the closing quote, too.
   std::optional<std::string> TakeQuoted() {
     std::string out;
     while (!Take('"')) {
@@ -187,7 +188,8 @@ class Reader {
   std::string_view text_;
 };
 
-/// Takes the values after the opening bracket, up to the closing one.
+/// Parses an array of doubles. The opening bracket was already read. Reads the closing bracket,
+/// too.
 std::optional<Value> TakeDoubles(Reader* r) {
   Doubles values;
   do {
@@ -287,7 +289,7 @@ void AppendValue(const Value& value, std::string* text) {
       value);
 }
 
-/// Returns what is wrong with the value, if anything.
+/// Returns what is wrong with `value`, or nothing if it is valid.
 std::optional<std::string> WrongIn(const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value))
     if (!IsPrintable(*text)) return "has characters that cannot be printed";

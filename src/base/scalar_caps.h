@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps of a stream whose fields are scalars or short arrays of doubles, and their text: a bounded
-// part of GStreamer's syntax (docs/wire-format.md), parsed in linear time.
+// Caps of a stream whose fields are scalars or short arrays of doubles. Their text is a limited
+// part of GStreamer's syntax (docs/wire-format.md), which can be parsed in linear time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -31,20 +31,20 @@ struct ScalarCaps {
   };
 
   static constexpr std::size_t kMaxFields = 64;
-  static constexpr std::size_t kMaxDoubles = 16;       // of one field: enough for a transform
-  static constexpr std::size_t kMaxName = 64;          // of a field, and of the media type [bytes]
+  static constexpr std::size_t kMaxDoubles = 16;       // per field; enough for a transform
+  static constexpr std::size_t kMaxName = 64;          // of a field or a media type [bytes]
   static constexpr std::size_t kMaxText = 128U << 10;  // [bytes]
 
   std::string media_type;
   std::vector<Field> fields;
 
-  /// Returns nothing for text outside of the grammar.
+  /// Parses a text. Returns nothing if the text does not conform to the grammar.
   static std::optional<ScalarCaps> Parse(std::string_view text);
-  /// The text, as GStreamer would write it. Returns nothing if Parse() would refuse it; `why` then
-  /// has the reason for a user.
+  /// Returns the text that GStreamer would write for these caps. Returns nothing and sets `why`, a
+  /// text for users, if Parse() would refuse that text.
   std::optional<std::string> ToText(std::string* why = nullptr) const;
 
-  /// Returns null if there is no such field.
+  /// Returns the value of the field `name`, or null if there is no such field.
   const Value* Find(std::string_view name) const;
   bool operator==(const ScalarCaps& o) const {
     return media_type == o.media_type && fields == o.fields;

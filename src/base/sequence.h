@@ -7,24 +7,26 @@
 
 namespace lidar {
 
-/// Signed distance from `b` to `a`: positive if `a` is newer. Exact within half the range.
+/// Returns the signed distance from `b` to `a`, which is positive if `a` is newer. The result is
+/// correct if the distance is less than half of the range.
 template <class U>
 constexpr std::make_signed_t<U> SequenceDistance(U a, U b) {
   static_assert(std::is_unsigned_v<U>);
   return static_cast<std::make_signed_t<U>>(static_cast<U>(a - b));
 }
 
-/// Extends wrapping numbers to 64 bits: to the value that is nearest to the newest number so far.
+/// Extends wrapping numbers to 64 bits. Each result is the value nearest to the newest number so
+/// far.
 template <class U>
 class SequenceUnwrapper {
  public:
-  /// Extends `n`, and keeps the result if it is the newest.
+  /// Extends `n` and returns the result. Stores the result if it is the newest number.
   std::int64_t Unwrap(U n) {
     const std::int64_t extended = Peek(n);
     if (!newest_ || extended > *newest_) newest_ = extended;
     return extended;
   }
-  /// Extends `n` without a change of state.
+  /// Extends `n` and returns the result, without storing it.
   std::int64_t Peek(U n) const {
     if (!newest_) return n;
     return *newest_ + SequenceDistance(n, static_cast<U>(*newest_));

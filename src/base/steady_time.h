@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Turns the caller's clock into a steady one.
+// Converts the caller's clock to a clock that never jumps back.
 #pragma once
 #include <algorithm>
 
@@ -7,8 +7,9 @@
 
 namespace lidar {
 
-/// Threads may pass their times slightly out of order. A time far before the latest one means that
-/// the clock was set: the steady time then continues from its latest value.
+/// A clock that does not jump back when the caller's clock is set. Threads may pass their times
+/// slightly out of order. If a time is far before the latest time, the caller's clock was set. The
+/// steady time then continues from its latest value.
 class SteadyTime {
  public:
   Time From(Time caller) {
@@ -20,9 +21,9 @@ class SteadyTime {
     latest_ = std::max(latest_, time);
     return time;
   }
-  /// Converts a time without a change of state.
+  /// Converts the caller's time to steady time, without a change of state.
   Time Peek(Time caller) const { return caller + shift_; }
-  /// Converts a steady time back to the caller's clock.
+  /// Converts a steady time back to the caller's time.
   Time ToCaller(Time time) const { return time == Time::max() ? time : time - shift_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decides when a changed target bitrate is worth an event to the encoder.
+// Decides when to send the encoder an event with a new target bitrate.
 #pragma once
 #include <chrono>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace lidar {
 
-/// Serves one stream. ShouldNotify() returns true if the target has changed by more than
-/// kThreshold, or kInterval has passed, since it last returned true.
+/// Decides for one stream. ShouldNotify() returns true if the target has changed by more than
+/// kThreshold since it last returned true, or if kInterval has passed since then.
 class TargetNotifier {
  public:
   bool ShouldNotify(Time now, DataRate target) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Time types without now(): callers pass the time in.
+// Types of times. There is no now(), because callers pass all times.
 #pragma once
 #include <chrono>
 #include <cstdint>
 
 namespace lidar {
 
-/// A clock without now(): callers pass each time.
+/// A clock without now(), because callers pass all times.
 struct Clock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;
@@ -21,7 +21,7 @@ constexpr double Seconds(Duration d) { return std::chrono::duration<double>(d).c
 constexpr double Milliseconds(Duration d) {
   return std::chrono::duration<double, std::milli>(d).count();
 }
-/// Rounds to the nearest nanosecond.
+/// Converts seconds to a Duration. Rounds to the nearest nanosecond.
 constexpr Duration FromSeconds(double s) {
   return Duration{static_cast<std::int64_t>(s * 1e9 + (s < 0 ? -0.5 : 0.5))};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Amounts and rates of data whose units are their types.
+// Types for amounts and rates of data. The types prevent errors in units.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -83,7 +83,7 @@ constexpr DataSize operator*(DataRate rate, Duration time) {
   return DataSize::Bytes(static_cast<std::int64_t>(rate.bits_per_second() * Seconds(time) / 8.0));
 }
 constexpr DataSize operator*(Duration time, DataRate rate) { return rate * time; }
-/// Time to send `size` at `rate`; the largest Duration if the rate is zero.
+/// Returns the time to send `size` at `rate`, or the largest Duration if the rate is zero.
 constexpr Duration operator/(DataSize size, DataRate rate) {
   const double s = size.bits() / rate.bits_per_second();
   return s < 9e9 ? FromSeconds(s) : Duration::max();
