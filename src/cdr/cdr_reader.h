@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads an unchecked CDR message, the form of data in DDS and so in ROS 2.
+// Reads a CDR message. CDR is the encoding of data in DDS, and therefore in ROS 2.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace lidar::cdr {
 
-/// Reads in order. A read past the end gives zero or nothing and makes ok() false for good, as
-/// ByteReader does. It never allocates more than the message is long.
+/// Reads a message in order. After a read past the end, ok() stays false, and reads return zero or
+/// nothing, as in ByteReader. The reader never allocates more memory than the size of the message.
 class CdrReader {
  public:
   static constexpr std::size_t kHeaderSize = 4;
-  /// Names in messages: frames, nodes, fields.
+  /// The limit for names in messages: names of frames, nodes and fields.
   static constexpr std::uint32_t kMaxText = 1024;
 
-  /// `message` begins with the encapsulation header: CDR (XCDR1) or plain CDR2 of either byte
-  /// order. Anything else is not ok.
+  /// `message` begins with the encapsulation header. ok() is false unless the encoding is CDR
+  /// (XCDR1) or plain CDR2, in either byte order.
   explicit CdrReader(ByteView message) : body_(message.Sub(kHeaderSize)) {
     const bool known = message.size >= kHeaderSize && message.data[0] == 0 &&
                        (message.data[1] <= 1 || message.data[1] == 6 || message.data[1] == 7);
@@ -53,7 +53,7 @@ class CdrReader {
   void F64s(Array* values) {
     for (double& value : *values) value = F64();
   }
-  /// At most kMaxText bytes, which end with a zero.
+  /// Reads a text of at most kMaxText bytes, which must end with a zero.
   std::string Text() {
     const std::uint32_t size = U32();
     const ByteView bytes = size <= kMaxText ? Bytes(size) : Fail();
@@ -61,17 +61,17 @@ class CdrReader {
     ok_ = ok_ && bytes.data[bytes.size - 1] == 0;
     return ok_ ? std::string(bytes.begin(), bytes.end() - 1) : std::string();
   }
-  /// sequence<octet>, not copied.
+  /// Reads a sequence<octet>. The octets are not copied.
   ByteView Octets() { return Bytes(U32()); }
-  /// The length of a sequence of elements with at least `least_size` bytes each: 0 and not ok if
-  /// the rest of the message cannot hold so many elements.
+  /// Reads the length of a sequence whose elements have at least `least_size` bytes each. If the
+  /// rest of the message is too short for so many elements, returns 0 and makes ok() false.
   std::uint32_t Count(std::size_t least_size) {
     const std::uint32_t count = U32();
     if (ok_ && count <= remaining() / least_size) return count;
     ok_ = false;
     return 0;
   }
-  /// An array of octets.
+  /// Reads an array of `n` octets.
   ByteView Bytes(std::size_t n) {
     if (!Has(n)) return {};
     position_ += n;
@@ -99,7 +99,7 @@ class CdrReader {
     return value;
   }
 
-  ByteView body_;  // alignment counts from its beginning
+  ByteView body_;  // alignment is relative to its beginning
   std::size_t position_ = 0;
   std::size_t max_alignment_ = 8;
   bool big_endian_ = false;

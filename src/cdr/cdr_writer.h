@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes a CDR message, the form of data in DDS and so in ROS 2: XCDR1, little-endian.
+// Writes a CDR message (XCDR1, little-endian). CDR is the encoding of data in DDS, and therefore in
+// ROS 2.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -11,7 +12,7 @@ namespace lidar::cdr {
 
 class CdrWriter {
  public:
-  /// Begins a message at the end of `out`, which must outlive this object, and writes its header.
+  /// Writes the header of a message at the end of `out`, which must outlive this object.
   explicit CdrWriter(std::vector<std::uint8_t>* out) : writer_(out) {
     writer_.Be32(0x0001'0000);  // CDR_LE, no options
     body_ = writer_.size();
@@ -45,9 +46,9 @@ class CdrWriter {
     for (const char c : text) U8(static_cast<std::uint8_t>(c));
     U8(0);
   }
-  /// An array of octets.
+  /// Writes an array of octets.
   void Bytes(ByteView bytes) { writer_.Bytes(bytes); }
-  /// sequence<octet>
+  /// Writes a sequence<octet>.
   void Octets(ByteView bytes) {
     U32(static_cast<std::uint32_t>(bytes.size));
     Bytes(bytes);
@@ -60,7 +61,7 @@ class CdrWriter {
   }
 
   ByteWriter writer_;
-  std::size_t body_ = 0;  // alignment counts from here
+  std::size_t body_ = 0;  // alignment is relative to this offset
 };
 
 }  // namespace lidar::cdr

@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kMaxDuration = INT32_MAX * kSecond;
 
-/// builtin_interfaces/msg/Duration; a missing duration is written as a negative one.
+/// Writes a builtin_interfaces/msg/Duration. A missing duration is written as a negative duration.
 void WriteDuration(const std::optional<Duration>& duration, CdrWriter* w) {
   const std::int64_t ns =
       duration ? std::clamp<std::int64_t>(duration->count(), 0, kMaxDuration) : -kSecond;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// livox_ros_driver2/msg/CustomMsg.
+// Reads livox_ros_driver2/msg/CustomMsg.
 #include "src/base/byte_writer.h"
 #include "src/cdr/cdr_reader.h"
 #include "src/cdr/point_cloud2.h"
@@ -7,7 +7,7 @@
 namespace lidar::cdr {
 namespace {
 
-// Size of a point without padding.
+// The size of a point without padding.
 constexpr std::size_t kSmallestPoint = 19;
 constexpr std::uint32_t kPointStep = 26;
 constexpr std::uint8_t kRosU8 = 2;
@@ -37,8 +37,8 @@ std::optional<MadeCloud> ReadLivox(ByteView message, std::string* why) {
   RosLayout& layout = made.cloud.layout;
   made.cloud.header = ReadHeader(&r);
   const std::uint64_t timebase = r.U64();
-  r.U32();     // number of points, which the sequence has, too
-  r.Bytes(4);  // sensor, reserved
+  r.U32();     // number of points, which is also the length of the sequence
+  r.Bytes(4);  // number of the sensor, and reserved bytes
   layout.width = r.Count(kSmallestPoint);
   layout.fields = LivoxFields();
   layout.point_step = kPointStep;

@@ -7,7 +7,7 @@ namespace lidar::cdr {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-// A stamp, two empty texts and seven numbers, without padding.
+// The size of a stamp, two empty texts and seven numbers, without padding.
 constexpr std::size_t kSmallestTransform = 72;
 
 }  // namespace

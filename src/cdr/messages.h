@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ROS 2 messages about motion, and the parts that all messages share.
+// ROS 2 messages about motion, and the parts that all messages have.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,7 +16,8 @@ namespace lidar::cdr {
 using Vector3 = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;  // x, y, z, w
 
-/// std_msgs/msg/Header. A stamp has seconds from 1970 to 2038; other times become the nearest end.
+/// std_msgs/msg/Header. A stamp can have times from 1970 to 2038. WriteHeader() changes other times
+/// to the nearer end of this range.
 struct Header {
   Time stamp{};
   std::string frame_id;
@@ -24,7 +25,7 @@ struct Header {
 Header ReadHeader(CdrReader* r);
 void WriteHeader(const Header& header, CdrWriter* w);
 
-/// sensor_msgs/msg/Imu. A covariance whose first number is -1 marks the value as not measured.
+/// sensor_msgs/msg/Imu. If the first number of a covariance is -1, the value was not measured.
 struct Imu {
   Header header;
   Quaternion orientation = {0, 0, 0, 1};
@@ -51,7 +52,7 @@ struct Odometry {
 std::optional<Odometry> ReadOdometry(ByteView message);
 std::vector<std::uint8_t> WriteOdometry(const Odometry& odometry);
 
-/// geometry_msgs/msg/TransformStamped: takes points of child_frame_id to header.frame_id.
+/// geometry_msgs/msg/TransformStamped: transforms points from child_frame_id to header.frame_id.
 struct TransformStamped {
   Header header;
   std::string child_frame_id;

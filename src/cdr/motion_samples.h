@@ -11,15 +11,15 @@
 namespace lidar::cdr {
 
 std::vector<std::uint8_t> WriteImuSample(const Imu& imu);
-/// Returns a message for each sample in `bytes`, without orientation and frame, or no messages if
-/// the last sample is cut.
+/// Returns a message for each sample in `bytes`, without orientation and frame. Returns no messages
+/// if the last sample is incomplete.
 std::vector<Imu> ReadImuSamples(ByteView bytes);
 
-/// Writes position [m], orientation x, y, z, w, `tracking` (Odometry has none), and the pose's
-/// covariance unless it is zero.
+/// Writes the position [m], the orientation (x, y, z, w), and `tracking`, which Odometry does not
+/// have. Also writes the pose's covariance unless it is zero.
 std::vector<std::uint8_t> WritePose(const Odometry& odometry, std::uint64_t tracking);
-/// Returns the pose without time and frames, with its covariance (zeros if unknown). Returns
-/// nothing if `bytes` have another size.
+/// Reads a pose and `tracking`. The pose has no time and no frames. Its covariance is zero if it is
+/// unknown. Returns nothing if the size of `bytes` is wrong.
 std::optional<Odometry> ReadPose(ByteView bytes, std::uint64_t* tracking);
 
 }  // namespace lidar::cdr

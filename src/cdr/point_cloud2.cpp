@@ -7,9 +7,9 @@
 namespace lidar::cdr {
 namespace {
 
-// An empty name and three numbers, without padding.
+// The size of an empty name and three numbers, without padding.
 constexpr std::size_t kSmallestField = 13;
-// No driver sends so many fields. The limit bounds the memory for a field list.
+// The largest number of fields. It limits the memory for fields, and no driver sends so many.
 constexpr std::uint32_t kMaxRosFields = 1024;
 
 auto Tie(const RosField& f) { return std::tie(f.name, f.offset, f.datatype, f.count); }
@@ -54,7 +54,7 @@ PointCloud2 ReadCloud(CdrReader* r) {
   return cloud;
 }
 
-/// Writes all that precedes the points.
+/// Writes the part of the message that is before the points.
 void WriteHead(const PointCloud2& cloud, CdrWriter* w) {
   WriteHeader(cloud.header, w);
   w->U32(cloud.layout.height);
@@ -132,7 +132,7 @@ RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint3
   layout.width = width;
   layout.point_step = points.point_step;
   layout.row_step = width * points.point_step;
-  std::string array;  // the name before [0] in the last field
+  std::string array;  // name without [0] if the last field began an array
   for (const PointField& f : points.fields.all()) {
     const auto datatype = static_cast<std::uint8_t>(static_cast<int>(f.type) + 1);
     RosField* last = layout.fields.empty() ? nullptr : &layout.fields.back();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// sensor_msgs/msg/PointCloud2, and the conversion of its points to ours.
+// sensor_msgs/msg/PointCloud2, and the conversion of its points to our points.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace lidar::cdr {
 
-/// sensor_msgs/msg/PointField, whose datatypes 1 to 8 are our FieldTypes in the same order.
+/// sensor_msgs/msg/PointField. Its datatypes 1 to 8 are our FieldTypes in the same order.
 struct RosField {
   std::string name;
   std::uint32_t offset = 0;
@@ -22,7 +22,7 @@ struct RosField {
 };
 bool operator==(const RosField& a, const RosField& b);
 
-/// The common properties of a source's messages.
+/// The properties that all messages of a source have in common.
 struct RosLayout {
   std::uint32_t height = 1;
   std::uint32_t width = 0;
@@ -36,22 +36,22 @@ bool operator==(const RosLayout& a, const RosLayout& b);
 struct PointCloud2 {
   Header header;
   RosLayout layout;
-  ByteView data;  // not owned: a part of the message it was read from
+  ByteView data;  // not owned: a part of the message from which it was read
   bool is_dense = false;
 };
 
-/// Returns nothing for another message; `why` then has the reason for a user.
+/// Reads a message. Returns nothing and sets `why`, a text for users, if it is not a PointCloud2.
 std::optional<PointCloud2> ReadPointCloud2(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WritePointCloud2(const PointCloud2& cloud);
 
 /// A cloud that owns its points.
 struct MadeCloud {
-  PointCloud2 cloud;  // its data are `points`
+  PointCloud2 cloud;  // its data are the member `points`
   std::vector<std::uint8_t> points;
 };
-/// livox_ros_driver2/msg/CustomMsg, as the PointCloud2 that the same driver publishes of it: x, y,
-/// z, intensity, tag, line, and timestamp as F64 [ns since 1970]. Returns nothing for another
-/// message.
+/// Converts a livox_ros_driver2/msg/CustomMsg to the PointCloud2 that the same driver would publish
+/// for it. Its fields are x, y, z, intensity, tag, line, and timestamp as F64 [ns since 1970].
+/// Returns nothing if `message` is not a CustomMsg.
 std::optional<MadeCloud> ReadLivox(ByteView message, std::string* why = nullptr);
 
 /// point_cloud_interfaces/msg/CompressedPointCloud2
@@ -62,17 +62,18 @@ struct CompressedCloud {
 std::optional<CompressedCloud> ReadCompressedCloud(ByteView message, std::string* why = nullptr);
 std::vector<std::uint8_t> WriteCompressedCloud(const CompressedCloud& compressed);
 
-/// Returns the bytes between the beginnings of two rows. Returns nothing if the data's length
-/// contradicts width, height and steps. Many drivers set row_step to 0 or to the total size, so
-/// packed rows are recognised by the size alone.
+/// Returns the distance between the beginnings of two rows [bytes]. Returns nothing if the size of
+/// the data contradicts the width, the height and the steps. Many drivers set row_step to 0 or to
+/// the total size. Rows without padding are therefore recognised by the size of the data alone.
 std::optional<std::size_t> RowStride(const PointCloud2& cloud);
 
-/// A message in two parts, for a gathering write: the points go between `head` and `tail`.
+/// The two parts of a message without its points, for a gathering write. The points are sent
+/// between `head` and `tail`.
 struct PointCloud2Frame {
   std::vector<std::uint8_t> head;
   std::vector<std::uint8_t> tail;
 };
-/// Uses the size of `cloud.data`, not the points.
+/// Writes the parts of a message. Reads the size of `cloud.data`, but not the points.
 PointCloud2Frame FramePointCloud2(const PointCloud2& cloud);
 
 /// The layout of points in our clouds.
@@ -81,36 +82,39 @@ struct PointLayout {
   std::uint32_t point_step = 0;  // bytes
 };
 
-/// Returns the layout of packed rows of little-endian points. Adjacent fields a[0], a[1], ... of
-/// one type become one field with as many elements.
+/// Returns the layout of little-endian points in rows without padding. Adjacent fields a[0], a[1],
+/// ... of the same type are combined to one field with several elements.
 RosLayout ToRosLayout(const PointLayout& points, std::uint32_t width, std::uint32_t height);
 
-/// Converts points of messages of one layout to little-endian points in packed rows.
+/// Converts the points of messages to little-endian points in rows without padding. All messages
+/// must have the same layout.
 class PointConverter {
  public:
-  /// `wanted` selects fields and their new types. Without it all fields stay; only x, y and z
-  /// become F32 side by side, as all elements need them. A field of n elements becomes n fields
-  /// a[0], a[1], ... A field is padding if it has no usable name, an earlier field's name, an
-  /// unknown type or more than kMaxFields elements. Returns nothing if the layout contradicts
-  /// itself, is too large, or lacks a wanted field; `why` then has the reason.
+  /// Makes a converter. `wanted` selects the fields and their new types. If there is no `wanted`,
+  /// all fields are kept, but x, y and z become F32 side by side, because all elements need that. A
+  /// field with n elements becomes n fields a[0], a[1], ... A field counts as padding if its name
+  /// cannot be used or is the name of an earlier field, if its type is unknown, or if it has more
+  /// than kMaxFields elements. Returns nothing and sets `why` if the layout is contradictory or too
+  /// large, or if a wanted field is missing.
   static std::optional<PointConverter> Make(const RosLayout& layout,
                                             const std::optional<PointLayout>& wanted = {},
                                             std::string* why = nullptr);
 
   const RosLayout& layout() const { return from_; }
   const PointLayout& points() const { return to_; }
-  /// Bytes of one cloud of ours.
+  /// Returns the size of a converted cloud [bytes].
   std::size_t size() const { return std::size_t{from_.width} * from_.height * to_.point_step; }
-  /// Returns true if points are copied as they are.
+  /// Returns true if points are copied without changes.
   bool copies() const { return steps_.empty(); }
 
-  /// `cloud` has layout(). Returns false if it has no RowStride(). `out` has size() bytes.
+  /// Converts `cloud`, whose layout must be layout(), to `out`, which must have size() bytes.
+  /// Returns false if `cloud` has no RowStride().
   bool Convert(const PointCloud2& cloud, std::uint8_t* out) const;
 
-  static constexpr std::size_t kMaxSize = std::size_t{1} << 30;  // limit of clouds in caps
+  static constexpr std::size_t kMaxSize = std::size_t{1} << 30;  // limit for clouds in caps
 
  private:
-  /// Bytes that move together, or one number that changes its type or its byte order.
+  /// Adjacent bytes that are copied, or a number whose type or byte order changes.
   struct Step {
     std::uint32_t from = 0;
     std::uint32_t to = 0;

@@ -14,20 +14,21 @@ const PointField* FindField(const std::vector<PointField>& fields, const std::st
   return found == fields.end() ? nullptr : &*found;
 }
 
-/// Names go into caps, where a comma or a colon would end them.
+/// Returns true if the field can be used. Its name becomes part of caps, so it must not contain a
+/// comma or a colon.
 bool IsUsable(const RosField& f) {
   const auto bad = [](char c) { return c < ' ' || c > '~' || c == ',' || c == ':'; };
   return f.datatype >= 1 && f.datatype <= 8 && f.count <= PointFields::kMaxFields &&
          !f.name.empty() && std::none_of(f.name.begin(), f.name.end(), bad);
 }
 
-/// Appends the fields that we keep, with a field for each element of an array. Returns false if a
-/// field ends past the point, or if there are no fields or too many.
+/// Appends the fields that are kept. An array becomes one field for each element. Returns false if
+/// a field extends past the end of the point, or if there are no fields or too many.
 bool Expand(const RosLayout& layout, std::vector<PointField>* out, std::string* why) {
   for (const RosField& f : layout.fields) {
     if (!IsUsable(f)) continue;
     const auto type = static_cast<FieldType>(f.datatype - 1);
-    const std::uint32_t count = std::max(f.count, 1u);  // some drivers leave it at 0
+    const std::uint32_t count = std::max(f.count, 1u);  // some drivers set it to 0
     if (f.offset + std::uint64_t{count} * SizeOf(type) > layout.point_step) {
       *why = "the field " + f.name + " ends past point_step " + std::to_string(layout.point_step);
       return false;
@@ -53,7 +54,8 @@ bool HaveAxes(const std::vector<PointField>& fields) {
                      [&](const char* axis) { return FindField(fields, axis) != nullptr; });
 }
 
-/// Returns the same fields at the same offsets if our elements can use them, else nothing.
+/// Returns a layout with the same fields at the same offsets. Returns nothing if our elements
+/// cannot use that layout.
 std::optional<PointLayout> Same(const std::vector<PointField>& source, std::uint32_t step) {
   if (step > PointFields::kMaxPointStep) return std::nullopt;
   std::string text;
@@ -72,7 +74,7 @@ std::optional<PointLayout> Same(const std::vector<PointField>& source, std::uint
   return layout;
 }
 
-/// x, y and z as F32, then the others, without gaps.
+/// Returns a layout without gaps. It begins with x, y and z as F32, and the other fields follow.
 PointLayout Packed(const std::vector<PointField>& source) {
   PointLayout layout;
   if (HaveAxes(source))
@@ -144,7 +146,7 @@ void PointConverter::ConvertPoint(const std::uint8_t* from, std::uint8_t* to) co
 bool PointConverter::Convert(const PointCloud2& cloud, std::uint8_t* out) const {
   const auto stride = RowStride(cloud);
   if (!stride) return false;
-  // Rows without points need no work, even four billion of them.
+  // Returns early if there are no points, because there may still be four billion empty rows.
   if (size() == 0) return true;
   const std::size_t row = std::size_t{from_.width} * from_.point_step;
   if (!copies()) std::fill_n(out, size(), std::uint8_t{0});

@@ -15,8 +15,8 @@ bool IsWordCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || IsDigit(c) || c == '_';
 }
 
-/// Returns true for words between single slashes. No word begins with a digit, and no slash is at
-/// either end.
+/// Returns true if `text` consists of words with a single slash between them. A word must not begin
+/// with a digit, and `text` must not begin or end with a slash.
 bool IsPath(std::string_view text) {
   if (text.empty() || text.size() > kMaxName || text.back() == '/') return false;
   char before = '/';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ROS 2's discovery of nodes, and names of topics in DDS.
+// How ROS 2 announces nodes, and the names of its topics in DDS.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace lidar::cdr {
 
-/// The topic on which every participant lists its nodes. Its QoS is reliable and transient-local.
+/// The topic on which each participant announces its nodes. Its QoS is reliable and
+/// transient-local.
 inline constexpr const char* kGraphTopic = "ros_discovery_info";
 inline constexpr const char* kGraphDdsName = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
 
@@ -20,16 +21,16 @@ struct NodeName {
   std::string name_space = "/";
   std::string name;
 };
-/// Parses "lidar", "/robot/lidar" or "robot/lidar"; nothing if ROS would refuse it.
+/// Parses "lidar", "/robot/lidar" or "robot/lidar". Returns nothing if ROS would refuse the name.
 std::optional<NodeName> ParseNodeName(std::string_view text);
-/// Turns any text into the last part of a node's name.
+/// Converts any text to a valid last part of a node's name.
 std::string ToNodeName(std::string_view text);
-/// Converts "/ouster/points" or "points" to the topic in DDS, rt/...; nothing if ROS would refuse
-/// it.
+/// Converts "/ouster/points" or "points" to the name of the topic in DDS, which begins with rt/.
+/// Returns nothing if ROS would refuse the name.
 std::optional<std::string> ToDdsTopic(std::string_view ros_topic);
 
-/// rmw_dds_common/msg/ParticipantEntitiesInfo of a participant with one node. A Gid has
-/// `gid_size` bytes: 24 up to ROS 2 Humble, then 16.
+/// rmw_dds_common/msg/ParticipantEntitiesInfo for a participant with one node. A Gid has `gid_size`
+/// bytes: 24 up to ROS 2 Humble, and 16 in later versions.
 struct ParticipantEntities {
   Guid participant{};
   NodeName node;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The supported ROS 2 message types, with all their names.
+// The ROS 2 message types that we support, with all their names.
 #pragma once
 #include <array>
 #include <string_view>
@@ -11,7 +11,7 @@ enum class RosType { kPointCloud2, kImu, kOdometry, kTransforms, kLivox, kCompre
 struct RosTypeInfo {
   RosType type;
   std::string_view name;      // as ROS tools show it
-  std::string_view dds_name;  // of the topic's type in DDS
+  std::string_view dds_name;  // name of the topic's type in DDS
   std::string_view hash;      // REP 2016, version 1; from ROS 2 Iron on
 };
 
@@ -31,7 +31,7 @@ constexpr std::array<RosTypeInfo, 6> kRosTypes = {{
      "RIHS01_4b38df4932a156a54c53e80a7f34e54e2966b20e54a4d14ded34a165a389c0c1"},
 }};
 
-/// Returns true for messages with points.
+/// Returns true if messages of this type contain points.
 constexpr bool IsCloud(RosType type) {
   return type == RosType::kPointCloud2 || type == RosType::kLivox ||
          type == RosType::kCompressedCloud;
