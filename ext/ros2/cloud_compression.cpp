@@ -15,16 +15,17 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of a cloud, as of a message
+constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // limit for a cloud, as for a message
 constexpr int kZstdLevel = 1;
 constexpr int kZlibLevel = 1;
 constexpr int kGzipWindow = 15 + 16;  // zlib's plugin writes gzip
-constexpr int kAnyWindow = 15 + 32;   // reads zlib and gzip
-// Most bytes that one byte of data can unpack to.
+constexpr int kAnyWindow = 15 + 32;   // accepts zlib and gzip
+// The largest number of bytes to which one byte of data can decompress.
 constexpr std::size_t kZlibMost = 1032;
 constexpr std::size_t kZstdMost = std::size_t{1} << 16;
 
-/// Bytes of the points: `least` without gaps between rows, `most` with them.
+/// The size of the points [bytes]: `least` if there are no gaps between rows, `most` if there are
+/// gaps.
 struct Bounds {
   std::size_t least, most;
 };
@@ -37,7 +38,8 @@ std::optional<Bounds> BoundsOf(const cdr::RosLayout& layout) {
   return Bounds{row * height, std::min<std::uint64_t>(most, kMostBytes)};
 }
 
-/// Makes room for all that `data` can hold. Returns false if the points need more.
+/// Makes `out` large enough for all points that `data` can contain. Returns false if `data` is too
+/// short for the points.
 bool MakeRoom(ByteView data, const Bounds& bounds, std::size_t most_per_byte, Bytes* out) {
   const std::size_t most = (data.size + 1) * most_per_byte;
   if (bounds.least > most) return false;
@@ -96,8 +98,8 @@ bool PackZstd(ByteView points, Bytes* out) {
 #ifdef WITH_DRACO
 constexpr bool kHasDraco = true;
 
-/// Draco has numbers in this machine's byte order. Returns nothing for a layout that Draco
-/// cannot hold.
+/// Returns the layout for Draco. Returns nothing if Draco cannot store the layout. Draco stores
+/// numbers in the byte order of this machine.
 std::optional<draco::FieldLayout> DracoLayoutOf(const cdr::RosLayout& layout) {
   if (layout.is_bigendian) return std::nullopt;
   draco::FieldLayout fields;
@@ -111,7 +113,8 @@ std::optional<draco::FieldLayout> DracoLayoutOf(const cdr::RosLayout& layout) {
   return fields;
 }
 
-/// The publisher leaves out duplicate points, and some versions of it do not correct the width.
+/// Decodes the points, and sets the width to their number. The publisher removes duplicate points,
+/// and some versions of the publisher do not update the width.
 bool UnpackDraco(const cdr::RosLayout& layout, ByteView data, cdr::MadeCloud* made) {
   const auto fields = DracoLayoutOf(layout);
   const std::size_t points = std::size_t{layout.width} * std::max(layout.height, 1U);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Points of CompressedPointCloud2, packed as the plugins of ROS's point_cloud_transport pack them.
+// Compresses and decompresses the points of CompressedPointCloud2, as the plugins of ROS's
+// point_cloud_transport do.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,15 +12,15 @@ namespace lidar::gst {
 
 enum class CloudCompression { kDraco, kZlib, kZstd };
 
-/// The compression's name in messages.
+/// Returns the name that messages have for the compression.
 const char* NameOf(CloudCompression compression);
 
-/// Returns nothing for an unknown format or damaged data; `why` has the reason. Takes no more
-/// memory than the layout's points need, at most 256 MiB.
+/// Decompresses a cloud. Returns nothing and sets `why` if the format is unknown or the data are
+/// damaged. Uses no more memory than the points of the layout need, and at most 256 MiB.
 std::optional<cdr::MadeCloud> Decompress(const cdr::CompressedCloud& compressed, std::string* why);
 
-/// Packs the points without loss. Returns nothing if the compression is not built in, or cannot
-/// pack the cloud. `packed` holds the result's data.
+/// Compresses the points without loss. The data of the result are in `packed`. Returns nothing if
+/// the compression is not built in, or if it cannot compress the cloud.
 std::optional<cdr::CompressedCloud> Compress(CloudCompression compression,
                                              const cdr::PointCloud2& cloud,
                                              std::vector<std::uint8_t>* packed);

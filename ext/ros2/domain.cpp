@@ -13,11 +13,12 @@ namespace lidar::dds {
 namespace {
 
 struct Shared {
-  dds_entity_t entity = 0;  // 0: other code of this process made it
+  dds_entity_t entity = 0;  // 0: other code of this process created it
   unsigned users = 0;
 };
 
-/// Held while a domain begins or ends, so that no participant joins a domain that ends.
+/// The mutex is locked while a domain is created or deleted, so that no participant joins a domain
+/// that is being deleted.
 std::mutex& Mutex() {
   static std::mutex mutex;
   return mutex;
@@ -27,8 +28,9 @@ std::map<std::uint32_t, Shared>& Domains() {
   return domains;
 }
 
-/// Datagrams of nearly 64 KiB halve the time that a cloud costs. The largest message has
-/// eight million points of 32 bytes, whatever a peer announces.
+/// Returns the configuration of a domain. Datagrams of nearly 64 KiB halve the processor time for a
+/// cloud. The largest message has eight million points of 32 bytes. Larger messages are refused,
+/// whatever size a peer announces.
 std::string Configuration() {
   std::string xml =
       "<General><FragmentSize>65000B</FragmentSize><MaxMessageSize>65500B</MaxMessageSize>"
@@ -79,7 +81,7 @@ std::uint32_t Domain::GrantedReceiveBuffer() {
   setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, length);
   if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, &length) != 0) size = 0;
   close(fd);
-  return static_cast<std::uint32_t>(size / 2);  // the kernel doubles it for its own bookkeeping
+  return static_cast<std::uint32_t>(size / 2);  // the kernel doubles the size for its own data
 }
 
 }  // namespace lidar::dds

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The DDS domains of this process. Cyclone has one of each number, so elements share them.
+// The DDS domains of this process. Cyclone has only one domain per number, so elements share
+// domains.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -7,11 +8,12 @@
 
 namespace lidar::dds {
 
-/// Each owner of entities in a domain holds an object of this class.
+/// A reference to a domain. Each object that owns entities in the domain needs one.
 class Domain {
  public:
-  /// Returns null if Cyclone refuses its configuration; `why` has the reason. The fault may be the
-  /// user's: CYCLONEDDS_URI is read after our configuration, which only allows large messages.
+  /// Joins a domain. Returns null and sets `why` if Cyclone refuses the configuration. This may be
+  /// the user's fault, because CYCLONEDDS_URI is appended to our configuration, which only allows
+  /// large messages.
   static std::unique_ptr<Domain> Join(std::uint32_t id, std::string* why);
   ~Domain();
   Domain(const Domain&) = delete;
@@ -21,7 +23,7 @@ class Domain {
 
   static constexpr std::uint32_t kReceiveBuffer = 4u << 20;  // bytes
   static constexpr std::uint32_t kMaxMessage = 256u << 20;   // bytes
-  /// The part of kReceiveBuffer that the kernel grants [bytes].
+  /// Returns the part of kReceiveBuffer that the kernel grants [bytes].
   static std::uint32_t GrantedReceiveBuffer();
 
  private:

@@ -8,7 +8,7 @@
 namespace lidar::dds {
 namespace {
 
-// Tags of a waitset's results.
+// The tags that identify the causes in the result of a waitset.
 constexpr dds_attach_t kWake = 1;
 constexpr dds_attach_t kMessages = 2;
 constexpr dds_attach_t kStatus = 3;
@@ -19,7 +19,7 @@ struct DeleteQos {
 };
 using QosPtr = std::unique_ptr<dds_qos_t, DeleteQos>;
 
-/// Returns false and sets `why` if `result` is an error.
+/// Returns true if `result` is not an error. Otherwise sets `why` and returns false.
 bool Check(dds_return_t result, const char* what, std::string* why) {
   if (result >= 0) return true;
   *why = std::string(what) + ": " + dds_strretcode(-result);
@@ -54,9 +54,10 @@ cdr::Guid GuidOf(dds_entity_t entity) {
   return guid;
 }
 
-/// Returns the size of the largest message to take. A domain that other code of the process created
-/// may deliver larger messages. Messages other than clouds have a lower limit, because a hundred of
-/// them may wait. That limit has room for thousands of transforms.
+/// Returns the size of the largest message that is accepted. A domain that other code of the
+/// process created may deliver larger messages. The limit is lower for messages that are not
+/// clouds, because a hundred of them may wait. Such a message can still have thousands of
+/// transforms.
 std::size_t MaxSizeOf(cdr::RosType type) {
   constexpr std::size_t kMaxSmall = std::size_t{1} << 20;
   return cdr::IsCloud(type) ? Domain::kMaxMessage : kMaxSmall;
@@ -166,7 +167,7 @@ Reader::Event Reader::Wait() {
 
 void Reader::Wake(bool on) { dds_set_guardcondition(guard_, on); }
 
-/// Looks for new publishers of the topic with another type.
+/// Looks for new publishers of the topic that have another type. Returns true if there is one.
 bool Reader::FindsOtherType() {
   void* sample = nullptr;
   dds_sample_info_t info{};

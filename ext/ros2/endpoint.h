@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A publisher or subscription of a ROS 2 node, over Cyclone DDS.
+// A publisher or a subscription of a ROS 2 node, which uses Cyclone DDS.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,16 +16,16 @@ namespace lidar::dds {
 struct EndpointOptions {
   std::uint32_t domain = 0;
   cdr::NodeName node;
-  std::string topic;  // as DDS has it
+  std::string topic;  // name of the topic in DDS
   cdr::RosType type = cdr::RosType::kPointCloud2;
   bool reliable = false;
   bool transient = false;  // publishers keep messages for later subscribers
-  unsigned depth = 5;      // messages kept
+  unsigned depth = 5;      // number of messages that are kept
   std::size_t gid_size = 16;
   bool tells_type_hash = true;
 };
 
-/// A participant with a node that has one endpoint, announced to ROS 2.
+/// A DDS participant with one ROS 2 node that has one endpoint. The node is announced to ROS 2.
 class Node {
  public:
   ~Node();
@@ -34,15 +34,15 @@ class Node {
 
  protected:
   Node() = default;
-  /// Returns false and sets `why` if DDS refuses.
+  /// Creates the participant and the topic. Returns false and sets `why` if DDS refuses.
   bool Open(const EndpointOptions& options, std::string* why);
   bool Announce(const EndpointOptions& options, bool writes, std::string* why);
 
   std::unique_ptr<Domain> domain_;
-  std::int32_t participant_ = 0;  // DDS entities, which are deleted with the participant
+  std::int32_t participant_ = 0;  // DDS entities; the participant deletes the others
   std::int32_t topic_ = 0;
   std::int32_t endpoint_ = 0;
-  const ddsi_sertype* type_ = nullptr;  // of the topic
+  const ddsi_sertype* type_ = nullptr;  // type of the topic
 };
 
 class Reader : public Node {
@@ -53,18 +53,18 @@ class Reader : public Node {
     kMessage,
     kWoken,
     kIncompatible,  // a publisher's reliability is incompatible
-    kOtherType,     // a publisher of this topic has another type: other_type()
+    kOtherType,     // a publisher of this topic has the type other_type()
     kFailed,
   };
-  /// Blocks until an event. Only one thread may wait.
+  /// Waits for the next event. Only one thread may wait.
   Event Wait();
-  /// Callable from any thread: Wait() returns at once until Wake(false).
+  /// Makes Wait() return at once until Wake(false) is called. Any thread may call this function.
   void Wake(bool on);
 
-  /// Takes the message after kMessage. Returns null for a notice that a publisher left.
+  /// Returns the message after kMessage. Returns null if DDS only reports that a publisher left.
   MessagePtr Take();
   const std::string& other_type() const { return other_type_; }
-  /// Counts of messages that DDS missed, and of present publishers.
+  /// Return the number of messages that DDS lost, and the number of present publishers.
   std::uint64_t lost() const;
   unsigned publishers() const;
 
@@ -77,8 +77,8 @@ class Reader : public Node {
   std::string other_type_;
   std::int32_t waitset_ = 0;
   std::int32_t guard_ = 0;
-  std::int32_t messages_ = 0;      // a condition: there are messages
-  std::int32_t publications_ = 0;  // reads the publications of others
+  std::int32_t messages_ = 0;      // a condition that is true while there are messages
+  std::int32_t publications_ = 0;  // reads the announcements of publishers
 };
 
 class Writer : public Node {
@@ -86,15 +86,15 @@ class Writer : public Node {
   static std::unique_ptr<Writer> Create(const EndpointOptions& options, std::string* why);
 
   enum class Result { kSent, kTimeout, kFailed };
-  /// Waits for slow reliable subscribers, but no longer than kMaxBlockingNs.
+  /// Publishes a message. Waits for slow reliable subscribers, but at most for kMaxBlockingNs.
   Result Publish(const std::vector<ByteView>& pieces);
   unsigned subscribers() const;
-  /// The kind of setting that a subscriber wants and this writer lacks.
+  /// The kind of QoS setting that a subscriber requests and that this writer does not offer.
   enum class Want { kNothing, kReliability, kOther };
-  /// Returns what the last incompatible subscriber wants; kNothing if none is new.
+  /// Returns what the last incompatible subscriber requested, or kNothing if there is no new one.
   Want TakeIncompatible();
 
-  static constexpr std::int64_t kMaxBlockingNs = 100'000'000;  // as ROS 2 has it
+  static constexpr std::int64_t kMaxBlockingNs = 100'000'000;  // the same as in ROS 2
 };
 
 }  // namespace lidar::dds

@@ -59,7 +59,8 @@ GType CompressionType() {
   return type;
 }
 
-/// ROS 2's tools subscribe reliably by default.
+/// Returns the default settings. They are reliable, because the tools of ROS 2 subscribe reliably
+/// by default.
 RosSettings SinkDefaults() {
   RosSettings settings;
   settings.qos = RosQos::kReliable;
@@ -91,12 +92,13 @@ const std::array<Stat<Counters>, 6> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while publishing or posting
+  // Guards the members up to `counters`. It is not locked while publishing or posting.
+  std::mutex mutex;
   Ros2SinkSettings settings;
-  std::shared_ptr<Writer> writer;  // from the first caps to stop
+  std::shared_ptr<Writer> writer;  // exists from the first caps to stop
   Counters counters;
 
-  // Only the streaming thread uses what follows, between start and stop.
+  // Only the streaming thread uses the members below, between start and stop.
   std::unique_ptr<MessageWriter> messages;
   bool warned_timeout = false;
   bool warned_refused = false;
@@ -181,11 +183,12 @@ static bool OpenWriter(GstLidarRos2Sink* self, const RosSettings& settings, RosT
   }
   std::unique_lock lock(state.mutex);
   std::swap(state.writer, writer);
-  lock.unlock();  // the last writer ends without the lock
+  lock.unlock();  // the last writer is deleted without the lock
   return true;
 }
 
-/// Wrong settings fail at once. An automatic type is not known before the caps.
+/// Opens the writer if the type is set, so that wrong settings fail at once. An automatic type is
+/// known only when the caps arrive.
 static gboolean Start(GstBaseSink* base) {
   auto* self = GST_LIDAR_ROS2_SINK(base);
   State& state = StateOf(self);
@@ -203,14 +206,15 @@ static gboolean Start(GstBaseSink* base) {
 static gboolean Stop(GstBaseSink* base) {
   State& state = StateOf(base);
   std::unique_lock lock(state.mutex);
-  // The writer ends without the lock, because its end waits for threads of DDS.
+  // Deletes the writer without the lock, because deleting it waits for threads of DDS.
   const std::shared_ptr<Writer> writer = std::move(state.writer);
   lock.unlock();
   state.messages.reset();
   return TRUE;
 }
 
-/// Refused caps leave the state unchanged, because GstBaseSink does not set the earlier caps again.
+/// Refused caps leave the state as it is, because GstBaseSink does not call SetCaps() again when
+/// the earlier caps return.
 static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   auto* self = GST_LIDAR_ROS2_SINK(base);
   State& state = StateOf(self);
@@ -232,7 +236,8 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
   return TRUE;
 }
 
-/// Warns once until a message gets through: a subscriber that hangs would cause many warnings.
+/// Counts the result. Warns only once until a message is sent again, because a subscriber that
+/// hangs would cause many warnings.
 static void NoteResult(GstLidarRos2Sink* self, Writer::Result result, gsize bytes) {
   State& state = StateOf(self);
   const bool sent = result == Writer::Result::kSent;
@@ -283,7 +288,7 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   if (!writer || !state.messages) return GST_FLOW_NOT_NEGOTIATED;
   NoteIncompatible(self, writer->TakeIncompatible());
   if (writer->subscribers() == 0) {
-    const bool is_imu = state.messages->type() == RosType::kImu;  // a message for each sample
+    const bool is_imu = state.messages->type() == RosType::kImu;  // one message for each sample
     const std::lock_guard lock(state.mutex);
     state.counters.unread += is_imu ? gst_buffer_get_size(buffer) / lidar::kImuSampleSize : 1;
     return GST_FLOW_OK;
@@ -291,7 +296,8 @@ static GstFlowReturn Render(GstBaseSink* base, GstBuffer* buffer) {
   const Time now = Time{} + Duration{g_get_real_time() * 1000};
   auto last = Writer::Result::kSent;
   const auto publish = [&](const auto& pieces) {
-    // Only one message of a buffer may wait: a wait for each of many samples would delay a stop.
+    // Only the first message of a buffer may wait. A wait for each of many samples would delay a
+    // stop of the element.
     if (last == Writer::Result::kTimeout)
       NoteResult(self, last, 0);
     else

@@ -55,10 +55,12 @@ struct Ros2SrcSettings {
   RosType type = RosType::kPointCloud2;
 };
 
-/// Static transforms come once from each publisher; tf2 keeps a hundred of them, too.
+/// The depth for static transforms, which each publisher sends only once. tf2 also keeps a hundred
+/// of them.
 constexpr guint kStaticDepth = 100;
 
-/// Returns true if the topic's content never changes, judged by its name, as in ROS.
+/// Returns true if the contents of the topic never change. As in ROS, this depends on the name of
+/// the topic.
 bool IsForGood(const Ros2SrcSettings& settings) {
   const std::string name = settings.ros.topic.substr(settings.ros.topic.rfind('/') + 1);
   return settings.type == RosType::kTransforms && name == "tf_static";
@@ -84,17 +86,18 @@ const std::array<Stat<Counters>, 7> kStats = {{
 }};
 
 struct State {
-  std::mutex mutex;  // guards all to the next comment; never held while waiting or posting
+  // Guards the members up to `counters`. It is not locked while waiting or posting.
+  std::mutex mutex;
   Ros2SrcSettings settings;
-  std::shared_ptr<Reader> reader;  // between start and stop
+  std::shared_ptr<Reader> reader;  // exists from start to stop
   Counters counters;
 
-  // Only the streaming thread uses what follows, between start and stop.
+  // Only the streaming thread uses the members below, between start and stop.
   std::unique_ptr<MessageReader> messages;
   bool warned_damaged = false;
   bool warned_type = false;
   bool warned_incompatible = false;
-  const char* incompatible = "";  // the publisher's QoS that does not fit
+  const char* incompatible = "";  // describes the publisher's incompatible QoS
 };
 
 }  // namespace
@@ -116,7 +119,7 @@ static std::shared_ptr<Reader> ReaderOf(gpointer self) {
   return state.reader;
 }
 
-/// Returns the counters, including the counters of DDS.
+/// Returns the counters, including those that DDS counts.
 static Counters CountersNow(GObject* object) {
   State& state = StateOf(object);
   const auto reader = ReaderOf(object);
@@ -147,7 +150,8 @@ static const std::array<Property<Ros2SrcSettings>, 8> kProperties = {{
      Stats},
 }};
 
-/// A cloud comes in dozens of datagrams at once: a small buffer loses whole clouds.
+/// Posts a warning if the receive buffer is small. A cloud arrives in dozens of datagrams at once,
+/// so a small buffer loses whole clouds.
 static void WarnOfSmallBuffer(GstLidarRos2Src* self) {
   constexpr guint kWanted = lidar::dds::Domain::kReceiveBuffer;
   const guint granted = lidar::dds::Domain::GrantedReceiveBuffer();
@@ -196,7 +200,7 @@ static gboolean Stop(GstBaseSrc* base) {
   State& state = StateOf(base);
   CountersNow(G_OBJECT(base));
   std::unique_lock lock(state.mutex);
-  // The reader ends without the lock, because its end waits for threads of DDS.
+  // Deletes the reader without the lock, because deleting it waits for threads of DDS.
   const std::shared_ptr<Reader> reader = std::move(state.reader);
   state.counters.publishers = 0;
   lock.unlock();
@@ -210,11 +214,13 @@ static void Count(GstLidarRos2Src* self, guint64 Counters::*counter, guint64 amo
   state.counters.*counter += amount;
 }
 
-/// Warns once: any peer in the network can add publishers.
+/// Counts a publisher of another type. Warns only once, because any peer in the network can add
+/// publishers.
 static void NoteOtherType(GstLidarRos2Src* self, const Reader& reader) {
   Count(self, &Counters::other_types);
   if (std::exchange(StateOf(self).warned_type, true)) return;
-  // The name comes from the network, and messages on the bus are valid UTF-8.
+  // The name of the type is from the network and may be invalid UTF-8, which must not be posted on
+  // the bus.
   const StringPtr type(g_utf8_make_valid(reader.other_type().c_str(), -1));
   GST_ELEMENT_WARNING(
       self, STREAM, WRONG_TYPE,
@@ -230,7 +236,8 @@ static void NoteIncompatible(GstLidarRos2Src* self) {
                       ("set qos=sensor-data if the publisher is best-effort"));
 }
 
-/// Warns once until a message is good again, because a broken publisher sends many damaged ones.
+/// Counts a damaged message. Warns only once until the next good message, because a broken
+/// publisher sends many damaged messages.
 static void NoteDamaged(GstLidarRos2Src* self, const std::string& why) {
   State& state = StateOf(self);
   Count(self, &Counters::damaged);
@@ -243,13 +250,14 @@ static void NoteDamaged(GstLidarRos2Src* self, const std::string& why) {
   state.warned_damaged = true;
 }
 
-/// Returns OK for a buffer, CUSTOM_SUCCESS for a message without one.
+/// Reads a message. Returns OK if there is a buffer, and CUSTOM_SUCCESS if the message results in
+/// no buffer.
 static GstFlowReturn Take(GstLidarRos2Src* self, const lidar::dds::MessagePtr& message) {
   State& state = StateOf(self);
   const lidar::ByteView bytes = lidar::dds::BytesOf(message.get());
   Count(self, &Counters::messages);
   Count(self, &Counters::bytes, bytes.size);
-  // Downstream may have changed while this thread waited for the message.
+  // Downstream may have changed its caps while this thread waited for the message.
   if (gst_pad_check_reconfigure(GST_BASE_SRC_PAD(self))) state.messages->Renegotiate();
   switch (state.messages->Read(bytes)) {
     case Verdict::kBuffer:
@@ -267,7 +275,7 @@ static GstFlowReturn Take(GstLidarRos2Src* self, const lidar::dds::MessagePtr& m
   return GST_FLOW_CUSTOM_SUCCESS;
 }
 
-/// Waits for the next message that makes a buffer.
+/// Waits for the next message that results in a buffer.
 static GstFlowReturn NextBuffer(GstLidarRos2Src* self, Reader* reader) {
   for (;;) {
     switch (reader->Wait()) {
@@ -332,7 +340,7 @@ static void InstallVmethods(GstLidarRos2SrcClass* klass) {
   src->unlock = Unlock;
   src->unlock_stop = UnlockStop;
   src->is_seekable = [](GstBaseSrc*) -> gboolean { return FALSE; };
-  // Caps are set with the first message, which determines them.
+  // Create() sets the caps when the first message arrives, because the message determines them.
   src->negotiate = [](GstBaseSrc* base) -> gboolean {
     if (const auto& messages = StateOf(base).messages) messages->Renegotiate();
     return TRUE;

@@ -16,13 +16,13 @@
 namespace lidar::gst {
 namespace {
 
-/// Replaces invalid UTF-8, which caps cannot hold.
+/// Replaces invalid UTF-8, which is not allowed in caps.
 std::string ToText(const std::string& name) {
   const StringPtr valid(g_utf8_make_valid(name.data(), static_cast<gssize>(name.size())));
   return valid.get();
 }
 
-/// Returns the fields that `caps` fix, if any.
+/// Returns the layout of points that `caps` require, or nothing if they require none.
 std::optional<cdr::PointLayout> WantedPoints(const GstCaps* caps) {
   if (caps == nullptr || gst_caps_is_any(caps) || gst_caps_is_empty(caps)) return std::nullopt;
   const GstStructure* s = gst_caps_get_structure(caps, 0);
@@ -64,7 +64,8 @@ void MessageReader::SetStamp(Time stamp) {
   if (ns > 0) gst_lidar_buffer_set_capture_time(buffer_.get(), static_cast<GstClockTime>(ns));
 }
 
-/// Sets new caps: the part of `caps` that downstream accepts. `caps` follow from the message alone.
+/// Sets new caps: those of `caps` that downstream accepts. `caps` are all caps that are possible
+/// for the message.
 MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   const CapsPtr wanted = wanted_();
   if (wanted)
@@ -81,7 +82,7 @@ MessageReader::Verdict MessageReader::SetCaps(CapsPtr caps) {
   return Verdict::kBuffer;
 }
 
-/// Makes converter and caps for clouds of a new layout.
+/// Makes a converter and caps for clouds with a new layout.
 MessageReader::Verdict MessageReader::Adapt(const cdr::PointCloud2& cloud) {
   converter_.reset();
   const CapsPtr wanted = wanted_();
@@ -94,7 +95,7 @@ MessageReader::Verdict MessageReader::Adapt(const cdr::PointCloud2& cloud) {
   info.fields = converter->points().fields;
   info.is_dense = cloud.is_dense;
   CapsPtr caps(info.ToCaps());
-  // Messages have no rate: a filter downstream may set one.
+  // Messages have no frame rate. A filter downstream may set it.
   gst_structure_remove_field(gst_caps_get_structure(caps.get(), 0), "framerate");
   gst_caps_set_simple(caps.get(), GST_LIDAR_FRAME_ID, G_TYPE_STRING,
                       ToText(cloud.header.frame_id).c_str(), nullptr);
@@ -172,7 +173,7 @@ MessageReader::Verdict MessageReader::ReadOdometry(ByteView message) {
   return SetCaps(std::move(caps));
 }
 
-/// Passes the message unchanged: each of its transforms has its own frames and time.
+/// Copies the message without changes, because each of its transforms has its own frames and time.
 MessageReader::Verdict MessageReader::ReadTransforms(ByteView message) {
   const auto transforms = cdr::ReadTransforms(message);
   if (!transforms) {

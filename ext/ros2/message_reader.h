@@ -14,28 +14,28 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread.
+/// Reads messages of one type. Only the streaming thread may use it.
 class MessageReader {
  public:
-  /// `wanted` returns the caps that downstream accepts; null: any.
+  /// A function that returns the caps that downstream accepts. Null means any caps.
   using Wanted = std::function<CapsPtr()>;
-  /// `for_good`: transforms do not change with time.
+  /// If `for_good` is true, transforms do not change with time.
   MessageReader(cdr::RosType type, Wanted wanted, bool for_good = false)
       : type_(type), wanted_(std::move(wanted)), for_good_(for_good) {}
 
   enum class Verdict {
-    kBuffer,         // buffer()
+    kBuffer,         // TakeBuffer() returns it
     kEmpty,          // a cloud without points, or a message without transforms
-    kDamaged,        // why()
-    kNotNegotiated,  // downstream does not take this message's caps: why()
+    kDamaged,        // why() has the reason
+    kNotNegotiated,  // downstream refuses the caps; see why()
   };
   Verdict Read(ByteView message);
-  /// Queries downstream again at the next cloud.
+  /// Makes the reader query the caps of downstream again at the next cloud.
   void Renegotiate() { converter_.reset(); }
 
   const std::string& why() const { return why_; }
   BufferPtr TakeBuffer() { return std::move(buffer_); }
-  /// Returns the caps of the buffer if they differ from the last ones.
+  /// Returns the caps of the buffer if they differ from the last caps, or null.
   CapsPtr TakeNewCaps() { return std::move(new_caps_); }
 
  private:

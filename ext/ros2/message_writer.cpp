@@ -90,7 +90,7 @@ std::string MessageWriter::ChildFrame() const {
   return from_caps_.child_frame_id.empty() ? kCloudFrame : from_caps_.child_frame_id;
 }
 
-/// A cloud of one row may have any number of points.
+/// Writes a cloud. A cloud with a single row may have any number of points.
 bool MessageWriter::WriteCloud(ByteView points, const Publish& publish) {
   const std::size_t row = points.size / info_.height;
   if (points.size % info_.height != 0 || row % info_.point_step != 0) return false;
@@ -143,7 +143,8 @@ bool MessageWriter::WritePose(ByteView bytes, const Publish& publish) {
   if (type_ == cdr::RosType::kOdometry) {
     publish({View(cdr::WriteOdometry(*pose))});
   } else if (tracking < GST_LIDAR_TRACKING_LOST) {
-    // A transform has no covariance to show that a pose is a guess, so guesses are not published.
+    // A transform has no covariance that could mark a pose as a guess. Guesses are therefore not
+    // published.
     const cdr::TransformStamped transform{pose->header, pose->child_frame_id, pose->position,
                                           pose->orientation};
     publish({View(cdr::WriteTransforms({transform}))});

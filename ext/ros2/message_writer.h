@@ -17,36 +17,37 @@
 
 namespace lidar::gst {
 
-/// The frame, and the child frame whose pose a message gives. An empty name means that of the caps,
-/// or the default.
+/// The frame of a message, and the child frame whose pose the message contains. If a name is empty,
+/// the frame in the caps is used, or else the default frame.
 struct Frames {
   std::string frame_id;
   std::string child_frame_id;
 };
 
-/// The data that a message needs in addition to its buffer.
+/// The settings that determine the parts of a message that are not in the buffer.
 struct MessageSettings {
   Frames frames;
   CloudCompression compression = CloudCompression::kZstd;  // of CompressedPointCloud2
-  // Variances of tracked poses; 0: unknown.
+  // The variances of tracked poses. 0 means unknown.
   double position_variance = 0;     // m^2
   double orientation_variance = 0;  // rad^2
 };
 
-/// Used by the streaming thread.
+/// Writes messages of one type. Only the streaming thread may use it.
 class MessageWriter {
  public:
-  /// Returns null and sets `why` if buffers of `caps` cannot be messages of `type`.
+  /// Makes a writer. Returns null and sets `why` if buffers with `caps` cannot become messages of
+  /// `type`.
   static std::unique_ptr<MessageWriter> Make(cdr::RosType type, const GstCaps* caps,
                                              std::string* why);
 
-  /// The default type for buffers of `caps`.
+  /// Returns the default type of messages for buffers with `caps`.
   static std::optional<cdr::RosType> UsualType(const GstCaps* caps);
 
   using Publish = std::function<void(const std::vector<ByteView>& pieces)>;
-  /// Calls `publish` for each message of `buffer`, with pieces that are valid during the call.
-  /// `now` is the time of buffers without a capture time. Returns false if the buffer contradicts
-  /// its caps.
+  /// Calls `publish` for each message of `buffer`. The pieces are valid only during the call. If
+  /// the buffer has no capture time, `now` is used. Returns false if the buffer does not match its
+  /// caps.
   bool Write(GstBuffer* buffer, const MessageSettings& settings, Time now, const Publish& publish);
 
   cdr::RosType type() const { return type_; }
@@ -65,8 +66,8 @@ class MessageWriter {
   CloudInfo info_;
   cdr::RosLayout layout_;
   Frames from_caps_;
-  MessageSettings wanted_;  // of the buffer at hand
-  Time stamp_{};            // of the buffer at hand
+  MessageSettings wanted_;  // settings for the current buffer
+  Time stamp_{};            // time of the current buffer
 };
 
 }  // namespace lidar::gst

@@ -15,7 +15,7 @@ namespace lidar::dds {
 namespace {
 
 struct RawType : ddsi_sertype {
-  std::size_t max_size = 0;  // of a received message
+  std::size_t max_size = 0;  // largest size of a received message
 };
 
 std::size_t Cut(const ddsi_sertype* type, std::size_t size) {
@@ -23,13 +23,13 @@ std::size_t Cut(const ddsi_sertype* type, std::size_t size) {
 }
 
 struct RawData : ddsi_serdata {
-  std::unique_ptr<std::uint8_t[]> bytes;  // padded to a multiple of 4, as the protocol sends them
+  std::unique_ptr<std::uint8_t[]> bytes;  // padded to a multiple of 4, as the protocol requires
   std::size_t size = 0;
 };
 
 const RawData& Raw(const ddsi_serdata* data) { return *static_cast<const RawData*>(data); }
 
-/// Returns null if memory is short.
+/// Creates data of `size` bytes. Returns null if memory is short.
 RawData* NewRaw(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size) {
   std::unique_ptr<RawData> data(new (std::nothrow) RawData);
   if (!data) return nullptr;
@@ -42,7 +42,8 @@ RawData* NewRaw(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t si
   return data.release();
 }
 
-/// Fragments may overlap. A gap between two would be a bug of the caller, and is filled with zeros.
+/// Joins fragments, which may overlap. A gap between fragments would be a bug of the caller. It is
+/// filled with zeros.
 ddsi_serdata* FromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
                             const nn_rdata* fragment, std::size_t whole) {
   const std::size_t size = Cut(type, whole);
@@ -75,8 +76,8 @@ ddsi_serdata* FromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt
   return data;
 }
 
-/// Returns the key of a message, without its type. All messages of a topic without keys have this
-/// key.
+/// Returns the key of a message, without its type. The topics have no keys, so all messages have
+/// this key.
 ddsi_serdata* Untyped(const ddsi_serdata* data) {
   RawData* key = NewRaw(data->type, SDK_KEY, 0);
   if (key != nullptr) key->type = nullptr;
@@ -92,7 +93,7 @@ ddsi_serdata_ops DataOps() {
   ops.from_keyhash = [](const ddsi_sertype* type, const ddsi_keyhash*) -> ddsi_serdata* {
     return NewRaw(type, SDK_KEY, 0);
   };
-  // Samples are not used: this plugin writes and takes bytes only.
+  // Samples are not supported, because this plugin only writes and reads bytes.
   ops.from_sample = [](const ddsi_sertype*, ddsi_serdata_kind, const void*) -> ddsi_serdata* {
     return nullptr;
   };
@@ -132,7 +133,7 @@ ddsi_sertype_ops TypeOps() {
   ops.zero_samples = [](const ddsi_sertype*, void*, std::size_t) {};
   ops.realloc_samples = [](void**, const ddsi_sertype*, void*, std::size_t, std::size_t) {};
   ops.free_samples = [](const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {};
-  // Cyclone compares the names of types itself, and there is nothing else to compare.
+  // All types count as equal here, because Cyclone compares the names of types itself.
   ops.equal = [](const ddsi_sertype*, const ddsi_sertype*) { return true; };
   ops.hash = [](const ddsi_sertype*) { return std::uint32_t{0}; };
   return ops;

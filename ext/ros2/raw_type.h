@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// DDS messages as unchecked bytes, so that this plugin can count damaged ones and bound their
-// memory.
+// DDS messages as unchecked bytes. This lets the plugin count damaged messages and limit the memory
+// for messages.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,18 +12,18 @@ struct ddsi_sertype;
 
 namespace lidar::dds {
 
-/// Creates a keyless type `dds_name` without a type description (other implementations of DDS
-/// accept that). The topic that uses the type owns it. Received messages larger than `max_size`
-/// [bytes] are cut there, and so damaged.
+/// Creates a type `dds_name` without keys and without a type description, which other
+/// implementations of DDS accept. The topic that uses the type owns it. A received message that is
+/// larger than `max_size` [bytes] is truncated, and is therefore damaged.
 ddsi_sertype* NewRawType(const char* dds_name, std::size_t max_size);
 
 struct Release {
   void operator()(ddsi_serdata* data) const;
 };
-/// A message with its encapsulation header. It may outlive the domain that it came from.
+/// A message with its encapsulation header. It may outlive the domain from which it was received.
 using MessagePtr = std::unique_ptr<ddsi_serdata, Release>;
 
-/// Joins the pieces of a message in the form that DDS takes.
+/// Makes a DDS message from `pieces`.
 MessagePtr NewMessage(const ddsi_sertype* type, const std::vector<ByteView>& pieces);
 ByteView BytesOf(const ddsi_serdata* message);
 

@@ -9,9 +9,10 @@
 namespace lidar::gst {
 namespace {
 
-constexpr gint kMaxDomain = 232;  // highest number whose ports exist
+constexpr gint kMaxDomain = 232;  // highest number that has ports
 
-/// Returns the environment's domain, or 0; nothing if it is not a valid number.
+/// Returns the domain in the environment, or 0 if none is set. Returns nothing if it is not a valid
+/// number.
 std::optional<gint> DomainOfEnvironment() {
   const char* text = std::getenv("ROS_DOMAIN_ID");
   if (text == nullptr || *text == '\0') return 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The common part of ROS 2's elements: their properties, and how they open their endpoint.
+// The properties that the ROS 2 elements have in common, and how they become the options of an
+// endpoint.
 #pragma once
 #include <gst/gst.h>
 
@@ -16,7 +17,7 @@ enum class RosDistro : gint { kHumble, kIron, kJazzy, kKilted, kRolling };
 
 struct RosSettings {
   std::string topic = "/points";
-  gint domain_id = -1;  // -1: the environment's
+  gint domain_id = -1;  // -1: from the environment
   std::string node_name;
   RosQos qos = RosQos::kSensorData;
   guint depth = 5;
@@ -27,7 +28,8 @@ GType RosQosType();
 GType RosDistroType();
 const std::array<Property<RosSettings>, 6>& RosRows();
 
-/// Returns nothing after an error message that names the setting that is wrong.
+/// Returns the options of an endpoint. If a setting is wrong, posts an error message that names the
+/// setting and returns nothing.
 std::optional<dds::EndpointOptions> ToOptions(GstElement* element, const RosSettings& settings,
                                               cdr::RosType type);
 
