@@ -11,7 +11,7 @@ namespace {
 
 constexpr gint64 kMaxFrameSize = gint64{1} << 30;
 
-/// Parses the caps step by step. The first step that fails sets the reason.
+/// Parses the caps in several steps. The first step that fails sets the reason.
 class Reader {
  public:
   explicit Reader(const GstStructure* s) : s_(s) {}
@@ -28,7 +28,7 @@ class Reader {
     return false;
   }
 
-  /// Caps integers are `int`; negative ones make the caps invalid.
+  /// Reads a number, which is an `int` in caps. Fails if the number is negative.
   bool GetCount(const char* name, guint* value) {
     gint read = 0;
     if (!gst_structure_get_int(s_, name, &read)) return Fail(std::string(name) + " is missing");

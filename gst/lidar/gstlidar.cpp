@@ -5,14 +5,15 @@
 
 namespace {
 
-// GStreamer registers a meta's name only once in a process.
+// Registers the name unless it is registered already, because a process can register a name only
+// once.
 void RegisterMeta(const char* name) {
   static const gchar* no_tags[] = {nullptr};
   if (gst_meta_get_info(name) == nullptr)
     gst_meta_register_custom(name, no_tags, nullptr, nullptr, nullptr);
 }
 
-/// The structure of `buffer`'s meta of that name; adds the meta if it is missing.
+/// Returns the structure of the meta `name` of `buffer`. Adds the meta if it is missing.
 GstStructure* WritableMeta(GstBuffer* buffer, const char* name) {
   GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, name);
   if (meta == nullptr) meta = gst_buffer_add_custom_meta(buffer, name);
@@ -141,7 +142,7 @@ gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event, GstLidarTargetBit
       !gst_structure_get_uint(s, "bitrate", &target->bitrate)) {
     return FALSE;
   }
-  // Foreign senders may set only the bitrate.
+  // Senders of others may set only the bitrate.
   gst_structure_get_uint(s, "ssrc", &target->ssrc);
   gst_structure_get_uint(s, "min-bitrate", &target->min_bitrate);
   gst_structure_get_uint(s, "max-bitrate", &target->max_bitrate);
@@ -153,7 +154,7 @@ gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event, GstLidarTargetBit
 
 namespace {
 
-/// Writes pairs of numbers as a flat list.
+/// Sets the field `name` to a list of numbers. Each pair is two consecutive numbers in the list.
 void SetPairs(GstStructure* s, const char* name, guint count, guint (*number)(gconstpointer, guint),
               gconstpointer data) {
   GValue list = G_VALUE_INIT;
@@ -167,8 +168,8 @@ void SetPairs(GstStructure* s, const char* name, guint count, guint (*number)(gc
   gst_structure_take_value(s, name, &list);
 }
 
-/// Reads a flat list of pairs, at most GST_LIDAR_MAX_RECEIVED of them. Returns false if it is
-/// malformed.
+/// Reads a list of numbers that contains pairs. Reads at most GST_LIDAR_MAX_RECEIVED pairs. Returns
+/// FALSE if the list is malformed.
 gboolean GetPairs(const GstStructure* s, const char* name, guint* count,
                   void (*take)(gpointer, guint, guint, guint), gpointer data) {
   const GValue* list = gst_structure_get_value(s, name);

@@ -27,7 +27,7 @@ G_BEGIN_DECLS
 /** Registers the metas. Idempotent and thread-safe; every plugin of the set calls it. */
 GST_LIDAR_API void gst_lidar_init(void);
 
-/** One azimuth sector of a scan; a buffer without this meta is a scan of one slice. */
+/** A slice: one azimuth sector of a scan. A buffer without this meta is a scan with one slice. */
 typedef struct {
   guint scan_id;     /* counts scans, wraps at 2^32 */
   guint slice_index; /* 0 .. slice_count - 1 */
@@ -36,7 +36,7 @@ typedef struct {
 } GstLidarSlice;
 
 GST_LIDAR_API void gst_lidar_buffer_set_slice(GstBuffer* buffer, const GstLidarSlice* slice);
-/** Returns FALSE, and {0, 0, 1, 0} in @slice, if the buffer has no meta. */
+/** Returns FALSE and sets @slice to {0, 0, 1, 0} if the buffer has no meta. */
 GST_LIDAR_API gboolean gst_lidar_buffer_get_slice(GstBuffer* buffer, GstLidarSlice* slice);
 
 /** The two ECN bits of the IP header (RFC 3168). */
@@ -50,16 +50,16 @@ typedef enum {
 /** @arrival: kernel time of reception [ns since the Unix epoch], or GST_CLOCK_TIME_NONE. */
 GST_LIDAR_API void gst_lidar_buffer_set_ecn(GstBuffer* buffer, GstLidarEcn ecn,
                                             GstClockTime arrival);
-/** Returns FALSE if the buffer has no meta; either out pointer may be NULL. */
+/** Returns FALSE if the buffer has no meta. Both out pointers may be NULL. */
 GST_LIDAR_API gboolean gst_lidar_buffer_get_ecn(GstBuffer* buffer, GstLidarEcn* ecn,
                                                 GstClockTime* arrival);
 
-/** Sampling time of the buffer's first column [ns since the Unix epoch, UTC]. */
+/** Sets the time at which the buffer's first column was sampled [ns since the Unix epoch, UTC]. */
 GST_LIDAR_API void gst_lidar_buffer_set_capture_time(GstBuffer* buffer, GstClockTime unix_time);
-/** Returns GST_CLOCK_TIME_NONE if the time is not known. */
+/** Returns GST_CLOCK_TIME_NONE if the capture time is unknown. */
 GST_LIDAR_API GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer);
 
-/** How reliable a pose is. */
+/** The reliability of a pose. */
 typedef enum {
   GST_LIDAR_TRACKING_STARTED = 0,    /* the first scan: the map begins here */
   GST_LIDAR_TRACKING_OK = 1,         /* the scan fits the map */
@@ -67,7 +67,10 @@ typedef enum {
   GST_LIDAR_TRACKING_LOST = 3        /* the scan does not fit the map; the pose is a prediction */
 } GstLidarTracking;
 
-/** Pose of the sensor, relative to its start, when the buffer's first column was sampled. */
+/**
+ * The pose of the sensor, relative to its start, at the time when the buffer's first column was
+ * sampled.
+ */
 typedef struct {
   gdouble position[3];    /* x, y, z [m] */
   gdouble orientation[4]; /* unit quaternion x, y, z, w: sensor to start */
@@ -81,7 +84,10 @@ GST_LIDAR_API void gst_lidar_buffer_set_pose(GstBuffer* buffer, const GstLidarPo
 /** Returns FALSE if the buffer has no meta. */
 GST_LIDAR_API gboolean gst_lidar_buffer_get_pose(GstBuffer* buffer, GstLidarPose* pose);
 
-/** Upstream event: the target and limits of the receiving element's output [bit/s]. */
+/**
+ * Upstream event: the target bitrate, and the limits of the bitrate, for the output of the element
+ * that receives the event [bit/s].
+ */
 typedef struct {
   guint bitrate;
   guint ssrc;
@@ -96,7 +102,7 @@ GST_LIDAR_API GstEvent* gst_lidar_event_new_target_bitrate(const GstLidarTargetB
 GST_LIDAR_API gboolean gst_lidar_event_parse_target_bitrate(GstEvent* event,
                                                             GstLidarTargetBitrate* target);
 
-/** RTP sequence numbers from @first to @last, both of them included; they may wrap. */
+/** A range of RTP sequence numbers that includes @first and @last. The numbers may wrap. */
 typedef struct {
   guint16 first;
   guint16 last;
@@ -104,8 +110,10 @@ typedef struct {
 
 #define GST_LIDAR_MAX_RECEIVED 256
 
-/** Upstream event, from a sender to the payloader: packets that a receiver has got. Further ones
- * may still arrive. */
+/**
+ * Upstream event from a sender to the payloader: the packets that a receiver has received. More
+ * packets may still arrive.
+ */
 typedef struct {
   guint ssrc;
   guint receiver; /* another number is another receiver */
@@ -118,13 +126,16 @@ GST_LIDAR_API GstEvent* gst_lidar_event_new_packets_received(
 GST_LIDAR_API gboolean gst_lidar_event_parse_packets_received(GstEvent* event,
                                                               GstLidarPacketsReceived* received);
 
-/** Identifies a slice, as GstLidarSlice does. */
+/** Identifies a slice by the numbers in its GstLidarSlice. */
 typedef struct {
   guint scan_id;
   guint slice_index;
 } GstLidarReceivedSlice;
 
-/** Upstream event, from a payloader to the encoder: slices that a receiver has got whole. */
+/**
+ * Upstream event from a payloader to the encoder: the slices that a receiver has received
+ * completely.
+ */
 typedef struct {
   guint receiver;
   guint count;
@@ -135,8 +146,10 @@ GST_LIDAR_API GstEvent* gst_lidar_event_new_slices_received(const GstLidarSlices
 GST_LIDAR_API gboolean gst_lidar_event_parse_slices_received(GstEvent* event,
                                                              GstLidarSlicesReceived* received);
 
-/** Sticky event downstream: the rates [bit/s] that the encoder needs for its error bound, and can
- * use at most. */
+/**
+ * Sticky downstream event: the bitrate that the encoder needs to keep its error bound, the bitrate
+ * that it can use at most, and its nominal bitrate [bit/s].
+ */
 typedef struct {
   guint min_bitrate;
   guint max_bitrate;

@@ -5,7 +5,7 @@
 
 G_BEGIN_DECLS
 
-/** The caps of a raw cloud. All pointers are the caller's, and valid until the call returns. */
+/** The caps of a raw cloud. The caller owns all pointers. They are valid until the call returns. */
 typedef struct {
   guint width;         /* columns; 0: the caps do not say */
   guint height;        /* beams; 1: the cloud has no rows */
@@ -17,16 +17,17 @@ typedef struct {
 } GstLidarCloudFormat;
 
 /**
- * Returns the offset of a field in a point [bytes], or -1 if no field has that @name and @type.
- * Types are I8, U8, I16, U16, I32, U32, F32 and F64; integers and floats are little-endian.
+ * Returns the offset of a field in a point [bytes], or -1 if no field has the name @name and the
+ * type @type. Types are I8, U8, I16, U16, I32, U32, F32 and F64. Integers and floats are
+ * little-endian.
  */
 GST_LIDAR_API gint gst_lidar_cloud_format_get_offset(const GstLidarCloudFormat* cloud,
                                                      const gchar* name, const gchar* type);
 
 /**
  * Returns caps of @media_type for slices that are encoded from @cloud: alignment=slice, framerate,
- * the sensor model if there is one, and @fields. These are the packed fields of the decoded cloud,
- * x, y and z as F32 among them. Transfer full.
+ * the sensor model if there is one, and @fields. @fields are the fields of the decoded cloud,
+ * without gaps, and include x, y and z as F32. Transfer full.
  */
 GST_LIDAR_API GstCaps* gst_lidar_coded_caps_new(const gchar* media_type, const gchar* fields,
                                                 const GstLidarCloudFormat* cloud);

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Calls `use` with a value of the C++ type of `type`.
+/// Calls `use` with a value of the C++ type that corresponds to `type`.
 template <class Use>
 auto WithType(GstLidarFieldType type, Use use) {
   switch (type) {
@@ -61,7 +61,7 @@ gboolean gst_lidar_cloud_info_from_caps(GstLidarCloudInfo* info, const GstCaps* 
   for (const lidar::PointField& field : parsed->fields.all()) {
     GstLidarField& out = info->fields[info->n_fields++];
     g_strlcpy(out.name, field.name.c_str(), sizeof out.name);
-    out.type = static_cast<GstLidarFieldType>(field.type);  // both enums have one order
+    out.type = static_cast<GstLidarFieldType>(field.type);  // the enums have the same order
     out.offset = field.offset;
   }
   return TRUE;

@@ -21,7 +21,7 @@ typedef enum {
 
 #define GST_LIDAR_MAX_FIELDS 32
 
-/** One field of a point; numbers are little-endian. */
+/** A field of a point. Its numbers are little-endian. */
 typedef struct {
   gchar name[64]; /* a longer name is cut off */
   GstLidarFieldType type;
@@ -42,9 +42,12 @@ typedef struct {
   gpointer padding[GST_PADDING];
 } GstLidarCloudInfo;
 
-/** Returns FALSE if @caps are not those of a little-endian raw cloud of fixed size. */
+/**
+ * Parses @caps. Returns FALSE if they are not the caps of a little-endian raw cloud with a fixed
+ * size.
+ */
 GST_LIDAR_API gboolean gst_lidar_cloud_info_from_caps(GstLidarCloudInfo* info, const GstCaps* caps);
-/** Returns NULL if no field has that name. */
+/** Returns the field @name, or NULL if there is no such field. */
 GST_LIDAR_API const GstLidarField* gst_lidar_cloud_info_find(const GstLidarCloudInfo* info,
                                                              const gchar* name);
 
@@ -59,16 +62,21 @@ typedef struct {
   gpointer padding[GST_PADDING];
 } GstLidarCloud;
 
-/** Returns FALSE if @buffer cannot be mapped or has another size than @info. */
+/** Maps @buffer. Returns FALSE if @buffer cannot be mapped, or if its size does not match @info. */
 GST_LIDAR_API gboolean gst_lidar_cloud_map(GstLidarCloud* cloud, const GstLidarCloudInfo* info,
                                            GstBuffer* buffer, GstMapFlags flags);
 GST_LIDAR_API void gst_lidar_cloud_unmap(GstLidarCloud* cloud);
 
-/** Returns the value of @field, a field of the cloud, at point @index, counted row by row. */
+/**
+ * Returns the value of @field for the point @index. @field must belong to the cloud. Points are
+ * counted row by row.
+ */
 GST_LIDAR_API gdouble gst_lidar_cloud_get(const GstLidarCloud* cloud, const GstLidarField* field,
                                           gsize index);
-/** Sets the value in a cloud that is mapped for writing; integers are rounded and limited to their
- * range. */
+/**
+ * Sets the value of @field for the point @index, in a cloud that is mapped for writing. Integers
+ * are rounded and limited to their range.
+ */
 GST_LIDAR_API void gst_lidar_cloud_set(GstLidarCloud* cloud, const GstLidarField* field,
                                        gsize index, gdouble value);
 

@@ -43,7 +43,8 @@ struct Counters {
 };
 
 using LastSlice = GstLidarDecodedSlice;
-/// Age of the last decoded slice; both clocks must be UTC.
+/// Returns the age of the last decoded slice. The clocks of the sensor and of this machine must
+/// both be UTC.
 guint64 AgeOf(const Counters& c) {
   if (!GST_CLOCK_TIME_IS_VALID(c.last_capture_time)) return GST_CLOCK_TIME_NONE;
   const auto now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
@@ -68,16 +69,16 @@ const std::array<Stat<Counters>, 14> kStats = {{
     {"age", AgeOf},
 }};
 
-/// Belongs to the streaming thread.
+/// The state that only the streaming thread uses.
 struct Stream {
-  std::optional<CloudInfo> cloud;  // of the output; its width is 0 until its caps are pushed
+  std::optional<CloudInfo> cloud;  // of the output; its width is 0 before its caps are pushed
   guint max_points = 0;
   HeldEvents held;
   RefusedCaps refused;
   MessageTimer stats_timer;
   lidar::LoadBudget load;
   bool warned_of_load = false;
-  gint64 asked_at_us = 0;  // last request for a slice that stands alone
+  gint64 asked_at_us = 0;  // last request for a slice without references
   guint asked = 0;
 };
 
@@ -86,7 +87,7 @@ struct Stream {
 struct _GstLidarDecoderState {
   CoderPads pads;
 
-  std::mutex mutex;  // guards settings and counters; never held while pushing or posting
+  std::mutex mutex;  // guards settings and counters; not locked while pushing or posting
   Settings settings;
   Counters counters;
 
@@ -125,8 +126,8 @@ static const std::array<Property<Settings>, 5> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// Asks the subclass whether it can decode `cloud`. Sets is_dense, and removes the sensor model of
-/// a cloud without rows.
+/// Returns true if the subclass can decode `cloud`. Sets is_dense. Removes the sensor model if the
+/// decoded cloud has no rows.
 static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                         GstLidarDecodedFormat* decoded) {
   const std::string fields = cloud->fields.ToString();
@@ -140,7 +141,8 @@ static bool AskSubclass(GstLidarDecoder* self, GstCaps* caps, CloudInfo* cloud,
                                    model.get()};
   decoded->refusal = "they belong to another coder";
   if (!GST_LIDAR_DECODER_GET_CLASS(self)->set_format(self, caps, &format, decoded)) return false;
-  // Rows of pixels may have gaps in any slice, and the caps should not change with them.
+  // An organised slice may have missing pixels. The caps say so for all slices, because they should
+  // not change from slice to slice.
   cloud->is_dense = decoded->is_organised == FALSE;
   if (!decoded->is_organised) cloud->sensor_model.reset();
   return true;
@@ -164,7 +166,7 @@ static gboolean SetCaps(GstLidarDecoder* self, GstCaps* caps) {
   return FALSE;
 }
 
-/// Pushes caps if the size of the slice differs from that of the last caps.
+/// Pushes new caps if the size of the slice differs from the size in the last caps.
 static void PushCaps(GstLidarDecoder* self, const GstLidarDecodedSlice& slice) {
   Stream& stream = self->state->stream;
   CloudInfo& cloud = *stream.cloud;
@@ -210,7 +212,7 @@ static void Count(State* state, const GstLidarDecodedSlice& slice, const BufferM
   if (slice.keep_fraction < 1) ++c.slices_thinned;
 }
 
-/// The decoded slice, or null if its bytes are bad.
+/// Decodes a slice. Returns the decoded buffer, or null if the slice is damaged.
 static BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
                               GstLidarDecodedSlice* slice) {
   Stream& stream = self->state->stream;
@@ -220,7 +222,7 @@ static BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
   *slice = {0, 1, 0, 0, 0, 1, FALSE};
   if (!in || !klass->decode(self, in.data(), in.size(), stream.max_points, slice)) return nullptr;
   const gsize points = gsize{slice->width} * slice->height;
-  // Caps without a width would stop the elements downstream.
+  // Drops empty slices, because caps without a width would stop the elements downstream.
   if (points == 0 || points > stream.max_points) return nullptr;
   BufferPtr output(gst_buffer_new_allocate(nullptr, points * stream.cloud->point_step, nullptr));
   if (!output) return nullptr;
@@ -234,7 +236,7 @@ static BufferPtr DecodeBuffer(GstLidarDecoder* self, GstBuffer* input,
   return output;
 }
 
-/// Asks for a slice that stands alone, unless the last request may still be answered.
+/// Requests a slice without references, unless the last request may still be answered.
 static void AskForKeyUnit(GstLidarDecoder* self) {
   constexpr gint64 kInterval = G_USEC_PER_SEC / 2;
   Stream& stream = self->state->stream;
@@ -266,8 +268,9 @@ static lidar::Duration ThreadTime() {
   return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec);
 }
 
-/// Returns false, and counts the slice, if earlier slices cost more than max-decode-load. Without a
-/// limit a hostile sender can make each byte cost microseconds.
+/// Returns false and counts the slice if earlier slices needed more processor time than
+/// max-decode-load allows. Without a limit, a hostile sender could make each byte cost
+/// microseconds.
 static bool MayDecode(GstLidarDecoder* self, gdouble max_load) {
   State& state = *self->state;
   const lidar::Time now{std::chrono::microseconds(g_get_monotonic_time())};
@@ -296,7 +299,8 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
   if (MayDecode(self, settings.max_decode_load)) {
     const lidar::Duration before = ThreadTime();
     output = DecodeBuffer(self, buffer, &slice);
-    // Work without a limit must not count against a later limit.
+    // Counts the time only if there is a limit. Otherwise this time would count against a limit
+    // that is set later.
     if (settings.max_decode_load > 0) stream.load.Spend(ThreadTime() - before);
   }
   stream.stats_timer.Post(GST_ELEMENT(self), settings.stats_interval, Stats);
@@ -319,7 +323,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   return result;
 }
 
-/// Makes the pads from the templates of the subclass, which are not known in init().
+/// Makes the pads from the templates of the subclass. The templates are not yet known in init().
 static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_decoder_parent_class)->constructed(object);
   GST_LIDAR_DECODER(object)->state->pads.Create(object, Chain, SinkEvent);

@@ -30,14 +30,17 @@ typedef struct _GstLidarDecoderState GstLidarDecoderState;
 
 GST_LIDAR_API GType gst_lidar_decoder_get_type(void);
 
-/** What set_format() answers. */
+/** The answer of set_format(). */
 typedef struct {
   gboolean is_organised; /* a slice is rows of pixels, of which some may be missing: the caps keep
                             the sensor model. FALSE: points without order, none is missing */
   const gchar* refusal;  /* static; what the caps lack, if FALSE is returned */
 } GstLidarDecodedFormat;
 
-/** What a coded slice holds. Members about its coding keep their values if the slice lacks them. */
+/**
+ * The properties of a decoded slice. Properties of its coding are not set if the slice does not
+ * have them.
+ */
 typedef struct {
   guint width;  /* columns, or points */
   guint height; /* beams, or 1 */
@@ -73,9 +76,9 @@ struct _GstLidarDecoderClass {
    */
   gboolean (*decode)(GstLidarDecoder* decoder, const guint8* data, gsize size, guint max_points,
                      GstLidarDecodedSlice* slice);
-  /** Writes all of the slice decoded last: width * height points. Unknown values are 0. */
+  /** Writes all width * height points of the last decoded slice. Unknown values are 0. */
   void (*write)(GstLidarDecoder* decoder, guint8* points);
-  /** The element went to READY: free what belongs to the stream. Optional. */
+  /** Frees what belongs to the stream, because the element has changed to READY. Optional. */
   void (*reset)(GstLidarDecoder* decoder);
 
   /*< private >*/

@@ -27,10 +27,10 @@ using lidar::DataRate;
 using lidar::rate::CodingResult;
 using lidar::rate::LoopResult;
 
-/// Belongs to the streaming thread.
+/// The state that only the streaming thread uses.
 struct Stream {
   CloudInput input;
-  std::unique_ptr<VtableCoder> coder;  // null: no format yet
+  std::unique_ptr<VtableCoder> coder;  // null before the first format
   std::unique_ptr<lidar::rate::RateLoop> loop;
   std::optional<ErrorReport> error_report;
   RefusedCaps refused;
@@ -42,9 +42,9 @@ struct Stream {
 struct _GstLidarEncoderState {
   CoderPads pads;
 
-  std::mutex mutex;  // guards settings to stats; never held while pushing, posting or notifying
+  std::mutex mutex;  // guards `settings` to `stats`; not locked while pushing, posting or notifying
   EncoderSettings settings;
-  std::optional<guint> event_bps;  // of the last target-bitrate event
+  std::optional<guint> event_bps;  // from the last target-bitrate event
   guint min_bitrate_bps = 0;
   EncoderStats stats;
 
@@ -56,7 +56,7 @@ G_DEFINE_ABSTRACT_TYPE(GstLidarEncoder, gst_lidar_encoder, GST_TYPE_ELEMENT)
 
 using State = GstLidarEncoderState;
 
-/// The bitrate to keep; 0: no limit.
+/// Returns the target bitrate, or 0 if there is no limit.
 static guint EffectiveBitrate(const State& state) {
   return state.event_bps.value_or(state.settings.bitrate_bps);
 }
@@ -109,7 +109,8 @@ static const std::array<Property<Settings>, 12> kProperties = {{
      &Settings::stats_interval, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// The caps of the subclass's slices, or null after an error message.
+/// Returns the caps of the subclass's slices. If the subclass refuses the cloud, posts an error
+/// message and returns null.
 static CapsPtr AskForCaps(GstLidarEncoder* self, GstCaps* caps, Stream* stream) {
   const Settings settings = Snapshot(*self->state);
   std::string why;
@@ -188,14 +189,14 @@ static gboolean SrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   GST_LOG_OBJECT(self, "target %u bit/s (%s)", target.bitrate, GST_STR_NULL(target.reason));
   {
     std::lock_guard lock(self->state->mutex);
-    // 0 would mean no target at all.
+    // 0 would mean that there is no target.
     self->state->event_bps = MAX(target.bitrate, 1);
   }
   gst_event_unref(event);
   return TRUE;
 }
 
-/// Sends the bounds if they have changed.
+/// Sends an event with the bounds of the bitrate if they have changed.
 static void PushBounds(GstLidarEncoder* self) {
   const auto bounds = self->state->stream.loop->controller().TakeChangedBounds();
   if (!bounds) return;
@@ -212,10 +213,10 @@ static void PushBounds(GstLidarEncoder* self) {
   gst_pad_push_event(self->state->pads.src(), gst_lidar_event_new_bitrate_bounds(&event));
 }
 
-/// Passes receipts since the last slice to the subclass.
+/// Passes the reports that receivers have sent since the last slice to the subclass.
 static void TellOfReceivers(GstLidarEncoder* self) {
   auto* klass = GST_LIDAR_ENCODER_GET_CLASS(self);
-  if (klass->request_key == nullptr) return;  // its slices refer to no others
+  if (klass->request_key == nullptr) return;  // its slices have no references
   const auto news = self->state->receivers.Take(self->state->pads.src());
   if (klass->acknowledge != nullptr)
     for (const auto& slice : news.received)
@@ -250,8 +251,8 @@ static GstFlowReturn PushSlice(GstLidarEncoder* self, GstBuffer* input,
                                const GstLidarSlice& place) {
   const lidar::ByteView bytes = self->state->stream.coder->bytes();
   BufferPtr output(gst_buffer_new_memdup(bytes.data, bytes.size));
-  // The output gets its place in the scan if the input has none. Without it a receiver could not
-  // count lost slices, and its acknowledgement would name the wrong scan.
+  // Adds the place in the scan if the input has no meta. Without this meta, a receiver could not
+  // count lost slices, and would acknowledge the wrong scan.
   GstLidarSlice known{};
   if (!gst_lidar_buffer_get_slice(input, &known)) gst_lidar_buffer_set_slice(output.get(), &place);
   PushBounds(self);
@@ -311,7 +312,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange tran
   return result;
 }
 
-/// Makes the pads from the templates of the subclass, which are not known in init().
+/// Makes the pads from the templates of the subclass. The templates are not yet known in init().
 static void Constructed(GObject* object) {
   G_OBJECT_CLASS(gst_lidar_encoder_parent_class)->constructed(object);
   State& state = *GST_LIDAR_ENCODER(object)->state;

@@ -31,7 +31,7 @@ typedef struct _GstLidarEncoderState GstLidarEncoderState;
 
 GST_LIDAR_API GType gst_lidar_encoder_get_type(void);
 
-/** What set_format() answers. */
+/** The answer of set_format(). */
 typedef struct {
   GstCaps* caps;         /* of the coded slices, transfer full: gst_lidar_coded_caps_new() */
   gboolean codes_ranges; /* receivers compute points from ranges and the sensor model: the base
@@ -39,7 +39,7 @@ typedef struct {
   const gchar* refusal;  /* static; what the cloud lacks, if FALSE is returned */
 } GstLidarCodedFormat;
 
-/** One slice of a raw cloud, valid until the next call of load(). */
+/** A slice of a raw cloud. It is valid until the next call of load(). */
 typedef struct {
   const guint8* data;
   gsize size;         /* bytes; whole points, and whole beams if height is above 1 */
@@ -51,7 +51,7 @@ typedef struct {
   guint slice_count;
 } GstLidarRawSlice;
 
-/** What load() found. */
+/** The result of load(). */
 typedef struct {
   guint returns;          /* points that encode() will code */
   gdouble extent;         /* longest side of the points' box, or the longest range [m] */
@@ -62,14 +62,14 @@ typedef struct {
                              load(): sizes are learnt for each mode apart. NULL: "xyz-other" */
 } GstLidarLoadedSlice;
 
-/** The steps of a coder's grid that keep to an error [m]. */
+/** The grid steps of a coder that keep the error within a limit [m]. */
 typedef struct {
   gdouble finest;   /* finer ones code meaningless digits */
   gdouble coarsest; /* with it no point moves farther than the error; may be below the finest */
   gdouble unit;     /* steps are finest plus a multiple of it; 0: any step */
 } GstLidarStepRange;
 
-/** What encode() is to do. */
+/** The settings for encode(). */
 typedef struct {
   gdouble max_error;    /* bound of the distance between a point and its decoded point [m] */
   gdouble step;         /* of the grid [m], if max_error allows it */
@@ -78,7 +78,7 @@ typedef struct {
   guint threads;        /* at most, for this slice; 1: the calling one */
 } GstLidarEncodeSettings;
 
-/** What encode() did. */
+/** The result of encode(). */
 typedef struct {
   guint returns;       /* points coded */
   gdouble step;        /* of the grid, as used [m] */
@@ -91,7 +91,7 @@ typedef enum {
   GST_LIDAR_ENCODE_OUT_OF_REACH = 2 /* no grid of this coder keeps to max_error: a gap, a warning */
 } GstLidarEncodeResult;
 
-/** Rule that assigns a decoded point to a point of the raw slice. */
+/** The rule that assigns each decoded point to a point of the raw slice. */
 typedef enum {
   GST_LIDAR_ORDER_PIXELS = 0, /* as many points as the raw slice has, at their places */
   GST_LIDAR_ORDER_KEPT = 1,   /* the raw points that are finite and not all zero, in their order */
@@ -110,35 +110,43 @@ struct _GstLidarEncoderClass {
   GstElementClass parent_class;
 
   /**
-   * Called before the first slice and at each change of caps. @with_intensity: intensity-bits is
-   * above 0. Returns FALSE if this coder cannot encode such clouds; the base class posts the error.
+   * Called before the first slice and at each change of caps. @with_intensity is TRUE if
+   * intensity-bits is above 0. Returns FALSE if this coder cannot encode such clouds. The base
+   * class then posts the error.
    */
   gboolean (*set_format)(GstLidarEncoder* encoder, const GstLidarCloudFormat* cloud,
                          gboolean with_intensity, GstLidarCodedFormat* coded);
-  /** Loads a slice for the next four methods. */
+  /** Loads a slice. The next four methods use this slice. */
   void (*load)(GstLidarEncoder* encoder, const GstLidarRawSlice* raw, GstLidarLoadedSlice* loaded);
-  /** Gives the steps that keep to @max_error. Optional; by default a cubic grid of coordinates. */
+  /**
+   * Sets @steps to the steps that keep the error within @max_error. Optional. The default is the
+   * steps of a cubic grid of coordinates.
+   */
   void (*get_steps)(GstLidarEncoder* encoder, gdouble max_error, GstLidarStepRange* steps);
-  /** Drops the rows whose element of @kept is 0. Optional if rows are 0. */
+  /** Removes the rows whose element of @kept is 0. Optional if the loaded slice has no rows. */
   void (*thin)(GstLidarEncoder* encoder, const guint8* kept, guint rows);
-  /** Appends the coded slice to @bytes, which is empty. May be called again for the same slice. */
+  /** Appends the coded slice to @bytes, which is empty. May be called several times for a slice. */
   GstLidarEncodeResult (*encode)(GstLidarEncoder* encoder, const GstLidarEncodeSettings* settings,
                                  GByteArray* bytes, GstLidarCodedSlice* coded);
   /**
-   * Decodes a coded slice as a receiver would, for error-check: appends a GstLidarPoint for each
-   * point to @points. Returns FALSE if the slice cannot be decoded. Optional; without it
+   * Decodes a coded slice as a receiver would, for error-check. Appends a GstLidarPoint for each
+   * point to @points. Returns FALSE if the slice cannot be decoded. Optional. If it is missing,
    * error-check does nothing.
    */
   gboolean (*decode)(GstLidarEncoder* encoder, const guint8* data, gsize size, GArray* points,
                      GstLidarPointOrder* order);
-  /** The element went to READY: free what belongs to the stream. Optional. */
+  /** Frees what belongs to the stream, because the element has changed to READY. Optional. */
   void (*reset)(GstLidarEncoder* encoder);
   /**
-   * A receiver has got a whole slice, or none yet (@slice_index G_MAXUINT). Called only while
-   * slices go to one place. Each receiver has its own number @receiver. Optional.
+   * Notes that a receiver has received a whole slice, or that it has received none yet
+   * (@slice_index is G_MAXUINT). Called only while slices go to a single destination. @receiver is
+   * a number that identifies the receiver. Optional.
    */
   void (*acknowledge)(GstLidarEncoder* encoder, guint receiver, guint scan_id, guint slice_index);
-  /** A receiver cannot decode its slices: encode the next ones without references. Optional. */
+  /**
+   * Makes encode() encode the next slices without references, because a receiver cannot decode its
+   * slices. Optional.
+   */
   void (*request_key)(GstLidarEncoder* encoder);
 
   /*< private >*/

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Checks the clouds that come to an encoder, and finds their place in the stream.
+// Checks the clouds that an encoder receives, and finds their place in the stream.
 #pragma once
 #include <optional>
 
@@ -11,10 +11,12 @@
 
 namespace lidar::gst {
 
-/// Belongs to the streaming thread. Posts faults of clouds as messages of the encoder.
+/// The input of an encoder. Only the streaming thread may use it. Posts problems of clouds as
+/// messages of the encoder.
 class CloudInput {
  public:
-  /// `codes_ranges`: ranges alone are coded, so positions that contradict them give a warning.
+  /// If `codes_ranges` is true, only ranges are encoded, so Read() warns if positions contradict
+  /// the ranges.
   void SetFormat(const CloudInfo& info, bool codes_ranges);
   const CloudInfo& info() const { return info_; }
 
@@ -23,15 +25,16 @@ class CloudInput {
     rate::SlicePlace in_stream;
     bool starts_scan = false;
   };
-  /// The place of the next buffer. A buffer without a meta is a scan of one slice.
+  /// Returns the place of the next buffer. A buffer without a meta counts as a scan with one slice.
   Place PlaceOf(GstBuffer* buffer);
-  /// Call it after a flush: the next slice starts a scan.
+  /// Makes the next slice start a scan. Must be called after a flush.
   void ForgetScan() { scan_id_.reset(); }
 
-  /// Returns nothing after an error message if the buffer does not hold the cloud of its caps.
+  /// Returns the slice in a buffer. If the buffer does not match its caps, posts an error message
+  /// and returns nothing.
   std::optional<GstLidarRawSlice> Read(GstLidarEncoder* encoder, const BufferMap& map,
                                        const GstLidarSlice& slice);
-  /// Warns, once, that a cloud was left out. `extent_m` is the length of its box.
+  /// Warns, once, that a cloud was skipped. `extent_m` is the longest side of its box.
   void WarnOfReach(GstLidarEncoder* encoder, double extent_m);
 
  private:

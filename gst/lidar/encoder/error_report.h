@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures the point errors of an encoder, and posts them.
+// Measures the errors of the points that an encoder encodes, and posts them.
 #pragma once
 #include <memory>
 #include <optional>
@@ -14,13 +14,14 @@ namespace lidar::gst {
 struct CheckedSlice {
   guint scan_id = 0;
   guint slice_index = 0;
-  double max_error_m = 0;  // the user's bound
-  double bound_m = 0;      // the bound that the grid's step gives
-  bool thinned = false;    // the encoder left out beams
+  double max_error_m = 0;  // the limit that the user has set
+  double bound_m = 0;      // the largest error that the step of the grid allows
+  bool thinned = false;    // the encoder removed some beams
 };
 
-/// Decodes every n-th slice again, and posts its real errors as lidar-error-check. Warns of the
-/// first of successive slices that exceed max_error_m. Belongs to the streaming thread.
+/// Decodes every n-th slice again, and posts the measured errors as lidar-error-check. If several
+/// slices in a row exceed max_error_m, warns only of the first. Only the streaming thread may use
+/// it.
 class ErrorReport {
  public:
   struct Outcome {
@@ -29,8 +30,8 @@ class ErrorReport {
   };
 
   explicit ErrorReport(GstLidarEncoder* encoder);
-  /// Compares `raw`, points as in `info`, with `coded` for every `every`-th slice (0: never).
-  /// Returns nothing for the others.
+  /// Compares the points in `raw`, whose layout is `info`, with the points in `coded`. Does this
+  /// only for every `every`-th slice (0: never), and returns nothing for all other slices.
   std::optional<Outcome> OnSlice(guint every, const CloudInfo& info, ByteView raw, ByteView coded,
                                  const CheckedSlice& slice);
 

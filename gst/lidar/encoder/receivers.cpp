@@ -8,10 +8,12 @@
 namespace lidar::gst {
 namespace {
 
-// Index of an entry without a slice, for an event about the receiver alone.
+// The index in an entry without a slice. Such an entry is for an event that only names the
+// receiver.
 constexpr guint kNoSlice = G_MAXUINT;
 
-/// Returns the linked pads by which data of `sink` may leave, at most two.
+/// Returns the linked pads to which the element of `sink` may send data from `sink`. Returns at
+/// most two.
 std::vector<PadPtr> WaysOut(GstPad* sink) {
   std::vector<PadPtr> ways;
   GstIterator* it = gst_pad_iterate_internal_links(sink);
@@ -90,7 +92,7 @@ ReceiverEvents::News ReceiverEvents::Take(GstPad* src) {
   if (looked_at_us_ == 0 || now - looked_at_us_ >= kLookInterval) {
     looked_at_us_ = now;
     const bool had_one_way = std::exchange(one_way_, HasOneWay(src));
-    // Data reach a second receiver now, which lacks the earlier slices.
+    // The data now also reach a second receiver, which does not have the earlier slices.
     news.key_requested = news.key_requested || (had_one_way && !one_way_);
   }
   if (!one_way_) news.received.clear();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Keeps the reports of receivers about an encoder's slices until its streaming thread takes them.
+// Stores what receivers report about the slices of an encoder, until the encoder's streaming thread
+// reads it.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,11 +11,11 @@
 
 namespace lidar::gst {
 
-/// Returns true if no element downstream has two outputs for the data of `src`, so that the data
-/// reach at most one destination. A second destination would not report its losses.
+/// Returns true if the data of `src` reach at most one destination, because no element downstream
+/// sends them to two pads. A second destination would not report which slices it lost.
 bool HasOneWay(GstPad* src);
 
-/// Events come in any thread; the streaming thread calls Take().
+/// The stored reports. Any thread may call OnEvent(). Only the streaming thread may call Take().
 class ReceiverEvents {
  public:
   struct Slice {
@@ -26,12 +27,12 @@ class ReceiverEvents {
     std::vector<Slice> received;
     bool key_requested = false;
   };
-  /// Returns false if `event` is not a report of a receiver. The event stays the caller's in both
-  /// cases.
+  /// Stores the report in `event`. Returns false if `event` is not a report of a receiver. The
+  /// caller keeps `event` in both cases.
   bool OnEvent(GstEvent* event);
   void Forget();
-  /// Returns all reports since the last call, but no received slices if `src` leads to several
-  /// destinations.
+  /// Returns all reports since the last call. Leaves out the received slices if `src` leads to
+  /// several destinations.
   News Take(GstPad* src);
 
  private:
@@ -39,8 +40,8 @@ class ReceiverEvents {
 
   std::mutex mutex_;  // guards news_
   News news_;
-  // Used by the streaming thread only:
-  gint64 looked_at_us_ = 0;  // last look at the elements downstream
+  // The members below are used only by the streaming thread.
+  gint64 looked_at_us_ = 0;  // last check of the elements downstream
   bool one_way_ = false;
 };
 

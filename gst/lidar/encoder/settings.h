@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The properties of every encoder.
+// The settings that all encoders have.
 #pragma once
 #include <gst/gst.h>
 
@@ -28,8 +28,8 @@ struct EncoderSettings {
 GType RateModelType();
 GType DegradationPreferenceType();
 
-/// The rate model of the settings. Returns null after an error of `element` if its file cannot be
-/// read or used.
+/// Returns the rate model that the settings select. If the file of the model cannot be read or
+/// used, posts an error message of `element` and returns null.
 std::unique_ptr<rate::SizeModel> LoadModel(GstElement* element, const EncoderSettings& settings);
 
 }  // namespace lidar::gst

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Counters of an encoder.
+// The counters of an encoder.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,7 +13,7 @@ class EncoderStats {
  public:
   void OnScan(double scans_per_second);
   void OnSlice(const rate::LoopResult& result, GstClockTime encode_time);
-  /// `holds`: all errors are within max-error.
+  /// Counts an error check. `holds` is true if all errors are within max-error.
   void OnErrorCheck(const PointErrors& errors, bool holds);
   StructurePtr ToStructure(guint target_bps) const;
 
@@ -34,7 +34,7 @@ class EncoderStats {
     guint64 points_checked = 0;
     gdouble largest_error_m = 0;
     gdouble sum_of_errors_m = 0;
-    gdouble bitrate = 0;  // smoothed over about ten scans
+    gdouble bitrate = 0;  // averaged over about ten scans
     rate::LoopResult last;
     guint target_bps = 0;
   };

@@ -22,7 +22,7 @@ void VtableCoder::Load(const GstLidarRawSlice& raw) {
 }
 
 rate::StepRange VtableCoder::Steps(double max_error_m) const {
-  // The middle of a cube is sqrt(3)/2 steps away from its corners.
+  // The centre of a cube is sqrt(3)/2 steps away from the corners of the cube.
   GstLidarStepRange steps{0.001, 2 / std::sqrt(3.0) * max_error_m, 0};
   if (class_->get_steps != nullptr) class_->get_steps(encoder_, max_error_m, &steps);
   return {steps.finest, steps.coarsest, steps.unit};
@@ -42,7 +42,8 @@ CodingResult VtableCoder::Encode(double max_error_m, const rate::Settings& setti
   const auto result = class_->encode(encoder_, &wanted, bytes_.get(), &coded);
   *slice = {bytes_->len, coded.returns, coded.step, coded.error_bound};
   if (result == GST_LIDAR_ENCODE_OUT_OF_REACH) return CodingResult::kOutOfReach;
-  // Receivers would take a slice without bytes for a lost one.
+  // Returns kEmpty if there are no bytes, because receivers would count a slice without bytes as
+  // lost.
   return result == GST_LIDAR_ENCODE_OK && bytes_->len > 0 ? CodingResult::kEncoded
                                                           : CodingResult::kEmpty;
 }

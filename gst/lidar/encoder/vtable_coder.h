@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Adapts the methods of an encoder's class to the rate loop's coder.
+// Adapts the virtual methods of an encoder to the coder that the rate loop uses.
 #pragma once
 #include <memory>
 #include <vector>
@@ -10,14 +10,15 @@
 
 namespace lidar::gst {
 
-/// `encoder` owns this object, and its streaming thread uses it.
+/// The coder of an encoder. `encoder` owns this object. Only the encoder's streaming thread may use
+/// it.
 class VtableCoder final : public rate::SliceCoder {
  public:
   explicit VtableCoder(GstLidarEncoder* encoder);
 
   void Load(const GstLidarRawSlice& raw);
   void set_threads(guint threads) { threads_ = threads; }
-  /// The bytes of the last Encode().
+  /// Returns the bytes that the last Encode() made.
   ByteView bytes() const { return {bytes_->data, bytes_->len}; }
 
   rate::LoadedSlice loaded() const override { return loaded_; }
