@@ -6,7 +6,7 @@
 namespace lidar::viewer {
 namespace {
 
-/// Overhead of a slice in memory.
+/// The estimated memory of a slice in addition to its bytes.
 constexpr std::size_t kOverhead = 256;
 
 std::size_t CostOf(const Slice& slice) {
@@ -35,8 +35,8 @@ void Backlog::Push(SharedSlice slice) {
   }
   bytes_ += CostOf(*slice);
   slices_.push_back(std::move(slice));
-  // A slice without blocks is only for display, because no slice can refer to it. So an old one is
-  // dropped.
+  // Drops old slices without blocks. No slice can refer to them, so they are only useful for
+  // display while they are new.
   for (auto it = slices_.begin(); it != slices_.end();)
     it = (*it)->blocks.empty() && !IsRecent(**it) ? Erase(it) : std::next(it);
   while (bytes_ > most_bytes_) Erase(slices_.begin());
@@ -54,13 +54,13 @@ Backlog::Iterator Backlog::Erase(Iterator slice) {
   return slices_.erase(slice);
 }
 
-/// Erases the slices of the same sector that came before `key`.
+/// Removes the slices of the same sector that are before `key`.
 void Backlog::EraseBefore(const Slice& key) {
   for (auto it = slices_.begin(); it->get() != &key;)
     it = (*it)->id.index == key.id.index ? Erase(it) : std::next(it);
 }
 
-/// Returns the slice to which `slice` refers, if the backlog has it.
+/// Returns the slice to which `slice` refers, or null if the backlog does not have it.
 const Slice* Backlog::ReferenceOf(const Slice& slice) const {
   for (const codec::BlockName& block : slice.blocks) {
     if (!block.reference) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Undecoded slices that a late decoder needs to follow the stream.
+// Keeps undecoded slices. A decoder that starts later needs them to follow the stream.
 #pragma once
 #include <cstddef>
 #include <list>
@@ -8,23 +8,25 @@
 
 namespace lidar::viewer {
 
-/// Slices that wait for a decoder. An encoder refers to ever newer slices of a sector. So once a
-/// slice refers to a slice that stands alone, all slices of the sector before that reference are
-/// obsolete.
+/// Slices that wait for a decoder. In each sector, an encoder refers only to ever newer slices. If
+/// a slice refers to a slice that has no references itself, no decoder needs the slices of the
+/// sector before that reference any more.
 class Backlog {
  public:
   explicit Backlog(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  /// Drops obsolete slices, and the oldest ones above the bound.
+  /// Adds a slice. Drops slices that are no longer needed, and the oldest slices if the memory is
+  /// exceeded.
   void Push(SharedSlice slice);
-  /// Takes the oldest slice; null if there is none.
+  /// Removes the oldest slice and returns it. Returns null if there are no slices.
   SharedSlice Pop();
 
   bool empty() const { return slices_.empty(); }
   std::size_t size() const { return slices_.size(); }
-  /// Returns true if needed slices must soon be dropped: then a decoder should take them.
+  /// Returns true if the backlog is half full. A decoder should then decode slices, because slices
+  /// that are needed would soon be dropped.
   bool is_full() const { return bytes_ > most_bytes_ / 2; }
-  /// Returns true for a slice of the two newest scans.
+  /// Returns true if the slice belongs to one of the two newest scans.
   bool IsRecent(const Slice& slice) const {
     return slice.id.scan == newest_ || slice.id.scan == before_;
   }

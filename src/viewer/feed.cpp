@@ -7,11 +7,13 @@ namespace lidar::viewer {
 namespace {
 
 constexpr std::size_t kRecentScans = 2;
-/// Greatest number of slices in the two newest scans: a hostile sender could invent more.
+/// The largest number of slices in a scan. A hostile sender could send any number of slices.
 constexpr std::size_t kMostSlices = 1024;
-/// Greatest number of recorded slices under way: a hostile file may have slices of one byte.
+/// The largest number of unacknowledged recorded slices. A hostile file could contain slices of one
+/// byte each.
 constexpr std::size_t kMostRecorded = 512;
-/// A decoder remembers 24 blocks of each sector; a scan of our streams has at most 128 sectors.
+/// The number of blocks that a viewer is assumed to have. A decoder keeps 24 blocks for each
+/// sector, and a scan of our streams has at most 128 sectors.
 constexpr std::size_t kMostKnown = 4096;
 
 }  // namespace
@@ -20,7 +22,7 @@ void RecentScans::Add(SharedSlice slice) {
   const auto is_of = [number = slice->id.scan](const Scan& s) { return s.number == number; };
   auto scan = std::find_if(scans_.begin(), scans_.end(), is_of);
   if (scan == scans_.end()) {
-    if (slice->is_recoded) return;  // its scan is obsolete
+    if (slice->is_recoded) return;  // its scan is no longer kept
     if (scans_.size() == kRecentScans) scans_.pop_front();
     scans_.push_back({slice->id.scan, {}});
     scan = std::prev(scans_.end());
@@ -81,7 +83,7 @@ std::vector<SharedSlice> Feed::TakeRecorded(Time now, std::deque<SharedSlice>* w
   return out;
 }
 
-/// Begins the newest scan, if the pace allows it.
+/// Begins the newest scan if the pace allows it.
 void Feed::Begin(Time now, const RecentScans& recent) {
   if (recent.scans().empty()) return;
   const std::uint32_t newest = recent.scans().back().number;

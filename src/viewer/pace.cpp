@@ -6,9 +6,10 @@
 namespace lidar::viewer {
 namespace {
 
-/// A delay at most this far above the shortest confirms it: a page draws once a display frame.
+/// A delay that is at most this much longer than the shortest delay confirms the shortest delay. A
+/// page draws only once per frame of the display.
 constexpr Duration kSameDelay = std::chrono::milliseconds(20);
-/// A scan is sent at once, so it may exceed max-bitrate by the data of this time.
+/// A scan may exceed max-bitrate by the data of this time, because a scan is sent at once.
 constexpr Duration kCredit = std::chrono::milliseconds(100);
 
 }  // namespace
@@ -56,7 +57,8 @@ void Pace::OnDrawn(Time now, SliceId slice) {
     LearnRate(now, (acknowledged_ - newest.acknowledged_before) / since);
 }
 
-/// A delay without other traffic is that of the path, even if an older delay was shorter.
+/// Updates the shortest delay. If the shortest delay is old, a delay that was measured without
+/// other traffic replaces it, even if the new delay is longer.
 void Pace::LearnDelay(Time now, Duration delay, bool alone) {
   const bool is_old = now - shortest_at_ > kDelayMemory && alone;
   if (shortest_ && !is_old && delay > *shortest_ + kSameDelay) return;

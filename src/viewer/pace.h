@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decides when a viewer gets the next scan, from its acknowledgements of drawn slices. TCP silently
-// buffers seconds of data for a slow link; unacknowledged bytes show how much.
+// Decides when the next scan is sent to a viewer. TCP silently buffers seconds of data for a slow
+// link. The number of unacknowledged bytes shows how much data is buffered.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -11,24 +11,24 @@
 
 namespace lidar::viewer {
 
-/// A slice, named by the scan and its place in it.
+/// The name of a slice: the number of its scan, and its index in the scan.
 struct SliceId {
   std::uint32_t scan = 0;
   std::uint32_t index = 0;
 };
 
-/// A scan may begin if the unacknowledged bytes arrive within the shortest delay plus kSlack, at
-/// the rate of recent acknowledgements. Times must not go back.
+/// The pace of a viewer. A scan may begin if the unacknowledged bytes, at the rate of recent
+/// acknowledgements, arrive within the shortest delay plus kSlack. Times must not decrease.
 class Pace {
  public:
-  /// `max_bitrate` of 0: no limit.
+  /// If `max_bitrate` is 0, there is no limit.
   explicit Pace(DataRate max_bitrate) : max_bitrate_(max_bitrate) {}
 
   bool MayBegin(Time now);
-  /// Returns true if the unacknowledged bytes take too long.
+  /// Returns true if the unacknowledged bytes would take too long to arrive.
   bool IsLate(Time now) const;
   void OnSent(Time now, SliceId slice, DataSize size);
-  /// Notes that the viewer has drawn the slice, and all that was sent before it.
+  /// Notes that the viewer has drawn the slice, and all slices that were sent before it.
   void OnDrawn(Time now, SliceId slice);
 
   DataSize unacknowledged() const { return unacknowledged_; }
@@ -36,14 +36,14 @@ class Pace {
   DataRate rate() const { return rate_.empty() ? DataRate() : rate_.front().rate; }
   std::optional<Duration> shortest_delay() const { return shortest_; }
 
-  /// Number of scans that a viewer gets before its first acknowledgement.
+  /// The number of scans that are sent to a viewer before its first acknowledgement.
   static constexpr unsigned kFirstScans = 2;
   static constexpr Duration kSlack = std::chrono::milliseconds(100);
-  /// Older rates do not count.
+  /// The time after which a measured rate is no longer used.
   static constexpr Duration kRateMemory = std::chrono::seconds(2);
-  /// Interval at which the shortest delay is measured anew, without other traffic.
+  /// The interval at which the shortest delay is measured again, without other traffic.
   static constexpr Duration kDelayMemory = std::chrono::seconds(30);
-  /// A viewer that owes an acknowledgement for this time is hidden or gone.
+  /// A viewer that has not acknowledged a slice for this time is hidden or gone.
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
  private:
@@ -51,9 +51,9 @@ class Pace {
     SliceId slice;
     DataSize size;
     Time at;
-    DataSize acknowledged_before;  // all that was acknowledged when the slice was sent
-    Time acknowledged_at;          // when the last of that was acknowledged
-    bool alone = false;            // no other traffic was under way
+    DataSize acknowledged_before;  // bytes that were acknowledged when the slice was sent
+    Time acknowledged_at;          // when the last of these bytes were acknowledged
+    bool alone = false;            // no other slice was unacknowledged
   };
   struct Rate {
     DataRate rate;
@@ -65,13 +65,13 @@ class Pace {
   void LearnRate(Time now, DataRate rate);
 
   DataRate max_bitrate_;
-  DataSize credit_;  // bytes allowed by max_bitrate; negative: overdrawn
+  DataSize credit_;  // bytes that max_bitrate allows now; negative after too many
   Time filled_{};
-  std::deque<Sent> sent_;  // unacknowledged, in order
+  std::deque<Sent> sent_;  // unacknowledged slices in the order of sending
   DataSize unacknowledged_;
   DataSize acknowledged_;
   Time acknowledged_at_{};
-  std::deque<Rate> rate_;  // highest first; each later rate is lower and newer
+  std::deque<Rate> rate_;  // the highest first; each rate is lower and newer than those before
   std::optional<Duration> shortest_;
   Time shortest_at_{};
   unsigned begun_ = 0;

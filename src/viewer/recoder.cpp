@@ -7,7 +7,7 @@ namespace lidar::viewer {
 namespace {
 
 constexpr double kCoarsest = 16;
-constexpr double kChange = 1.05;  // greatest change of the grid between slices
+constexpr double kChange = 1.05;  // largest change of the grid from slice to slice
 constexpr double kWeight = 0.2;   // weight of a slice in the averages
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Re-codes decoded slices so that each stands alone.
+// Encodes decoded slices again, so that each can be decoded without other slices.
 #pragma once
 #include <optional>
 #include <vector>
@@ -9,23 +9,24 @@
 
 namespace lidar::viewer {
 
-/// A slice without references needs more bits on the same grid. So the grid becomes coarser until
-/// the stream has about the robot's size. For one thread at a time.
+/// Encodes slices without references. On the same grid, such slices need more bits than the robot's
+/// slices. The grid is therefore made coarser until both streams have about the same size. Only one
+/// thread at a time may use it.
 class Recoder {
  public:
-  /// Returns nothing if `format` has no ranges.
+  /// Makes a recoder. Returns nothing if `format` has no ranges.
   static std::optional<Recoder> Create(const codec::CloudFormat& format);
 
-  /// A decoder's output: points as they lie in memory, and their properties.
+  /// A decoded slice: its points in memory, and their properties.
   struct Decoded {
     ByteView points;
     codec::SliceDecoder::Shape shape;
     codec::SliceDecoder::Quality quality;
     std::size_t coded_size = 0;  // bytes
   };
-  /// Returns false if the slice cannot be coded.
+  /// Encodes a slice. Returns false if that is impossible.
   bool Encode(const Decoded& slice, std::vector<std::uint8_t>* out);
-  /// Grid step relative to the robot's grid.
+  /// Returns the step of the grid divided by the step of the robot's grid.
   double coarseness() const { return coarseness_; }
 
  private:
@@ -34,7 +35,7 @@ class Recoder {
 
   codec::SliceEncoder encoder_;
   double coarseness_ = 1;
-  double coded_ = 0;  // bytes, averaged over about a scan
+  double coded_ = 0;  // bytes per slice, averaged over about a scan
   double recoded_ = 0;
 };
 
