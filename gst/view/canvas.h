@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A picture with depth: near pixels hide far ones.
+// A picture whose pixels have a depth, so that near pixels hide far ones.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -23,18 +23,20 @@ class Canvas {
   const Color* Row(int y) const { return &pixels_[Index(0, y)]; }
 
   void Clear();
-  /// Draws a square of `size` pixels about (x, y), cut at the borders.
+  /// Draws a square of `size` pixels around (x, y). Parts outside of the picture are not drawn.
   void Splat(int x, int y, int size, float depth, Color color);
   /// Fills the rectangle [x0, x1) x [y0, y1).
   void Fill(int x0, int y0, int x1, int y1, Color color);
-  /// Draws a line of half-transparent pixels below what is drawn already.
+  /// Draws a half-transparent line on the background. Pixels that were already drawn hide the line.
   void Line(float x0, float y0, float x1, float y1, Color color);
   struct End {
     float x, y, depth;
   };
-  /// Draws a line `size` pixels wide between two depths; nearer pixels hide it.
+  /// Draws a line that is `size` pixels wide, from the depth of `from` to the depth of `to`. Nearer
+  /// pixels hide the line.
   void Stroke(End from, End to, int size, Color color);
-  /// Eye-dome lighting: darkens pixels that lie behind their neighbours, so that edges show.
+  /// Darkens pixels that are farther than the pixels next to them, so that edges become visible
+  /// (eye-dome lighting).
   void ShadeEdges(float strength);
 
  private:

@@ -112,17 +112,17 @@ struct State {
   std::mutex mutex;  // guards the settings and `changed`
   Settings settings;
   bool changed = true;
-  // Only the streaming thread uses these.
+  // Only the streaming thread uses the members below.
   std::optional<CloudInfo> info;
   RefusedCaps refused;
   GstVideoInfo video;
   std::optional<TrailMap> map;
-  gint map_colors = 0;  // color_by of the values in the map
+  gint map_colors = 0;  // the value of color_by with which the map was made
   std::unique_ptr<Renderer> renderer;
   bool warned_no_pose = false;
-  bool drawing = false;  // a picture is begun
+  bool drawing = false;  // a picture was begun
   guint scan_id = 0;
-  GstClockTime pts = GST_CLOCK_TIME_NONE;  // of that scan
+  GstClockTime pts = GST_CLOCK_TIME_NONE;  // PTS of that scan
   GstClockTime capture_time = GST_CLOCK_TIME_NONE;
 };
 
@@ -156,7 +156,7 @@ GST_ELEMENT_REGISTER_DEFINE(pointcloudview, "pointcloudview", GST_RANK_NONE,
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_VIEW(self)->state; }
 
-/// Returns the caps of the other pad, with this one's frame rate.
+/// Returns the template caps of the other pad, with the frame rates of `caps`.
 static GstCaps* TransformCaps(GstBaseTransform* base, GstPadDirection direction, GstCaps* caps,
                               GstCaps* filter) {
   GstPad* other = direction == GST_PAD_SINK ? base->srcpad : base->sinkpad;
@@ -202,13 +202,14 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps* out) {
   state.refused.Reset();
   GstVideoInfo video;
   if (!gst_video_info_from_caps(&video, out)) return FALSE;
-  // Unorganised slices change their caps within a scan; the picture goes on.
+  // An unorganised slice may have other caps than the slice before it. The picture of the scan is
+  // continued.
   if (state.renderer && gst_video_info_is_equal(&video, &state.video)) return TRUE;
   state.video = video;
   std::lock_guard lock(state.mutex);
   state.changed = true;
   state.renderer.reset();
-  state.drawing = false;  // a picture that is begun has the old format
+  state.drawing = false;  // a picture that was begun has the old format
   return TRUE;
 }
 
@@ -248,7 +249,8 @@ static void Paint(const Canvas& canvas, GstVideoFrame* frame) {
   }
 }
 
-/// Moves the map to the pose of `in`. Returns false if the points of `in` must not enter the map.
+/// Moves the map to the pose of `in`. Returns false if the points of `in` must not be added to the
+/// map.
 static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   if (!state.map) return false;
@@ -268,7 +270,8 @@ static bool FollowPose(GstBaseTransform* base, GstBuffer* in) {
   return pose.tracking != GST_LIDAR_TRACKING_LOST;
 }
 
-/// Returns the map, or null if the settings want no map. Another color_by begins a new map.
+/// Returns the map, or null if the settings do not want a map. If color_by has changed, begins a
+/// new map.
 static TrailMap* UpdateMap(State* state) {
   const Settings& settings = state->settings;
   const bool stale = state->map_colors != settings.color_by;
@@ -278,7 +281,8 @@ static TrailMap* UpdateMap(State* state) {
   return state->map ? &*state->map : nullptr;
 }
 
-/// Settings that change while a picture is drawn apply to the next picture.
+/// Applies changed settings. Called at the beginning of a picture, so that a picture is drawn with
+/// one set of settings.
 static void ApplySettings(State* state) {
   std::lock_guard lock(state->mutex);
   if (state->changed || !state->renderer)
@@ -307,14 +311,14 @@ static GstFlowReturn FinishPicture(GstBaseTransform* base, GstBuffer* out) {
   gst_video_frame_unmap(&frame);
   GST_BUFFER_PTS(out) = state.pts;
   GST_BUFFER_DURATION(out) = state.info->ScanDuration();
-  // Replaces the time that the base class has copied from the last slice, or from the next scan.
+  // The base class has copied the time of the last slice, or of the next scan. Replaces this time.
   if (GST_CLOCK_TIME_IS_VALID(state.capture_time))
     gst_lidar_buffer_set_capture_time(out, state.capture_time);
   state.drawing = false;
   return GST_FLOW_OK;
 }
 
-/// Draws slices as they come; the last slice of a scan completes the picture.
+/// Draws a slice. The last slice of a scan completes the picture.
 static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer* out) {
   State& state = StateOf(base);
   const BufferMap bytes(in, GST_MAP_READ);
@@ -329,20 +333,21 @@ static GstFlowReturn Transform(GstBaseTransform* base, GstBuffer* in, GstBuffer*
   gst_lidar_buffer_get_slice(in, &slice);
   GstFlowReturn flow = GST_BASE_TRANSFORM_FLOW_DROPPED;
   if (state.drawing && slice.scan_id != state.scan_id)
-    flow = FinishPicture(base, out);  // its last slice was lost
+    flow = FinishPicture(base, out);  // the last slice of the scan was lost
   const bool done = flow == GST_FLOW_OK;
   const bool begins = !state.drawing;
   if (begins) ApplySettings(&state);
   const bool into_map = FollowPose(base, in);
   if (begins) BeginPicture(&state, slice, in);
   state.renderer->Draw(*state.info, slice, bytes.data(), into_map);
-  // A buffer gives at most one picture. After a loss, a scan of one slice waits for the next scan.
+  // Returns at most one picture per buffer. If this buffer has already completed the picture of an
+  // incomplete scan, its own scan is completed with the next buffer.
   if (slice.slice_index + 1 < slice.slice_count || done) return flow;
   return FinishPicture(base, out);
 }
 
-/// Returns OK for a slice that completes no picture. After DROPPED the base class would mark the
-/// next picture as DISCONT.
+/// Returns OK if a slice does not complete a picture. If this returned DROPPED, the base class
+/// would mark the next picture as DISCONT.
 static GstFlowReturn GenerateOutput(GstBaseTransform* base, GstBuffer** out) {
   const GstFlowReturn flow =
       GST_BASE_TRANSFORM_CLASS(gst_lidar_point_cloud_view_parent_class)->generate_output(base, out);
@@ -353,7 +358,7 @@ static GstFlowReturn GenerateOutput(GstBaseTransform* base, GstBuffer** out) {
 
 static gboolean TransformMeta(GstBaseTransform* base, GstBuffer* out, GstMeta* meta,
                               GstBuffer* in) {
-  // A picture must not carry the metas of a slice.
+  // A picture must not have the metas of a slice.
   if (meta->info == gst_meta_get_info(GST_LIDAR_SLICE_META_NAME) ||
       meta->info == gst_meta_get_info(GST_LIDAR_POSE_META_NAME))
     return FALSE;
@@ -381,7 +386,7 @@ static gboolean Stop(GstBaseTransform* base) {
   return TRUE;
 }
 
-/// Makes the next picture start from scratch.
+/// Makes the next picture use a new renderer.
 static void MarkChanged(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::lock_guard lock(state.mutex);

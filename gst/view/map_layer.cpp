@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The part of the renderer that draws scans over the map.
+// The part of the renderer that draws scans on the map.
 #include <algorithm>
 #include <cmath>
 
@@ -12,19 +12,19 @@ namespace {
 constexpr Color kBackground{20, 23, 32};
 constexpr Color kWay{255, 176, 46};
 constexpr Color kSensor{255, 255, 255};
-constexpr float kMapShare = 0.7F;  // share of its colour that a point of the map keeps
+constexpr float kMapShare = 0.7F;  // a point of the map keeps this share of its colour
 constexpr float kReach = 300;      // distance up to which the map is drawn in perspective [m]
-// A point of the map is drawn once this many scans have seen it, so most moving things are not
-// drawn.
+// The number of scans that must have seen a point of the map before it is drawn. Most moving
+// objects are seen less often, and are therefore not drawn.
 constexpr int kMetOften = 3;
-constexpr float kMargin = 25;  // around the sensor's way [m]
-/// Number of poses by which the columns of a scan are placed.
+constexpr float kMargin = 25;  // around the sensor's route [m]
+/// The number of poses per slice. Each group of columns is placed by one of them.
 constexpr std::size_t kPhases = 64;
 
 }  // namespace
 
-/// The view from above shows all of the way, x to the right. In perspective the picture turns
-/// with the sensor, but does not tilt with it.
+/// Sets the view of the map. The view from above shows the whole route, with x to the right. In
+/// perspective, the picture turns with the sensor, but does not tilt with it.
 void Renderer::FrameMap() {
   const Rigid pose = map_->PoseAfter(0);
   middle_ = pose.position;
@@ -57,7 +57,7 @@ Renderer::Vec Renderer::ToPicture(const std::array<float, 3>& at) const {
 
 void Renderer::DrawOverMap(const CloudInfo& info, const GstLidarSlice& slice,
                            const std::uint8_t* points, bool into_map) {
-  // Only an organised cloud has the times of its columns.
+  // Columns have known times only in an organised cloud.
   const GstClockTime period = info.height > 1 ? info.ScanDuration() : GST_CLOCK_TIME_NONE;
   const double sweep_s = GST_CLOCK_TIME_IS_VALID(period)
                              ? static_cast<double>(period) / GST_SECOND /
@@ -93,7 +93,7 @@ void Renderer::DrawMap() {
     const float pixels = top ? pixels_per_m_ * cube : focal_ * cube * 1.1F / (*at)[2];
     const int size = settings_.point_size > 0 ? settings_.point_size
                                               : std::clamp(static_cast<int>(pixels + 0.5F), 1, 8);
-    // The last scan lies over the map.
+    // The depth of the map is increased, so that the points of the last scan hide the map.
     const float depth = (*at)[2] + cube;
     canvas_.Splat(static_cast<int>((*at)[0]), static_cast<int>((*at)[1]), size, depth,
                   Mix(kBackground, ColorOf(point.value), kMapShare));
@@ -103,7 +103,7 @@ void Renderer::DrawMap() {
 void Renderer::DrawWay() {
   const bool top = settings_.view == ViewKind::kTop;
   const int width = std::max(2, canvas_.width() / 320);
-  // Seen from above, the way of the sensor covers everything; in perspective it lies on the road.
+  // The route is drawn over everything in the view from above. In perspective, it is on the ground.
   const auto end = [&](const std::array<float, 3>& place) -> std::optional<Canvas::End> {
     Vec p = ToPicture(place);
     p.z += kGround + 0.3F;

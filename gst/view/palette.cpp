@@ -14,7 +14,7 @@ struct Stop {
 
 template <std::size_t N>
 Color Blend(const std::array<Stop, N>& stops, float t) {
-  // NaN fails the comparison, too, and gives the first colour.
+  // If `t` is NaN, the comparison is false, which results in the first colour.
   const float at = (t > 0 ? std::min(t, 1.0F) : 0.0F) * static_cast<float>(N - 1);
   const auto i = std::min(static_cast<std::size_t>(at), N - 2);
   const float f = at - static_cast<float>(i);

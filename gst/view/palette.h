@@ -5,12 +5,13 @@
 
 namespace lidar::gst {
 
-/// Colours from cold to warm for 0 .. 1; other values get the colour of the nearest end.
+/// Returns a colour from cold (0) to warm (1). For other values, returns the colour of the nearer
+/// end.
 Color Spectrum(float t);
-/// Colours from slate to warm white, for brightness.
+/// Returns a colour from slate (0) to warm white (1), for brightness.
 Color Glow(float t);
 
-/// Mixes `a` and `b`; `part` is the share of `b`.
+/// Mixes `a` and `b`. `part` is the share of `b`.
 Color Mix(Color a, Color b, float part);
 
 }  // namespace lidar::gst

@@ -12,13 +12,13 @@ namespace {
 constexpr float kPi = 3.14159265F;
 constexpr Color kRing{120, 132, 158};
 constexpr Color kCar{255, 255, 255};
-constexpr float kAbove = 100;  // height from which the view from above looks down [m]
+constexpr float kAbove = 100;  // height of the camera in the view from above [m]
 
 struct Scale {
   float low, high;
 };
 
-/// The default span of the colours.
+/// Returns the default range of values for the colours.
 Scale DefaultScale(ColorBy by, guint beams) {
   switch (by) {
     case ColorBy::kHeight:
@@ -50,7 +50,7 @@ Renderer::Renderer(const ViewSettings& settings, int width, int height, TrailMap
     return Vec{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   };
   forward_ = unit({t[0] - e[0], t[1] - e[1], t[2] - e[2]});
-  // A view straight down has no horizon: the sensor's x points up in it.
+  // A view straight down has no horizon. In this view, the sensor's x axis points up.
   const bool vertical = std::abs(forward_.z) > 0.999F;
   right_ = vertical ? Vec{0, -1, 0} : unit(cross(forward_, {0, 0, 1}));
   up_ = cross(right_, forward_);
@@ -73,8 +73,8 @@ void Renderer::LearnScale(const CloudInfo& info, const std::uint8_t* points) {
   low_ = scale.low;
   high_ = scale.high;
   if (settings_.color_by != ColorBy::kIntensity) return;
-  // Sensors scale intensity differently: the value that one point in fifty exceeds counts as
-  // bright.
+  // Sensors scale intensity differently. The colour scale ends at the value that only one point in
+  // fifty exceeds.
   std::vector<float> values;
   ForEachPoint(info, points, [&](const Point& p) { values.push_back(p.value); });
   if (values.empty()) return;
@@ -85,7 +85,7 @@ void Renderer::LearnScale(const CloudInfo& info, const std::uint8_t* points) {
 
 Color Renderer::ColorOf(float value) const {
   const float t = (value - low_) / (high_ - low_);
-  // The square root brightens dark values, which are the most frequent.
+  // The square root brightens dark values, because most values are dark.
   if (settings_.color_by == ColorBy::kIntensity) return Glow(t > 0 ? std::sqrt(t) : 0);
   return Spectrum(t);
 }
@@ -95,7 +95,7 @@ std::optional<std::array<float, 3>> Renderer::Place(Vec p) const {
   const float x = static_cast<float>(canvas_.width()) / 2 + pixels_per_m_ * p.x;
   const float y = static_cast<float>(canvas_.height()) / 2 - pixels_per_m_ * p.y;
   if (!(std::abs(x) < 1e5F && std::abs(y) < 1e5F)) return std::nullopt;
-  // Higher points hide lower ones.
+  // The depth decreases with the height, so that higher points hide lower points.
   return std::array<float, 3>{x, y, std::max(1.0F, kAbove - p.z)};
 }
 
@@ -133,7 +133,7 @@ void Renderer::PlotPerspective(const Point& point) {
 void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
                               const std::uint8_t* points) {
   const auto* model = info.sensor_model ? &*info.sensor_model : nullptr;
-  // The meta is untrusted.
+  // Limits the number of columns, because the meta is untrusted.
   constexpr guint64 kMost = SensorModel::kMaxColumns * guint64{4096};
   const guint64 all = guint64{info.width} * slice.slice_count;
   const guint turn = model != nullptr ? model->columns_per_scan
@@ -153,7 +153,8 @@ void Renderer::DrawRangeImage(const CloudInfo& info, const GstLidarSlice& slice,
   });
 }
 
-/// Draws an unorganised cloud by azimuth and elevation.
+/// Draws an unorganised cloud. The azimuth gives the position in x, and the elevation the position
+/// in y.
 void Renderer::DrawPanorama(const CloudInfo& info, const std::uint8_t* points) {
   float low = kPi / 2;
   float high = -kPi / 2;
@@ -197,7 +198,7 @@ void Renderer::Draw(const CloudInfo& info, const GstLidarSlice& slice, const std
   }
 }
 
-/// Draws circles on the ground every ten metres, for scale.
+/// Draws circles on the ground at intervals of ten metres, as a scale.
 void Renderer::DrawRings() {
   constexpr int kCorners = 120;
   const auto at = [&](float radius, int i) {
@@ -216,7 +217,8 @@ void Renderer::DrawRings() {
 const Canvas& Renderer::Finish() {
   if (settings_.view == ViewKind::kRange) return canvas_;
   if (map_ != nullptr) DrawMap();
-  // Seen from above, a step of a metre changes the depth by only 1 %, so edges are shaded more.
+  // Edges are shaded more strongly in the view from above, because there a step of one metre
+  // changes the depth by only 1 %.
   canvas_.ShadeEdges(settings_.view == ViewKind::kTop ? 6.0F : 2.0F);
   if (map_ != nullptr) {
     DrawWay();

@@ -19,28 +19,28 @@ enum class ColorBy { kHeight, kIntensity, kRange, kRing };
 struct ViewSettings {
   ViewKind view = ViewKind::kPerspective;
   ColorBy color_by = ColorBy::kHeight;
-  float extent_m = 100;  // top: width of the picture
+  float extent_m = 100;  // width of the picture from above
   std::array<float, 3> eye_m{};
   std::array<float, 3> target_m{};
   float field_of_view_deg = 60;  // horizontal
   int point_size = 0;            // pixels; 0: by distance
-  float color_min = 0;           // both equal: automatic
+  float color_min = 0;           // not below color_max: automatic
   float color_max = 0;
 };
 
 constexpr float kGround = -1.9F;  // below the sensor [m]
 
-/// Draws one picture at a time: Begin, Draw for each slice, Finish.
+/// Draws one picture at a time: call Begin(), Draw() for each slice, and Finish().
 class Renderer {
  public:
-  /// If there is a map, and poses for it, scans are drawn where they were taken, over earlier ones.
-  /// From above the picture contains the whole way. In perspective the view is level, from behind
-  /// the sensor. The map must outlive the renderer.
+  /// If there is a `map`, and poses for it, each scan is drawn at its pose, over the earlier scans.
+  /// The picture from above shows the whole route of the sensor. In perspective, the camera is
+  /// behind the sensor and stays level. `map` must outlive the renderer.
   Renderer(const ViewSettings& settings, int width, int height, TrailMap* map);
 
   void Begin();
-  /// `points`: info.FrameSize() bytes, whose fields have x, y, z as F32 side by side.
-  /// `into_map`: the points enter the map.
+  /// Draws a slice. `points` has info.FrameSize() bytes, and the fields x, y and z of each point
+  /// are adjacent F32. If `into_map` is true, adds the points to the map.
   void Draw(const CloudInfo& info, const GstLidarSlice& slice, const std::uint8_t* points,
             bool into_map);
   const Canvas& Finish();
@@ -52,7 +52,7 @@ class Renderer {
   struct Point {
     Vec p;
     float range;
-    float value;  // value of the colour, as read
+    float value;  // the value that determines the colour
     guint beam;
     guint column;
   };
@@ -73,8 +73,9 @@ class Renderer {
   void DrawMap();
   void DrawWay();
   Vec ToPicture(const std::array<float, 3>& at) const;
-  std::optional<std::array<float, 3>> Project(Vec p) const;  // x, y in pixels; depth
-  /// Like Project(), but in the view of the settings.
+  std::optional<std::array<float, 3>> Project(Vec p) const;  // x, y in pixels, and the depth
+  /// Returns the position of `p` in the picture, as Project() does, but for the view in the
+  /// settings.
   std::optional<std::array<float, 3>> Place(Vec p) const;
 
   ViewSettings settings_;
@@ -82,13 +83,13 @@ class Renderer {
   float low_ = 0;
   float high_ = 1;
   bool scale_known_ = false;
-  float pixels_per_m_;  // from above
+  float pixels_per_m_;  // in the view from above
   TrailMap* map_;
-  // The view of the map: the point in the picture's middle, and the picture's turn.
+  // The view of the map: the point in the middle of the picture, and the angle of the picture.
   std::array<float, 3> middle_{};
   float cos_turn_ = 1;
   float sin_turn_ = 0;
-  // The camera: right, up, forward, and pixels per tangent.
+  // The camera: its axes to the right, up and forward, and its focal length [pixels].
   Vec right_{}, up_{}, forward_{};
   float focal_ = 1;
 };
@@ -103,7 +104,7 @@ void Renderer::ForEachPoint(const CloudInfo& info, const std::uint8_t* points, c
       std::memcpy(&point.p, points + xyz, sizeof point.p);
       const Vec& p = point.p;
       point.range = std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
-      // A missing return is zero from some sources and NaN from others.
+      // Some sources set a missing return to zero, and others to NaN.
       if (!(point.range > 0.01F && point.range < 1e5F)) continue;
       point.beam = beam;
       point.column = column;

@@ -7,10 +7,10 @@
 namespace lidar::gst {
 namespace {
 
-constexpr double kLongestStep_s = 1;  // beyond this a velocity does not predict the present
+constexpr double kLongestStep_s = 1;  // a longer step is not used to predict poses
 constexpr float kGrowth = 1.5F;
-constexpr float kNews = 0.3F;      // weight of a new value; values of distant points may be wrong
-constexpr float kFarthest = 1e7F;  // [m]: beyond it floats cannot separate cubes
+constexpr float kNews = 0.3F;      // weight of a new value; a distant point's value may be wrong
+constexpr float kFarthest = 1e7F;  // [m]: floats cannot distinguish cubes that are farther away
 
 using Cube = std::array<std::int32_t, 3>;
 
@@ -55,7 +55,7 @@ Rigid TrailMap::PoseAfter(double later_s) const {
   std::array<double, 4> q{};
   double dot = 0;
   for (std::size_t i = 0; i < 4; ++i) dot += pose_.orientation[i] * before_.orientation[i];
-  const double sign = dot < 0 ? -1 : 1;  // takes the nearer of the two quaternions of a rotation
+  const double sign = dot < 0 ? -1 : 1;  // chooses the nearer of the two quaternions of a rotation
   double norm = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     q[i] = pose_.orientation[i] + part * (pose_.orientation[i] - sign * before_.orientation[i]);
@@ -87,7 +87,7 @@ void TrailMap::NotePlace() {
   place_step_m_ *= 2;
 }
 
-/// The slot of the point in the cube of `at`, or a free one.
+/// Returns the slot of the point that is in the same cube as `at`, or a free slot if there is none.
 std::size_t TrailMap::SlotOf(const std::array<float, 3>& at) const {
   const Cube cube = CubeOf(at, cube_m_);
   const auto part = [](std::int32_t c) { return static_cast<std::uint64_t>(std::uint32_t(c)); };
@@ -102,7 +102,7 @@ std::size_t TrailMap::SlotOf(const std::array<float, 3>& at) const {
 }
 
 void TrailMap::Add(const std::array<float, 3>& at, float value) {
-  // NaN fails, too
+  // The comparison is also false for NaN.
   if (!std::all_of(at.begin(), at.end(), [](float c) { return std::abs(c) < kFarthest; })) return;
   const std::size_t slot = SlotOf(at);
   if (slots_[slot] != 0) {

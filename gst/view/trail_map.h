@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The points that a moving sensor has seen, in one frame, and the sensor's way.
+// The points that a moving sensor has seen, in a common frame, and the route of the sensor.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// Transforms points from the sensor's frame to the frame of the poses.
+/// A transform of points from the frame of the sensor to the frame of the poses.
 struct Rigid {
   std::array<float, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
   std::array<float, 3> position{};
@@ -23,30 +23,31 @@ struct Rigid {
   float heading() const;  // [rad]
 };
 
-/// Keeps one point per cube in bounded memory. If there are too many cubes, they grow. If the way
-/// is too long, the map keeps every second place of it.
+/// A map with one point per cube, in bounded memory. If there are too many points, the cubes become
+/// larger. If the route has too many places, every second place is removed.
 class TrailMap {
  public:
   struct Point {
     std::array<float, 3> at;
-    float value;  // value of its colour
+    float value;  // the value that determines the colour
     std::uint16_t last_scan = 0;
-    std::uint16_t scans = 0;  // number of scans that saw it
+    std::uint16_t scans = 0;  // number of scans that saw the point
   };
 
   explicit TrailMap(std::size_t most_points = kMostPoints);
 
-  /// Sets the pose of the sensor at `seconds`, and the velocity since the previous pose.
+  /// Sets the pose of the sensor at the time `seconds`. The velocity is computed from the previous
+  /// pose.
   void MoveTo(const GstLidarPose& pose, double seconds);
-  /// Pose of the sensor, `later_s` after the last pose.
+  /// Returns the predicted pose of the sensor at the time `later_s` after the last pose.
   Rigid PoseAfter(double later_s) const;
 
-  /// Ends the scan of the points that were added since the last call.
+  /// Ends a scan, to which all points since the last call belong.
   void EndScan() { ++scan_; }
   void Add(const std::array<float, 3>& at, float value);
 
   const std::vector<Point>& points() const { return points_; }
-  /// Places of the sensor, in their order.
+  /// Returns the places of the sensor's route, in their order.
   const std::vector<std::array<float, 3>>& way() const { return way_; }
   float cube_m() const { return cube_m_; }
 
@@ -61,14 +62,14 @@ class TrailMap {
   std::size_t most_points_;
   float cube_m_ = 0.2F;
   std::vector<Point> points_;
-  std::vector<std::uint32_t> slots_;  // 1 + index of a point; 0: free
+  std::vector<std::uint32_t> slots_;  // index of a point plus 1; 0: free
   std::uint16_t scan_ = 1;
   std::vector<std::array<float, 3>> way_;
   float place_step_m_ = 0.5F;
   GstLidarPose pose_{};
   GstLidarPose before_{};
   double pose_s_ = 0;
-  double step_s_ = 0;  // since the last pose; 0: the velocity is unknown
+  double step_s_ = 0;  // time between the last two poses; 0: unknown velocity
   std::uint64_t poses_ = 0;
 };
 
