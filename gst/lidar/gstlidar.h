@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* The shared vocabulary of the gst-lidar plugins: metas on buffers and events between elements. */
+/* What all gst-lidar plugins share: metas on buffers, and events between elements. */
 #pragma once
 #include <gst/gst.h>
 
@@ -47,7 +47,7 @@ typedef enum {
   GST_LIDAR_ECN_CE = 3
 } GstLidarEcn;
 
-/** @arrival: kernel time of reception [ns since the Unix epoch], or GST_CLOCK_TIME_NONE. */
+/** @arrival is the kernel's time of reception [ns since the Unix epoch], or GST_CLOCK_TIME_NONE. */
 GST_LIDAR_API void gst_lidar_buffer_set_ecn(GstBuffer* buffer, GstLidarEcn ecn,
                                             GstClockTime arrival);
 /** Returns FALSE if the buffer has no meta. Both out pointers may be NULL. */
@@ -61,7 +61,7 @@ GST_LIDAR_API GstClockTime gst_lidar_buffer_get_capture_time(GstBuffer* buffer);
 
 /** The reliability of a pose. */
 typedef enum {
-  GST_LIDAR_TRACKING_STARTED = 0,    /* the first scan: the map begins here */
+  GST_LIDAR_TRACKING_STARTED = 0,    /* the first scan, with which the map begins */
   GST_LIDAR_TRACKING_OK = 1,         /* the scan fits the map */
   GST_LIDAR_TRACKING_DEGENERATE = 2, /* the scene does not show the motion along one direction */
   GST_LIDAR_TRACKING_LOST = 3        /* the scan does not fit the map; the pose is a prediction */
@@ -116,7 +116,7 @@ typedef struct {
  */
 typedef struct {
   guint ssrc;
-  guint receiver; /* another number is another receiver */
+  guint receiver; /* a number that identifies the receiver */
   guint count;
   GstLidarSequenceRange ranges[GST_LIDAR_MAX_RECEIVED];
 } GstLidarPacketsReceived;

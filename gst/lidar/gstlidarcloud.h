@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
-/* Raw clouds for coders: GstLidarEncoder takes them, GstLidarDecoder gives them. */
+/* Raw clouds for coders. They are the input of GstLidarEncoder and the output of GstLidarDecoder.
+ */
 #pragma once
 #include <gst/lidar/gstlidar.h>
 
@@ -7,9 +8,9 @@ G_BEGIN_DECLS
 
 /** The caps of a raw cloud. The caller owns all pointers. They are valid until the call returns. */
 typedef struct {
-  guint width;         /* columns; 0: the caps do not say */
+  guint width;         /* columns; 0: unknown */
   guint height;        /* beams; 1: the cloud has no rows */
-  guint point_step;    /* bytes a point, gaps between its fields included */
+  guint point_step;    /* bytes per point, including gaps between its fields */
   const gchar* fields; /* names, types and offsets: "x:F32:0,y:F32:4,z:F32:8" */
   gint framerate_n;    /* scans/s; 0/1: not known */
   gint framerate_d;
@@ -37,7 +38,7 @@ typedef struct {
   gfloat x; /* m */
   gfloat y;
   gfloat z;
-  guint32 range; /* mm; 0 if the coder codes no ranges */
+  guint32 range; /* mm; 0 if the coder does not encode ranges */
 } GstLidarPoint;
 
 G_END_DECLS

@@ -32,7 +32,7 @@ typedef struct {
 typedef struct {
   guint width;       /* columns, or points */
   guint height;      /* beams; 1: the cloud has no rows */
-  guint point_step;  /* bytes a point, gaps between its fields included */
+  guint point_step;  /* bytes per point, including gaps between its fields */
   gboolean is_dense; /* every point is a return */
   gint framerate_n;  /* scans/s; 0/1: not known */
   gint framerate_d;

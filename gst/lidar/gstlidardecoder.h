@@ -32,25 +32,25 @@ GST_LIDAR_API GType gst_lidar_decoder_get_type(void);
 
 /** The answer of set_format(). */
 typedef struct {
-  gboolean is_organised; /* a slice is rows of pixels, of which some may be missing: the caps keep
-                            the sensor model. FALSE: points without order, none is missing */
-  const gchar* refusal;  /* static; what the caps lack, if FALSE is returned */
+  gboolean is_organised; /* TRUE: a slice has rows of pixels, and some pixels may be missing. The
+                            caps keep the sensor model. FALSE: points in no order, none missing */
+  const gchar* refusal;  /* says what the caps lack, if set_format() returns FALSE; static */
 } GstLidarDecodedFormat;
 
 /**
- * The properties of a decoded slice. Properties of its coding are not set if the slice does not
- * have them.
+ * The properties of a decoded slice. decode() does not change a member about the coding if the
+ * slice does not contain its value.
  */
 typedef struct {
   guint width;  /* columns, or points */
   guint height; /* beams, or 1 */
-  gdouble step; /* of the grid [m]; 0: not known */
+  gdouble step; /* step of the grid [m]; 0: unknown */
   gdouble error_bound;
   guint intensity_bits;
-  gdouble keep_fraction;    /* share of the rows kept; others were left out to save bits */
-  gboolean lacks_reference; /* if FALSE is returned: the only reason is that the slice refers to
-                               another one that never came. The base class asks for one that
-                               stands alone */
+  gdouble keep_fraction; /* share of the rows that were kept; the rest was removed to save bits */
+  gboolean lacks_reference; /* TRUE if decode() returns FALSE only because the slice refers to a
+                               slice that never arrived. The base class then requests a slice
+                               without references */
 } GstLidarDecodedSlice;
 
 struct _GstLidarDecoder {

@@ -33,70 +33,71 @@ GST_LIDAR_API GType gst_lidar_encoder_get_type(void);
 
 /** The answer of set_format(). */
 typedef struct {
-  GstCaps* caps;         /* of the coded slices, transfer full: gst_lidar_coded_caps_new() */
-  gboolean codes_ranges; /* receivers compute points from ranges and the sensor model: the base
-                            class warns if positions of a cloud contradict its ranges */
-  const gchar* refusal;  /* static; what the cloud lacks, if FALSE is returned */
+  GstCaps* caps;         /* caps of the coded slices: gst_lidar_coded_caps_new(); transfer full */
+  gboolean codes_ranges; /* TRUE: receivers compute points from the ranges and the sensor model.
+                            The base class then warns if positions contradict the ranges */
+  const gchar* refusal;  /* says what the cloud lacks, if set_format() returns FALSE; static */
 } GstLidarCodedFormat;
 
 /** A slice of a raw cloud. It is valid until the next call of load(). */
 typedef struct {
   const guint8* data;
-  gsize size;         /* bytes; whole points, and whole beams if height is above 1 */
-  guint width;        /* columns; from the buffer's size, if the caps lack it */
+  gsize size;         /* bytes; of whole points, and of whole beams if height is above 1 */
+  guint width;        /* columns; computed from the size of the buffer if the caps lack it */
   guint height;       /* beams */
   guint first_column; /* measurement id of the first column */
-  guint scan_id;      /* its place, as in GstLidarSlice */
+  guint scan_id;      /* scan_id to slice_count: as in GstLidarSlice */
   guint slice_index;
   guint slice_count;
 } GstLidarRawSlice;
 
 /** The result of load(). */
 typedef struct {
-  guint returns;          /* points that encode() will code */
+  guint returns;          /* number of points that encode() will encode */
   gdouble extent;         /* longest side of the points' box, or the longest range [m] */
-  guint rows;             /* beams or points that thin() chooses from; 0: it cannot */
-  gboolean has_intensity; /* encode() has intensities to code */
-  guint level;            /* highest compression level, for rate models that lower it; or 0 */
-  const gchar* mode;      /* "xyz-" or "range-" and the coder's own name, valid until the next
-                             load(): sizes are learnt for each mode apart. NULL: "xyz-other" */
+  guint rows;             /* number of beams or points from which thin() chooses; 0: no thinning */
+  gboolean has_intensity; /* the slice has intensities to encode */
+  guint level;            /* highest compression level, which rate models may lower; or 0 */
+  const gchar* mode;      /* "xyz-" or "range-" and a name of the coder's choice, valid until the
+                             next load(). Sizes are learnt for each mode separately. NULL means
+                             "xyz-other" */
 } GstLidarLoadedSlice;
 
 /** The grid steps of a coder that keep the error within a limit [m]. */
 typedef struct {
-  gdouble finest;   /* finer ones code meaningless digits */
-  gdouble coarsest; /* with it no point moves farther than the error; may be below the finest */
-  gdouble unit;     /* steps are finest plus a multiple of it; 0: any step */
+  gdouble finest;   /* finer steps would only encode meaningless digits */
+  gdouble coarsest; /* the largest step that keeps the error; may be smaller than finest */
+  gdouble unit;     /* all steps are finest plus a multiple of unit; 0: any step */
 } GstLidarStepRange;
 
 /** The settings for encode(). */
 typedef struct {
-  gdouble max_error;    /* bound of the distance between a point and its decoded point [m] */
-  gdouble step;         /* of the grid [m], if max_error allows it */
+  gdouble max_error;    /* largest allowed distance between a point and its decoded point [m] */
+  gdouble step;         /* wanted step of the grid [m], if max_error allows it */
   guint intensity_bits; /* 0: geometry only */
-  guint level;          /* at most that of GstLidarLoadedSlice */
-  guint threads;        /* at most, for this slice; 1: the calling one */
+  guint level;          /* compression level, at most `level` of GstLidarLoadedSlice */
+  guint threads;        /* most threads for this slice; 1: only the calling thread */
 } GstLidarEncodeSettings;
 
 /** The result of encode(). */
 typedef struct {
-  guint returns;       /* points coded */
-  gdouble step;        /* of the grid, as used [m] */
-  gdouble error_bound; /* bound of the distance that holds with this step [m] */
+  guint returns;       /* number of encoded points */
+  gdouble step;        /* step of the grid that was used [m] */
+  gdouble error_bound; /* largest possible distance with this step [m] */
 } GstLidarCodedSlice;
 
 typedef enum {
   GST_LIDAR_ENCODE_OK = 0,
-  GST_LIDAR_ENCODE_EMPTY = 1,       /* nothing that this coder could encode: the slice is a gap */
-  GST_LIDAR_ENCODE_OUT_OF_REACH = 2 /* no grid of this coder keeps to max_error: a gap, a warning */
+  GST_LIDAR_ENCODE_EMPTY = 1,       /* this coder can encode nothing of it: the slice is a gap */
+  GST_LIDAR_ENCODE_OUT_OF_REACH = 2 /* no step of this coder keeps max_error: a gap and a warning */
 } GstLidarEncodeResult;
 
 /** The rule that assigns each decoded point to a point of the raw slice. */
 typedef enum {
-  GST_LIDAR_ORDER_PIXELS = 0, /* as many points as the raw slice has, at their places */
+  GST_LIDAR_ORDER_PIXELS = 0, /* one point for each point of the raw slice, in its order */
   GST_LIDAR_ORDER_KEPT = 1,   /* the raw points that are finite and not all zero, in their order */
-  GST_LIDAR_ORDER_ANY = 2     /* the same in any order, maybe one for several: errors are distances
-                                 to the nearest point */
+  GST_LIDAR_ORDER_ANY = 2 /* as KEPT, but in any order, and a point may stand for several points.
+                             Errors are distances to the nearest point */
 } GstLidarPointOrder;
 
 struct _GstLidarEncoder {
