@@ -175,7 +175,7 @@ std::unique_ptr<MessageReader> MessageReader::Make(const mcap::Schema& schema,
     case MessageType::kSlice:
       break;
   }
-  // Slices without caps could not be decoded.
+  // Slices without caps cannot be decoded.
   return caps ? std::make_unique<SliceReader>(std::move(caps)) : nullptr;
 }
 

@@ -16,7 +16,7 @@ namespace lidar::nats {
 /// last word for each message.
 class AnswerSubjects {
  public:
-  /// Returns nothing if memory is short.
+  /// Makes subjects with a new prefix. Returns nothing if memory is short.
   static std::optional<AnswerSubjects> Make();
 
   std::string Of(const std::string& word) const { return prefix_ + word; }

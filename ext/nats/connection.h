@@ -60,7 +60,7 @@ class Connection {
   /// Closes the connection. A subscription that is destroyed after this call does not wait for the
   /// server.
   void Close() { natsConnection_Close(nc_); }
-  /// Never waits for the network.
+  /// Returns the state. Never waits for the network.
   ConnectionState state() const;
   /// Returns true if libnats has reconnected since the last call. libnats counts a reconnect before
   /// messages can be sent over the new connection. Only one thread may call this function.

@@ -19,7 +19,7 @@ class FormatBook {
   /// Loads the format that JetStream keeps at `subject`, adds it, and returns it. Returns null if
   /// JetStream has no format there.
   StreamFormat::Ptr Fetch(jsCtx* js, const std::string& stream, const std::string& subject);
-  /// Returns null if the format is not known.
+  /// Returns the format with the id `id`, or null if it is unknown.
   StreamFormat::Ptr Find(const std::string& id) const;
   std::uint64_t damaged() const { return damaged_; }
 

@@ -181,7 +181,7 @@ void History::Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* 
   }
 }
 
-/// Returns null if neither the book nor the stream has the format.
+/// Returns the format with the id `id`, or null if neither `book_` nor the stream has it.
 StreamFormat::Ptr History::FormatOf(const std::string& id) {
   if (auto known = book_.Find(id)) return known;
   return book_.Fetch(js_.get(), stream_, ConfigSubject(subject_, id));

@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kStreamRetry{500};   // longest pause before
 constexpr gint kMinStreamRetryMs = 50;
 constexpr std::chrono::milliseconds kAckTimeout{5'000};
 constexpr std::chrono::milliseconds kPatrol{500};  // interval of checks for unanswered messages
-constexpr const char* kConfigReply = "config";     // in place of a message's number
+constexpr const char* kConfigReply = "config";     // used instead of a message's number
 constexpr std::size_t kMaxInFlight = 256;          // messages
 
 /// Returns a random pause, so that several sinks do not change a stream at the same time.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Counts the messages that a source took and missed.
+// Counts the messages that a source received and missed.
 #pragma once
 #include <cstddef>
 #include <cstdint>

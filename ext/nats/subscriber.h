@@ -16,7 +16,7 @@ namespace lidar::nats {
 struct SubscriberSettings {
   ConnectionSettings connection;
   std::string subject;
-  std::string queue_group;                  // empty: no sharing
+  std::string queue_group;                  // empty: no group
   std::string stream;                       // JetStream's stream; empty: live
   std::string durable;                      // consumer; empty: a temporary one
   std::optional<std::uint64_t> start_time;  // [ns since 1970]; missing: now
@@ -49,7 +49,7 @@ class Subscriber {
     kNothing,  // no message arrived before the timeout
     kEmpty,    // see seeks_end
     kTrouble,  // trouble() describes it; the subscriber continues
-    kClosed,   // the connection is gone for good
+    kClosed,   // libnats does not connect again
   };
   Event Next(std::chrono::milliseconds timeout, Delivery* delivery);
   const std::string& trouble() const { return trouble_; }

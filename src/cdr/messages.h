@@ -38,7 +38,7 @@ struct Imu {
 std::optional<Imu> ReadImu(ByteView message);
 std::vector<std::uint8_t> WriteImu(const Imu& imu);
 
-/// nav_msgs/msg/Odometry: the pose of child_frame_id in header.frame_id.
+/// nav_msgs/msg/Odometry: the pose of the frame child_frame_id in the frame header.frame_id.
 struct Odometry {
   Header header;
   std::string child_frame_id;

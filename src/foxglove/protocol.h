@@ -27,7 +27,7 @@ struct Channel {
 /// The description of a stream of slices, which viewers get before the first slice.
 struct SliceStreamInfo {
   bool has_ranges = false;  // false: slices have points in no order
-  std::string fields;       // of the decoded points, packed
+  std::string fields;       // fields of the decoded points
   int framerate_n = 0;      // scans/s; 0/1: not known
   int framerate_d = 1;
   std::vector<std::uint8_t> sensor_model;  // see docs/wire-format.md; empty without ranges

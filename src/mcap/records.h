@@ -110,7 +110,7 @@ struct SummaryOffset {
   std::uint64_t size = 0;
 };
 
-/// These functions append a whole record to `out`.
+/// The functions below append a whole record to `out`.
 void Append(const Header& header, Bytes* out);
 void Append(const Footer& footer, Bytes* out);
 void Append(const Schema& schema, Bytes* out);

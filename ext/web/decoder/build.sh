@@ -11,10 +11,11 @@ mkdir -p "$objects/src/codec"
 template=$(<src/codec/mixing/start_table.h.in)
 echo "${template/@TABLE@/$(<src/codec/mixing/start_table.txt)}" > "$objects/src/codec/start_table.h"
 
-# The file stays below 300 kB gzipped: functions are inlined where that makes code smaller, and large
-# tables are computed when the module starts.
+# The gzipped module is smaller than 300 kB. For this, functions are inlined only where that makes
+# the code smaller, and large tables are computed when the module starts.
 #
-# Files with loops over bits and points; the others are compiled for size. *_encoder.cpp files are left out.
+# The files in `fast` have loops over bits and points. All other files are compiled for size. Files
+# that end with _encoder.cpp are not compiled.
 fast=(src/cloud/range_projection src/codec/mixing/{binary_coder,mixing_codec,slice_coder}
   src/codec/rans/{adaptive_coder,blended_coder,blended_mask,mask_coder,predictor,rans} src/codec/cloud/{beam_part,cell_tree,level_tree,pixel_part})
 small=(src/cloud/{point_fields,sensor_model} ext/web/decoder/{crc,decoder})
@@ -26,6 +27,6 @@ flags=(--target=wasm32-wasi -msimd128 -std=c++17 -fno-exceptions -fno-rtti -DNDE
 compile() { printf '%s\n' "${@:2}" | xargs -P 2 -I{} sh -c "clang++ ${flags[*]} $1 -c {}.cpp -o $objects/\$(echo {} | tr / _).o"; }
 compile '-O2 -mllvm -inline-threshold=10' "${fast[@]}"
 compile -Oz "${small[@]}"
-# The stack lies below all other memory, so that an overflow traps.
+# The stack is placed before all other memory, so that an overflow of the stack traps.
 clang++ "${flags[@]}" -mexec-model=reactor -Wl,-z,stack-size=1048576,--stack-first,--strip-all,--gc-sections \
   -Wl,--max-memory=536870912 "$objects"/*.o -o "$to"

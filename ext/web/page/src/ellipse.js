@@ -12,7 +12,7 @@ const CORNERS = 64;
  */
 export function ellipseOf(covariance) {
   const [xx, xy, yy] = [0, 1, 7].map((i) => covariance[i]);
-  // The Cholesky factor turns a circle into the ellipse.
+  // The Cholesky factor of the covariance transforms a circle into the ellipse.
   const a = Math.sqrt(xx);
   const b = a > 0 ? xy / a : 0;
   const c = Math.sqrt(Math.max(yy - b * b, 0));
