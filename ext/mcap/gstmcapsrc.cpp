@@ -259,7 +259,7 @@ static void NoteUnreadable(GstLidarMcapSrc* self) {
   const guint64 files = playback.unreadable_files();
   {
     std::lock_guard lock(state.mutex);
-    // If the task stops, a file may remain unread although it could be read.
+    // If the task stops, a file may remain unread although it could be read. It does not count.
     if (state.stopping || state.counters.files_unreadable == files) return;
     state.counters.files_unreadable = files;
   }

@@ -20,7 +20,7 @@ struct PlayedCounts {
 /// cannot be played.
 void PostNothingToPlay(GstElement* element, const mcap::Playback& playback,
                        const std::string& location, const std::string& topic);
-/// Posts a warning about files that break off.
+/// Posts a warning about incomplete files.
 void WarnOfUnclosed(GstElement* element, guint64 files);
 /// Posts a warning about files that cannot be read. `why` is the reason for the last of these
 /// files.

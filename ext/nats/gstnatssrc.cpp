@@ -143,8 +143,8 @@ static const std::array<Property<NatsSrcSettings>, 15> kProperties = {{
      Stats},
 }};
 
-/// Makes the source live unless it reads from JetStream. JetStream sends stored messages as fast as
-/// downstream accepts them.
+/// Makes the source live unless it reads from JetStream. A source of stored messages is not live,
+/// because JetStream sends them as fast as downstream accepts them.
 static void FollowSettings(GObject* object, GParamSpec*) {
   State& state = StateOf(object);
   std::unique_lock lock(state.mutex);

@@ -13,7 +13,7 @@ using foxglove::Opcode;
 /// A request to subscribe has about a hundred bytes.
 constexpr std::size_t kMaxClientMessage = 64 * 1024;
 constexpr std::size_t kMaxControls = 64;
-/// This is enough for two scans, which have at most 1024 slices each.
+/// The largest number of waiting slices. Two scans have at most 1024 slices each.
 constexpr std::size_t kMaxSlices = 2048;
 constexpr gint64 kSecond_us = G_USEC_PER_SEC;
 constexpr gint64 kAskAfter_us = 10 * kSecond_us;

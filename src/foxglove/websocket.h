@@ -48,7 +48,7 @@ class MessageReader {
   /// Messages of more than `max_size` bytes are an error.
   explicit MessageReader(std::size_t max_size) : max_size_(max_size) {}
 
-  /// Adds received bytes. Next() must have returned all complete messages before.
+  /// Adds received bytes. Before the next call of Append(), call Next() until it returns nothing.
   void Append(ByteView bytes);
   /// Returns the next message. Returns nothing if more bytes are needed, and always after an error.
   std::optional<ClientMessage> Next();

@@ -65,7 +65,7 @@ class Pace {
   void LearnRate(Time now, DataRate rate);
 
   DataRate max_bitrate_;
-  DataSize credit_;  // bytes that max_bitrate allows now; negative after too many
+  DataSize credit_;  // bytes that max_bitrate allows now; negative if exceeded
   Time filled_{};
   std::deque<Sent> sent_;  // unacknowledged slices in the order of sending
   DataSize unacknowledged_;

@@ -189,7 +189,7 @@ function onStatistics(message) {
   const sink = Object.values(message.elements ?? {}).find((e) => e.factory === 'foxglovesink');
   if (sink?.scan_duration > 0 && !page.paused) page.spanS = sink.scan_duration * 1e-9;
   tools.setSpan();
-  // Statistics describe the present, not the past.
+  // Statistics describe the present, so the ellipse is not drawn for the past.
   if (message.pose_covariance && !page.timeline.isPast) page.scene.setCovariance(message.pose_covariance);
   const links = page.links.of(message, nowSeconds());
   page.charts.add({ ...page.quality, ...message, ...links, received: page.receivedBps, age: page.age });
